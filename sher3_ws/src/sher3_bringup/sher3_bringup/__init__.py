@@ -1,0 +1,1 @@
+"""Entry script, process supervision and configuration of the SHER 3.0."""

@@ -1,0 +1,1 @@
+"""Admittance law, motion modes, limits and supervisor of the SHER 3.0."""

@@ -1,0 +1,1 @@
+"""Parameters, topic table and URDF of the SHER 3.0."""

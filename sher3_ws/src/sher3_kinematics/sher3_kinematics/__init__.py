@@ -1,0 +1,1 @@
+"""Kinematics of the SHER 3.0: delta stage, tilt linkage, arm, differential inverse."""

@@ -1,0 +1,1 @@
+"""The SHER 3.0 paper recomputed: deflection, design, bench-top evaluation."""

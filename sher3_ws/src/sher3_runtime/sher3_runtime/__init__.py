@@ -1,0 +1,1 @@
+"""Small real-time runtime for rclpy nodes: clock grid, executor, CDR codecs."""

@@ -1,0 +1,1 @@
+"""Plant of the SHER 3.0 with a door for unmodelled effects."""
