@@ -1,0 +1,95 @@
+"""The topic table: names, types, frames and quality of service, in one place and without ROS."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+NAMESPACE = "/sher3"
+
+
+@dataclass(frozen=True)
+class Qos:
+    """Quality of service as plain data; history is always keep-last.
+
+    Attributes:
+        reliability: `reliable` or `best_effort`.
+        durability: `volatile`, or `transient_local` for latched topics.
+        depth: queue length in messages.
+    """
+
+    reliability: Literal["reliable", "best_effort"] = "reliable"
+    durability: Literal["volatile", "transient_local"] = "volatile"
+    depth: int = 10
+
+
+@dataclass(frozen=True)
+class Topic:
+    """One topic.
+
+    Attributes:
+        name: relative to `NAMESPACE`, as in `measured_js`; the key of `TOPICS`.
+        type: ROS interface, as in `sensor_msgs/msg/JointState`.
+        frame_id: `header.frame_id` of every message, or empty where there is none to name.
+        qos: of publishers and subscribers alike.
+        content: what it carries, for `--help` and the docs.
+    """
+
+    name: str
+    type: str
+    frame_id: str
+    qos: Qos
+    content: str
+
+    @property
+    def full_name(self) -> str:
+        """The absolute name; `diagnostics` is the only topic outside the namespace (ROS convention)."""
+        return f"/{self.name}" if self.name == "diagnostics" else f"{NAMESPACE}/{self.name}"
+
+
+STREAM = Qos()
+AHEAD = Qos(depth=500)
+LATCHED = Qos(durability="transient_local", depth=1)
+
+_JOINT = "sensor_msgs/msg/JointState"
+_TWIST = "geometry_msgs/msg/TwistStamped"
+_POSE = "geometry_msgs/msg/PoseStamped"
+_WRENCH = "geometry_msgs/msg/WrenchStamped"
+_JOY = "sensor_msgs/msg/Joy"
+_TEXT = "std_msgs/msg/String"
+
+_TABLE = (
+    # The robot's streams, recorded-run contract version 1, section 4.
+    Topic("setpoint_js", _JOINT, "", STREAM, "reference position and velocity, position modes only"),
+    Topic("servo_cv", _TWIST, "b", STREAM, "commanded tip twist in {b}, cooperative mode only"),
+    Topic("servo_jv", _JOINT, "", STREAM, "commanded actuator velocity"),
+    Topic("drives/setpoint_jv", _JOINT, "", STREAM, "velocity demand executed in the interval that ends at the stamp"),
+    Topic("drives/measured_js", _JOINT, "", STREAM, "motor encoder position, motor velocity, effort"),
+    Topic("measured_js", _JOINT, "", STREAM, "load encoder position"),
+    Topic("measured_cp", _POSE, "b", STREAM, "tip pose from measured_js"),
+    Topic("force/measured_cf", _WRENCH, "f", STREAM, "raw wrench in {f}"),
+    Topic("pedal/measured", _JOY, "", STREAM, "axes[0] travel 0 to 1, buttons[0] emergency stop"),
+    Topic("tracker/measured_cp", _POSE, "b", STREAM, "external tip pose in {b}"),
+    Topic("temperature", "sensor_msgs/msg/Temperature", "", STREAM, "structure temperature [deg C]"),
+    Topic("operating_state", _TEXT, "", LATCHED, "CRTK operating state with its reason"),
+    # CRTK commands of the user.
+    Topic("command/servo_cv", _TWIST, "b", STREAM, "tip twist in {b}"),
+    Topic("command/servo_jv", _JOINT, "", STREAM, "actuator velocity"),
+    Topic("command/servo_jp", _JOINT, "", AHEAD, "actuator position for the tick of its stamp; may be early"),
+    Topic("command/move_jp", _JOINT, "", STREAM, "actuator position to go to and stop at"),
+    Topic("command/servo_cp", _POSE, "b", STREAM, "tip pose in {b} for now"),
+    Topic("command/move_cp", _POSE, "b", STREAM, "tip pose in {b} to go to and stop at"),
+    Topic(
+        "command/state_command", _TEXT, "", STREAM, "CRTK state command: enable, disable, pause, resume, home, unhome"
+    ),
+    Topic("diagnostics", "diagnostic_msgs/msg/DiagnosticArray", "", STREAM, "health of every node, with numbers"),
+    # Between a scripted surgeon, the plant process and the device ends of sensor and pedal; mocks only.
+    Topic("mock/contact_wrench", _WRENCH, "b", STREAM, "wrench on the tip in {b}, into the plant"),
+    Topic("mock/pedal", _JOY, "", STREAM, "pedal as the foot presses it, into the pedal's device end"),
+    Topic("mock/force_device", _WRENCH, "f", STREAM, "what the mock force sensor puts on its wire"),
+    Topic("mock/pedal_device", _JOY, "", STREAM, "what the mock pedal puts on its wire"),
+    Topic("mock/fault", _TEXT, "", STREAM, "fault to inject or to clear"),
+)
+
+TOPICS: dict[str, Topic] = {topic.name: topic for topic in _TABLE}
+"""Every topic by its name relative to `NAMESPACE`."""
