@@ -12,6 +12,9 @@ from .errors import FileError
 MAX_CONFIGURATION_BYTES = 1 << 20
 """A robot or configuration file is a few kilobytes; more than this [bytes] is a mistake."""
 
+MAX_DEPTH = 32
+"""Nesting of mappings and lists that any of our files stays far below."""
+
 
 def read_text(path: Path | str, max_bytes: int = MAX_CONFIGURATION_BYTES) -> str:
     """Return the UTF-8 text of a regular file of at most `max_bytes`.
@@ -47,10 +50,7 @@ def parse_yaml(text: str, source: Path | str = "<text>", max_bytes: int = MAX_CO
     if len(text) > max_bytes:
         raise FileError("too large [characters]", path=source, value=len(text), limit=max_bytes)
     try:
-        for event in yaml.parse(text, Loader=yaml.SafeLoader):
-            if isinstance(event, yaml.AliasEvent):
-                line = event.start_mark.line + 1 if event.start_mark else 0
-                raise FileError("uses a YAML alias", path=source, value=f"line {line}", remedy="write the value out")
+        _refuse_aliases_and_depth(text, source)
         data = yaml.safe_load(text)
     except (yaml.YAMLError, RecursionError, ValueError) as error:
         if isinstance(error, FileError):
@@ -60,6 +60,17 @@ def parse_yaml(text: str, source: Path | str = "<text>", max_bytes: int = MAX_CO
     if not isinstance(data, dict):
         raise FileError("holds no mapping", path=source, value=type(data).__name__, remedy="start with 'key: value'")
     return data
+
+
+def _refuse_aliases_and_depth(text: str, source: Path | str) -> None:
+    depth = 0
+    for event in yaml.parse(text, Loader=yaml.SafeLoader):
+        place = f"line {event.start_mark.line + 1}" if event.start_mark else None
+        depth += isinstance(event, yaml.CollectionStartEvent) - isinstance(event, yaml.CollectionEndEvent)
+        if depth > MAX_DEPTH:
+            raise FileError("is nested too deeply", path=source, value=place, limit=MAX_DEPTH, remedy="flatten it")
+        if isinstance(event, yaml.AliasEvent):
+            raise FileError("uses a YAML alias", path=source, value=place, remedy="write the value out")
 
 
 def read_yaml(path: Path | str, max_bytes: int = MAX_CONFIGURATION_BYTES) -> dict[str, Any]:
