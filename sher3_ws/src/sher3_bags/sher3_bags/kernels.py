@@ -1,0 +1,123 @@
+"""Compiled loops over MCAP records: find messages, gather rows, pack messages into chunk bodies.
+
+Record layout: https://mcap.dev/spec, `<opcode u8><length u64><content>`; a message's content is
+`<channel u16><sequence u32><log_time u64><publish_time u64><data>`, little endian.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+RECORD_HEAD = 9
+MESSAGE_HEAD = 22
+MESSAGE = 0x05
+
+
+@njit(cache=True, inline="always")
+def _load(buffer, at, width):  # type: ignore[no-untyped-def]
+    value = np.uint64(0)
+    for k in range(width):
+        value |= np.uint64(buffer[at + k]) << np.uint64(8 * k)
+    return np.int64(value)
+
+
+@njit(cache=True, inline="always")
+def _store(buffer, at, width, value):  # type: ignore[no-untyped-def]
+    word = np.uint64(value)
+    for k in range(width):
+        buffer[at + k] = np.uint8((word >> np.uint64(8 * k)) & np.uint64(255))
+
+
+@njit(cache=True)
+def count_records(buffer, start, end):  # type: ignore[no-untyped-def]
+    """Count messages and other records in buffer[start:end]; third result is the first bad byte, or -1."""
+    messages = others = 0
+    at = start
+    while at < end:
+        if at + RECORD_HEAD > end:
+            return messages, others, at
+        length = _load(buffer, at + 1, 8)
+        if length < 0 or length > end - at - RECORD_HEAD:
+            return messages, others, at
+        if buffer[at] == MESSAGE:
+            if length < MESSAGE_HEAD:
+                return messages, others, at
+            messages += 1
+        else:
+            others += 1
+        at += RECORD_HEAD + length
+    return messages, others, np.int64(-1)
+
+
+@njit(cache=True)
+def index_records(buffer, start, end, channel, log_time, publish_time, offset, length, other):  # type: ignore[no-untyped-def]
+    """Fill the message table of buffer[start:end], accepted by `count_records`; `other` gets the other records."""
+    m = k = 0
+    at = start
+    while at < end:
+        size = _load(buffer, at + 1, 8)
+        if buffer[at] == MESSAGE:
+            channel[m] = _load(buffer, at + 9, 2)
+            log_time[m] = _load(buffer, at + 15, 8)
+            publish_time[m] = _load(buffer, at + 23, 8)
+            offset[m] = at + RECORD_HEAD + MESSAGE_HEAD
+            length[m] = size - MESSAGE_HEAD
+            m += 1
+        else:
+            other[k] = at
+            k += 1
+        at += RECORD_HEAD + size
+
+
+@njit(cache=True)
+def gather_rows(buffer, offset, first, constant, rows):  # type: ignore[no-untyped-def]
+    """Copy messages of one length into rows (n, length).
+
+    Returns the first row that differs from `first` where `constant` is 255, or -1.
+    """
+    width = rows.shape[1]
+    for i in range(len(offset)):
+        at = offset[i]
+        differs = np.uint8(0)
+        for j in range(width):
+            byte = buffer[at + j]
+            rows[i, j] = byte
+            differs |= (byte ^ first[j]) & constant[j]
+        if differs:
+            return i
+    return -1
+
+
+@njit(cache=True)
+def chunk_ends(size, limit):  # type: ignore[no-untyped-def]
+    """Cut records of the given sizes into chunks of at most `limit` bytes; return the index after each chunk's last."""
+    ends = np.empty(len(size), np.int64)
+    n = filled = 0
+    for i in range(len(size)):
+        if filled and filled + size[i] > limit:
+            ends[n] = i
+            n += 1
+            filled = 0
+        filled += size[i]
+    if filled:
+        ends[n] = len(size)
+        n += 1
+    return ends[:n].copy()
+
+
+@njit(cache=True)
+def pack_messages(payload, start, length, channel, sequence, log_time, publish_time, position, out):  # type: ignore[no-untyped-def]
+    """Write message records to `out` at `position`, with data payload[start:start + length]."""
+    for i in range(len(start)):
+        at = position[i]
+        out[at] = MESSAGE
+        _store(out, at + 1, 8, length[i] + MESSAGE_HEAD)
+        _store(out, at + 9, 2, channel[i])
+        _store(out, at + 11, 4, sequence[i])
+        _store(out, at + 15, 8, log_time[i])
+        _store(out, at + 23, 8, publish_time[i])
+        at += RECORD_HEAD + MESSAGE_HEAD
+        source = start[i]
+        for j in range(length[i]):
+            out[at + j] = payload[source + j]
