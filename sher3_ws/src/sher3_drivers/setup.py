@@ -1,4 +1,5 @@
 """Build of sher3_drivers for colcon; the root pyproject.toml installs every package with pip."""
+
 from setuptools import find_packages, setup
 
 NAME = "sher3_drivers"
@@ -17,5 +18,8 @@ setup(
     zip_safe=False,
     description="CAN motor drivers, force sensor and pedal of the SHER 3.0, with mock back-ends",
     license="Apache-2.0",
-    entry_points={"console_scripts": []},
+    entry_points={
+        "console_scripts": [],
+        "can.interface": ["sher3 = sher3_drivers.bus_python_can:LinkBus"],
+    },
 )

@@ -1,0 +1,79 @@
+"""Typed errors of the drivers: every one carries its numbers and names value, limit and remedy."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from sher3_description import Sher3Error
+
+
+class DriverError(Sher3Error):
+    """Base of everything the drivers raise."""
+
+
+class FrameError(DriverError):
+    """Bytes that are no CAN frames."""
+
+
+class LinkError(DriverError):
+    """A CAN link cannot be opened or used; carries `link`."""
+
+    def __init__(self, what: str, *, link: str, **details: Any) -> None:
+        super().__init__(f"CAN link {link}: {what}", **details)
+        self.link = link
+
+
+class BusLoadError(DriverError):
+    """The configured cycle does not fit the bus; carries the `budget` it computed."""
+
+    def __init__(self, what: str, *, budget: str, **details: Any) -> None:
+        super().__init__(what, **details)
+        self.budget = budget
+
+    def __str__(self) -> str:
+        return f"{super().__str__()}\n{self.budget}"
+
+
+class UnknownStatusword(DriverError):
+    """A statusword that is no CiA 402 state."""
+
+
+class ScaleError(DriverError):
+    """A value that its CAN object cannot carry, or a resolution that is no whole number of increments."""
+
+
+class ConfigurationError(DriverError):
+    """The driver's own settings are inconsistent."""
+
+
+class DriveMismatch(DriverError):
+    """A drive's objects do not hold what they must; carries `drive` and `mismatches` (object, expected, found)."""
+
+    def __init__(self, drive: str, mismatches: list[tuple[str, object, object]]) -> None:
+        text = "; ".join(f"object {name}: expected {expected}, found {found}" for name, expected, found in mismatches)
+        super().__init__(
+            f"drive {drive} is not configured as the driver needs it: {text}",
+            remedy="correct the drive's configuration or the robot file; nothing was enabled",
+        )
+        self.drive = drive
+        self.mismatches = mismatches
+
+
+class DriveSilent(DriverError):
+    """A drive does not answer; carries `drive`."""
+
+    def __init__(self, drive: str, what: str, **details: Any) -> None:
+        super().__init__(f"drive {drive}: {what}", **details)
+        self.drive = drive
+
+
+class CommandRefused(DriverError):
+    """A velocity command that must not reach the drives; zero velocity was sent instead."""
+
+
+class DeviceMissing(DriverError):
+    """A sensor or pedal is not there or was lost; carries `device`."""
+
+    def __init__(self, device: str, what: str, **details: Any) -> None:
+        super().__init__(f"{device}: {what}", **details)
+        self.device = device

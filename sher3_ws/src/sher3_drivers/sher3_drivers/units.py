@@ -1,0 +1,119 @@
+"""Counts on the wire and SI units, both ways and exact: one `AxisScale` per actuator, from the robot file.
+
+Velocities travel in micro-revolutions per minute of the motor (CiA 402 object 0x60A9 = 0xFAB44700): 1e-6 rpm is
+3.3e-11 m/s on a 2 mm screw and 1.05e-9 rad/s at the roll output, and 32 bits of it reach +-2147 rpm, 1.8 to 5.9
+times the velocity limits. Torque travels in rated/1000 (0x6077).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from sher3_description import Actuator
+
+from .errors import ScaleError
+
+SI_UNIT_VELOCITY = 0xFAB44700
+"""Object 0x60A9: prefix 10^-6, numerator revolutions, denominator minutes."""
+
+ENCODER_REVOLUTIONS = 100
+"""Encoder resolutions are given as increments per this many motor revolutions (objects 0x608F and 0x60E6/0x60EB)."""
+
+_INT32 = 2**31 - 1
+_INT16 = 2**15 - 1
+
+
+@dataclass(frozen=True)
+class AxisScale:
+    """Scales of one axis: SI units per count.
+
+    Attributes:
+        name: actuator.
+        motor_encoder: m or rad per count of the motor encoder.
+        load_encoder: m or rad per count of the load encoder.
+        velocity: m/s or rad/s per count of target velocity and velocity demand.
+        effort: N or N m per count of torque.
+        velocity_limit: largest velocity a command may ask, m/s or rad/s.
+        motor_increments: motor encoder counts per ENCODER_REVOLUTIONS motor revolutions.
+        load_increments: load encoder counts per ENCODER_REVOLUTIONS motor revolutions.
+        rated_milli: rated force or torque, mN or mN m.
+    """
+
+    name: str
+    motor_encoder: float
+    load_encoder: float
+    velocity: float
+    effort: float
+    velocity_limit: float
+    motor_increments: int
+    load_increments: int
+    rated_milli: int
+
+    @classmethod
+    def from_actuator(cls, actuator: Actuator) -> AxisScale:
+        """Return the scales of `actuator`.
+
+        Raises:
+            ScaleError: an encoder has no whole number of increments per 100 revolutions, or the velocity limit does
+                not fit 32 bits.
+        """
+        scale = cls(
+            name=actuator.name,
+            motor_encoder=actuator.motor_encoder,
+            load_encoder=actuator.load_encoder,
+            velocity=actuator.lead * 1e-6 / 60.0,
+            effort=actuator.drive.rated / 1000.0,
+            velocity_limit=actuator.limits.velocity,
+            motor_increments=_increments(actuator.name, "motor_encoder", actuator.lead, actuator.motor_encoder),
+            load_increments=_increments(actuator.name, "load_encoder", actuator.lead, actuator.load_encoder),
+            rated_milli=round(actuator.drive.rated * 1000.0),
+        )
+        largest = scale.velocity * _INT32
+        if scale.velocity_limit > largest:
+            remedy = "lower the limit or correct the lead"
+            raise ScaleError(
+                f"{actuator.name}: the velocity limit does not fit the object",
+                value=scale.velocity_limit,
+                limit=largest,
+                remedy=remedy,
+            )
+        return scale
+
+    def velocity_counts(self, velocity: float) -> int:
+        """Return the counts nearest to a velocity; raise ScaleError when it is not finite or does not fit 32 bits."""
+        return _counts(self.name, "velocity", velocity, self.velocity, _INT32)
+
+    def load_counts(self, position: float) -> int:
+        """Return the load encoder counts nearest to a position."""
+        return _counts(self.name, "load position", position, self.load_encoder, _INT32)
+
+    def motor_counts(self, position: float) -> int:
+        """Return the motor encoder counts nearest to a position."""
+        return _counts(self.name, "motor position", position, self.motor_encoder, _INT32)
+
+    def effort_counts(self, effort: float) -> int:
+        """Return the torque counts (rated/1000) nearest to an effort."""
+        return _counts(self.name, "effort", effort, self.effort, _INT16)
+
+
+def _counts(axis: str, quantity: str, value: float, resolution: float, limit: int) -> int:
+    counts = value / resolution
+    if not (math.isfinite(counts) and abs(round(counts)) <= limit):
+        remedy = "send a finite value within the range"
+        raise ScaleError(
+            f"{axis}: {quantity} does not fit its object", value=value, limit=limit * resolution, remedy=remedy
+        )
+    return round(counts)
+
+
+def _increments(axis: str, encoder: str, lead: float, resolution: float) -> int:
+    exact = ENCODER_REVOLUTIONS * lead / resolution
+    if not math.isclose(exact, round(exact), rel_tol=1e-6):
+        remedy = f"give a resolution that divides {ENCODER_REVOLUTIONS} leads"
+        raise ScaleError(
+            f"{axis}: {encoder} has no whole number of increments per {ENCODER_REVOLUTIONS} revolutions",
+            value=exact,
+            remedy=remedy,
+        )
+    return round(exact)

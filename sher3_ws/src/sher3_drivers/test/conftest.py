@@ -1,0 +1,32 @@
+"""A parametrised fixture runs a test on every CAN back-end; socketcan is skipped, visibly, without kernel support."""
+
+import itertools
+import os
+
+import pytest
+from sher3_drivers.bus import open_link
+from sher3_drivers.errors import LinkError
+
+_numbers = itertools.count()
+
+
+@pytest.fixture(params=["virtual", "local", "socketcan"])
+def open_pair(request, tmp_path, monkeypatch):
+    """A function that opens one more participant of a fresh channel; all are closed at the end."""
+    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
+    channel = os.environ.get("SHER3_TEST_CAN", "vcan0") if request.param == "socketcan" else f"t{next(_numbers)}"
+    links = []
+
+    def open_one():
+        try:
+            links.append(open_link(f"{request.param}:{channel}"))
+        except LinkError as error:
+            if request.param == "socketcan":
+                pytest.skip(f"no SocketCAN here: {error}")
+            raise
+        return links[-1]
+
+    open_one.kind = request.param
+    yield open_one
+    for link in links:
+        link.close()
