@@ -1,1 +1,38 @@
-"""Small real-time runtime for rclpy nodes: clock grid, executor, CDR codecs."""
+"""Clock grid, executor, CDR codecs and process statistics.
+
+`samples`, `cdr`, `clock` and `timing` are plain Python; `ports`, `spinning` and `graph` see rclpy. Import from here what a node needs.
+"""
+
+from .samples import DiagnosticSample as DiagnosticSample
+from .samples import JointSample as JointSample
+from .samples import JoySample as JoySample
+from .samples import PoseSample as PoseSample
+from .samples import Sample as Sample
+from .samples import TemperatureSample as TemperatureSample
+from .samples import TextSample as TextSample
+from .samples import TwistSample as TwistSample
+from .samples import WrenchSample as WrenchSample
+
+_DOORS = {
+    "NODE_OPTIONS": "ports",
+    "advertise": "ports",
+    "clock_of": "ports",
+    "on_readable": "ports",
+    "on_tick": "ports",
+    "statistics_of": "ports",
+    "subscribe": "ports",
+    "use_clock": "ports",
+    "spin": "spinning",
+    "Graph": "graph",
+    "Clock": "clock",
+    "SteppedClock": "clock",
+}
+
+
+def __getattr__(name: str) -> object:
+    """Import a door at its first use, so that `import sher3_runtime` alone needs no rclpy."""
+    if name in _DOORS:
+        from importlib import import_module
+
+        return getattr(import_module(f".{_DOORS[name]}", __name__), name)
+    raise AttributeError(name)

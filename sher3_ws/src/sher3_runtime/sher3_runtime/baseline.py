@@ -1,0 +1,61 @@
+"""The same nodes on rclpy's own executor, message objects and timers: what the bench compares with (`SHER3_EXECUTOR=default`)."""
+
+from __future__ import annotations
+
+import select
+import threading
+import time
+from collections.abc import Callable
+from typing import Any
+
+from rclpy.clock import Clock as RosClock
+from rclpy.clock import ClockType
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+
+from .ports import clock_of, ports
+from .tick import Tick
+
+
+class BaselineExecutor(SingleThreadedExecutor):
+    """rclpy's executor, with each tick as a timer that is started on the grid and each file watched by a thread."""
+
+    def start(self) -> None:
+        """Start the timers and file watchers of the nodes added so far."""
+        for node in self.get_nodes():
+            for tick in ports(node).ticks:
+                _start_timer(node, tick)
+            for file, callback in ports(node).readables:
+                _start_watcher(node, file, callback)
+
+
+def _start_timer(node: Node, tick: Tick) -> None:
+    clock = clock_of(node)
+    tick.schedule()
+    time.sleep(max(0, tick.due_ns - clock.now()) * 1e-9)
+    tick.run(clock.now())
+
+    def on_timer() -> None:
+        tick.run(clock.now())
+
+    node.create_timer(tick.period_ns * 1e-9, on_timer, clock=RosClock(clock_type=ClockType.STEADY_TIME))
+
+
+def _start_watcher(node: Node, file: Any, callback: Callable[[], None]) -> None:
+    handled = threading.Event()
+
+    def on_data() -> None:
+        callback()
+        handled.set()
+
+    guard = node.create_guard_condition(on_data)
+
+    def watch() -> None:
+        while node.context.ok():
+            readable, _, _ = select.select([file], (), (), 0.1)
+            if readable and node.context.ok():
+                handled.clear()
+                guard.trigger()
+                handled.wait(0.1)
+
+    threading.Thread(target=watch, daemon=True).start()

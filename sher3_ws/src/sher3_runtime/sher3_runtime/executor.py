@@ -1,0 +1,236 @@
+"""A small rclpy executor: one wait set built once, raw takes until the queue is empty, ticks of the clock grid.
+
+rclpy's own executor builds a new wait set and one task per message at every spin, which costs more than the rest of the control loop. This one keeps
+the wait set until an entity comes or goes (rclpy then triggers the guard condition) and hands the raw bytes straight to the codec. Services,
+timers, clients, guard conditions and event handlers run through rclpy's own takers. It is single threaded and raises what a callback raises.
+"""
+
+from __future__ import annotations
+
+import select
+from collections.abc import Callable
+from contextlib import ExitStack
+from typing import Any
+
+from rclpy.executors import Executor
+from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+from rclpy.node import Node
+from rclpy.task import Task
+
+from .clock import Clock
+from .ports import clock_of, ports
+from .tick import Tick
+
+IDLE_NS = 100_000_000
+"""Longest wait; bounds the time to notice a shutdown that woke nobody."""
+
+
+class RawExecutor(Executor):
+    """Runs the callbacks of its nodes in the calling thread, in this order: topics, ticks, everything else."""
+
+    def __init__(self, *, context: Any = None) -> None:
+        super().__init__(context=context)
+        self._held = ExitStack()
+        self._wait_set: Any = None
+        self._subscriptions: list[tuple[Any, Any, bool, Callable[[Any], None]]] = []
+        self._others: dict[str, list[tuple[Any, Callable[[Any], Any]]]] = {}
+        self._waitables: list[Any] = []
+        self._ticks: list[Tick] = []
+        self._files: dict[int, Callable[[], None]] = {}
+        self._tick_clock: Clock | None = None
+
+    def spin_once(self, timeout_sec: float | None = None) -> None:
+        """Wait until something is ready or due, at most `timeout_sec`, and run all of it."""
+        if self._wait_set is None:
+            self._rebuild()
+        timeout = IDLE_NS if timeout_sec is None or timeout_sec < 0 else min(int(timeout_sec * 1e9), IDLE_NS)
+        clock, ticks = self._tick_clock, self._ticks
+        if ticks and clock is not None and not clock.stepped:
+            timeout = max(0, min(timeout, ticks[0].due_ns - clock.now()))
+        if self._files:
+            self._wait_on_files(timeout)
+            timeout = 0
+        self._wait(timeout)
+        self._take_subscriptions()
+        if ticks and clock is not None and not clock.stepped:
+            self._run_ticks(clock)
+        self._run_others()
+
+    def settle(self) -> bool:
+        """Run what is ready now, without waiting; return whether there was anything (for stepped time)."""
+        if self._wait_set is None:
+            self._rebuild()
+        files = bool(self._files) and self._wait_on_files(0)
+        self._wait(0)
+        topics = self._take_subscriptions()
+        return self._run_others() or topics or files
+
+    def spin_once_until_future_complete(self, future: Any, timeout_sec: Any = None) -> None:
+        """Spin once; part of the Executor interface."""
+        future.add_done_callback(lambda _: self.wake())
+        self.spin_once(getattr(timeout_sec, "timeout", timeout_sec))
+
+    def shutdown(self, timeout_sec: float | None = None) -> bool:
+        """Let go of all entities."""
+        self._held.close()
+        self._wait_set = None
+        return super().shutdown(timeout_sec)
+
+    def remove_node(self, node: Node) -> None:
+        """Stop running the callbacks of a node; its entities are let go of at once."""
+        super().remove_node(node)
+        self._held.close()
+        self._wait_set = None
+
+    # The wait set.
+
+    def _rebuild(self) -> None:
+        """Collect every entity of every node and size the wait set for them."""
+        self._held.close()
+        nodes = self.get_nodes()
+        self._subscriptions = []
+        self._others = {"service": [], "timer": [], "client": [], "guard_condition": []}
+        for node in nodes:
+            deliveries = ports(node).deliveries
+            for sub in node.subscriptions:
+                if self._hold(sub.handle):
+                    deliver = deliveries.get(sub.handle.pointer, sub.callback)
+                    self._subscriptions.append((sub.handle, sub.msg_type, sub.raw, deliver))
+            self._collect("service", node.services, self._take_service)
+            self._collect("timer", node.timers, self._take_ready_timer)
+            self._collect("client", node.clients, self._take_client)
+            self._collect("guard_condition", node.guards, self._take_guard_condition)
+        for guard in (self._guard, self._sigint_gc):
+            if guard is not None:
+                self._collect("guard_condition", [guard], _nothing)
+        self._waitables = [waitable for node in nodes for waitable in node.waitables if self._hold(waitable)]
+        self._hold(self._context.handle)
+        self._wait_set = self._sized_wait_set()
+        self._schedule(nodes)
+
+    def _hold(self, handle: Any) -> bool:
+        """Keep a handle from being destroyed while it is in the wait set."""
+        try:
+            self._held.enter_context(handle)
+        except _rclpy.InvalidHandle:
+            return False
+        return True
+
+    def _collect(self, kind: str, entities: Any, take: Callable[[Any], Any]) -> None:
+        self._others[kind].extend((entity, take) for entity in entities if self._hold(entity.handle))
+
+    def _sized_wait_set(self) -> Any:
+        counts = {kind: len(entities) for kind, entities in self._others.items()}
+        counts["subscription"], counts["event"] = len(self._subscriptions), 0
+        for waitable in self._waitables:
+            more = waitable.get_num_entities()
+            for kind in counts:
+                counts[kind] += getattr(more, f"num_{kind}s")
+        order = ("subscription", "guard_condition", "timer", "client", "service", "event")
+        return _rclpy.WaitSet(*(counts[kind] for kind in order), self._context.handle)
+
+    def _schedule(self, nodes: list[Node]) -> None:
+        ticks = [tick for node in nodes for tick in ports(node).ticks]
+        for tick in ticks:
+            if tick.due_ns == 0:
+                tick.schedule()
+        self._ticks = sorted(ticks, key=lambda tick: tick.due_ns)
+        self._files = {file.fileno(): callback for node in nodes for file, callback in ports(node).readables}
+        self._tick_clock = clock_of(nodes[0]) if nodes else None
+
+    # One spin.
+
+    def _wait(self, timeout_ns: int) -> None:
+        wait_set = self._wait_set
+        wait_set.clear_entities()
+        for subscription in self._subscriptions:
+            wait_set.add_subscription(subscription[0])
+        others = self._others
+        for entity, _ in others["service"]:
+            wait_set.add_service(entity.handle)
+        for entity, _ in others["timer"]:
+            wait_set.add_timer(entity.handle)
+        for entity, _ in others["client"]:
+            wait_set.add_client(entity.handle)
+        for entity, _ in others["guard_condition"]:
+            wait_set.add_guard_condition(entity.handle)
+        for waitable in self._waitables:
+            waitable.add_to_wait_set(wait_set)
+        wait_set.wait(timeout_ns)
+
+    def _wait_on_files(self, timeout_ns: int) -> bool:
+        """Wait on the files instead, no longer than a period, since the topics are only looked at afterwards."""
+        clock = self._tick_clock
+        if clock is not None and timeout_ns > clock.period_ns:
+            timeout_ns = clock.period_ns
+        readable, _, _ = select.select(list(self._files), (), (), timeout_ns * 1e-9)
+        for number in readable:
+            self._files[number]()
+        return bool(readable)
+
+    def _take_subscriptions(self) -> bool:
+        is_ready, anything = self._wait_set.is_ready, False
+        for index, (handle, message_type, raw, deliver) in enumerate(self._subscriptions):
+            if not is_ready("subscription", index):
+                continue
+            anything = True
+            take = handle.take_message
+            while (taken := take(message_type, raw)) is not None:
+                deliver(taken[0])
+        return anything
+
+    def _run_ticks(self, clock: Clock) -> None:
+        ticks, ran = self._ticks, False
+        for tick in ticks:
+            now = clock.now()
+            if now < tick.due_ns:
+                break
+            tick.run(now)
+            ran = True
+        if ran and len(ticks) > 1:
+            ticks.sort(key=lambda tick: tick.due_ns)
+
+    def _run_others(self) -> bool:
+        """Run services, timers, clients, guard conditions and event handlers through rclpy's own takers."""
+        wait_set, anything, stale = self._wait_set, False, False
+        for kind, entities in self._others.items():
+            for index, (entity, take) in enumerate(entities):
+                if wait_set.is_ready(kind, index):
+                    if entity is self._guard:
+                        stale = True
+                        continue
+                    anything = True
+                    self._run(take(entity))
+        for waitable in self._waitables:
+            if waitable.is_ready(wait_set):
+                anything = True
+                self._run(self._take_waitable(waitable))
+        if self._tasks:
+            anything = True
+            self._run_tasks()
+        if stale:
+            self._wait_set = None
+        return anything or stale
+
+    def _run(self, work: Any) -> None:
+        if work is not None:
+            task = Task(work, executor=self)
+            task()
+            if task.done():
+                task.result()
+
+    def _run_tasks(self) -> None:
+        """Run what was woken by a future or given to `create_task`."""
+        with self._tasks_lock:
+            tasks, self._tasks = self._tasks, []
+        for task, _, _ in tasks:
+            task()
+            if task.done():
+                task.result()
+
+    def _take_ready_timer(self, timer: Any) -> Any:
+        return self._take_timer(timer) if timer.handle.is_timer_ready() else None
+
+
+def _nothing(_: Any) -> None:
+    return None

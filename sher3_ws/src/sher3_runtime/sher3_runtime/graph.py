@@ -1,0 +1,173 @@
+"""A graph in one process and in stepped time, for tests: a step costs what its callbacks cost and nothing depends on the machine's load.
+
+with Graph() as graph:
+    force = graph.add(ForceSensorNode, device)
+    graph.step(100)
+"""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable
+from types import TracebackType
+from typing import Any, TypeVar
+
+from rclpy.context import Context
+from rclpy.node import Node
+from sher3_description import TOPICS, Sher3Error
+
+from . import environment
+from .clock import SteppedClock
+from .executor import RawExecutor
+from .ports import NODE_OPTIONS, advertise, ports, subscribe, use_clock
+from .spinning import close
+
+N = TypeVar("N", bound=Node)
+
+
+class NotSettled(Sher3Error):
+    """A sample that was sent did not arrive within the time limit."""
+
+
+class Graph:
+    """Nodes with a context, a domain and a stepped clock of their own.
+
+    Attributes:
+        clock: the stepped clock, shared by all nodes of the graph.
+        nodes: the nodes in the order they were added.
+    """
+
+    def __init__(self, period: float = 0.002, domain: int | None = None, patience: float = 10.0) -> None:
+        environment.apply()
+        self.context = Context()
+        self.context.init(domain_id=1 + os.getpid() % 100 if domain is None else domain)
+        self.clock = SteppedClock(round(period * 1e9))
+        use_clock(self.context, self.clock)
+        self.executor = RawExecutor(context=self.context)
+        self.nodes: list[Node] = []
+        self._patience = patience
+        self._matched = False
+        self._stamp = self.clock.start_ns
+
+    def add(self, factory: Callable[..., N], *arguments: Any, **settings: Any) -> N:
+        """Add the node that `factory(*arguments, context=..., **settings)` returns."""
+        node = factory(*arguments, context=self.context, **settings)
+        self.nodes.append(node)
+        self.executor.add_node(node)
+        self._matched = False
+        return node
+
+    def probe(self, *topics: str, sends: tuple[str, ...] = ()) -> Probe:
+        """Add a node that keeps every sample of `topics` and can publish on the topics `sends`."""
+        return self.add(Probe, *topics, name=f"probe_{len(self.nodes)}", sends=sends)
+
+    def step(self, count: int = 1, before_settling: Callable[[int], None] | None = None) -> int:
+        """Run `count` ticks of all nodes in the order of their phases; return the stamp of the last one."""
+        if not self._matched:
+            self._match()
+        for _ in range(count):
+            stamp = self._stamp
+            self._stamp += self.clock.period_ns
+            ticks = [tick for node in self.nodes for tick in ports(node).ticks if stamp % tick.period_ns == 0]
+            for tick in sorted(ticks, key=lambda tick: tick.phase_ns):
+                self.clock.time_ns = stamp + tick.phase_ns
+                tick.due_ns = self.clock.time_ns
+                tick.run(self.clock.time_ns)
+                if before_settling is not None:
+                    before_settling(stamp)
+                self.settle()
+        return stamp
+
+    def settle(self) -> None:
+        """Run callbacks until every sample that was sent has been received and nothing is ready.
+
+        Raises:
+            NotSettled: a sample is still missing after `patience` seconds.
+        """
+        deadline = time.monotonic() + self._patience
+        while self.executor.settle() or self._missing():
+            if time.monotonic() > deadline:
+                remedy = "check the quality of service and the depth of the queues"
+                raise NotSettled("samples not received", value=self._missing(), limit=self._patience, remedy=remedy)
+
+    def until(self, condition: Callable[[], bool], what: str = "condition") -> None:
+        """Settle until `condition()`, for what the middleware does in its own time (services, latched samples).
+
+        Raises:
+            NotSettled: it is not met after `patience` seconds.
+        """
+        deadline = time.monotonic() + self._patience
+        while not condition():
+            if time.monotonic() > deadline:
+                raise NotSettled(f"{what} not met", limit=self._patience, remedy="check the sender")
+            self.executor.settle()
+            time.sleep(0.0005)
+
+    def _missing(self) -> dict[str, int]:
+        """Return the number of samples on the way, by topic."""
+        sent: dict[str, int] = {}
+        received: dict[str, int] = {}
+        readers: dict[str, int] = {}
+        for port in map(ports, self.nodes):
+            for name, count in port.sent.items():
+                sent[name] = sent.get(name, 0) + count
+            for name, count in port.received.items():
+                received[name] = received.get(name, 0) + count
+                readers[name] = readers.get(name, 0) + 1
+        return {
+            name: sent[name] * readers[name] - received.get(name, 0)
+            for name in sent
+            if name in readers
+            and TOPICS[name].qos.durability == "volatile"
+            and sent[name] * readers[name] != received.get(name, 0)
+        }
+
+    def _match(self) -> None:
+        """Wait until every publisher of the graph has found every subscriber."""
+        writers = [(name, pub) for node in self.nodes for name, pub in ports(node).publishers.items()]
+        readers = [(name, sub) for node in self.nodes for name, sub in ports(node).subscriptions.items()]
+        deadline = time.monotonic() + self._patience
+        for name, publisher in writers:
+            expected = sum(1 for topic, _ in readers if topic == name)
+            _wait(lambda p=publisher, n=expected: p.get_subscription_count() >= n, deadline, name)
+        for name, reader in readers:
+            expected = sum(1 for topic, _ in writers if topic == name)
+            _wait(lambda r=reader, n=expected: r.handle.get_publisher_count() >= n, deadline, name)
+        self._matched = True
+
+    def close(self) -> None:
+        """Close the nodes and leave the domain."""
+        try:
+            close(self.nodes, self.executor)
+        finally:
+            self.nodes = []
+            self.context.try_shutdown()
+
+    def __enter__(self) -> Graph:
+        return self
+
+    def __exit__(self, kind: type | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        self.close()
+
+
+class Probe(Node):
+    """A node for tests: `samples[topic]` holds all it received, `send(topic, sample)` publishes."""
+
+    def __init__(self, *topics: str, name: str = "probe", sends: tuple[str, ...] = (), **options: Any) -> None:
+        super().__init__(name, **{**NODE_OPTIONS, **options})
+        self.samples: dict[str, list[Any]] = {topic: [] for topic in topics}
+        for topic in topics:
+            subscribe(self, topic, self.samples[topic].append)
+        self._publish = {topic: advertise(self, topic) for topic in sends}
+
+    def send(self, topic: str, sample: Any) -> None:
+        """Publish a sample on one of the topics given as `sends`."""
+        self._publish[topic](sample)
+
+
+def _wait(condition: Callable[[], bool], deadline: float, name: str) -> None:
+    while not condition():
+        if time.monotonic() > deadline:
+            raise NotSettled("publisher and subscriber did not find each other", value=name, remedy="check their QoS")
+        time.sleep(0.001)

@@ -1,0 +1,264 @@
+"""The doors of a node: `subscribe`, `advertise`, `on_tick`, `on_readable`.
+
+A node stays an ordinary `rclpy.node.Node` whose subscriptions and publishers come from the topic table; callbacks get samples, not messages.
+With `SHER3_EXECUTOR=default` the same calls make ordinary message-object subscriptions and publishers for rclpy's own executor.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from typing import Any
+from weakref import WeakKeyDictionary
+
+from rclpy.context import Context
+from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
+from sher3_description import ACTUATORS, Sher3Error
+from sher3_description.topics import NAMESPACE, TOPICS, Qos, Topic
+
+from .cdr import CdrError, codec
+from .clock import Clock
+from .messages import from_message, message_class, to_message
+from .tick import Tick
+from .timing import Histogram, Statistics
+
+EXECUTOR_VARIABLE = "SHER3_EXECUTOR"
+PERIOD_VARIABLE = "SHER3_CONTROL_PERIOD"
+TRACE_VARIABLE = "SHER3_TRACE"
+
+NODE_OPTIONS: dict[str, Any] = {
+    "namespace": NAMESPACE,
+    "enable_rosout": False,
+    "start_parameter_services": False,
+    "use_global_arguments": False,
+    "parameter_overrides": [Parameter("start_type_description_service", value=False)],
+}
+"""Pass these to `Node.__init__`: no parameter and type services and no rosout, which would cost a fifth of the loop."""
+
+GAPLESS = frozenset(
+    {"servo_jv", "drives/setpoint_jv", "drives/measured_js", "measured_js", "force/measured_cf", "pedal/measured"}
+)
+"""Streams with a sample at every tick: a stamp that skips a tick is a lost sample."""
+
+Publish = Callable[[Any], None]
+_clocks: WeakKeyDictionary[Context, Clock] = WeakKeyDictionary()
+
+
+class UnknownTopic(Sher3Error):
+    """A topic name that is not in the topic table."""
+
+
+def use_clock(context: Context, clock: Clock) -> None:
+    """Make `clock` the time of every node of `context` created from now on."""
+    _clocks[context] = clock
+
+
+def clock_of(node: Node) -> Clock:
+    """Return the clock of the node's context; by default the wall clock with the period of `SHER3_CONTROL_PERIOD` (s)."""
+    context = node.context
+    if context not in _clocks:
+        _clocks[context] = Clock(round(float(os.environ.get(PERIOD_VARIABLE, "0.002")) * 1e9))
+    return _clocks[context]
+
+
+class Ports:
+    """What the executor needs to know of one node."""
+
+    def __init__(self, node: Node) -> None:
+        self.name = node.get_name()
+        self.clock = clock_of(node)
+        self.statistics = Statistics()
+        self.statistics.traces = {} if os.environ.get(TRACE_VARIABLE) else None
+        self.deliveries: dict[int, Callable[[bytes], None]] = {}
+        self.ticks: list[Tick] = []
+        self.readables: list[tuple[Any, Callable[[], None]]] = []
+        self.publishers: dict[str, Any] = {}
+        self.subscriptions: dict[str, Any] = {}
+        self.sent: dict[str, int] = {}
+        self.received: dict[str, int] = {}
+
+
+def ports(node: Node) -> Ports:
+    """Return the ports of a node, made at the first call."""
+    try:
+        return node.__dict__["_sher3_ports"]
+    except KeyError:
+        return node.__dict__.setdefault("_sher3_ports", Ports(node))
+
+
+def statistics_of(node: Node) -> Statistics:
+    """Return the timing statistics of a node."""
+    return ports(node).statistics
+
+
+def qos_profile(qos: Qos) -> QoSProfile:
+    """Return the rclpy profile of a topic's quality of service."""
+    return QoSProfile(
+        history=HistoryPolicy.KEEP_LAST,
+        depth=qos.depth,
+        reliability=ReliabilityPolicy[qos.reliability.upper()],
+        durability=DurabilityPolicy[qos.durability.upper()],
+    )
+
+
+def find_topic(name: str) -> Topic:
+    """Return the row of the topic table.
+
+    Raises:
+        UnknownTopic: no such row.
+    """
+    try:
+        return TOPICS[name]
+    except KeyError:
+        raise UnknownTopic("topic", value=name, limit=", ".join(TOPICS), remedy="use a name of the table") from None
+
+
+def raw_mode() -> bool:
+    """Tell whether topics are handled as raw bytes (the default) or as message objects."""
+    return os.environ.get(EXECUTOR_VARIABLE, "") != "default"
+
+
+def subscribe(node: Node, name: str, callback: Callable[[Any], None], depth: int | None = None) -> None:
+    """Subscribe `node` to a topic of the table; `callback` gets one sample at a time, in order of arrival.
+
+    Args:
+        node: the subscribing node.
+        name: topic relative to `/sher3`.
+        callback: called with a sample; its exceptions end the spinning.
+        depth: queue length instead of the table's (a recorder wants a deep one).
+
+    Raises:
+        UnknownTopic: the name is not in the table.
+    """
+    topic, port = find_topic(name), ports(node)
+    receive = _receiver(port, topic, callback)
+    profile = qos_profile(topic.qos)
+    if depth is not None:
+        profile.depth = depth
+    raw = raw_mode()
+    if raw:
+        decode, garbage = codec(topic.type, topic.frame_id, ACTUATORS).decode, port.statistics.garbage
+
+        def deliver(data: bytes) -> None:
+            try:
+                sample = decode(data)
+            except CdrError as error:
+                port.received[name] = port.received.get(name, 0) + 1
+                if name not in garbage:
+                    node.get_logger().warning(f"{name}: {error}; further ones are only counted")
+                garbage[name] = garbage.get(name, 0) + 1
+                return
+            receive(sample)
+    else:
+
+        def deliver(data: Any) -> None:
+            receive(from_message(topic, data))
+
+    subscription = node.create_subscription(
+        message_class(topic.type),
+        topic.full_name,
+        deliver,
+        profile,
+        raw=raw,
+        event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
+    )
+    port.subscriptions[name] = subscription
+    port.deliveries[subscription.handle.pointer] = deliver
+
+
+def _receiver(port: Ports, topic: Topic, callback: Callable[[Any], None]) -> Callable[[Any], None]:
+    """Wrap a callback with the counting of age, gaps and duration."""
+    name, clock, stats = topic.name, port.clock, port.statistics
+    received = port.received
+    received[name] = 0
+    duration = stats.callback.setdefault(name, Histogram())
+    if "String" in topic.type:
+
+        def receive_text(sample: Any) -> None:
+            received[name] += 1
+            callback(sample)
+
+        return receive_text
+
+    age, period = stats.age.setdefault(name, Histogram()), clock.period_ns
+    gapless, last = name in GAPLESS, 0
+    arrived, handled = stats.trace(f"receive {name}"), stats.trace(f"handled {name}")
+
+    def receive(sample: Any) -> None:
+        nonlocal last
+        received[name] += 1
+        start, stamp = clock.now(), sample.stamp
+        age.add(start - stamp)
+        if gapless:
+            if last and stamp - last > period:
+                stats.dropped[name] = stats.dropped.get(name, 0) + (stamp - last) // period - 1
+            last = stamp
+        callback(sample)
+        end = clock.now()
+        duration.add(end - start)
+        if arrived is not None and handled is not None:
+            arrived.mark(stamp, start)
+            handled.mark(stamp, end)
+
+    return receive
+
+
+def advertise(node: Node, name: str) -> Publish:
+    """Return `publish(sample)` of a topic of the table.
+
+    Raises:
+        UnknownTopic: the name is not in the table; `publish` raises CdrError for a sample that does not fit the type.
+    """
+    topic, port = find_topic(name), ports(node)
+    publisher = node.create_publisher(
+        message_class(topic.type),
+        topic.full_name,
+        qos_profile(topic.qos),
+        event_callbacks=PublisherEventCallbacks(use_default_callbacks=False),
+    )
+    port.publishers[name] = publisher
+    sent, trace, now = port.sent, port.statistics.trace(f"publish {name}"), port.clock.now
+    sent[name] = 0
+    encode, raw = codec(topic.type, topic.frame_id, ACTUATORS).encode, raw_mode()
+    # The handle's own method: rclpy's wrapper would enter the handle's context at each call.
+    send = publisher.handle.publish_raw if raw else publisher.publish
+
+    def publish(sample: Any) -> None:
+        sent[name] += 1
+        if trace is not None:
+            trace.mark(sample[0], now())
+        send(encode(sample) if raw else to_message(topic, sample))
+
+    if trace is None and raw and not port.clock.stepped:
+        return lambda sample: send(encode(sample))
+    return publish
+
+
+def on_tick(node: Node, callback: Callable[[int], None], phase: float = 0.0, every: int = 1) -> None:
+    """Call `callback(stamp_ns)` at every grid stamp plus `phase`.
+
+    A tick that comes so late that the next one is due is skipped and counted as a lost cycle; ticks are never made up for.
+
+    Args:
+        node: the node.
+        callback: gets the grid stamp `t_k` in ns, the same in every process.
+        phase: delay behind the stamp, s.
+        every: call only at stamps that are a multiple of `every` periods.
+    """
+    port = ports(node)
+    port.ticks.append(Tick(callback, round(phase * 1e9), every, port.clock, port.statistics))
+    if node.executor is not None:
+        node.executor.wake()
+
+
+def on_readable(node: Node, file: Any, callback: Callable[[], None]) -> None:
+    """Call `callback()` whenever `file` (with `fileno()`) has something to read; the callback takes all there is without blocking.
+
+    A process with such a file waits on the file and looks at its topics at least once a period.
+    """
+    ports(node).readables.append((file, callback))
+    if node.executor is not None:
+        node.executor.wake()

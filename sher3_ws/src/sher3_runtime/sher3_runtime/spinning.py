@@ -1,0 +1,74 @@
+"""`spin(nodes)`: run nodes in this thread until the context is shut down."""
+
+from __future__ import annotations
+
+import gc
+import os
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+from rclpy.executors import Executor, ExternalShutdownException
+from rclpy.node import Node
+
+from .baseline import BaselineExecutor
+from .clock import set_timer_slack
+from .executor import RawExecutor
+from .ports import TRACE_VARIABLE, ports, raw_mode
+from .report import report_statistics
+
+
+def make_executor(nodes: Iterable[Node], context: Any = None) -> Executor:
+    """Return the executor of the mode in force, with the nodes added."""
+    executor = RawExecutor(context=context) if raw_mode() else BaselineExecutor(context=context)
+    for node in nodes:
+        executor.add_node(node)
+    return executor
+
+
+def spin(nodes: Sequence[Node], *, diagnostics: bool = True) -> None:
+    """Run `nodes` until shutdown (Ctrl-C, SIGTERM or `rclpy.shutdown`); then close them.
+
+    Args:
+        nodes: of one context. A node's `close()`, where it has one, is called at the end, even after an exception.
+        diagnostics: publish each node's statistics at 1 Hz on `/diagnostics`.
+
+    Raises:
+        Exception: whatever a callback raises.
+    """
+    if not nodes:
+        return
+    set_timer_slack()
+    if diagnostics:
+        for node in nodes:
+            report_statistics(node)
+    executor = make_executor(nodes, nodes[0].context)
+    # What exists now lives to the end; a collection during the run must not walk through it.
+    gc.collect()
+    gc.freeze()
+    try:
+        if isinstance(executor, BaselineExecutor):
+            executor.start()
+        executor.spin()
+    except ExternalShutdownException:
+        pass
+    finally:
+        close(nodes, executor)
+
+
+def close(nodes: Iterable[Node], executor: Executor | None = None) -> None:
+    """Close and destroy nodes in reverse order; every one is closed even when another's `close()` raises."""
+    failure: BaseException | None = None
+    for node in reversed(list(nodes)):
+        try:
+            getattr(node, "close", lambda: None)()
+        except Exception as error:
+            failure = failure or error
+    if executor is not None:
+        executor.shutdown()
+    for node in nodes:
+        if folder := os.environ.get(TRACE_VARIABLE):
+            ports(node).statistics.write(Path(folder), node.get_name())
+        node.destroy_node()
+    if failure is not None:
+        raise failure

@@ -1,0 +1,57 @@
+"""One periodic callback on the clock grid."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from .clock import Clock
+from .timing import Histogram, Statistics
+
+
+class Tick:
+    """Knows when it is due next and counts how well that was met.
+
+    Attributes:
+        phase_ns: delay behind the stamp. due_ns: time of the next call; `due_ns - phase_ns` is its stamp.
+    """
+
+    def __init__(
+        self, callback: Callable[[int], None], phase_ns: int, every: int, clock: Clock, statistics: Statistics
+    ) -> None:
+        self.callback = callback
+        self.phase_ns = phase_ns
+        self.period_ns = every * clock.period_ns
+        self.due_ns = 0
+        self._clock = clock
+        self._statistics = statistics
+        self._duration = statistics.callback.setdefault("tick", Histogram())
+        self._last_start = 0
+        # Slow ticks (states at 1 Hz) would hide the jitter of the control loop.
+        self._counts = every == 1
+
+    def schedule(self) -> None:
+        """Set `due_ns` to the first grid stamp from now on."""
+        after = self._clock.now() - self.phase_ns
+        stamp = max(after + 1, self._clock.start_ns)
+        self.due_ns = -(-stamp // self.period_ns) * self.period_ns + self.phase_ns
+
+    def run(self, now: int) -> None:
+        """Call the callback for the latest stamp that is due."""
+        missed = max(now - self.due_ns, 0) // self.period_ns
+        stamp = self.due_ns - self.phase_ns + missed * self.period_ns
+        self.due_ns += (missed + 1) * self.period_ns
+        if not self._counts:
+            self.callback(stamp)
+            return
+        statistics = self._statistics
+        statistics.ticks += 1
+        statistics.lost_cycles += missed
+        statistics.wakeup.add(now - stamp - self.phase_ns)
+        if self._last_start:
+            statistics.period.add(now - self._last_start)
+        self._last_start = now
+        self.callback(stamp)
+        duration = self._clock.now() - now
+        self._duration.add(duration)
+        if duration > self.period_ns:
+            statistics.overruns += 1

@@ -1,0 +1,139 @@
+"""What a process knows about its own timing: histograms in nanoseconds, counters, and a trace for the bench."""
+
+from __future__ import annotations
+
+import json
+from array import array
+from collections.abc import Iterator
+from pathlib import Path
+
+_SUB_BITS = 4
+
+
+class Histogram:
+    """Counts of durations in buckets of 1/16 octave: a percentile is at most 6 % too high, the maximum is exact."""
+
+    __slots__ = ("_buckets", "count", "maximum", "total")
+
+    def __init__(self) -> None:
+        self._buckets: dict[int, int] = {}
+        self.count = 0
+        self.total = 0
+        self.maximum = 0
+
+    def add(self, ns: int) -> None:
+        """Count one duration; a negative one counts as zero."""
+        if ns < 0:
+            ns = 0
+        shift = ns.bit_length() - _SUB_BITS - 1
+        key = ns if shift <= 0 else (shift << (_SUB_BITS + 1)) + (ns >> shift)
+        self._buckets[key] = self._buckets.get(key, 0) + 1
+        self.count += 1
+        self.total += ns
+        if ns > self.maximum:
+            self.maximum = ns
+
+    def percentile(self, percent: float) -> int:
+        """Return an upper bound [ns] of the given percentile, 0 while empty."""
+        wanted, seen = percent / 100.0 * self.count, 0
+        for key in sorted(self._buckets):
+            seen += self._buckets[key]
+            if seen >= wanted:
+                return min(_upper(key), self.maximum)
+        return 0
+
+    def summary(self) -> dict[str, int]:
+        """Return count, mean, p50, p99 and maximum in ns."""
+        return {
+            "count": self.count,
+            "mean": self.total // self.count if self.count else 0,
+            "p50": self.percentile(50),
+            "p99": self.percentile(99),
+            "max": self.maximum,
+        }
+
+
+def _upper(key: int) -> int:
+    shift, mantissa = key >> (_SUB_BITS + 1), key & ((2 << _SUB_BITS) - 1)
+    if shift == 0:
+        return key
+    return ((mantissa + 1) << shift) - 1
+
+
+class Trace:
+    """Pairs (stamp, time) of one point of the chain, for exact percentiles between two processes."""
+
+    __slots__ = ("stamps", "times")
+
+    def __init__(self) -> None:
+        self.stamps = array("q")
+        self.times = array("q")
+
+    def mark(self, stamp: int, time_ns: int) -> None:
+        """Note that the sample of `stamp` passed at `time_ns`."""
+        self.stamps.append(stamp)
+        self.times.append(time_ns)
+
+
+class Statistics:
+    """Timing of one node.
+
+    Attributes:
+        wakeup: tick started later than due. period: between two ticks. callback: duration of a tick's or message's callback, by name.
+        age: time since the stamp when a sample of a topic arrives.
+        lost_cycles: ticks that were never run. overruns: ticks that took longer than a period.
+        dropped: samples missing in a host-rate stream. garbage: messages that were no valid CDR, by topic.
+    """
+
+    def __init__(self) -> None:
+        self.wakeup = Histogram()
+        self.period = Histogram()
+        self.callback: dict[str, Histogram] = {}
+        self.age: dict[str, Histogram] = {}
+        self.ticks = self.lost_cycles = self.overruns = 0
+        self.dropped: dict[str, int] = {}
+        self.garbage: dict[str, int] = {}
+        self.traces: dict[str, Trace] | None = None
+
+    def trace(self, point: str) -> Trace | None:
+        """Return the trace of a point of the chain, or None when tracing is off."""
+        return None if self.traces is None else self.traces.setdefault(point, Trace())
+
+    def losses(self) -> int:
+        """Return the number of lost cycles, lost samples and invalid messages."""
+        return self.lost_cycles + sum(self.dropped.values()) + sum(self.garbage.values())
+
+    def to_dict(self) -> dict[str, object]:
+        """Return everything as plain data, durations in ns."""
+        return {
+            "ticks": self.ticks,
+            "lost_cycles": self.lost_cycles,
+            "overruns": self.overruns,
+            "dropped": self.dropped,
+            "garbage": self.garbage,
+            "wakeup": self.wakeup.summary(),
+            "period": self.period.summary(),
+            "callback": {name: histogram.summary() for name, histogram in self.callback.items()},
+            "age": {name: histogram.summary() for name, histogram in self.age.items()},
+        }
+
+    def pairs(self) -> Iterator[tuple[str, str]]:
+        """Yield the key-value pairs of the diagnostics message, durations in microseconds."""
+        yield "ticks", str(self.ticks)
+        yield "lost_cycles", str(self.lost_cycles)
+        yield "overruns", str(self.overruns)
+        yield "dropped", str(sum(self.dropped.values()))
+        yield "garbage", str(sum(self.garbage.values()))
+        histograms = {"wakeup": self.wakeup, "period": self.period}
+        histograms.update({f"callback {name}": histogram for name, histogram in self.callback.items()})
+        histograms.update({f"age {name}": histogram for name, histogram in self.age.items()})
+        for name, histogram in histograms.items():
+            if histogram.count:
+                p50, p99 = histogram.percentile(50) / 1e3, histogram.percentile(99) / 1e3
+                yield f"{name} [us] p50 p99 max", f"{p50:.0f} {p99:.0f} {histogram.maximum / 1e3:.0f}"
+
+    def write(self, folder: Path, name: str) -> None:
+        """Write statistics and traces as JSON to `folder/name.json`."""
+        folder.mkdir(parents=True, exist_ok=True)
+        traces = {p: {"stamps": t.stamps.tolist(), "times": t.times.tolist()} for p, t in (self.traces or {}).items()}
+        (folder / f"{name}.json").write_text(json.dumps({"statistics": self.to_dict(), "traces": traces}))

@@ -1,0 +1,157 @@
+"""Nodes in stepped time: order, stamps, services, losses and failures."""
+
+import pytest
+from rclpy.node import Node
+from sher3_runtime import (
+    NODE_OPTIONS,
+    Graph,
+    JoySample,
+    TextSample,
+    WrenchSample,
+    advertise,
+    on_tick,
+    statistics_of,
+    subscribe,
+)
+from sher3_runtime.ports import UnknownTopic
+from std_srvs.srv import Trigger
+
+pytestmark = pytest.mark.graph
+
+
+class Source(Node):
+    """Publishes the wrench (k, 0, ...) at tick k."""
+
+    def __init__(self, **options):
+        super().__init__("source", **{**NODE_OPTIONS, **options})
+        self.publish = advertise(self, "force/measured_cf")
+        self.ticks = 0
+        on_tick(self, self.tick, phase=0.0001)
+
+    def tick(self, stamp):
+        self.publish(WrenchSample(stamp, (float(self.ticks), 0.0, 0.0, 0.0, 0.0, 0.0)))
+        self.ticks += 1
+
+
+class Echo(Node):
+    """Answers each wrench with a pedal sample of the same stamp and offers a service."""
+
+    def __init__(self, **options):
+        super().__init__("echo", **{**NODE_OPTIONS, **options})
+        self.publish = advertise(self, "mock/pedal")
+        subscribe(self, "force/measured_cf", self.on_wrench)
+        self.create_service(Trigger, "tare", self.on_tare)
+
+    def on_wrench(self, sample):
+        if sample.wrench[0] == 13.0:
+            raise RuntimeError("thirteen")
+        self.publish(JoySample(sample.stamp, (sample.wrench[0],), (0,)))
+
+    def on_tare(self, _request, response):
+        response.success, response.message = True, "tared"
+        return response
+
+
+def test_a_step_is_complete():
+    """After a step every consequence of the tick has happened, once, with the stamp of the tick."""
+    with Graph() as graph:
+        graph.add(Source)
+        graph.add(Echo)
+        probe = graph.probe("force/measured_cf", "mock/pedal")
+        last = graph.step(10)
+        pedal = probe.samples["mock/pedal"]
+        assert [s.axes for s in pedal] == [(float(k),) for k in range(10)]
+        assert [s.stamp for s in pedal] == [s.stamp for s in probe.samples["force/measured_cf"]]
+        assert pedal[-1].stamp == last
+        assert {b.stamp - a.stamp for a, b in zip(pedal, pedal[1:], strict=False)} == {2_000_000}
+
+
+def test_callback_exceptions_reach_the_caller():
+    """Nothing is swallowed."""
+    with Graph() as graph:
+        graph.add(Source)
+        graph.add(Echo)
+        with pytest.raises(RuntimeError, match="thirteen"):
+            graph.step(20)
+
+
+def test_services_are_ordinary():
+    """An rclpy service and client work in the same wait set."""
+    with Graph() as graph:
+        graph.add(Echo)
+        probe = graph.probe()
+        client = probe.create_client(Trigger, "tare")
+        graph.step()
+        assert client.wait_for_service(5.0)
+        future = client.call_async(Trigger.Request())
+        graph.until(future.done)
+        assert future.result().message == "tared"
+
+
+def test_garbage_is_counted_and_dropped():
+    """Bytes that are no message never reach the callback."""
+    with Graph() as graph:
+        echo = graph.add(Echo)
+        probe = graph.probe("mock/pedal", sends=("force/measured_cf",))
+        graph.step()
+        publisher = probe.__dict__["_sher3_ports"].publishers["force/measured_cf"]
+        publisher.publish(b"\x00\x01\x00\x00garbage")
+        probe.__dict__["_sher3_ports"].sent["force/measured_cf"] += 1
+        graph.settle()
+        probe.send("force/measured_cf", WrenchSample(7, (1.0,) * 6))
+        graph.settle()
+        assert statistics_of(echo).garbage == {"force/measured_cf": 1}
+        assert [s.stamp for s in probe.samples["mock/pedal"]] == [7]
+
+
+def test_gaps_in_a_stream_are_counted():
+    """A stamp that skips two ticks is two lost samples."""
+    with Graph() as graph:
+        echo = graph.add(Echo)
+        probe = graph.probe(sends=("force/measured_cf",))
+        graph.step()
+        for k in (1, 2, 5, 6):
+            probe.send("force/measured_cf", WrenchSample(k * 2_000_000, (0.0,) * 6))
+            graph.settle()
+        assert statistics_of(echo).dropped == {"force/measured_cf": 2}
+
+
+def test_latched_topics_reach_a_late_subscriber():
+    """The operating state is there for who comes later."""
+    with Graph() as graph:
+        early = graph.probe(sends=("operating_state",))
+        graph.step()
+        early.send("operating_state", TextSample("ENABLED"))
+        late = graph.probe("operating_state")
+        graph.step()
+        graph.until(lambda: late.samples["operating_state"])
+        assert late.samples["operating_state"] == [TextSample("ENABLED")]
+
+
+def test_entities_may_come_and_go():
+    """The wait set follows subscriptions that are made and destroyed while it spins."""
+    with Graph() as graph:
+        source = graph.add(Source)
+        graph.step(2)
+        late = graph.probe("force/measured_cf")
+        # Samples sent before it subscribed are none of its business.
+        source.__dict__["_sher3_ports"].sent["force/measured_cf"] = 0
+        graph.step(3)
+        assert len(late.samples["force/measured_cf"]) == 3
+        timer = source.create_timer(1000.0, lambda: None)
+        graph.step()
+        source.destroy_timer(timer)
+        graph.step()
+        assert len(late.samples["force/measured_cf"]) == 5
+
+
+def test_slow_ticks_and_names():
+    """`every` counts in periods of the grid; a name outside the table is refused."""
+    with Graph() as graph:
+        probe = graph.probe()
+        stamps = []
+        on_tick(probe, stamps.append, every=5)
+        graph.step(20)
+        assert len(stamps) == 4 and all(stamp % 10_000_000 == 0 for stamp in stamps)
+        with pytest.raises(UnknownTopic, match=r"measured_jz.*servo_jv"):
+            subscribe(probe, "measured_jz", print)
