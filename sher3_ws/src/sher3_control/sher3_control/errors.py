@@ -1,0 +1,48 @@
+"""Typed refusals of the control room; each names value, limit and remedy (see `Sher3Error`)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from sher3_description import Sher3Error
+
+
+class SettingsError(Sher3Error):
+    """A control setting or a live parameter is out of range or unknown."""
+
+
+class CommandRejected(Sher3Error):
+    """A motion command is refused; `mode` is the CRTK command, the reason is the first clause."""
+
+    def __init__(self, mode: str, why: str, **details: Any) -> None:
+        super().__init__(f"{mode} rejected: {why}", **details)
+        self.mode = mode
+
+
+class OwnerConflict(CommandRejected):
+    """Another mode owns the robot, or a command topic has more than one publisher; carries `owner`."""
+
+    def __init__(self, mode: str, why: str, *, owner: str, **details: Any) -> None:
+        super().__init__(mode, why, **details)
+        self.owner = owner
+
+
+class TareRefused(Sher3Error):
+    """The tare is refused; `reason`: `pressed`, `moving`, `noisy`, `samples`, `faulty` or `too_large`."""
+
+    def __init__(self, reason: str, what: str, **details: Any) -> None:
+        super().__init__(f"tare refused, {reason}: {what}", **details)
+        self.reason = reason
+
+
+class StateCommandRefused(Sher3Error):
+    """A CRTK state command is refused in the present operating state; carries `command` and `state`."""
+
+    def __init__(self, command: str, state: str, why: str, **details: Any) -> None:
+        super().__init__(f"state command {command} refused in {state}: {why}", **details)
+        self.command = command
+        self.state = state
+
+
+class TrajectoryError(Sher3Error):
+    """A point-to-point motion cannot be planned: goal not finite, out of limits or not reachable on the way."""

@@ -1,0 +1,67 @@
+"""Limits that keep the direction: on a twist, on its change, and on a slowly changed parameter.
+
+Joint limits and braking before joint and workspace ends are part of the inverse velocity in `sher3_kinematics`.
+"""
+
+import math
+from typing import TypeAlias
+
+from numba import njit
+
+Twist: TypeAlias = tuple[float, float, float, float, float, float]
+"""Linear [m/s] and angular [rad/s] velocity of one frame."""
+
+ZERO_TWIST: Twist = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+@njit(cache=True)
+def _scale(twist: Twist, linear_limit: float, angular_limit: float) -> float:
+    v = math.sqrt(twist[0] * twist[0] + twist[1] * twist[1] + twist[2] * twist[2])
+    w = math.sqrt(twist[3] * twist[3] + twist[4] * twist[4] + twist[5] * twist[5])
+    s = 1.0
+    if v > linear_limit:
+        s = linear_limit / v
+    if w * s > angular_limit:
+        s = angular_limit / w
+    return s
+
+
+@njit(cache=True)
+def limit_twist(twist: Twist, linear_limit: float, angular_limit: float) -> Twist:
+    """Scale a twist as a whole, parallel to the request, until both norms keep their limits [m/s], [rad/s]."""
+    s = _scale(twist, linear_limit, angular_limit)
+    return (twist[0] * s, twist[1] * s, twist[2] * s, twist[3] * s, twist[4] * s, twist[5] * s)
+
+
+@njit(cache=True)
+def limit_change(twist: Twist, previous: Twist, linear_step: float, angular_step: float) -> Twist:
+    """Move from `previous` straight towards `twist`, by at most `linear_step` [m/s] and `angular_step` [rad/s]."""
+    change = (
+        twist[0] - previous[0],
+        twist[1] - previous[1],
+        twist[2] - previous[2],
+        twist[3] - previous[3],
+        twist[4] - previous[4],
+        twist[5] - previous[5],
+    )
+    s = _scale(change, linear_step, angular_step)
+    if s == 1.0:
+        return twist
+    return (
+        previous[0] + s * change[0],
+        previous[1] + s * change[1],
+        previous[2] + s * change[2],
+        previous[3] + s * change[3],
+        previous[4] + s * change[4],
+        previous[5] + s * change[5],
+    )
+
+
+@njit(cache=True)
+def approach(value: float, target: float, rise: float, fall: float) -> float:
+    """Move `value` towards `target` by at most `rise` upwards or `fall` downwards; lands on the target exactly."""
+    if target > value + rise:
+        return value + rise
+    if target < value - fall:
+        return value - fall
+    return target

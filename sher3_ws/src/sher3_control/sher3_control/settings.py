@@ -1,0 +1,210 @@
+"""Typed, validated settings of the control nodes, with units and the reason for each default.
+
+What belongs to the robot (gains, dead bands, cut-off, speed caps) defaults to `robot.yaml`; what belongs to the
+software is declared here.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from sher3_description import Robot
+
+from .errors import SettingsError
+
+Number = Annotated[float, Field(allow_inf_nan=False)]
+Seconds = Annotated[Number, Field(gt=0.0, le=10.0)]
+Fraction = Annotated[Number, Field(ge=0.0, le=1.0)]
+
+
+class Settings(BaseModel):
+    """Base of every settings part: immutable and closed."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class PedalSettings(Settings):
+    """How the foot pedal is read.
+
+    Attributes:
+        mode: `proportional` scales the velocity with the travel, `binary` switches it.
+        release: travel [1] at and below which the pedal is released; also the dead band of the proportional mode.
+        press: travel [1] from which it is pressed; above `release` by the hysteresis.
+        age_limit: oldest pedal sample that still counts [s]; older means released and a stop.
+    """
+
+    mode: Literal["proportional", "binary"] = "proportional"
+    release: Fraction = 0.05
+    press: Fraction = 0.10
+    age_limit: Seconds = 0.020
+
+
+class WrenchSettings(Settings):
+    """What makes a wrench sample believable.
+
+    Attributes:
+        age_limit: oldest wrench sample that still counts [s].
+        frozen_samples: this many bit-identical new samples in a row are a frozen sensor [1]. With the nominal noise
+            two neighbours agree in all six axes with probability 3e-4, ten in a row with 1e-32.
+        saturation: fraction of the sensor's range from which it is saturated [1].
+    """
+
+    age_limit: Seconds = 0.010
+    frozen_samples: Annotated[int, Field(ge=2, le=1000)] = 10
+    saturation: Annotated[Number, Field(gt=0.5, le=1.0)] = 0.98
+
+
+class AdmittanceSettings(Settings):
+    """The cooperative law v = gain * pedal * deadband(force).
+
+    Attributes:
+        linear_gain, angular_gain: (m/s)/N and (rad/s)/(N m).
+        force_deadband, torque_deadband: N and N m, per axis in {t}.
+        filter_cutoff: -3 dB frequency of the second-order low-pass [Hz].
+        linear_limit, angular_limit: caps of the tip twist [m/s], [rad/s].
+        linear_acceleration, angular_acceleration: caps of its change [m/s^2], [rad/s^2]; the defaults reach the speed
+            caps in 10 ms.
+        gain_rate: largest relative change of a gain [1/s]; 1 takes a second from the gain of the settings to its
+            double.
+        scale_rate: largest rise of the speed scale [1/s]; a fall acts at once.
+        gain_maximum: live gains are accepted up to this multiple of the gain of the settings [1].
+        joints_age_limit: oldest joint sample the frames may be taken from [s].
+    """
+
+    linear_gain: Annotated[Number, Field(ge=0.0, le=0.05)]
+    angular_gain: Annotated[Number, Field(ge=0.0, le=100.0)]
+    force_deadband: Annotated[Number, Field(ge=0.0, le=5.0)]
+    torque_deadband: Annotated[Number, Field(ge=0.0, le=0.1)]
+    filter_cutoff: Annotated[Number, Field(gt=0.1, le=200.0)]
+    linear_limit: Annotated[Number, Field(gt=0.0, le=0.05)]
+    angular_limit: Annotated[Number, Field(gt=0.0, le=3.0)]
+    linear_acceleration: Annotated[Number, Field(gt=0.0, le=10.0)] = 0.5
+    angular_acceleration: Annotated[Number, Field(gt=0.0, le=300.0)] = 30.0
+    gain_rate: Annotated[Number, Field(gt=0.0, le=100.0)] = 1.0
+    scale_rate: Annotated[Number, Field(gt=0.0, le=100.0)] = 2.0
+    gain_maximum: Annotated[Number, Field(ge=1.0, le=100.0)] = 5.0
+    joints_age_limit: Seconds = 0.020
+
+
+class TareSettings(Settings):
+    """When a tare is believable.
+
+    Attributes:
+        samples: length of the window [1].
+        still: largest joint motion within the window, as a fraction of each axis' travel [1]; the default is 4 um of
+            slider.
+        noise_factor: largest standard deviation, in multiples of the sensor's own noise [1].
+        residual: largest bias accepted, as a fraction of the sensor's range [1].
+        drift_force, drift_torque: drift of the resting wrench that the monitor reports [N], [N m].
+    """
+
+    samples: Annotated[int, Field(ge=10, le=10000)] = 250
+    still: Annotated[Number, Field(gt=0.0, le=0.01)] = 5e-5
+    noise_factor: Annotated[Number, Field(gt=1.0, le=100.0)] = 4.0
+    residual: Annotated[Number, Field(gt=0.0, le=1.0)] = 0.2
+    drift_force: Annotated[Number, Field(gt=0.0, le=10.0)] = 0.05
+    drift_torque: Annotated[Number, Field(gt=0.0, le=1.0)] = 0.001
+
+
+class MotionSettings(Settings):
+    """The motion modes of the kinematics node.
+
+    Attributes:
+        servo_timeout: a servo mode without a newer command for this long ends and the robot stops [s].
+        ahead_limit: a command may bear a stamp this far ahead [s].
+        joints_age_limit: oldest joint sample a command may be computed from [s].
+        step_factor: largest accepted step of a position reference, in multiples of limits.velocity / position_gain,
+            the step that saturates the host law.
+        settle_time: how long a finished move may settle before the robot is handed back [s].
+        settle_factor: a move is settled within this many load-encoder counts of the goal [1].
+        speed: fraction of the velocity limits that move_* uses [1].
+        acceleration: fraction of the acceleration limits that move_* uses [1].
+        ramp_time: time to build up that acceleration [s]; it sets the jerk.
+        linear_speed, angular_speed: tip caps of move_cp [m/s], [rad/s].
+        rcm_gain: rate at which a deviation from the remote centre decays [1/s].
+    """
+
+    servo_timeout: Seconds = 0.020
+    ahead_limit: Seconds = 1.0
+    joints_age_limit: Seconds = 0.010
+    step_factor: Annotated[Number, Field(gt=0.0, le=10.0)] = 1.0
+    settle_time: Seconds = 0.5
+    settle_factor: Annotated[Number, Field(ge=1.0, le=1000.0)] = 10.0
+    speed: Annotated[Number, Field(gt=0.0, le=1.0)] = 0.5
+    acceleration: Annotated[Number, Field(gt=0.0, le=1.0)] = 0.2
+    ramp_time: Annotated[Number, Field(gt=0.0, le=1.0)] = 0.020
+    linear_speed: Annotated[Number, Field(gt=0.0, le=0.05)] = 0.005
+    angular_speed: Annotated[Number, Field(gt=0.0, le=3.0)] = 0.3
+    rcm_gain: Annotated[Number, Field(ge=0.0, le=100.0)] = 10.0
+
+
+class SupervisorSettings(Settings):
+    """What the supervisor watches.
+
+    Attributes:
+        stream_age_limit: a watched stream silent for longer is a fault while ENABLED or PAUSED [s].
+        publish_period: period of the repeated operating state [s].
+    """
+
+    stream_age_limit: Seconds = 0.1
+    publish_period: Seconds = 1.0
+
+
+class ControlSettings(Settings):
+    """All settings of the control room."""
+
+    admittance: AdmittanceSettings
+    pedal: PedalSettings = PedalSettings()
+    wrench: WrenchSettings = WrenchSettings()
+    tare: TareSettings = TareSettings()
+    motion: MotionSettings = MotionSettings()
+    supervisor: SupervisorSettings = SupervisorSettings()
+
+    @classmethod
+    def from_robot(cls, robot: Robot, overrides: dict[str, Any] | None = None) -> ControlSettings:
+        """Build the settings from `robot.yaml` and nested overrides such as `{"pedal": {"mode": "binary"}}`.
+
+        Raises:
+            SettingsError: an override is unknown, out of range, or contradicts another.
+        """
+        data = dict(overrides or {})
+        admittance = data.pop("admittance", {})
+        if not isinstance(admittance, dict):
+            raise SettingsError(
+                "settings of admittance are no mapping", value=admittance, remedy="give name: value pairs"
+            )
+        data["admittance"] = {**robot.admittance.model_dump(), **admittance}
+        try:
+            settings = cls.model_validate(data)
+        except ValidationError as error:
+            raise _settings_error(error) from error
+        settings._check(robot)
+        return settings
+
+    def _check(self, robot: Robot) -> None:
+        if self.pedal.press <= self.pedal.release:
+            raise SettingsError(
+                "pedal.press must lie above pedal.release",
+                value=self.pedal.press,
+                limit=self.pedal.release,
+                remedy="leave a hysteresis between the two",
+            )
+        nyquist = 0.5 / robot.control_period
+        if self.admittance.filter_cutoff >= 0.8 * nyquist:
+            raise SettingsError(
+                "admittance.filter_cutoff [Hz] is too close to half the control rate",
+                value=self.admittance.filter_cutoff,
+                limit=0.8 * nyquist,
+                remedy="lower the cut-off or raise the control rate",
+            )
+
+
+def _settings_error(error: ValidationError) -> SettingsError:
+    first = error.errors()[0]
+    place = ".".join(str(part) for part in first["loc"])
+    limit = first.get("ctx")
+    text = ", ".join(f"{name} {value}" for name, value in limit.items()) if limit else None
+    return SettingsError(
+        f"setting {place}: {first['msg']}", value=first["input"], limit=text, remedy="correct the setting"
+    )
