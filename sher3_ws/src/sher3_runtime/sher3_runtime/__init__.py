@@ -1,6 +1,7 @@
 """Clock grid, executor, CDR codecs and process statistics.
 
-`samples`, `cdr`, `clock` and `timing` are plain Python; `ports`, `spinning` and `graph` see rclpy. Import from here what a node needs.
+`samples`, `cdr`, `clock` and `timing` are plain Python; `ports`, `spinning` and `graph` see rclpy. Import from here
+what a node needs.
 """
 
 from .samples import DiagnosticSample as DiagnosticSample

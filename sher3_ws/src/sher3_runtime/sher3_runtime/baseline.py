@@ -1,4 +1,4 @@
-"""The same nodes on rclpy's own executor, message objects and timers: what the bench compares with (`SHER3_EXECUTOR=default`)."""
+"""The same nodes on rclpy's own executor with message objects and timers: the baseline of the bench."""
 
 from __future__ import annotations
 

@@ -1,9 +1,10 @@
-"""CDR codecs of the topics' message types, in plain Python: a compiled `struct` per layout, a full parse for everything else.
+"""CDR codecs of the message types, in plain Python: a `struct` per layout, a full parse for everything else.
 
-On a topic the frame and the joint names never change, so a message is a fixed layout: one `Struct.unpack` and a comparison of its constant
-part decode it (OMG DDS-XTypes 7.4.1, plain CDR, version 1: primitives aligned to their size counted from behind the 4 byte encapsulation header,
-strings with length and NUL, sequences with length). A message of another layout is parsed field by field with every bound checked. Whatever does
-not fit raises `CdrError`; nothing else is ever raised and nothing is taken over by half.
+On a topic the frame and the joint names never change, so a message is a fixed layout: one `Struct.unpack` and a
+comparison of its constant part decode it (OMG DDS-XTypes 7.4.1, plain CDR, version 1: primitives aligned to their size
+counted from behind the 4 byte encapsulation header, strings with length and NUL, sequences with length). A message of
+another layout is parsed field by field with every bound checked. Whatever does not fit raises `CdrError`; nothing else
+is ever raised and nothing is taken over by half.
 """
 
 from __future__ import annotations
@@ -139,7 +140,8 @@ def _joint_codec(frame_id: str, joints: tuple[str, ...]) -> Codec:
     def encode(sample: JointSample) -> bytes:
         stamp, position, velocity, effort = sample
         sec, nanosec = divmod(stamp, SECOND)
-        key, values = 0, []
+        key = 0
+        values: list[float] = []
         for bit, field in ((1, position), (2, velocity), (4, effort)):
             if field is None:
                 values.append(0)

@@ -1,4 +1,4 @@
-"""Field by field reading and writing of CDR with every bound checked; positions count from behind the encapsulation header."""
+"""Field by field reading and writing of CDR, every bound checked; positions count from behind the encapsulation."""
 
 from __future__ import annotations
 
@@ -31,21 +31,27 @@ class Reader:
         return struct.unpack_from(f"{self._order}{count}{code}", self._data, start)
 
     def int32(self) -> int:
+        """Read a signed 32-bit integer."""
         return self._take("i", 4)[0]
 
     def uint32(self) -> int:
+        """Read an unsigned 32-bit integer."""
         return self._take("I", 4)[0]
 
     def byte(self) -> int:
+        """Read one octet."""
         return self._take("B", 1)[0]
 
     def doubles(self, count: int) -> tuple[float, ...]:
+        """Read `count` 64-bit floats."""
         return self._take("d", 8, count)
 
     def floats(self, count: int) -> tuple[float, ...]:
+        """Read `count` 32-bit floats."""
         return self._take("f", 4, count)
 
     def integers(self, count: int) -> tuple[int, ...]:
+        """Read `count` signed 32-bit integers."""
         return self._take("i", 4, count)
 
     def count(self, item_size: int) -> int:
@@ -56,6 +62,7 @@ class Reader:
         return count
 
     def string(self) -> str:
+        """Read a UTF-8 string."""
         length = self.uint32()
         if not 1 <= length <= MAX_STRING or self._at + length > len(self._data):
             raise ValueError(f"string of {length} bytes at {self._at}")
@@ -78,6 +85,7 @@ class Writer:
         self.data = bytearray()
 
     def align(self, size: int) -> None:
+        """Pad with zeros to a multiple of `size`."""
         self.data.extend(b"\0" * (-len(self.data) % size))
 
     def _put(self, code: str, size: int, *values: float) -> None:
@@ -85,27 +93,33 @@ class Writer:
         self.data.extend(struct.pack(f"<{len(values)}{code}", *values))
 
     def int32(self, value: int) -> None:
+        """Append a signed 32-bit integer."""
         self._put("i", 4, value)
 
     def uint32(self, value: int) -> None:
+        """Append an unsigned 32-bit integer."""
         self._put("I", 4, value)
 
     count = uint32
 
     def byte(self, value: int) -> None:
+        """Append one octet."""
         self._put("B", 1, value)
 
     def floats(self, values: Iterable[float]) -> None:
+        """Append a sequence of 32-bit floats."""
         values = tuple(values)
         self.count(len(values))
         self._put("f", 4, *values)
 
     def integers(self, values: Iterable[int]) -> None:
+        """Append a sequence of signed 32-bit integers."""
         values = tuple(values)
         self.count(len(values))
         self._put("i", 4, *values)
 
     def string(self, text: str) -> None:
+        """Append a UTF-8 string."""
         raw = text.encode("utf-8") + b"\0"
         if len(raw) > MAX_STRING or b"\0" in raw[:-1]:
             raise ValueError(f"text of {len(raw)} bytes")

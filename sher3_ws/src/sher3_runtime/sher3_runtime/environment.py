@@ -1,4 +1,4 @@
-"""The environment the middleware needs, without importing it: loopback by default, the wheels' own variables passed on whole."""
+"""The environment of the middleware, set without importing it: loopback by default."""
 
 from __future__ import annotations
 
@@ -31,15 +31,15 @@ def graph_environment(domain: int | None = None, other_hosts: bool = False) -> d
 
 
 def apply(domain: int | None = None, other_hosts: bool = False) -> None:
-    """Set the variables in this process; before `rclpy.init`. Variables the user has set stay, but for the loopback default."""
+    """Set the variables of `graph_environment` in this process, before `rclpy.init`."""
     os.environ.update(graph_environment(domain, other_hosts))
 
 
 def child_environment(**changes: str) -> dict[str, str]:
     """Return this process's environment for a child Python.
 
-    The wheels' start-up hook re-executes Python once to set `LD_LIBRARY_PATH` and marks that with a guard variable. A child that gets the guard
-    without the path cannot import rclpy, so both are passed or neither.
+    The wheels' start-up hook re-executes Python once to set `LD_LIBRARY_PATH` and marks that with a guard variable. A
+    child that gets the guard without the path cannot import rclpy, so both are passed or neither.
     """
     variables = {**os.environ, **changes}
     if _GUARD in variables and "LD_LIBRARY_PATH" not in variables:

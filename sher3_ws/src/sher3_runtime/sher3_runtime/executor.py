@@ -1,8 +1,9 @@
 """A small rclpy executor: one wait set built once, raw takes until the queue is empty, ticks of the clock grid.
 
-rclpy's own executor builds a new wait set and one task per message at every spin, which costs more than the rest of the control loop. This one keeps
-the wait set until an entity comes or goes (rclpy then triggers the guard condition) and hands the raw bytes straight to the codec. Services,
-timers, clients, guard conditions and event handlers run through rclpy's own takers. It is single threaded and raises what a callback raises.
+rclpy's own executor builds a new wait set and one task per message at every spin, which costs more than the rest of
+the control loop. This one keeps the wait set until an entity comes or goes (rclpy then triggers the guard condition)
+and hands the raw bytes straight to the codec. Services, timers, clients, guard conditions and event handlers run
+through rclpy's own takers. It is single threaded and raises what a callback raises.
 """
 
 from __future__ import annotations

@@ -1,8 +1,6 @@
-"""A graph in one process and in stepped time, for tests: a step costs what its callbacks cost and nothing depends on the machine's load.
+"""A graph in one process and in stepped time, for tests: nothing depends on the load of the machine.
 
-with Graph() as graph:
-    force = graph.add(ForceSensorNode, device)
-    graph.step(100)
+Use it as a context manager: `with Graph() as graph: graph.add(ForceSensorNode, device); graph.step(100)`.
 """
 
 from __future__ import annotations
@@ -130,10 +128,10 @@ class Graph:
         deadline = time.monotonic() + self._patience
         for name, publisher in writers:
             expected = sum(1 for topic, _ in readers if topic == name)
-            _wait(lambda p=publisher, n=expected: p.get_subscription_count() >= n, deadline, name)
+            _wait(publisher.get_subscription_count, expected, deadline, name)
         for name, reader in readers:
             expected = sum(1 for topic, _ in writers if topic == name)
-            _wait(lambda r=reader, n=expected: r.handle.get_publisher_count() >= n, deadline, name)
+            _wait(reader.handle.get_publisher_count, expected, deadline, name)
         self._matched = True
 
     def close(self) -> None:
@@ -166,8 +164,8 @@ class Probe(Node):
         self._publish[topic](sample)
 
 
-def _wait(condition: Callable[[], bool], deadline: float, name: str) -> None:
-    while not condition():
+def _wait(count: Callable[[], int], expected: int, deadline: float, name: str) -> None:
+    while count() < expected:
         if time.monotonic() > deadline:
             raise NotSettled("publisher and subscriber did not find each other", value=name, remedy="check their QoS")
         time.sleep(0.001)

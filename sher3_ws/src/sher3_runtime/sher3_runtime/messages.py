@@ -1,6 +1,7 @@
 """Message classes of the topics and the conversion between samples and message objects.
 
-The graph itself runs on raw bytes (see `cdr`); this is the ordinary way, for the baseline of the bench and for the tests of the codecs.
+The graph itself runs on raw bytes (see `cdr`); this is the ordinary way, for the baseline of the bench and for the
+tests of the codecs.
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
 """The doors of a node: `subscribe`, `advertise`, `on_tick`, `on_readable`.
 
-A node stays an ordinary `rclpy.node.Node` whose subscriptions and publishers come from the topic table; callbacks get samples, not messages.
-With `SHER3_EXECUTOR=default` the same calls make ordinary message-object subscriptions and publishers for rclpy's own executor.
+A node stays an ordinary `rclpy.node.Node` whose subscriptions and publishers come from the topic table; callbacks get
+samples, not messages. With `SHER3_EXECUTOR=default` the same calls make ordinary message-object subscriptions and
+publishers for rclpy's own executor.
 """
 
 from __future__ import annotations
@@ -57,7 +58,7 @@ def use_clock(context: Context, clock: Clock) -> None:
 
 
 def clock_of(node: Node) -> Clock:
-    """Return the clock of the node's context; by default the wall clock with the period of `SHER3_CONTROL_PERIOD` (s)."""
+    """Return the clock of the node's context; by default the wall clock of period `SHER3_CONTROL_PERIOD` [s]."""
     context = node.context
     if context not in _clocks:
         _clocks[context] = Clock(round(float(os.environ.get(PERIOD_VARIABLE, "0.002")) * 1e9))
@@ -142,7 +143,7 @@ def subscribe(node: Node, name: str, callback: Callable[[Any], None], depth: int
     if raw:
         decode, garbage = codec(topic.type, topic.frame_id, ACTUATORS).decode, port.statistics.garbage
 
-        def deliver(data: bytes) -> None:
+        def deliver(data: Any) -> None:
             try:
                 sample = decode(data)
             except CdrError as error:
@@ -240,7 +241,8 @@ def advertise(node: Node, name: str) -> Publish:
 def on_tick(node: Node, callback: Callable[[int], None], phase: float = 0.0, every: int = 1) -> None:
     """Call `callback(stamp_ns)` at every grid stamp plus `phase`.
 
-    A tick that comes so late that the next one is due is skipped and counted as a lost cycle; ticks are never made up for.
+    A tick that comes so late that the next one is due is skipped and counted as a lost cycle; ticks are never made up
+    for.
 
     Args:
         node: the node.
@@ -255,7 +257,7 @@ def on_tick(node: Node, callback: Callable[[int], None], phase: float = 0.0, eve
 
 
 def on_readable(node: Node, file: Any, callback: Callable[[], None]) -> None:
-    """Call `callback()` whenever `file` (with `fileno()`) has something to read; the callback takes all there is without blocking.
+    """Call `callback()` whenever `file` (with `fileno()`) is readable; it takes all there is without blocking.
 
     A process with such a file waits on the file and looks at its topics at least once a period.
     """

@@ -11,7 +11,7 @@ OK, WARNING = 0, 1
 
 
 def report_statistics(node: Node) -> None:
-    """Publish the statistics of `node` at 1 Hz: a warning when a cycle, a sample or a message was lost since the last report."""
+    """Publish the statistics of `node` at 1 Hz, as a warning when there were losses since the last report."""
     port = ports(node)
     statistics, before = port.statistics, 0
     publish = advertise(node, "diagnostics")

@@ -1,11 +1,12 @@
 """What travels on the topics, without ROS: one immutable tuple per message type.
 
-`stamp` is the header stamp in integer nanoseconds of the system time; vectors are plain tuples in SI units; an absent joint field is None.
+`stamp` is the header stamp in integer nanoseconds of the system time; vectors are plain tuples in SI units; an absent
+joint field is None.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple, Union
+from typing import NamedTuple
 
 Vector = tuple[float, ...]
 
@@ -72,13 +73,13 @@ class DiagnosticSample(NamedTuple):
     values: tuple[tuple[str, str], ...] = ()
 
 
-Sample = Union[
-    JointSample,
-    TwistSample,
-    WrenchSample,
-    PoseSample,
-    JoySample,
-    TextSample,
-    TemperatureSample,
-    DiagnosticSample,
-]
+Sample = (
+    JointSample
+    | TwistSample
+    | WrenchSample
+    | PoseSample
+    | JoySample
+    | TextSample
+    | TemperatureSample
+    | DiagnosticSample
+)

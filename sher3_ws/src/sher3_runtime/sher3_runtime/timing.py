@@ -79,8 +79,8 @@ class Statistics:
     """Timing of one node.
 
     Attributes:
-        wakeup: tick started later than due. period: between two ticks. callback: duration of a tick's or message's callback, by name.
-        age: time since the stamp when a sample of a topic arrives.
+        wakeup: tick started later than due. period: between two ticks. callback: duration of a tick's or message's
+        callback, by name. age: time since the stamp when a sample of a topic arrives.
         lost_cycles: ticks that were never run. overruns: ticks that took longer than a period.
         dropped: samples missing in a host-rate stream. garbage: messages that were no valid CDR, by topic.
     """

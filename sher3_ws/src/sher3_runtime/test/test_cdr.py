@@ -2,6 +2,8 @@
 
 import math
 import random
+import struct
+from contextlib import suppress
 
 import pytest
 from hypothesis import given, settings
@@ -63,10 +65,8 @@ def test_garbage_raises_only_cdr_error(topic, sample):
         bad = bytearray(good)
         for _ in range(rng.randint(1, 4)):
             bad[rng.randrange(len(bad))] ^= 1 << rng.randrange(8)
-        try:
+        with suppress(CdrError):
             assert type(decode(bytes(bad))) is type(sample)
-        except CdrError:
-            pass
 
 
 @settings(max_examples=200, deadline=None)
@@ -74,10 +74,8 @@ def test_garbage_raises_only_cdr_error(topic, sample):
 def test_random_bytes(data):
     """Nothing but a CdrError comes out of arbitrary bytes."""
     for name in SAMPLES:
-        try:
+        with suppress(CdrError):
             codec(name, "b", JOINTS).decode(b"\0\1\0\0" + data)
-        except CdrError:
-            pass
 
 
 def test_a_huge_sequence_costs_nothing():
@@ -92,7 +90,7 @@ def test_a_huge_sequence_costs_nothing():
 def test_wrong_frame_names_and_lengths_are_named():
     """A message that is valid CDR but not of this topic."""
     tip = codec("PoseStamped", "b")
-    with pytest.raises(CdrError, match="frame_id.*'t'.*'b'"):
+    with pytest.raises(CdrError, match=r"frame_id.*'t'.*'b'"):
         tip.decode(codec("PoseStamped", "t").encode(SAMPLES["PoseStamped"][0]))
     joints = codec("JointState", "", JOINTS)
     swapped = codec("JointState", "", (*JOINTS[::-1],))
@@ -106,8 +104,6 @@ def test_wrong_frame_names_and_lengths_are_named():
 
 def test_big_endian_is_read():
     """CDR of the other byte order is legal."""
-    import struct
-
     encode, decode = codec("TwistStamped", "b")
     sample = SAMPLES["TwistStamped"][0]
     sec, nanosec = divmod(STAMP, 1_000_000_000)

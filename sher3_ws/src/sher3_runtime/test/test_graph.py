@@ -1,5 +1,7 @@
 """Nodes in stepped time: order, stamps, services, losses and failures."""
 
+from itertools import pairwise
+
 import pytest
 from rclpy.node import Node
 from sher3_runtime import (
@@ -63,7 +65,7 @@ def test_a_step_is_complete():
         assert [s.axes for s in pedal] == [(float(k),) for k in range(10)]
         assert [s.stamp for s in pedal] == [s.stamp for s in probe.samples["force/measured_cf"]]
         assert pedal[-1].stamp == last
-        assert {b.stamp - a.stamp for a, b in zip(pedal, pedal[1:], strict=False)} == {2_000_000}
+        assert {b.stamp - a.stamp for a, b in pairwise(pedal)} == {2_000_000}
 
 
 def test_callback_exceptions_reach_the_caller():
