@@ -173,9 +173,7 @@ def gravity_load_into(p: KernelParameters, q: Array, load: Array) -> None:
     sa, ca = math.sin(roll), math.cos(roll)
     st, ct = tilt_sine_cosine(p, q[4])
     height = p.d3 - st * p.tilt_x + ct * p.tilt_z
-    load[3] = GRAVITY * (
-        p.roll_mass * (ca * p.roll_y - sa * p.roll_z) + p.tilt_mass * (ca * p.tilt_y - sa * height)
-    )
+    load[3] = GRAVITY * (p.roll_mass * (ca * p.roll_y - sa * p.roll_z) + p.tilt_mass * (ca * p.tilt_y - sa * height))
     load[4] = -GRAVITY * p.tilt_mass * ca * (ct * p.tilt_x + st * p.tilt_z) / tilt_slope(p, st, ct)
 
 

@@ -1,0 +1,108 @@
+"""Checks of vectors that come from outside, and compiled entry points that take the parameters as one array.
+
+A Python call of a compiled function costs the unpacking of its arguments; an array unpacks faster than a long tuple.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numba.np.unsafe.ndarray import to_fixed_tuple
+from numpy.typing import NDArray
+
+from . import kernel, kernel_reach
+from .errors import BadInput
+from .kernel_delta import compiled
+from .kernel_parameters import KernelParameters
+
+Floats = NDArray[np.float64]
+_COUNT = len(KernelParameters._fields)
+
+
+def vector(values: Sequence[float] | Floats, size: int, name: str) -> Floats:
+    """Return a contiguous finite vector (size,).
+
+    Raises:
+        BadInput: wrong shape, or a value that is not finite.
+    """
+    try:
+        result = np.ascontiguousarray(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise BadInput(f"{name} is not a vector of numbers", value=values, remedy=f"give {size} numbers") from None
+    if result.shape != (size,):
+        raise BadInput(f"{name} has the wrong shape", value=result.shape, limit=(size,), remedy=f"give {size} numbers")
+    if not np.isfinite(result).all():
+        raise BadInput(f"{name} is not finite", value=result.tolist(), remedy="check its source")
+    return result
+
+
+def rows(values: Sequence[Sequence[float]] | Floats, size: int, name: str) -> Floats:
+    """Return contiguous rows (n, size); rows that are not finite are let through and give NaN."""
+    result = np.ascontiguousarray(values, dtype=np.float64)
+    if result.ndim != 2 or result.shape[1] != size:
+        raise BadInput(f"{name} has the wrong shape", value=result.shape, limit=("n", size), remedy="give one row each")
+    return result
+
+
+@compiled
+def unpack(parameters: Floats) -> KernelParameters:
+    """Return the parameter tuple held in an array (44,)."""
+    return KernelParameters(*to_fixed_tuple(parameters, _COUNT))  # type: ignore[call-arg]
+
+
+@compiled
+def tip_transform(parameters: Floats, q: Floats) -> Floats:
+    """Return T_bt (4, 4) for actuator positions (5,)."""
+    transform = np.empty((4, 4))
+    kernel.tip_pose_into(unpack(parameters), q, transform[:3, :3], transform[:3, 3])
+    transform[3, 0] = transform[3, 1] = transform[3, 2] = 0.0
+    transform[3, 3] = 1.0
+    return transform
+
+
+@compiled
+def tip_jacobian(parameters: Floats, q: Floats) -> Floats:
+    """Return the tip Jacobian (6, 5)."""
+    return kernel.tip_jacobian(unpack(parameters), q)
+
+
+@compiled
+def pose_inverse(
+    parameters: Floats, position: Floats, axis: Floats, lower: Floats, upper: Floats, elevation: float
+) -> tuple[Floats, bool]:
+    """Return q (5,) for a tip position and a distal tool axis, and whether it is within travel and workspace."""
+    p = unpack(parameters)
+    q, margins = np.empty(5), np.empty(5)
+    kernel.pose_inverse_into(p, position[0], position[1], position[2], axis, q)
+    kernel_reach.singularity_margins_into(p, q, margins)
+    inside = True
+    for k in range(5):
+        inside = inside and lower[k] <= q[k] <= upper[k]
+    for k in range(3):
+        inside = inside and margins[k] >= elevation
+    return q, inside
+
+
+@compiled
+def gravity_load(parameters: Floats, q: Floats) -> Floats:
+    """Return G(q) (5,)."""
+    return kernel.gravity_load(unpack(parameters), q)
+
+
+@compiled
+def delta_forward(parameters: Floats, q: Floats) -> Floats:
+    """Return the platform centre (3,) for slider positions (3,)."""
+    return np.array(kernel.delta_forward(unpack(parameters), q[0], q[1], q[2]))
+
+
+@compiled
+def delta_inverse(parameters: Floats, centre: Floats) -> Floats:
+    """Return the slider positions (3,) for a platform centre (3,)."""
+    return np.array(kernel.delta_inverse(unpack(parameters), centre[0], centre[1], centre[2]))
+
+
+@compiled
+def delta_jacobian(parameters: Floats, q: Floats) -> Floats:
+    """Return the Jacobian (3, 3) of the platform centre for slider positions (3,)."""
+    return kernel.delta_jacobian(unpack(parameters), q[0], q[1], q[2])
