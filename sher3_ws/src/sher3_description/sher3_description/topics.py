@@ -50,6 +50,7 @@ class Topic:
 STREAM = Qos()
 AHEAD = Qos(depth=500)
 LATCHED = Qos(durability="transient_local", depth=1)
+HISTORY = Qos(durability="transient_local", depth=20)
 
 _JOINT = "sensor_msgs/msg/JointState"
 _TWIST = "geometry_msgs/msg/TwistStamped"
@@ -71,7 +72,7 @@ _TABLE = (
     Topic("pedal/measured", _JOY, "", STREAM, "axes[0] travel 0 to 1, buttons[0] emergency stop"),
     Topic("tracker/measured_cp", _POSE, "b", STREAM, "external tip pose in {b}"),
     Topic("temperature", "sensor_msgs/msg/Temperature", "", STREAM, "structure temperature [deg C]"),
-    Topic("operating_state", _TEXT, "", LATCHED, "CRTK operating state with its reason"),
+    Topic("operating_state", _TEXT, "", LATCHED, "CRTK operating state; why and since when is in supervisor/status"),
     # CRTK commands of the user.
     Topic("command/servo_cv", _TWIST, "b", STREAM, "tip twist in {b}"),
     Topic("command/servo_jv", _JOINT, "", STREAM, "actuator velocity"),
@@ -82,6 +83,15 @@ _TABLE = (
     Topic(
         "command/state_command", _TEXT, "", STREAM, "CRTK state command: enable, disable, pause, resume, home, unhome"
     ),
+    Topic("command/admittance", _TEXT, "", STREAM, "live parameter of the cooperative mode: `name value`"),
+    # What the control nodes decided and from what, so that a recording can be computed again bit for bit.
+    Topic("admittance/inputs", _TEXT, "", STREAM, "stamps and flags that a tick of the admittance law used"),
+    Topic("admittance/settings", _TEXT, "", HISTORY, "settings and live parameters of the admittance law, by version"),
+    Topic("admittance/status", _TEXT, "", LATCHED, "why the cooperative mode does not move"),
+    Topic("motion/inputs", _TEXT, "", STREAM, "stamps and mode that a tick of the kinematics node used"),
+    Topic("motion/settings", _TEXT, "", HISTORY, "settings and remote centre of the kinematics node, by version"),
+    Topic("motion/status", _TEXT, "", LATCHED, "owner, reason, is_busy and the last refused command"),
+    Topic("supervisor/status", _TEXT, "", LATCHED, "operating state with reason, since when, first and later faults"),
     Topic("diagnostics", "diagnostic_msgs/msg/DiagnosticArray", "", STREAM, "health of every node, with numbers"),
     # Between a scripted surgeon, the plant process and the device ends of sensor and pedal; mocks only.
     Topic("mock/contact_wrench", _WRENCH, "b", STREAM, "wrench on the tip in {b}, into the plant"),
