@@ -50,7 +50,6 @@ class Topic:
 STREAM = Qos()
 AHEAD = Qos(depth=500)
 LATCHED = Qos(durability="transient_local", depth=1)
-HISTORY = Qos(durability="transient_local", depth=20)
 
 _JOINT = "sensor_msgs/msg/JointState"
 _TWIST = "geometry_msgs/msg/TwistStamped"
@@ -86,10 +85,10 @@ _TABLE = (
     Topic("command/admittance", _TEXT, "", STREAM, "live parameter of the cooperative mode: `name value`"),
     # What the control nodes decided and from what, so that a recording can be computed again bit for bit.
     Topic("admittance/inputs", _TEXT, "", STREAM, "stamps and flags that a tick of the admittance law used"),
-    Topic("admittance/settings", _TEXT, "", HISTORY, "settings and live parameters of the admittance law, by version"),
+    Topic("admittance/settings", _TEXT, "", LATCHED, "settings and live parameters of the admittance law, by version"),
     Topic("admittance/status", _TEXT, "", LATCHED, "why the cooperative mode does not move"),
     Topic("motion/inputs", _TEXT, "", STREAM, "stamps and mode that a tick of the kinematics node used"),
-    Topic("motion/settings", _TEXT, "", HISTORY, "settings and remote centre of the kinematics node, by version"),
+    Topic("motion/settings", _TEXT, "", LATCHED, "settings and remote centre of the kinematics node, by version"),
     Topic("motion/status", _TEXT, "", LATCHED, "owner, reason, is_busy and the last refused command"),
     Topic("supervisor/status", _TEXT, "", LATCHED, "operating state with reason, since when, first and later faults"),
     Topic("diagnostics", "diagnostic_msgs/msg/DiagnosticArray", "", STREAM, "health of every node, with numbers"),
