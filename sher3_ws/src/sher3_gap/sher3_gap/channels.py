@@ -1,0 +1,67 @@
+"""Residual channels: where in the signal chain a difference between robot and simulation is measured.
+
+A channel is one stage at one actuator (or `tip`, `force_sensor`). Its residual is measured output minus the nominal prediction
+from the *measured* input of that stage, so that an upstream gap does not leak downstream (gap-diagnosis: conditional predictors).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+STAGES = ("transport", "controller", "drive", "motor_mechanics", "transmission", "mechanism", "structure", "sensing")
+"""Stages in the order of the signal chain: an upstream gap is explained first."""
+
+
+@dataclass(frozen=True, order=True)
+class Channel:
+    """A stage at an actuator."""
+
+    stage: str
+    actuator: str
+
+    def __str__(self) -> str:
+        return f"{self.stage}/{self.actuator}"
+
+
+@dataclass(frozen=True)
+class Residual:
+    """Residual of one channel in one run on the residual grid.
+
+    Attributes:
+        values: (g, d) in SI units.
+        ok: (g,) samples that count.
+    """
+
+    values: Array
+    ok: NDArray[np.bool_]
+
+    def rms(self) -> Array:
+        """Root mean square over the samples that count, (d,)."""
+        if not self.ok.any():
+            return np.zeros(self.values.shape[1])
+        return np.sqrt(np.mean(self.values[self.ok] ** 2, axis=0))
+
+
+UNITS = {
+    "transport": "m/s",
+    "controller": "m/s",
+    "drive": "N",
+    "motor_mechanics": "N",
+    "transmission": "m",
+    "mechanism": "m",
+    "structure": "m",
+    "sensing": "N",
+}
+
+
+def unit_of(channel: Channel) -> str:
+    """Unit of the first component of a channel; the roll axis is rotary."""
+    unit = UNITS[channel.stage]
+    if channel.actuator != "roll":
+        return unit
+    return {"m/s": "rad/s", "N": "N*m", "m": "rad"}[unit]

@@ -1,0 +1,72 @@
+"""What repeats differ by: the floor below which a gap is no gap.
+
+Per channel and component, F = mean((y_a - y_b)^2) / 2 over pairs of runs with the same excitation (contract §8), but never less
+than what the readings' resolution alone makes, which repeats of a robot at rest do not show.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Sequence
+from itertools import combinations
+
+import numpy as np
+from sher3_description import ACTUATORS, Robot
+
+from sher3_gap.channels import Array, Channel
+from sher3_gap.residuals import Residuals
+from sher3_gap.signals import BANDWIDTH, RunSignals
+
+Floors = dict[Channel, Array]
+"""Standard deviation of the floor per channel, (d,)."""
+
+
+def resolution_floors(robot: Robot, period: float) -> Floors:
+    """Floor from quantisation and the stated sensor noise alone."""
+    share = np.sqrt(min(1.0, 2.0 * BANDWIDTH * period))
+    out: Floors = {}
+    for name, a in zip(ACTUATORS, robot.actuators, strict=True):
+        counts = np.hypot(a.motor_encoder, a.load_encoder) / np.sqrt(12.0)
+        effort = share * a.drive.rated * np.hypot(0.002, 0.001 / np.sqrt(12.0))
+        out[Channel("transmission", name)] = np.array([counts])
+        held = a.drive.ki * a.motor_encoder / np.sqrt(12.0)
+        out[Channel("drive", name)] = np.array([np.hypot(effort, held)])
+        out[Channel("motor_mechanics", name)] = np.array([effort])
+    tip = np.repeat([robot.tracker.noise_position, robot.tracker.noise_rotation], 3)
+    out[Channel("mechanism", "tip")] = tip
+    out[Channel("structure", "tip")] = tip
+    sensor = robot.force_sensor
+    step = np.array([sensor.resolution_force] * 3 + [sensor.resolution_torque] * 3) / np.sqrt(12.0)
+    noise = np.array([sensor.noise_force] * 3 + [sensor.noise_torque] * 3)
+    out[Channel("sensing", "force_sensor")] = np.maximum(share * np.hypot(noise, step), step)
+    return out
+
+
+def repeat_floors(runs: Sequence[RunSignals], residuals: Sequence[Residuals]) -> Floors:
+    """Floor from pairs of repeats, pooled over excitations; channels without repeats are absent."""
+    groups: dict[str, list[int]] = defaultdict(list)
+    for i, run in enumerate(runs):
+        groups[run.excitation].append(i)
+    total: dict[Channel, Array] = {}
+    count: dict[Channel, int] = defaultdict(int)
+    for members in groups.values():
+        for a, b in combinations(members, 2):
+            for channel in residuals[a].keys() & residuals[b].keys():
+                x, y = residuals[a][channel], residuals[b][channel]
+                n = min(len(x.values), len(y.values))
+                ok = x.ok[:n] & y.ok[:n]
+                square = 0.5 * np.sum((x.values[:n] - y.values[:n])[ok] ** 2, axis=0)
+                total[channel] = total.get(channel, 0.0) + square
+                count[channel] += int(ok.sum())
+    return {c: np.sqrt(t / count[c]) for c, t in total.items() if count[c] > 50}
+
+
+def floors(runs: Sequence[RunSignals], residuals: Sequence[Residuals], robot: Robot) -> Floors:
+    """The larger of repeat and resolution floor for every channel recorded."""
+    least = resolution_floors(robot, runs[0].period)
+    repeats = repeat_floors(runs, residuals)
+    tip, loaded = Channel("mechanism", "tip"), Channel("structure", "tip")
+    if loaded not in repeats and tip in repeats:
+        repeats[loaded] = repeats[tip]
+    present = {c for r in residuals for c in r}
+    return {c: np.maximum(repeats.get(c, least[c]), least[c]) for c in present}

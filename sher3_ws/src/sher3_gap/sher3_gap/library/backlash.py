@@ -1,0 +1,58 @@
+"""Backlash: a gap between motor and load."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from sher3_gap.channels import Array, Channel
+from sher3_gap.library.base import LibraryEffect, Shape, Signature, View, axis_of
+from sher3_gap.library.operators import play
+
+
+class Backlash(LibraryEffect):
+    """load = follower behind a gap of `width`; between the flanks the load drifts under its own weight and load."""
+
+    id, family, stage = "backlash", "lost_motion", "transmission"
+    explanation = "After a reversal the motor moves by a fixed amount before the load follows; a load that pushes the other way takes the load across the gap without the motor moving."
+    siblings = {
+        "transmission_compliance": "in proportion to the force, no fixed width",
+        "transmission_hysteresis": "the lag builds up over a stroke much longer than itself",
+        "joint_clearance": "the encoders agree, the tip jumps",
+    }
+    units = {"width": "m"}
+    WIDTHS = (0.7, 0.8, 0.9, 1.0, 1.1, 1.25)
+    """In spans of the residual."""
+    DAMPINGS = (np.inf, 5000.0, 1000.0, 200.0)
+    """Viscous drag of the load in the gap, in units of the nominal viscous coefficient / 60."""
+
+    def shapes(self, views: Sequence[View], site: str) -> list[Shape]:
+        """Width around the span of the residual, and how freely the load moves in the gap."""
+        axis = axis_of(site)
+        spans = [
+            np.ptp(np.percentile(v.run.to_grid(v.run.load - v.run.motor)[:, axis], [1, 99]))
+            for v in views
+            if v.run.load is not None
+        ]
+        span = max(spans, default=0.0)
+        return [{"width": w * span, "damping": d} for w in self.WIDTHS for d in self.DAMPINGS if w * span > 0.0]
+
+    def refine(self, shape: Shape) -> list[Shape]:
+        """Between the neighbours."""
+        out: list[Shape] = [{**shape, "width": shape["width"] * f} for f in (0.94, 0.97, 1.03, 1.06)]
+        return [*out, {**shape, "damping": shape["damping"] * 0.5}, {**shape, "damping": shape["damping"] * 2.0}]
+
+    def signature(self, view: View, site: str, shape: Shape) -> Signature:
+        """No coefficient: the width is the shape. The side at the start is the one that fits the first samples."""
+        axis, run = axis_of(site), view.run
+        clock = run.stage_clock
+        pull = np.interp(clock, clock[run.grid], view.path.contact_force[:, axis] - view.path.gravity[:, axis])
+        damping = shape["damping"] * view.robot.actuators[axis].viscous / 60.0
+        first = (run.load[:25, axis] - run.motor[:25, axis]).mean() if run.load is not None else 0.0
+        start = float(np.clip(2.0 * first / shape["width"], -1.0, 1.0))
+        lag = play(run.smooth[:, axis], pull, shape["width"], damping, run.period, start)
+        return Signature({}, {Channel(self.stage, site): run.to_grid(lag)[:, None]})
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Width of the gap."""
+        return {"width": shape["width"]}

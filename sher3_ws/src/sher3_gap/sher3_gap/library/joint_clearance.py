@@ -1,0 +1,48 @@
+"""Joint clearance: a ball joint of a leg rattles."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from sher3_gap.channels import Array, Channel
+from sher3_gap.library.base import LibraryEffect, Shape, Signature, View, axis_of, lead
+
+
+class JointClearance(LibraryEffect):
+    """A leg's length jumps by +-clearance / 2 with the direction of its slider, or with the sign of the load on the tip."""
+
+    id, family, stage = "joint_clearance", "lost_motion", "mechanism"
+    explanation = "A ball joint has play: the tip jumps by a fixed amount when the leg's load or direction reverses, with no trace in the encoders."
+    siblings = {
+        "backlash": "the load encoder lags behind the motor's",
+        "structural_compliance": "in proportion to the load",
+    }
+    units = {"clearance": "m"}
+
+    def sites(self) -> tuple[str, ...]:
+        """The legs."""
+        return ("delta_1", "delta_2", "delta_3")
+
+    def channels(self, site: str) -> tuple[Channel, ...]:
+        """Seen at the tip."""
+        return (Channel("mechanism", "tip"), Channel("structure", "tip"))
+
+    def shapes(self, views: Sequence[View], site: str) -> list[Shape]:
+        """What decides the side: 0 the direction of the slider, 1 the force along the leg."""
+        return [{"by_load": 0.0}, {"by_load": 1.0}]
+
+    def signature(self, view: View, site: str, shape: Shape) -> Signature:
+        """One column: half the change of the pose per metre of leg, with the sign of the side."""
+        axis = axis_of(site)
+        change = view.geometry.pose_change(view.run, 1e-5, **{f"link_{site[-1]}": 1.0})
+        if shape["by_load"]:
+            force = view.path.contact_force[:, axis] - view.path.gravity[:, axis]
+            side = np.tanh(force / 0.05)
+        else:
+            side = view.sliding(axis, 2.5e-3 * lead(view, site))[view.run.grid]
+        return Signature(view.at_tip(0.5 * (change * side[:, None])[:, :, None]))
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Clearance along the leg."""
+        return {"clearance": abs(float(coefficients[0]))}

@@ -1,0 +1,102 @@
+"""Hysteresis operators that several effects share, compiled."""
+
+from __future__ import annotations
+
+import math
+
+import numba
+import numpy as np
+from sher3_gap.channels import Array
+
+
+@numba.njit(cache=True)
+def dahl(x: Array, displacement: float) -> Array:
+    """Dahl's solid friction state of a path x (n,): dz/dx = (1 - z sgn dx) / displacement, z(0) = 0 -> (n,) in -1..1."""
+    out = np.zeros(len(x))
+    z = 0.0
+    for k in range(1, len(x)):
+        step = x[k] - x[k - 1]
+        if step > 0.0:
+            z = 1.0 - (1.0 - z) * math.exp(-step / displacement)
+        elif step < 0.0:
+            z = -1.0 + (1.0 + z) * math.exp(step / displacement)
+        out[k] = z
+    return out
+
+
+@numba.njit(cache=True)
+def play(x: Array, drive: Array, width: float, damping: float, period: float, start: float) -> Array:
+    """Follower behind a gap of `width`, minus x, (n,): -width/2..width/2.
+
+    Between the flanks the follower moves under the load `drive` (n,), against a viscous `damping` (inf: it stays put), which is
+    how a lost motion goes to and fro when the load reverses without the motor moving. `start` in -1..1 places it at first.
+    """
+    out = np.empty(len(x))
+    half = 0.5 * width
+    y = x[0] + start * half
+    for k in range(len(x)):
+        y += period * drive[k] / damping
+        if y > x[k] + half:
+            y = x[k] + half
+        elif y < x[k] - half:
+            y = x[k] - half
+        out[k] = y - x[k]
+    return out
+
+
+@numba.njit(cache=True)
+def oscillator(force: Array, frequency: float, damping: float, period: float) -> Array:
+    """Response x of x'' + 2 z w x' + w^2 x = w^2 force (n, d), unit static gain, w = 2 pi frequency; exact for a held input."""
+    w = 2.0 * math.pi * frequency
+    wd = w * math.sqrt(1.0 - damping * damping)
+    e, c, s = math.exp(-damping * w * period), math.cos(wd * period), math.sin(wd * period)
+    a11, a12 = e * (c + damping * w / wd * s), e * s / wd
+    a21, a22 = -w * w * a12, e * (c - damping * w / wd * s)
+    out = np.zeros_like(force)
+    for i in range(force.shape[1]):
+        x, v = force[0, i], 0.0
+        for k in range(force.shape[0]):
+            out[k, i] = x
+            dx = x - force[k, i]
+            x = force[k, i] + a11 * dx + a12 * v
+            v = a21 * dx + a22 * v
+    return out
+
+
+@numba.njit(cache=True)
+def first_order(x: Array, time_constant: float, period: float) -> Array:
+    """First-order lag of x (n, d), exact for a held input, starting at rest at x[0]."""
+    out = np.empty_like(x)
+    gain = 1.0 - math.exp(-period / time_constant)
+    y = x[0].copy()
+    for k in range(len(x)):
+        out[k] = y
+        y += gain * (x[k] - y)
+    return out
+
+
+@numba.njit(cache=True)
+def clamped_law(
+    demand: Array, position: Array, kp: float, ki: float, limit: float, start: float, period: float
+) -> tuple[Array, Array]:
+    """PI force with and without a clamp, (n,) each, for the demand held over each past interval and the measured motion.
+
+    The integrator starts at `start` / ki and stands still while the force is clamped and the error would drive it further in.
+    """
+    clamped, free = np.empty(len(demand)), np.empty(len(demand))
+    xi = start / ki
+    xi_free = xi
+    for k in range(len(demand)):
+        j = max(k - 1, 0)
+        step = demand[k] * period - (position[k] - position[j])
+        xi_free += step
+        a, b = max(k - 1, 0), min(k + 1, len(demand) - 1)
+        velocity = (position[b] - position[a]) / ((b - a) * period)
+        raw = kp * (demand[k] - velocity) + ki * (xi + step)
+        if abs(raw) > limit and raw * step > 0.0:
+            raw = kp * (demand[k] - velocity) + ki * xi
+        else:
+            xi += step
+        clamped[k] = min(max(raw, -limit), limit)
+        free[k] = kp * (demand[k] - velocity) + ki * xi_free
+    return clamped, free

@@ -1,0 +1,61 @@
+"""Structural compliance: the arm gives way under a load on the tip."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from sher3_gap.channels import Array, Channel
+from sher3_gap.library.base import LibraryEffect, Shape, Signature, View
+
+
+class StructuralCompliance(LibraryEffect):
+    """A share of the paper's lumped compliance: rotation springs about y and z at the platform and a spring along x."""
+
+    id, family, stage = "structural_compliance", "compliance", "structure"
+    explanation = "A force on the tip displaces and turns it in proportion, most across the arm, as if the arm were hinged at the platform with springs."
+    siblings = {
+        "tool_bending": "only across the tool",
+        "link_compliance": "softer at small forces",
+        "transmission_compliance": "the load encoders see it",
+    }
+    units = {"x": "m/N", "y": "rad/(N*m)", "z": "rad/(N*m)"}
+    LUMPED = (15.0e-6, 1.0 / 244.0, 1.0 / 213.0)
+    """Along x, about y, about z: the deflection table's means less the delta's own share (m/N, rad/(N m), rad/(N m))."""
+
+    def sites(self) -> tuple[str, ...]:
+        """The tip."""
+        return ("tip",)
+
+    def channels(self, site: str) -> tuple[Channel, ...]:
+        """Seen at the loaded tip."""
+        return (Channel("structure", "tip"),)
+
+    def shapes(self, views: Sequence[View], site: str) -> list[Shape]:
+        """The paper's ratios, or three free springs."""
+        return [{"free": 0.0}, {"free": 1.0}]
+
+    def signature(self, view: View, site: str, shape: Shape) -> Signature:
+        """One column, or three."""
+        lever, force = view.lever, view.path.contact
+        moment = np.cross(lever, force)
+        parts = np.zeros((len(lever), 6, 3))
+        parts[:, 0, 0] = force[:, 0]
+        for j in (1, 2):
+            turn = np.zeros_like(moment)
+            turn[:, j] = moment[:, j]
+            parts[:, :3, j], parts[:, 3:, j] = np.cross(turn, lever), turn
+        lumped = parts @ np.array(self.LUMPED)
+        columns = parts if shape["free"] else lumped[:, :, None]
+        return Signature({Channel("structure", "tip"): columns} if view.run.tracker_position is not None else {})
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Share of the paper's compliance; the three springs where they were free."""
+        if len(coefficients) == 1:
+            return {"fraction": float(coefficients[0])}
+        share = float(np.mean(coefficients / np.array(self.LUMPED)))
+        return {"fraction": share, **{n: float(c) for n, c in zip("xyz", coefficients, strict=True)}}
+
+    def admissible(self, shape: Shape, coefficients: Array) -> bool:
+        """Springs give way."""
+        return bool((coefficients >= -0.02 * np.abs(coefficients).max()).all())

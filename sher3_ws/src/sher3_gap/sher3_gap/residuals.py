@@ -1,0 +1,130 @@
+"""Residuals of the continuous stages: drive, motor mechanics, transmission, mechanism, structure, sensing.
+
+Each function takes a run and the nominal model and returns {channel: Residual}. The exact stages (transport, controller) are in
+`exact.py`. Equations: recorded-run contract §3.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from sher3_description import ACTUATORS, Robot
+
+from sher3_gap.channels import Array, Channel, Residual
+from sher3_gap.geometry import Geometry
+from sher3_gap.signals import RunSignals, low_pass
+
+Residuals = dict[Channel, Residual]
+
+
+def drive_law(run: RunSignals, robot: Robot, demand: Array, position: Array | None = None) -> Array:
+    """Nominal PI force at each tick for the demand held and the measured motion, (n, axes), up to a constant per axis.
+
+    `demand` (n, axes) is the velocity demand in force just before each tick. The integral of the demand is that of the echo
+    (its mean over each interval), the integral of the motion is the encoder itself, so no velocity is integrated.
+    """
+    assert run.echo is not None
+    drive = [a.drive for a in robot.actuators]
+    kp, ki = np.array([d.kp for d in drive]), np.array([d.ki for d in drive])
+    motor = run.motor if position is None else position
+    velocity = np.gradient(motor, run.period, axis=0)
+    xi = np.cumsum(run.echo, axis=0) * run.period - (motor - motor[0])
+    return kp * (demand - velocity) + ki * xi
+
+
+def drive_residual(run: RunSignals, robot: Robot) -> Residuals:
+    """Reported effort minus the PI law. The integrator's start is not recorded: each run's mean is free."""
+    if run.echo is None or run.effort is None:
+        return {}
+    values = run.to_grid(run.effort - drive_law(run, robot, run.echo))
+    return {Channel("drive", a): centred(values[:, i], run.inner) for i, a in enumerate(ACTUATORS)}
+
+
+def centred(x: Array, ok: np.ndarray) -> Residual:
+    """Residual with the mean over the valid samples removed."""
+    return Residual((x - x[ok].mean())[:, None], ok)
+
+
+def mean_force(run: RunSignals, robot: Robot, jump_fraction: float = 1.0) -> Array:
+    """Mean motor force over the interval centred on each tick, (n, axes).
+
+    The reported effort is F just before the demand changes; F then steps by kp * (change of demand) and moves on to the next
+    reading. `jump_fraction` is 1 for a drive without lag, 0 when the force follows continuously.
+    """
+    assert run.effort is not None
+    force = run.effort.copy()
+    if run.echo is not None and jump_fraction:
+        kp = np.array([a.drive.kp for a in robot.actuators])
+        force[:-1] += 0.5 * jump_fraction * kp * np.diff(run.echo, axis=0)
+    return force
+
+
+def motor_residual(run: RunSignals, robot: Robot, geometry: Geometry, jump_fraction: float = 1.0) -> Residuals:
+    """Force that the nominal rigid axis does not explain: F - m a - viscous v - G(q) + tau_ext (positive: resists forward)."""
+    if run.effort is None:
+        return {}
+    mass = np.array([a.mass for a in robot.actuators])
+    viscous = np.array([a.viscous for a in robot.actuators])
+    path = geometry.path(run)
+    inertial = mass * run.acceleration + viscous * run.velocity
+    values = run.to_grid(mean_force(run, robot, jump_fraction) - inertial) - path.gravity + path.contact_force
+    ok = run.inner & settled(run.loaded_ok)
+    return {Channel("motor_mechanics", a): Residual(values[:, [i]], ok) for i, a in enumerate(ACTUATORS)}
+
+
+def settled(known: np.ndarray, margin: int = 3) -> np.ndarray:
+    """Shrink a mask by `margin` grid samples at each of its borders: the low-pass spreads what happens outside it."""
+    out = known.copy()
+    for shift in range(1, margin + 1):
+        out[shift:] &= known[:-shift]
+        out[:-shift] &= known[shift:]
+    return out
+
+
+def transmission_residual(run: RunSignals) -> Residuals:
+    """Load encoder minus motor encoder, low-passed."""
+    if run.load is None:
+        return {}
+    values = run.to_grid(run.load - run.motor)
+    return {Channel("transmission", a): Residual(values[:, [i]], run.inner) for i, a in enumerate(ACTUATORS)}
+
+
+def tip_residual(run: RunSignals, geometry: Geometry) -> Residuals:
+    """Tracked tip pose minus T_bt of the load encoders, split into unloaded (mechanism) and loaded (structure) samples.
+
+    Components: position in {b} (m), then the rotation vector in {b} (rad).
+    """
+    if run.tracker_position is None:
+        return {}
+    values = geometry.tip_error(run)
+    path = geometry.path(run)
+    at = np.isin(run.grid, run.tracker_index)
+    ok = run.inner & run.loaded_ok & at
+    loaded = path.loaded
+    out = {Channel("mechanism", "tip"): Residual(values, ok & ~loaded)}
+    if (ok & loaded).any():
+        out[Channel("structure", "tip")] = Residual(values, ok & loaded)
+    return out
+
+
+def wrench_residual(run: RunSignals, geometry: Geometry) -> Residuals:
+    """Force sensor reading minus tool gravity and the known contact, in {f}: force (N), torque (N m)."""
+    if run.wrench is None:
+        return {}
+    path = geometry.path(run)
+    values = run.to_grid(run.wrench) - path.nominal_wrench
+    ok = run.inner & settled(run.loaded_ok)
+    return {Channel("sensing", "force_sensor"): Residual(values, ok)}
+
+
+def all_residuals(run: RunSignals, robot: Robot, geometry: Geometry, jump_fraction: float = 1.0) -> Residuals:
+    """Residuals of every continuous stage the run has streams for."""
+    return {
+        **drive_residual(run, robot),
+        **motor_residual(run, robot, geometry, jump_fraction),
+        **transmission_residual(run),
+        **tip_residual(run, geometry),
+        **wrench_residual(run, geometry),
+    }
+
+
+__all__ = ["Residuals", "all_residuals", "drive_law", "low_pass", "mean_force", "settled"]

@@ -1,0 +1,131 @@
+"""A recorded run as the diagnosis sees it: aligned arrays on the tick grid, smoothed motion, known contact load.
+
+Everything downstream (residuals, effects) reads a `RunSignals`; nothing downstream opens a bag. The residuals live on a coarser
+grid: after a zero-phase low-pass at `BANDWIDTH` the samples `DECIMATED_RATE` apart are close to independent, so that counting
+them counts information.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.signal import butter, sosfiltfilt
+
+Array = NDArray[np.float64]
+BANDWIDTH = 40.0
+"""Cut-off of the zero-phase low-pass on residuals and regressors, Hz."""
+DECIMATED_RATE = 100.0
+"""Rate of the residual grid, Hz (that of the external tracker)."""
+EDGE = 0.05
+"""Seconds at each end of a run that the filter spoils."""
+
+
+@dataclass(frozen=True)
+class RunSignals:
+    """Signals of one run; (n, axes) float64 in SI units, None where the stream was not recorded.
+
+    Attributes:
+        name: bag name; `excitation`, `repeat`: from the case.
+        period: tick period, s.
+        stage_clock: (n,) s since the first tick.
+        reference, reference_velocity: `setpoint_js`.
+        command: `servo_jv` velocity.
+        echo: `drives/setpoint_jv` velocity.
+        motor, effort: motor encoder position and reported effort; `load`: load encoder position.
+        wrench: (n, 6) force sensor reading in {f}.
+        tracker_index: (m,) tick of each tracker sample; `tracker_position` (m, 3), `tracker_rotation` (m, 4) x y z w.
+        contact: (n, 3) known force on the tip in {b}, N; `contact_known`: (n,) False where it is not known (load ramps).
+        temperature: (n,) deg C; `session_time`: s from the first run's start to this one's.
+    """
+
+    name: str
+    excitation: str
+    repeat: int
+    period: float
+    stage_clock: Array
+    motor: Array
+    effort: Array | None = None
+    reference: Array | None = None
+    reference_velocity: Array | None = None
+    command: Array | None = None
+    echo: Array | None = None
+    load: Array | None = None
+    wrench: Array | None = None
+    tracker_index: NDArray[np.int64] | None = None
+    tracker_position: Array | None = None
+    tracker_rotation: Array | None = None
+    contact: Array | None = None
+    contact_known: NDArray[np.bool_] | None = None
+    temperature: Array | None = None
+    session_time: float = 0.0
+    metadata: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def ticks(self) -> int:
+        """Number of ticks."""
+        return len(self.motor)
+
+    @property
+    def axes(self) -> int:
+        """Number of actuators."""
+        return self.motor.shape[1]
+
+    @cached_property
+    def stride(self) -> int:
+        """Ticks per sample of the residual grid."""
+        return max(1, round(1.0 / (DECIMATED_RATE * self.period)))
+
+    @cached_property
+    def grid(self) -> NDArray[np.int64]:
+        """Ticks of the residual grid, (g,)."""
+        return np.arange(0, self.ticks, self.stride)
+
+    @cached_property
+    def inner(self) -> NDArray[np.bool_]:
+        """(g,) False within `EDGE` of either end."""
+        edge = EDGE / self.period
+        return (self.grid >= edge) & (self.grid < self.ticks - edge)
+
+    @cached_property
+    def loaded_ok(self) -> NDArray[np.bool_]:
+        """(g,) True where the contact force is known."""
+        if self.contact_known is None:
+            return np.ones(len(self.grid), dtype=bool)
+        return self.contact_known[self.grid]
+
+    @cached_property
+    def smooth(self) -> Array:
+        """Motor position after the low-pass, (n, axes)."""
+        return low_pass(self.motor, self.period)
+
+    @cached_property
+    def velocity(self) -> Array:
+        """Motor velocity from the smoothed position, (n, axes)."""
+        return np.gradient(self.smooth, self.period, axis=0)
+
+    @cached_property
+    def acceleration(self) -> Array:
+        """Second difference of the motor position, not smoothed, (n, axes)."""
+        out = np.zeros_like(self.motor)
+        out[1:-1] = np.diff(self.motor, 2, axis=0) / self.period**2
+        return out
+
+    @cached_property
+    def smooth_load(self) -> Array | None:
+        """Load encoder position after the low-pass, (n, axes)."""
+        return None if self.load is None else low_pass(self.load, self.period)
+
+    def to_grid(self, x: Array) -> Array:
+        """Low-pass an (n, ...) signal and sample it on the residual grid -> (g, ...)."""
+        return low_pass(x, self.period)[self.grid]
+
+
+def low_pass(x: Array, period: float, cutoff: float = BANDWIDTH) -> Array:
+    """Zero-phase second-order Butterworth low-pass along the first axis; a cut-off above 0.4 / period leaves `x` as it is."""
+    if cutoff * period >= 0.4 or len(x) < 30:
+        return np.asarray(x, dtype=float)
+    sos = butter(2, cutoff, fs=1.0 / period, output="sos")
+    return sosfiltfilt(sos, x, axis=0)
