@@ -1,0 +1,179 @@
+"""Dynamics of one axis over one control period: demand queue, drive, motor, friction, transmission (compiled).
+
+Exponential integrator: the linear part (drive PI, mass, viscous friction, lag of the force) is advanced by its exact matrix
+exponential; every other force is held over a step at its value in the middle, where the bristle lives (leapfrog). Exact for
+the nominal axis in one step per period, second order in the step for the other forces.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+from scipy.linalg import expm
+
+from sher3_sim.parameters import Records
+
+PENDING = 64
+
+AXIS_STATE = np.dtype(
+    [
+        *((name, "f8") for name in ("position", "velocity", "integral", "force", "demand", "echo")),
+        *((name, "f8") for name in ("bristle", "cable", "base", "hysteresis", "load", "effort_load")),
+        *((name, "f8") for name in ("motor_reading", "load_reading", "velocity_reading", "effort_reading", "zero")),
+        ("pending", "i8"),
+        ("pending_time", "f8", PENDING),
+        ("pending_value", "f8", PENDING),
+    ]
+)
+TWO_PI = 2.0 * math.pi
+
+
+def propagators(axis: Records, step: float) -> NDArray[np.float64]:
+    """Return (5, 2, 4, 5): for each axis, unsaturated and saturated, the exact step of its linear part.
+
+    The rows give (v, I, F) at the end of the step and the distance travelled, the columns multiply (v, I, F) at its
+    beginning and the inputs (u, D). I = ki xi is the integral force, F the force behind the lag, D the sum of the other
+    forces, u the demand v_d, or the limiting force when saturated:
+    m v' = K F - b v - D, I' = ki (v_d - v) (frozen when saturated), lag F' = kp (v_d - v) + I - F, or = u - F.
+    """
+    out = np.zeros((len(axis), 2, 4, 5))
+    for i, a in enumerate(axis):
+        for saturated in (False, True):
+            full = expm(_rates(a, saturated) * step)
+            out[i, int(saturated)] = full[:4, [0, 1, 2, 4, 5]]
+    return out
+
+
+def _rates(a: Any, saturated: bool) -> NDArray[np.float64]:
+    """Return (6, 6) d/dt of (v, I, F, distance, u, D) as a matrix on the same."""
+    law = np.array([0.0, 0.0, 0.0, 0.0, 1.0, 0.0] if saturated else [-a["kp"], 1.0, 0.0, 0.0, a["kp"], 0.0])
+    lagged = np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
+    rates = np.zeros((6, 6))
+    force = law
+    if a["lag"] > 0.0:
+        force = lagged
+        rates[2] = (law - lagged) / a["lag"]
+    rates[0] = (a["torque_scale"] * force - [a["viscous"], 0.0, 0.0, 0.0, 0.0, 1.0]) / a["mass"]
+    rates[3, 0] = 1.0
+    if not saturated:
+        rates[1] = [-a["ki"], 0.0, 0.0, 0.0, a["ki"], 0.0]
+    return rates
+
+
+@njit(cache=True)
+def send(s: Any, value: float, latency: float) -> None:
+    """Queue a demand that the drive will act on `latency` seconds into the coming period; order is kept."""
+    n = s.pending
+    if n == PENDING:
+        return
+    if n > 0 and s.pending_time[n - 1] > latency:
+        latency = s.pending_time[n - 1]
+    s.pending_time[n] = latency
+    s.pending_value[n] = value
+    s.pending = n + 1
+
+
+@njit(cache=True)
+def _drop_executed(s: Any, executed: int, period: float) -> None:
+    for j in range(executed, s.pending):
+        s.pending_time[j - executed] = s.pending_time[j] - period
+        s.pending_value[j - executed] = s.pending_value[j]
+    s.pending -= executed
+
+
+@njit(cache=True)
+def dead_zone(a: Any, demand: float) -> float:
+    """Return the demand the drive acts on: zero inside its dead zone."""
+    return 0.0 if abs(demand) < a.deadband else demand
+
+
+@njit(cache=True)
+def sliding_friction(a: Any, q: float, v: float, time: float) -> float:
+    """Friction level g(v) [N] of steady sliding: Coulomb, Stribeck, modulated along the lead, decaying with time."""
+    level = a.coulomb
+    if a.static > a.coulomb:
+        level += (a.static - a.coulomb) * math.exp(-((v / a.stribeck_velocity) ** 2))
+    if a.friction_decaying != 0.0:
+        level += a.friction_decaying * math.exp(-time / a.friction_decay_time)
+    if a.friction_amplitude != 0.0:
+        level += a.friction_amplitude * math.cos(TWO_PI * a.friction_periods * q / a.lead + a.friction_phase)
+    return max(level, 0.0)
+
+
+@njit(cache=True)
+def bristle_step(z: float, distance: float, scale: float) -> float:
+    """Advance a bristle over a travelled distance, exactly: z' = v - |v| z / scale (Dahl 1968, LuGre without damping)."""
+    end = math.copysign(scale, distance)
+    return end + (z - end) * math.exp(-abs(distance) / scale)
+
+
+@njit(cache=True)
+def drive_force(a: Any, s: Any) -> float:
+    """Force the drive exerts now [N], before a new demand acts; what it reports as effort, without noise."""
+    if a.lag > 0.0:
+        return s.force
+    return min(max(a.kp * (dead_zone(a, s.demand) - s.velocity) + s.integral, -a.limit), a.limit)
+
+
+@njit(cache=True)
+def advance(a: Any, s: Any, step_maps: Any, load: float, time: float, period: float, substeps: int) -> None:
+    """Advance one axis over one control period under a constant load.
+
+    Args:
+        a: its AXIS record.
+        s: its AXIS_STATE record, changed in place.
+        step_maps: (2, 4, 5) its propagators for `period / substeps`.
+        load: gravity less contact force along the axis [N], positive against positive motion.
+        time: since the start of the run [s].
+        period: [s].
+        substeps: steps in the period.
+    """
+    h = period / substeps
+    q, v, integral, force = s.position, s.velocity, s.integral, s.force
+    demand, executed, echo = s.demand, 0, 0.0
+    rubs = a.coulomb > 0.0 or a.static > 0.0 or a.friction_decaying > 0.0 or a.friction_amplitude > 0.0
+    for j in range(substeps):
+        # mean demand of the step: raw for the echo, behind the dead zone for the drive
+        begin, end = j * h, (j + 1) * h
+        raw, acted, now = 0.0, 0.0, begin
+        while executed < s.pending and s.pending_time[executed] < end:
+            change = max(s.pending_time[executed], now)
+            raw += demand * (change - now)
+            acted += dead_zone(a, demand) * (change - now)
+            demand, now = s.pending_value[executed], change
+            executed += 1
+        raw += demand * (end - now)
+        acted = (acted + dead_zone(a, demand) * (end - now)) / h
+        echo += raw
+
+        middle = q + 0.5 * h * v
+        other = load
+        if rubs:
+            level = sliding_friction(a, middle, v, time + begin)
+            s.bristle = bristle_step(s.bristle, h * v, a.displacement)
+            other += level * s.bristle / a.displacement
+        if a.cogging_amplitude != 0.0:
+            other += a.cogging_amplitude * math.sin(TWO_PI * a.cogging_periods * middle / a.lead + a.cogging_phase)
+        if a.cable_displacement > 0.0:
+            s.cable = bristle_step(s.cable, h * v, a.cable_displacement)
+            other += a.cable_stiffness * middle + a.cable_force * s.cable / a.cable_displacement
+
+        wanted = a.kp * (acted - v) + integral
+        saturated = abs(wanted) > a.limit
+        m = step_maps[1] if saturated else step_maps[0]
+        u = math.copysign(a.limit, wanted) if saturated else acted
+        moved = m[3, 0] * v + m[3, 1] * integral + m[3, 2] * force + m[3, 3] * u + m[3, 4] * other
+        v_end = m[0, 0] * v + m[0, 1] * integral + m[0, 2] * force + m[0, 3] * u + m[0, 4] * other
+        integral_end = m[1, 0] * v + m[1, 1] * integral + m[1, 2] * force + m[1, 3] * u + m[1, 4] * other
+        force = m[2, 0] * v + m[2, 1] * integral + m[2, 2] * force + m[2, 3] * u + m[2, 4] * other
+        error = acted * h - moved
+        if saturated and error * wanted < 0.0:
+            integral_end += a.ki * error
+        q, v, integral = q + moved, v_end, integral_end
+    s.position, s.velocity, s.integral, s.force = q, v, integral, force
+    s.demand, s.echo = demand, echo / period
+    _drop_executed(s, executed, period)

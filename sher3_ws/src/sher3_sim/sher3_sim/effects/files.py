@@ -1,0 +1,68 @@
+"""Effects as YAML: `schema: sher3.effects/1`, `effects: [{effect, actuator, parameters: {name: value}}]`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+import yaml
+from sher3_description import FileError
+
+from sher3_sim.effects.base import EFFECTS, Effect
+from sher3_sim.errors import EffectError
+
+SCHEMA = "sher3.effects/1"
+
+
+def effect_from_dict(data: Mapping[str, Any]) -> Effect:
+    """Build an effect from its plain form.
+
+    Raises:
+        EffectError: unknown id, actuator or parameter, or a value out of bounds.
+    """
+    unknown = set(data) - {"effect", "actuator", "parameters"}
+    if unknown or "effect" not in data or "actuator" not in data:
+        raise EffectError("an effect has the keys effect, actuator and parameters", value=", ".join(map(str, data)))
+    if data["effect"] not in EFFECTS:
+        remedy = f"use one of {', '.join(EFFECTS)}"
+        raise EffectError("no such effect", value=data["effect"], remedy=remedy)
+    kind, given = EFFECTS[data["effect"]], data.get("parameters") or {}
+    if not isinstance(given, Mapping):
+        raise EffectError(f"{kind.id}: parameters are not a mapping", value=given)
+    names = kind.specification(str(data["actuator"]))
+    for name in given:
+        if name not in names:
+            raise EffectError(f"{kind.id} has no such parameter", value=name, limit=", ".join(names))
+    return kind(str(data["actuator"]), **given)
+
+
+def effect_to_dict(effect: Effect) -> dict[str, Any]:
+    """Return the plain form of an effect, with all its parameters."""
+    return {"effect": effect.id, "actuator": effect.actuator, "parameters": effect.parameters}
+
+
+def load_effects(path: Path | str) -> list[Effect]:
+    """Read an effects file.
+
+    Raises:
+        FileError: it cannot be read or is not of the schema.
+        EffectError: an entry is wrong.
+    """
+    try:
+        data = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
+        raise FileError(f"cannot be read: {error}", path=path) from error
+    schema = data.get("schema") if isinstance(data, Mapping) else None
+    if schema != SCHEMA:
+        raise FileError("is not an effects file", path=path, value=schema, limit=SCHEMA, remedy="set schema")
+    entries = data.get("effects")
+    if not isinstance(entries, list) or not all(isinstance(entry, Mapping) for entry in entries):
+        raise FileError("effects is not a list of mappings", path=path)
+    return [effect_from_dict(entry) for entry in entries]
+
+
+def save_effects(path: Path | str, effects: Iterable[Effect]) -> None:
+    """Write an effects file that `load_effects` reads back to equal effects."""
+    content = {"schema": SCHEMA, "effects": [effect_to_dict(effect) for effect in effects]}
+    Path(path).write_text(yaml.safe_dump(content, sort_keys=False), encoding="utf-8")

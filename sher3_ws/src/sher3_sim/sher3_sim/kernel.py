@@ -1,0 +1,257 @@
+"""The compiled plant: one control period of the whole robot, and whole runs of it under the host's law."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numba import njit
+from sher3_kinematics.kernel import KernelParameters, gravity_load_into, tip_jacobian_into
+
+from sher3_sim.axis import advance, drive_force, send
+from sher3_sim.noise import DROP, EFFORT, FORCE, JITTER, TRACKER, normal, uniform
+from sher3_sim.tip import quaternion, true_tip
+from sher3_sim.transmission import encode_load, place, to_count, transmit
+
+Array = np.ndarray
+GRAVITY = 9.81
+
+BODY_STATE = np.dtype(
+    [
+        ("tick", "i8"),
+        ("seed", "i8"),
+        ("wrench", "f8", 6),
+        ("load", "f8", 5),
+        ("jacobian", "f8", (6, 5)),
+        ("tip_rate", "f8", 3),
+        ("mode_shift", "f8", 3),
+        ("mode_rate", "f8", 3),
+        ("cable", "f8", 3),
+        ("cable_start", "f8", 3),
+        ("cable_last", "f8", 3),
+    ]
+)
+
+READING = np.dtype(
+    [
+        ("motor", "f8", 5),
+        ("velocity", "f8", 5),
+        ("effort", "f8", 5),
+        ("load", "f8", 5),
+        ("demand", "f8", 5),
+        ("wrench", "f8", 6),
+        ("tip_position", "f8", 3),
+        ("tip_rotation", "f8", (3, 3)),
+        ("tracked", "?"),
+        ("tracker_position", "f8", 3),
+        ("tracker_orientation", "f8", 4),
+    ]
+)
+
+
+@njit(cache=True)
+def _loads(p: KernelParameters, axis: Any, state: Any, s: Any, wrench: Array, ahead: float) -> None:
+    """Write into `s` the load G - tau_ext of every axis `ahead` seconds from now, and the tip Jacobian there."""
+    q = np.empty(5)
+    gravity = np.empty(5)
+    for i in range(5):
+        q[i] = state[i].load + ahead * state[i].velocity
+    gravity_load_into(p, q, gravity)
+    tip_jacobian_into(p, q, s.jacobian)
+    for i in range(5):
+        contact = 0.0
+        for j in range(6):
+            contact += s.jacobian[j, i] * wrench[j]
+        s.load[i] = gravity[i] * (1.0 + axis[i].gravity_scale) - contact
+
+
+@njit(cache=True)
+def read_sensors(axis: Any, b: Any, p: KernelParameters, state: Any, s: Any, r: Any) -> None:
+    """Sample every sensor at the present tick into the READING record."""
+    q = np.empty(5)
+    tip_rate = np.zeros(3)
+    tick = s.tick
+    for i in range(5):
+        a, x = axis[i], state[i]
+        q[i] = x.load
+        motor = to_count(x.position + a.encoder_offset, a.motor_count)
+        r.velocity[i] = (motor - r.motor[i]) / b.period if tick > 0 else 0.0
+        r.motor[i] = motor
+        r.load[i] = to_count(encode_load(a, x.load) + x.zero, a.load_count)
+        noise = 0.002 * a.rated * normal(s.seed, EFFORT + i, tick)
+        r.effort[i] = to_count(drive_force(a, x) + noise, 0.001 * a.rated)
+        r.demand[i] = x.echo
+        for j in range(3):
+            tip_rate[j] += s.jacobian[j, i] * x.velocity
+    true_tip(p, axis, b, s, q, s.load, s.wrench, tip_rate, s.jacobian, r.tip_rotation, r.tip_position)
+    _read_wrench(b, s, r)
+    _read_tracker(b, s, r)
+
+
+@njit(cache=True)
+def _read_wrench(b: Any, s: Any, r: Any) -> None:
+    """Force sensor: contact and tool weight moved to {f}, cable, sensor matrix, bias, drift, noise, rounding, range."""
+    force, moment = np.zeros(3), np.zeros(3)
+    weight, cable = np.empty(3), np.zeros(3)
+    rotation = r.tip_rotation
+    if b.sensor_cable_displacement > 0.0:
+        for i in range(3):
+            if s.tick == 0:
+                s.cable_start[i] = s.cable_last[i] = r.tip_position[i]
+            moved = r.tip_position[i] - s.cable_last[i]
+            s.cable_last[i] = r.tip_position[i]
+            end = math.copysign(1.0, moved)
+            s.cable[i] = end + (s.cable[i] - end) * math.exp(-abs(moved) / b.sensor_cable_displacement)
+            pull = b.sensor_cable_stiffness * (r.tip_position[i] - s.cable_start[i])
+            cable[i] = -pull - b.sensor_cable_force * s.cable[i]
+    for i in range(3):
+        weight[i] = -rotation[2, i] * b.tool_mass * GRAVITY
+        for j in range(3):
+            force[i] += rotation[j, i] * (s.wrench[j] + cable[j])
+            moment[i] += rotation[j, i] * s.wrench[3 + j]
+    moment += np.cross(b.tool_com, weight) - np.cross(b.sensor_position, force)
+    force += weight
+    for i in range(6):
+        value = b.wrench_bias[i] + b.wrench_drift[i] * (b.temperature - 22.0)
+        for j in range(3):
+            value += b.wrench_matrix[i, j] * force[j] + b.wrench_matrix[i, 3 + j] * moment[j]
+        value += b.wrench_noise[i] * normal(s.seed, FORCE + i, s.tick)
+        r.wrench[i] = to_count(min(max(value, -b.wrench_range[i]), b.wrench_range[i]), b.wrench_resolution[i])
+
+
+@njit(cache=True)
+def _read_tracker(b: Any, s: Any, r: Any) -> None:
+    """Tracker: the true tip pose with noise, at its own rate."""
+    samples = b.period / b.tracker_period
+    r.tracked = s.tick == 0 or math.floor(s.tick * samples + 1e-9) > math.floor((s.tick - 1) * samples + 1e-9)
+    if not r.tracked:
+        return
+    o = r.tracker_orientation
+    quaternion(r.tip_rotation, o)
+    half = np.empty(3)
+    for i in range(3):
+        r.tracker_position[i] = r.tip_position[i] + b.tracker_noise[0] * normal(s.seed, TRACKER + i, s.tick)
+        half[i] = 0.5 * b.tracker_noise[1] * normal(s.seed, TRACKER + 3 + i, s.tick)
+    x, y, z, w = o[0], o[1], o[2], o[3]
+    o[0] = x + half[0] * w + half[1] * z - half[2] * y
+    o[1] = y + half[1] * w + half[2] * x - half[0] * z
+    o[2] = z + half[2] * w + half[0] * y - half[1] * x
+    o[3] = w - half[0] * x - half[1] * y - half[2] * z
+    norm = math.sqrt(o[0] * o[0] + o[1] * o[1] + o[2] * o[2] + o[3] * o[3])
+    for i in range(4):
+        o[i] /= norm
+
+
+@njit(cache=True)
+def start(axis: Any, b: Any, p: KernelParameters, state: Any, s: Any, r: Any, q_ref: Array, wrench: Array) -> None:
+    """Put the plant at rest at q_ref under a contact wrench, the drives holding it, and sample the first tick."""
+    for i in range(6):
+        s.wrench[i] = wrench[i]
+    for i in range(5):
+        state[i].load = q_ref[i]
+    for _ in range(2):
+        _loads(p, axis, state, s, wrench, 0.0)
+        for i in range(5):
+            state[i].effort_load = s.load[i]
+            place(axis[i], state[i], q_ref[i])
+    for i in range(5):
+        a, x = axis[i], state[i]
+        other = s.load[i]
+        if a.cogging_amplitude != 0.0:
+            angle = 2.0 * math.pi * a.cogging_periods * x.position / a.lead + a.cogging_phase
+            other += a.cogging_amplitude * math.sin(angle)
+        other += a.cable_stiffness * x.position
+        x.integral = min(max(other / a.torque_scale, -a.limit), a.limit)
+        x.force = x.integral
+    read_sensors(axis, b, p, state, s, r)
+
+
+@njit(cache=True)
+def step(
+    axis: Any,
+    b: Any,
+    p: KernelParameters,
+    maps: Array,
+    substeps: int,
+    state: Any,
+    s: Any,
+    r: Any,
+    command: Array,
+    wrench: Array,
+) -> None:
+    """Advance the plant by one control period.
+
+    Args:
+        axis, b, p: AXIS records, BODY record, true geometry.
+        maps: (5, 2, 4, 5) propagators for `period / substeps`.
+        substeps: steps in the period.
+        state, s: AXIS_STATE records and BODY_STATE record, changed in place.
+        r: READING record, the sensors at the end of the period.
+        command: (5,) velocities [m/s, rad/s] sent at its beginning.
+        wrench: (6,) contact wrench on the tip in {b} at its end; between its ends the wrench is taken at the middle.
+    """
+    mean = np.empty(6)
+    for i in range(6):
+        mean[i] = 0.5 * (s.wrench[i] + wrench[i])
+        s.wrench[i] = wrench[i]
+    _loads(p, axis, state, s, mean, 0.5 * b.period)
+    late = abs(normal(s.seed, JITTER, s.tick))
+    lost = uniform(s.seed, DROP, s.tick)
+    for i in range(5):
+        a, x = axis[i], state[i]
+        if lost >= a.drop:
+            send(x, command[i], a.delay + a.jitter * late)
+        advance(a, x, maps[i], s.load[i], s.tick * b.period, b.period, substeps)
+        transmit(a, x, s.load[i])
+    s.tick += 1
+    read_sensors(axis, b, p, state, s, r)
+
+
+@njit(cache=True)
+def host_command(axis: Any, setpoint: Array, setpoint_rate: Array, load_reading: Array, out: Array) -> None:
+    """Write the velocities the host commands in position modes, clamped: contract, section 3."""
+    for i in range(5):
+        a = axis[i]
+        wanted = setpoint_rate[i] + a.position_gain * (setpoint[i] - load_reading[i])
+        out[i] = min(max(wanted, -a.velocity_limit), a.velocity_limit)
+
+
+@njit(cache=True)
+def run(
+    axis: Any,
+    b: Any,
+    p: KernelParameters,
+    maps: Array,
+    substeps: int,
+    state: Any,
+    s: Any,
+    closed: bool,
+    setpoint: Array,
+    rate: Array,
+    command: Array,
+    wrench: Array,
+    temperature: Array,
+    out: Any,
+) -> None:
+    """Run n ticks, in closed loop on set-points or open on recorded commands.
+
+    Args:
+        axis, b, p, maps, substeps, state, s: as in `step`, fresh.
+        closed: host law on the set-points, or `command` as it is.
+        setpoint, rate: (n, 5) q_ref and its rate; the first set-point is the start in either mode.
+        command: (n, 5) commanded velocities: written when closed, read when not.
+        wrench: (n, 6) contact wrench at the ticks.
+        temperature: (n,) of the structure [degC].
+        out: (n,) READING records, written.
+    """
+    b.temperature = temperature[0]
+    start(axis, b, p, state, s, out[0], setpoint[0], wrench[0])
+    for k in range(len(out)):
+        if closed:
+            host_command(axis, setpoint[k], rate[k], out[k].load, command[k])
+        if k + 1 < len(out):
+            for i in range(5):
+                out[k + 1].motor[i] = out[k].motor[i]
+            b.temperature = temperature[k + 1]
+            step(axis, b, p, maps, substeps, state, s, out[k + 1], command[k], wrench[k + 1])

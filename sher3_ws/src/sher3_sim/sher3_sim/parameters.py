@@ -1,0 +1,150 @@
+"""The numbers the compiled plant runs on: one record per axis, one for the rest, and the mechanism's geometry.
+
+Effects write into these before the plant starts; a value of zero means the effect is absent. Rows follow ACTUATORS.
+"""
+
+from __future__ import annotations
+
+import copy
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from sher3_description import Robot
+from sher3_kinematics.kernel import KernelParameters, kernel_parameters
+
+Records = NDArray[Any]
+
+AXIS = np.dtype(
+    [
+        # the nominal axis (robot.yaml)
+        *((name, "f8") for name in ("kp", "ki", "limit", "rated", "mass", "viscous", "lead")),
+        *((name, "f8") for name in ("motor_count", "load_count", "velocity_limit", "position_gain")),
+        # transport [s, s, 1]
+        *((name, "f8") for name in ("delay", "jitter", "drop")),
+        # drive: lag of the force [s], dead zone of the demand [m/s]
+        *((name, "f8") for name in ("lag", "deadband", "torque_scale")),
+        # friction: levels [N], velocity [m/s], bristle deflection [m], modulation along the lead, decaying part
+        *((name, "f8") for name in ("coulomb", "static", "stribeck_velocity", "displacement")),
+        *((name, "f8") for name in ("friction_amplitude", "friction_periods", "friction_phase")),
+        *((name, "f8") for name in ("friction_decaying", "friction_decay_time")),
+        # other forces: cogging [N], extra weight [1], cable [N/m, N, m]
+        *((name, "f8") for name in ("cogging_amplitude", "cogging_periods", "cogging_phase")),
+        *((name, "f8") for name in ("gravity_scale", "cable_stiffness", "cable_force", "cable_displacement")),
+        # transmission
+        *((name, "f8") for name in ("lead_error", "ripple_amplitude", "ripple_periods", "ripple_phase")),
+        *((name, "f8") for name in ("backlash", "hysteresis", "hysteresis_displacement", "compliance")),
+        # mechanism: clearance of the leg's joints [m], growth of the slide [1/K]
+        *((name, "f8") for name in ("clearance", "expansion")),
+        # sensing
+        *((name, "f8") for name in ("encoder_scale", "eccentricity", "eccentricity_phase", "encoder_offset")),
+        *((name, "f8") for name in ("zero_scatter", "start_scatter")),
+    ]
+)
+
+BODY = np.dtype(
+    [
+        ("period", "f8"),
+        ("temperature", "f8"),  # of the structure [degC]
+        # structure: scale of the delta's link law and of the lumped model, the lumped model, the tool, one mode
+        ("link_fraction", "f8", 3),
+        ("link_law", "f8"),
+        ("link_exponent", "f8"),
+        ("platform_balls", "f8", (6, 3)),
+        ("lumped_fraction", "f8"),
+        ("bending", "f8"),
+        ("mode_frequency", "f8"),
+        ("mode_damping", "f8"),
+        ("mode_gain", "f8"),
+        # mechanism, beyond the geometry: uniform growth [1/K]
+        ("expansion", "f8"),
+        # force sensor in {f}: matrix on the wrench, bias, drift per K, tool, cable
+        ("wrench_matrix", "f8", (6, 6)),
+        ("wrench_bias", "f8", 6),
+        ("wrench_drift", "f8", 6),
+        ("tool_mass", "f8"),
+        ("tool_com", "f8", 3),
+        ("sensor_position", "f8", 3),
+        ("sensor_cable_stiffness", "f8"),
+        ("sensor_cable_force", "f8"),
+        ("sensor_cable_displacement", "f8"),
+        ("wrench_noise", "f8", 6),
+        ("wrench_resolution", "f8", 6),
+        ("wrench_range", "f8", 6),
+        ("tracker_period", "f8"),
+        ("tracker_noise", "f8", 2),
+    ]
+)
+
+
+@dataclass
+class PlantParameters:
+    """Everything the plant needs to know, nominal until effects are applied.
+
+    Attributes:
+        robot: the nominal robot, which the host believes.
+        axis: (5,) records of type AXIS, SI units.
+        body: (1,) record of type BODY.
+        geometry: the geometry of the true mechanism; effects replace values in it.
+        substeps: integration steps per control period.
+    """
+
+    robot: Robot
+    axis: Records
+    body: Records
+    geometry: KernelParameters
+    substeps: int = 8
+
+    def copy(self) -> PlantParameters:
+        """Return an independent copy."""
+        return copy.copy(self)._with(self.axis.copy(), self.body.copy())
+
+    def _with(self, axis: Records, body: Records) -> PlantParameters:
+        self.axis, self.body = axis, body
+        return self
+
+
+def nominal_parameters(robot: Robot) -> PlantParameters:
+    """Return the parameters of the contract's nominal model, version 1, section 3."""
+    axis = np.zeros(5, AXIS)
+    for record, actuator in zip(axis, robot.actuators, strict=True):
+        record["kp"], record["ki"] = actuator.drive.kp, actuator.drive.ki
+        record["limit"], record["rated"] = actuator.drive.limit, actuator.drive.rated
+        record["mass"], record["viscous"], record["lead"] = actuator.mass, actuator.viscous, actuator.lead
+        record["motor_count"], record["load_count"] = actuator.motor_encoder, actuator.load_encoder
+        record["velocity_limit"], record["position_gain"] = actuator.limits.velocity, robot.position_gain
+        record["torque_scale"] = 1.0
+    return PlantParameters(robot, axis, _nominal_body(robot), kernel_parameters(robot))
+
+
+def _nominal_body(robot: Robot) -> Records:
+    body = np.zeros(1, BODY)
+    sensor, record = robot.force_sensor, body[0]
+    record["period"] = robot.control_period
+    record["temperature"] = 22.0
+    law = robot.delta.link_compliance
+    record["link_law"], record["link_exponent"] = law.a * robot.delta.spring_factor, law.b
+    record["platform_balls"] = _platform_balls(robot)
+    record["wrench_matrix"] = np.eye(6)
+    record["tool_mass"], record["tool_com"], record["sensor_position"] = (
+        sensor.tool_mass,
+        sensor.tool_com,
+        sensor.position,
+    )
+    record["wrench_noise"] = [sensor.noise_force] * 3 + [sensor.noise_torque] * 3
+    record["wrench_resolution"] = [sensor.resolution_force] * 3 + [sensor.resolution_torque] * 3
+    record["wrench_range"] = [*sensor.range_force, *sensor.range_torque]
+    record["tracker_period"] = 1.0 / robot.tracker.rate
+    record["tracker_noise"] = robot.tracker.noise_position, robot.tracker.noise_rotation
+    return body
+
+
+def _platform_balls(robot: Robot) -> NDArray[np.float64]:
+    """Return (6, 3), the platform's ball centres [m] from its centre: each leg's pair `leg_width` apart."""
+    azimuth = np.repeat(robot.delta.leg_azimuth, 2)
+    side = np.tile([-0.5, 0.5], 3) * robot.delta.leg_width
+    middle = np.sqrt(robot.delta.platform_radius**2 - side**2)
+    x = middle * np.cos(azimuth) - side * np.sin(azimuth)
+    y = middle * np.sin(azimuth) + side * np.cos(azimuth)
+    return np.column_stack([x, y, np.zeros(6)])

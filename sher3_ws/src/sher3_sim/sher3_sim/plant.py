@@ -1,0 +1,128 @@
+"""The live plant: one control period per call."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from sher3_description import Robot
+
+from sher3_sim import kernel
+from sher3_sim.axis import AXIS_STATE, propagators
+from sher3_sim.effects.base import Effect, with_effects
+from sher3_sim.errors import InputError
+
+Vector = NDArray[np.float64]
+
+
+class Reading(NamedTuple):
+    """What the sensors say at one tick.
+
+    Attributes:
+        motor_position: (5,) motor encoders [m, rad].
+        motor_velocity: (5,) difference of the last two motor readings over the period.
+        effort: (5,) reported by the drives [N, N m].
+        load_position: (5,) load encoders [m, rad].
+        demand: (5,) velocity the drives executed in the period that ends now, its mean [m/s, rad/s].
+        wrench: (6,) force sensor in {f} [N, N m].
+        tracker: (7,) tip position [m] and quaternion (x, y, z, w) in {b}, or None between its samples.
+        temperature: of the structure [degC].
+    """
+
+    motor_position: Vector
+    motor_velocity: Vector
+    effort: Vector
+    load_position: Vector
+    demand: Vector
+    wrench: Vector
+    tracker: Vector | None
+    temperature: float
+
+
+def checked(name: str, values: ArrayLike, shape: tuple[int, ...]) -> Vector:
+    """Return values as a contiguous float array of the given shape.
+
+    Raises:
+        InputError: wrong shape, or a value that is not finite.
+    """
+    array = np.ascontiguousarray(values, dtype=np.float64)
+    if array.shape != shape:
+        raise InputError(
+            f"{name} has the wrong shape", value=array.shape, limit=shape, remedy="one row per actuator order"
+        )
+    if not np.isfinite(array).all():
+        bad = array[~np.isfinite(array)][0]
+        raise InputError(
+            f"{name} is not finite", value=float(bad), limit="finite", remedy="stop the source of the command"
+        )
+    return array
+
+
+class Plant:
+    """A simulated robot that is stepped by its caller; deterministic for a seed and a sequence of inputs."""
+
+    def __init__(
+        self, robot: Robot, effects: Iterable[Effect] = (), seed: int = 0, *, temperature: float = 22.0
+    ) -> None:
+        """Build the plant with effects in it and put it at rest at zero position.
+
+        Raises:
+            EffectError: an effect does not fit the robot.
+        """
+        self.parameters = with_effects(robot, effects)
+        self.temperature = temperature
+        self.seed = seed
+        step = float(self.parameters.body["period"][0]) / self.parameters.substeps
+        self._maps = propagators(self.parameters.axis, step)
+        self._fixed = (self.parameters.axis, self.parameters.body[0], self.parameters.geometry)
+        self.reset(np.zeros(5))
+
+    def reset(self, q_ref: ArrayLike, wrench: ArrayLike | Sequence[float] = (0.0,) * 6) -> Reading:
+        """Put the robot at rest at `q_ref` (5,) under a contact wrench (6,) at the tip in {b}, held by its drives.
+
+        Raises:
+            InputError: wrong shape or not finite.
+        """
+        start, load = checked("q_ref", q_ref, (5,)), checked("wrench", wrench, (6,))
+        self._axes = np.zeros(5, AXIS_STATE)
+        self._body = np.zeros(1, kernel.BODY_STATE)
+        self._body["seed"] = self.seed
+        self._out = np.zeros(1, kernel.READING)
+        self.parameters.body["temperature"] = self.temperature
+        kernel.start(*self._fixed, self._axes, self._body[0], self._out[0], start, load)
+        return self._reading()
+
+    def step(self, velocity_command: ArrayLike, contact_wrench: ArrayLike | Sequence[float] = (0.0,) * 6) -> Reading:
+        """Advance one control period and sample the sensors at its end.
+
+        Args:
+            velocity_command: (5,) sent to the drives at the beginning of the period [m/s, rad/s].
+            contact_wrench: (6,) on the tip in {b} at the end of the period [N, N m].
+
+        Raises:
+            InputError: wrong shape or not finite; the plant has not moved.
+        """
+        command = checked("velocity_command", velocity_command, (5,))
+        wrench = checked("contact_wrench", contact_wrench, (6,))
+        self.parameters.body["temperature"] = self.temperature
+        substeps = self.parameters.substeps
+        kernel.step(*self._fixed, self._maps, substeps, self._axes, self._body[0], self._out[0], command, wrench)
+        return self._reading()
+
+    @property
+    def true_position(self) -> Vector:
+        """(5,) true load positions, which no sensor reads."""
+        return self._axes["load"].copy()
+
+    @property
+    def true_tip(self) -> tuple[Vector, Vector]:
+        """Rotation (3, 3) and position (3,) [m] of the true tip in {b}."""
+        return self._out[0]["tip_rotation"].copy(), self._out[0]["tip_position"].copy()
+
+    def _reading(self) -> Reading:
+        r = self._out[0].copy()
+        tracker = np.concatenate([r["tracker_position"], r["tracker_orientation"]]) if r["tracked"] else None
+        columns = (r[name] for name in ("motor", "velocity", "effort", "load", "demand", "wrench"))
+        return Reading(*columns, tracker, self.temperature)

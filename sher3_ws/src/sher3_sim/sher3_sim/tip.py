@@ -1,0 +1,169 @@
+"""From load positions to the true tip pose: mechanism errors and elastic structure (compiled)."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numba import njit
+from sher3_kinematics.kernel import KernelParameters, tip_pose_into
+from sher3_kinematics.kernel_delta import leg_vectors
+
+Array = np.ndarray
+YAW_STIFFNESS, PITCH_STIFFNESS, AXIAL_COMPLIANCE = 213.0, 244.0, 15e-6
+"""Lumped structure behind the delta stage [N m/rad, N m/rad, m/N] that reproduces the paper's deflection table."""
+CONTACT_FORCE = 0.1
+"""Load [N] at which a ball joint rests on one side of its clearance; smooths the switch."""
+LINK_FORCE = 0.5
+"""Force [N] below which the link law a |F|^b, whose slope is infinite at zero, is made linear."""
+
+
+@njit(cache=True)
+def clearance_shift(p: KernelParameters, axis: Any, q: Array, load: Array, jacobian: Array, shift: Array) -> None:
+    """Add the platform shift [m] of legs longer by half their clearance in tension, shorter in compression.
+
+    A slider that carries `load` pushes its leg, which leans, with load L / n_z; n_k . dP = L dL_k and the columns of the
+    stage Jacobian give the shift per leg.
+    """
+    _, n1, n2, n3 = leg_vectors(p, q[0], q[1], q[2])
+    slant = (p.link_1 / n1[2], p.link_2 / n2[2], p.link_3 / n3[2])
+    for k in range(3):
+        longer = -0.5 * axis[k].clearance * math.tanh(load[k] * slant[k] / CONTACT_FORCE)
+        for i in range(3):
+            shift[i] += jacobian[i, k] * slant[k] * longer
+
+
+@njit(cache=True)
+def link_shift(p: KernelParameters, b: Any, q: Array, arm: Array, wrench: Array, shift: Array) -> None:
+    """Add the tip shift [m] of the six elastic links under a wrench at the tip.
+
+    With Gamma the links' (direction; moment about P): Gamma f = w, dl = scale a |f|^b, Gamma^T (dP; rotation) = dl.
+    """
+    _, n1, n2, n3 = leg_vectors(p, q[0], q[1], q[2])
+    legs = (n1, n2, n3)
+    gamma = np.empty((6, 6))
+    for k in range(3):
+        n = legs[k]
+        length = math.sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2])
+        u = np.array([n[0] / length, n[1] / length, n[2] / length])
+        for j in range(2):
+            gamma[:3, 2 * k + j] = u
+            gamma[3:, 2 * k + j] = np.cross(b.platform_balls[2 * k + j], u)
+    about = np.empty(6)
+    about[:3] = wrench[:3]
+    about[3:] = wrench[3:] + np.cross(arm, wrench[:3])
+    force = np.linalg.solve(gamma, about)
+    for j in range(6):
+        stiff = (force[j] * force[j] + LINK_FORCE * LINK_FORCE) ** (0.5 * (b.link_exponent - 1.0))
+        force[j] *= b.link_fraction[j // 2] * b.link_law * stiff
+    twist = np.linalg.solve(gamma.T.copy(), force)
+    shift += twist[:3] + np.cross(twist[3:], arm)
+
+
+@njit(cache=True)
+def lumped_shift(fraction: float, arm: Array, wrench: Array, shift: Array) -> None:
+    """Add the tip shift [m] of rails, roll and arm lumped at P: yaw and pitch springs and an axial one."""
+    about_y = wrench[4] + arm[2] * wrench[0] - arm[0] * wrench[2]
+    about_z = wrench[5] + arm[0] * wrench[1] - arm[1] * wrench[0]
+    pitch, yaw = fraction * about_y / PITCH_STIFFNESS, fraction * about_z / YAW_STIFFNESS
+    shift[0] += pitch * arm[2] - yaw * arm[1] + fraction * AXIAL_COMPLIANCE * wrench[0]
+    shift[1] += yaw * arm[0]
+    shift[2] -= pitch * arm[0]
+
+
+@njit(cache=True)
+def bending_shift(compliance: float, rotation: Array, wrench: Array, shift: Array) -> None:
+    """Add the shift [m] of a tool that bends across its axis, z of {t}."""
+    axis = rotation[:, 2]
+    along = axis[0] * wrench[0] + axis[1] * wrench[1] + axis[2] * wrench[2]
+    for i in range(3):
+        shift[i] += compliance * (wrench[i] - along * axis[i])
+
+
+@njit(cache=True)
+def vibrate(b: Any, s: Any, acceleration: Array, shift: Array) -> None:
+    """Advance one mode of the structure by a period and add its shift [m].
+
+    x'' + 2 zeta w x' + w^2 x = -gain a with a the tip's acceleration, held over the period: exact for an underdamped mode.
+    """
+    w, zeta, h = 2.0 * math.pi * b.mode_frequency, b.mode_damping, b.period
+    damped = w * math.sqrt(1.0 - zeta * zeta)
+    decay, c, sn = math.exp(-zeta * w * h), math.cos(damped * h), math.sin(damped * h)
+    for i in range(3):
+        rest = -b.mode_gain * acceleration[i] / (w * w)
+        x, v = s.mode_shift[i] - rest, s.mode_rate[i]
+        side = (v + zeta * w * x) / damped
+        s.mode_shift[i] = rest + decay * (x * c + side * sn)
+        s.mode_rate[i] = decay * (v * c - (w * w * x + zeta * w * v) / damped * sn)
+        shift[i] += s.mode_shift[i]
+
+
+@njit(cache=True)
+def true_tip(
+    p: KernelParameters,
+    axis: Any,
+    b: Any,
+    s: Any,
+    q: Array,
+    load: Array,
+    wrench: Array,
+    tip_rate: Array,
+    jacobian: Array,
+    rotation: Array,
+    position: Array,
+) -> None:
+    """Write the true tip rotation (3, 3) and position (3,) [m] in {b}; advances the structure's mode by one period.
+
+    Args:
+        p: geometry of the true mechanism.
+        axis: AXIS records.
+        b: BODY record.
+        s: BODY_STATE record, changed in place.
+        q: (5,) true load positions; the slides' growth is added in place.
+        load: (5,) load on the axes [N, N m].
+        wrench: (6,) contact wrench at the tip in {b}.
+        tip_rate: (3,) tip velocity [m/s].
+        jacobian: (6, 5) tip Jacobian near q.
+        rotation, position: written.
+    """
+    warmth = b.temperature - 22.0
+    shift = np.zeros(3)
+    for i in range(5):
+        q[i] *= 1.0 + axis[i].expansion * warmth
+    tip_pose_into(p, q, rotation, position)
+    growth = b.expansion * warmth
+    if axis[0].clearance != 0.0 or axis[1].clearance != 0.0 or axis[2].clearance != 0.0:
+        clearance_shift(p, axis, q, load, jacobian, shift)
+    elastic = b.link_fraction[0] + b.link_fraction[1] + b.link_fraction[2]
+    if b.lumped_fraction != 0.0 or elastic != 0.0:
+        centre, _, _, _ = leg_vectors(p, q[0], q[1], q[2])
+        arm = position - np.array([centre[0], centre[1], centre[2]])
+        lumped_shift(b.lumped_fraction, arm, wrench, shift)
+        if elastic != 0.0:
+            link_shift(p, b, q, arm, wrench, shift)
+    if b.bending != 0.0:
+        bending_shift(b.bending, rotation, wrench, shift)
+    if b.mode_gain != 0.0:
+        vibrate(b, s, (tip_rate - s.tip_rate) / b.period, shift)
+    for i in range(3):
+        s.tip_rate[i] = tip_rate[i]
+        position[i] += growth * position[i] + shift[i]
+
+
+@njit(cache=True)
+def quaternion(r: Array, out: Array) -> None:
+    """Write the unit quaternion (x, y, z, w), w >= 0, of a rotation matrix (Shepperd 1978)."""
+    trace = r[0, 0] + r[1, 1] + r[2, 2]
+    if trace > 0.0:
+        w = 0.5 * math.sqrt(1.0 + trace)
+        f = 0.25 / w
+        out[0], out[1], out[2], out[3] = (r[2, 1] - r[1, 2]) * f, (r[0, 2] - r[2, 0]) * f, (r[1, 0] - r[0, 1]) * f, w
+        return
+    i = int(np.argmax(np.array([r[0, 0], r[1, 1], r[2, 2]])))
+    j, k = (i + 1) % 3, (i + 2) % 3
+    x = 0.5 * math.sqrt(1.0 + r[i, i] - r[j, j] - r[k, k])
+    f = 0.25 / x
+    w = (r[k, j] - r[j, k]) * f
+    sign = 1.0 if w >= 0.0 else -1.0
+    out[i], out[j], out[k], out[3] = sign * x, sign * (r[i, j] + r[j, i]) * f, sign * (r[i, k] + r[k, i]) * f, sign * w

@@ -1,0 +1,74 @@
+"""From motor to load and from both to their encoder readings, one axis, at the ticks (compiled).
+
+Everything here is static or rate-independent, so it needs no integration: lead error, ripple and compliance are functions
+of the motor position and the load, hysteresis and play depend only on the path, which is monotone within a tick.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from numba import njit
+
+from sher3_sim.axis import TWO_PI, bristle_step
+
+
+@njit(cache=True)
+def elastic_output(a: Any, motor: float, load: float) -> float:
+    """Position behind lead error, ripple and compliance, before lost motion [m or rad]."""
+    out = motor * (1.0 + a.lead_error) - a.compliance * load
+    if a.ripple_amplitude != 0.0:
+        out += a.ripple_amplitude * math.sin(TWO_PI * a.ripple_periods * motor / a.lead + a.ripple_phase)
+    return out
+
+
+@njit(cache=True)
+def transmit(a: Any, s: Any, load: float) -> None:
+    """Carry the load along with the motor: hysteresis as a bristle, backlash as a play, both on the path so far."""
+    base = elastic_output(a, s.position, load)
+    moved = base - s.base
+    s.base = base
+    if a.hysteresis > 0.0:
+        s.hysteresis = bristle_step(s.hysteresis, moved, a.hysteresis_displacement)
+        base -= 0.5 * a.hysteresis * s.hysteresis / a.hysteresis_displacement
+    if a.backlash > 0.0:
+        half = 0.5 * a.backlash
+        s.load = min(max(s.load, base - half), base + half)
+    else:
+        s.load = base
+
+
+@njit(cache=True)
+def encode_load(a: Any, load: float) -> float:
+    """Return the load encoder's reading before rounding: scale, eccentricity, zero."""
+    reading = load * (1.0 + a.encoder_scale) + a.encoder_offset
+    if a.eccentricity != 0.0:
+        reading += a.eccentricity * math.sin(TWO_PI * load / a.lead + a.eccentricity_phase)
+    return reading
+
+
+@njit(cache=True)
+def to_count(value: float, count: float) -> float:
+    """Round to the nearest multiple of a count."""
+    return math.floor(value / count + 0.5) * count
+
+
+@njit(cache=True)
+def place(a: Any, s: Any, reading: float) -> None:
+    """Put the axis at rest where its load encoder reads `reading`, the transmission resting on the loaded flank.
+
+    Contract, section 3: a run starts at rest at the first set-point. Fixed-point iteration; the corrections are small.
+    """
+    load = reading
+    for _ in range(30):
+        load += reading - encode_load(a, load)
+    flank = 0.0
+    if a.backlash > 0.0:
+        flank = math.copysign(0.5 * a.backlash, s.effort_load)
+    motor = load
+    for _ in range(30):
+        motor += load + flank - elastic_output(a, motor, s.effort_load)
+    s.position, s.load = motor, load
+    s.base = elastic_output(a, motor, s.effort_load)
+    s.velocity = 0.0
