@@ -15,6 +15,9 @@ from .errors import StampError as StampError
 from .errors import TopicError as TopicError
 from .errors import WrongTypeError as WrongTypeError
 from .reading import read_run as read_run
+from .recorder import Recorder as Recorder
+from .recovery import Recovery as Recovery
+from .recovery import recover as recover
 from .run import Run as Run
 from .run import RunMetadata as RunMetadata
 from .run import Stream as Stream

@@ -30,10 +30,10 @@ def _store(buffer, at, width, value):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def count_records(buffer, start, end):  # type: ignore[no-untyped-def]
-    """Count messages and other records in buffer[start:end]; third result is the first bad byte, or -1."""
-    messages = others = 0
-    at = start
+def count_records(buffer):  # type: ignore[no-untyped-def]
+    """Count messages and other records; the third result is the first byte that belongs to no whole record, or -1."""
+    messages = others = at = 0
+    end = len(buffer)
     while at < end:
         if at + RECORD_HEAD > end:
             return messages, others, at
@@ -47,18 +47,18 @@ def count_records(buffer, start, end):  # type: ignore[no-untyped-def]
         else:
             others += 1
         at += RECORD_HEAD + length
-    return messages, others, np.int64(-1)
+    return messages, others, -1
 
 
 @njit(cache=True)
-def index_records(buffer, start, end, channel, log_time, publish_time, offset, length, other):  # type: ignore[no-untyped-def]
-    """Fill the message table of buffer[start:end], accepted by `count_records`; `other` gets the other records."""
-    m = k = 0
-    at = start
-    while at < end:
+def index_records(buffer, channel, sequence, log_time, publish_time, offset, length, other):  # type: ignore[no-untyped-def]
+    """Fill the message table of a buffer that `count_records` accepts; `other` gets the other records."""
+    m = k = at = 0
+    while at < len(buffer):
         size = _load(buffer, at + 1, 8)
         if buffer[at] == MESSAGE:
             channel[m] = _load(buffer, at + 9, 2)
+            sequence[m] = _load(buffer, at + 11, 4)
             log_time[m] = _load(buffer, at + 15, 8)
             publish_time[m] = _load(buffer, at + 23, 8)
             offset[m] = at + RECORD_HEAD + MESSAGE_HEAD
@@ -107,7 +107,7 @@ def chunk_ends(size, limit):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def pack_messages(payload, start, length, channel, sequence, log_time, publish_time, position, out):  # type: ignore[no-untyped-def]
+def pack_messages(payload, channel, sequence, log_time, publish_time, start, length, position, out):  # type: ignore[no-untyped-def]
     """Write message records to `out` at `position`, with data payload[start:start + length]."""
     for i in range(len(start)):
         at = position[i]

@@ -8,10 +8,10 @@ from __future__ import annotations
 import io
 import struct
 import zlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import lz4.frame
 import numpy as np
@@ -29,11 +29,9 @@ MAGIC = b"\x89MCAP0\r\n"
 MAX_FILE = 8 << 30
 MAX_CHUNK = 64 << 20
 MAX_TOTAL = 4 << 30
-MAX_CHUNKS = 1 << 20
 MAX_ATTACHMENT = 16 << 20
 
 _CHUNK_HEAD = struct.Struct("<QQQII")
-_BELONGS_TO_SUMMARY = (Opcode.CHUNK_INDEX, Opcode.STATISTICS, Opcode.ATTACHMENT_INDEX, Opcode.METADATA_INDEX)
 
 
 class Record(NamedTuple):
@@ -42,6 +40,37 @@ class Record(NamedTuple):
     offset: int
     opcode: int
     content: memoryview
+
+
+class Messages(NamedTuple):
+    """The table of all messages in file order, n rows."""
+
+    channel: NDArray[np.uint16]
+    sequence: NDArray[np.uint32]
+    log_time: NDArray[np.int64]  # ns
+    publish_time: NDArray[np.int64]  # ns
+    offset: NDArray[np.int64]  # of the message's data in `Contents.buffer`
+    length: NDArray[np.int64]
+
+    @classmethod
+    def empty(cls, n: int) -> Messages:
+        """Return a table of n rows still to be filled."""
+        return cls(np.empty(n, np.uint16), np.empty(n, np.uint32), *(np.empty(n, np.int64) for _ in range(4)))
+
+    @classmethod
+    def joined(cls, tables: Sequence[Messages]) -> Messages:
+        """Return the rows of several tables, one table behind the other."""
+        return Messages._make(np.concatenate(column) for column in zip(*tables, strict=True))
+
+    def take(self, rows: NDArray[Any]) -> Messages:
+        """Return the given rows (indices or a mask)."""
+        return Messages._make(column[rows] for column in self)
+
+    def rows(self, channel_id: int) -> NDArray[np.int64]:
+        """Return the rows of a channel in order of log time."""
+        rows = np.flatnonzero(self.channel == channel_id)
+        times = self.log_time[rows]
+        return rows if (np.diff(times) >= 0).all() else rows[np.argsort(times, kind="stable")]
 
 
 @dataclass
@@ -55,11 +84,7 @@ class Contents:
         metadata: by record name.
         attachments: by name.
         buffer: all chunk bodies, uncompressed, one behind the other.
-        channel: (n,) uint16, the message table in file order, with the next four.
-        log_time: (n,) int64 ns.
-        publish_time: (n,) int64 ns.
-        offset: (n,) int64, start of the message's data in `buffer`.
-        length: (n,) int64, its bytes.
+        messages: where the messages lie in `buffer`.
         chunks: number of chunks.
         max_chunk: uncompressed bytes of the largest chunk.
     """
@@ -70,19 +95,9 @@ class Contents:
     metadata: dict[str, dict[str, str]] = field(default_factory=dict)
     attachments: dict[str, bytes] = field(default_factory=dict)
     buffer: NDArray[np.uint8] = field(default_factory=lambda: np.empty(0, np.uint8))
-    channel: NDArray[np.uint16] = field(default_factory=lambda: np.empty(0, np.uint16))
-    log_time: NDArray[np.int64] = field(default_factory=lambda: np.empty(0, np.int64))
-    publish_time: NDArray[np.int64] = field(default_factory=lambda: np.empty(0, np.int64))
-    offset: NDArray[np.int64] = field(default_factory=lambda: np.empty(0, np.int64))
-    length: NDArray[np.int64] = field(default_factory=lambda: np.empty(0, np.int64))
+    messages: Messages = field(default_factory=lambda: Messages.empty(0))
     chunks: int = 0
     max_chunk: int = 0
-
-    def rows(self, channel_id: int) -> NDArray[np.int64]:
-        """Return the message-table rows of a channel in order of log time."""
-        rows = np.flatnonzero(self.channel == channel_id)
-        times = self.log_time[rows]
-        return rows if (np.diff(times) >= 0).all() else rows[np.argsort(times, kind="stable")]
 
 
 def read_bytes(path: Path) -> memoryview:
@@ -193,10 +208,10 @@ def parse(path: Path, record: Record, contents: Contents) -> None:
     try:
         if record.opcode == Opcode.SCHEMA:
             schema = Schema.read(stream)
-            contents.schemas[schema.id] = schema
+            contents.schemas.setdefault(schema.id, schema)  # the summary repeats what stood before
         elif record.opcode == Opcode.CHANNEL:
             channel = Channel.read(stream)
-            contents.channels[channel.id] = channel
+            contents.channels.setdefault(channel.id, channel)
         elif record.opcode == Opcode.METADATA:
             entry = Metadata.read(stream)
             contents.metadata[entry.name] = entry.metadata
@@ -218,65 +233,67 @@ def read_contents(path: Path) -> Contents:
     """Read a complete MCAP file.
 
     Raises:
-        ForeignBagError, DamagedBagError, LimitError: as above.
+        ForeignBagError: it is no MCAP file, or compressed in an unknown way.
+        DamagedBagError: it is cut or corrupt.
+        LimitError: it, or something in it, is too large.
     """
     contents = Contents(path)
-    bodies: list[tuple[int, bytes | memoryview]] = []
+    bodies: list[bytes | memoryview] = []
     total = 0
     data = read_bytes(path)
     for record in records(path, data):
-        if record.opcode == Opcode.CHUNK:
-            bodies.append((record.offset, unpack_chunk(path, record)))
-            contents.chunks += 1
-        elif record.opcode == Opcode.MESSAGE:
-            bodies.append(
-                (record.offset, data[record.offset : record.offset + kernels.RECORD_HEAD + len(record.content)])
-            )
-        else:
+        body = message_body(path, data, record)
+        if body is None:
             parse(path, record, contents)
             continue
-        total += len(bodies[-1][1])
-        if total > MAX_TOTAL or contents.chunks > MAX_CHUNKS:
+        bad = first_bad_byte(body)
+        if bad is not None:
+            raise DamagedBagError("a chunk holds a broken record", path=path, offset=record.offset, value=bad)
+        total += len(body)
+        if total > MAX_TOTAL:
             raise LimitError("too much data", path=path, value=total, limit=MAX_TOTAL, remedy="split the recording")
+        bodies.append(body)
+        contents.chunks += record.opcode == Opcode.CHUNK
     index_bodies(contents, bodies)
+    unknown = set(np.flatnonzero(np.bincount(contents.messages.channel)).tolist()) - set(contents.channels)
+    if unknown:
+        what = "messages belong to a channel the file does not declare"
+        raise DamagedBagError(what, path=path, offset=0, value=min(unknown))
     return contents
 
 
-def index_bodies(contents: Contents, bodies: list[tuple[int, bytes | memoryview]]) -> None:
-    """Fill the message table from chunk bodies, given with the file offsets of their chunks.
+def message_body(path: Path, data: memoryview, record: Record) -> bytes | memoryview | None:
+    """Return the records inside a chunk, a message outside of any chunk as it stands, or None for other records.
 
     Raises:
-        DamagedBagError: a body is no sequence of records, or a message belongs to no channel.
+        DamagedBagError: the chunk is corrupt, or the record is the data end and the file before it is.
     """
-    contents.buffer = np.frombuffer(b"".join(body for _, body in bodies), np.uint8)
-    contents.max_chunk = max((len(body) for _, body in bodies), default=0)
-    ends = np.cumsum([0] + [len(body) for _, body in bodies])
-    counts = []
-    for k, (offset, _) in enumerate(bodies):
-        messages, others, bad = kernels.count_records(contents.buffer, ends[k], ends[k + 1])
-        if bad >= 0:
-            raise DamagedBagError(
-                "a chunk holds a broken record", path=contents.path, offset=offset, value=int(bad - ends[k])
-            )
-        counts.append((messages, others))
-    n = sum(messages for messages, _ in counts)
-    contents.channel = np.empty(n, np.uint16)
-    contents.log_time, contents.publish_time, contents.offset, contents.length = (
-        np.empty(n, np.int64) for _ in range(4)
-    )
-    other = np.empty(sum(others for _, others in counts), np.int64)
-    table = (contents.channel, contents.log_time, contents.publish_time, contents.offset, contents.length, other)
-    kernels.index_records(contents.buffer, 0, len(contents.buffer), *table)
+    if record.opcode == Opcode.DATA_END:
+        crc = int.from_bytes(record.content[:4], "little")
+        if crc and zlib.crc32(data[: record.offset]) != crc:
+            raise DamagedBagError("the data section fails its checksum", path=path, offset=record.offset)
+    if record.opcode == Opcode.CHUNK:
+        return unpack_chunk(path, record)
+    if record.opcode == Opcode.MESSAGE:
+        return data[record.offset : record.offset + kernels.RECORD_HEAD + len(record.content)]
+    return None
+
+
+def first_bad_byte(body: bytes | memoryview) -> int | None:
+    """Return where a body stops being a sequence of records, or None when it is one."""
+    _, _, bad = kernels.count_records(np.frombuffer(body, np.uint8))
+    return None if bad < 0 else int(bad)
+
+
+def index_bodies(contents: Contents, bodies: list[bytes | memoryview]) -> None:
+    """Join bodies without bad bytes in `contents.buffer`, list their messages and parse the other records in them."""
+    contents.buffer = np.frombuffer(b"".join(bodies), np.uint8)
+    contents.max_chunk = max(map(len, bodies), default=0)
+    messages, others, _ = kernels.count_records(contents.buffer)
+    contents.messages, other = Messages.empty(messages), np.empty(others, np.int64)
+    kernels.index_records(contents.buffer, *contents.messages, other)
     view = memoryview(contents.buffer)
-    for at in other:
+    for at in other.tolist():
         opcode, length = struct.unpack_from("<BQ", view, at)
-        start = int(at) + kernels.RECORD_HEAD
-        parse(contents.path, Record(int(at), opcode, view[start : start + length]), contents)
-    unknown = np.setdiff1d(contents.channel, list(contents.channels))
-    if len(unknown):
-        raise DamagedBagError(
-            "messages belong to a channel the file does not declare",
-            path=contents.path,
-            offset=0,
-            value=int(unknown[0]),
-        )
+        start = at + kernels.RECORD_HEAD
+        parse(contents.path, Record(at, opcode, view[start : start + length]), contents)

@@ -54,7 +54,7 @@ class McapWriter:
 
     def __init__(self, stream: BinaryIO) -> None:
         self._stream = stream
-        self._at = 0
+        self._at = self._crc = 0
         self._schemas: dict[str, Schema] = {}
         self._channels: dict[str, Channel] = {}
         self._chunks: list[ChunkIndex] = []
@@ -89,6 +89,15 @@ class McapWriter:
             self._channels[topic] = channel
             self.counts[channel.id] = 0
         return self._channels[topic].id
+
+    def adopt(self, channel: Channel, schema: Schema | None) -> None:
+        """Take over a channel of another file with its id and schema; not to be mixed with `channel`."""
+        if schema is not None and str(schema.id) not in self._schemas:
+            self._put(schema)
+            self._schemas[str(schema.id)] = schema
+        self._put(channel)
+        self._channels[channel.topic] = channel
+        self.counts[channel.id] = 0
 
     def add_chunk(
         self,
@@ -126,7 +135,7 @@ class McapWriter:
 
     def close(self) -> None:
         """Write data end, summary and footer; the stream stays open."""
-        self._put(DataEnd(0))
+        self._put(DataEnd(self._crc))
         summary_start, summary = self._at, RecordBuilder()
         groups: list[tuple[Opcode, list[McapRecord]]] = [
             (Opcode.SCHEMA, list(self._schemas.values())),
@@ -175,6 +184,7 @@ class McapWriter:
 
     def _write(self, data: bytes) -> None:
         self._stream.write(data)
+        self._crc = zlib.crc32(data, self._crc)
         self._at += len(data)
 
 

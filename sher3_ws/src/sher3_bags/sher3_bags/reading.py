@@ -56,7 +56,7 @@ def run_from_contents(contents: Contents, topics: Iterable[str] | None = None, *
             table = _stream(contents, channel.id, topic, run)
             if table is not None:
                 run.streams[topic] = table
-    if not run.streams and wanted is None and len(contents.channel):
+    if not run.streams and wanted is None and len(contents.messages.channel):
         raise ForeignBagError(
             f"no topic of this robot under {namespace}",
             path=contents.path,
@@ -82,12 +82,13 @@ def _stream(contents: Contents, channel_id: int, topic: str, run: Run) -> Stream
         raise WrongTypeError(
             f"another definition of {found}", topic=topic, remedy="record with ROS 2 Jazzy's common_interfaces"
         )
-    rows = contents.rows(channel_id)
+    table = contents.messages
+    rows = table.rows(channel_id)
     if not len(rows):
         return None
     if topic in run.streams:
         raise TopicError("recorded on two channels", topic=topic, remedy="record from one publisher")
-    return decode(topic, found, contents.buffer, contents.offset[rows], contents.length[rows], contents.log_time[rows])
+    return decode(topic, found, contents.buffer, table.offset[rows], table.length[rows], table.log_time[rows])
 
 
 def _metadata(contents: Contents) -> RunMetadata:

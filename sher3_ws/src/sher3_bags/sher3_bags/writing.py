@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +12,7 @@ from sher3_description import NAMESPACE, TOPICS, Qos
 from sher3_bags import kernels
 from sher3_bags.cdr_encode import encode
 from sher3_bags.errors import BagError
+from sher3_bags.mcap_file import Messages
 from sher3_bags.mcap_writer import CHUNK_LIMIT, McapWriter
 from sher3_bags.reading import ROBOT_FILE, RUN_RECORD
 from sher3_bags.rosbag2 import TopicCount, write_metadata
@@ -48,47 +48,38 @@ def write_run(path: str | Path, run: Run, *, namespace: str = NAMESPACE, overwri
 
 
 def _write_streams(writer: McapWriter, run: Run, namespace: str) -> dict[str, TopicCount]:
-    tables = {topic: table for topic, table in run.streams.items() if len(table)}
+    tables, payloads, base = [], [], 0
     counts: dict[str, TopicCount] = {}
-    if not tables:
-        return counts
-    parts: list[Mapping[str, NDArray[np.int64]]] = []
-    payloads, base = [], 0
-    for topic, table in tables.items():
+    for topic, table in run.streams.items():
+        n = len(table)
+        if not n:
+            continue
         name = f"{namespace.rstrip('/')}/{topic}"
         qos = TOPICS[topic].qos if topic in TOPICS else Qos()
         encoded = encode(table)
-        n = len(table)
-        parts.append(
-            {
-                "start": encoded.start + base,
-                "length": encoded.length,
-                "channel": np.full(n, writer.channel(name, table.type, qos)),
-                "sequence": np.arange(n),
-                "log_time": table.stamp if table.log_time is None else table.log_time,
-                "publish_time": table.stamp,
-            }
-        )
+        channel = np.full(n, writer.channel(name, table.type, qos), np.uint16)
+        log_time = table.stamp if table.log_time is None else table.log_time
+        sequence = np.arange(n, dtype=np.uint32)
+        tables.append(Messages(channel, sequence, log_time, table.stamp, encoded.start + base, encoded.length))
         payloads.append(encoded.payload)
         base += len(encoded.payload)
         counts[name] = TopicCount(table.type, n, qos)
-    columns = {key: np.concatenate([part[key] for part in parts]) for key in parts[0]}
-    # Topics of one tick keep the order in which the run names them.
-    order = np.argsort(columns["log_time"], kind="stable")
-    _write_chunks(writer, np.concatenate(payloads), {key: column[order] for key, column in columns.items()})
+    if tables:
+        joined = Messages.joined(tables)
+        # Topics of one tick keep the order in which the run names them.
+        write_chunks(writer, np.concatenate(payloads), joined.take(np.argsort(joined.log_time, kind="stable")))
     return counts
 
 
-def _write_chunks(writer: McapWriter, payload: NDArray[np.uint8], c: Mapping[str, NDArray[np.int64]]) -> None:
-    size = c["length"] + (kernels.RECORD_HEAD + kernels.MESSAGE_HEAD)
+def write_chunks(writer: McapWriter, payload: NDArray[np.uint8], messages: Messages) -> None:
+    """Write messages, whose data lie in `payload`, as chunks of at most `CHUNK_LIMIT` bytes."""
+    size = messages.length + (kernels.RECORD_HEAD + kernels.MESSAGE_HEAD)
     position = np.cumsum(size) - size
     out = np.empty(int(size.sum()), np.uint8)
-    kernels.pack_messages(
-        payload, c["start"], c["length"], c["channel"], c["sequence"], c["log_time"], c["publish_time"], position, out
-    )
+    kernels.pack_messages(payload, *messages, position, out)
     first = 0
-    for last in kernels.chunk_ends(size, CHUNK_LIMIT):
+    for last in kernels.chunk_ends(size, CHUNK_LIMIT).tolist():
         begin, end = position[first], position[last - 1] + size[last - 1]
         part = slice(first, last)
-        writer.add_chunk(out[begin:end].data, c["channel"][part], c["log_time"][part], position[part] - begin)
+        writer.add_chunk(out[begin:end].data, messages.channel[part], messages.log_time[part], position[part] - begin)
         first = last

@@ -1,0 +1,63 @@
+"""Count what is missing from a source whose samples stand on a time grid."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+
+from sher3_description import Robot
+
+PAUSE_NS = 250_000_000
+"""A longer silence is a source that was switched off (`servo_cv` outside cooperative mode), not a loss of samples."""
+
+
+def grid_periods(robot: Robot) -> dict[str, int]:
+    """Return the period [ns] of every topic that the contract puts on a grid (section 4)."""
+    host = round(robot.control_period * 1e9)
+    robot_streams = (
+        "setpoint_js servo_cv servo_jv drives/setpoint_jv drives/measured_js measured_js measured_cp "
+        "force/measured_cf pedal/measured"
+    )
+    periods = dict.fromkeys(robot_streams.split(), host)
+    return {**periods, "tracker/measured_cp": round(1e9 / robot.tracker.rate), "temperature": 1_000_000_000}
+
+
+@dataclass
+class GapCounter:
+    """Counts of one source.
+
+    Attributes:
+        period: of the grid in ns; None for a source without one.
+        messages: samples seen.
+        dropped: grid points without a sample inside gaps of at most `PAUSE_NS`.
+        pauses: gaps longer than that.
+        disordered: samples whose stamp repeats or goes backwards.
+        longest: longest gap between samples in ns.
+    """
+
+    period: int | None = None
+    messages: int = 0
+    dropped: int = 0
+    pauses: int = 0
+    disordered: int = 0
+    longest: int = 0
+    last: int | None = None
+
+    def see(self, stamp: int) -> None:
+        """Count the sample with this stamp [ns]."""
+        self.messages += 1
+        if self.last is not None:
+            step = stamp - self.last
+            if step <= 0:
+                self.disordered += 1
+                return
+            self.longest = max(self.longest, step)
+            if self.period is not None:
+                if step > max(PAUSE_NS, 3 * self.period):
+                    self.pauses += 1
+                else:
+                    self.dropped += round(step / self.period) - 1
+        self.last = stamp
+
+    def counts(self) -> dict[str, int]:
+        """Return the counts as plain data."""
+        return {key: value for key, value in asdict(self).items() if key not in ("period", "last")}

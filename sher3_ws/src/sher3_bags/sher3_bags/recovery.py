@@ -1,0 +1,153 @@
+"""Recover a cut or corrupt bag: every whole chunk is kept, the rest is counted."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from mcap.opcode import Opcode
+from sher3_description import NAMESPACE, TOPICS, Qos
+
+from sher3_bags.errors import BagError, DamagedBagError, LimitError
+from sher3_bags.mcap_file import (
+    Contents,
+    Record,
+    first_bad_byte,
+    index_bodies,
+    message_body,
+    parse,
+    read_bytes,
+    records,
+)
+from sher3_bags.mcap_writer import McapWriter
+from sher3_bags.rosbag2 import TopicCount, find_mcap, write_metadata
+from sher3_bags.writing import write_chunks
+
+RECOVERY_RECORD = "sher3.recovery"
+
+
+@dataclass(frozen=True)
+class Recovery:
+    """What came of a recovery.
+
+    Attributes:
+        source: the damaged file.
+        target: the folder written, None when the file was whole.
+        messages: recovered, per absolute topic name.
+        chunks: recovered.
+        lost_chunks: chunks inside the readable part that failed their checksum or did not decompress.
+        lost_messages: messages whose channel is described nowhere in what is left.
+        lost_bytes: bytes behind the first break.
+        cause: what is wrong, None when nothing is.
+    """
+
+    source: str
+    target: str | None
+    messages: dict[str, int]
+    chunks: int
+    lost_chunks: int
+    lost_messages: int
+    lost_bytes: int
+    cause: str | None
+
+    def __str__(self) -> str:
+        if self.cause is None:
+            return f"{self.source}: whole, {sum(self.messages.values())} messages in {self.chunks} chunks"
+        return (
+            f"{self.source}: {self.cause}\n"
+            f"recovered {sum(self.messages.values())} messages in {self.chunks} chunks to {self.target}; "
+            f"lost {self.lost_chunks} chunks inside, {self.lost_messages} messages without a channel, "
+            f"{self.lost_bytes} bytes at the end"
+        )
+
+
+def recover(path: str | Path, target: str | Path | None = None) -> Recovery:
+    """Write what can be read of a bag to a new rosbag2 folder, by default beside it as `<name>_recovered`.
+
+    A whole bag is left alone: nothing is written.
+
+    Raises:
+        ForeignBagError: it is no MCAP file at all.
+        BagError: nothing can be recovered, or the target exists.
+    """
+    mcap = find_mcap(Path(path))
+    contents, lost_chunks, lost_bytes, cause = _salvage(mcap)
+    lost_messages = _drop_unknown(contents)
+    if lost_messages and cause is None:
+        cause = "messages belong to a channel the file does not declare"
+    names = {key: channel.topic for key, channel in contents.channels.items()}
+    found, counts = np.unique(contents.messages.channel, return_counts=True)
+    messages = {names[int(key)]: int(count) for key, count in zip(found, counts, strict=True)}
+    folder = None
+    if cause is not None:
+        if not messages:
+            raise BagError(f"nothing to recover: {cause}", path=mcap, remedy="record again")
+        folder = Path(target) if target is not None else _beside(Path(path))
+        _write(contents, folder, cause, messages)
+    written = None if folder is None else str(folder)
+    return Recovery(str(mcap), written, messages, contents.chunks, lost_chunks, lost_messages, lost_bytes, cause)
+
+
+def _beside(path: Path) -> Path:
+    return path.with_name(f"{path.stem if path.is_file() else path.name}_recovered")
+
+
+def _salvage(mcap: Path) -> tuple[Contents, int, int, str | None]:
+    contents, bodies, lost, cause = Contents(mcap), [], 0, None
+    data = read_bytes(mcap)
+    end = len(data)
+    try:
+        for record in records(mcap, data):
+            try:
+                body = _whole_body(mcap, data, record)
+                if body is None:
+                    parse(mcap, record, contents)
+                else:
+                    bodies.append(body)
+                    contents.chunks += record.opcode == Opcode.CHUNK
+            except (DamagedBagError, LimitError) as error:
+                lost += record.opcode == Opcode.CHUNK
+                cause = cause or str(error.args[0])
+    except DamagedBagError as error:
+        cause, end = cause or str(error.args[0]), error.offset
+    index_bodies(contents, bodies)
+    return contents, lost, len(data) - end, cause
+
+
+def _whole_body(mcap: Path, data: memoryview, record: Record) -> bytes | memoryview | None:
+    body = message_body(mcap, data, record)
+    bad = None if body is None else first_bad_byte(body)
+    if bad is not None:
+        raise DamagedBagError("a chunk holds a broken record", path=mcap, offset=record.offset, value=bad)
+    return body
+
+
+def _drop_unknown(contents: Contents) -> int:
+    known = np.isin(contents.messages.channel, list(contents.channels))
+    contents.messages = contents.messages.take(known)
+    return int((~known).sum())
+
+
+def _write(contents: Contents, folder: Path, cause: str, messages: dict[str, int]) -> None:
+    if folder.exists():
+        raise BagError("exists already", path=folder, remedy="choose another name")
+    folder.mkdir(parents=True)
+    with (folder / f"{folder.name}.mcap").open("xb") as file:
+        writer = McapWriter(file)
+        for name, entries in contents.metadata.items():
+            writer.add_metadata(name, entries)
+        writer.add_metadata(RECOVERY_RECORD, {"source": contents.path.name, "cause": cause})
+        for name, attachment in contents.attachments.items():
+            writer.add_attachment(name, "application/octet-stream", attachment)
+        for channel in contents.channels.values():
+            writer.adopt(channel, contents.schemas.get(channel.schema_id))
+        write_chunks(writer, contents.buffer, contents.messages)
+        writer.close()
+    topics = {}
+    for channel in contents.channels.values():
+        schema = contents.schemas.get(channel.schema_id)
+        short = channel.topic.removeprefix(NAMESPACE + "/")
+        qos = TOPICS[short].qos if short in TOPICS else Qos()
+        topics[channel.topic] = TopicCount(schema.name if schema else "", messages.get(channel.topic, 0), qos)
+    write_metadata(folder, f"{folder.name}.mcap", writer.start, writer.end, topics)
