@@ -11,6 +11,7 @@ import math
 
 import numba as nb
 
+from . import compile_cache as compile_cache
 from .kernel_parameters import KernelParameters
 
 Triple = tuple[float, float, float]

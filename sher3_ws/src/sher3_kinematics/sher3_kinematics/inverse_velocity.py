@@ -1,0 +1,126 @@
+"""Actuator velocities for a commanded tip twist, within velocity, acceleration, travel and workspace limits."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from sher3_description import ACTUATORS
+
+from . import kernel_velocity as codes
+from .arrays import Floats, compiled, unpack, vector
+from .errors import BadInput
+from .robot_kinematics import RobotKinematics
+
+REACTION_PERIODS = 3.0
+"""Control periods between a reading and the effect of the command computed from it: transport, drive, one in hand."""
+REACH_MARGIN = 1.1
+"""Least leg elevation allowed to a commanded motion over that of the workspace."""
+
+
+class LimitedVelocity(NamedTuple):
+    """A permitted velocity.
+
+    Attributes:
+        q_dot: actuator velocities (5,).
+        scale: what the velocity and braking limits leave of the commanded one, 0 to 1, direction kept.
+        limited_by: empty, or what limits: `velocity of roll`, `travel of delta_1`, `reach of delta_2`, `acceleration`.
+    """
+
+    q_dot: Floats
+    scale: float
+    limited_by: str
+
+
+class InverseVelocity:
+    """Inverse velocity of one robot with its limits; a pure function of its arguments, it keeps no state.
+
+    Attributes:
+        limits: rows lower, upper, velocity, acceleration (4, 5).
+        period: control period [s].
+        reaction: time [s] that passes before a command acts.
+    """
+
+    def __init__(
+        self,
+        kinematics: RobotKinematics,
+        period: float | None = None,
+        margin: float = 0.0,
+        reaction_periods: float = REACTION_PERIODS,
+    ) -> None:
+        """Take limits from the kinematics; `margin` [m or rad] keeps clear of each end of travel.
+
+        The ends are drawn in by what a braking actuator, faster before than `previous` tells, covers while it reacts.
+        """
+        self.period = kinematics.robot.control_period if period is None else period
+        if not self.period > 0.0 or not margin >= 0.0:
+            raise BadInput(
+                "period and margin", value=(self.period, margin), limit="> 0 and >= 0", remedy="correct them"
+            )
+        self.reaction = max(reaction_periods, 1.0) * self.period
+        wait = self.reaction - self.period
+        clear = margin + 0.5 * kinematics.acceleration * wait * max(wait - self.period, 0.0)
+        lower, upper = kinematics.lower + clear, kinematics.upper - clear
+        self.limits = np.array([lower, upper, kinematics.velocity, kinematics.acceleration])
+        self._elevation = REACH_MARGIN * kinematics.delta.least_elevation
+        self._values = np.array(kinematics.parameters)
+
+    def __call__(
+        self, q: Sequence[float] | Floats, twist: Sequence[float] | Floats, previous: Sequence[float] | Floats
+    ) -> LimitedVelocity:
+        """Return the permitted actuator velocity for a tip twist.
+
+        Args:
+            q: actuator positions (5,).
+            twist: commanded tip twist (6,) in {b}, linear [m/s] then angular [rad/s].
+            previous: actuator velocity (5,) commanded one period ago.
+        """
+        state = vector(q, 5, "actuator positions")
+        wanted = _twist_inverse(self._values, state, vector(twist, 6, "twist"))
+        return self._limited(state, wanted, vector(previous, 5, "previous velocity"))
+
+    def limit(
+        self, q: Sequence[float] | Floats, wanted: Sequence[float] | Floats, previous: Sequence[float] | Floats
+    ) -> LimitedVelocity:
+        """Return the permitted part of a wanted actuator velocity (5,); arguments as in the call."""
+        state, velocity = vector(q, 5, "actuator positions"), vector(wanted, 5, "wanted velocity")
+        return self._limited(state, velocity, vector(previous, 5, "previous velocity"))
+
+    def _limited(self, q: Floats, wanted: Floats, previous: Floats) -> LimitedVelocity:
+        q_dot, scale, code = _limit(
+            self._values, q, wanted, previous, self.limits, self._elevation, self.period, self.reaction
+        )
+        return LimitedVelocity(q_dot, scale, describe(code))
+
+
+def describe(code: int) -> str:
+    """Return the text for a limit code of `kernel_velocity`."""
+    if code in (codes.FREE, codes.NOT_FINITE, codes.ACCELERATION):
+        return ("", "a value that is not finite", "acceleration")[code]
+    kind = {1: "velocity", 2: "travel", 3: "reach"}[code // 10]
+    return f"{kind} of {ACTUATORS[code % 10]}"
+
+
+@compiled
+def _twist_inverse(parameters: Floats, q: Floats, twist: Floats) -> Floats:
+    q_dot = np.empty(5)
+    codes.twist_inverse_into(unpack(parameters), q, twist, q_dot)
+    return q_dot
+
+
+@compiled
+def _limit(
+    parameters: Floats,
+    q: Floats,
+    wanted: Floats,
+    previous: Floats,
+    limits: Floats,
+    elevation: float,
+    period: float,
+    reaction: float,
+) -> tuple[Floats, float, int]:
+    q_dot = np.empty(5)
+    p = unpack(parameters)
+    scale, code = codes.limit_velocity_into(p, q, wanted, previous, limits, elevation, period, reaction, q_dot)
+    return q_dot, scale, code
