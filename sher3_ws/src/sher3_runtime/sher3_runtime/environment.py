@@ -19,7 +19,8 @@ def graph_environment(domain: int | None = None, other_hosts: bool = False) -> d
     """
     variables = {
         "RMW_IMPLEMENTATION": "rmw_fastrtps_cpp",
-        "ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET" if other_hosts else "LOCALHOST",
+        # LOCALHOST would make the middleware replace the profile's transport by one with sockets on every interface.
+        "ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET" if other_hosts else "SYSTEM_DEFAULT",
         "FASTRTPS_DEFAULT_PROFILES_FILE": "" if other_hosts else str(LOOPBACK_PROFILE),
         "FASTDDS_DEFAULT_PROFILES_FILE": "" if other_hosts else str(LOOPBACK_PROFILE),
         "AMENT_PREFIX_PATH": os.environ.get("AMENT_PREFIX_PATH") or sys.prefix,

@@ -11,8 +11,10 @@ from __future__ import annotations
 import select
 from collections.abc import Callable
 from contextlib import ExitStack
+from time import monotonic_ns
 from typing import Any
 
+from rclpy.event_handler import EventHandler
 from rclpy.executors import Executor
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.node import Node
@@ -33,27 +35,32 @@ class RawExecutor(Executor):
         super().__init__(context=context)
         self._held = ExitStack()
         self._wait_set: Any = None
-        self._subscriptions: list[tuple[Any, Any, bool, Callable[[Any], None]]] = []
+        self._add: list[tuple[Callable[[Any], object], Any]] = []
+        self._topics: dict[int, tuple[Callable[..., Any], Any, bool, Callable[[Any], None]]] = {}
         self._others: dict[str, list[tuple[Any, Callable[[Any], Any]]]] = {}
         self._waitables: list[Any] = []
         self._ticks: list[Tick] = []
         self._files: dict[int, Callable[[], None]] = {}
-        self._tick_clock: Clock | None = None
+        self._clock_of_ticks: Clock | None = None
+        self._period_ns = IDLE_NS
+        self._events: list[Any] = []
+        self._added_events: list[Any] = []
+        self._events_due_ns = 0
 
     def spin_once(self, timeout_sec: float | None = None) -> None:
         """Wait until something is ready or due, at most `timeout_sec`, and run all of it."""
         if self._wait_set is None:
             self._rebuild()
         timeout = IDLE_NS if timeout_sec is None or timeout_sec < 0 else min(int(timeout_sec * 1e9), IDLE_NS)
-        clock, ticks = self._tick_clock, self._ticks
-        if ticks and clock is not None and not clock.stepped:
-            timeout = max(0, min(timeout, ticks[0].due_ns - clock.now()))
+        clock = self._clock_of_ticks
+        if clock is not None:
+            timeout = max(0, min(timeout, self._ticks[0].due_ns - clock.now()))
         if self._files:
             self._wait_on_files(timeout)
             timeout = 0
         self._wait(timeout)
-        self._take_subscriptions()
-        if ticks and clock is not None and not clock.stepped:
+        self._take_topics()
+        if clock is not None:
             self._run_ticks(clock)
         self._run_others()
 
@@ -63,7 +70,7 @@ class RawExecutor(Executor):
             self._rebuild()
         files = bool(self._files) and self._wait_on_files(0)
         self._wait(0)
-        topics = self._take_subscriptions()
+        topics = self._take_topics()
         return self._run_others() or topics or files
 
     def spin_once_until_future_complete(self, future: Any, timeout_sec: Any = None) -> None:
@@ -89,24 +96,23 @@ class RawExecutor(Executor):
         """Collect every entity of every node and size the wait set for them."""
         self._held.close()
         nodes = self.get_nodes()
-        self._subscriptions = []
-        self._others = {"service": [], "timer": [], "client": [], "guard_condition": []}
+        self._topics, subscriptions = {}, []
+        self._others = {"guard_condition": [], "service": [], "timer": [], "client": []}
         for node in nodes:
             deliveries = ports(node).deliveries
             for sub in node.subscriptions:
                 if self._hold(sub.handle):
                     deliver = deliveries.get(sub.handle.pointer, sub.callback)
-                    self._subscriptions.append((sub.handle, sub.msg_type, sub.raw, deliver))
+                    self._topics[sub.handle.pointer] = (sub.handle.take_message, sub.msg_type, sub.raw, deliver)
+                    subscriptions.append(sub.handle)
             self._collect("service", node.services, self._take_service)
             self._collect("timer", node.timers, self._take_ready_timer)
             self._collect("client", node.clients, self._take_client)
             self._collect("guard_condition", node.guards, self._take_guard_condition)
-        for guard in (self._guard, self._sigint_gc):
-            if guard is not None:
-                self._collect("guard_condition", [guard], _nothing)
+        self._collect("guard_condition", [g for g in (self._guard, self._sigint_gc) if g is not None], _nothing)
         self._waitables = [waitable for node in nodes for waitable in node.waitables if self._hold(waitable)]
         self._hold(self._context.handle)
-        self._wait_set = self._sized_wait_set()
+        self._size_wait_set(subscriptions)
         self._schedule(nodes)
 
     def _hold(self, handle: Any) -> bool:
@@ -120,15 +126,24 @@ class RawExecutor(Executor):
     def _collect(self, kind: str, entities: Any, take: Callable[[Any], Any]) -> None:
         self._others[kind].extend((entity, take) for entity in entities if self._hold(entity.handle))
 
-    def _sized_wait_set(self) -> Any:
+    def _size_wait_set(self, subscriptions: list[Any]) -> None:
         counts = {kind: len(entities) for kind, entities in self._others.items()}
-        counts["subscription"], counts["event"] = len(self._subscriptions), 0
+        counts["subscription"], counts["event"] = len(subscriptions), 0
         for waitable in self._waitables:
             more = waitable.get_num_entities()
             for kind in counts:
                 counts[kind] += getattr(more, f"num_{kind}s")
         order = ("subscription", "guard_condition", "timer", "client", "service", "event")
-        return _rclpy.WaitSet(*(counts[kind] for kind in order), self._context.handle)
+        wait_set = _rclpy.WaitSet(*(counts[kind] for kind in order), self._context.handle)
+        self._add = [(wait_set.add_subscription, handle) for handle in subscriptions]
+        for kind, entities in self._others.items():
+            add = getattr(wait_set, f"add_{kind}")
+            self._add += [(add, entity.handle) for entity, _ in entities]
+        # Most waitables are event handlers nobody waits for; the others (actions) are worth their place.
+        events = [w for w in self._waitables if isinstance(w, EventHandler)]
+        self._add += [(w.add_to_wait_set, wait_set) for w in self._waitables if w not in events]
+        self._wait_set, self._events = wait_set, events
+        self._waitables = [w for w in self._waitables if w not in events]
 
     def _schedule(self, nodes: list[Node]) -> None:
         ticks = [tick for node in nodes for tick in ports(node).ticks]
@@ -137,48 +152,39 @@ class RawExecutor(Executor):
                 tick.schedule()
         self._ticks = sorted(ticks, key=lambda tick: tick.due_ns)
         self._files = {file.fileno(): callback for node in nodes for file, callback in ports(node).readables}
-        self._tick_clock = clock_of(nodes[0]) if nodes else None
+        self._period_ns = min((clock_of(node).period_ns for node in nodes), default=IDLE_NS)
+        self._clock_of_ticks = clock_of(nodes[0]) if ticks and not clock_of(nodes[0]).stepped else None
 
     # One spin.
 
     def _wait(self, timeout_ns: int) -> None:
         wait_set = self._wait_set
         wait_set.clear_entities()
-        for subscription in self._subscriptions:
-            wait_set.add_subscription(subscription[0])
-        others = self._others
-        for entity, _ in others["service"]:
-            wait_set.add_service(entity.handle)
-        for entity, _ in others["timer"]:
-            wait_set.add_timer(entity.handle)
-        for entity, _ in others["client"]:
-            wait_set.add_client(entity.handle)
-        for entity, _ in others["guard_condition"]:
-            wait_set.add_guard_condition(entity.handle)
-        for waitable in self._waitables:
-            waitable.add_to_wait_set(wait_set)
+        for add, handle in self._add:
+            add(handle)
+        if self._events and (now := monotonic_ns()) > self._events_due_ns:
+            self._events_due_ns = now + IDLE_NS
+            for event in self._events:
+                event.add_to_wait_set(wait_set)
+            self._added_events = self._events
+        else:
+            self._added_events = []
         wait_set.wait(timeout_ns)
 
     def _wait_on_files(self, timeout_ns: int) -> bool:
         """Wait on the files instead, no longer than a period, since the topics are only looked at afterwards."""
-        clock = self._tick_clock
-        if clock is not None and timeout_ns > clock.period_ns:
-            timeout_ns = clock.period_ns
-        readable, _, _ = select.select(list(self._files), (), (), timeout_ns * 1e-9)
+        readable, _, _ = select.select(list(self._files), (), (), min(timeout_ns, self._period_ns) * 1e-9)
         for number in readable:
             self._files[number]()
         return bool(readable)
 
-    def _take_subscriptions(self) -> bool:
-        is_ready, anything = self._wait_set.is_ready, False
-        for index, (handle, message_type, raw, deliver) in enumerate(self._subscriptions):
-            if not is_ready("subscription", index):
-                continue
-            anything = True
-            take = handle.take_message
+    def _take_topics(self) -> bool:
+        ready, topics = self._wait_set.get_ready_entities("subscription"), self._topics
+        for pointer in ready:
+            take, message_type, raw, deliver = topics[pointer]
             while (taken := take(message_type, raw)) is not None:
                 deliver(taken[0])
-        return anything
+        return bool(ready)
 
     def _run_ticks(self, clock: Clock) -> None:
         ticks, ran = self._ticks, False
@@ -189,20 +195,24 @@ class RawExecutor(Executor):
             tick.run(now)
             ran = True
         if ran and len(ticks) > 1:
-            ticks.sort(key=lambda tick: tick.due_ns)
+            ticks.sort(key=_due)
 
     def _run_others(self) -> bool:
         """Run services, timers, clients, guard conditions and event handlers through rclpy's own takers."""
         wait_set, anything, stale = self._wait_set, False, False
         for kind, entities in self._others.items():
-            for index, (entity, take) in enumerate(entities):
-                if wait_set.is_ready(kind, index):
-                    if entity is self._guard:
-                        stale = True
-                        continue
-                    anything = True
+            if not entities:
+                continue
+            ready = wait_set.get_ready_entities(kind)
+            for entity, take in entities if ready else ():
+                if entity.handle.pointer not in ready:
+                    continue
+                anything = True
+                if entity is self._guard:
+                    stale = True
+                else:
                     self._run(take(entity))
-        for waitable in self._waitables:
+        for waitable in (*self._waitables, *self._added_events):
             if waitable.is_ready(wait_set):
                 anything = True
                 self._run(self._take_waitable(waitable))
@@ -211,7 +221,7 @@ class RawExecutor(Executor):
             self._run_tasks()
         if stale:
             self._wait_set = None
-        return anything or stale
+        return anything
 
     def _run(self, work: Any) -> None:
         if work is not None:
@@ -235,3 +245,7 @@ class RawExecutor(Executor):
 
 def _nothing(_: Any) -> None:
     return None
+
+
+def _due(tick: Tick) -> int:
+    return tick.due_ns

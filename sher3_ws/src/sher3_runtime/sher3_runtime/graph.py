@@ -16,7 +16,7 @@ from rclpy.node import Node
 from sher3_description import TOPICS, Sher3Error
 
 from . import environment
-from .clock import SteppedClock
+from .clock import SteppedClock, set_timer_slack
 from .executor import RawExecutor
 from .ports import NODE_OPTIONS, advertise, ports, subscribe, use_clock
 from .spinning import close
@@ -38,6 +38,8 @@ class Graph:
 
     def __init__(self, period: float = 0.002, domain: int | None = None, patience: float = 10.0) -> None:
         environment.apply()
+        # An empty wait lasts as long as the slack.
+        set_timer_slack()
         self.context = Context()
         self.context.init(domain_id=1 + os.getpid() % 100 if domain is None else domain)
         self.clock = SteppedClock(round(period * 1e9))

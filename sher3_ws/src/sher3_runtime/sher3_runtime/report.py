@@ -1,34 +1,47 @@
-"""The statistics of a node on `/diagnostics`, once a second."""
+"""The statistics of a node on `/diagnostics`, once a second, a piece at a time."""
 
 from __future__ import annotations
+
+from collections.abc import Iterator
 
 from rclpy.node import Node
 
 from .ports import advertise, on_tick, ports
 from .samples import DiagnosticSample
+from .timing import Statistics
 
 OK, WARNING = 0, 1
+STEPS = 20
+"""Steps a second: sorting every histogram at once would take longer than a control period."""
 
 
 def report_statistics(node: Node) -> None:
     """Publish the statistics of `node` at 1 Hz, as a warning when there were losses since the last report."""
     port = ports(node)
-    statistics, before = port.statistics, 0
     publish = advertise(node, "diagnostics")
+    report = _reports(f"sher3/{port.name}", port.statistics)
 
-    def report(stamp: int) -> None:
-        nonlocal before
+    def step(stamp: int) -> None:
+        if (sample := next(report)) is not None:
+            publish(sample._replace(stamp=stamp))
+
+    period = port.clock.period_ns * 1e-9
+    # In the quieter half of the period, and not all nodes at once.
+    phase = (0.5 + 0.4 * (sum(map(ord, port.name)) % 16) / 16.0) * period
+    on_tick(node, step, phase=phase, every=max(1, round(1.0 / STEPS / period)))
+
+
+def _reports(name: str, statistics: Statistics) -> Iterator[DiagnosticSample | None]:
+    """Yield one piece of work at a time: None, and a finished report every `STEPS` times (more if there is more to say)."""
+    before = 0
+    while True:
+        pairs = []
+        for pair in statistics.pairs():
+            pairs.append(pair)
+            yield None
+        for _ in range(STEPS - len(pairs) - 1):
+            yield None
         losses = statistics.losses()
-        level, message = (WARNING, f"{losses - before} losses since the last report") if losses > before else (OK, "ok")
-        before = losses
-        publish(DiagnosticSample(stamp, f"sher3/{port.name}", level, message, tuple(statistics.pairs())))
-
-    per_second = max(1, round(1e9 / port.clock.period_ns))
-    # Not all nodes in the same cycle, and never in the cycle of another 1 Hz stream.
-    phase = (hash_of(port.name) % 400) / 1000.0 * port.clock.period_ns * 1e-9
-    on_tick(node, report, phase=phase + 0.5 * port.clock.period_ns * 1e-9, every=per_second)
-
-
-def hash_of(name: str) -> int:
-    """Return a number of the name that is the same in every process."""
-    return sum(ord(letter) * 31**position for position, letter in enumerate(name))
+        new, before = losses - before, losses
+        message = f"{new} losses since the last report" if new else "ok"
+        yield DiagnosticSample(0, name, WARNING if new else OK, message, tuple(pairs))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import gc
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -26,11 +26,12 @@ def make_executor(nodes: Iterable[Node], context: Any = None) -> Executor:
     return executor
 
 
-def spin(nodes: Sequence[Node], *, diagnostics: bool = True) -> None:
-    """Run `nodes` until shutdown (Ctrl-C, SIGTERM or `rclpy.shutdown`); then close them.
+def spin(nodes: Sequence[Node], *, stop: Callable[[], object] = bool, diagnostics: bool = True) -> None:
+    """Run `nodes` until `stop()` or shutdown; then close them, while they can still publish.
 
     Args:
         nodes: of one context. A node's `close()`, where it has one, is called at the end, even after an exception.
+        stop: asked at every spin; true ends it.
         diagnostics: publish each node's statistics at 1 Hz on `/diagnostics`.
 
     Raises:
@@ -49,7 +50,8 @@ def spin(nodes: Sequence[Node], *, diagnostics: bool = True) -> None:
     try:
         if isinstance(executor, BaselineExecutor):
             executor.start()
-        executor.spin()
+        while nodes[0].context.ok() and not stop():
+            executor.spin_once(0.1)
     except ExternalShutdownException:
         pass
     finally:

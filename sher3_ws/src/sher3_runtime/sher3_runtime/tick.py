@@ -37,7 +37,8 @@ class Tick:
 
     def run(self, now: int) -> None:
         """Call the callback for the latest stamp that is due."""
-        missed = max(now - self.due_ns, 0) // self.period_ns
+        late = now - self.due_ns
+        missed = max(late, 0) // self.period_ns
         stamp = self.due_ns - self.phase_ns + missed * self.period_ns
         self.due_ns += (missed + 1) * self.period_ns
         if not self._counts:
@@ -46,7 +47,7 @@ class Tick:
         statistics = self._statistics
         statistics.ticks += 1
         statistics.lost_cycles += missed
-        statistics.wakeup.add(now - stamp - self.phase_ns)
+        statistics.wakeup.add(late)
         if self._last_start:
             statistics.period.add(now - self._last_start)
         self._last_start = now

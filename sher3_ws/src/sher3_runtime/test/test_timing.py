@@ -1,0 +1,50 @@
+"""Histograms, the clock grid and ticks, without ROS."""
+
+import numpy as np
+import pytest
+from sher3_runtime.clock import Clock, SteppedClock
+from sher3_runtime.tick import Tick
+from sher3_runtime.timing import Histogram, Statistics
+
+
+@pytest.mark.parametrize("scale", [1, 40, 1_000, 1_000_000])
+def test_percentiles_are_upper_bounds_within_six_percent(scale):
+    values = np.random.default_rng(1).lognormal(3.0, 1.0, 20_000) * scale
+    histogram = Histogram()
+    for value in values:
+        histogram.add(int(value))
+    for percent in (1, 50, 99, 99.9):
+        exact = np.percentile(values.astype(int), percent, method="inverted_cdf")
+        assert exact <= histogram.percentile(percent) <= exact * 1.0626
+    assert histogram.maximum == int(values.max())
+    assert histogram.count == 20_000
+
+
+def test_small_and_negative_durations():
+    histogram = Histogram()
+    assert histogram.percentile(50) == 0 and histogram.summary()["count"] == 0
+    for value in (-5, 0, 1, 31, 32):
+        histogram.add(value)
+    assert histogram.percentile(100) == 32 and histogram.percentile(40) == 0 and histogram.percentile(60) == 1
+
+
+def test_grid_stamps_are_multiples_of_the_period_for_any_offset():
+    for offset in (0, 123_456_789, 1_700_000_000_000_000_001):
+        clock = Clock(2_000_000, offset)
+        stamp = clock.next_tick(clock.now())
+        assert stamp % 2_000_000 == 0 and 0 < stamp - clock.now() + 1_000_000 < 3_000_000
+
+
+def test_a_late_tick_runs_once_for_the_latest_stamp():
+    """Three and a half periods late: three cycles lost, one call, and the next one is due on the grid."""
+    clock, stamps = SteppedClock(1_000_000, 10_000_000), []
+    statistics = Statistics()
+    tick = Tick(stamps.append, 100_000, 1, clock, statistics)
+    tick.schedule()
+    assert tick.due_ns == 10_100_000
+    tick.run(10_100_000 + 3_500_000)
+    assert stamps == [13_000_000]
+    assert statistics.lost_cycles == 3 and tick.due_ns == 14_100_000
+    tick.run(14_100_000)
+    assert stamps == [13_000_000, 14_000_000] and statistics.lost_cycles == 3
+    assert statistics.losses() == 3 and dict(statistics.pairs())["lost_cycles"] == "3"
