@@ -38,6 +38,8 @@ class AxisScale:
         motor_increments: motor encoder counts per ENCODER_REVOLUTIONS motor revolutions.
         load_increments: load encoder counts per ENCODER_REVOLUTIONS motor revolutions.
         rated_milli: rated force or torque, mN or mN m.
+        max_motor_speed: the drive's own speed limit, rpm: the velocity limit rounded up.
+        stop_deceleration: deceleration of a quick stop, rpm/s: the acceleration limit.
     """
 
     name: str
@@ -49,6 +51,8 @@ class AxisScale:
     motor_increments: int
     load_increments: int
     rated_milli: int
+    max_motor_speed: int
+    stop_deceleration: int
 
     @classmethod
     def from_actuator(cls, actuator: Actuator) -> AxisScale:
@@ -58,6 +62,7 @@ class AxisScale:
             ScaleError: an encoder has no whole number of increments per 100 revolutions, or the velocity limit does
                 not fit 32 bits.
         """
+        rpm = 60.0 / actuator.lead
         scale = cls(
             name=actuator.name,
             motor_encoder=actuator.motor_encoder,
@@ -68,6 +73,8 @@ class AxisScale:
             motor_increments=_increments(actuator.name, "motor_encoder", actuator.lead, actuator.motor_encoder),
             load_increments=_increments(actuator.name, "load_encoder", actuator.lead, actuator.load_encoder),
             rated_milli=round(actuator.drive.rated * 1000.0),
+            max_motor_speed=math.ceil(actuator.limits.velocity * rpm - 1e-6),
+            stop_deceleration=round(actuator.limits.acceleration * rpm),
         )
         largest = scale.velocity * _INT32
         if scale.velocity_limit > largest:

@@ -1,0 +1,157 @@
+"""The host's SDO and NMT services over a CanLink, by the `canopen` library, without a thread.
+
+The library waits for an SDO response on a queue that a receiver thread fills; here the wait itself receives. Cyclic
+frames that come in meanwhile belong to nobody yet: the cyclic path starts after the configuration.
+"""
+
+from __future__ import annotations
+
+import time
+from functools import partial
+
+import canopen
+from canopen.nmt import NmtMaster
+from canopen.sdo import SdoAbortedError, SdoClient, SdoCommunicationError
+
+from .bus import CanLink, wait_frames
+from .canopen_dictionary import drive_dictionary
+from .drive_health import OPERATIONAL
+from .drive_objects import OBJECTS, Address
+from .errors import DriveMismatch, DriveSilent
+from .frame import ERROR_FLAG, REMOTE_FLAG, iter_frames, pack_frame
+
+_SIGNED = {"i8", "i16", "i32"}
+
+
+class _LinkNetwork(canopen.Network):
+    """A canopen network whose bus is a CanLink and which receives when it is told to."""
+
+    def __init__(self, link: CanLink) -> None:
+        super().__init__()
+        self._link = link
+
+    def send_message(self, can_id: int, data: bytes, remote: bool = False) -> None:
+        self._link.send_frames(pack_frame(can_id | REMOTE_FLAG * remote, bytes(data)))
+
+    def pump(self, timeout: float) -> bool:
+        """Hand every waiting frame to its subscribers; False when none came within `timeout` s."""
+        frames = wait_frames(self._link, timeout)
+        for frame in iter_frames(frames):
+            if not frame.can_id & (ERROR_FLAG | REMOTE_FLAG):
+                self.notify(frame.can_id, bytearray(frame.data), time.time())
+        return bool(frames)
+
+
+class _PumpedClient(SdoClient):
+    """An SDO client that receives while it waits."""
+
+    network: _LinkNetwork
+
+    def read_response(self) -> bytes:
+        deadline = time.monotonic() + self.RESPONSE_TIMEOUT
+        while self.responses.empty():
+            left = deadline - time.monotonic()
+            if left <= 0 or not self.network.pump(left):
+                raise SdoCommunicationError(f"no response within {self.RESPONSE_TIMEOUT:g} s")
+        return super().read_response()
+
+
+class CanopenMaster:
+    """SDO access and NMT commands to the drives of one channel.
+
+    Args:
+        link: the channel's link.
+        drives: node id of every drive on it, by name.
+        sdo_limit: longest wait for a response, s.
+    """
+
+    def __init__(self, link: CanLink, drives: dict[str, int], sdo_limit: float = 0.3) -> None:
+        self.drives = drives
+        self._network = _LinkNetwork(link)
+        self._clients: dict[str, _PumpedClient] = {}
+        self._nmt: dict[str, NmtMaster] = {}
+        for name, node_id in drives.items():
+            client = _PumpedClient(0x600 + node_id, 0x580 + node_id, drive_dictionary())
+            client.network = self._network
+            client.RESPONSE_TIMEOUT = sdo_limit
+            self._network.subscribe(client.tx_cobid, client.on_response)
+            self._clients[name] = client
+            self._nmt[name] = NmtMaster(node_id)
+            self._nmt[name].network = self._network
+            self._network.subscribe(0x700 + node_id, self._nmt[name].on_heartbeat)
+
+    def read(self, drive: str, address: Address) -> int:
+        """Return the value of an object.
+
+        Raises:
+            DriveSilent: no answer in time, or the drive does not have the object.
+        """
+        try:
+            data = self._clients[drive].upload(*address)
+        except (SdoCommunicationError, SdoAbortedError) as error:
+            raise _silent(drive, f"cannot read {address} ({OBJECTS[address].name}): {error}") from error
+        return int.from_bytes(data, "little", signed=OBJECTS[address].kind in _SIGNED)
+
+    def write(self, drive: str, address: Address, value: int) -> None:
+        """Write the value of an object; raises DriveSilent like `read`."""
+        kind = OBJECTS[address].kind
+        data = value.to_bytes(int(kind[1:]) // 8, "little", signed=kind in _SIGNED)
+        try:
+            self._clients[drive].download(*address, data)
+        except (SdoCommunicationError, SdoAbortedError) as error:
+            raise _silent(drive, f"cannot write {address} ({OBJECTS[address].name}): {error}") from error
+
+    def command(self, drive: str, state: str) -> None:
+        """Send an NMT command: `OPERATIONAL`, `PRE-OPERATIONAL`, `STOPPED`, `RESET` or `RESET COMMUNICATION`."""
+        self._nmt[drive].state = state
+
+    def start(self, limit: float) -> None:
+        """Bring every drive to OPERATIONAL and wait, at most `limit` s, until its heartbeat says so.
+
+        Raises:
+            DriveSilent: a drive does not say it.
+        """
+        heard: dict[str, int] = {}
+        for name, nmt in self._nmt.items():
+            nmt.add_heartbeat_callback(partial(heard.__setitem__, name))
+            self.command(name, "OPERATIONAL")
+        deadline = time.monotonic() + limit
+        waiting = True
+        while waiting and any(heard.get(name) != OPERATIONAL for name in self.drives):
+            left = deadline - time.monotonic()
+            waiting = left > 0 and self._network.pump(left)
+        for name in self.drives:
+            if heard.get(name) != OPERATIONAL:
+                what = "does not become OPERATIONAL"
+                raise DriveSilent(name, what, value=heard.get(name), limit=f"{limit:g} s", remedy="check its errors")
+
+    def configure(self, drive: str, writes: list[tuple[Address, int]], required: dict[Address, int]) -> None:
+        """Bring a drive to PRE-OPERATIONAL, write its objects and read every required one back.
+
+        Raises:
+            DriveSilent: the drive does not answer.
+            DriveMismatch: objects do not hold what they must; all of them are named.
+        """
+        self.command(drive, "PRE-OPERATIONAL")
+        for address, value in writes:
+            self.write(drive, address, value)
+        self.verify(drive, required)
+
+    def verify(self, drive: str, required: dict[Address, int]) -> None:
+        """Read every required object; raises like `configure`."""
+        found = {address: self.read(drive, address) for address in required}
+        wrong: list[tuple[str, object, object]] = [
+            (f"{address} ({OBJECTS[address].name})", _shown(value), _shown(found[address]))
+            for address, value in required.items()
+            if found[address] != value
+        ]
+        if wrong:
+            raise DriveMismatch(drive, wrong)
+
+
+def _shown(value: int) -> str:
+    return f"{value} (0x{value & 0xFFFFFFFF:X})"
+
+
+def _silent(drive: str, what: str) -> DriveSilent:
+    return DriveSilent(drive, what, remedy="check power, node id, bit rate and the channel it is configured on")

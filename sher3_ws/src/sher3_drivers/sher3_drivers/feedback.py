@@ -1,0 +1,128 @@
+"""Collecting the TPDOs of one tick: counts in by COB-ID, one validated feedback out, missing ones named."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from .drive_objects import TPDO_BASES
+from .errors import FrameError
+from .frame import FRAME_SIZE
+from .units import AxisScale
+
+_FRAME = struct.Struct("<IB3x8s")
+_TPDO1 = struct.Struct("<iHh")
+_TPDO2 = struct.Struct("<ii")
+Vector = tuple[float, ...]
+
+
+class Feedback(NamedTuple):
+    """What the drives said at a SYNC; vectors (5,) in the order of ACTUATORS, SI units.
+
+    Attributes:
+        stamp: tick, ns.
+        load_position: load encoders.
+        motor_position: motor encoders.
+        motor_velocity: difference of the motor encoder readings over the time between them; 0 at the first tick.
+        effort: reported force or torque.
+        velocity_demand: demand the drives executed in the interval that ended at the stamp.
+    """
+
+    stamp: int
+    load_position: Vector
+    motor_position: Vector
+    motor_velocity: Vector
+    effort: Vector
+    velocity_demand: Vector
+
+
+class TpdoCollector:
+    """Sorts the frames of a tick.
+
+    Args:
+        scales: scales of the five axes.
+        node_ids: CANopen node ids of the five drives, in the same order.
+        period: control period, s.
+
+    Attributes:
+        statuswords: newest statusword of every drive, None before the first.
+        duplicates: TPDOs that came twice in one tick.
+        misfits: frames with a TPDO's identifier but another length.
+    """
+
+    def __init__(self, scales: Sequence[AxisScale], node_ids: Sequence[int], period: float) -> None:
+        count = len(scales)
+        self.statuswords: list[int | None] = [None] * count
+        self.duplicates = 0
+        self.misfits = 0
+        self._scales = tuple(scales)
+        self._period = period
+        self._slots = {base + n: (i, pdo) for pdo, base in enumerate(TPDO_BASES) for i, n in enumerate(node_ids)}
+        self.positions_mask = (1 << count) - 1
+        self.all_mask = (1 << 2 * count) - 1
+        self._count = count
+        self._mask = 0
+        self._load, self._torque = [0] * count, [0] * count
+        self._motor, self._demand = [0] * count, [0] * count
+        self._previous: tuple[int, Vector] | None = None
+        self._tick = 0
+
+    def begin(self) -> None:
+        """Start a tick."""
+        self._mask = 0
+        self._tick += 1
+
+    def take(self, frames: bytes) -> list[tuple[int, bytes]]:
+        """Sort frames in; return (can_id, data) of those that are no TPDO."""
+        if len(frames) % FRAME_SIZE:
+            raise FrameError("not a whole number of frames", value=len(frames), limit=f"a multiple of {FRAME_SIZE}")
+        others = []
+        for can_id, length, data in _FRAME.iter_unpack(frames):
+            slot = self._slots.get(can_id)
+            if slot is None:
+                others.append((can_id, data[:length]))
+            elif length != 8:
+                self.misfits += 1
+            else:
+                self._sort_in(*slot, data)
+        return others
+
+    def _sort_in(self, axis: int, pdo: int, data: bytes) -> None:
+        bit = 1 << axis + pdo * self._count
+        if self._mask & bit:
+            self.duplicates += 1
+            return
+        self._mask |= bit
+        if pdo:
+            self._motor[axis], self._demand[axis] = _TPDO2.unpack(data)
+        else:
+            self._load[axis], self.statuswords[axis], self._torque[axis] = _TPDO1.unpack(data)
+
+    def has(self, mask: int) -> bool:
+        """Whether every TPDO of `mask` is in."""
+        return self._mask & mask == mask
+
+    def missing(self) -> list[int]:
+        """Return the indices of drives with a TPDO missing."""
+        both = self._mask & self._mask >> self._count
+        return [i for i in range(self._count) if not both >> i & 1]
+
+    def load_position(self) -> Vector:
+        """Return the load encoder positions."""
+        return tuple([n * scale.load_encoder for n, scale in zip(self._load, self._scales, strict=True)])
+
+    def feedback(self, stamp: int) -> Feedback:
+        """Return the whole feedback; call it once a tick and only when every TPDO is in."""
+        scales = self._scales
+        motor = tuple([n * scale.motor_encoder for n, scale in zip(self._motor, scales, strict=True)])
+        if self._previous is None:
+            velocity: Vector = (0.0,) * self._count
+        else:
+            tick, before = self._previous
+            span = (self._tick - tick) * self._period
+            velocity = tuple([(now - then) / span for now, then in zip(motor, before, strict=True)])
+        self._previous = self._tick, motor
+        effort = tuple([n * scale.effort for n, scale in zip(self._torque, scales, strict=True)])
+        demand = tuple([n * scale.velocity for n, scale in zip(self._demand, scales, strict=True)])
+        return Feedback(stamp, self.load_position(), motor, velocity, effort, demand)

@@ -1,0 +1,94 @@
+"""Both ends of the wire in one thread and in stepped time: motor driver, CAN links, mock drives and a plant. For tests."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from sher3_description import Robot
+
+from .bus import CanLink, LockstepLink
+from .feedback import Feedback
+from .mock_bus import DrivePlant, MockDriveBus
+from .mock_plant import IntegratorPlant
+from .motor_driver import MotorDriver
+from .settings import MotorDriverSettings
+
+
+class LockstepRig:
+    """A driver and five mock drives; nothing happens but in `tick` and `idle`.
+
+    Args:
+        robot: the robot.
+        settings: channels and limits; their link specifications are not used.
+        open_link: opens one more participant of channel i.
+        plant: what the drives drive; ideal integrators by default.
+
+    Attributes:
+        driver: the host's side.
+        mock: the drives' side.
+        now: the stepped time, ns.
+        stamp: stamp of the newest tick, ns.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        settings: MotorDriverSettings,
+        open_link: Callable[[int], CanLink],
+        plant: DrivePlant | None = None,
+    ) -> None:
+        self.settings = settings
+        self.plant = plant or IntegratorPlant(robot, settings.period)
+        self.now = 1_000_000_000_000
+        self.stamp = 0
+        self.period_ns = round(settings.period * 1e9)
+        count = len(settings.channels)
+        self.device_links = [open_link(i) for i in range(count)]
+        self.host_links = [LockstepLink(open_link(i)) for i in range(count)]
+        self.mock = MockDriveBus(self.device_links, self.plant, robot, settings, self.clock)
+        for link in self.host_links:
+            link.attach(self.mock.poll)
+        self.driver = MotorDriver(robot, settings, self.host_links, self.clock)
+        self._configured = False
+
+    def clock(self) -> int:
+        """Return the stepped time."""
+        return self.now
+
+    def tick(self, velocity: Sequence[float] | None = None) -> Feedback | None:
+        """Run one tick, with a command when there is one; return its feedback."""
+        self.now += self.period_ns
+        self.stamp += self.period_ns
+        self.driver.tick(self.stamp)
+        self.driver.collect_positions()
+        feedback = self.driver.collect()
+        if velocity is not None:
+            self.driver.command(self.stamp, velocity)
+        return feedback
+
+    def enable(self, limit: int = 20) -> None:
+        """Configure once, then tick until every drive is enabled; raise TimeoutError after `limit` ticks."""
+        if not self._configured:
+            self.driver.configure()
+            self._configured = True
+        self.driver.enable()
+        for _ in range(limit):
+            self.tick()
+            if self.driver.enabled:
+                return
+        raise TimeoutError(f"not enabled after {limit} ticks: {self.driver.stop}")
+
+    def states(self) -> set[str]:
+        """Return the names of the CiA 402 states the host sees."""
+        return {health.state.name if health.state else "unknown" for health in self.driver.health}
+
+    def idle(self, ticks: int) -> None:
+        """Let time pass without the host: no SYNC, no heartbeat."""
+        for _ in range(ticks):
+            self.now += self.period_ns
+            self.mock.poll()
+
+    def close(self) -> None:
+        """Close both ends."""
+        self.driver.close()
+        self.mock.close()

@@ -1,0 +1,215 @@
+"""One mock drive: a CANopen node with the CiA 402 state machine, its own stop ramps and the PDOs its dictionary maps.
+
+It believes only its object dictionary: a wrong PDO map, COB-ID or unit set by the host does the wrong thing here as
+it would on hardware. The state machine is written from the bits of the controlword, not from the host's table; a
+test holds the two against each other.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Callable
+from operator import itemgetter
+from typing import NamedTuple
+
+from . import drive_objects as od
+from .canopen_node import CanopenNode
+from .cia402 import CYCLIC_SYNCHRONOUS_VELOCITY
+from .drive_objects import Address
+from .emcy import EMCY
+from .frame import HEADER_FORMAT, pack_frame
+from .units import SI_UNIT_VELOCITY, AxisScale
+
+NOT_READY, SWITCH_ON_DISABLED, READY, SWITCHED_ON, ENABLED = 0x00, 0x40, 0x21, 0x23, 0x27
+QUICK_STOP, FAULT_REACTION, FAULT = 0x07, 0x0F, 0x08
+_VOLTAGE_REMOTE, _LIMIT_ACTIVE, _FOLLOWS = 0x0210, 0x0800, 0x1000
+_FORMATS = {"u8": "B", "i8": "b", "u16": "H", "i16": "h", "u32": "I", "i32": "i"}
+
+
+class Feedback(NamedTuple):
+    """What the plant says of one axis at a SYNC, SI units."""
+
+    motor_position: float
+    load_position: float
+    velocity_demand: float
+    effort: float
+
+
+def next_state(state: int, word: int, previous: int) -> int:
+    """Return the state after a controlword, from its bits 0 to 3 and 7 (CiA 402-2)."""
+    if state == FAULT:
+        return SWITCH_ON_DISABLED if word & 0x80 and not previous & 0x80 else FAULT
+    if state in (NOT_READY, FAULT_REACTION) or word & 0x80:
+        return state
+    if not word & 0x02:  # enable voltage
+        return SWITCH_ON_DISABLED
+    if not word & 0x04:  # quick stop, active low
+        return QUICK_STOP if state in (ENABLED, QUICK_STOP) else SWITCH_ON_DISABLED
+    if not word & 0x01:  # switch on
+        return state if state == QUICK_STOP else READY
+    if not word & 0x08:  # enable operation
+        return SWITCHED_ON if state in (READY, ENABLED) else state
+    return {READY: SWITCHED_ON, SWITCHED_ON: ENABLED, QUICK_STOP: ENABLED}.get(state, state)
+
+
+class _Pdo:
+    """A PDO compiled from the dictionary: struct of the whole frame and the mapped addresses."""
+
+    def __init__(self, values: dict[Address, int], communication: int, mapping: int) -> None:
+        self.can_id = values[Address(communication, 1)]
+        self.transmission = values[Address(communication, 2)]
+        entries = [values[Address(mapping, i)] for i in range(1, 1 + min(4, values[Address(mapping, 0)]))]
+        self.addresses = [Address(entry >> 16, entry >> 8 & 0xFF) for entry in entries]
+        layout = "".join(_FORMATS[od.OBJECTS[address].kind] for address in self.addresses if address in od.OBJECTS)
+        self.length = struct.calcsize("<" + layout)
+        self.exists = not self.can_id & od.INVALID and len(layout) == len(entries) > 0 and self.length <= 8
+        self.data = struct.Struct("<" + layout)
+        self.frame = struct.Struct(f"<{HEADER_FORMAT}{layout}{8 - min(8, self.length)}x")
+        if len(self.addresses) == 1:
+            self.pick: Callable[[dict[Address, int]], tuple[int, ...]] = lambda v: (v[self.addresses[0]],)
+        elif self.addresses:
+            self.pick = itemgetter(*self.addresses)
+
+
+class MockDrive:
+    """A drive on the bus.
+
+    Args:
+        scale: scales of its axis.
+        node_id: its CANopen node id.
+        send: takes whole frames for the bus.
+
+    Attributes:
+        state: CiA 402 state, one of this module's constants.
+        powered: False makes it fall silent and deaf.
+        tamper: replaces the feedback before it is reported; the seam for stuck, wrong, delayed and garbage values.
+    """
+
+    def __init__(self, scale: AxisScale, node_id: int, send: Callable[[bytes], None]) -> None:
+        self.scale, self.node_id = scale, node_id
+        self.state = SWITCH_ON_DISABLED
+        self.powered = True
+        self.tamper: Callable[[Feedback], Feedback] | None = None
+        self._send_frames = send
+        self._demand = 0
+        self._previous_word = 0
+        self._heard_host: int | None = None
+        self._limited = False
+        factory = od.factory_values(node_id, scale)
+        self.node = CanopenNode(node_id, self._send, factory, self._on_write, self._on_reset)
+        self._compile()
+
+    def _send(self, frames: bytes) -> None:
+        if self.powered:
+            self._send_frames(frames)
+
+    def _compile(self) -> None:
+        values = self.node.values
+        rpdos = [_Pdo(values, c, m) for c, m in ((0x1400, 0x1600), (0x1401, 0x1601))]
+        tpdos = [_Pdo(values, c, m) for c, m in ((0x1800, 0x1A00), (0x1801, 0x1A01), (0x1802, 0x1A02))]
+        self._rpdos = {pdo.can_id: pdo for pdo in rpdos if pdo.exists}
+        self._tpdos = [pdo for pdo in tpdos if pdo.exists and 1 <= pdo.transmission <= 240]
+
+    def _on_reset(self) -> None:
+        self.state = SWITCH_ON_DISABLED
+        self._demand, self._previous_word, self._heard_host = 0, 0, None
+
+    def _on_write(self, address: Address, value: int) -> None:
+        if address == od.CONTROLWORD:
+            self._on_controlword(value)
+        elif address == od.MODE and value in (0, CYCLIC_SYNCHRONOUS_VELOCITY):
+            self.node.values[od.MODE_DISPLAY] = value
+
+    # Frames in.
+
+    def receive(self, can_id: int, data: bytes, now: int) -> None:
+        """Take one frame of the bus that is no SYNC; `data` has the frame's length."""
+        if not self.powered:
+            return
+        if self.node.operational and can_id in self._rpdos:
+            self._on_rpdo(self._rpdos[can_id], data)
+        elif can_id == od.NMT_ID or can_id == 0x600 + self.node_id:
+            self.node.handle(can_id, data)
+            if can_id == od.NMT_ID:
+                self._compile()
+        elif can_id == od.HEARTBEAT_BASE + (self.node.values[od.HOST_HEARTBEAT] >> 16 & 0x7F):
+            self._heard_host = now
+
+    def _on_rpdo(self, pdo: _Pdo, data: bytes) -> None:
+        if len(data) < pdo.length:
+            self.emergency(0x8210)
+            return
+        for address, value in zip(pdo.addresses, pdo.data.unpack_from(data), strict=True):
+            self.node.values[address] = value
+            if address == od.CONTROLWORD:
+                self._on_controlword(value)
+
+    def _on_controlword(self, word: int) -> None:
+        before = self.state
+        self.state = next_state(self.state, word, self._previous_word)
+        self._previous_word = word
+        if before == FAULT and self.state != FAULT:
+            self.node.values[od.ERROR_REGISTER] = 0
+            self.emergency(0)
+
+    # Faults.
+
+    def emergency(self, code: int) -> None:
+        """Send an EMCY without a fault."""
+        self._send(
+            pack_frame(od.EMCY_BASE + self.node_id, EMCY.pack(code, self.node.values[od.ERROR_REGISTER], bytes(5)))
+        )
+
+    def fault(self, code: int) -> None:
+        """Go to FAULT by way of the fault reaction, braking, and say why; a second fault changes nothing."""
+        if self.state not in (FAULT, FAULT_REACTION):
+            self.node.values[od.ERROR_REGISTER] = 1
+            self.state = FAULT_REACTION
+            self.emergency(code)
+
+    def check_host(self, now: int) -> None:
+        """Watch the host's heartbeat, once it has been heard and while the dictionary asks for it."""
+        limit_ms = self.node.values[od.HOST_HEARTBEAT] & 0xFFFF
+        if limit_ms and self._heard_host is not None and now - self._heard_host > limit_ms * 1_000_000:
+            self._heard_host = None
+            if self.node.values[od.ABORT_CONNECTION] == 1 and self.node.operational:
+                self.fault(0x8130)
+
+    # The cycle.
+
+    def demand(self, period: float) -> float:
+        """Return the velocity demand of the next interval, m/s or rad/s: the target if enabled, else a ramp to zero."""
+        values = self.node.values
+        micro = values[Address(0x60A9, 0)] == SI_UNIT_VELOCITY
+        self._limited = False
+        if self.state == ENABLED and values[od.MODE_DISPLAY] == CYCLIC_SYNCHRONOUS_VELOCITY:
+            limit = values[od.MAX_MOTOR_SPEED] * (1_000_000 if micro else 1)
+            target = values[od.TARGET_VELOCITY]
+            self._demand = max(-limit, min(limit, target))
+            self._limited = self._demand != target
+        elif self._demand:
+            step = int(values[od.QUICK_STOP_DECELERATION] * period * (1_000_000 if micro else 1))
+            self._demand = max(0, self._demand - step) if self._demand > 0 else min(0, self._demand + step)
+        if self.state == FAULT_REACTION and self._demand == 0:
+            self.state = FAULT
+        return self._demand * self.scale.velocity * (1.0 if micro else 1e6)
+
+    def sample(self, feedback: Feedback) -> bytes:
+        """Take the feedback of a SYNC and return the synchronous TPDOs as frames."""
+        if self.tamper is not None:
+            feedback = self.tamper(feedback)
+        values, scale = self.node.values, self.scale
+        values[od.MOTOR_POSITION] = round(feedback.motor_position / scale.motor_encoder)
+        values[od.LOAD_POSITION] = round(feedback.load_position / scale.load_encoder)
+        values[od.VELOCITY_DEMAND] = round(feedback.velocity_demand / scale.velocity)
+        values[od.TORQUE] = max(-32768, min(32767, round(feedback.effort / scale.effort)))
+        values[od.STATUSWORD] = self.statusword
+        if not (self.powered and self.node.operational):
+            return b""
+        return b"".join([pdo.frame.pack(pdo.can_id, pdo.length, *pdo.pick(values)) for pdo in self._tpdos])
+
+    @property
+    def statusword(self) -> int:
+        """The statusword of this moment."""
+        enabled = self.state == ENABLED
+        return self.state | _VOLTAGE_REMOTE | _FOLLOWS * enabled | _LIMIT_ACTIVE * self._limited

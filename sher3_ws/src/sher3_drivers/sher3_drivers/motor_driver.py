@@ -1,0 +1,358 @@
+"""The motor driver: five CiA 402 drives in cyclic synchronous velocity over any CanLink.
+
+One tick: `tick` (heartbeat, SYNC), `collect_positions` and `collect` (TPDOs, deadline), `command` (RPDOs). What must
+not pass to the drives is refused here, what goes silent is stopped here: this is the last gate before the drives' own.
+"""
+
+from __future__ import annotations
+
+import struct
+import time
+from collections.abc import Callable, Sequence
+
+from sher3_description import ACTUATORS, Robot
+
+from . import drive_objects as od
+from .bus import CanLink, LinkGroup
+from .can_errors import BusCondition, decode_error
+from .canopen_master import CanopenMaster
+from .cia402 import Command, Goal, State, next_command
+from .drive_health import OPERATIONAL, DriveHealth, StopLog
+from .errors import CommandRefused, DriverError, LinkError
+from .feedback import Feedback, TpdoCollector, Vector
+from .frame import ERROR_FLAG, HEADER_FORMAT, Frame, pack_frame
+from .settings import MotorDriverSettings
+from .units import AxisScale
+
+_RPDO = struct.Struct(f"<{HEADER_FORMAT}Hi2x")
+_SETTLED = {Goal.ENABLED: State.OPERATION_ENABLED, Goal.DISABLED: State.SWITCH_ON_DISABLED}
+
+
+class MotorDriver:
+    """Drives the five motors.
+
+    Args:
+        robot: the robot, for scales and limits.
+        settings: channels and time limits.
+        links: one link per channel, in the order of the settings.
+        clock: time in ns, monotonic; stepped in tests.
+
+    Attributes:
+        goal: where the drives are being taken.
+        stop: why the driver stopped by itself, if it did.
+        health: one record per drive.
+        counters: frames and ticks that were lost or refused, by name.
+        bus_conditions: health of every channel's controller.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        settings: MotorDriverSettings,
+        links: Sequence[CanLink],
+        clock: Callable[[], int] = time.monotonic_ns,
+    ) -> None:
+        settings.budgets()
+        self.settings = settings
+        self.goal = Goal.DISABLED
+        self.stop = StopLog()
+        self.health = [DriveHealth(name) for name in ACTUATORS]
+        self.counters = dict.fromkeys(("incomplete", "refused", "ignored", "held", "error_frames"), 0)
+        self.bus_conditions = [BusCondition.ACTIVE] * len(links)
+        self._clock = clock
+        self._group = LinkGroup(links)
+        self._scales = [AxisScale.from_actuator(actuator) for actuator in robot.actuators]
+        self._node_ids = [1 + i for i in range(len(ACTUATORS))]
+        self._axes = [[ACTUATORS.index(name) for name in channel.drives] for channel in settings.channels]
+        self._collector = TpdoCollector(self._scales, self._node_ids, settings.period)
+        self._period_ns = round(settings.period * 1e9)
+        self._stamp = 0
+        self._ticks = self._command_tick = 0
+        self._synced_at = self._started_at = self._heartbeat_at = 0
+        self._heartbeat = pack_frame(od.HEARTBEAT_BASE + settings.host_id, bytes([OPERATIONAL]))
+        self._sync = pack_frame(od.SYNC_ID)
+        self._reset_words = 0
+        self._running = False
+
+    # Start.
+
+    def configure(self) -> None:
+        """Bring every drive to PRE-OPERATIONAL without power, write its configuration and verify it by read-back.
+
+        Raises:
+            DriveSilent: a drive does not answer.
+            DriveMismatch: a drive does not hold what it must. Nothing is enabled, no drive becomes OPERATIONAL.
+        """
+        masters = [
+            CanopenMaster(link, {ACTUATORS[i]: self._node_ids[i] for i in axes}, self.settings.sdo_limit)
+            for link, axes in zip(self._group.links, self._axes, strict=True)
+        ]
+        for master in masters:
+            for name, node_id in master.drives.items():
+                scale = self._scales[node_id - 1]
+                master.command(name, "PRE-OPERATIONAL")
+                master.write(name, od.CONTROLWORD, Command.DISABLE_VOLTAGE.value)
+                writes = od.required_writes(node_id, scale, self.settings)
+                master.configure(name, writes, od.required_values(node_id, scale, self.settings))
+        for master in masters:
+            master.start(self.settings.drive_heartbeat_limit)
+        self._started_at = self._clock()
+
+    def enable(self) -> None:
+        """Take the drives to OPERATION ENABLED, over the next ticks.
+
+        Raises:
+            CommandRefused: a stop has not been reset, or a drive is in FAULT.
+        """
+        if self.stop.reason is not None:
+            raise CommandRefused("enable is refused after a stop", value=self.stop.reason, remedy="reset first")
+        faulty = [health.name for health in self.health if health.state is State.FAULT]
+        if faulty:
+            raise CommandRefused("enable is refused in FAULT", value=", ".join(faulty), remedy="reset first")
+        if self.goal is not Goal.ENABLED:
+            self.goal = Goal.ENABLED
+            self._running = False
+            self._restart_transitions()
+
+    def disable(self) -> None:
+        """Brake and take the power off, over the next ticks."""
+        if self.goal is not Goal.DISABLED:
+            self.goal = Goal.DISABLED
+            self._restart_transitions()
+
+    def quick_stop(self, reason: str) -> None:
+        """Brake now, all drives, and stay stopped until `reset`; the first reason is kept."""
+        self.stop.add(reason, self._clock())
+        if self.goal is not Goal.STOPPED:
+            self.goal = Goal.STOPPED
+            self._steer()
+
+    def reset(self) -> None:
+        """Clear a stop: once, on purpose, and only when there is one.
+
+        Drives in FAULT get one rising edge of fault reset. They end up disabled; enabling is a request of its own.
+
+        Raises:
+            CommandRefused: there is nothing to reset.
+        """
+        faulty = any(health.state is State.FAULT for health in self.health)
+        if self.stop.reason is None and not faulty:
+            raise CommandRefused("reset is refused: nothing is stopped", remedy="reset only after a stop or in FAULT")
+        self.stop.clear()
+        self.goal = Goal.DISABLED
+        self._reset_words = 1 if faulty else 0
+        self._restart_transitions()
+
+    def _restart_transitions(self) -> None:
+        now = self._clock()
+        for health in self.health:
+            health.state_since = now
+
+    @property
+    def enabled(self) -> bool:
+        """Whether every drive follows velocity commands."""
+        return self.goal is Goal.ENABLED and all(h.state is State.OPERATION_ENABLED for h in self.health)
+
+    # The tick.
+
+    def tick(self, stamp: int) -> None:
+        """Begin the tick `stamp` (ns): take what came in between, send SYNC, and the host's heartbeat when it is due.
+
+        The heartbeat has no timer of its own: when the loop that calls this hangs, it falls silent and the
+        drives stop the robot.
+        """
+        self._receive()
+        self._collector.begin()
+        self._stamp = stamp
+        self._ticks += 1
+        now = self._clock()
+        burst = self._sync
+        if now >= self._heartbeat_at:
+            self._heartbeat_at = now + round(self.settings.host_heartbeat * 1e9)
+            burst = self._heartbeat + burst
+        self._synced_at = now
+        self._send([burst] * len(self._axes))
+
+    def collect_positions(self) -> Vector | None:
+        """Return the load encoder positions (5,) of this tick as soon as they are in; None when one stays away."""
+        return self._collector.load_position() if self._collect(self._collector.positions_mask) else None
+
+    def collect(self) -> Feedback | None:
+        """Return the whole feedback of this tick, None when a TPDO stays away; watch, and steer drives not enabled.
+
+        A tick with a TPDO missing has no feedback: nothing is invented. After `missing_limit` of them the robot stops.
+        """
+        complete = self._collect(self._collector.all_mask)
+        now = self._clock()
+        missing = set() if complete else set(self._collector.missing())
+        for axis, health in enumerate(self.health):
+            health.on_tick(axis in missing)
+            word = self._collector.statuswords[axis]
+            if word is not None and axis not in missing:
+                self._stop_if(health.on_statusword(word, now))
+        self.counters["incomplete"] += not complete
+        self._watch(now)
+        if not self.enabled:
+            self._steer()
+        return self._collector.feedback(self._stamp) if complete else None
+
+    def _collect(self, mask: int) -> bool:
+        deadline = self._synced_at + round(self.settings.feedback_limit * self._period_ns)
+        while True:
+            self._receive()
+            if self._collector.has(mask):
+                return True
+            left = deadline - self._clock()
+            if left <= 0 or not self._group.wait(left * 1e-9):
+                return False
+
+    def command(self, stamp: int, velocity: Sequence[float]) -> bool:
+        """Send a velocity command (5,) of tick `stamp`; False when it is ignored because the drives are not enabled.
+
+        Raises:
+            CommandRefused: not five finite values within the velocity limits, or not of this or a recent tick. Zero
+                velocity is sent in its place.
+        """
+        try:
+            counts = self._checked(stamp, velocity)
+        except DriverError:
+            self.counters["refused"] += 1
+            self._steer()
+            raise
+        if not self.enabled:
+            self.counters["ignored"] += 1
+            return False
+        self._command_tick = self._ticks
+        self._send_commands([Command.ENABLE_OPERATION] * len(counts), counts)
+        return True
+
+    def _checked(self, stamp: int, velocity: Sequence[float]) -> list[int]:
+        age = self._stamp - stamp
+        if not 0 <= age < self.settings.zero_age * self._period_ns:
+            limit = f"0 to {self.settings.zero_age * self.settings.period * 1e3:g} ms"
+            raise CommandRefused(
+                "age of the command", value=f"{age * 1e-6:g} ms", limit=limit, remedy="check its sender"
+            )
+        if len(velocity) != len(self._scales):
+            raise CommandRefused(
+                "number of velocities", value=len(velocity), limit=len(self._scales), remedy="send five"
+            )
+        counts = []
+        for scale, value in zip(self._scales, velocity, strict=True):
+            if not abs(value) <= scale.velocity_limit * (1.0 + 1e-9):  # a NaN compares false
+                what, remedy = f"{scale.name}: velocity command", "limit it at its source"
+                raise CommandRefused(what, value=value, limit=scale.velocity_limit, remedy=remedy)
+            counts.append(scale.velocity_counts(value))
+        return counts
+
+    def close(self) -> None:
+        """Take the power off and leave the bus; safe at any time, twice too."""
+        self.goal = Goal.DISABLED
+        self._steer(Command.DISABLE_VOLTAGE)
+        self._group.close()
+
+    # Inside.
+
+    def _receive(self) -> None:
+        for index, link in enumerate(self._group.links):
+            frames = link.recv_frames()
+            if frames:
+                for can_id, data in self._collector.take(frames):
+                    self._on_other(index, can_id, data)
+
+    def _on_other(self, channel: int, can_id: int, data: bytes) -> None:
+        """Take a frame that is no TPDO: error frame, heartbeat or EMCY; the rest belongs to others."""
+        if can_id & ERROR_FLAG:
+            self._on_error(channel, Frame(can_id, data))
+            return
+        node, service = can_id & 0x7F, can_id & 0x780
+        if node in self._node_ids:
+            health = self.health[node - 1]
+            if service == od.HEARTBEAT_BASE:
+                self._stop_if(health.on_heartbeat(data, self._clock()))
+            elif service == od.EMCY_BASE:
+                self._stop_if(health.on_emergency(data))
+
+    def _on_error(self, channel: int, frame: Frame) -> None:
+        report = decode_error(frame)
+        self.counters["error_frames"] += 1
+        if report is not None and report.condition is not None:
+            self.bus_conditions[channel] = report.condition
+            if report.condition >= BusCondition.PASSIVE:
+                self._stop_if(f"{self.settings.channels[channel].link}: {report.text}")
+
+    def _stop_if(self, reason: str | None) -> None:
+        if reason is not None:
+            self.quick_stop(reason)
+
+    def _watch(self, now: int) -> None:
+        """Look for what has gone silent or does not get where it should."""
+        settings = self.settings
+        for health in self.health:
+            if health.missing >= settings.missing_limit:
+                self._stop_if(f"{health.name}: no TPDO for {health.missing} ticks (limit {settings.missing_limit})")
+            silence = (now - (health.heard_at or self._started_at)) * 1e-9
+            if silence > settings.drive_heartbeat_limit:
+                self._stop_if(f"{health.name}: no heartbeat for {silence:.3f} s ({settings.drive_heartbeat_limit:g} s)")
+            wanted = _SETTLED.get(self.goal)
+            stuck = (now - health.state_since) * 1e-9
+            if wanted and health.state is not wanted and stuck > settings.transition_limit:
+                name = health.state.name if health.state else "an unknown state"
+                self._stop_if(f"{health.name}: stays in {name} for {stuck:.3f} s instead of going to {wanted.name}")
+        self._watch_commands()
+
+    def _watch_commands(self) -> None:
+        """Watch the age of the newest command; it counts from the tick in which the drives became enabled."""
+        if self.goal is not Goal.ENABLED:
+            return
+        if not self.enabled:
+            self._watch_fallen()
+            return
+        if not self._running:
+            self._running = True
+            self._command_tick = self._ticks
+        age = self._ticks - self._command_tick
+        if age >= self.settings.stop_age:
+            self._stop_if(f"no command for {age} ticks (limit {self.settings.stop_age})")
+        elif age >= self.settings.zero_age:
+            self.counters["held"] += 1
+            self._steer()
+
+    def _watch_fallen(self) -> None:
+        """Stop all drives when one fell back: it would be enabled again by itself on the way to the goal."""
+        stopped = (State.FAULT, State.FAULT_REACTION_ACTIVE, State.QUICK_STOP_ACTIVE)
+        for health in self.health:
+            fallen = self._running and health.state is not State.OPERATION_ENABLED
+            if health.state is not None and (fallen or health.state in stopped):
+                self._stop_if(f"{health.name}: went to {health.state.name}")
+
+    def _steer(self, word: Command | None = None) -> None:
+        """Send zero velocity with, per drive, `word` or the next controlword towards the goal."""
+        if word is not None:
+            commands = [word] * len(self.health)
+        else:
+            commands = [next_command(h.state or State.NOT_READY_TO_SWITCH_ON, self.goal) for h in self.health]
+        if self._reset_words and word is None:
+            self._reset_words -= 1
+            for axis, health in enumerate(self.health):
+                if health.state is State.FAULT:
+                    commands[axis] = Command.FAULT_RESET
+        self._send_commands(commands, [0] * len(commands))
+
+    def _send_commands(self, commands: Sequence[Command], velocity_counts: Sequence[int]) -> None:
+        pack, base = _RPDO.pack, od.RPDO_BASE
+        parts = []
+        for axes in self._axes:
+            frames = [pack(base + self._node_ids[i], 6, commands[i].value, velocity_counts[i]) for i in axes]
+            parts.append(b"".join(frames))
+        self._send(parts)
+
+    def _send(self, parts: Sequence[bytes]) -> None:
+        """Send on every channel; one that cannot take it stops the robot on the others too."""
+        for channel, (link, part) in enumerate(zip(self._group.links, parts, strict=True)):
+            try:
+                link.send_frames(part)
+            except LinkError as error:
+                self.bus_conditions[channel] = BusCondition.OFF
+                if self.stop.add(str(error), self._clock()):
+                    self.goal = Goal.STOPPED

@@ -1,0 +1,112 @@
+"""Settings of the motor driver: which drive sits on which channel, and every time limit. Validated once, here."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Annotated
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from sher3_description import ACTUATORS
+
+from .bus_load import ChannelBudget, check_budget
+from .errors import ConfigurationError
+
+Seconds = Annotated[float, Field(gt=0.0, le=10.0)]
+
+
+class _Part(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class ChannelSettings(_Part):
+    """One CAN channel: the link's specification (`bus.open_link`) and the drives on it."""
+
+    link: str
+    drives: tuple[str, ...]
+
+
+class MotorDriverSettings(_Part):
+    """Everything the motor driver can be told.
+
+    Attributes:
+        channels: CAN channels; together they hold every actuator once.
+        period: control period and SYNC period, s.
+        host_id: CANopen node id of this computer, for its heartbeat.
+        host_heartbeat: period of the host's heartbeat, s. It is sent by the control loop itself: a loop that hangs
+            falls silent.
+        host_heartbeat_limit: silence after which a drive stops by itself, s.
+        drive_heartbeat: period of the drives' heartbeats, s.
+        drive_heartbeat_limit: silence after which the host gives a drive up, s.
+        feedback_limit: longest wait for the TPDOs of a tick, as a share of the period.
+        missing_limit: consecutive ticks with a missing TPDO after which the driver stops the robot.
+        zero_age: age of the newest command after which zero velocity is sent, in periods.
+        stop_age: age after which the drives are quick-stopped, in periods.
+        transition_limit: longest time for one CiA 402 transition, s.
+        sdo_limit: longest wait for an SDO response, s.
+    """
+
+    channels: tuple[ChannelSettings, ...]
+    period: Annotated[float, Field(ge=0.0005, le=0.1)] = 0.002
+    host_id: Annotated[int, Field(ge=1, le=127)] = 127
+    host_heartbeat: Seconds = 0.005
+    host_heartbeat_limit: Seconds = 0.020
+    drive_heartbeat: Seconds = 0.050
+    drive_heartbeat_limit: Seconds = 0.200
+    feedback_limit: Annotated[float, Field(gt=0.0, lt=1.0)] = 0.7
+    missing_limit: Annotated[int, Field(ge=1, le=1000)] = 3
+    zero_age: Annotated[int, Field(ge=1, le=1000)] = 4
+    stop_age: Annotated[int, Field(ge=1, le=1000)] = 10
+    transition_limit: Seconds = 0.5
+    sdo_limit: Seconds = 0.3
+
+    @model_validator(mode="after")
+    def _consistent(self) -> MotorDriverSettings:
+        named = [drive for channel in self.channels for drive in channel.drives]
+        if sorted(named) != sorted(ACTUATORS):
+            raise ValueError(f"channels hold the drives {named}; every one of {list(ACTUATORS)} must be there once")
+        if self.host_id <= len(ACTUATORS):
+            raise ValueError(f"host_id {self.host_id} is a drive's node id; limit > {len(ACTUATORS)}")
+        for name in ("host_heartbeat", "drive_heartbeat"):
+            period, limit = getattr(self, name), getattr(self, f"{name}_limit")
+            if limit < 2.0 * period:
+                raise ValueError(f"{name}_limit {limit:g} s trips on one lost heartbeat; limit >= {2.0 * period:g} s")
+        if self.stop_age <= self.zero_age:
+            raise ValueError(f"stop_age {self.stop_age} is not above zero_age {self.zero_age}")
+        return self
+
+    @classmethod
+    def checked(cls, **values: object) -> MotorDriverSettings:
+        """Return validated settings.
+
+        Raises:
+            ConfigurationError: a value is out of range, unknown or inconsistent with another.
+        """
+        try:
+            return cls.model_validate(values)
+        except ValidationError as error:
+            where = "; ".join(f"{'.'.join(map(str, e['loc'])) or 'settings'}: {e['msg']}" for e in error.errors())
+            raise ConfigurationError(f"motor driver settings: {where}", remedy="correct the settings") from error
+
+    def budgets(self) -> list[ChannelBudget]:
+        """Return the bus-load budget of every channel; raise BusLoadError when one is overloaded."""
+        heartbeats = 1.0 / self.host_heartbeat + max(len(c.drives) for c in self.channels) / self.drive_heartbeat
+        return check_budget([len(channel.drives) for channel in self.channels], 1.0 / self.period, heartbeats)
+
+
+def default_settings(
+    period: float = 0.002, links: Sequence[str] | None = None, kind: str = "local"
+) -> MotorDriverSettings:
+    """Return the layout the bus-load budget asks for: two channels (3, 2), or three (2, 2, 1) above 600 Hz.
+
+    Args:
+        period: control period, s.
+        links: one link specification per channel; by default `<kind>:drives0`, `<kind>:drives1`, ...
+        kind: kind of the default links.
+    """
+    layout = (ACTUATORS[:3], ACTUATORS[3:]) if period >= 1.0 / 600.0 else (ACTUATORS[:2], ACTUATORS[2:4], ACTUATORS[4:])
+    names = tuple(links) if links is not None else tuple(f"{kind}:drives{i}" for i in range(len(layout)))
+    if len(names) != len(layout):
+        remedy = "name one link per channel or configure the channels"
+        raise ConfigurationError("number of links", value=len(names), limit=len(layout), remedy=remedy)
+    channels = [{"link": name, "drives": drives} for name, drives in zip(names, layout, strict=True)]
+    return MotorDriverSettings.checked(channels=channels, period=period)
