@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import asdict, dataclass
 
+import numpy as np
+from numpy.typing import NDArray
 from sher3_description import Robot
 
 PAUSE_NS = 250_000_000
@@ -61,3 +63,19 @@ class GapCounter:
     def counts(self) -> dict[str, int]:
         """Return the counts as plain data."""
         return {key: value for key, value in asdict(self).items() if key not in ("period", "last")}
+
+
+def count_gaps(stamp: NDArray[np.int64], period: int | None) -> GapCounter:
+    """Return what a `GapCounter` that sees these stamps counts, for a recorded stream at once."""
+    counter = GapCounter(period, messages=len(stamp))
+    highest = np.maximum.accumulate(stamp) if len(stamp) else stamp
+    disordered = np.r_[False, stamp[1:] <= highest[:-1]] if len(stamp) else np.zeros(0, bool)
+    counter.disordered = int(disordered.sum())
+    step = np.diff(stamp[~disordered])
+    counter.longest = int(step.max(initial=0))
+    counter.last = int(highest[-1]) if len(stamp) else None
+    if period is not None:
+        pause = step > max(PAUSE_NS, 3 * period)
+        counter.pauses = int(pause.sum())
+        counter.dropped = int((np.rint(step[~pause] / period).astype(np.int64) - 1).sum())
+    return counter

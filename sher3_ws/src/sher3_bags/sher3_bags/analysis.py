@@ -1,0 +1,232 @@
+"""Figures of one run: tip path, force against velocity, tracking per axis, timing per topic."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+from sher3_description import ACTUATORS, Robot, load_robot
+
+from sher3_bags.run import Run
+from sher3_bags.statistics import common, smooth
+from sher3_bags.timing import TopicTiming, topic_timing
+
+_SMOOTHING = 0.02
+"""Force and tip velocity are averaged over this many s: encoder steps dominate a single period's difference."""
+
+
+@dataclass(frozen=True)
+class AxisError:
+    """Error of one actuator in m or rad, or in m/s or rad/s."""
+
+    actuator: str
+    unit: str
+    mean: float
+    rms: float
+    max: float
+
+
+@dataclass(frozen=True)
+class TipPath:
+    """Path of the tip in {b}: length and largest speed, extent per axis; m, m/s."""
+
+    length: float
+    extent: tuple[float, float, float]
+    max_speed: float
+
+
+@dataclass(frozen=True)
+class ForceVelocity:
+    """How the tip moves with the force while the pedal is pressed.
+
+    Attributes:
+        gain: least-squares slope of velocity on force, (m/s)/N.
+        correlation: of the two, -1 to 1.
+        samples: used.
+        max_force: N, tared.
+    """
+
+    gain: float
+    correlation: float
+    samples: int
+    max_force: float
+
+
+@dataclass(frozen=True)
+class Analysis:
+    """Figures of a run; parts that need a topic the run lacks are None or empty.
+
+    Attributes:
+        source: path of the bag.
+        duration: s between first and last stamp.
+        topics: timing by topic.
+        position_tracking: setpoint_js against measured_js (load encoder).
+        velocity_tracking: drives/setpoint_jv against the motor velocity.
+        tip: path by measured_cp.
+        tracker_rms: distance of the tracker from measured_cp, rms in m.
+        force_velocity: see there.
+        recorder_drops: samples the recorder missed, by topic, as it counted them.
+    """
+
+    source: str
+    duration: float
+    topics: dict[str, TopicTiming]
+    position_tracking: tuple[AxisError, ...]
+    velocity_tracking: tuple[AxisError, ...]
+    tip: TipPath | None
+    tracker_rms: float | None
+    force_velocity: ForceVelocity | None
+    recorder_drops: dict[str, int]
+
+    @property
+    def dropped(self) -> int:
+        """Samples missing on the grid, all topics."""
+        return sum(timing.dropped for timing in self.topics.values())
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the figures as plain data."""
+        return {**asdict(self), "dropped": self.dropped}
+
+
+def analyse(run: Run, robot: Robot | None = None) -> Analysis:
+    """Compute the figures of a run; `robot` is by default the one attached to the bag, else the nominal one.
+
+    Raises:
+        InvalidRobot: the attached robot.yaml is not valid.
+    """
+    if robot is None:
+        robot = Robot.from_yaml(run.robot_yaml) if run.robot_yaml else load_robot()
+    return Analysis(
+        source=str(run.path or ""),
+        duration=(run.end - run.start) * 1e-9,
+        topics=topic_timing(run, robot),
+        position_tracking=_tracking(run, robot, "setpoint_js", "measured_js", "position"),
+        velocity_tracking=_tracking(run, robot, "drives/setpoint_jv", "drives/measured_js", "velocity"),
+        tip=_tip(run),
+        tracker_rms=_tracker_rms(run),
+        force_velocity=_force_velocity(run, robot),
+        recorder_drops=_recorder_drops(run),
+    )
+
+
+def tracking_error(run: Run, wanted: str, measured: str, column: str) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    """Return stamps (n,) and wanted minus measured (n, 5) at the stamps both topics have."""
+    if wanted not in run or measured not in run:
+        return np.empty(0, np.int64), np.empty((0, len(ACTUATORS)))
+    a, b = run[wanted], run[measured]
+    if getattr(a, column) is None or getattr(b, column) is None:
+        return np.empty(0, np.int64), np.empty((0, len(ACTUATORS)))
+    rows_a, rows_b = common(a.stamp, b.stamp)
+    return a.stamp[rows_a], getattr(a, column)[rows_a] - getattr(b, column)[rows_b]
+
+
+def _tracking(run: Run, robot: Robot, wanted: str, measured: str, column: str) -> tuple[AxisError, ...]:
+    _, error = tracking_error(run, wanted, measured, column)
+    error = error[np.isfinite(error).all(axis=1)]
+    if not len(error):
+        return ()
+    per = "/s" if column == "velocity" else ""
+    return tuple(
+        AxisError(
+            actuator.name,
+            ("rad" if actuator.kind == "revolute" else "m") + per,
+            float(e.mean()),
+            float(np.sqrt(np.mean(e**2))),
+            float(np.abs(e).max()),
+        )
+        for actuator, e in zip(robot.actuators, error.T, strict=True)
+    )
+
+
+def _tip(run: Run) -> TipPath | None:
+    if "measured_cp" not in run or len(run["measured_cp"]) < 2:
+        return None
+    position = run["measured_cp"].position
+    step = np.linalg.norm(np.diff(position, axis=0), axis=1)
+    x, y, z = np.ptp(position, axis=0).tolist()
+    return TipPath(float(step.sum()), (x, y, z), float(np.linalg.norm(tip_velocity(run), axis=1).max()))
+
+
+def tip_velocity(run: Run) -> NDArray[np.float64]:
+    """Return the tip velocity (n, 3) in {b} at the stamps of measured_cp, m/s, averaged over 20 ms."""
+    table = run["measured_cp"]
+    seconds = table.seconds()
+    if len(table) < 2 or not (np.diff(seconds) > 0).all():
+        return np.zeros((len(table), 3))
+    width = max(1, round(_SMOOTHING / float(np.median(np.diff(seconds)))))
+    return smooth(np.gradient(table.position, seconds, axis=0), width)
+
+
+def force_in_base(run: Run) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.bool_]]:
+    """Return stamps (n,), force (n, 3) in {b} and whether the pedal is pressed (n,).
+
+    {f} is parallel to {t}, so the rotation of measured_cp applies. The force is tared by its median with the pedal
+    released (by its first sample when it never is) and averaged over 20 ms.
+    """
+    force, pose, pedal = run["force/measured_cf"], run["measured_cp"], run["pedal/measured"]
+    rows_f, rows_p = common(force.stamp, pose.stamp)
+    stamp = force.stamp[rows_f]
+    held = np.clip(np.searchsorted(pedal.stamp, stamp, side="right") - 1, 0, None)
+    pressed = pedal.axes[held, 0] > 0.0
+    orientation = Rotation.from_quat(pose.orientation[rows_p])
+    base = orientation.apply(force.force[rows_f])
+    base -= np.median(base[~pressed], axis=0) if (~pressed).any() else base[0]
+    width = max(1, round(_SMOOTHING / float(np.median(np.diff(stamp)) * 1e-9))) if len(stamp) > 1 else 1
+    return stamp, smooth(base, width), pressed
+
+
+def force_and_velocity(run: Run) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
+    """Return tared force (m, 3) and tip velocity (m, 3) in {b} while the pedal is pressed; None without the topics."""
+    if not all(topic in run for topic in ("force/measured_cf", "measured_cp", "pedal/measured")):
+        return None
+    stamp, force, pressed = force_in_base(run)
+    if pressed.sum() < 2:
+        return None
+    rows, _ = common(run["measured_cp"].stamp, stamp)
+    return force[pressed], tip_velocity(run)[rows][pressed]
+
+
+def _force_velocity(run: Run, robot: Robot) -> ForceVelocity | None:
+    pair = force_and_velocity(run)
+    if pair is None:
+        return None
+    force, velocity = pair
+    # The law is straight only above its deadband: v = gain (F - deadband).
+    size = np.linalg.norm(force, axis=1, keepdims=True)
+    above = force * np.clip(1 - robot.admittance.force_deadband / np.maximum(size, 1e-12), 0, None)
+    power = float((above**2).sum())
+    norm = np.sqrt(power * float((velocity**2).sum()))
+    product = float((above * velocity).sum())
+    return ForceVelocity(
+        gain=product / power if power else 0.0,
+        correlation=product / norm if norm else 0.0,
+        samples=len(force),
+        max_force=float(size.max()),
+    )
+
+
+def _tracker_rms(run: Run) -> float | None:
+    if "tracker/measured_cp" not in run or "measured_cp" not in run:
+        return None
+    tracker, pose = run["tracker/measured_cp"], run["measured_cp"]
+    a, b = common(tracker.stamp, pose.stamp)
+    if not len(a):
+        return None
+    return float(np.sqrt(((tracker.position[a] - pose.position[b]) ** 2).sum(axis=1).mean()))
+
+
+def _recorder_drops(run: Run) -> dict[str, int]:
+    record = run.records.get("sher3.recording", {})
+    return {topic: int(json.loads(entry)["dropped"]) for topic, entry in record.items()}
+
+
+def analyse_bag(path: str | Path) -> Analysis:
+    """Read a bag as it is, damaged stamps and values included, and compute its figures."""
+    from sher3_bags.reading import read_run
+
+    return analyse(read_run(path, check=False))

@@ -1,0 +1,40 @@
+"""Small summaries of samples, and the matching of streams by stamp."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True)
+class Spread:
+    """Median, 99th percentile and maximum of a quantity, in its unit."""
+
+    p50: float
+    p99: float
+    max: float
+
+    @classmethod
+    def of(cls, values: NDArray[Any]) -> Spread | None:
+        """Return the spread of finite values, None when there are none."""
+        finite = values[np.isfinite(values)]
+        if not len(finite):
+            return None
+        p50, p99 = np.percentile(finite, [50, 99])
+        return cls(float(p50), float(p99), float(finite.max()))
+
+
+def common(a: NDArray[np.int64], b: NDArray[np.int64]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Return the rows of a and of b that bear the same stamps, in order of the stamps."""
+    _, rows_a, rows_b = np.intersect1d(a, b, return_indices=True)
+    return rows_a, rows_b
+
+
+def smooth(values: NDArray[np.float64], width: int) -> NDArray[np.float64]:
+    """Return the moving average of (n, k) values over `width` rows, without lag; the ends average what there is."""
+    kernel = np.ones(width)
+    weight = np.convolve(np.ones(len(values)), kernel, "same")
+    return np.stack([np.convolve(column, kernel, "same") / weight for column in values.T], axis=1)
