@@ -5,8 +5,12 @@ from .errors import BadInput as BadInput
 from .errors import OutsideLimits as OutsideLimits
 from .errors import Singular as Singular
 from .errors import Unreachable as Unreachable
+from .inverse_velocity import InverseVelocity as InverseVelocity
+from .inverse_velocity import LimitedVelocity as LimitedVelocity
 from .kernel_parameters import KernelParameters as KernelParameters
 from .kernel_parameters import kernel_parameters as kernel_parameters
+from .remote_centre import RemoteCentre as RemoteCentre
+from .remote_centre import ShaftPoint as ShaftPoint
 from .robot_kinematics import RobotKinematics as RobotKinematics
 from .robot_kinematics import SingularityDistance as SingularityDistance
 from .tilt_linkage import TiltLinkage as TiltLinkage
