@@ -97,12 +97,12 @@ class RobotKinematics:
 
     def _require_angles(self, q: Floats, axis: Floats) -> None:
         """Refuse roll or tilt angles beyond the actuators' travel, naming the angles rather than slider positions."""
+        low, high = (self.tilt_linkage.angle(float(end)) for end in (self.lower[4], self.upper[4]))
+        if not self._lower[4] <= q[4] <= self._upper[4]:
+            raise self._angle_error("tilt", math.asin(max(-1.0, min(1.0, -axis[0]))), low, high)
         zero = self.parameters.zero_4
         if not self._lower[3] <= q[3] <= self._upper[3]:
             raise self._angle_error("roll", q[3] + zero, self.lower[3] + zero, self.upper[3] + zero)
-        low, high = (self.tilt_linkage.angle(float(end)) for end in (self.lower[4], self.upper[4]))
-        if math.isnan(q[4]) or not self._lower[4] <= q[4] <= self._upper[4]:
-            raise self._angle_error("tilt", math.asin(max(-1.0, min(1.0, -axis[0]))), low, high)
 
     def _angle_error(self, part: str, angle: float, low: float, high: float) -> Unreachable:
         distance, limit = max(low - angle, angle - high), f"{low:.6g} to {high:.6g}"
