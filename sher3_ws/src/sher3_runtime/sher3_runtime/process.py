@@ -13,19 +13,21 @@ import os
 import signal
 import socket
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 
 import rclpy
+from rclpy.executors import Executor
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 from sher3_description import Sher3Error
 
 from .ports import clock_of, ports
-from .spinning import close, spin
+from .spinning import spin
 
 REALTIME_VARIABLE = "SHER3_REALTIME"
 CONTROL_VARIABLE = "SHER3_CONTROL_FD"
+NEVER_NS = 1 << 62
 _PR_SET_PDEATHSIG = 1
 
 
@@ -44,16 +46,9 @@ def run(make_nodes: Callable[[], Sequence[Node]]) -> None:
     use_realtime(int(os.environ.get(REALTIME_VARIABLE) or 0))
     rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
     stop = stop_on_signals()
-    nodes: Sequence[Node] = ()
     try:
-        try:
-            nodes = make_nodes()
-            if control is not None:
-                _meet(nodes, control)
-        except BaseException:
-            close(nodes)
-            raise
-        spin(nodes, stop=stop)
+        nodes = make_nodes()
+        spin(nodes, stop=stop, meet=None if control is None else Barrier(nodes, control, stop))
     except Exception as error:
         if control is not None:
             with suppress(OSError):
@@ -78,7 +73,7 @@ def die_with_parent() -> None:
 
 
 def use_realtime(priority: int) -> bool:
-    """Put this process under SCHED_FIFO; threads started later (the middleware's) inherit it. Return whether it worked."""
+    """Put this process under SCHED_FIFO, and the middleware's later threads with it; return whether it worked."""
     if priority <= 0:
         return False
     try:
@@ -102,29 +97,71 @@ def _control_socket() -> socket.socket | None:
     return socket.socket(fileno=int(number)) if number else None
 
 
-def _send(control: socket.socket, data: dict[str, object]) -> None:
+def _send(control: socket.socket, data: Mapping[str, object]) -> None:
     control.sendall(json.dumps(data).encode() + b"\n")
 
 
-def _meet(nodes: Sequence[Node], control: socket.socket, patience: float = 30.0) -> None:
-    """Take part in the start barrier."""
-    publishers = [(name, pub) for node in nodes for name, pub in ports(node).publishers.items()]
-    subscribers = [(name, sub) for node in nodes for name, sub in ports(node).subscriptions.items()]
-    _send(control, {"publishes": [name for name, _ in publishers], "subscribes": [name for name, _ in subscribers]})
-    control.settimeout(patience)
-    answers = control.makefile("r")
-    expected = json.loads(answers.readline() or "{}")
-    deadline = time.monotonic() + patience
-    missing = ["everything"]
-    while missing:
-        missing = [n for n, p in publishers if p.get_subscription_count() < expected["subscribers"].get(n, 0)]
-        missing += [n for n, s in subscribers if s.handle.get_publisher_count() < expected["publishers"].get(n, 0)]
-        if time.monotonic() > deadline:
+class Barrier:
+    """The part of this process in the start barrier; files and services are served meanwhile, ticks wait.
+
+    Args:
+        nodes: of this process.
+        control: socket to the supervising process.
+        stop: true when the process has been told to stop.
+        patience: seconds to wait for the others.
+    """
+
+    def __init__(
+        self, nodes: Sequence[Node], control: socket.socket, stop: Callable[[], bool], patience: float = 60.0
+    ) -> None:
+        self._nodes, self._control, self._stop = nodes, control, stop
+        self._deadline = time.monotonic() + patience
+        self._buffer = b""
+
+    def __call__(self, executor: Executor) -> None:
+        """Meet the others.
+
+        Raises:
+            NotStarted: partners are missing at the end of the patience.
+        """
+        for node in self._nodes:
+            clock_of(node).start_ns = NEVER_NS
+        publishers = [(name, pub) for node in self._nodes for name, pub in ports(node).publishers.items()]
+        subscribers = [(name, sub) for node in self._nodes for name, sub in ports(node).subscriptions.items()]
+        offer = {"publishes": [name for name, _ in publishers], "subscribes": [name for name, _ in subscribers]}
+        _send(self._control, offer)
+        self._control.setblocking(False)
+        expected = self._receive(executor)
+        missing = ["anyone"] if expected else []
+        while missing and not self._stop():
+            missing = [n for n, p in publishers if p.get_subscription_count() < expected["subscribers"].get(n, 0)]
+            missing += [n for n, s in subscribers if s.handle.get_publisher_count() < expected["publishers"].get(n, 0)]
+            self._spin(executor, f"partners on {', '.join(sorted(set(missing)))}")
+        _send(self._control, {"matched": True})
+        start = self._receive(executor)
+        for node in self._nodes:
+            clock_of(node).start_ns = start.get("start_ns", NEVER_NS)
+            for tick in ports(node).ticks:
+                tick.schedule()
+        executor.wake()
+
+    def _receive(self, executor: Executor) -> dict:
+        """Return the next line of the supervising process, or an empty one when this process has to stop."""
+        while not self._stop():
+            with suppress(BlockingIOError):
+                chunk = self._control.recv(65536)
+                if not chunk:
+                    raise NotStarted("the supervising process is gone")
+                self._buffer += chunk
+            line, found, self._buffer = self._buffer.partition(b"\n")
+            if found:
+                return json.loads(line)
+            self._buffer = line
+            self._spin(executor, "a word of the supervising process")
+        return {}
+
+    def _spin(self, executor: Executor, awaited: str) -> None:
+        executor.spin_once(0.002)
+        if time.monotonic() > self._deadline:
             remedy = "check that nothing filters UDP on the loopback interface"
-            raise NotStarted("partners not found on", value=sorted(set(missing)), limit=f"{patience} s", remedy=remedy)
-        time.sleep(0.002)
-    _send(control, {"matched": True})
-    start = json.loads(answers.readline() or "{}")
-    for node in nodes:
-        clock_of(node).start_ns = start["start_ns"]
-    control.settimeout(None)
+            raise NotStarted(f"waited in vain for {awaited}", remedy=remedy)

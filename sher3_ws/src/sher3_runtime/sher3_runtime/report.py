@@ -32,7 +32,7 @@ def report_statistics(node: Node) -> None:
 
 
 def _reports(name: str, statistics: Statistics) -> Iterator[DiagnosticSample | None]:
-    """Yield one piece of work at a time: None, and a finished report every `STEPS` times (more if there is more to say)."""
+    """Do one piece of work at a time: yield None, and every `STEPS` times or more a finished report."""
     before = 0
     while True:
         pairs = []

@@ -26,28 +26,35 @@ def make_executor(nodes: Iterable[Node], context: Any = None) -> Executor:
     return executor
 
 
-def spin(nodes: Sequence[Node], *, stop: Callable[[], object] = bool, diagnostics: bool = True) -> None:
+def spin(
+    nodes: Sequence[Node],
+    *,
+    stop: Callable[[], object] = bool,
+    meet: Callable[[Executor], None] | None = None,
+    diagnostics: bool = True,
+) -> None:
     """Run `nodes` until `stop()` or shutdown; then close them, while they can still publish.
 
     Args:
         nodes: of one context. A node's `close()`, where it has one, is called at the end, even after an exception.
         stop: asked at every spin; true ends it.
+        meet: called once with the executor before the first tick (the start barrier).
         diagnostics: publish each node's statistics at 1 Hz on `/diagnostics`.
 
     Raises:
         Exception: whatever a callback raises.
     """
-    if not nodes:
-        return
-    set_timer_slack()
-    if diagnostics:
-        for node in nodes:
-            report_statistics(node)
-    executor = make_executor(nodes, nodes[0].context)
-    # What exists now lives to the end; a collection during the run must not walk through it.
-    gc.collect()
-    gc.freeze()
+    executor = None
     try:
+        set_timer_slack()
+        for node in nodes if diagnostics else ():
+            report_statistics(node)
+        executor = make_executor(nodes, nodes[0].context)
+        # What exists now lives to the end; a collection during the run must not walk through it.
+        gc.collect()
+        gc.freeze()
+        if meet is not None:
+            meet(executor)
         if isinstance(executor, BaselineExecutor):
             executor.start()
         while nodes[0].context.ok() and not stop():
