@@ -10,9 +10,8 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from numba import njit
-
 from .axis_lock import apply_lock
+from .compiled import compiled
 from .deadband import deadband
 from .limits import ZERO_TWIST, Twist, approach, limit_change, limit_twist
 from .low_pass import LowPass, low_pass_step
@@ -131,7 +130,7 @@ def initial_state() -> LawState:
     return LawState(-1, False, False, z, z, ZERO_TWIST, 0.0, 0.0, 0.0, -1, NO_WRENCH, 0)
 
 
-@njit(cache=True)
+@compiled
 def _objection(i: LawInput, previous_stamp: int, repeats: int, p: LawParameters) -> Reason:
     """Return the first thing that forbids motion whatever the pedal does, the most severe first."""
     if previous_stamp >= 0 and not (0 < i.stamp - previous_stamp <= p.wrench_age_limit):
@@ -167,7 +166,7 @@ def _objection(i: LawInput, previous_stamp: int, repeats: int, p: LawParameters)
     return Reason.MOVING
 
 
-@njit(cache=True)
+@compiled
 def _count_repeats(s: LawState, i: LawInput) -> int:
     """Count bit-identical neighbours among new samples; a sample seen twice is no evidence."""
     if i.wrench_stamp == s.wrench_stamp:
@@ -175,7 +174,7 @@ def _count_repeats(s: LawState, i: LawInput) -> int:
     return s.repeats + 1 if same_wrench(i.wrench, s.wrench) else 0
 
 
-@njit(cache=True)
+@compiled
 def requested_twist(wrench: Wrench, linear: float, angular: float, lock: int, p: LawParameters) -> Twist:
     """Return the capped twist in {t} for a filtered wrench at the tip.
 
@@ -192,7 +191,7 @@ def requested_twist(wrench: Wrench, linear: float, angular: float, lock: int, p:
     return limit_twist(apply_lock(twist, lock), p.linear_limit, p.angular_limit)
 
 
-@njit(cache=True)
+@compiled
 def _filter(x: Wrench, s1: Wrench, s2: Wrench, c: LowPass) -> tuple[Wrench, Wrench, Wrench]:
     y0, a0, b0 = low_pass_step(c, x[0], s1[0], s2[0])
     y1, a1, b1 = low_pass_step(c, x[1], s1[1], s2[1])
@@ -203,7 +202,7 @@ def _filter(x: Wrench, s1: Wrench, s2: Wrench, c: LowPass) -> tuple[Wrench, Wren
     return (y0, y1, y2, y3, y4, y5), (a0, a1, a2, a3, a4, a5), (b0, b1, b2, b3, b4, b5)
 
 
-@njit(cache=True)
+@compiled
 def _stopped(s: LawState, i: LawInput, armed: bool, pressed: bool, repeats: int) -> LawState:
     """Return the state of a law at rest: filter empty, live parameters taken over at once, since nothing moves."""
     zero, still = ZERO_WRENCH, ZERO_TWIST
@@ -213,13 +212,13 @@ def _stopped(s: LawState, i: LawInput, armed: bool, pressed: bool, repeats: int)
     )
 
 
-@njit(cache=True)
+@compiled
 def _rotated_contact(i: LawInput, p: LawParameters) -> tuple[Wrench, Rotation]:
     rotation = tip_rotation(i.roll, i.tilt)
     return contact_wrench(i.wrench, rotation, p.tool_mass, p.tool_com, i.bias), rotation
 
 
-@njit(cache=True)
+@compiled
 def step(s: LawState, i: LawInput, p: LawParameters) -> tuple[LawState, LawOutput]:
     """Run one tick of the law; a recording of its inputs gives the recorded twists bit for bit."""
     repeats = _count_repeats(s, i)

@@ -2,8 +2,7 @@
 
 from enum import IntEnum
 
-from numba import njit
-
+from .compiled import compiled
 from .limits import Twist
 
 
@@ -16,7 +15,7 @@ class AxisLock(IntEnum):
     NEEDLE = 3
 
 
-@njit(cache=True)
+@compiled
 def apply_lock(twist: Twist, lock: int) -> Twist:
     """Project a tip twist in {t}: translation, rotation about the tip, or motion along the needle (z of {t}) only."""
     x, y, z, u, v, w = twist

@@ -1,9 +1,9 @@
 """Continuous dead band: zero motion at zero force, and no step where motion begins."""
 
-from numba import njit
+from .compiled import compiled
 
 
-@njit(cache=True)
+@compiled
 def deadband(x: float, width: float) -> float:
     """Return x shortened by `width` towards zero (same unit as x): continuous, odd, monotone, |result| <= |x|."""
     if x > width:

@@ -6,7 +6,7 @@ Joint limits and braking before joint and workspace ends are part of the inverse
 import math
 from typing import TypeAlias
 
-from numba import njit
+from .compiled import compiled
 
 Twist: TypeAlias = tuple[float, float, float, float, float, float]
 """Linear [m/s] and angular [rad/s] velocity of one frame."""
@@ -14,7 +14,7 @@ Twist: TypeAlias = tuple[float, float, float, float, float, float]
 ZERO_TWIST: Twist = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
-@njit(cache=True)
+@compiled
 def _scale(twist: Twist, linear_limit: float, angular_limit: float) -> float:
     v = math.sqrt(twist[0] * twist[0] + twist[1] * twist[1] + twist[2] * twist[2])
     w = math.sqrt(twist[3] * twist[3] + twist[4] * twist[4] + twist[5] * twist[5])
@@ -26,14 +26,14 @@ def _scale(twist: Twist, linear_limit: float, angular_limit: float) -> float:
     return s
 
 
-@njit(cache=True)
+@compiled
 def limit_twist(twist: Twist, linear_limit: float, angular_limit: float) -> Twist:
     """Scale a twist as a whole, parallel to the request, until both norms keep their limits [m/s], [rad/s]."""
     s = _scale(twist, linear_limit, angular_limit)
     return (twist[0] * s, twist[1] * s, twist[2] * s, twist[3] * s, twist[4] * s, twist[5] * s)
 
 
-@njit(cache=True)
+@compiled
 def limit_change(twist: Twist, previous: Twist, linear_step: float, angular_step: float) -> Twist:
     """Move from `previous` straight towards `twist`, by at most `linear_step` [m/s] and `angular_step` [rad/s]."""
     change = (
@@ -57,7 +57,7 @@ def limit_change(twist: Twist, previous: Twist, linear_step: float, angular_step
     )
 
 
-@njit(cache=True)
+@compiled
 def approach(value: float, target: float, rise: float, fall: float) -> float:
     """Move `value` towards `target` by at most `rise` upwards or `fall` downwards; lands on the target exactly."""
     if target > value + rise:

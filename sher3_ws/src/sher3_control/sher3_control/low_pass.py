@@ -10,7 +10,7 @@ import cmath
 import math
 from typing import NamedTuple
 
-from numba import njit
+from .compiled import compiled
 
 
 class LowPass(NamedTuple):
@@ -46,7 +46,7 @@ def design_low_pass(cutoff: float, period: float) -> LowPass:
     return LowPass(b0, 2.0 * b0, b0, 2.0 * (k * k - 1.0) * norm, (1.0 - math.sqrt(2.0) * k + k * k) * norm, period)
 
 
-@njit(cache=True)
+@compiled
 def low_pass_step(c: LowPass, x: float, s1: float, s2: float) -> tuple[float, float, float]:
     """Filter one sample; return the output and the two new states."""
     y = c.b0 * x + s1

@@ -1,9 +1,9 @@
 """The foot pedal as a velocity factor from 0 to 1, with dead band and hysteresis."""
 
-from numba import njit
+from .compiled import compiled
 
 
-@njit(cache=True)
+@compiled
 def pedal_pressed(travel: float, was_pressed: bool, press: float, release: float) -> bool:
     """Return whether the pedal counts as pressed; between `release` and `press` [1] it keeps its former state."""
     if was_pressed:
@@ -11,7 +11,7 @@ def pedal_pressed(travel: float, was_pressed: bool, press: float, release: float
     return travel >= press
 
 
-@njit(cache=True)
+@compiled
 def pedal_factor(travel: float, pressed: bool, release: float, binary: bool) -> float:
     """Return the velocity factor: 0 when released, else 1 (binary) or the travel beyond the dead band (proportional).
 

@@ -6,17 +6,18 @@ qd_cmd(k) = qd_ref(k) + position_gain * (q_ref(k) - q_load(k)), then each axis c
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from .compiled import compiled
 
-@njit(cache=True)
+
+@compiled
 def position_law(q_ref: float, qd_ref: float, q_load: float, gain: float, limit: float) -> float:
     """Return the commanded velocity of one axis [m/s or rad/s] for finite inputs; callable from compiled code."""
     return min(max(qd_ref + gain * (q_ref - q_load), -limit), limit)
 
 
-@njit(cache=True)
+@compiled
 def position_command(
     q_ref: tuple[float, ...],
     qd_ref: tuple[float, ...],

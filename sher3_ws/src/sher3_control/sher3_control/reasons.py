@@ -24,13 +24,12 @@ class Reason(IntEnum):
     JOINTS_MISSING = 30
     JOINTS_STALE = 31
     JOINTS_NOT_FINITE = 32
-    JOINTS_OUT_OF_RANGE = 33
     CLOCK = 40
     COMMAND_MISSING = 50
     COMMAND_STALE = 51
     COMMAND_NOT_FINITE = 52
     SINGULAR = 60
-    UNREACHABLE = 61
+    OFF_CENTRE = 61
 
 
 TEXT: dict[Reason, str] = {
@@ -52,11 +51,10 @@ TEXT: dict[Reason, str] = {
     Reason.JOINTS_MISSING: "no joint sample has arrived",
     Reason.JOINTS_STALE: "the newest joint sample is too old",
     Reason.JOINTS_NOT_FINITE: "the joint positions hold NaN or infinity",
-    Reason.JOINTS_OUT_OF_RANGE: "a joint position is beyond its limits",
     Reason.CLOCK: "time went backwards or jumped",
     Reason.COMMAND_MISSING: "the owner sends no command",
     Reason.COMMAND_STALE: "the newest command is too old",
     Reason.COMMAND_NOT_FINITE: "the command holds NaN or infinity",
     Reason.SINGULAR: "the robot is singular here",
-    Reason.UNREACHABLE: "the commanded pose cannot be reached",
+    Reason.OFF_CENTRE: "the shaft has left the remote centre",
 }

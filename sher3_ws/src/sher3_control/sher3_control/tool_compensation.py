@@ -7,8 +7,7 @@ the wrench acts ON the tool.
 import math
 from typing import TypeAlias
 
-from numba import njit
-
+from .compiled import compiled
 from .limits import Twist
 from .wrench_check import Wrench
 
@@ -19,20 +18,20 @@ Rotation: TypeAlias = tuple[float, float, float, float, float, float, float, flo
 GRAVITY = 9.81
 
 
-@njit(cache=True)
+@compiled
 def tip_rotation(roll: float, tilt: float) -> Rotation:
     """Return the rotation of {t}, and of {f}, in {b}: Rx(roll) Ry(tilt), angles in rad (contract section 2)."""
     cr, sr, ct, st = math.cos(roll), math.sin(roll), math.cos(tilt), math.sin(tilt)
     return (ct, 0.0, st, sr * st, cr, -sr * ct, -cr * st, sr, cr * ct)
 
 
-@njit(cache=True)
+@compiled
 def cross(a: Vector3, b: Vector3) -> Vector3:
     """Return a x b."""
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
-@njit(cache=True)
+@compiled
 def tool_gravity(rotation: Rotation, mass: float, com: Vector3) -> Wrench:
     """Return the wrench of the tool's weight in {f} (N, N m): `mass` [kg] at `com` [m] in {f}."""
     weight = -mass * GRAVITY
@@ -41,7 +40,7 @@ def tool_gravity(rotation: Rotation, mass: float, com: Vector3) -> Wrench:
     return (force[0], force[1], force[2], torque[0], torque[1], torque[2])
 
 
-@njit(cache=True)
+@compiled
 def contact_wrench(raw: Wrench, rotation: Rotation, mass: float, com: Vector3, bias: Wrench) -> Wrench:
     """Return the raw wrench in {f} less the tool's weight and the bias (N, N m)."""
     g = tool_gravity(rotation, mass, com)
@@ -55,19 +54,19 @@ def contact_wrench(raw: Wrench, rotation: Rotation, mass: float, com: Vector3, b
     )
 
 
-@njit(cache=True)
+@compiled
 def wrench_at_tip(wrench: Wrench, position: Vector3) -> Wrench:
     """Move a wrench from {f}, whose origin lies at `position` [m] in {t}, to the tip; the axes are parallel."""
     moment = cross(position, (wrench[0], wrench[1], wrench[2]))
     return (wrench[0], wrench[1], wrench[2], wrench[3] + moment[0], wrench[4] + moment[1], wrench[5] + moment[2])
 
 
-@njit(cache=True)
+@compiled
 def _rotate(r: Rotation, x: float, y: float, z: float) -> Vector3:
     return (r[0] * x + r[1] * y + r[2] * z, r[3] * x + r[4] * y + r[5] * z, r[6] * x + r[7] * y + r[8] * z)
 
 
-@njit(cache=True)
+@compiled
 def twist_in_base(twist: Twist, rotation: Rotation) -> Twist:
     """Express a twist of the tip, given in {t}, in {b}; the reference point stays the tip."""
     v = _rotate(rotation, twist[0], twist[1], twist[2])

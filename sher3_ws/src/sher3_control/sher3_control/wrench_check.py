@@ -3,21 +3,20 @@
 import math
 from typing import TypeAlias
 
-from numba import njit
-
+from .compiled import compiled
 from .reasons import Reason
 
 Wrench: TypeAlias = tuple[float, float, float, float, float, float]
 """Force [N] and torque [N m] of one frame."""
 
 
-@njit(cache=True)
+@compiled
 def same_wrench(a: Wrench, b: Wrench) -> bool:
     """Return whether two finite wrenches agree in all six axes."""
     return a[0] == b[0] and a[1] == b[1] and a[2] == b[2] and a[3] == b[3] and a[4] == b[4] and a[5] == b[5]
 
 
-@njit(cache=True)
+@compiled
 def check_wrench(wrench: Wrench, limit: Wrench, saturation: float) -> Reason:
     """Judge the numbers of one sample against the sensor's range `limit` (N, N m); MOVING means no objection."""
     saturated = False
@@ -34,7 +33,7 @@ def check_wrench(wrench: Wrench, limit: Wrench, saturation: float) -> Reason:
     return Reason.WRENCH_SATURATED if saturated else Reason.MOVING
 
 
-@njit(cache=True)
+@compiled
 def check_age(now: int, stamp: int, age_limit: int, ahead_limit: int, missing: Reason, stale: Reason) -> Reason:
     """Judge the stamp of a sample against the tick `now` [ns].
 

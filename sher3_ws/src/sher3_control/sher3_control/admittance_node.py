@@ -1,0 +1,160 @@
+"""The admittance node: wrench, pedal and joint positions in, `servo_cv` out; all decisions are in `admittance`.
+
+A tick runs as soon as its wrench and, where the pedal keeps the host rate, its pedal sample are there; `LATE` of a
+period after the stamp it runs with what there is.
+"""
+
+from __future__ import annotations
+
+import json
+from typing import Any, cast
+
+import numpy as np
+from rclpy.node import Node
+from sher3_description import Robot, Sher3Error
+from sher3_kinematics import kernel_parameters
+from sher3_runtime import JointSample, JoySample, TextSample, TwistSample, WrenchSample
+from sher3_runtime.ports import NODE_OPTIONS, advertise, clock_of, on_tick, subscribe
+from std_srvs.srv import Trigger
+
+from .admittance import NO_WRENCH, LawInput, initial_state, step
+from .angles import roll_and_tilt
+from .law_parameters import law_parameters, nanoseconds
+from .live_parameters import apply_command, live_parameters, to_json, with_bias
+from .ownership import Mode
+from .reasons import TEXT, Reason
+from .settings import ControlSettings
+from .tare import DriftMonitor, TareWindow
+from .tick_records import AdmittanceRecord, record_text
+from .wrench_check import Wrench
+
+LATE = 0.7
+"""Fraction of the period after which a tick no longer waits for its samples."""
+
+
+class AdmittanceNode(Node):
+    """Cooperative law, live parameters, tare."""
+
+    def __init__(self, robot: Robot, settings: ControlSettings | None = None, **options: Any) -> None:
+        """Take the robot, whose `control_period` is the rate in force, and settings (default: those of the robot)."""
+        super().__init__("admittance", **{**NODE_OPTIONS, **options})
+        self.settings = ControlSettings.from_robot(robot) if settings is None else settings
+        self._p = law_parameters(robot, self.settings)
+        self._kernel = np.array(kernel_parameters(robot))
+        self._state, self._live = initial_state(), live_parameters(self.settings)
+        self._wrench: tuple[int, Wrench] = (-1, NO_WRENCH)
+        self._pedal: tuple[int, float, bool] = (-1, 0.0, False)
+        self._joints: tuple[int, tuple[float, ...], float, float] = (-1, (), 0.0, 0.0)
+        self._enabled = self._owner = False
+        self._tick_count, self._last = 0, -1
+        self._reason: Reason | None = None
+        self._window = TareWindow(robot, self.settings.tare)
+        self._drift = DriftMonitor(self.settings.tare, robot.control_period)
+        self._events: dict[str, Any] = {}
+        self._connect(robot.control_period)
+
+    def _connect(self, period: float) -> None:
+        self._publish_twist = advertise(self, "servo_cv")
+        self._publish_inputs = advertise(self, "admittance/inputs")
+        self._publish_settings = advertise(self, "admittance/settings")
+        self._publish_status = advertise(self, "admittance/status")
+        subscribe(self, "measured_js", self._on_joints)
+        subscribe(self, "pedal/measured", self._on_pedal)
+        subscribe(self, "force/measured_cf", self._on_wrench)
+        subscribe(self, "operating_state", self._on_state)
+        subscribe(self, "motion/status", self._on_motion)
+        subscribe(self, "command/admittance", self._on_command)
+        self.create_service(Trigger, "admittance/tare", self._on_tare)
+        self._now = clock_of(self).now
+        on_tick(self, self._tick, phase=LATE * period)
+        self._publish_settings(TextSample(to_json(self._live, self.settings)))
+
+    def _on_joints(self, sample: JointSample) -> None:
+        q = sample.position
+        if q is not None and len(q) == 5:
+            self._joints = (sample.stamp, q, *roll_and_tilt(self._kernel, q[3], q[4]))
+
+    def _on_pedal(self, sample: JoySample) -> None:
+        travel = sample.axes[0] if sample.axes else -1.0
+        # A pedal box without a stop button cannot say that it is not pressed.
+        self._pedal = (sample.stamp, travel, bool(sample.buttons[0]) if sample.buttons else True)
+        if sample.stamp == self._wrench[0]:
+            self._tick(sample.stamp)
+
+    def _on_wrench(self, sample: WrenchSample) -> None:
+        self._wrench = (sample.stamp, cast(Wrench, sample.wrench))
+        if self._pedal[0] != sample.stamp - self._p.period:
+            self._tick(sample.stamp)
+
+    def _on_state(self, sample: TextSample) -> None:
+        self._enabled = sample.text == "ENABLED"
+
+    def _on_motion(self, sample: TextSample) -> None:
+        self._owner = json.loads(sample.text)["mode"] in (None, Mode.COOPERATIVE.value)
+
+    def _tick(self, stamp: int) -> None:
+        if stamp <= self._last:
+            return
+        self._last = stamp
+        law_input = self._input(stamp)
+        self._state, output = step(self._state, law_input, self._p)
+        if law_input.owner:
+            self._publish_twist(TwistSample(stamp, output.twist))
+        self._record(law_input)
+        joints = self._joints
+        self._window.feed(law_input.wrench_stamp, law_input.wrench, joints[1], joints[2], joints[3])
+        if output.reason is Reason.PEDAL_RELEASED:
+            self._drift.feed(output.wrench)
+        if output.reason is not self._reason:
+            self._reason = output.reason
+            self._drift.reset()
+            self._report()
+
+    def _input(self, stamp: int) -> LawInput:
+        live, pedal, joints, wrench = self._live, self._pedal, self._joints, self._wrench
+        return LawInput(
+            stamp, self._enabled, self._owner, wrench[0], wrench[1], pedal[0], pedal[1], pedal[2],
+            joints[0], joints[2], joints[3],
+            live.speed_scale, live.linear_gain, live.angular_gain, int(live.lock), live.bias,
+        )  # fmt: skip
+
+    def _record(self, i: LawInput) -> None:
+        stamps = (i.stamp, i.wrench_stamp, i.pedal_stamp, i.joints_stamp)
+        record = AdmittanceRecord(self._tick_count, *stamps, int(i.enabled), int(i.owner), self._live.version)
+        self._publish_inputs(TextSample(record_text(record)))
+        self._tick_count += 1
+
+    def _on_command(self, sample: TextSample) -> None:
+        if sample.text.startswith("rcm"):
+            return
+        try:
+            self._live = apply_command(self._live, sample.text, self.settings)
+        except Sher3Error as error:
+            self._report(refused=error.to_dict())
+            return
+        self._publish_settings(TextSample(to_json(self._live, self.settings)))
+        self._report(parameters=self._live._asdict())
+
+    def _on_tare(self, _request: Any, response: Any) -> Any:
+        try:
+            pressed = self._pedal[1] > self.settings.pedal.release
+            limit = nanoseconds(self.settings.wrench.age_limit)
+            result = self._window.tare(pressed, self._now(), limit, self._live.bias)
+        except Sher3Error as error:
+            response.success, response.message = False, str(error)
+            self._report(refused=error.to_dict())
+            return response
+        self._live = with_bias(self._live, result.bias)
+        self._drift.reset()
+        self._publish_settings(TextSample(to_json(self._live, self.settings)))
+        self._report(tare=vars(result))
+        response.success, response.message = True, json.dumps(vars(result))
+        return response
+
+    def _report(self, **event: Any) -> None:
+        """Publish the status; an event stays in it until the next one of its kind."""
+        self._events.update(event)
+        reason = Reason.NOT_ENABLED if self._reason is None else self._reason
+        drift = {"drift": self._drift.drift, "drift_exceeded": self._drift.exceeded()}
+        status = {"reason": reason.name, "text": TEXT[reason], "since": self._last, **drift, **self._events}
+        self._publish_status(TextSample(json.dumps(status, default=str)))

@@ -1,0 +1,102 @@
+"""The velocity modes in actuator space: a tip twist through J, with or without a remote centre."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from sher3_kinematics import InverseVelocity, RobotKinematics
+
+from .errors import SettingsError
+from .limits import ZERO_TWIST
+from .modes import Vector
+from .rcm import rcm_velocity, shaft_deviation
+from .reasons import Reason
+
+Array = NDArray[np.float64]
+
+RESTING: Vector = (0.0, 0.0, 0.0, 0.0, 0.0)
+DEVIATION_LIMIT = 1e-3
+"""A shaft further than this [m] from the remote centre is no longer held by it: the robot stops."""
+CAPTURE_LIMIT = 1e-4
+"""A remote centre is accepted when the shaft passes within this [m]; at the default gain it is pulled in at 1 mm/s."""
+
+
+class Velocity(NamedTuple):
+    """Actuator velocity (5,), why it is zero, what limited it, and the shaft's distance from the remote centre [m]."""
+
+    velocity: Vector
+    reason: Reason
+    limited_by: str
+    deviation: float
+
+
+class VelocityModes:
+    """Tip twists and actuator velocities, limited; pure functions of their arguments and the remote centre.
+
+    Attributes:
+        centre: the remote centre (3,) [m] in {b}, or None.
+    """
+
+    def __init__(self, kinematics: RobotKinematics, gain: float) -> None:
+        self.kinematics = kinematics
+        self.centre: Array | None = None
+        self._gain = gain
+        self._inverse = InverseVelocity(kinematics)
+        self._parameters = np.array(kinematics.parameters)
+
+    def set_centre(self, centre: Vector | None, q: Vector) -> None:
+        """Set the remote centre [m] in {b}, or leave it with None.
+
+        Raises:
+            SettingsError: not finite, or the shaft does not pass through it now.
+        """
+        if centre is None:
+            self.centre = None
+            return
+        if len(centre) != 3 or not math.isfinite(sum(centre)):
+            what = "the remote centre needs three finite coordinates [m]"
+            raise SettingsError(what, value=centre, remedy="correct them")
+        point = np.array(centre)
+        transform = self.kinematics.transform_tip_to_base(q)
+        x, y, _ = shaft_deviation(transform[:3, :3], transform[:3, 3], point)
+        if math.hypot(x, y) > CAPTURE_LIMIT:
+            what = "the shaft passes too far from the remote centre [m]"
+            remedy = "move the needle onto it first, or set it with `rcm here DEPTH`"
+            raise SettingsError(what, value=math.hypot(x, y), limit=CAPTURE_LIMIT, remedy=remedy)
+        self.centre = point
+
+    def centre_behind_tip(self, depth: float, q: Vector) -> Vector:
+        """Return the point of the shaft `depth` [m] behind the tip, in {b}."""
+        transform = self.kinematics.transform_tip_to_base(q)
+        return tuple((transform[:3, 3] + depth * transform[:3, 2]).tolist())
+
+    def from_twist(self, q: Vector, twist: Vector, previous: Vector) -> Velocity:
+        """Return the actuator velocity for a tip twist (6,) in {b}; a zero twist is zero velocity at once."""
+        if twist == ZERO_TWIST:
+            return Velocity(RESTING, Reason.MOVING, "", 0.0)
+        if not math.isfinite(sum(twist)):
+            return Velocity(RESTING, Reason.COMMAND_NOT_FINITE, "", 0.0)
+        if self.centre is None:
+            limited = self._inverse(q, twist, previous)
+            return Velocity(tuple(limited.q_dot.tolist()), Reason.MOVING, limited.limited_by, 0.0)
+        return self._about_centre(q, twist, previous, self.centre)
+
+    def _about_centre(self, q: Vector, twist: Vector, previous: Vector, centre: Array) -> Velocity:
+        period = self._inverse.period
+        try:
+            joints, request = np.array(q), np.array(twist)
+            wanted, deviation = rcm_velocity(self._parameters, joints, request, centre, self._gain, period)
+        except np.linalg.LinAlgError:
+            return Velocity(RESTING, Reason.SINGULAR, "", 0.0)
+        if not deviation <= DEVIATION_LIMIT:
+            return Velocity(RESTING, Reason.OFF_CENTRE, "", deviation)
+        limited = self._inverse.limit(joints, wanted, previous)
+        return Velocity(tuple(limited.q_dot.tolist()), Reason.MOVING, limited.limited_by, deviation)
+
+    def from_joints(self, q: Vector, wanted: Vector, previous: Vector) -> Velocity:
+        """Return the permitted part of an actuator velocity (5,)."""
+        limited = self._inverse.limit(q, wanted, previous)
+        return Velocity(tuple(limited.q_dot.tolist()), Reason.MOVING, limited.limited_by, 0.0)

@@ -1,0 +1,158 @@
+"""The kinematics node: `servo_jv` from the cooperative twist or from a user's command; all decisions are in `motion`.
+
+A cooperative tick runs as soon as `servo_cv` and `measured_js` of its stamp are there, a tick of another mode with
+`measured_js`; `LATE` of a period after the stamp it runs with what there is.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from rclpy.node import Node
+from sher3_description import Robot, Sher3Error
+from sher3_kinematics import kernel_parameters
+from sher3_runtime import JointSample, PoseSample, TextSample, TwistSample
+from sher3_runtime.ports import NODE_OPTIONS, advertise, clock_of, on_tick, subscribe
+
+from .cooperative import RESTING
+from .motion import MotionController, MotionInput, MotionOutput
+from .ownership import MODE_CODES, Mode
+from .pose import tip_pose_sample
+from .rcm_command import apply_rcm_command
+from .reasons import TEXT, Reason
+from .settings import ControlSettings
+from .tick_records import MotionRecord, record_text
+
+LATE = 0.85
+"""Fraction of the period after which a tick no longer waits for its samples; later than the admittance node's."""
+COMMANDS = [mode for mode in Mode if mode is not Mode.COOPERATIVE]
+
+
+class KinematicsNode(Node):
+    """Motion modes with one owner, the host law, the tip pose."""
+
+    def __init__(self, robot: Robot, settings: ControlSettings | None = None, **options: Any) -> None:
+        """Take the robot, whose `control_period` is the rate in force, and settings (default: those of the robot)."""
+        super().__init__("kinematics", **{**NODE_OPTIONS, **options})
+        self.settings = ControlSettings.from_robot(robot) if settings is None else settings
+        self.motion = MotionController(robot, self.settings.motion)
+        self._kernel = np.array(kernel_parameters(robot))
+        self._joints = JointSample(-1, RESTING)
+        self._twist = TwistSample(-1, (0.0,) * 6)
+        self._enabled = False
+        self._tick_count, self._last, self._version = 0, -1, 0
+        self._shown: tuple[Any, ...] = ()
+        self._refused: dict[str, Any] | None = None
+        self._connect(robot.control_period)
+
+    def _connect(self, period: float) -> None:
+        self._publish_velocity = advertise(self, "servo_jv")
+        self._publish_setpoint = advertise(self, "setpoint_js")
+        self._publish_pose = advertise(self, "measured_cp")
+        self._publish_inputs = advertise(self, "motion/inputs")
+        self._publish_settings = advertise(self, "motion/settings")
+        self._publish_status = advertise(self, "motion/status")
+        subscribe(self, "measured_js", self._on_joints)
+        subscribe(self, "servo_cv", self._on_twist)
+        subscribe(self, "operating_state", self._on_state)
+        subscribe(self, "admittance/status", self._on_admittance)
+        subscribe(self, "command/admittance", self._on_rcm)
+        for mode in COMMANDS:
+            subscribe(self, f"command/{mode.value}", self._command(mode))
+        self._now = clock_of(self).now
+        on_tick(self, self._tick, phase=LATE * period)
+        self._report_settings()
+        self._report(Reason.NOT_ENABLED, "")
+
+    def _on_joints(self, sample: JointSample) -> None:
+        if sample.position is None or len(sample.position) != 5:
+            return
+        self._joints = sample
+        cooperative = self.motion.ownership.owner in (None, Mode.COOPERATIVE)
+        if not cooperative or self._twist.stamp == sample.stamp:
+            self._tick(sample.stamp)
+        self._publish_pose(PoseSample(sample.stamp, *tip_pose_sample(self._kernel, sample.position)))
+
+    def _on_twist(self, sample: TwistSample) -> None:
+        self._twist = sample
+        if sample.stamp == self._joints.stamp:
+            self._tick(sample.stamp)
+
+    def _on_state(self, sample: TextSample) -> None:
+        self._enabled = sample.text == "ENABLED"
+
+    def _on_admittance(self, sample: TextSample) -> None:
+        wants = json.loads(sample.text)["reason"] == Reason.MOVING.name
+        self.motion.cooperative_wants(wants and self._enabled, self._now())
+
+    def _input(self, stamp: int) -> MotionInput:
+        joints, twist = self._joints, self._twist
+        return MotionInput(stamp, self._enabled, joints.stamp, joints.position or (), twist.stamp, twist.twist)
+
+    def _tick(self, stamp: int) -> None:
+        if stamp <= self._last:
+            return
+        self._last = stamp
+        state = self._input(stamp)
+        output = self.motion.tick(state)
+        self._publish_velocity(JointSample(stamp, velocity=output.velocity))
+        if output.setpoint is not None:
+            self._publish_setpoint(JointSample(stamp, *output.setpoint))
+        self._record(state, output)
+        self._report(output.reason, output.limited_by)
+
+    def _record(self, i: MotionInput, output: MotionOutput) -> None:
+        mode = MODE_CODES[self.motion.ownership.owner]
+        stamps = (i.stamp, i.joints_stamp, i.twist_stamp)
+        record = MotionRecord(self._tick_count, *stamps, int(i.enabled), mode, int(output.reason), self._version)
+        self._publish_inputs(TextSample(record_text(record)))
+        self._tick_count += 1
+
+    def _command(self, mode: Mode) -> Callable[[Any], None]:
+        topic = f"/sher3/command/{mode.value}"
+
+        def on_command(sample: Any) -> None:
+            try:
+                self.motion.command(mode, sample, self._input(self._now()), self.count_publishers(topic))
+            except Sher3Error as error:
+                self._refuse(error)
+
+        return on_command
+
+    def _on_rcm(self, sample: TextSample) -> None:
+        if not sample.text.startswith("rcm"):
+            return
+        try:
+            apply_rcm_command(self.motion, sample.text, self._joints.position or ())
+        except Sher3Error as error:
+            self._refuse(error)
+            return
+        self._version += 1
+        self._report_settings()
+
+    def _refuse(self, error: Sher3Error) -> None:
+        """Show a refusal; the same one at every sample of a stream is shown once."""
+        shown = {"error": type(error).__name__, "text": str(error)}
+        if self._refused is None or self._refused["text"] != shown["text"]:
+            self._refused = shown
+            self._shown = ()
+
+    def _report_settings(self) -> None:
+        centre = self.motion.velocity_modes.centre
+        rcm = None if centre is None else centre.tolist()
+        data = {"version": self._version, "rcm": rcm, "settings": self.settings.motion.model_dump()}
+        self._publish_settings(TextSample(json.dumps(data)))
+
+    def _report(self, reason: Reason, limited_by: str) -> None:
+        """Publish the status when it changes; the acceleration limit comes and goes too often to be news."""
+        owner = self.motion.ownership.owner
+        shown = (owner, reason, self.motion.busy, "" if limited_by == "acceleration" else limited_by)
+        if shown == self._shown:
+            return
+        self._shown = shown
+        status = {"mode": None if owner is None else owner.value, "since": self.motion.ownership.since}
+        status |= {"reason": reason.name, "text": TEXT[reason], "limited_by": shown[3], "is_busy": shown[2]}
+        self._publish_status(TextSample(json.dumps({**status, "refused": self._refused})))

@@ -1,0 +1,174 @@
+"""The core of the kinematics node: commands in, one owner, one velocity per tick out."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+from sher3_description import Robot
+from sher3_kinematics import RobotKinematics
+from sher3_runtime import PoseSample
+
+from .cooperative import RESTING, VelocityModes
+from .errors import CommandRejected
+from .law_parameters import nanoseconds
+from .limits import ZERO_TWIST
+from .modes import MotionMode, Step, Vector
+from .move_modes import MoveJoints, MoveTip
+from .ownership import Mode, Ownership
+from .pose import tool_axis
+from .position_controller import position_command
+from .reasons import Reason
+from .servo_modes import ServoJointVelocity, ServoPose, ServoPosition, ServoTwist
+from .settings import MotionSettings
+from .wrench_check import check_age
+
+
+class MotionInput(NamedTuple):
+    """Everything one tick depends on besides the queued commands; stamps in ns, -1 where no sample has arrived.
+
+    Attributes:
+        stamp: the tick.
+        enabled: the operating state is ENABLED.
+        joints_stamp, q: newest load-encoder positions (5,).
+        twist_stamp, twist: newest twist of the admittance law (6,).
+    """
+
+    stamp: int
+    enabled: bool
+    joints_stamp: int
+    q: Vector
+    twist_stamp: int
+    twist: Vector
+
+
+class MotionOutput(NamedTuple):
+    """Result of one tick: commanded velocity (5,), reference of a position mode, and why there is no motion."""
+
+    velocity: Vector
+    setpoint: tuple[Vector, Vector] | None
+    reason: Reason
+    limited_by: str = ""
+
+
+class MotionController:
+    """All motion modes of the robot.
+
+    Attributes:
+        ownership: who commands the robot.
+        velocity_modes: twists and actuator velocities, and the remote centre.
+        previous: velocity commanded last (5,).
+    """
+
+    def __init__(self, robot: Robot, settings: MotionSettings) -> None:
+        kinematics = RobotKinematics(robot)
+        self.ownership = Ownership()
+        self.velocity_modes = VelocityModes(kinematics, settings.rcm_gain)
+        self.previous: Vector = RESTING
+        self._gain = robot.position_gain
+        self._limits = tuple(a.limits.velocity for a in robot.actuators)
+        self._age_limit = nanoseconds(settings.joints_age_limit)
+        self._period = nanoseconds(robot.control_period)
+        self._kinematics = kinematics
+        self._modes: dict[Mode, MotionMode] = {
+            Mode.SERVO_JP: ServoPosition(robot, settings),
+            Mode.SERVO_CP: ServoPose(robot, settings, self._inverse),
+            Mode.SERVO_JV: ServoJointVelocity(settings),
+            Mode.SERVO_CV: ServoTwist(settings),
+            Mode.MOVE_JP: MoveJoints(robot, kinematics, settings),
+            Mode.MOVE_CP: MoveTip(robot, kinematics, settings),
+        }
+
+    def _inverse(self, pose: PoseSample) -> Vector:
+        return tuple(self._kinematics.inverse(pose.position, tool_axis(pose.orientation)).tolist())
+
+    @property
+    def busy(self) -> bool:
+        """CRTK is_busy: a move is going on."""
+        owner = self.ownership.owner
+        return owner in self._modes and self._modes[owner].busy
+
+    def command(self, mode: Mode, sample: Any, state: MotionInput, publishers: int = 1) -> None:
+        """Take a user command at the time and state `state`; nothing changes when it is refused.
+
+        Raises:
+            CommandRejected: not enabled, another owner, no joint positions, or the mode's own reason.
+            Sher3Error: the goal is out of reach (errors of the kinematics).
+        """
+        if not state.enabled:
+            raise CommandRejected(mode.value, "the operating state is not ENABLED", remedy="send enable first")
+        reason = self._check_joints(state)
+        if reason is not Reason.MOVING:
+            raise CommandRejected(mode.value, f"no joint positions ({reason.name})", remedy="check the drives")
+        self.ownership.require_free(mode, publishers)
+        self._modes[mode].accept(sample, state.stamp, state.q)
+        self.ownership.claim(mode, state.stamp)
+
+    def cooperative_wants(self, wants: bool, now: int) -> None:
+        """Let the cooperative mode take the free robot while the armed pedal is pressed, and leave it after."""
+        owner = self.ownership.owner
+        if wants and owner is None:
+            self.ownership.claim(Mode.COOPERATIVE, now)
+        elif not wants and owner is Mode.COOPERATIVE:
+            self.ownership.release(now)
+
+    def tick(self, i: MotionInput) -> MotionOutput:
+        """Run one tick; anything to object to is zero velocity now, and ends the mode that owns the robot."""
+        reason = Reason.MOVING if i.enabled else Reason.NOT_ENABLED
+        if reason is Reason.MOVING:
+            reason = self._check_joints(i)
+        if reason is not Reason.MOVING:
+            return self._stop(i.stamp, reason)
+        owner = self.ownership.owner
+        if owner is None or owner is Mode.COOPERATIVE:
+            return self._cooperate(i)
+        step = self._modes[owner].step(i.stamp, i.q)
+        if step.reason is not Reason.MOVING:
+            return self._stop(i.stamp, step.reason)
+        output = self._carry_out(step, i)
+        if output.reason is not Reason.MOVING:
+            return self._stop(i.stamp, output.reason)
+        if step.finished:
+            self.ownership.release(i.stamp)
+        self.previous = output.velocity
+        return output
+
+    def _check_joints(self, i: MotionInput) -> Reason:
+        reason = check_age(
+            i.stamp, i.joints_stamp, self._age_limit, self._period, Reason.JOINTS_MISSING, Reason.JOINTS_STALE
+        )
+        if reason is Reason.MOVING and not (len(i.q) == 5 and math.isfinite(sum(i.q))):
+            return Reason.JOINTS_NOT_FINITE
+        return reason
+
+    def _cooperate(self, i: MotionInput) -> MotionOutput:
+        missing, stale = Reason.COMMAND_MISSING, Reason.COMMAND_STALE
+        reason = check_age(i.stamp, i.twist_stamp, self._age_limit, self._period, missing, stale)
+        if reason is not Reason.MOVING:
+            return self._stop(i.stamp, reason)
+        if self.ownership.owner is None and i.twist != ZERO_TWIST:
+            self.ownership.claim(Mode.COOPERATIVE, i.stamp)
+        result = self.velocity_modes.from_twist(i.q, i.twist, self.previous)
+        self.previous = result.velocity
+        return MotionOutput(result.velocity, None, result.reason, result.limited_by)
+
+    def _carry_out(self, step: Step, i: MotionInput) -> MotionOutput:
+        if step.setpoint is not None:
+            q_ref, qd_ref = step.setpoint
+            velocity = position_command(q_ref, qd_ref, i.q, self._gain, self._limits)
+            return MotionOutput(velocity, step.setpoint, Reason.MOVING)
+        if step.joints is not None:
+            result = self.velocity_modes.from_joints(i.q, step.joints, self.previous)
+        elif step.twist is not None:
+            result = self.velocity_modes.from_twist(i.q, step.twist, self.previous)
+        else:
+            return MotionOutput(RESTING, None, Reason.MOVING)
+        return MotionOutput(result.velocity, None, result.reason, result.limited_by)
+
+    def _stop(self, now: int, reason: Reason) -> MotionOutput:
+        owner = self.ownership.owner
+        if owner in self._modes:
+            self._modes[owner].reset()
+        self.ownership.release(now)
+        self.previous = RESTING
+        return MotionOutput(RESTING, None, reason)

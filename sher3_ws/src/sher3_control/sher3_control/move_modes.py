@@ -1,0 +1,116 @@
+"""The move modes: one goal, a planned motion to it, a short settling, and the robot is handed back."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+from sher3_description import Robot
+from sher3_kinematics import RobotKinematics
+from sher3_runtime import JointSample, PoseSample
+
+from .errors import CommandRejected
+from .law_parameters import nanoseconds
+from .modes import Step, Vector, require_finite, require_timely
+from .pose import tool_axis
+from .settings import MotionSettings
+from .tip_move import plan_tip_move
+from .trajectory import plan_joint_move
+
+Array = NDArray[np.float64]
+
+
+class TimedPath(Protocol):
+    """A planned motion."""
+
+    @property
+    def duration(self) -> float:
+        """Length of the motion [s]."""
+
+    def at(self, t: float) -> tuple[Array, Array]:
+        """Return reference positions and velocities (5,) at `t` [s]."""
+
+
+class _Move:
+    """Follow a plan; finished when the axes are at the goal, or the settling time is over."""
+
+    def __init__(self, name: str, robot: Robot, kinematics: RobotKinematics, settings: MotionSettings) -> None:
+        self.name = name
+        self.busy = False
+        self._kinematics = kinematics
+        self._settings = settings
+        acceleration = settings.acceleration * kinematics.acceleration
+        self._caps = (settings.speed * kinematics.velocity, acceleration, acceleration / settings.ramp_time)
+        self._tolerance = settings.settle_factor * np.array([a.load_encoder for a in robot.actuators])
+        self._timely = nanoseconds(settings.ahead_limit)
+        self._plan: TimedPath | None = None
+        self._start = 0
+
+    def _check(self, stamp: int, now: int) -> None:
+        require_timely(self.name, stamp, now, self._timely, self._timely)
+        if self.busy:
+            raise CommandRejected(self.name, "busy with a former goal", remedy="wait until it is reached, or disable")
+
+    def _begin(self, plan: TimedPath, now: int) -> None:
+        self._plan, self._start, self.busy = plan, now, True
+
+    def step(self, now: int, q: Vector) -> Step:
+        """Return the reference at tick `now` [ns]."""
+        if self._plan is None:
+            return Step(finished=True)
+        t = (now - self._start) * 1e-9
+        position, velocity = self._plan.at(t)
+        setpoint = (tuple(position.tolist()), tuple(velocity.tolist()))
+        late = t - self._plan.duration
+        settled = late >= 0.0 and bool(np.all(np.abs(position - q) <= self._tolerance))
+        finished = settled or late >= self._settings.settle_time
+        if finished:
+            self.reset()
+        return Step(setpoint=setpoint, finished=finished)
+
+    def reset(self) -> None:
+        """Forget the goal."""
+        self._plan, self.busy = None, False
+
+
+class MoveJoints(_Move):
+    """`move_jp`: a synchronised straight line in actuator space."""
+
+    def __init__(self, robot: Robot, kinematics: RobotKinematics, settings: MotionSettings) -> None:
+        super().__init__("move_jp", robot, kinematics, settings)
+
+    def accept(self, command: JointSample, now: int, q: Vector) -> None:
+        """Plan the move from the measured positions.
+
+        Raises:
+            CommandRejected: not finite, unstamped, stale or busy.
+            OutsideLimits, Unreachable: the goal or a place on the way is out of reach.
+        """
+        self._check(command.stamp, now)
+        goal = np.array(require_finite(self.name, command.position, 5, "positions"))
+        self._kinematics.require_within_limits(goal)
+        plan = plan_joint_move(np.array(q), goal, *self._caps)
+        for s in np.linspace(0.0, 1.0, 33):
+            self._kinematics.delta.require(self._kinematics.delta.forward(plan.start[:3] + s * (goal - plan.start)[:3]))
+        self._begin(plan, now)
+
+
+class MoveTip(_Move):
+    """`move_cp`: a straight line of the tip."""
+
+    def __init__(self, robot: Robot, kinematics: RobotKinematics, settings: MotionSettings) -> None:
+        super().__init__("move_cp", robot, kinematics, settings)
+
+    def accept(self, command: PoseSample, now: int, q: Vector) -> None:
+        """Plan the move from the measured positions.
+
+        Raises:
+            CommandRejected: not finite, unstamped, stale, busy, or no unit quaternion.
+            OutsideLimits, Unreachable: the goal or a place on the way is out of reach.
+        """
+        self._check(command.stamp, now)
+        position = np.array(require_finite(self.name, command.position, 3, "coordinates"))
+        axis = tool_axis(require_finite(self.name, command.orientation, 4, "quaternion components"), self.name)
+        speeds = (self._settings.linear_speed, self._settings.angular_speed)
+        self._begin(plan_tip_move(self._kinematics, np.array(q), position, axis, self._caps, *speeds), now)

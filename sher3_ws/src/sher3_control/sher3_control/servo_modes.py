@@ -1,0 +1,187 @@
+"""The servo modes: a stream of commands, each for the tick of its stamp, and a stop when the stream ends."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from typing import Generic, TypeVar
+
+from sher3_description import Robot
+from sher3_runtime import JointSample, PoseSample, TwistSample
+
+from .errors import CommandRejected
+from .law_parameters import nanoseconds
+from .modes import Step, Vector, require_finite, require_timely
+from .reasons import Reason
+from .settings import MotionSettings
+
+C = TypeVar("C")
+Inverse = Callable[[PoseSample], Vector]
+"""Pose inverse: actuator positions (5,) of a tip pose; raises a Sher3Error that names the limit."""
+
+
+class Stream(Generic[C]):
+    """Commands by stamp: at a tick the newest one whose stamp has come is in force, until it is `timeout` ns old."""
+
+    def __init__(self, timeout: int, capacity: int = 2000) -> None:
+        self._waiting: deque[tuple[int, C]] = deque(maxlen=capacity)
+        self.timeout = timeout
+        self.stamp = -1
+        self.current: C | None = None
+
+    @property
+    def last_stamp(self) -> int:
+        """Stamp of the newest command received, -1 without one."""
+        return self._waiting[-1][0] if self._waiting else self.stamp
+
+    @property
+    def newest(self) -> C | None:
+        """The newest command received."""
+        return self._waiting[-1][1] if self._waiting else self.current
+
+    def push(self, stamp: int, command: C) -> None:
+        """Queue a command that `refuse_disorder` has let through."""
+        self._waiting.append((stamp, command))
+
+    def refuse_disorder(self, mode: str, stamp: int) -> None:
+        """Raise CommandRejected when `stamp` is not later than the newest one, or the queue is full."""
+        if stamp <= self.last_stamp:
+            remedy = "let the stamps rise"
+            raise CommandRejected(mode, "out of order", value=stamp, limit=self.last_stamp, remedy=remedy)
+        if len(self._waiting) == self._waiting.maxlen:
+            raise CommandRejected(mode, "queue full", value=len(self._waiting), limit=self._waiting.maxlen)
+
+    def at(self, now: int) -> tuple[Reason, C | None, bool]:
+        """Return whether there is a command in force at `now`, the command, and whether its stamp is exactly `now`."""
+        while self._waiting and self._waiting[0][0] <= now:
+            self.stamp, self.current = self._waiting.popleft()
+        if self.current is None:
+            return (Reason.MOVING if self._waiting else Reason.COMMAND_MISSING), None, False
+        if now - self.stamp > self.timeout:
+            return Reason.COMMAND_STALE, None, False
+        return Reason.MOVING, self.current, self.stamp == now
+
+    def clear(self) -> None:
+        """Forget all commands."""
+        self._waiting.clear()
+        self.stamp, self.current = -1, None
+
+
+class _Servo(Generic[C]):
+    busy = False
+
+    def __init__(self, name: str, settings: MotionSettings) -> None:
+        self.name = name
+        self._ahead = nanoseconds(settings.ahead_limit)
+        self._stream: Stream[C] = Stream(nanoseconds(settings.servo_timeout))
+
+    def _check_stamp(self, stamp: int, now: int) -> None:
+        require_timely(self.name, stamp, now, self._stream.timeout, self._ahead)
+        self._stream.refuse_disorder(self.name, stamp)
+
+    def reset(self) -> None:
+        """Forget all commands."""
+        self._stream.clear()
+
+
+class ServoPosition(_Servo[tuple[Vector, Vector]]):
+    """`servo_jp`: references for the host law; between two samples the last position is held with zero feed-forward."""
+
+    def __init__(self, robot: Robot, settings: MotionSettings, name: str = "servo_jp") -> None:
+        super().__init__(name, settings)
+        self._limits = [a.limits for a in robot.actuators]
+        self._step = [settings.step_factor * a.limits.velocity / robot.position_gain for a in robot.actuators]
+
+    def accept(self, command: JointSample, now: int, q: Vector) -> None:
+        """Queue a reference (position, and velocity or zero).
+
+        Raises:
+            CommandRejected: not finite, beyond the travel, too large a step, stale, early or out of order.
+        """
+        position = require_finite(self.name, command.position, 5, "positions")
+        velocity = require_finite(self.name, command.velocity or (0.0,) * 5, 5, "velocities")
+        self._check_stamp(command.stamp, now)
+        newest = self._stream.newest
+        self._check_reach(position, q if newest is None else newest[0])
+        self._stream.push(command.stamp, (position, velocity))
+
+    def _check_reach(self, position: Vector, before: Vector) -> None:
+        for k, limits in enumerate(self._limits):
+            if not limits.lower <= position[k] <= limits.upper:
+                raise CommandRejected(
+                    self.name,
+                    f"axis {k} beyond its travel",
+                    value=position[k],
+                    limit=(limits.lower, limits.upper),
+                    remedy="stay within the limits of the robot file",
+                )
+            if abs(position[k] - before[k]) > self._step[k]:
+                raise CommandRejected(
+                    self.name,
+                    f"axis {k}: step too large",
+                    value=position[k] - before[k],
+                    limit=self._step[k],
+                    remedy="start at the measured position and send smaller steps, or use move_jp",
+                )
+
+    def step(self, now: int, q: Vector) -> Step:
+        """Return the reference in force."""
+        reason, command, exact = self._stream.at(now)
+        if command is None:
+            return Step(reason, setpoint=(q, (0.0,) * 5) if reason is Reason.MOVING else None)
+        return Step(setpoint=command if exact else (command[0], (0.0,) * 5))
+
+
+class ServoPose(ServoPosition):
+    """`servo_cp`: the pose becomes actuator positions on arrival, then it is `servo_jp`."""
+
+    def __init__(self, robot: Robot, settings: MotionSettings, inverse: Inverse) -> None:
+        super().__init__(robot, settings, "servo_cp")
+        self._inverse = inverse
+
+    def accept(self, command: PoseSample, now: int, q: Vector) -> None:  # type: ignore[override]
+        """Queue a tip pose in {b}.
+
+        Raises:
+            CommandRejected: as in `servo_jp`.
+            Sher3Error: the pose is out of reach.
+        """
+        require_finite(self.name, command.position, 3, "coordinates")
+        require_finite(self.name, command.orientation, 4, "quaternion components")
+        super().accept(JointSample(command.stamp, self._inverse(command)), now, q)
+
+
+class ServoJointVelocity(_Servo[Vector]):
+    """`servo_jv`: actuator velocities; limits and braking are the inverse velocity's."""
+
+    def __init__(self, settings: MotionSettings) -> None:
+        super().__init__("servo_jv", settings)
+
+    def accept(self, command: JointSample, now: int, q: Vector) -> None:
+        """Queue actuator velocities; raises CommandRejected."""
+        velocity = require_finite(self.name, command.velocity, 5, "velocities")
+        self._check_stamp(command.stamp, now)
+        self._stream.push(command.stamp, velocity)
+
+    def step(self, now: int, q: Vector) -> Step:
+        """Return the velocity in force."""
+        reason, command, _ = self._stream.at(now)
+        return Step(reason, joints=command)
+
+
+class ServoTwist(_Servo[Vector]):
+    """`servo_cv`: tip twists in {b}."""
+
+    def __init__(self, settings: MotionSettings) -> None:
+        super().__init__("servo_cv", settings)
+
+    def accept(self, command: TwistSample, now: int, q: Vector) -> None:
+        """Queue a twist; raises CommandRejected."""
+        twist = require_finite(self.name, command.twist, 6, "components")
+        self._check_stamp(command.stamp, now)
+        self._stream.push(command.stamp, twist)
+
+    def step(self, now: int, q: Vector) -> Step:
+        """Return the twist in force."""
+        reason, command, _ = self._stream.at(now)
+        return Step(reason, twist=command)

@@ -1,0 +1,131 @@
+"""The core of the supervisor: who may move, decided from commands and detectors, with time as an argument.
+
+The first fault is kept with its time, later ones are counted. Nothing leaves FAULT by itself: one `disable`, accepted
+only in FAULT and only once its causes are gone, leads to DISABLED; `enable` needs every detector silent. Release-
+then-press of the pedal is the law's own part, since every stop disarms it.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from .detectors import Detector, Finding
+from .errors import StateCommandRefused
+from .operating_state import OperatingState, StateCommand, next_state
+
+
+@dataclass(frozen=True)
+class Status:
+    """The operating state with its history.
+
+    Attributes:
+        since: time of the last change of state [ns].
+        reason: what led here: the command, or the code of the first fault.
+        first_fault: the fault that led into FAULT, kept until recovery.
+        later_faults: how many other objections followed it.
+        homed: the absolute encoders make the robot homed; `unhome` revokes it until `home`.
+    """
+
+    state: OperatingState
+    since: int
+    reason: str
+    first_fault: Finding | None = None
+    later_faults: int = 0
+    homed: bool = True
+
+    def to_json(self) -> str:
+        """Return the status as one line of JSON, times in ns."""
+        fault = None if self.first_fault is None else vars(self.first_fault)
+        data = {"state": self.state.value, "since": self.since, "reason": self.reason, "first_fault": fault}
+        return json.dumps({**data, "later_faults": self.later_faults, "is_homed": self.homed})
+
+
+@dataclass
+class Supervisor:
+    """The state machine around `TRANSITIONS`; call `check` every tick and `command` on user commands."""
+
+    detectors: Sequence[Detector] = ()
+    status: Status = field(default_factory=lambda: Status(OperatingState.DISABLED, 0, "start"))
+    _seen: set[str] = field(default_factory=set)
+
+    @property
+    def state(self) -> OperatingState:
+        """The present operating state."""
+        return self.status.state
+
+    def findings(self, now: int, enabling: bool = False) -> list[Finding]:
+        """Return all present objections; those about streams count only while the drives are on, or are about to be."""
+        drives_on = enabling or self.state in (OperatingState.ENABLED, OperatingState.PAUSED)
+        asked = [d for d in self.detectors if drives_on or d.active_when_disabled]
+        return [finding for d in asked if (finding := d.check(now)) is not None]
+
+    def check(self, now: int) -> bool:
+        """Ask the detectors; return whether the status changed."""
+        found = self.findings(now)
+        if self.state is OperatingState.FAULT:
+            return self._count(found)
+        if not found:
+            return False
+        self._fault(now, found)
+        return True
+
+    def command(self, text: str, now: int) -> Status:
+        """Carry out one CRTK state command.
+
+        Raises:
+            StateCommandRefused: unknown command, not allowed in this state, or a detector objects.
+        """
+        state = self.state
+        try:
+            command = StateCommand(text)
+        except ValueError:
+            known = ", ".join(c.value for c in StateCommand)
+            raise StateCommandRefused(text, state.value, "unknown command", remedy=f"use one of {known}") from None
+        target = next_state(state, command)
+        if target is None:
+            raise StateCommandRefused(text, state.value, "not allowed in this state", remedy=_REMEDY.get(state))
+        self._self_check(command, now)
+        if command in (StateCommand.HOME, StateCommand.UNHOME):
+            self.status = _replace(self.status, homed=command is StateCommand.HOME)
+        elif target is not state:
+            self._seen.clear()
+            self.status = Status(target, now, text, homed=self.status.homed)
+        return self.status
+
+    def _self_check(self, command: StateCommand, now: int) -> None:
+        """Refuse to enable, resume or recover while anything objects, naming every item."""
+        if command is StateCommand.DISABLE and self.state is not OperatingState.FAULT:
+            return
+        if command in (StateCommand.ENABLE, StateCommand.RESUME, StateCommand.DISABLE):
+            found = self.findings(now, enabling=command is not StateCommand.DISABLE)
+            if found:
+                listing = "; ".join(map(str, found))
+                raise StateCommandRefused(command.value, self.state.value, listing, remedy="remove these causes first")
+        if command is StateCommand.ENABLE and not self.status.homed:
+            raise StateCommandRefused(command.value, self.state.value, "not homed", remedy="send home first")
+
+    def _fault(self, now: int, found: list[Finding]) -> None:
+        self._seen = {f.code for f in found}
+        first = found[0]
+        self.status = Status(OperatingState.FAULT, now, first.code, first, len(self._seen) - 1, self.status.homed)
+
+    def _count(self, found: list[Finding]) -> bool:
+        new = {f.code for f in found} - self._seen
+        self._seen |= new
+        if new:
+            self.status = _replace(self.status, later_faults=self.status.later_faults + len(new))
+        return bool(new)
+
+
+_REMEDY = {
+    OperatingState.DISABLED: "send enable first",
+    OperatingState.ENABLED: "send pause or disable",
+    OperatingState.PAUSED: "send resume or disable",
+    OperatingState.FAULT: "remove the cause, send disable, then enable",
+}
+
+
+def _replace(status: Status, **changes: object) -> Status:
+    return Status(**{**vars(status), **changes})  # type: ignore[arg-type]

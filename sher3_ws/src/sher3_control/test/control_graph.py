@@ -1,0 +1,108 @@
+"""The three control nodes with an ideal robot, force sensor and pedal around them, in stepped time."""
+
+from __future__ import annotations
+
+import json
+from contextlib import contextmanager
+
+from law_bench import ROBOT
+from rclpy.node import Node
+from sher3_control.admittance_node import AdmittanceNode
+from sher3_control.kinematics_node import KinematicsNode
+from sher3_control.supervisor_node import SupervisorNode
+from sher3_runtime import Graph, JointSample, JoySample, TextSample, WrenchSample
+from sher3_runtime.ports import NODE_OPTIONS, advertise, on_tick, subscribe
+
+RECORDED = [
+    "setpoint_js",
+    "servo_cv",
+    "servo_jv",
+    "measured_js",
+    "measured_cp",
+    "force/measured_cf",
+    "pedal/measured",
+    "operating_state",
+    "admittance/inputs",
+    "admittance/settings",
+    "admittance/status",
+    "motion/inputs",
+    "motion/settings",
+    "motion/status",
+    "supervisor/status",
+]
+
+
+class IdealRobot(Node):
+    """Integrates `servo_jv` exactly; `force` acts on the tip in {t}, `travel` is the pedal. None silences a stream."""
+
+    def __init__(self, **options):
+        super().__init__("ideal_robot", **{**NODE_OPTIONS, **options})
+        self.q, self.velocity = [0.0] * 5, (0.0,) * 5
+        self.force, self.travel, self.button = (0.0, 0.0, 0.0), 0.0, 0
+        self.joints_alive = True
+        self.count = 0
+        self._joints, self._wrench = advertise(self, "measured_js"), advertise(self, "force/measured_cf")
+        self._pedal = advertise(self, "pedal/measured")
+        subscribe(self, "servo_jv", self._on_velocity)
+        on_tick(self, self._tick)
+
+    def _on_velocity(self, sample):
+        self.velocity = sample.velocity
+
+    def _tick(self, stamp):
+        self.q = [q + 0.002 * v for q, v in zip(self.q, self.velocity, strict=True)]
+        self.count += 1
+        if self.joints_alive:
+            self._joints(JointSample(stamp, tuple(self.q)))
+        if self.travel is not None:
+            self._pedal(JoySample(stamp, (self.travel,), (self.button,)))
+        if self.force is not None:
+            x, y, z = self.force
+            wiggle = 1e-6 * (self.count % 7)
+            weight = -ROBOT.force_sensor.tool_mass * 9.81
+            self._wrench(WrenchSample(stamp, (x + wiggle, y, z + weight, 0.03 * y, -0.03 * x, 0.0)))
+
+
+class ControlGraph:
+    """The graph, its robot, a probe on everything, and a hand on every command."""
+
+    def __init__(self, graph):
+        self.graph = graph
+        self.robot = graph.add(IdealRobot)
+        self.supervisor = graph.add(SupervisorNode, ROBOT)
+        self.kinematics = graph.add(KinematicsNode, ROBOT)
+        self.admittance = graph.add(AdmittanceNode, ROBOT)
+        commands = ["servo_cv", "servo_jv", "servo_jp", "servo_cp", "move_jp", "move_cp", "state_command", "admittance"]
+        self.probe = graph.probe(*RECORDED, sends=tuple(f"command/{name}" for name in commands))
+        self.step = graph.step
+
+    @property
+    def now(self):
+        return self.graph.clock.time_ns
+
+    def text(self, name, text):
+        self.probe.send(f"command/{name}", TextSample(text))
+        self.graph.settle()
+
+    def enable(self):
+        self.step(5)
+        self.text("state_command", "enable")
+        self.step(5)
+
+    def press(self, force=(0.0, 0.0, 0.0)):
+        self.robot.travel = 0.0
+        self.step(2)
+        self.robot.travel, self.robot.force = 1.0, force
+
+    def last(self, topic):
+        return self.probe.samples[topic][-1]
+
+    def status(self, topic):
+        self.graph.until(lambda: self.probe.samples[topic], topic)
+        return json.loads(self.last(topic).text)
+
+
+@contextmanager
+def control_graph():
+    with Graph() as graph:
+        yield ControlGraph(graph)

@@ -1,0 +1,136 @@
+"""The three nodes in stepped time: cooperative motion, stops in the same tick, one owner, exact replay."""
+
+import pytest
+from control_graph import control_graph
+from law_bench import ROBOT
+from sher3_runtime import JointSample, TwistSample
+
+pytestmark = pytest.mark.graph
+T = 2_000_000
+REST = (0.0,) * 5
+
+
+def test_enable_press_push_moves_and_release_stops_in_the_same_tick():
+    with control_graph() as g:
+        g.press(force=(1.0, 0.0, 0.0))
+        g.step(20)
+        assert g.last("servo_jv").velocity == REST
+        g.enable()
+        g.step(20)
+        assert g.status("admittance/status")["reason"] == "NOT_REARMED"
+        g.press(force=(1.0, 0.0, 0.0))
+        g.step(100)
+        assert g.status("motion/status")["mode"] == "cooperative"
+        assert g.last("servo_cv").twist[0] > 1e-4
+        assert max(map(abs, g.last("servo_jv").velocity)) > 1e-4
+        assert not g.probe.samples["setpoint_js"]
+        g.robot.travel = 0.0
+        stamp = g.step()
+        assert (g.last("servo_cv").stamp, g.last("servo_jv").stamp) == (stamp, stamp)
+        assert g.last("servo_jv").velocity == REST
+        g.step(3)
+        assert g.status("motion/status")["mode"] is None
+
+
+@pytest.mark.parametrize("silence", ["force", "travel"])
+def test_silence_stops_within_the_age_limit_and_faults(silence):
+    with control_graph() as g:
+        g.enable()
+        g.press(force=(1.0, 0.0, 0.0))
+        g.step(100)
+        setattr(g.robot, silence, None)
+        moving = 0
+        for _ in range(15):
+            g.step()
+            moving += any(g.last("servo_jv").velocity)
+        limit = {"force": 0.010, "travel": 0.020}[silence]
+        assert moving <= limit / 0.002
+        g.step(60)
+        status = g.status("supervisor/status")
+        assert status["state"] == "FAULT"
+        assert status["first_fault"]["code"].endswith("_SILENT")
+        setattr(g.robot, silence, (1.0, 0.0, 0.0) if silence == "force" else 1.0)
+        g.step(10)
+        g.text("state_command", "enable")
+        assert g.status("supervisor/status")["state"] == "FAULT"
+        assert "refused" in g.status("supervisor/status")["refused"]["text"]
+        g.text("state_command", "disable")
+        g.text("state_command", "enable")
+        g.step(30)
+        assert g.status("supervisor/status")["state"] == "ENABLED"
+        assert g.last("servo_jv").velocity == REST
+        g.press(force=(1.0, 0.0, 0.0))
+        g.step(50)
+        assert any(g.last("servo_jv").velocity)
+
+
+def test_emergency_stop_faults_in_its_tick():
+    with control_graph() as g:
+        g.enable()
+        g.press(force=(1.0, 0.0, 0.0))
+        g.step(50)
+        g.robot.button = 1
+        g.step()
+        assert g.last("servo_jv").velocity == REST
+        assert g.status("supervisor/status")["first_fault"]["code"] == "EMERGENCY_STOP"
+
+
+def test_servo_jp_for_the_tick_of_its_stamp_gives_the_host_law():
+    with control_graph() as g:
+        g.enable()
+        start = g.step() + 5 * T
+        for k in range(50):
+            q = tuple(1e-5 * k for _ in range(5))
+            g.probe.send("command/servo_jp", JointSample(start + k * T, q, (1e-3,) * 5))
+        g.graph.settle()
+        g.step(60)
+        setpoints = {s.stamp: s for s in g.probe.samples["setpoint_js"]}
+        measured = {s.stamp: s for s in g.probe.samples["measured_js"]}
+        velocity = {s.stamp: s for s in g.probe.samples["servo_jv"]}
+        for k in range(50):
+            stamp = start + k * T
+            assert setpoints[stamp].position == (1e-5 * k,) * 5
+            expected = tuple(1e-3 + 20.0 * (1e-5 * k - q) for q in measured[stamp].position)
+            assert velocity[stamp].velocity == expected
+        g.step(15)
+        assert g.status("motion/status")["mode"] is None
+        assert g.last("servo_jv").velocity == REST
+
+
+def test_move_jp_reaches_its_goal_and_refuses_a_second_owner():
+    with control_graph() as g:
+        g.enable()
+        goal = (0.002, -0.001, 0.0015, 0.02, 0.001)
+        g.probe.send("command/move_jp", JointSample(g.now, goal))
+        g.graph.settle()
+        g.step(20)
+        status = g.status("motion/status")
+        assert (status["mode"], status["is_busy"]) == ("move_jp", True)
+        g.probe.send("command/servo_cv", TwistSample(g.now, (1e-3, 0.0, 0.0, 0.0, 0.0, 0.0)))
+        g.graph.settle()
+        g.step()
+        refused = g.status("motion/status")["refused"]
+        assert refused["error"] == "OwnerConflict"
+        assert "move_jp owns the robot" in refused["text"]
+        g.press(force=(1.0, 0.0, 0.0))
+        g.step(10)
+        assert g.status("admittance/status")["reason"] == "NOT_OWNER"
+        for _ in range(400):
+            g.step()
+            if g.status("motion/status")["mode"] is None:
+                break
+        tolerance = [10 * a.load_encoder for a in ROBOT.actuators]
+        assert all(abs(a - b) <= t for a, b, t in zip(g.robot.q, goal, tolerance, strict=True))
+        g.step(30)
+        assert g.last("servo_jv").velocity == REST
+
+
+def test_a_second_publisher_of_a_command_is_refused():
+    with control_graph() as g:
+        other = g.graph.probe(sends=("command/servo_jv",))
+        g.enable()
+        other.send("command/servo_jv", JointSample(g.now, velocity=(1e-3,) * 5))
+        g.graph.settle()
+        g.step(2)
+        assert "several publishers" in g.status("motion/status")["refused"]["text"]
+        assert g.last("servo_jv").velocity == REST
