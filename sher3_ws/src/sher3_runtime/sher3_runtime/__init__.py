@@ -17,11 +17,13 @@ from .samples import WrenchSample as WrenchSample
 _DOORS = {
     "NODE_OPTIONS": "ports",
     "advertise": "ports",
+    "advertise_raw": "ports",
     "clock_of": "ports",
     "on_readable": "ports",
     "on_tick": "ports",
     "statistics_of": "ports",
     "subscribe": "ports",
+    "subscribe_raw": "ports",
     "use_clock": "ports",
     "spin": "spinning",
     "Graph": "graph",

@@ -238,6 +238,48 @@ def advertise(node: Node, name: str) -> Publish:
     return publish
 
 
+def subscribe_raw(node: Node, name: str, callback: Callable[[bytes], None], depth: int | None = None) -> None:
+    """Subscribe to a topic of the table as raw CDR bytes: what a recorder needs.
+
+    Raises:
+        UnknownTopic: the name is not in the table.
+    """
+    topic, port = find_topic(name), ports(node)
+    profile = qos_profile(topic.qos)
+    if depth is not None:
+        profile.depth = depth
+    port.received[name] = 0
+
+    def deliver(data: bytes) -> None:
+        port.received[name] += 1
+        callback(data)
+
+    events = SubscriptionEventCallbacks(use_default_callbacks=False)
+    kind = message_class(topic.type)
+    subscription = node.create_subscription(kind, topic.full_name, deliver, profile, raw=True, event_callbacks=events)
+    port.subscriptions[name] = subscription
+
+
+def advertise_raw(node: Node, name: str) -> Callable[[bytes], None]:
+    """Return `publish(data)` of a topic of the table for CDR bytes: what a replay needs.
+
+    Raises:
+        UnknownTopic: the name is not in the table.
+    """
+    topic, port = find_topic(name), ports(node)
+    events = PublisherEventCallbacks(use_default_callbacks=False)
+    kind, profile = message_class(topic.type), qos_profile(topic.qos)
+    publisher = node.create_publisher(kind, topic.full_name, profile, event_callbacks=events)
+    port.publishers[name] = publisher
+    port.sent[name] = 0
+
+    def publish(data: bytes) -> None:
+        port.sent[name] += 1
+        publisher.handle.publish_raw(data)
+
+    return publish
+
+
 def on_tick(node: Node, callback: Callable[[int], None], phase: float = 0.0, every: int = 1) -> None:
     """Call `callback(stamp_ns)` at every grid stamp plus `phase`.
 

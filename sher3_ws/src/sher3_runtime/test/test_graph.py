@@ -15,6 +15,7 @@ from sher3_runtime import (
     statistics_of,
     subscribe,
 )
+from sher3_runtime.cdr import codec
 from sher3_runtime.ports import UnknownTopic
 from std_srvs.srv import Trigger
 
@@ -145,6 +146,21 @@ def test_entities_may_come_and_go():
         source.destroy_timer(timer)
         graph.step()
         assert len(late.samples["force/measured_cf"]) == 5
+
+
+def test_raw_ports_pass_bytes_through():
+    """What a recorder sees is what a replay publishes."""
+    with Graph() as graph:
+        source, sink, seen = graph.add(Source), graph.probe("mock/contact_wrench"), []
+        subscribe_raw(sink, "force/measured_cf", seen.append)
+        send = advertise_raw(source, "mock/contact_wrench")
+        graph.step(3)
+        assert len(seen) == 3
+        with pytest.raises(UnknownTopic):
+            advertise_raw(source, "nothing")
+        send(codec("geometry_msgs/msg/WrenchStamped", "b").encode(WrenchSample(5, (2.0,) * 6)))
+        graph.settle()
+        assert sink.samples["mock/contact_wrench"] == [WrenchSample(5, (2.0,) * 6)]
 
 
 def test_slow_ticks_and_names():
