@@ -5,6 +5,7 @@ A Python call of a compiled function costs the unpacking of its arguments; an ar
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -26,6 +27,8 @@ def vector(values: Sequence[float] | Floats, size: int, name: str) -> Floats:
     Raises:
         BadInput: wrong shape, or a value that is not finite.
     """
+    if _is_plain(values, size):
+        return values  # type: ignore[return-value]
     try:
         result = np.ascontiguousarray(values, dtype=np.float64)
     except (TypeError, ValueError):
@@ -35,6 +38,17 @@ def vector(values: Sequence[float] | Floats, size: int, name: str) -> Floats:
     if not np.isfinite(result).all():
         raise BadInput(f"{name} is not finite", value=result.tolist(), remedy="check its source")
     return result
+
+
+def _is_plain(values: object, size: int) -> bool:
+    """Return whether nothing need be converted: the control loop's case, and several times faster than converting."""
+    return (
+        isinstance(values, np.ndarray)
+        and values.dtype == np.float64
+        and values.shape == (size,)
+        and values.flags.c_contiguous
+        and math.isfinite(values.dot(values))
+    )
 
 
 def rows(values: Sequence[Sequence[float]] | Floats, size: int, name: str) -> Floats:

@@ -18,6 +18,8 @@ from .tilt_linkage import TiltLinkage
 
 TOLERANCE = 1e-12
 """Slack [m, rad] of the travel limits, so that a limit itself is reachable in floating point."""
+SHORTEST_AXIS = 1e-150
+"""Shortest tool axis whose direction floating point still holds."""
 
 
 class SingularityDistance(NamedTuple):
@@ -84,12 +86,13 @@ class RobotKinematics:
             Unreachable: roll or tilt beyond its travel (distance in rad), or platform outside its workspace (in m).
         """
         point, direction = vector(position, 3, "tip position"), vector(axis, 3, "tool axis")
-        length = math.hypot(*direction)
-        if length < 1e-9:
-            raise BadInput("tool axis has no direction", value=length, limit=">= 1e-9", remedy="give a unit vector")
         lower, upper, elevation = self._lower, self._upper, self.delta.least_elevation
         q, inside = arrays.pose_inverse(self._values, point, direction, lower, upper, elevation)
         if not inside:
+            length = math.hypot(*direction)
+            if length < SHORTEST_AXIS:
+                remedy = "give a unit vector"
+                raise BadInput("tool axis has no direction", value=length, limit=f">= {SHORTEST_AXIS}", remedy=remedy)
             self._require_angles(q, direction / length)
             self.delta.require(self._platform_centre(point, q))
             self.require_within_limits(q)
