@@ -11,9 +11,11 @@ from sher3_runtime import (
     TextSample,
     WrenchSample,
     advertise,
+    advertise_raw,
     on_tick,
     statistics_of,
     subscribe,
+    subscribe_raw,
 )
 from sher3_runtime.cdr import codec
 from sher3_runtime.ports import UnknownTopic
