@@ -1,5 +1,6 @@
 """Plant of the SHER 3.0 with a door for unmodelled effects."""
 
+from . import compile_cache as compile_cache  # isort: skip
 from .effects import EFFECTS as EFFECTS
 from .effects import Effect as Effect
 from .effects import effect_from_dict as effect_from_dict
@@ -13,6 +14,9 @@ from .parameters import PlantParameters as PlantParameters
 from .parameters import nominal_parameters as nominal_parameters
 from .plant import Plant as Plant
 from .plant import Reading as Reading
+from .replay import contact_wrench as contact_wrench
+from .replay import recorded_excitation as recorded_excitation
+from .replay import resimulate as resimulate
 from .simulate import Excitation as Excitation
 from .simulate import excitation as excitation
 from .simulate import simulate as simulate

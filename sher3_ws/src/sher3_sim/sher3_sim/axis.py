@@ -1,8 +1,8 @@
 """Dynamics of one axis over one control period: demand queue, drive, motor, friction, transmission (compiled).
 
-Exponential integrator: the linear part (drive PI, mass, viscous friction, lag of the force) is advanced by its exact matrix
-exponential; every other force is held over a step at its value in the middle, where the bristle lives (leapfrog). Exact for
-the nominal axis in one step per period, second order in the step for the other forces.
+Exponential integrator: the linear part (drive PI, mass, viscous friction, lag of the force) is advanced by its exact
+matrix exponential; every other force is held over a step at its middle value, where the bristle lives (leapfrog).
+Exact for the nominal axis in one step per period, second order in the step for the other forces.
 """
 
 from __future__ import annotations
@@ -106,7 +106,7 @@ def sliding_friction(a: Any, q: float, v: float, time: float) -> float:
 
 @njit(cache=True)
 def bristle_step(z: float, distance: float, scale: float) -> float:
-    """Advance a bristle over a travelled distance, exactly: z' = v - |v| z / scale (Dahl 1968, LuGre without damping)."""
+    """Advance a bristle over a travelled distance, exactly: z' = v - |v| z / scale (Dahl 1968)."""
     end = math.copysign(scale, distance)
     return end + (z - end) * math.exp(-abs(distance) / scale)
 

@@ -11,7 +11,7 @@ from sher3_kinematics.kernel import KernelParameters, gravity_load_into, tip_jac
 
 from sher3_sim.axis import advance, drive_force, send
 from sher3_sim.noise import DROP, EFFORT, FORCE, JITTER, TRACKER, normal, uniform
-from sher3_sim.tip import quaternion, true_tip
+from sher3_sim.tip import cross, quaternion, true_tip
 from sher3_sim.transmission import encode_load, place, to_count, transmit
 
 Array = np.ndarray
@@ -79,8 +79,8 @@ def read_sensors(axis: Any, b: Any, p: KernelParameters, state: Any, s: Any, r: 
         r.velocity[i] = (motor - r.motor[i]) / b.period if tick > 0 else 0.0
         r.motor[i] = motor
         r.load[i] = to_count(encode_load(a, x.load) + x.zero, a.load_count)
-        noise = 0.002 * a.rated * normal(s.seed, EFFORT + i, tick)
-        r.effort[i] = to_count(drive_force(a, x) + noise, 0.001 * a.rated)
+        noise = a.effort_noise * normal(s.seed, EFFORT + i, tick)
+        r.effort[i] = to_count(drive_force(a, x) + noise, a.effort_count)
         r.demand[i] = x.echo
         for j in range(3):
             tip_rate[j] += s.jacobian[j, i] * x.velocity
@@ -110,7 +110,7 @@ def _read_wrench(b: Any, s: Any, r: Any) -> None:
         for j in range(3):
             force[i] += rotation[j, i] * (s.wrench[j] + cable[j])
             moment[i] += rotation[j, i] * s.wrench[3 + j]
-    moment += np.cross(b.tool_com, weight) - np.cross(b.sensor_position, force)
+    moment += cross(b.tool_com, weight) - cross(b.sensor_position, force)
     force += weight
     for i in range(6):
         value = b.wrench_bias[i] + b.wrench_drift[i] * (b.temperature - 22.0)
@@ -183,10 +183,13 @@ def step(
     """Advance the plant by one control period.
 
     Args:
-        axis, b, p: AXIS records, BODY record, true geometry.
+        axis: AXIS records.
+        b: BODY record.
+        p: geometry of the true mechanism.
         maps: (5, 2, 4, 5) propagators for `period / substeps`.
         substeps: steps in the period.
-        state, s: AXIS_STATE records and BODY_STATE record, changed in place.
+        state: AXIS_STATE records, changed in place.
+        s: BODY_STATE record, changed in place.
         r: READING record, the sensors at the end of the period.
         command: (5,) velocities [m/s, rad/s] sent at its beginning.
         wrench: (6,) contact wrench on the tip in {b} at its end; between its ends the wrench is taken at the middle.
@@ -196,12 +199,11 @@ def step(
         mean[i] = 0.5 * (s.wrench[i] + wrench[i])
         s.wrench[i] = wrench[i]
     _loads(p, axis, state, s, mean, 0.5 * b.period)
-    late = abs(normal(s.seed, JITTER, s.tick))
-    lost = uniform(s.seed, DROP, s.tick)
     for i in range(5):
         a, x = axis[i], state[i]
-        if lost >= a.drop:
-            send(x, command[i], a.delay + a.jitter * late)
+        late = a.jitter * abs(normal(s.seed, JITTER, s.tick)) if a.jitter > 0.0 else 0.0
+        if a.drop == 0.0 or uniform(s.seed, DROP, s.tick) >= a.drop:
+            send(x, command[i], a.delay + late)
         advance(a, x, maps[i], s.load[i], s.tick * b.period, b.period, substeps)
         transmit(a, x, s.load[i])
     s.tick += 1
@@ -237,9 +239,16 @@ def run(
     """Run n ticks, in closed loop on set-points or open on recorded commands.
 
     Args:
-        axis, b, p, maps, substeps, state, s: as in `step`, fresh.
+        axis: AXIS records.
+        b: BODY record; its temperature is changed.
+        p: geometry of the true mechanism.
+        maps: propagators.
+        substeps: steps in the period.
+        state: AXIS_STATE records, fresh.
+        s: BODY_STATE record, fresh but for the seed.
         closed: host law on the set-points, or `command` as it is.
-        setpoint, rate: (n, 5) q_ref and its rate; the first set-point is the start in either mode.
+        setpoint: (n, 5) q_ref; the first is the start in either mode.
+        rate: (n, 5) its rate.
         command: (n, 5) commanded velocities: written when closed, read when not.
         wrench: (n, 6) contact wrench at the ticks.
         temperature: (n,) of the structure [degC].

@@ -29,7 +29,7 @@ def _mix(x):
 
 @njit(cache=True)
 def uniform(seed: int, stream: int, index: int) -> float:
-    """Uniform number in (0, 1)."""
+    """Return a uniform number in (0, 1)."""
     x = _mix(np.uint64(seed) + np.uint64(stream + 1) * _STREAM)
     x = _mix(x + np.uint64(index + 1) * _STEP)
     return (np.float64(x >> np.uint64(11)) + 0.5) * 1.1102230246251565e-16
@@ -37,6 +37,6 @@ def uniform(seed: int, stream: int, index: int) -> float:
 
 @njit(cache=True)
 def normal(seed: int, stream: int, index: int) -> float:
-    """Standard normal number, by Box and Muller's transform of two uniform ones."""
+    """Return a standard normal number, by Box and Muller's transform of two uniform ones."""
     radius = math.sqrt(-2.0 * math.log(uniform(seed, stream, 2 * index)))
     return radius * math.cos(2.0 * math.pi * uniform(seed, stream, 2 * index + 1))

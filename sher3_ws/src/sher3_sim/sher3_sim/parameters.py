@@ -19,8 +19,9 @@ Records = NDArray[Any]
 AXIS = np.dtype(
     [
         # the nominal axis (robot.yaml)
-        *((name, "f8") for name in ("kp", "ki", "limit", "rated", "mass", "viscous", "lead")),
+        *((name, "f8") for name in ("kp", "ki", "limit", "mass", "viscous", "lead")),
         *((name, "f8") for name in ("motor_count", "load_count", "velocity_limit", "position_gain")),
+        *((name, "f8") for name in ("effort_noise", "effort_count")),
         # transport [s, s, 1]
         *((name, "f8") for name in ("delay", "jitter", "drop")),
         # drive: lag of the force [s], dead zone of the demand [m/s]
@@ -34,6 +35,7 @@ AXIS = np.dtype(
         *((name, "f8") for name in ("gravity_scale", "cable_stiffness", "cable_force", "cable_displacement")),
         # transmission
         *((name, "f8") for name in ("lead_error", "ripple_amplitude", "ripple_periods", "ripple_phase")),
+        *((name, "f8") for name in ("ripple_base_amplitude", "ripple_base_phase")),
         *((name, "f8") for name in ("backlash", "hysteresis", "hysteresis_displacement", "compliance")),
         # mechanism: clearance of the leg's joints [m], growth of the slide [1/K]
         *((name, "f8") for name in ("clearance", "expansion")),
@@ -48,7 +50,9 @@ BODY = np.dtype(
         ("period", "f8"),
         ("temperature", "f8"),  # of the structure [degC]
         # structure: scale of the delta's link law and of the lumped model, the lumped model, the tool, one mode
+        ("gives_way", "?"),  # any of the following, but for the mode
         ("link_fraction", "f8", 3),
+        ("link_difference", "f8", 3),
         ("link_law", "f8"),
         ("link_exponent", "f8"),
         ("platform_balls", "f8", (6, 3)),
@@ -96,6 +100,17 @@ class PlantParameters:
     geometry: KernelParameters
     substeps: int = 8
 
+    def without_noise(self) -> PlantParameters:
+        """Return a copy whose sensors neither scatter nor round: the mean of what the plant does, for fits."""
+        quiet = self.copy()
+        for name in ("effort_noise", "jitter"):
+            quiet.axis[name] = 0.0
+        for name in ("motor_count", "load_count", "effort_count"):
+            quiet.axis[name] *= 1e-6
+        quiet.body["wrench_noise"], quiet.body["tracker_noise"] = 0.0, 0.0
+        quiet.body["wrench_resolution"] *= 1e-6
+        return quiet
+
     def copy(self) -> PlantParameters:
         """Return an independent copy."""
         return copy.copy(self)._with(self.axis.copy(), self.body.copy())
@@ -110,7 +125,8 @@ def nominal_parameters(robot: Robot) -> PlantParameters:
     axis = np.zeros(5, AXIS)
     for record, actuator in zip(axis, robot.actuators, strict=True):
         record["kp"], record["ki"] = actuator.drive.kp, actuator.drive.ki
-        record["limit"], record["rated"] = actuator.drive.limit, actuator.drive.rated
+        record["limit"] = actuator.drive.limit
+        record["effort_noise"], record["effort_count"] = 0.002 * actuator.drive.rated, 0.001 * actuator.drive.rated
         record["mass"], record["viscous"], record["lead"] = actuator.mass, actuator.viscous, actuator.lead
         record["motor_count"], record["load_count"] = actuator.motor_encoder, actuator.load_encoder
         record["velocity_limit"], record["position_gain"] = actuator.limits.velocity, robot.position_gain

@@ -124,5 +124,5 @@ class Plant:
     def _reading(self) -> Reading:
         r = self._out[0].copy()
         tracker = np.concatenate([r["tracker_position"], r["tracker_orientation"]]) if r["tracked"] else None
-        columns = (r[name] for name in ("motor", "velocity", "effort", "load", "demand", "wrench"))
-        return Reading(*columns, tracker, self.temperature)
+        axes = (r["motor"], r["velocity"], r["effort"], r["load"], r["demand"])
+        return Reading(*axes, r["wrench"], tracker, self.temperature)

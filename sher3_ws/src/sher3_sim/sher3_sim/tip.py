@@ -20,25 +20,32 @@ LINK_FORCE = 0.5
 
 
 @njit(cache=True)
-def clearance_shift(p: KernelParameters, axis: Any, q: Array, load: Array, jacobian: Array, shift: Array) -> None:
-    """Add the platform shift [m] of legs longer by half their clearance in tension, shorter in compression.
+def cross(a: Array, b: Array) -> Array:
+    """Return a x b."""
+    return np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
 
-    A slider that carries `load` pushes its leg, which leans, with load L / n_z; n_k . dP = L dL_k and the columns of the
-    stage Jacobian give the shift per leg.
+
+@njit(cache=True)
+def add_clearance(p: KernelParameters, axis: Any, q: Array, load: Array, jacobian: Array, twist: Array) -> None:
+    """Add to the platform's twist the shift of legs longer by half their clearance in tension, shorter in compression.
+
+    A slider that carries `load` pushes its leg, which leans, with load L / n_z; n_k . dP = L dL_k, and the columns of
+    the stage Jacobian give the shift per leg.
     """
     _, n1, n2, n3 = leg_vectors(p, q[0], q[1], q[2])
     slant = (p.link_1 / n1[2], p.link_2 / n2[2], p.link_3 / n3[2])
     for k in range(3):
         longer = -0.5 * axis[k].clearance * math.tanh(load[k] * slant[k] / CONTACT_FORCE)
         for i in range(3):
-            shift[i] += jacobian[i, k] * slant[k] * longer
+            twist[i] += jacobian[i, k] * slant[k] * longer
 
 
 @njit(cache=True)
-def link_shift(p: KernelParameters, b: Any, q: Array, arm: Array, wrench: Array, shift: Array) -> None:
-    """Add the tip shift [m] of the six elastic links under a wrench at the tip.
+def add_links(p: KernelParameters, b: Any, q: Array, arm: Array, wrench: Array, twist: Array) -> None:
+    """Add the platform twist of six single links: unequal in a pair, and elastic under a wrench at the tip.
 
-    With Gamma the links' (direction; moment about P): Gamma f = w, dl = scale a |f|^b, Gamma^T (dP; rotation) = dl.
+    With Gamma the links' (direction; moment about P): Gamma f = w gives their forces, dl = scale a |f|^b plus or minus
+    half the difference of the pair their lengths, and Gamma^T (dP; rotation) = dl the twist.
     """
     _, n1, n2, n3 = leg_vectors(p, q[0], q[1], q[2])
     legs = (n1, n2, n3)
@@ -49,27 +56,26 @@ def link_shift(p: KernelParameters, b: Any, q: Array, arm: Array, wrench: Array,
         u = np.array([n[0] / length, n[1] / length, n[2] / length])
         for j in range(2):
             gamma[:3, 2 * k + j] = u
-            gamma[3:, 2 * k + j] = np.cross(b.platform_balls[2 * k + j], u)
+            gamma[3:, 2 * k + j] = cross(b.platform_balls[2 * k + j], u)
     about = np.empty(6)
     about[:3] = wrench[:3]
-    about[3:] = wrench[3:] + np.cross(arm, wrench[:3])
-    force = np.linalg.solve(gamma, about)
+    about[3:] = wrench[3:] + cross(arm, wrench[:3])
+    longer = np.linalg.solve(gamma, about)
     for j in range(6):
-        stiff = (force[j] * force[j] + LINK_FORCE * LINK_FORCE) ** (0.5 * (b.link_exponent - 1.0))
-        force[j] *= b.link_fraction[j // 2] * b.link_law * stiff
-    twist = np.linalg.solve(gamma.T.copy(), force)
-    shift += twist[:3] + np.cross(twist[3:], arm)
+        stiff = (longer[j] * longer[j] + LINK_FORCE * LINK_FORCE) ** (0.5 * (b.link_exponent - 1.0))
+        longer[j] *= b.link_fraction[j // 2] * b.link_law * stiff
+        longer[j] += (j % 2 - 0.5) * b.link_difference[j // 2]
+    twist += np.linalg.solve(gamma.T.copy(), longer)
 
 
 @njit(cache=True)
-def lumped_shift(fraction: float, arm: Array, wrench: Array, shift: Array) -> None:
-    """Add the tip shift [m] of rails, roll and arm lumped at P: yaw and pitch springs and an axial one."""
+def add_lumped(fraction: float, arm: Array, wrench: Array, twist: Array) -> None:
+    """Add the twist of rails, roll and arm lumped at P: springs in yaw and pitch, one along x."""
     about_y = wrench[4] + arm[2] * wrench[0] - arm[0] * wrench[2]
     about_z = wrench[5] + arm[0] * wrench[1] - arm[1] * wrench[0]
-    pitch, yaw = fraction * about_y / PITCH_STIFFNESS, fraction * about_z / YAW_STIFFNESS
-    shift[0] += pitch * arm[2] - yaw * arm[1] + fraction * AXIAL_COMPLIANCE * wrench[0]
-    shift[1] += yaw * arm[0]
-    shift[2] -= pitch * arm[0]
+    twist[0] += fraction * AXIAL_COMPLIANCE * wrench[0]
+    twist[4] += fraction * about_y / PITCH_STIFFNESS
+    twist[5] += fraction * about_z / YAW_STIFFNESS
 
 
 @njit(cache=True)
@@ -85,7 +91,7 @@ def bending_shift(compliance: float, rotation: Array, wrench: Array, shift: Arra
 def vibrate(b: Any, s: Any, acceleration: Array, shift: Array) -> None:
     """Advance one mode of the structure by a period and add its shift [m].
 
-    x'' + 2 zeta w x' + w^2 x = -gain a with a the tip's acceleration, held over the period: exact for an underdamped mode.
+    x'' + 2 zeta w x' + w^2 x = -gain a with a the tip's acceleration, held over the period: exact below critical.
     """
     w, zeta, h = 2.0 * math.pi * b.mode_frequency, b.mode_damping, b.period
     damped = w * math.sqrt(1.0 - zeta * zeta)
@@ -125,27 +131,28 @@ def true_tip(
         wrench: (6,) contact wrench at the tip in {b}.
         tip_rate: (3,) tip velocity [m/s].
         jacobian: (6, 5) tip Jacobian near q.
-        rotation, position: written.
+        rotation: (3, 3), written.
+        position: (3,), written.
     """
     warmth = b.temperature - 22.0
-    shift = np.zeros(3)
     for i in range(5):
         q[i] *= 1.0 + axis[i].expansion * warmth
     tip_pose_into(p, q, rotation, position)
-    growth = b.expansion * warmth
-    if axis[0].clearance != 0.0 or axis[1].clearance != 0.0 or axis[2].clearance != 0.0:
-        clearance_shift(p, axis, q, load, jacobian, shift)
-    elastic = b.link_fraction[0] + b.link_fraction[1] + b.link_fraction[2]
-    if b.lumped_fraction != 0.0 or elastic != 0.0:
+    shift = np.zeros(3)
+    if b.gives_way:
         centre, _, _, _ = leg_vectors(p, q[0], q[1], q[2])
         arm = position - np.array([centre[0], centre[1], centre[2]])
-        lumped_shift(b.lumped_fraction, arm, wrench, shift)
-        if elastic != 0.0:
-            link_shift(p, b, q, arm, wrench, shift)
-    if b.bending != 0.0:
+        twist = np.zeros(6)
+        add_clearance(p, axis, q, load, jacobian, twist)
+        add_lumped(b.lumped_fraction, arm, wrench, twist)
+        add_links(p, b, q, arm, wrench, twist)
+        shift += twist[:3] + cross(twist[3:], arm)
+        for k in range(3):
+            rotation[:, k] += cross(twist[3:], rotation[:, k])
         bending_shift(b.bending, rotation, wrench, shift)
     if b.mode_gain != 0.0:
         vibrate(b, s, (tip_rate - s.tip_rate) / b.period, shift)
+    growth = b.expansion * warmth
     for i in range(3):
         s.tip_rate[i] = tip_rate[i]
         position[i] += growth * position[i] + shift[i]

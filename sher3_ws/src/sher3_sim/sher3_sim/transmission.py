@@ -1,7 +1,7 @@
 """From motor to load and from both to their encoder readings, one axis, at the ticks (compiled).
 
-Everything here is static or rate-independent, so it needs no integration: lead error, ripple and compliance are functions
-of the motor position and the load, hysteresis and play depend only on the path, which is monotone within a tick.
+Everything here is static or rate-independent, so it needs no integration: lead error, ripple and compliance are
+functions of motor position and load, hysteresis and play depend only on the path, which is monotone within a tick.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import numpy as np
 from numba import njit
 
 from sher3_sim.axis import TWO_PI, bristle_step
@@ -18,8 +19,9 @@ from sher3_sim.axis import TWO_PI, bristle_step
 def elastic_output(a: Any, motor: float, load: float) -> float:
     """Position behind lead error, ripple and compliance, before lost motion [m or rad]."""
     out = motor * (1.0 + a.lead_error) - a.compliance * load
-    if a.ripple_amplitude != 0.0:
+    if a.ripple_amplitude != 0.0 or a.ripple_base_amplitude != 0.0:
         out += a.ripple_amplitude * math.sin(TWO_PI * a.ripple_periods * motor / a.lead + a.ripple_phase)
+        out += a.ripple_base_amplitude * math.sin(TWO_PI * motor / a.lead + a.ripple_base_phase)
     return out
 
 
@@ -72,3 +74,24 @@ def place(a: Any, s: Any, reading: float) -> None:
     s.position, s.load = motor, load
     s.base = elastic_output(a, motor, s.effort_load)
     s.velocity = 0.0
+
+
+@njit(cache=True)
+def follow(a: Any, s: Any, motor: Any, load: Any) -> Any:
+    """Return (n,) load positions for a recorded motor path: the transmission stage alone, conditioned on its input.
+
+    Args:
+        a: AXIS record.
+        s: AXIS_STATE record, fresh; changed in place.
+        motor: (n,) motor positions [m or rad].
+        load: (n,) load on the axis, gravity less contact [N or N m].
+    """
+    out = np.empty(len(motor))
+    for k in range(len(motor)):
+        s.position = motor[k]
+        if k == 0:
+            s.base = elastic_output(a, motor[0], load[0])
+            s.load = s.base - math.copysign(0.5 * a.backlash, load[0])
+        transmit(a, s, load[k])
+        out[k] = encode_load(a, s.load)
+    return out

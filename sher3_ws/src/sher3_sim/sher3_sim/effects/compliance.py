@@ -21,7 +21,7 @@ class TransmissionCompliance(Effect, id="transmission_compliance", family="compl
 
 @dataclass(frozen=True)
 class StructuralCompliance(Effect, id="structural_compliance", family="compliance", stage="structure", places=("tip",)):
-    """Rails, roll and arm bend under a wrench at the tip: a fraction of the lumped model behind the paper's deflections.
+    """Rails, roll and arm bend under a wrench at the tip: a fraction of the lumped model of the paper's deflections.
 
     Lumped at the platform centre P: yaw 213 N m/rad, pitch 244 N m/rad, 15 um/N along x.
     """
@@ -31,13 +31,14 @@ class StructuralCompliance(Effect, id="structural_compliance", family="complianc
     def apply(self, p: PlantParameters) -> None:
         """Soften the structure."""
         p.body["lumped_fraction"] += self.fraction
+        p.body["gives_way"] = True
 
 
 @dataclass(frozen=True)
 class LinkCompliance(
     Effect, id="link_compliance", family="compliance", stage="structure", places=(*SLIDERS, "all", "tip")
 ):
-    """The links of the delta stage give way as a |F|^b, both of a leg or of all: a fraction of the paper's measured law."""
+    """The links of the delta stage, of a leg or of all, give way as a |F|^b: a fraction of the paper's measured law."""
 
     fraction: float = parameter("1", 0.5, 0.0, 10.0, "of the paper's link law with springs")
 
@@ -45,6 +46,7 @@ class LinkCompliance(
         """Soften the links."""
         rows = self.rows if self.actuator in SLIDERS else [0, 1, 2]
         p.body["link_fraction"][0, rows] += self.fraction
+        p.body["gives_way"] = True
 
 
 @dataclass(frozen=True)
@@ -56,6 +58,7 @@ class ToolBending(Effect, id="tool_bending", family="compliance", stage="structu
     def apply(self, p: PlantParameters) -> None:
         """Soften the tool."""
         p.body["bending"] += self.compliance
+        p.body["gives_way"] = True
 
 
 @dataclass(frozen=True)

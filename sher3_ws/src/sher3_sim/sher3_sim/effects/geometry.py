@@ -27,13 +27,16 @@ def shift(p: PlantParameters, **changes: float) -> None:
 
 @dataclass(frozen=True)
 class LinkLengthError(Effect, id="link_length_error", family="geometry", stage="mechanism", places=SLIDERS):
-    """Both links of one leg are longer than drawn."""
+    """The two links of one leg are longer than drawn; where they also differ, the platform turns."""
 
-    length: float = _length(20e-6, "link length less nominal")
+    length: float = _length(20e-6, "mean length of the pair less nominal")
+    difference: float = _length(0.0, "second link, towards growing azimuth, less the first")
 
     def apply(self, p: PlantParameters) -> None:
         """Lengthen the links."""
         shift(p, **{f"link_{self.rows[0] + 1}": self.length})
+        p.body["link_difference"][0, self.rows] += self.difference
+        p.body["gives_way"] |= self.difference != 0.0
 
 
 @dataclass(frozen=True)
@@ -79,7 +82,7 @@ class BaseTilt(Effect, id="base_tilt", family="geometry", stage="mechanism", pla
 
 @dataclass(frozen=True)
 class TiltLinkageError(Effect, id="tilt_linkage_error", family="geometry", stage="mechanism", places=("tilt",)):
-    """The crank, the coupler or the offset of the tilt linkage is not as drawn: the angle's ratio changes along the travel."""
+    """The crank, the coupler or the offset of the tilt linkage is not as drawn: the ratio changes along the travel."""
 
     length: float = _length(50e-6, "coupler less nominal")
     crank: float = _length(0.0, "crank less nominal")

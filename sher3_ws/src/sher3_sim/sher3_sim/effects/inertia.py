@@ -30,7 +30,7 @@ class PayloadMass(Effect, id="payload_mass", family="inertia", stage="motor_mech
 
 @dataclass(frozen=True)
 class GravityLoad(Effect, id="gravity_load", family="inertia", stage="motor_mechanics", places=(*AXES, "all")):
-    """More weight on an axis than the model has, without inertia worth speaking of: a wrong mass, a missing counterweight."""
+    """More weight on an axis than the model has, without inertia worth speaking of: a wrong mass, a lost spring."""
 
     mass: float = parameter(
         "kg", 0.2, -2.0, 10.0, "whose weight is added where the axis carries its own", fixed_unit=True

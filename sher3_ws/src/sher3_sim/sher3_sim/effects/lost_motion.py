@@ -41,3 +41,4 @@ class JointClearance(Effect, id="joint_clearance", family="lost_motion", stage="
     def apply(self, p: PlantParameters) -> None:
         """Give the leg play."""
         p.axis["clearance"][self.rows] += self.clearance
+        p.body["gives_way"] = True

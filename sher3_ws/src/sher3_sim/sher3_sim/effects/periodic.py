@@ -15,7 +15,7 @@ def _phase() -> Any:
 
 @dataclass(frozen=True)
 class Cogging(Effect, id="cogging", family="periodic", stage="motor_mechanics"):
-    """Magnets pull the rotor towards the teeth: a force with a period of the motor's angle, the same in both directions."""
+    """Magnets pull the rotor towards the teeth: a force that repeats with the motor's angle, alike both ways."""
 
     amplitude: float = parameter("N", 0.5, 0.0, 50.0, "of the force")
     periods_per_rev: float = parameter("1", 12.0, 0.5, 200.0, "periods per lead")
@@ -35,12 +35,16 @@ class TransmissionRipple(Effect, id="transmission_ripple", family="periodic", st
     amplitude: float = parameter("m", 3e-6, 0.0, 1e-3, "of the load's motion")
     periods_per_rev: float = parameter("1", 1.0, 0.5, 200.0, "periods per lead")
     phase: float = _phase()
+    base_amplitude: float = parameter("m", 0.0, 0.0, 1e-3, "of a companion with one period per lead")
+    base_phase: float = _phase()
 
     def apply(self, p: PlantParameters) -> None:
         """Add the motion."""
         p.axis["ripple_amplitude"][self.rows] = self.amplitude
         p.axis["ripple_periods"][self.rows] = self.periods_per_rev
         p.axis["ripple_phase"][self.rows] = self.phase
+        p.axis["ripple_base_amplitude"][self.rows] = self.base_amplitude
+        p.axis["ripple_base_phase"][self.rows] = self.base_phase
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ class CommandDelay(Effect, id="command_delay", family="timing", stage="transport
 
 @dataclass(frozen=True)
 class CommandJitter(Effect, id="command_jitter", family="timing", stage="transport", places=EVERYWHERE):
-    """Commands arrive late by a random time, the same for all axes of a tick; its size is half-normal, order is kept."""
+    """Commands arrive late by a random time, half-normal and the same for all axes of a tick; order is kept."""
 
     sigma: float = parameter("s", 3e-4, 0.0, 0.01, "scale of the lateness |N(0, sigma)|")
 

@@ -67,7 +67,7 @@ class ForceCrosstalk(Effect, id="force_crosstalk", family="wrench", stage="sensi
 
 @dataclass(frozen=True)
 class CableDrag(Effect, id="cable_drag", family="wrench", stage="motor_mechanics", places=(*ACTUATORS, *_SENSOR)):
-    """A cable or tube pulls back: a spring along the travel, and a hysteretic drag; on an axis, or on the force sensor."""
+    """A cable pulls back, as a spring along the travel and a hysteretic drag; on an axis or on the force sensor."""
 
     stiffness: float = parameter("N/m", 20.0, 0.0, 5000.0, "force per displacement")
     force: float = parameter("N", 0.1, 0.0, 20.0, "hysteretic part")

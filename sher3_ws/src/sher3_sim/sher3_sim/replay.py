@@ -1,0 +1,126 @@
+"""Recorded runs as inputs of the plant: what drove the robot, put back in front of the model."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+from scipy.ndimage import uniform_filter1d
+from sher3_bags.run import Run
+from sher3_description import Robot
+from sher3_kinematics.kernel import (
+    GRAVITY,
+    KernelParameters,
+    gravity_load_into,
+    kernel_parameters,
+    tip_jacobian_into,
+    tip_pose_into,
+)
+
+from sher3_sim.effects.base import Effect
+from sher3_sim.simulate import Array, Excitation, excitation, simulate
+from sher3_sim.tip import cross
+
+SMOOTHING = 9
+"""Ticks over which the recorded wrench is averaged before it acts on the model."""
+
+
+def contact_wrench(run: Run, robot: Robot, smoothing: int = SMOOTHING) -> Array:
+    """Return (n, 6) the contact wrench at the tip in {b} that the recorded force sensor and load encoders imply.
+
+    The tool's weight is taken off and the moment moved from {f} to the tip (contract, section 3); all of it nominal.
+
+    Raises:
+        MissingTopicError: `measured_js` or `force/measured_cf` was not recorded.
+    """
+    sensed = run["force/measured_cf"]
+    readings = np.column_stack([sensed.force, sensed.torque])
+    q, sensor = run["measured_js"].position, robot.force_sensor
+    place, com = np.array(sensor.position), np.array(sensor.tool_com)
+    raw = _to_tip(kernel_parameters(robot), q, readings, sensor.tool_mass * GRAVITY, com, place)
+    return uniform_filter1d(raw, smoothing, axis=0, mode="nearest")
+
+
+@njit(cache=True)
+def _to_tip(p: KernelParameters, q: Any, reading: Any, weight: float, com: Any, place: Any) -> Any:
+    out, rotation, position = np.empty((len(q), 6)), np.empty((3, 3)), np.empty(3)
+    for k in range(len(q)):
+        tip_pose_into(p, np.ascontiguousarray(q[k]), rotation, position)
+        gravity = -weight * rotation[2]
+        force = reading[k, :3] - gravity
+        moment = reading[k, 3:] - cross(com, gravity) + cross(place, force)
+        for i in range(3):
+            out[k, i], out[k, 3 + i] = 0.0, 0.0
+            for j in range(3):
+                out[k, i] += rotation[i, j] * force[j]
+                out[k, 3 + i] += rotation[i, j] * moment[j]
+    return out
+
+
+@njit(cache=True)
+def _axis_loads(p: KernelParameters, q: Any, wrench: Any) -> Any:
+    out, jacobian = np.empty((len(q), 5)), np.empty((6, 5))
+    for k in range(len(q)):
+        position = np.ascontiguousarray(q[k])
+        gravity_load_into(p, position, out[k])
+        tip_jacobian_into(p, position, jacobian)
+        for i in range(5):
+            for j in range(6):
+                out[k, i] -= jacobian[j, i] * wrench[k, j]
+    return out
+
+
+def axis_loads(robot: Robot, q: Array, wrench: Array) -> Array:
+    """Return (n, 5) the load G(q) - J^T W on the nominal axes [N, N m] at positions (n, 5) under wrenches (n, 6)."""
+    return _axis_loads(kernel_parameters(robot), np.ascontiguousarray(q), np.ascontiguousarray(wrench))
+
+
+def recorded_temperature(run: Run, stamp: NDArray[np.int64]) -> Array:
+    """Return (n,) the recorded structure temperature [degC] at the stamps, 22 where none was recorded."""
+    if "temperature" not in run:
+        return np.full(len(stamp), 22.0)
+    seen = run["temperature"]
+    return np.interp(stamp, seen.stamp, seen.temperature)
+
+
+def recorded_excitation(run: Run, robot: Robot, *, open_loop: bool = False) -> Excitation:
+    """Return what drove a recorded run: set-points, or with `open_loop` its `servo_jv`, and wrench and temperature.
+
+    Raises:
+        MissingTopicError: the run lacks a stream this needs.
+    """
+    wrench = contact_wrench(run, robot)
+    if open_loop:
+        commands = run["servo_jv"]
+        start = np.broadcast_to(run["measured_js"].position[0], commands.velocity.shape)
+        warmth = recorded_temperature(run, commands.stamp)
+        return excitation(start, None, wrench, warmth, commands.velocity, period=robot.control_period)
+    goal = run["setpoint_js"]
+    warmth = recorded_temperature(run, goal.stamp)
+    return excitation(goal.position, goal.velocity, wrench, warmth, period=robot.control_period)
+
+
+def resimulate(
+    run: Run, robot: Robot, effects: Iterable[Effect] = (), seed: int = 0, *, open_loop: bool = False
+) -> Run:
+    """Return the run the model makes of what drove a recorded run.
+
+    Raises:
+        MissingTopicError, InputError, EffectError: see `recorded_excitation` and `simulate`.
+    """
+    drive = recorded_excitation(run, robot, open_loop=open_loop)
+    return simulate(
+        robot,
+        drive.position,
+        drive.wrench,
+        effects,
+        seed,
+        setpoint_velocity=drive.velocity,
+        command=drive.command,
+        temperature=drive.temperature,
+        start_stamp=run.start,
+        metadata=run.metadata,
+    )
