@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import correlate
-from sher3_description import ACTUATORS
+from sher3_description import ACTUATORS, Sher3Error
 
 from sher3_bags.errors import BagError
 from sher3_bags.run import Run, Stream
@@ -71,6 +71,18 @@ class Comparison:
     def to_dict(self) -> dict[str, Any]:
         """Return the comparison as plain data."""
         return asdict(self)
+
+
+def alignment_from(text: str) -> Alignment:
+    """Return the alignment of that name.
+
+    Raises:
+        Sher3Error: there is none.
+    """
+    for name in get_args(Alignment):
+        if name == text:
+            return name
+    raise Sher3Error("unknown alignment", value=text, limit=", ".join(get_args(Alignment)))
 
 
 def compare(a: Run, b: Run, *, alignment: Alignment = "auto", topics: Iterable[str] | None = None) -> Comparison:

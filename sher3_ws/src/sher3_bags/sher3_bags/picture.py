@@ -9,10 +9,11 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from sher3_description import ACTUATORS
 
-from sher3_bags.analysis import Analysis, force_and_velocity, tracking_error
+from sher3_bags.analysis import Analysis, AxisError, force_and_velocity, tracking_error
+from sher3_bags.report import quantity
 from sher3_bags.run import Run
+from sher3_bags.statistics import Spread
 
 _MAX_POINTS = 5000
 _COLOURS = ("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9")
@@ -26,11 +27,10 @@ def draw(run: Run, analysis: Analysis, path: str | Path) -> Path:
     figure.suptitle(f"{name}: {analysis.duration:.2f} s, {analysis.dropped} samples dropped", fontsize=13)
     axes = figure.subplots(2, 3)
     with mpl.rc_context({"font.size": 9}):
-        labels = "error [um, 1e-6 rad]", "error [um/s, 1e-6 rad/s]"
         _tip_path(axes[0, 0], run)
         _force_velocity(axes[0, 1], run, analysis)
-        _tracking(axes[0, 2], run, "setpoint_js", "measured_js", "position", labels[0])
-        _tracking(axes[1, 2], run, "drives/setpoint_jv", "drives/measured_js", "velocity", labels[1])
+        _tracking(axes[0, 2], run, analysis.position_tracking, "setpoint_js", "measured_js", "position")
+        _tracking(axes[1, 2], run, analysis.velocity_tracking, "drives/setpoint_jv", "drives/measured_js", "velocity")
         _times(axes[1, 0], analysis)
         _drops(axes[1, 1], analysis)
     target = Path(path)
@@ -80,52 +80,55 @@ def _force_velocity(axis: Any, run: Run, analysis: Analysis) -> None:
     return None
 
 
-def _tracking(axis: Any, run: Run, wanted: str, measured: str, column: str, label: str) -> None:
+def _tracking(axis: Any, run: Run, figures: tuple[AxisError, ...], wanted: str, measured: str, column: str) -> None:
+    """Draw one trace per axis, each to its own scale, which stands beside its name."""
     stamp, error = tracking_error(run, wanted, measured, column)
-    if not len(stamp):
-        return _absent(axis, f"{column} tracking", f"no {wanted} or {measured}")
-    thin = _thin(len(stamp))
-    seconds = (stamp - run.start) * 1e-9
-    for k, name in enumerate(ACTUATORS):
-        axis.plot(seconds[thin], error[thin, k] * 1e6, lw=0.7, color=_COLOURS[k], label=name)
-    axis.set_yscale("symlog", linthresh=max(1.0, float(np.percentile(np.abs(error[:, :3]), 90)) * 1e6))
-    axis.set_title(f"{column} tracking: {wanted} - {measured}")
+    if not figures:
+        return _absent(axis, f"{column} error", f"no {wanted} or {measured}")
+    seconds, thin = (stamp - run.start) * 1e-9, _thin(len(stamp))
+    scale = np.maximum([figure.max for figure in figures], 1e-30)
+    for k in range(len(figures)):
+        axis.plot(seconds[thin], 0.48 * error[thin, k] / scale[k] - k, lw=0.6, color=_COLOURS[k])
+        axis.axhline(-k, lw=0.4, color="0.6")
+    names = [f"{figure.actuator}\n±{quantity(figure.max, figure.unit)}" for figure in figures]
+    axis.set_yticks([-k for k in range(len(figures))], names, fontsize=8)
+    axis.set_title(f"{column} error, own scales")
     axis.set_xlabel("time [s]")
-    axis.set_ylabel(label)
-    axis.legend(loc="upper right", frameon=False, ncols=2, fontsize=8)
     return None
 
 
 def _times(axis: Any, analysis: Analysis) -> None:
-    timed = {t: x for t, x in analysis.topics.items() if x.latency is not None}
+    """Draw from stamp to arrival, by topic."""
+    timed = {f"{t} ({x.node})" if x.node else t: x.latency for t, x in analysis.topics.items() if x.latency is not None}
     if not timed:
         return _absent(axis, "latency", "logged at the stamps: no arrival times")
-    for k, timing in enumerate(timed.values()):
-        assert timing.latency is not None
-        low, high = timing.latency.p50 * 1e3, timing.latency.p99 * 1e3
-        axis.plot([low, high], [k, k], "-", lw=4, color=_COLOURS[0])
-        axis.plot(timing.latency.max * 1e3, k, "|", ms=10, color=_COLOURS[1])
-    axis.set_yticks(range(len(timed)), [f"{t} ({x.node})" if x.node else t for t, x in timed.items()], fontsize=8)
-    axis.invert_yaxis()
-    axis.set_xscale("log")
-    axis.set_xlabel("from stamp to arrival [ms]: median to 99 %, tick at the maximum")
-    axis.set_title("latency by topic (node)")
+    _spreads(axis, timed)
+    axis.set_xlim(left=0)
+    axis.set_title("from stamp to arrival, by topic (node)")
     return None
 
 
 def _drops(axis: Any, analysis: Analysis) -> None:
-    timed = {topic: (x, x.period) for topic, x in analysis.topics.items() if x.period is not None and x.period.p50 > 0}
+    """Draw the time between samples, by topic, with the number of dropped ones."""
+    timed = {
+        f"{t}, {x.dropped} dropped": x.period
+        for t, x in analysis.topics.items()
+        if x.period is not None and x.period.p50 > 0
+    }
     if not timed:
         return _absent(axis, "period", "no samples")
-    names = list(timed)
-    axis.barh(range(len(names)), [p.max * 1e3 for _, p in timed.values()], color="0.85", label="longest")
-    axis.barh(range(len(names)), [p.p50 * 1e3 for _, p in timed.values()], color=_COLOURS[2], label="median")
-    for k, (timing, _) in enumerate(timed.values()):
-        axis.text(1.0, k, f" {timing.dropped}", va="center", fontsize=8, transform=axis.get_yaxis_transform())
-    axis.set_yticks(range(len(names)), names, fontsize=8)
-    axis.invert_yaxis()
+    _spreads(axis, timed)
     axis.set_xscale("log")
-    axis.set_xlabel("time between samples [ms]")
-    axis.set_title("period by topic; on the right, samples dropped")
-    axis.legend(loc="lower right", frameon=False)
+    axis.set_title("time between samples, by topic")
     return None
+
+
+def _spreads(axis: Any, spreads: dict[str, Spread]) -> None:
+    """Draw a bar from median to 99th percentile and a tick at the maximum per row, in ms."""
+    for k, spread in enumerate(spreads.values()):
+        axis.plot([spread.p50 * 1e3, spread.p99 * 1e3], [k, k], "-", lw=4, color=_COLOURS[0], solid_capstyle="butt")
+        axis.plot(spread.p50 * 1e3, k, "o", ms=5, color=_COLOURS[0])
+        axis.plot(spread.max * 1e3, k, "|", ms=11, mew=2, color=_COLOURS[1])
+    axis.set_yticks(range(len(spreads)), list(spreads), fontsize=8)
+    axis.invert_yaxis()
+    axis.set_xlabel("ms: dot median, bar to 99 %, tick maximum")

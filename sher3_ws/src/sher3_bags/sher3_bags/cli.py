@@ -1,0 +1,155 @@
+"""The bag commands of `sher3`: record, replay, analyze, compare, recover, info."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import asdict
+from datetime import datetime
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from sher3_description import NAMESPACE, Sher3Error, load_robot
+
+from sher3_bags.errors import BagError
+
+app = typer.Typer(no_args_is_help=True, help="Record, replay, analyse, compare and recover bags.")
+
+Bag = Annotated[Path, typer.Argument(help="Bag folder or .mcap file.")]
+Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")]
+Topics = Annotated[list[str] | None, typer.Option("--topic", help="Topic relative to /sher3; repeat for more.")]
+Namespace = Annotated[str, typer.Option(help="Namespace of the robot in the bag.")]
+
+
+@contextmanager
+def _reported(as_json: bool) -> Iterator[None]:
+    """Turn an error of ours into one sentence on stderr (an object with --json) and exit code 1."""
+    try:
+        yield
+    except Sher3Error as error:
+        typer.echo(json.dumps(error.to_dict(), default=str) if as_json else f"error: {error}", err=True)
+        raise typer.Exit(1) from error
+
+
+def _print(as_json: bool, data: dict[str, Any], text: str) -> None:
+    typer.echo(json.dumps(data) if as_json else text)
+
+
+@app.command(epilog="Example: sher3 record bags/trial --seconds 20")
+def record(
+    output: Annotated[Path | None, typer.Argument(help="New folder; default bags/<date and time>.")] = None,
+    seconds: Annotated[float | None, typer.Option(help="Stop after this time; default at Ctrl-C.")] = None,
+    topic: Topics = None,
+    robot: Annotated[Path | None, typer.Option(help="robot.yaml to attach; default the nominal one.")] = None,
+    as_json: Json = False,
+) -> None:
+    """Record the running graph into a new bag."""
+    from sher3_bags.recorder_node import run
+
+    with _reported(as_json):
+        target = output or Path("bags", datetime.now().strftime("%Y%m%d_%H%M%S"))
+        typer.echo(f"recording to {target}, Ctrl-C stops", err=True)
+        counts = run(target, load_robot(robot), topics=topic, seconds=seconds)
+        lines = [f"{name}: {entry['messages']} messages, {entry['dropped']} dropped" for name, entry in counts.items()]
+        _print(as_json, {"bag": str(target), "topics": counts}, "\n".join([*lines, f"recorded to {target}"]))
+
+
+@app.command(epilog="Example: sher3 replay bags/trial --rate 0.5 --topic force/measured_cf --topic pedal/measured")
+def replay(
+    bag: Bag,
+    rate: Annotated[float, typer.Option(help="Speed; 2 is twice as fast.")] = 1.0,
+    topic: Topics = None,
+    keep_stamps: Annotated[bool, typer.Option("--keep-stamps", help="Leave header stamps as recorded.")] = False,
+    wait_for: Annotated[int, typer.Option(help="Subscribers to wait for on every topic.")] = 0,
+    namespace: Namespace = NAMESPACE,
+    as_json: Json = False,
+) -> None:
+    """Publish the messages of a bag into the graph, on topics nobody else publishes."""
+    from sher3_bags.replay import Replay
+    from sher3_bags.replay_node import run
+
+    with _reported(as_json):
+        player = Replay(bag, topic, rate=rate, stamps="keep" if keep_stamps else "shift", namespace=namespace)
+        typer.echo(f"replaying {len(player)} messages in {player.duration:.1f} s", err=True)
+        sent = run(player, wait_for)
+        data = {"bag": str(bag), "sent": sent, "messages": len(player), "topics": list(player.topics)}
+        _print(as_json, data, f"sent {sent} of {len(player)} messages of {len(player.topics)} topics")
+
+
+@app.command(epilog="Example: sher3 analyze bags/trial --picture trial.png")
+def analyze(
+    bag: Bag,
+    picture: Annotated[Path | None, typer.Option(help="Also draw the run to this PNG, PDF or SVG.")] = None,
+    namespace: Namespace = NAMESPACE,
+    as_json: Json = False,
+) -> None:
+    """Figures of a run: tip path, force against velocity, tracking per axis, timing and drops per topic."""
+    from sher3_bags.analysis import analyse
+    from sher3_bags.reading import read_run
+    from sher3_bags.report import analysis_text
+
+    with _reported(as_json):
+        run = read_run(bag, namespace=namespace, check=False)
+        analysis = analyse(run)
+        data = analysis.to_dict()
+        if picture is not None:
+            from sher3_bags.picture import draw
+
+            data["picture"] = str(_drawn(lambda: draw(run, analysis, picture), picture))
+        note = f"\n\npicture: {picture}" if picture is not None else ""
+        _print(as_json, data, analysis_text(analysis) + note)
+
+
+def _drawn(draw: Any, picture: Path) -> Path:
+    try:
+        return draw()
+    except (OSError, ValueError) as error:
+        raise BagError(
+            f"cannot be drawn ({error})", path=picture, remedy="name a writable .png, .pdf or .svg"
+        ) from error
+
+
+@app.command(epilog="Example: sher3 compare bags/before bags/after --topic measured_cp")
+def compare(
+    a: Annotated[Path, typer.Argument(help="Reference bag.")],
+    b: Annotated[Path, typer.Argument(help="Other bag.")],
+    align: Annotated[str, typer.Option(help="auto, stamp (one clock) or start (both from zero).")] = "auto",
+    topic: Topics = None,
+    as_json: Json = False,
+) -> None:
+    """Difference of two runs on header time: lag and residuals per topic and axis."""
+    from sher3_bags.compare import alignment_from
+    from sher3_bags.compare import compare as compare_runs
+    from sher3_bags.reading import read_run
+    from sher3_bags.report import comparison_text
+
+    with _reported(as_json):
+        alignment = alignment_from(align)
+        result = compare_runs(read_run(a, topic), read_run(b, topic), alignment=alignment, topics=topic)
+        _print(as_json, result.to_dict(), comparison_text(result))
+
+
+@app.command(epilog="Example: sher3 recover bags/trial --output bags/trial_whole")
+def recover(
+    bag: Bag,
+    output: Annotated[Path | None, typer.Option(help="New folder; default <bag>_recovered.")] = None,
+    as_json: Json = False,
+) -> None:
+    """Save what can be read of a cut or corrupt bag, and count what cannot."""
+    from sher3_bags.recovery import recover as recover_bag
+
+    with _reported(as_json):
+        recovery = recover_bag(bag, output)
+        _print(as_json, asdict(recovery), str(recovery))
+
+
+@app.command(epilog="Example: sher3 info bags/trial")
+def info(bag: Bag, namespace: Namespace = NAMESPACE, as_json: Json = False) -> None:
+    """Show what a bag holds: topics, metadata, provenance, samples the recorder missed."""
+    from sher3_bags.overview import overview, overview_text
+
+    with _reported(as_json):
+        data = overview(bag, namespace)
+        _print(as_json, data, overview_text(data))

@@ -1,0 +1,102 @@
+"""Replay a bag into the graph, on the clock grid."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import rclpy
+from rclpy.node import Node
+from rclpy.signals import SignalHandlerOptions
+from sher3_description import TOPICS
+from sher3_runtime import environment
+from sher3_runtime.ports import NODE_OPTIONS, advertise_raw, on_tick, ports
+from sher3_runtime.process import stop_on_signals
+from sher3_runtime.spinning import spin
+
+from sher3_bags.errors import TopicError
+from sher3_bags.replay import DueMessage, Replay
+
+_DISCOVERY_TICKS = 250
+_DELIVERY_TICKS = 50
+
+
+class ReplayNode(Node):
+    """Publishes the messages of a replay at the ticks at which they are due, in the order of the recording.
+
+    The replay starts once `wait_for` subscribers are there per topic, or after half a second. It never becomes the
+    second publisher of a topic: two sources of a command would fight over the robot.
+
+    Args:
+        replay: what to publish.
+        wait_for: number of subscribers of every topic to wait for, without limit; 0 waits a fixed time.
+    """
+
+    def __init__(self, replay: Replay, *, wait_for: int = 0, **options: Any) -> None:
+        super().__init__("replay", **{**NODE_OPTIONS, **options})
+        self.replay, self.sent, self.done = replay, 0, False
+        self._wait_for = wait_for
+        self._ticks = self._ticks_after = 0
+        self._messages: Iterator[DueMessage] | None = None
+        self._next: DueMessage | None = None
+        self._publish = {name: advertise_raw(self, name) for name in replay.topics}
+        on_tick(self, self._tick)
+
+    def _tick(self, stamp: int) -> None:
+        if self.done:
+            self._ticks_after += 1
+            return
+        if not (self._messages or self._start(stamp)):
+            return
+        assert self._messages is not None
+        while self._next is not None and self._next.due <= stamp:
+            self._publish[self._next.topic](self._next.data)
+            self.sent += 1
+            self._next = next(self._messages, None)
+        self.done = self._next is None
+
+    @property
+    def delivered(self) -> bool:
+        """Whether the last message has had time to reach its subscribers."""
+        return self._ticks_after > _DELIVERY_TICKS
+
+    def _start(self, stamp: int) -> bool:
+        self._ticks += 1
+        if self._wait_for:
+            counts = (publisher.get_subscription_count() for publisher in ports(self).publishers.values())
+            if min(counts) < self._wait_for:
+                return False
+        elif self._ticks <= _DISCOVERY_TICKS:
+            return False
+        self._refuse_second_publisher()
+        self._messages = self.replay.messages(stamp)
+        self._next = next(self._messages, None)
+        return True
+
+    def _refuse_second_publisher(self) -> None:
+        for name in self._publish:
+            others = [
+                info.node_name
+                for info in self.get_publishers_info_by_topic(TOPICS[name].full_name)
+                if info.node_name != self.get_name()
+            ]
+            if others:
+                remedy = "stop that node, or leave the topic out of the replay"
+                raise TopicError("has a publisher already", topic=name, value=", ".join(others), limit=0, remedy=remedy)
+
+
+def run(replay: Replay, wait_for: int = 0) -> int:
+    """Replay in a process of its own until the end or a signal; return the number of messages published.
+
+    Raises:
+        TopicError: a topic has a publisher already.
+    """
+    environment.apply()
+    rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
+    try:
+        stop = stop_on_signals()
+        node = ReplayNode(replay, wait_for=wait_for)
+        spin([node], stop=lambda: stop() or node.delivered, diagnostics=False)
+        return node.sent
+    finally:
+        rclpy.try_shutdown()

@@ -1,0 +1,103 @@
+"""The commands: exit codes, one sentence per failure, JSON that parses."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+from sher3_bags import read_run, write_run
+from sher3_bags.cli import app
+from typer.testing import CliRunner
+
+runner = CliRunner()
+
+
+@pytest.fixture
+def bag(tmp_path, build):
+    return write_run(tmp_path / "bag", build(300))
+
+
+def test_help_has_an_example_for_each_command():
+    for name in ("record", "replay", "analyze", "compare", "recover", "info"):
+        result = runner.invoke(app, [name, "--help"])
+        assert result.exit_code == 0
+        assert "Example: sher3 " + name in result.output.replace("\n", " ")
+
+
+def test_analyze(bag, tmp_path):
+    text = runner.invoke(app, ["analyze", str(bag), "--picture", str(tmp_path / "a.png")])
+    assert text.exit_code == 0
+    assert "position tracking" in text.output
+    assert (tmp_path / "a.png").is_file()
+    data = json.loads(runner.invoke(app, ["analyze", str(bag), "--json"]).output)
+    assert data["dropped"] == 0
+    assert len(data["position_tracking"]) == 5
+
+
+def test_compare_info_recover(bag, tmp_path):
+    data = json.loads(runner.invoke(app, ["compare", str(bag), str(bag), "--json"]).output)
+    assert data["alignment"] == "stamp"
+    assert data["residuals"]["measured_js"]["position"][0]["max"] == 0
+    assert "b - a" in runner.invoke(app, ["compare", str(bag), str(bag), "--topic", "measured_js"]).output
+    data = json.loads(runner.invoke(app, ["info", str(bag), "--json"]).output)
+    assert data["topics"]["force/measured_cf"]["frame_id"] == "f"
+    assert data["run"]["excitation"] == "sweep"
+    assert "sensor_msgs/msg/Joy" in runner.invoke(app, ["info", str(bag)]).output
+    data = json.loads(runner.invoke(app, ["recover", str(bag), "--json"]).output)
+    assert data["cause"] is None
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["analyze", "missing"],
+        ["info", "missing"],
+        ["recover", "missing"],
+        ["compare", "missing", "missing"],
+        ["replay", "missing"],
+    ],
+)
+def test_failures_are_one_sentence(arguments, monkeypatch, tmp_path):
+    monkeypatch.chdir(tmp_path)
+    result = runner.invoke(app, arguments)
+    assert result.exit_code == 1
+    assert result.output.startswith("error: missing: no such file or folder;")
+    error = json.loads(runner.invoke(app, [*arguments, "--json"]).output)
+    assert error["error"] == "ForeignBagError"
+
+
+def test_other_failures(bag, tmp_path):
+    result = runner.invoke(app, ["compare", str(bag), str(bag), "--align", "phase"])
+    assert (result.exit_code, "unknown alignment; value phase" in result.output) == (1, True)
+    result = runner.invoke(app, ["analyze", str(bag), "--picture", str(tmp_path / "a.xyz")])
+    assert (result.exit_code, "cannot be drawn" in result.output) == (1, True)
+    result = runner.invoke(app, ["replay", str(bag), "--rate", "0"])
+    assert (result.exit_code, "rate must be positive" in result.output) == (1, True)
+
+
+COMMAND = [sys.executable, "-c", "from sher3_bags.cli import app; app()"]
+
+
+@pytest.mark.graph
+def test_record_and_replay_in_two_processes(bag, tmp_path):
+    """The recorder sees every message of the replay, stops at SIGINT and leaves a whole bag."""
+    environment = {**os.environ, "ROS_DOMAIN_ID": str(101 + os.getpid() % 100)}
+    target = tmp_path / "again"
+    topics = ["--topic", "measured_js", "--topic", "servo_jv"]
+    recorder = subprocess.Popen(
+        [*COMMAND, "record", str(target), "--json", *topics], env=environment, stdout=subprocess.PIPE, text=True
+    )
+    replay = [*COMMAND, "replay", str(bag), "--wait-for", "1", "--json", *topics]
+    sent = json.loads(subprocess.run(replay, env=environment, capture_output=True, check=True, timeout=60).stdout)
+    time.sleep(0.1)
+    recorder.send_signal(signal.SIGINT)
+    counts = json.loads(recorder.communicate(timeout=30)[0])["topics"]
+    assert recorder.returncode == 0
+    assert sent["sent"] == sent["messages"] == 600
+    assert {name: entry["messages"] for name, entry in counts.items()} == {"measured_js": 300, "servo_jv": 300}
+    run = read_run(target)
+    assert len(run["measured_js"]) == 300
+    assert run["measured_js"].log_time[0] > run["measured_js"].stamp[0]

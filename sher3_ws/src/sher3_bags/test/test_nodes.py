@@ -1,0 +1,112 @@
+"""Recorder and replay in a graph of one process and stepped time."""
+
+import numpy as np
+import pytest
+from sher3_bags import DamagedBagError, TopicError, read_run, write_run
+from sher3_bags.errors import BagError, MissingTopicError
+from sher3_bags.replay import Replay
+from sher3_description import load_robot
+
+runtime = pytest.importorskip("sher3_runtime")
+pytestmark = pytest.mark.graph
+
+TOPICS = ["setpoint_js", "servo_jv", "measured_js", "force/measured_cf", "operating_state"]
+
+
+def replay_and_record(folder, replay, topics=None):
+    from sher3_bags.recorder_node import RecorderNode
+    from sher3_bags.replay_node import ReplayNode
+    from sher3_runtime import Graph
+
+    with Graph() as graph:
+        recorder = graph.add(RecorderNode, folder, load_robot(), topics=topics or replay.topics)
+        player = graph.add(ReplayNode, replay, wait_for=1)
+        for _ in range(2000):
+            graph.step()
+            if player.done:
+                break
+        graph.until(lambda: sum(recorder.recorder.counts()[t]["messages"] for t in replay.topics) == len(replay))
+    return recorder, player
+
+
+@pytest.mark.parametrize("rate", [1.0, 2.0, float("inf")])
+def test_what_is_replayed_is_recorded(tmp_path, build, rate):
+    path = write_run(tmp_path / "bag", build(200))
+    recorder, player = replay_and_record(tmp_path / "again", Replay(path, TOPICS, rate=rate, stamps="keep"))
+    assert player.sent == sum(len(read_run(path)[t]) for t in TOPICS)
+    one, two = read_run(path), read_run(tmp_path / "again")
+    for topic in TOPICS:
+        for name, column in one[topic].columns.items():
+            assert np.array_equal(column, two[topic].columns[name])
+    assert np.array_equal(one["measured_js"].stamp, two["measured_js"].stamp)
+    assert recorder.counts["measured_js"]["dropped"] == 0
+    span = two["measured_js"].log_time[-1] - two["measured_js"].log_time[0]
+    assert span == pytest.approx(0 if np.isinf(rate) else 398_000_000 / rate, abs=2_000_000)
+
+
+def test_shifted_stamps_stand_on_the_grid(tmp_path, build):
+    path = write_run(tmp_path / "bag", build(50))
+    replay_and_record(tmp_path / "again", Replay(path, ["measured_js"]))
+    stamp = read_run(tmp_path / "again")["measured_js"].stamp
+    assert (stamp % 2_000_000 == 0).all()
+    assert (np.diff(stamp) == 2_000_000).all()
+
+
+def test_never_the_second_publisher(tmp_path, build):
+    from sher3_bags.replay_node import ReplayNode
+    from sher3_runtime import Graph
+
+    path = write_run(tmp_path / "bag", build(50))
+    with Graph() as graph:
+        graph.add(runtime.graph.Probe, "servo_jv", name="driver", sends=("servo_jv",))
+        graph.add(ReplayNode, Replay(path, ["servo_jv"]), wait_for=1)
+        with pytest.raises(TopicError, match="servo_jv: has a publisher already; value driver"):
+            for _ in range(500):
+                graph.step()
+
+
+def test_replay_of_bad_input(tmp_path, build):
+    path = write_run(tmp_path / "bag", build(50))
+    for rate in (0.0, -1.0, float("nan")):
+        with pytest.raises(BagError, match="rate must be positive"):
+            Replay(path, rate=rate)
+    with pytest.raises(MissingTopicError):
+        Replay(path, ["tracker/measured_cp"])
+    with pytest.raises(BagError, match="nothing to replay"):
+        Replay(path, namespace="/other")
+    wrong = (path / "bag.mcap").read_bytes().replace(b"/sher3/servo_jv", b"/sher3/servo_cv")
+    (tmp_path / "wrong.mcap").write_bytes(wrong)
+    with pytest.raises(DamagedBagError):
+        Replay(tmp_path / "wrong.mcap")
+
+
+def test_messages_are_in_order_and_due_in_time(tmp_path, build):
+    path = write_run(tmp_path / "bag", build(100))
+    replay = Replay(path, rate=4.0)
+    due = [message.due for message in replay.messages(1000)]
+    assert len(replay) == len(due)
+    assert due == sorted(due)
+    assert due[0] == 1000
+    assert (due[-1] - due[0]) * 1e-9 == pytest.approx(replay.duration)
+    assert replay.duration == pytest.approx(0.198 / 4, abs=1e-4)
+
+
+def test_a_test_leaves_its_bag(tmp_path, request):
+    from sher3_bags.live import bag_folder, recorded
+    from sher3_runtime import Graph, JointSample
+
+    name = request.node.nodeid
+    for _ in range(2):  # an earlier bag of the same test is replaced
+        with pytest.raises(RuntimeError), Graph() as graph, recorded(graph, name, root=tmp_path) as recorder:
+            probe = graph.add(runtime.graph.Probe, name="driver", sends=("measured_js",))
+            graph.step()
+            for k in range(5):
+                probe.send("measured_js", JointSample(k * 2_000_000 + 1, (0.0, 1.0, 2.0, 3.0, float(k)), None, None))
+                graph.settle()
+            raise RuntimeError("the test fails")
+        folder = recorder.recorder.folder
+        assert folder == bag_folder(name, tmp_path)
+        run = read_run(folder)
+        assert run["measured_js"].position[:, 4].tolist() == [0.0, 1.0, 2.0, 3.0, 4.0]
+        assert run["measured_js"].velocity is None
+    assert bag_folder("a/b.py::test_x[1-0.5]").parts[-2:] == ("bags", "a_b.py_test_x_1-0.5")
