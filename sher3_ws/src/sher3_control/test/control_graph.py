@@ -13,23 +13,10 @@ from sher3_control.supervisor_node import SupervisorNode
 from sher3_runtime import Graph, JointSample, JoySample, TextSample, WrenchSample
 from sher3_runtime.ports import NODE_OPTIONS, advertise, on_tick, subscribe
 
-RECORDED = [
-    "setpoint_js",
-    "servo_cv",
-    "servo_jv",
-    "measured_js",
-    "measured_cp",
-    "force/measured_cf",
-    "pedal/measured",
-    "operating_state",
-    "admittance/inputs",
-    "admittance/settings",
-    "admittance/status",
-    "motion/inputs",
-    "motion/settings",
-    "motion/status",
-    "supervisor/status",
-]
+STREAMS = ["setpoint_js", "servo_cv", "servo_jv", "measured_js", "measured_cp", "force/measured_cf", "pedal/measured"]
+RECORDS = [f"{node}/{kind}" for node in ("admittance", "motion") for kind in ("inputs", "settings", "status")]
+RECORDED = [*STREAMS, *RECORDS, "operating_state", "supervisor/status"]
+COMMANDS = ["servo_cv", "servo_jv", "servo_jp", "servo_cp", "move_jp", "move_cp", "state_command", "admittance"]
 
 
 class IdealRobot(Node):
@@ -72,8 +59,7 @@ class ControlGraph:
         self.supervisor = graph.add(SupervisorNode, ROBOT)
         self.kinematics = graph.add(KinematicsNode, ROBOT)
         self.admittance = graph.add(AdmittanceNode, ROBOT)
-        commands = ["servo_cv", "servo_jv", "servo_jp", "servo_cp", "move_jp", "move_cp", "state_command", "admittance"]
-        self.probe = graph.probe(*RECORDED, sends=tuple(f"command/{name}" for name in commands))
+        self.probe = graph.probe(*RECORDED, sends=tuple(f"command/{name}" for name in COMMANDS))
         self.step = graph.step
 
     @property
@@ -87,7 +73,27 @@ class ControlGraph:
     def enable(self):
         self.step(5)
         self.text("state_command", "enable")
-        self.step(5)
+        self.until_state("ENABLED")
+        self.until_mode(None)
+        self.step(2)
+
+    def until_state(self, state):
+        """Wait until every node has heard of the operating state: latched samples take their own time."""
+        nodes = (self.admittance, self.kinematics)
+        enabled = state == "ENABLED"
+        heard = lambda: all(node._enabled == enabled for node in nodes)  # noqa: E731
+        self.graph.until(lambda: heard() and self.status("supervisor/status")["state"] == state, state)
+
+    def until_mode(self, mode):
+        """Wait until the owner is `mode` and the admittance node has heard of it."""
+        free = mode in (None, "cooperative")
+        self.graph.until(
+            lambda: self.status("motion/status")["mode"] == mode and self.admittance._owner == free, f"mode {mode}"
+        )
+
+    def until_reason(self, topic, reason):
+        """Wait until a status topic shows a reason."""
+        self.graph.until(lambda: self.status(topic)["reason"] == reason, reason)
 
     def press(self, force=(0.0, 0.0, 0.0)):
         self.robot.travel = 0.0

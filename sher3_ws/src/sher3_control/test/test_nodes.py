@@ -17,10 +17,10 @@ def test_enable_press_push_moves_and_release_stops_in_the_same_tick():
         assert g.last("servo_jv").velocity == REST
         g.enable()
         g.step(20)
-        assert g.status("admittance/status")["reason"] == "NOT_REARMED"
+        g.until_reason("admittance/status", "NOT_REARMED")
         g.press(force=(1.0, 0.0, 0.0))
         g.step(100)
-        assert g.status("motion/status")["mode"] == "cooperative"
+        g.until_mode("cooperative")
         assert g.last("servo_cv").twist[0] > 1e-4
         assert max(map(abs, g.last("servo_jv").velocity)) > 1e-4
         assert not g.probe.samples["setpoint_js"]
@@ -29,7 +29,7 @@ def test_enable_press_push_moves_and_release_stops_in_the_same_tick():
         assert (g.last("servo_cv").stamp, g.last("servo_jv").stamp) == (stamp, stamp)
         assert g.last("servo_jv").velocity == REST
         g.step(3)
-        assert g.status("motion/status")["mode"] is None
+        g.until_mode(None)
 
 
 @pytest.mark.parametrize("silence", ["force", "travel"])
@@ -46,18 +46,19 @@ def test_silence_stops_within_the_age_limit_and_faults(silence):
         limit = {"force": 0.010, "travel": 0.020}[silence]
         assert moving <= limit / 0.002
         g.step(60)
+        g.until_state("FAULT")
         status = g.status("supervisor/status")
-        assert status["state"] == "FAULT"
         assert status["first_fault"]["code"].endswith("_SILENT")
         setattr(g.robot, silence, (1.0, 0.0, 0.0) if silence == "force" else 1.0)
         g.step(10)
         g.text("state_command", "enable")
+        g.graph.until(lambda: g.status("supervisor/status")["refused"], "refusal")
         assert g.status("supervisor/status")["state"] == "FAULT"
-        assert "refused" in g.status("supervisor/status")["refused"]["text"]
         g.text("state_command", "disable")
+        g.until_state("DISABLED")
         g.text("state_command", "enable")
+        g.until_state("ENABLED")
         g.step(30)
-        assert g.status("supervisor/status")["state"] == "ENABLED"
         assert g.last("servo_jv").velocity == REST
         g.press(force=(1.0, 0.0, 0.0))
         g.step(50)
@@ -72,6 +73,7 @@ def test_emergency_stop_faults_in_its_tick():
         g.robot.button = 1
         g.step()
         assert g.last("servo_jv").velocity == REST
+        g.until_state("FAULT")
         assert g.status("supervisor/status")["first_fault"]["code"] == "EMERGENCY_STOP"
 
 
@@ -93,7 +95,7 @@ def test_servo_jp_for_the_tick_of_its_stamp_gives_the_host_law():
             expected = tuple(1e-3 + 20.0 * (1e-5 * k - q) for q in measured[stamp].position)
             assert velocity[stamp].velocity == expected
         g.step(15)
-        assert g.status("motion/status")["mode"] is None
+        g.until_mode(None)
         assert g.last("servo_jv").velocity == REST
 
 
@@ -104,17 +106,18 @@ def test_move_jp_reaches_its_goal_and_refuses_a_second_owner():
         g.probe.send("command/move_jp", JointSample(g.now, goal))
         g.graph.settle()
         g.step(20)
-        status = g.status("motion/status")
-        assert (status["mode"], status["is_busy"]) == ("move_jp", True)
+        g.until_mode("move_jp")
+        assert g.status("motion/status")["is_busy"]
         g.probe.send("command/servo_cv", TwistSample(g.now, (1e-3, 0.0, 0.0, 0.0, 0.0, 0.0)))
         g.graph.settle()
         g.step()
+        g.graph.until(lambda: g.status("motion/status")["refused"], "refusal")
         refused = g.status("motion/status")["refused"]
         assert refused["error"] == "OwnerConflict"
         assert "move_jp owns the robot" in refused["text"]
         g.press(force=(1.0, 0.0, 0.0))
         g.step(10)
-        assert g.status("admittance/status")["reason"] == "NOT_OWNER"
+        g.until_reason("admittance/status", "NOT_OWNER")
         for _ in range(400):
             g.step()
             if g.status("motion/status")["mode"] is None:
@@ -132,5 +135,6 @@ def test_a_second_publisher_of_a_command_is_refused():
         other.send("command/servo_jv", JointSample(g.now, velocity=(1e-3,) * 5))
         g.graph.settle()
         g.step(2)
+        g.graph.until(lambda: g.status("motion/status")["refused"], "refusal")
         assert "several publishers" in g.status("motion/status")["refused"]["text"]
         assert g.last("servo_jv").velocity == REST
