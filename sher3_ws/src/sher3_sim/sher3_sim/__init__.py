@@ -17,6 +17,7 @@ from .plant import Reading as Reading
 from .replay import contact_wrench as contact_wrench
 from .replay import recorded_excitation as recorded_excitation
 from .replay import resimulate as resimulate
+from .scatter import RunScatter as RunScatter
 from .simulate import Excitation as Excitation
 from .simulate import excitation as excitation
 from .simulate import simulate as simulate

@@ -23,7 +23,7 @@ AXIS_STATE = np.dtype(
     [
         *((name, "f8") for name in ("position", "velocity", "integral", "force", "demand", "echo")),
         *((name, "f8") for name in ("bristle", "cable", "base", "hysteresis", "load", "effort_load")),
-        *((name, "f8") for name in ("motor_reading", "load_reading", "velocity_reading", "effort_reading", "zero")),
+        ("disturbance", "f8"),
         ("pending", "i8"),
         ("pending_time", "f8", PENDING),
         ("pending_value", "f8", PENDING),

@@ -10,7 +10,7 @@ from numba import njit
 from sher3_kinematics.kernel import KernelParameters, gravity_load_into, tip_jacobian_into
 
 from sher3_sim.axis import advance, drive_force, send
-from sher3_sim.noise import DROP, EFFORT, FORCE, JITTER, TRACKER, normal, uniform
+from sher3_sim.noise import DISTURBANCE, DROP, EFFORT, FORCE, JITTER, TRACKER, normal, uniform
 from sher3_sim.tip import cross, quaternion, true_tip
 from sher3_sim.transmission import encode_load, place, to_count, transmit
 
@@ -78,7 +78,7 @@ def read_sensors(axis: Any, b: Any, p: KernelParameters, state: Any, s: Any, r: 
         motor = to_count(x.position + a.encoder_offset, a.motor_count)
         r.velocity[i] = (motor - r.motor[i]) / b.period if tick > 0 else 0.0
         r.motor[i] = motor
-        r.load[i] = to_count(encode_load(a, x.load) + x.zero, a.load_count)
+        r.load[i] = to_count(encode_load(a, x.load) + a.load_zero, a.load_count)
         noise = a.effort_noise * normal(s.seed, EFFORT + i, tick)
         r.effort[i] = to_count(drive_force(a, x) + noise, a.effort_count)
         r.demand[i] = x.echo
@@ -154,7 +154,7 @@ def start(axis: Any, b: Any, p: KernelParameters, state: Any, s: Any, r: Any, q_
         _loads(p, axis, state, s, wrench, 0.0)
         for i in range(5):
             state[i].effort_load = s.load[i]
-            place(axis[i], state[i], q_ref[i])
+            place(axis[i], state[i], q_ref[i] + axis[i].start_offset)
     for i in range(5):
         a, x = axis[i], state[i]
         other = s.load[i]
@@ -204,7 +204,11 @@ def step(
         late = a.jitter * abs(normal(s.seed, JITTER, s.tick)) if a.jitter > 0.0 else 0.0
         if a.drop == 0.0 or uniform(s.seed, DROP, s.tick) >= a.drop:
             send(x, command[i], a.delay + late)
-        advance(a, x, maps[i], s.load[i], s.tick * b.period, b.period, substeps)
+        if a.disturbance > 0.0:
+            kept = math.exp(-b.period / a.disturbance_time)
+            fresh = math.sqrt(1.0 - kept * kept) * a.disturbance * normal(s.seed, DISTURBANCE + i, s.tick)
+            x.disturbance = kept * x.disturbance + fresh
+        advance(a, x, maps[i], s.load[i] + x.disturbance, s.tick * b.period, b.period, substeps)
         transmit(a, x, s.load[i])
     s.tick += 1
     read_sensors(axis, b, p, state, s, r)

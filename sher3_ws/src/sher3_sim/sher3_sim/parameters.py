@@ -39,9 +39,11 @@ AXIS = np.dtype(
         *((name, "f8") for name in ("backlash", "hysteresis", "hysteresis_displacement", "compliance")),
         # mechanism: clearance of the leg's joints [m], growth of the slide [1/K]
         *((name, "f8") for name in ("clearance", "expansion")),
+        # run-to-run: start against q_ref(0), random force [N] and its correlation time [s]
+        *((name, "f8") for name in ("start_offset", "disturbance", "disturbance_time")),
         # sensing
         *((name, "f8") for name in ("encoder_scale", "eccentricity", "eccentricity_phase", "encoder_offset")),
-        *((name, "f8") for name in ("zero_scatter", "start_scatter")),
+        ("load_zero", "f8"),
     ]
 )
 

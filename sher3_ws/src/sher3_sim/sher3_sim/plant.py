@@ -13,6 +13,7 @@ from sher3_sim import kernel
 from sher3_sim.axis import AXIS_STATE, propagators
 from sher3_sim.effects.base import Effect, with_effects
 from sher3_sim.errors import InputError
+from sher3_sim.scatter import RunScatter
 
 Vector = NDArray[np.float64]
 
@@ -64,7 +65,13 @@ class Plant:
     """A simulated robot that is stepped by its caller; deterministic for a seed and a sequence of inputs."""
 
     def __init__(
-        self, robot: Robot, effects: Iterable[Effect] = (), seed: int = 0, *, temperature: float = 22.0
+        self,
+        robot: Robot,
+        effects: Iterable[Effect] = (),
+        seed: int = 0,
+        *,
+        temperature: float = 22.0,
+        scatter: RunScatter | None = None,
     ) -> None:
         """Build the plant with effects in it and put it at rest at zero position.
 
@@ -72,6 +79,8 @@ class Plant:
             EffectError: an effect does not fit the robot.
         """
         self.parameters = with_effects(robot, effects)
+        if scatter is not None:
+            self.parameters = scatter.apply(self.parameters, seed)
         self.temperature = temperature
         self.seed = seed
         step = float(self.parameters.body["period"][0]) / self.parameters.substeps

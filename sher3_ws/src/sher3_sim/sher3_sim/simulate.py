@@ -19,6 +19,7 @@ from sher3_sim.effects.base import Effect, with_effects
 from sher3_sim.errors import InputError
 from sher3_sim.parameters import PlantParameters
 from sher3_sim.plant import checked
+from sher3_sim.scatter import RunScatter
 from sher3_sim.tip import quaternion
 
 Array = NDArray[np.float64]
@@ -98,6 +99,7 @@ def simulate(
     start_stamp: int = 0,
     metadata: RunMetadata | None = None,
     parameters: PlantParameters | None = None,
+    scatter: RunScatter | None = None,
 ) -> Run:
     """Simulate one run of the contract in one compiled call.
 
@@ -113,12 +115,15 @@ def simulate(
         start_stamp: first header stamp [ns].
         metadata: of the run; default an unnamed plant run with this seed.
         parameters: of the plant instead of `effects`, when they are at hand.
+        scatter: run-to-run variation, drawn from the seed; default none.
 
     Raises:
         InputError, EffectError: see `excitation` and `with_effects`.
     """
     drive = excitation(setpoints, setpoint_velocity, contact_wrench, temperature, command, period=robot.control_period)
     plant = with_effects(robot, effects) if parameters is None else parameters
+    if scatter is not None:
+        plant = scatter.apply(plant, seed)
     commanded, readings = simulate_arrays(plant, drive, seed)
     run = _as_run(robot, drive, commanded, readings, start_stamp)
     run.metadata = metadata if metadata is not None else RunMetadata(origin="plant", seed=seed)
