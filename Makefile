@@ -1,0 +1,32 @@
+# Every target does its own set-up: a virtual environment with the pinned dependencies and this project in it.
+VENV ?= .venv
+BIN := $(VENV)/bin
+READY := $(VENV)/.ready
+
+.PHONY: demo test bench lint setup clean
+
+demo: $(READY)  ## scripted surgeon on mocks: recorded, analysed, shown
+	$(BIN)/sher3 demo
+
+test: $(READY) lint  ## lint, types and every test
+	$(BIN)/pytest
+
+lint: $(READY)
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy $(wildcard sher3_ws/src/sher3_*/sher3_*)
+
+bench: $(READY)  ## speed of every part that promises one
+	for script in bench/*.py; do echo "== $$script"; $(BIN)/python $$script || exit 1; done
+
+setup: $(READY)
+
+# No download address here or in requirements.txt: pip's own configuration says where from; the hashes say what.
+$(READY): requirements.txt pyproject.toml tools/find-python
+	test -x $(BIN)/python || "$$(tools/find-python)" -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements.txt
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation -e .
+	touch $@
+
+clean:
+	rm -rf $(VENV) sher3.egg-info build
