@@ -28,10 +28,10 @@ class Whitened:
     `target[r][c]` is the (N,) vector of channel c in run r: valid samples, components in turn.
     """
 
-    def __init__(self, views: Sequence[View], residuals: Sequence[Residuals], floors: Floors) -> None:
+    def __init__(self, views: Sequence[View], residuals: Sequence[Residuals], floors: Sequence[Floors]) -> None:
         self.views = list(views)
         self.residuals = list(residuals)
-        self.floors = floors
+        self.floors = list(floors)
         self.target: list[dict[Channel, Array]] = [
             {c: self.flat(r, c, x.values) for c, x in res.items() if x.ok.any()} for r, res in enumerate(self.residuals)
         ]
@@ -42,7 +42,7 @@ class Whitened:
         kept = values[ok]
         if channel.stage == "drive":
             kept = kept - kept.mean(axis=0)
-        scale = self.floors[channel]
+        scale = self.floors[run][channel]
         kept = kept / (scale[:, None] if kept.ndim == 3 else scale)
         return kept.reshape(-1, kept.shape[2]) if kept.ndim == 3 else kept.ravel()
 

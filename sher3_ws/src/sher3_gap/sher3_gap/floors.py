@@ -17,6 +17,11 @@ from sher3_gap.channels import Array, Channel
 from sher3_gap.residuals import Residuals
 from sher3_gap.signals import BANDWIDTH, RunSignals
 
+CHATTER_RATE = 12.0
+"""Toggles per second of a reading at rest on the edge of a count."""
+REST_COUNTS = 8
+"""Travel below which an axis is at rest in a run, motor encoder counts."""
+
 Floors = dict[Channel, Array]
 """Standard deviation of the floor per channel, (d,)."""
 
@@ -42,6 +47,30 @@ def resolution_floors(robot: Robot, period: float) -> Floors:
     return out
 
 
+def chatter_floors(run: RunSignals, robot: Robot) -> Floors:
+    """Floor of axes at rest whose reading may chatter between two counts: one count toggling at `CHATTER_RATE`.
+
+    A control loop at rest settles on the edge of a count as often as not; which runs do is chance.
+    """
+    rng = np.random.default_rng(0)
+    flips = rng.random(run.ticks) < CHATTER_RATE * run.period
+    toggle = np.where(np.cumsum(flips) % 2 == 0, -0.5, 0.5)
+    rate = np.gradient(toggle, run.period)
+    bend = np.zeros_like(toggle)
+    bend[1:-1] = np.diff(toggle, 2) / run.period**2
+    grid = {n: run.to_grid(x) for n, x in (("x", toggle), ("v", rate), ("a", bend))}
+    out: Floors = {}
+    for i, (name, a) in enumerate(zip(ACTUATORS, robot.actuators, strict=True)):
+        count = a.motor_encoder
+        if np.ptp(run.motor[:, i]) > REST_COUNTS * count:
+            continue
+        drive = count * (a.drive.kp * grid["v"] + a.drive.ki * grid["x"])
+        motor = count * (a.mass * grid["a"] + a.viscous * grid["v"])
+        out[Channel("drive", name)] = np.array([drive.std()])
+        out[Channel("motor_mechanics", name)] = np.array([motor.std()])
+    return out
+
+
 def repeat_floors(runs: Sequence[RunSignals], residuals: Sequence[Residuals]) -> Floors:
     """Floor from pairs of repeats, pooled over excitations; channels without repeats are absent."""
     groups: dict[str, list[int]] = defaultdict(list)
@@ -61,12 +90,22 @@ def repeat_floors(runs: Sequence[RunSignals], residuals: Sequence[Residuals]) ->
     return {c: np.sqrt(t / count[c]) for c, t in total.items() if count[c] > 50}
 
 
-def floors(runs: Sequence[RunSignals], residuals: Sequence[Residuals], robot: Robot) -> Floors:
-    """The larger of repeat and resolution floor for every channel recorded."""
+def floors(
+    runs: Sequence[RunSignals], residuals: Sequence[Residuals], simulated: Sequence[Sequence[Residuals]], robot: Robot
+) -> list[Floors]:
+    """Per run the largest of the repeat floor, the resolution floor and the pipeline's own.
+
+    `simulated` are, per run, residuals of the nominal plant on its set-points: what quantisation leaves at rest or at a crawl
+    differs from run to run, and no repeat of another excitation shows it.
+    """
     least = resolution_floors(robot, runs[0].period)
     repeats = repeat_floors(runs, residuals)
     tip, loaded = Channel("mechanism", "tip"), Channel("structure", "tip")
     if loaded not in repeats and tip in repeats:
         repeats[loaded] = repeats[tip]
-    present = {c for r in residuals for c in r}
-    return {c: np.maximum(repeats.get(c, least[c]), least[c]) for c in present}
+    out: list[Floors] = []
+    for run, found, twins in zip(runs, residuals, simulated, strict=True):
+        chatter = chatter_floors(run, robot)
+        base = {c: np.maximum(repeats.get(c, least[c]), np.hypot(least[c], chatter.get(c, 0.0))) for c in found}
+        out.append({c: np.max([b, *(t[c].rms() for t in twins if c in t)], axis=0) for c, b in base.items()})
+    return out

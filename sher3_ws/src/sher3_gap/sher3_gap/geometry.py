@@ -111,6 +111,23 @@ class Geometry:
         """Platform centre in {b} at the residual grid, (g, 3)."""
         return np.array([delta_forward(self.parameters, *q[:3]) for q in self.positions(run)])
 
+    def links(self, platform: Array) -> Array:
+        """Gamma (g, 6, 6) for platform centres (g, 3): columns (u; b x u), links of leg 1, 2, 3 in pairs."""
+        delta = self.robot.delta
+        half = 0.5 * delta.leg_width
+        inner = np.sqrt(delta.platform_radius**2 - half**2)
+        spread = np.sqrt(delta.base_radius**2 - half**2) - inner
+        gamma = np.empty((len(platform), 6, 6))
+        for k, azimuth in enumerate(delta.leg_azimuth):
+            radial = np.array([np.cos(azimuth), np.sin(azimuth), 0.0])
+            across = platform[:, :2] - spread * radial[:2]
+            height = np.sqrt(delta.link_length**2 - (across**2).sum(axis=1))
+            u = np.column_stack([across, height]) / delta.link_length
+            for side in (0, 1):
+                ball = inner * radial + (1 - 2 * side) * half * np.array([-radial[1], radial[0], 0.0])
+                gamma[:, :3, 2 * k + side], gamma[:, 3:, 2 * k + side] = u, np.cross(ball, u)
+        return gamma
+
     def poses(self, parameters: KernelParameters, q: Array) -> tuple[Array, Array]:
         """Rotation (g, 3, 3) and position (g, 3) of the tip of a robot with other kernel parameters."""
         rotation, position = np.empty((len(q), 3, 3)), np.empty((len(q), 3))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -27,7 +28,9 @@ def load_case(path: Path, robot: Path | None = None) -> tuple[list[RunSignals], 
     """
     case: Case = read_case(path, check=False)
     model = load_robot(robot) if robot is not None else case.robot
-    return [signals_of(run, model, f"run {i}") for i, run in enumerate(case.runs)], model
+    runs = [signals_of(run, model, f"run {i}") for i, run in enumerate(case.runs)]
+    first = min(run.start for run in runs)
+    return [replace(run, session_time=(run.start - first) * 1e-9) for run in runs], model
 
 
 def signals_of(run: Run, robot: Robot, label: str = "run") -> RunSignals:
@@ -72,7 +75,8 @@ def signals_of(run: Run, robot: Robot, label: str = "run") -> RunSignals:
         contact=contact,
         contact_known=known,
         temperature=_temperature(run, stamps),
-        metadata={"start_ns": str(int(stamps[0])), "payload": str(bool(run.metadata.payload))},
+        payload=run.metadata.payload,
+        start=int(stamps[0]),
         **tracker,  # type: ignore[arg-type]
     )
 
@@ -80,7 +84,9 @@ def signals_of(run: Run, robot: Robot, label: str = "run") -> RunSignals:
 def _period(stamps: np.ndarray, expected: float, name: str) -> float:
     steps = np.diff(stamps)
     if len(steps) < 100:
-        raise CaseError(f"{name}: too short", value=f"{len(stamps)} ticks", limit="101 ticks", remedy="record longer runs")
+        raise CaseError(
+            f"{name}: too short", value=f"{len(stamps)} ticks", limit="101 ticks", remedy="record longer runs"
+        )
     if (steps <= 0).any():
         at = int(np.argmax(steps <= 0))
         raise CaseError(f"{name}: the clock jumps back at tick {at}", value=f"{steps[at] * 1e-9:.6f} s", limit="> 0 s")
@@ -95,7 +101,9 @@ def _period(stamps: np.ndarray, expected: float, name: str) -> float:
     if steps.max() > 1.5e9 * period:
         at = int(np.argmax(steps))
         raise CaseError(
-            f"{name}: ticks are missing after tick {at}", value=f"{steps[at] * 1e-9:.6f} s", limit=f"{period:.6f} s",
+            f"{name}: ticks are missing after tick {at}",
+            value=f"{steps[at] * 1e-9:.6f} s",
+            limit=f"{period:.6f} s",
             remedy="cut the run at the hole, or record without drops",
         )
     return expected

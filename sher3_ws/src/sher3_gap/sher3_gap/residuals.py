@@ -6,14 +6,29 @@ Each function takes a run and the nominal model and returns {channel: Residual}.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from sher3_description import ACTUATORS, Robot
 
 from sher3_gap.channels import Array, Channel, Residual
 from sher3_gap.geometry import Geometry
-from sher3_gap.signals import RunSignals, low_pass
+from sher3_gap.signals import RunSignals
 
 Residuals = dict[Channel, Residual]
+
+
+@dataclass(frozen=True)
+class Demand:
+    """The velocity demand a drive held when commands arrive late.
+
+    Attributes:
+        velocity: (n, axes) demand in force just before each tick.
+        late: (axes,) share of the period after the tick at which it changes.
+    """
+
+    velocity: Array
+    late: Array
 
 
 def drive_law(run: RunSignals, robot: Robot, demand: Array, position: Array | None = None) -> Array:
@@ -31,11 +46,11 @@ def drive_law(run: RunSignals, robot: Robot, demand: Array, position: Array | No
     return kp * (demand - velocity) + ki * xi
 
 
-def drive_residual(run: RunSignals, robot: Robot) -> Residuals:
+def drive_residual(run: RunSignals, robot: Robot, demand: Demand | None = None) -> Residuals:
     """Reported effort minus the PI law. The integrator's start is not recorded: each run's mean is free."""
     if run.echo is None or run.effort is None:
         return {}
-    values = run.to_grid(run.effort - drive_law(run, robot, run.echo))
+    values = run.to_grid(run.effort - drive_law(run, robot, run.echo if demand is None else demand.velocity))
     return {Channel("drive", a): centred(values[:, i], run.inner) for i, a in enumerate(ACTUATORS)}
 
 
@@ -44,21 +59,27 @@ def centred(x: Array, ok: np.ndarray) -> Residual:
     return Residual((x - x[ok].mean())[:, None], ok)
 
 
-def mean_force(run: RunSignals, robot: Robot, jump_fraction: float = 1.0) -> Array:
-    """Mean motor force over the interval centred on each tick, (n, axes).
+def mean_force(run: RunSignals, robot: Robot, demand: Demand | None = None, steps: bool = True) -> Array:
+    """Mean motor force around each tick, weighted as the second difference of the position weighs it, (n, axes).
 
-    The reported effort is F just before the demand changes; F then steps by kp * (change of demand) and moves on to the next
-    reading. `jump_fraction` is 1 for a drive without lag, 0 when the force follows continuously.
+    The reported effort is F just before the demand changes; F then steps by kp * (change of demand), at once or a share `late` of the
+    period later. `steps` is False for a drive whose force follows continuously.
     """
     assert run.effort is not None
     force = run.effort.copy()
-    if run.echo is not None and jump_fraction:
+    if run.echo is not None and steps:
         kp = np.array([a.drive.kp for a in robot.actuators])
-        force[:-1] += 0.5 * jump_fraction * kp * np.diff(run.echo, axis=0)
+        held = run.echo if demand is None else demand.velocity
+        late = np.zeros(run.axes) if demand is None else demand.late
+        step = kp * np.diff(held, axis=0)
+        force[:-1] += 0.5 * (1.0 - late) ** 2 * step
+        force[1:] -= 0.5 * late**2 * step
     return force
 
 
-def motor_residual(run: RunSignals, robot: Robot, geometry: Geometry, jump_fraction: float = 1.0) -> Residuals:
+def motor_residual(
+    run: RunSignals, robot: Robot, geometry: Geometry, demand: Demand | None = None, steps: bool = True
+) -> Residuals:
     """Force that the nominal rigid axis does not explain: F - m a - viscous v - G(q) + tau_ext (positive: resists forward)."""
     if run.effort is None:
         return {}
@@ -66,7 +87,7 @@ def motor_residual(run: RunSignals, robot: Robot, geometry: Geometry, jump_fract
     viscous = np.array([a.viscous for a in robot.actuators])
     path = geometry.path(run)
     inertial = mass * run.acceleration + viscous * run.velocity
-    values = run.to_grid(mean_force(run, robot, jump_fraction) - inertial) - path.gravity + path.contact_force
+    values = run.to_grid(mean_force(run, robot, demand, steps) - inertial) - path.gravity + path.contact_force
     ok = run.inner & settled(run.loaded_ok)
     return {Channel("motor_mechanics", a): Residual(values[:, [i]], ok) for i, a in enumerate(ACTUATORS)}
 
@@ -116,15 +137,12 @@ def wrench_residual(run: RunSignals, geometry: Geometry) -> Residuals:
     return {Channel("sensing", "force_sensor"): Residual(values, ok)}
 
 
-def all_residuals(run: RunSignals, robot: Robot, geometry: Geometry, jump_fraction: float = 1.0) -> Residuals:
+def all_residuals(run: RunSignals, robot: Robot, geometry: Geometry, demand: Demand | None = None) -> Residuals:
     """Residuals of every continuous stage the run has streams for."""
     return {
-        **drive_residual(run, robot),
-        **motor_residual(run, robot, geometry, jump_fraction),
+        **drive_residual(run, robot, demand),
+        **motor_residual(run, robot, geometry, demand),
         **transmission_residual(run),
         **tip_residual(run, geometry),
         **wrench_residual(run, geometry),
     }
-
-
-__all__ = ["Residuals", "all_residuals", "drive_law", "low_pass", "mean_force", "settled"]

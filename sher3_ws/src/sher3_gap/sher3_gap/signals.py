@@ -7,7 +7,7 @@ them counts information.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -39,6 +39,7 @@ class RunSignals:
         tracker_index: (m,) tick of each tracker sample; `tracker_position` (m, 3), `tracker_rotation` (m, 4) x y z w.
         contact: (n, 3) known force on the tip in {b}, N; `contact_known`: (n,) False where it is not known (load ramps).
         temperature: (n,) deg C; `session_time`: s from the first run's start to this one's.
+        payload: known tip loads as recorded; `start`: first stamp, ns.
     """
 
     name: str
@@ -61,7 +62,8 @@ class RunSignals:
     contact_known: NDArray[np.bool_] | None = None
     temperature: Array | None = None
     session_time: float = 0.0
-    metadata: dict[str, str] = field(default_factory=dict)
+    payload: tuple[tuple[float, float, float, float, float], ...] = ()
+    start: int = 0
 
     @property
     def ticks(self) -> int:

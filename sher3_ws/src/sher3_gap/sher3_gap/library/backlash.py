@@ -23,30 +23,33 @@ class Backlash(LibraryEffect):
     units = {"width": "m"}
     WIDTHS = (0.7, 0.8, 0.9, 1.0, 1.1, 1.25)
     """In spans of the residual."""
-    DAMPINGS = (np.inf, 5000.0, 1000.0, 200.0)
-    """Viscous drag of the load in the gap, in units of the nominal viscous coefficient / 60."""
+    DRIFTS = ((np.inf, 0.0), (1000.0, 0.0), (200.0, 0.0), (1000.0, 1.0), (200.0, 1.0))
+    """How the load moves in the gap: viscous drag in units of the nominal coefficient / 60, and whether the axis' friction
+    holds it until the pull on it is larger."""
 
     def shapes(self, views: Sequence[View], site: str) -> list[Shape]:
         """Width around the span of the residual, and how freely the load moves in the gap."""
         axis = axis_of(site)
-        spans = [
-            np.ptp(np.percentile(v.run.to_grid(v.run.load - v.run.motor)[:, axis], [1, 99]))
-            for v in views
-            if v.run.load is not None
-        ]
-        span = max(spans, default=0.0)
-        return [{"width": w * span, "damping": d} for w in self.WIDTHS for d in self.DAMPINGS if w * span > 0.0]
+        lags = [v.run.to_grid(v.run.load - v.run.motor)[:, axis] for v in views if v.run.load is not None]
+        span = max((float(np.ptp(np.percentile(lag, [1, 99]))) for lag in lags), default=0.0)
+        if span == 0.0:
+            return []
+        stick = resting_force(views, axis)
+        return [{"width": w * span, "damping": d, "stick": s * stick} for w in self.WIDTHS for d, s in self.DRIFTS]
 
     def refine(self, shape: Shape) -> list[Shape]:
         """Between the neighbours."""
         out: list[Shape] = [{**shape, "width": shape["width"] * f} for f in (0.94, 0.97, 1.03, 1.06)]
-        return [*out, {**shape, "damping": shape["damping"] * 0.5}, {**shape, "damping": shape["damping"] * 2.0}]
+        for factor in (0.5, 2.0):
+            out += [{**shape, "damping": shape["damping"] * factor}]
+        return [*out, {**shape, "stick": shape["stick"] * 0.8}, {**shape, "stick": shape["stick"] * 1.2}]
 
     def signature(self, view: View, site: str, shape: Shape) -> Signature:
         """No coefficient: the width is the shape. The side at the start is the one that fits the first samples."""
         axis, run = axis_of(site), view.run
         clock = run.stage_clock
         pull = np.interp(clock, clock[run.grid], view.path.contact_force[:, axis] - view.path.gravity[:, axis])
+        pull -= np.clip(pull, -shape["stick"], shape["stick"])
         damping = shape["damping"] * view.robot.actuators[axis].viscous / 60.0
         first = (run.load[:25, axis] - run.motor[:25, axis]).mean() if run.load is not None else 0.0
         start = float(np.clip(2.0 * first / shape["width"], -1.0, 1.0))
@@ -56,3 +59,15 @@ class Backlash(LibraryEffect):
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Width of the gap."""
         return {"width": shape["width"]}
+
+
+def resting_force(views: Sequence[View], axis: int) -> float:
+    """Typical force against the motion beyond the nominal one, N: what holds a load that nothing else moves."""
+    held = []
+    for view in views:
+        if view.run.effort is None:
+            continue
+        moving = np.abs(view.velocity[:, axis]) > 0.02 * view.robot.actuators[axis].limits.velocity
+        extra = view.run.to_grid(view.run.effort)[:, axis] - view.inertial[:, axis]
+        held.append((extra * np.sign(view.velocity[:, axis]))[moving & view.run.loaded_ok])
+    return max(0.0, float(np.median(np.concatenate(held)))) if held and sum(map(len, held)) > 50 else 0.0

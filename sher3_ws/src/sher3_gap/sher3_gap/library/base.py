@@ -85,6 +85,18 @@ class View:
         return self.path.position - self.platform
 
     @cached_property
+    def links(self) -> Array:
+        """Gamma (g, 6, 6): columns (u; b x u) of the six links at the platform (paper, eq. 9)."""
+        return self.geometry.links(self.platform)
+
+    @cached_property
+    def link_changes(self) -> Array:
+        """Change of the tip pose (g, 6, 6) per change of the length of each of the six links: Gamma^-T, moved to the tip."""
+        twist = np.linalg.inv(np.swapaxes(self.links, 1, 2))
+        swing = np.cross(np.swapaxes(twist[:, 3:], 1, 2), self.lever[:, None, :])
+        return np.concatenate([twist[:, :3] + np.swapaxes(swing, 1, 2), twist[:, 3:]], axis=1)
+
+    @cached_property
     def law(self) -> Array:
         """Nominal drive law at every tick, (n, 5), of the smoothed motion."""
         assert self.run.echo is not None
@@ -123,7 +135,8 @@ class LibraryEffect:
         id, family, stage: of the recorded-run contract, §7.
         explanation: plain language: what it is and how it shows.
         siblings: effect id -> what tells it apart.
-        parameter_names: names of the coefficients' parameters, for documentation.
+        extends: ids of simpler effects that this one contains; it must explain markedly more than they do.
+        units: parameter -> SI unit on a linear axis.
     """
 
     id: ClassVar[str]
@@ -131,6 +144,7 @@ class LibraryEffect:
     stage: ClassVar[str]
     explanation: ClassVar[str]
     siblings: ClassVar[Mapping[str, str]] = {}
+    extends: ClassVar[tuple[str, ...]] = ()
     units: ClassVar[Mapping[str, str]] = {}
 
     def sites(self) -> tuple[str, ...]:

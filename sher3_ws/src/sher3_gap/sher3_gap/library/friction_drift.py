@@ -13,6 +13,7 @@ class FrictionDrift(LibraryEffect):
     """F = z (force + drift * s), s the warmth or the run-in 1 - exp(-t / tau)."""
 
     id, family, stage = "friction_drift", "friction", "motor_mechanics"
+    extends = ("coulomb_friction", "presliding_friction")
     explanation = "Friction is not the same early and late, cold and warm: the step at a reversal changes with time or temperature."
     siblings = {"coulomb_friction": "the same step in every run"}
     units = {"force": "N", "drift": "N", "time_constant": "s"}

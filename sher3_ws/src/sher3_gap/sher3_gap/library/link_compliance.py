@@ -45,30 +45,13 @@ class LinkCompliance(LibraryEffect):
 def link_deflection(view: View, legs: Sequence[int]) -> Array:
     """Deflection of the tip (g, 6) from the compliance of the links of `legs` under the known contact force.
 
-    Gamma's columns are (u; b x u) of the six links; link forces f = Gamma^-1 w, platform twist = Gamma^-T dL (paper, eq. 9-12).
+    Link forces f = Gamma^-1 w, deflections by the paper's law, tip displaced as by links of other lengths.
     """
     delta = view.robot.delta
-    half = 0.5 * delta.leg_width
-    rho_p = np.sqrt(delta.platform_radius**2 - half**2)
-    spread = np.sqrt(delta.base_radius**2 - half**2) - rho_p
-    force, lever, platform = view.path.contact, view.lever, view.platform
-    gamma = np.empty((len(force), 6, 6))
-    height = np.empty((len(force), 3))
-    for k, azimuth in enumerate(delta.leg_azimuth):
-        radial, tangential = (
-            np.array([np.cos(azimuth), np.sin(azimuth), 0.0]),
-            np.array([-np.sin(azimuth), np.cos(azimuth), 0.0]),
-        )
-        across = platform[:, :2] - spread * radial[:2]
-        height[:, k] = np.sqrt(delta.link_length**2 - (across**2).sum(axis=1))
-        u = np.column_stack([across, height[:, k]]) / delta.link_length
-        for side in (0, 1):
-            ball = rho_p * radial + (1 - 2 * side) * half * tangential
-            gamma[:, :3, 2 * k + side], gamma[:, 3:, 2 * k + side] = u, np.cross(ball, u)
-    wrench = np.hstack([force, np.cross(lever, force)])
-    link = np.linalg.solve(gamma, wrench[:, :, None])[:, :, 0]
+    force = view.path.contact
+    wrench = np.hstack([force, np.cross(view.lever, force)])
+    link = np.linalg.solve(view.links, wrench[:, :, None])[:, :, 0]
     law = delta.link_compliance
-    short = delta.spring_factor * law.a * np.sign(link) * np.abs(link) ** law.b
+    change = delta.spring_factor * law.a * np.sign(link) * np.abs(link) ** law.b
     keep = np.repeat([k in legs for k in range(3)], 2)
-    twist = np.linalg.solve(np.swapaxes(gamma, 1, 2), (short * keep)[:, :, None])[:, :, 0]
-    return np.hstack([twist[:, :3] + np.cross(twist[:, 3:], lever), twist[:, 3:]])
+    return np.einsum("gij,gj->gi", view.link_changes, change * keep)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from sher3_gap.channels import Array, Channel
-from sher3_gap.library.base import LibraryEffect, Shape, Signature, View
+from sher3_gap.library.base import LibraryEffect, Shape, Signature, View, axis_of
 
 
 class LinkLengthError(LibraryEffect):
-    """L_k = link_length + length."""
+    """Links of leg k: link_length + length +- difference."""
 
     id, family, stage = "link_length_error", "geometry", "mechanism"
     explanation = "One leg of the delta is a little too long or short: the tip is off by an amount that changes smoothly with the pose."
@@ -27,13 +29,15 @@ class LinkLengthError(LibraryEffect):
         return (Channel("mechanism", "tip"), Channel("structure", "tip"))
 
     def signature(self, view: View, site: str, shape: Shape) -> Signature:
-        """One column: the change of the pose per metre."""
-        change = view.geometry.pose_change(view.run, 1e-5, **{f"link_{site[-1]}": 1.0})
-        return Signature(view.at_tip(change[:, :, None]))
+        """Two columns: both links of the leg alike, and one against the other (which turns the platform)."""
+        a, b = 2 * axis_of(site), 2 * axis_of(site) + 1
+        both = view.link_changes[:, :, a] + view.link_changes[:, :, b]
+        apart = view.link_changes[:, :, a] - view.link_changes[:, :, b]
+        return Signature(view.at_tip(np.stack([both, apart], axis=-1)))
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Length error."""
-        return {"length": float(coefficients[0])}
+        """Mean length error of the two links and half their difference."""
+        return {"length": float(coefficients[0]), "difference": float(coefficients[1])}
 
     def unit(self, name: str, site: str) -> str:
         """Length."""

@@ -13,6 +13,7 @@ class PositionFriction(LibraryEffect):
     """F = z (force + a cos kx + b sin kx): odd in the direction of motion, periodic along the stroke."""
 
     id, family, stage = "position_friction", "friction", "motor_mechanics"
+    extends = ("coulomb_friction",)
     explanation = "Friction changes along the stroke (seal, guide, ball return): at the same place the extra force has the opposite sign in the other direction."
     siblings = {"cogging": "at the same place the force has the same sign in both directions"}
     units = {"force": "N", "amplitude": "N", "wavelength": "m"}

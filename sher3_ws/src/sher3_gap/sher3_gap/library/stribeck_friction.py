@@ -13,6 +13,7 @@ class StribeckFriction(LibraryEffect):
     """F = z (force + (static - force) exp(-(v / stribeck_velocity)^2))."""
 
     id, family, stage = "stribeck_friction", "friction", "motor_mechanics"
+    extends = ("coulomb_friction",)
     explanation = "Friction is higher when the axis starts or creeps than when it runs: a hump of extra force at low speed, and a tendency to stick and slip."
     siblings = {"coulomb_friction": "the same force at every speed", "viscous_friction": "the force grows with speed"}
     units = {"force": "N", "static": "N", "stribeck_velocity": "m/s"}

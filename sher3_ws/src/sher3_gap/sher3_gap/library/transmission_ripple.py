@@ -25,20 +25,26 @@ class TransmissionRipple(LibraryEffect):
 
     def shapes(self, views: Sequence[View], site: str) -> list[Shape]:
         """Periods per lead."""
-        return [{"periods_per_rev": float(n)} for n in self.ORDERS]
+        return [{"periods_per_rev": float(n), "side": 0.0} for n in self.ORDERS]
+
+    def refine(self, shape: Shape) -> list[Shape]:
+        """Add a second order: the first, a neighbour (side-band), or a harmonic."""
+        n = shape["periods_per_rev"]
+        sides = {1.0, n - 1.0, n + 1.0, 2.0 * n, 3.0 * n} - {0.0, n}
+        return [{**shape, "side": s} for s in sorted(sides)]
 
     def signature(self, view: View, site: str, shape: Shape) -> Signature:
-        """Two columns: the quadratures."""
+        """Two columns per order: the quadratures."""
         axis = axis_of(site)
-        phase = 2.0 * np.pi * shape["periods_per_rev"] * view.run.smooth[:, axis] / lead(view, site)
-        return Signature(
-            {Channel(self.stage, site): column(view.run.to_grid(np.sin(phase)), view.run.to_grid(np.cos(phase)))}
-        )
+        turn = 2.0 * np.pi * view.run.smooth[:, axis] / lead(view, site)
+        orders = [shape["periods_per_rev"], *([shape["side"]] if shape["side"] else [])]
+        waves = [view.run.to_grid(f(n * turn)) for n in orders for f in (np.sin, np.cos)]
+        return Signature({Channel(self.stage, site): column(*waves)})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Amplitude, order and phase."""
         return {
-            "amplitude": float(np.hypot(*coefficients)),
+            "amplitude": float(np.hypot(coefficients[0], coefficients[1])),
             "periods_per_rev": shape["periods_per_rev"],
             "phase": float(np.arctan2(coefficients[1], coefficients[0])),
         }

@@ -1,0 +1,250 @@
+"""The diagnosis of a case: localise, attribute, quantify, or abstain."""
+
+from __future__ import annotations
+
+import importlib.metadata
+import time
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from sher3_description import Robot
+
+from sher3_gap.attribute import Attribution, Candidates, attribute
+from sher3_gap.channels import Channel, unit_of
+from sher3_gap.evidence import Evidence, gather
+from sher3_gap.exact_causes import ExactFinding, controller_finding, transport_finding
+from sher3_gap.fitting import Fit, fit
+from sher3_gap.library import LIBRARY
+from sher3_gap.loading import load_case
+from sher3_gap.localise import Gap, gap_of, localise
+from sher3_gap.quantify import closure, excess, parameters, residual_after
+from sher3_gap.regimes import regime
+from sher3_gap.separate import next_experiment
+from sher3_gap.signals import RunSignals
+from sher3_gap.signature import signature
+from sher3_gap.tip import tip_closure
+from sher3_gap.verdict import Cause, Closure, Interval, Residual, Unexplained, Verdict, Where
+
+Say = Callable[[str], None]
+REMAINDER = 0.15
+"""Share of a channel's gap that may be left when its cause is known: laws are idealisations."""
+LOST_MOTION = ("backlash", "transmission_hysteresis", "transmission_compliance")
+"""Effects between motor and load that show only against a load-side friction: that friction is their companion."""
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """A verdict with the evidence behind it, for reports and further experiments."""
+
+    verdict: Verdict
+    evidence: Evidence
+    gaps: list[Gap]
+    attribution: Attribution
+    exact: list[ExactFinding]
+
+
+def diagnose(
+    case: Path | str, robot: Path | None = None, without: Collection[str] = (), say: Say = lambda _: None
+) -> Verdict:
+    """Diagnose a case folder; see `diagnose_runs`.
+
+    Raises:
+        CaseError: the case cannot be diagnosed; the error names the run, the value and the remedy.
+    """
+    return diagnose_case(case, robot, without, say).verdict
+
+
+def diagnose_case(
+    case: Path | str, robot: Path | None = None, without: Collection[str] = (), say: Say = lambda _: None
+) -> Diagnosis:
+    """Diagnose a case folder and keep the evidence."""
+    started = time.perf_counter()
+    say("reading the bags")
+    runs, model = load_case(Path(case), robot)
+    return diagnose_runs(runs, model, without, say, started)
+
+
+def diagnose_runs(
+    runs: Sequence[RunSignals],
+    robot: Robot,
+    without: Collection[str] = (),
+    say: Say = lambda _: None,
+    started: float | None = None,
+) -> Diagnosis:
+    """Say where the robot leaves the nominal model, which effects explain it and how far the gap shrinks.
+
+    Args:
+        runs: of one robot in one condition, repeats included.
+        robot: the nominal model.
+        without: effect ids that are left out of the library.
+        say: progress.
+    """
+    started = time.perf_counter() if started is None else started
+    unknown = set(without) - LIBRARY.keys()
+    if unknown:
+        raise ValueError(f"no such effect: {', '.join(sorted(unknown))}; effects are {', '.join(LIBRARY)}")
+    say("simulating the nominal robot")
+    evidence = gather(runs, robot)
+    gaps = localise(evidence)
+    found = (transport_finding(evidence.timing, runs, robot, without), controller_finding(runs, robot, without))
+    exact = [f for f in found if f is not None]
+    initial = {g.channel: g for g in gaps if g.significant}
+    attribution = attribute(evidence, lambda f: left_over(evidence, initial, f), Candidates(evidence, without), say)
+    say("quantifying")
+    verdict = _verdict(evidence, initial, attribution, exact)
+    versions = {p: importlib.metadata.version(p) for p in ("sher3", "numpy", "scipy")}
+    verdict = verdict.model_copy(update={"seconds": time.perf_counter() - started, "versions": versions})
+    return Diagnosis(verdict, evidence, gaps, attribution, exact)
+
+
+def left_over(evidence: Evidence, initial: dict[Channel, Gap], current: Fit | None) -> dict[Channel, float]:
+    """Gaps that remain under a fit: channel -> excess loss. What is left of a gap may be `REMAINDER` of it."""
+    out: dict[Channel, float] = {}
+    for channel in initial:
+        residual = None if current is None else residual_after(evidence, current, channel)
+        gap = gap_of(evidence, channel, residual)
+        if gap is None or not gap.significant or current is None:
+            continue
+        now, null = excess(evidence, channel, current)
+        if now > REMAINDER * max(null, 0.0) or null <= 0.0:
+            out[channel] = max(now, 1.0)
+    return out
+
+
+def _verdict(
+    evidence: Evidence, initial: dict[Channel, Gap], attribution: Attribution, exact: list[ExactFinding]
+) -> Verdict:
+    null = fit(evidence.data, [])
+    causes = [_cause(evidence, attribution, i, null) for i in range(len(attribution.fit.terms))]
+    where = _where(evidence, initial, attribution)
+    open_ = left_over(evidence, initial, attribution.fit)
+    if not initial and not exact:
+        return Verdict(status="no_gap")
+    causes = _order([*(c for f in exact for c in f.causes), *causes])
+    where = [f.where for f in exact] + where
+    unexplained = _unexplained(evidence, open_, attribution, exact)
+    experiment = next_experiment(evidence, attribution)
+    crossed = any({LIBRARY[r].family for r in c.rivals} - {c.family} for c in causes)
+    if unexplained is not None:
+        status = "outside_library"
+    elif crossed and experiment is not None:
+        status = "under_excited"
+    else:
+        status = "attributed"
+    first = _first_channel(evidence, initial, where[0])
+    stage = Interval(value=exact[0].closure, low=exact[0].closure, high=exact[0].closure) if exact else None
+    residual = Residual(gap=exact[0].where.floor, floor=exact[0].where.floor, unit="m/s") if exact else None
+    if first is not None and not exact:
+        stage = closure(evidence, first, null, attribution.fit)
+        residual = _residual(evidence, first, attribution.fit)
+    return Verdict(
+        status=status,
+        where=where,
+        causes=causes,
+        closure=Closure(stage=stage, tip=tip_closure(evidence, causes)),
+        residual=residual,
+        unexplained=unexplained,
+        next_experiment=experiment,
+    )
+
+
+def _cause(evidence: Evidence, attribution: Attribution, index: int, null: Fit) -> Cause:
+    term = attribution.fit.terms[index]
+    without = fit(evidence.data, [t for j, t in enumerate(attribution.fit.terms) if j != index])
+    shows = [c for c in term.channels if excess(evidence, c, null)[1] > 0.0] or list(term.channels)
+    channel = max(shows, key=lambda c: excess(evidence, c, without)[0] - excess(evidence, c, attribution.fit)[0])
+    rivals = [f.terms[-1].effect.id for f in attribution.rivals[index]]
+    return Cause(
+        effect=term.effect.id,
+        family=term.effect.family,
+        stage=_stage_of(term.effect.id, channel),
+        actuator=term.site,
+        parameters=parameters(evidence, attribution.fit, index),
+        closure=closure(evidence, channel, without, attribution.fit),
+        rivals=list(dict.fromkeys(rivals)),
+    )
+
+
+def _stage_of(effect: str, channel: Channel) -> str:
+    stage = LIBRARY[effect].stage
+    return channel.stage if effect == "cable_drag" else stage
+
+
+def _order(causes: list[Cause]) -> list[Cause]:
+    """Most closure first; the friction behind a lost motion after the lost motion."""
+    behind = {c.actuator for c in causes if c.effect in LOST_MOTION}
+    follows = lambda c: c.family == "friction" and c.actuator in behind  # noqa: E731
+    return sorted(causes, key=lambda c: (follows(c), -round(c.closure.value, 2)))
+
+
+def _where(evidence: Evidence, initial: dict[Channel, Gap], attribution: Attribution) -> list[Where]:
+    """Places with a gap, largest gap over floor first; those of a lost motion's companion after it."""
+    behind = {t.site for t in attribution.fit.terms if t.effect.id in LOST_MOTION}
+    entries = []
+    for channel, gap in initial.items():
+        follows = channel.stage == "motor_mechanics" and channel.actuator in behind
+        actuator = _actuator(channel, attribution)
+        entries.append(
+            (
+                follows,
+                -gap.ratio,
+                Where(
+                    stage=_place(channel, attribution),
+                    actuator=actuator,
+                    gap=gap.gap,
+                    floor=gap.floor,
+                    unit=unit_of(channel),
+                    regime=regime(evidence, channel),
+                    confidence=float(1.0 - np.exp(-gap.power)),
+                ),
+            )
+        )
+    return [w for _, _, w in sorted(entries, key=lambda e: e[:2])]
+
+
+def _terms_at(channel: Channel, attribution: Attribution) -> list:
+    return [t for t in attribution.fit.terms if channel in t.effect.channels(t.site)]
+
+
+def _actuator(channel: Channel, attribution: Attribution) -> str:
+    """At the tip, the actuator whose effect explains the gap there."""
+    terms = _terms_at(channel, attribution)
+    return terms[0].site if channel.actuator == "tip" and terms else channel.actuator
+
+
+def _place(channel: Channel, attribution: Attribution) -> str:
+    """The tip is one reading: a gap there belongs to the stage of the effect that explains it."""
+    terms = _terms_at(channel, attribution)
+    if channel.actuator == "tip" and terms and terms[0].effect.stage in ("mechanism", "structure"):
+        return terms[0].effect.stage
+    return channel.stage
+
+
+def _first_channel(evidence: Evidence, initial: dict[Channel, Gap], where: Where) -> Channel | None:
+    return next((c for c, g in initial.items() if g.gap == where.gap), None)
+
+
+def _residual(evidence: Evidence, channel: Channel, after: Fit) -> Residual:
+    gap = gap_of(evidence, channel, residual_after(evidence, after, channel))
+    assert gap is not None
+    return Residual(gap=gap.gap, floor=gap.floor, unit=unit_of(channel))
+
+
+def _unexplained(
+    evidence: Evidence, open_: dict[Channel, float], attribution: Attribution, exact: list[ExactFinding]
+) -> Unexplained | None:
+    for finding in exact:
+        if finding.closure < 0.9:
+            return Unexplained(
+                stage=finding.where.stage,
+                actuator=finding.where.actuator,
+                signature=f"an exact stage is not reproduced: {finding.note or 'no timing or gain error fits'}",
+            )
+    if not open_:
+        return None
+    channel = max(open_, key=lambda c: open_[c])
+    return Unexplained(
+        stage=channel.stage, actuator=channel.actuator, signature=signature(evidence, channel, attribution.fit)
+    )

@@ -1,0 +1,81 @@
+"""The evidence of a case: runs, residuals, floors and whitened targets, prepared once."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from sher3_description import ACTUATORS, Robot
+
+from sher3_gap.channels import Channel
+from sher3_gap.fitting import Whitened
+from sher3_gap.floors import Floors, floors
+from sher3_gap.geometry import Geometry
+from sher3_gap.library import View
+from sher3_gap.residuals import Residuals, all_residuals, motor_residual
+from sher3_gap.selffloor import driven_as
+from sher3_gap.signals import RunSignals
+from sher3_gap.timing import Timing, demand_in_force, timing_of
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """Everything the attribution works on."""
+
+    runs: list[RunSignals]
+    robot: Robot
+    geometry: Geometry
+    views: list[View]
+    data: Whitened
+    timing: Timing | None
+
+    @property
+    def floors(self) -> list[Floors]:
+        """Floor per run and channel."""
+        return self.data.floors
+
+
+SHIFTS = (0.0, 0.5)
+"""Shares of an encoder count by which the simulated twins are shifted."""
+
+
+def own_residuals(run: RunSignals, robot: Robot, shift: float) -> Residuals:
+    """Residuals of the nominal plant driven as a run was; empty when the run has no set-points."""
+    twin = driven_as(run, robot, shift=shift)
+    return {} if twin is None else all_residuals(twin, robot, Geometry(robot))
+
+
+def gather(runs: Sequence[RunSignals], robot: Robot) -> Evidence:
+    """Compute residuals, floors and whitened targets of a case."""
+    geometry = Geometry(robot)
+    timing = timing_of(runs, robot)
+    demands = [demand_in_force(run, timing) for run in runs]
+    residuals = [all_residuals(run, robot, geometry, d) for run, d in zip(runs, demands, strict=True)]
+    simulated = [[own_residuals(run, robot, shift) for shift in SHIFTS] for run in runs]
+    own = floors(runs, residuals, simulated, robot)
+    views = [View(run, robot, geometry) for run in runs]
+    residuals = [_follow_the_drive(run, robot, geometry, r, f) for run, r, f in zip(runs, residuals, own, strict=True)]
+    return Evidence(list(runs), robot, geometry, views, Whitened(views, residuals, own), timing)
+
+
+def _follow_the_drive(
+    run: RunSignals, robot: Robot, geometry: Geometry, residuals: Residuals, floor: Floors
+) -> Residuals:
+    """Where a drive does not follow its law, its force need not step with the demand: take the reading that fits better."""
+    odd = [a for a in ACTUATORS if _ratio(residuals, floor, Channel("drive", a)) > 1.3]
+    if not odd:
+        return residuals
+    other = motor_residual(run, robot, geometry, steps=False)
+    out = dict(residuals)
+    for a in odd:
+        channel = Channel("motor_mechanics", a)
+        if channel in out and other[channel].rms()[0] < out[channel].rms()[0]:
+            out[channel] = other[channel]
+    return out
+
+
+def _ratio(residuals: Residuals, floor: Floors, channel: Channel) -> float:
+    if channel not in residuals:
+        return 0.0
+    return float(np.max(residuals[channel].rms() / floor[channel]))

@@ -1,0 +1,97 @@
+"""Where the gap is: gap over floor per channel, over all runs and excitation by excitation."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from sher3_gap.channels import Array, Channel
+from sher3_gap.evidence import Evidence
+
+POOLED = 1.35
+"""Power over floor, over all runs, from which a channel has a gap."""
+GROUPED = 2.2
+"""The same for the runs of one excitation: fewer samples, and more of them looked at."""
+AS_BUILT = {
+    "mechanism": np.array([2.0e-6] * 3 + [2.0e-5] * 3),
+    "structure": np.array([2.0e-6] * 3 + [2.0e-5] * 3),
+    "sensing": np.array([2.0e-3] * 3 + [2.5e-5] * 3),
+}
+"""What a healthy robot may deviate from its drawing, which no repeat shows: tip m and rad, sensor N and N m."""
+PARTS = {6: (slice(0, 3), slice(3, 6)), 1: (slice(0, 1),)}
+"""Components that are judged together: position and rotation, force and torque."""
+
+
+@dataclass(frozen=True)
+class Gap:
+    """Gap and floor of one channel.
+
+    Attributes:
+        power: mean square over its allowance (floor, and as-built tolerance where there is one), the larger of pooled and worst group,
+            each over its threshold: above 1 there is a gap.
+        ratio: rms gap over rms floor, over all runs of the worst part.
+        gap, floor: rms in SI units of that part.
+        groups: excitation -> power over floor.
+    """
+
+    channel: Channel
+    power: float
+    ratio: float
+    gap: float
+    floor: float
+    groups: Mapping[str, float]
+
+    @property
+    def significant(self) -> bool:
+        """Whether the gap exceeds its floor."""
+        return self.power > 1.0
+
+
+def gap_of(evidence: Evidence, channel: Channel, residual: Mapping[int, Array] | None = None) -> Gap | None:
+    """Gap of a channel, of its nominal residual or of another one {run: (N_ok, d)}; None where it was not recorded."""
+    tolerance = AS_BUILT.get(channel.stage)
+    square: dict[str, list[Array]] = defaultdict(list)
+    allowed: dict[str, list[Array]] = defaultdict(list)
+    floor: dict[str, list[Array]] = defaultdict(list)
+    for r, run in enumerate(evidence.runs):
+        found = evidence.data.residuals[r].get(channel)
+        if found is None or not found.ok.any():
+            continue
+        values = found.values[found.ok] if residual is None else residual[r]
+        base = evidence.floors[r][channel] ** 2
+        square[run.excitation].append(np.mean(values**2, axis=0))
+        floor[run.excitation].append(base)
+        allowed[run.excitation].append(base + (tolerance**2 if tolerance is not None else 0.0))
+    if not square:
+        return None
+    parts = PARTS[len(base)]
+    best = max((_part(channel, p, square, floor, allowed) for p in parts), key=lambda g: g.power)
+    return best
+
+
+def _part(channel: Channel, part: slice, square: Mapping, floor: Mapping, allowed: Mapping) -> Gap:
+    every = [x for xs in square.values() for x in xs]
+    base = [x for xs in floor.values() for x in xs]
+    limits = [x for xs in allowed.values() for x in xs]
+    mean, low, limit = (np.mean(x, axis=0)[part] for x in (every, base, limits))
+    pooled = float(np.mean(mean / limit)) / POOLED
+    groups = {e: float(np.mean(np.mean(square[e], axis=0)[part] / np.mean(allowed[e], axis=0)[part])) for e in square}
+    worst = max(groups.values()) / GROUPED
+    return Gap(
+        channel,
+        max(pooled, worst),
+        float(np.sqrt(np.mean(mean / low))),
+        float(np.sqrt(np.mean(mean))),
+        float(np.sqrt(np.mean(low))),
+        groups,
+    )
+
+
+def localise(evidence: Evidence) -> list[Gap]:
+    """Gaps of every channel recorded, most significant first."""
+    channels = sorted({c for r in evidence.data.residuals for c in r})
+    gaps = [g for c in channels if (g := gap_of(evidence, c)) is not None]
+    return sorted(gaps, key=lambda g: -g.power)
