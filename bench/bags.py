@@ -15,7 +15,6 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
-
 from sher3_bags import Recorder, Run, RunMetadata, read_run, recover, stream, write_run
 from sher3_bags.cdr_encode import encode
 from sher3_description import load_robot

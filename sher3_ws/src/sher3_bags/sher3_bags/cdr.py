@@ -132,13 +132,12 @@ def decode(
         return Stream(type_name, log_time, "", {"data": tuple(texts)}, log_time)
     layout = read_layout(_message(buffer, offset[0], length[0]), type_name, topic=topic, index=0)
     if (length == layout.length).all():
-        rows = np.empty((len(offset), layout.length), np.uint8)
         constant = np.zeros(layout.length, np.uint8)
         for start, stop in layout.constant:
             constant[start:stop] = 255
         first = buffer[offset[0] : offset[0] + layout.length]
-        if kernels.gather_rows(buffer, offset, first, constant, rows) < 0:
-            return _assemble(topic, type_name, layout, _stamps(rows, layout.order), _columns(rows, layout), log_time)
+        if kernels.first_difference(buffer, offset, first, constant) < 0:
+            return _assemble(topic, type_name, layout, *_values(buffer, offset, layout), log_time)
     return _decode_singly(topic, type_name, buffer, offset, length, log_time)
 
 
@@ -146,20 +145,24 @@ def _message(buffer: Bytes, offset: int, length: int) -> bytes:
     return buffer[offset : offset + length].tobytes()
 
 
-def _stamps(rows: Bytes, order: str) -> NDArray[np.int64]:
-    parts = rows[:, STAMP : STAMP + 8].copy()
-    seconds = parts.view(f"{order}i4")[:, 0].astype(np.int64)
-    return seconds * 1_000_000_000 + parts.view(f"{order}u4")[:, 1]
+def _values(
+    buffer: Bytes, offset: NDArray[np.int64], layout: Layout
+) -> tuple[NDArray[np.int64], dict[str, NDArray[Any]]]:
+    """Return stamps and columns of messages that share a layout."""
+    seconds = _gather(buffer, offset + STAMP, 1, layout.order + "i4")[:, 0].astype(np.int64)
+    nanoseconds = _gather(buffer, offset + STAMP + 4, 1, layout.order + "u4")[:, 0]
+    columns = {
+        entry.name: _gather(buffer, offset + start, count, layout.order + entry.code)
+        for entry, start, count in layout.slots
+    }
+    return seconds * 1_000_000_000 + nanoseconds, columns
 
 
-def _columns(rows: Bytes, layout: Layout) -> dict[str, NDArray[Any]]:
-    columns = {}
-    for entry, start, count in layout.slots:
-        raw = rows[:, start : start + count * int(entry.code[1])].copy()
-        columns[entry.name] = (
-            raw.view(layout.order + entry.code).astype(entry.code, copy=False).reshape(len(rows), count)
-        )
-    return columns
+def _gather(buffer: Bytes, offset: NDArray[np.int64], count: int, dtype: str) -> NDArray[Any]:
+    """Return `count` numbers at each offset as (n, count) in the machine's byte order."""
+    values = np.empty((len(offset), count), dtype)
+    kernels.gather(buffer, offset, values.view(np.uint8).reshape(len(offset), -1) if count else values.view(np.uint8))
+    return values.astype(values.dtype.newbyteorder("="), copy=False)
 
 
 def _decode_singly(
@@ -185,9 +188,9 @@ def _decode_singly(
                 remedy="split the recording where its publisher changed",
             )
         layouts.append(layout)
-        row = buffer[start : start + size][None]
-        stamps.append(_stamps(row, layout.order))
-        parts.append(_columns(row, layout))
+        stamp, columns = _values(buffer, np.array([start]), layout)
+        stamps.append(stamp)
+        parts.append(columns)
     columns = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
     return _assemble(topic, type_name, layouts[0], np.concatenate(stamps), columns, log_time)
 

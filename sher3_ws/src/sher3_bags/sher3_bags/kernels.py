@@ -71,22 +71,28 @@ def index_records(buffer, channel, sequence, log_time, publish_time, offset, len
 
 
 @njit(cache=True)
-def gather_rows(buffer, offset, first, constant, rows):  # type: ignore[no-untyped-def]
-    """Copy messages of one length into rows (n, length).
-
-    Returns the first row that differs from `first` where `constant` is 255, or -1.
-    """
-    width = rows.shape[1]
+def first_difference(buffer, offset, first, constant):  # type: ignore[no-untyped-def]
+    """Return the first message that differs from the bytes `first` where `constant` is 255, or -1."""
+    width = len(first)
     for i in range(len(offset)):
-        at = offset[i]
+        # A view with a plain loop over it is what LLVM turns into vector code.
+        message = buffer[offset[i] : offset[i] + width]
         differs = np.uint8(0)
         for j in range(width):
-            byte = buffer[at + j]
-            rows[i, j] = byte
-            differs |= (byte ^ first[j]) & constant[j]
+            differs |= (message[j] ^ first[j]) & constant[j]
         if differs:
             return i
     return -1
+
+
+@njit(cache=True)
+def gather(buffer, offset, out):  # type: ignore[no-untyped-def]
+    """Copy the bytes behind each offset into the rows of out (n, width)."""
+    width = out.shape[1]
+    for i in range(len(offset)):
+        source, row = buffer[offset[i] : offset[i] + width], out[i]
+        for j in range(width):
+            row[j] = source[j]
 
 
 @njit(cache=True)
@@ -118,6 +124,6 @@ def pack_messages(payload, channel, sequence, log_time, publish_time, start, len
         _store(out, at + 15, 8, log_time[i])
         _store(out, at + 23, 8, publish_time[i])
         at += RECORD_HEAD + MESSAGE_HEAD
-        source = start[i]
-        for j in range(length[i]):
-            out[at + j] = payload[source + j]
+        source, target = payload[start[i] : start[i] + length[i]], out[at : at + length[i]]
+        for j in range(len(source)):
+            target[j] = source[j]

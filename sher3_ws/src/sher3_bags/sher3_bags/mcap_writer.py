@@ -12,7 +12,6 @@ from collections.abc import Mapping
 from typing import BinaryIO
 
 import numpy as np
-import yaml
 import zstandard
 from mcap.data_stream import RecordBuilder
 from mcap.opcode import Opcode
@@ -37,7 +36,7 @@ from sher3_description import Qos
 
 from sher3_bags.mcap_file import MAGIC
 from sher3_bags.messages import schema_text
-from sher3_bags.qos import offered_qos_profiles
+from sher3_bags.qos import offered_qos_text
 
 CHUNK_LIMIT = 256 << 10
 LIBRARY = "sher3_bags"
@@ -83,7 +82,7 @@ class McapWriter:
                 schema = Schema(len(self._schemas) + 1, schema_text(type_name).encode(), "ros2msg", type_name)
                 self._put(schema)
                 self._schemas[type_name] = schema
-            metadata = {"offered_qos_profiles": yaml.safe_dump(offered_qos_profiles(qos or Qos()), sort_keys=False)}
+            metadata = {"offered_qos_profiles": offered_qos_text(qos or Qos())}
             channel = Channel(len(self._channels) + 1, topic, "cdr", metadata, self._schemas[type_name].id)
             self._put(channel)
             self._channels[topic] = channel

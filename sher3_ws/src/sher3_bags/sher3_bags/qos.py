@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any
 
+import yaml
 from sher3_description import Qos
 
 _FOREVER = {"sec": 9223372036, "nsec": 854775807}
@@ -24,3 +26,9 @@ def offered_qos_profiles(qos: Qos) -> list[dict[str, Any]]:
             "avoid_ros_namespace_conventions": False,
         }
     ]
+
+
+@cache
+def offered_qos_text(qos: Qos) -> str:
+    """Return the same list as YAML, as the metadata of an MCAP channel holds it."""
+    return yaml.safe_dump(offered_qos_profiles(qos), sort_keys=False)

@@ -8,8 +8,8 @@ from pathlib import Path
 from sher3_description import NAMESPACE, TOPICS
 
 from sher3_bags.cdr import decode
+from sher3_bags.contents import Contents, read_contents
 from sher3_bags.errors import ForeignBagError, TopicError, WrongTypeError
-from sher3_bags.mcap_file import Contents, read_contents
 from sher3_bags.messages import TYPES, same_definition
 from sher3_bags.rosbag2 import find_mcap
 from sher3_bags.run import Run, RunMetadata, Stream, check_run

@@ -9,17 +9,9 @@ import numpy as np
 from mcap.opcode import Opcode
 from sher3_description import NAMESPACE, TOPICS, Qos
 
-from sher3_bags.errors import BagError, DamagedBagError, LimitError
-from sher3_bags.mcap_file import (
-    Contents,
-    Record,
-    first_bad_byte,
-    index_bodies,
-    message_body,
-    parse,
-    read_bytes,
-    records,
-)
+from sher3_bags.contents import Contents, load, parse
+from sher3_bags.errors import BagError, DamagedBagError
+from sher3_bags.mcap_file import Body, body_of, check_data, read_bytes, records
 from sher3_bags.mcap_writer import McapWriter
 from sher3_bags.rosbag2 import TopicCount, find_mcap, write_metadata
 from sher3_bags.writing import write_chunks
@@ -94,33 +86,33 @@ def _beside(path: Path) -> Path:
 
 
 def _salvage(mcap: Path) -> tuple[Contents, int, int, str | None]:
-    contents, bodies, lost, cause = Contents(mcap), [], 0, None
+    """Return what can be read, the number of chunks that cannot, the bytes behind the first break, and its cause."""
+    contents, bodies, causes = Contents(mcap), [], []
     data = read_bytes(mcap)
     end = len(data)
+    chunks = 0
     try:
         for record in records(mcap, data):
+            chunks += record.opcode == Opcode.CHUNK
             try:
-                body = _whole_body(mcap, data, record)
-                if body is None:
-                    parse(mcap, record, contents)
-                else:
+                body = body_of(mcap, data, record)
+                if body is not None:
                     bodies.append(body)
                     contents.chunks += record.opcode == Opcode.CHUNK
-            except (DamagedBagError, LimitError) as error:
-                lost += record.opcode == Opcode.CHUNK
-                cause = cause or str(error.args[0])
+                elif record.opcode == Opcode.DATA_END:
+                    check_data(mcap, data, record)
+                else:
+                    parse(mcap, record, contents)
+            except BagError as error:
+                causes.append(error)
     except DamagedBagError as error:
-        cause, end = cause or str(error.args[0]), error.offset
-    index_bodies(contents, bodies)
-    return contents, lost, len(data) - end, cause
-
-
-def _whole_body(mcap: Path, data: memoryview, record: Record) -> bytes | memoryview | None:
-    body = message_body(mcap, data, record)
-    bad = None if body is None else first_bad_byte(body)
-    if bad is not None:
-        raise DamagedBagError("a chunk holds a broken record", path=mcap, offset=record.offset, value=bad)
-    return body
+        causes.append(error)
+        end = error.offset
+    broken: list[tuple[Body, BagError]] = []
+    load(contents, bodies, lambda body, error: broken.append((body, error)))
+    contents.chunks -= sum(data[body.offset] == Opcode.CHUNK for body, _ in broken)
+    cause = next((str(error.args[0]) for error in [*(error for _, error in broken), *causes]), None)
+    return contents, chunks - contents.chunks, len(data) - end, cause
 
 
 def _drop_unknown(contents: Contents) -> int:

@@ -12,8 +12,8 @@ import numpy as np
 from sher3_description import NAMESPACE, TOPICS
 
 from sher3_bags.cdr import STAMP
+from sher3_bags.contents import Messages, read_contents
 from sher3_bags.errors import BagError, MissingTopicError, WrongTypeError
-from sher3_bags.mcap_file import Messages, read_contents
 from sher3_bags.messages import TEXT
 from sher3_bags.rosbag2 import find_mcap
 

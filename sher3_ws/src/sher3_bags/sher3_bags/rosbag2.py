@@ -84,7 +84,7 @@ def _topic(name: str, topic: TopicCount) -> dict[str, Any]:
     }
 
 
-class _Dumper(yaml.SafeDumper):
+class _Dumper(getattr(yaml, "CSafeDumper", yaml.SafeDumper)):  # type: ignore[misc]
     """Writes repeated mappings out in full: rosbag2 does not read YAML anchors everywhere."""
 
     def ignore_aliases(self, data: Any) -> bool:

@@ -11,8 +11,8 @@ from sher3_description import NAMESPACE, TOPICS, Qos
 
 from sher3_bags import kernels
 from sher3_bags.cdr_encode import encode
+from sher3_bags.contents import Messages
 from sher3_bags.errors import BagError
-from sher3_bags.mcap_file import Messages
 from sher3_bags.mcap_writer import CHUNK_LIMIT, McapWriter
 from sher3_bags.reading import ROBOT_FILE, RUN_RECORD
 from sher3_bags.rosbag2 import TopicCount, write_metadata
