@@ -28,8 +28,14 @@ class CanLink(Protocol):
     """
 
     name: str
-    received_at: int
-    dropped: int
+
+    @property
+    def received_at(self) -> int:
+        """When the newest frame came in, CLOCK_MONOTONIC [ns]."""
+
+    @property
+    def dropped(self) -> int:
+        """Frames that could not be delivered."""
 
     def send_frames(self, frames: bytes) -> None:
         """Send whole 16-byte frames in order without blocking; raise LinkError when the link cannot take them."""
@@ -61,21 +67,30 @@ def open_link(specification: str) -> CanLink:
 
 
 class LinkGroup:
-    """Several links waited on together, one per CAN channel."""
+    """Several links waited on together, one per CAN channel.
+
+    Attributes:
+        links: the links.
+        waits: whether there is something to wait on; not so within the process.
+    """
 
     def __init__(self, links: Sequence[CanLink]) -> None:
         self.links = tuple(links)
-        self._descriptors = [link.fileno() for link in self.links if link.fileno() >= 0]
-        self._waits = len(self._descriptors) == len(self.links)
+        self._by_descriptor = {link.fileno(): (i, link) for i, link in enumerate(self.links) if link.fileno() >= 0}
+        self.waits = len(self._by_descriptor) == len(self.links)
 
-    def wait(self, timeout: float) -> bool:
-        """Wait until a link has frames, at most `timeout` s; links within the process are never waited on.
+    def receive(self, timeout: float = 0.0) -> list[tuple[int, bytes]]:
+        """Return (index of the link, frames) of every link that has some, waiting at most `timeout` s for the first.
 
-        `select` and not `poll`: its timeout resolves microseconds, not milliseconds, and the descriptors are few.
+        Links within the process are never waited on. `select` and not `poll`: its timeout resolves microseconds, not
+        milliseconds, and one call in place of a failing read per link is what the hot path can afford.
         """
-        if not self._waits:
-            return False
-        return bool(select.select(self._descriptors, (), (), max(timeout, 0.0))[0])
+        if self.waits:
+            ready, _, _ = select.select(self._by_descriptor, (), (), timeout if timeout > 0.0 else 0.0)
+            candidates = [self._by_descriptor[descriptor] for descriptor in ready]
+        else:
+            candidates = list(enumerate(self.links))
+        return [(index, frames) for index, link in candidates if (frames := link.recv_frames())]
 
     def send_each(self, frames: Sequence[bytes]) -> None:
         """Send `frames[i]` on link i; empty ones are skipped."""

@@ -15,7 +15,7 @@ from canopen.sdo import SdoAbortedError, SdoClient, SdoCommunicationError
 
 from .bus import CanLink, wait_frames
 from .canopen_dictionary import drive_dictionary
-from .drive_health import OPERATIONAL
+from .drive_health import BOOT_UP, OPERATIONAL
 from .drive_objects import OBJECTS, Address
 from .errors import DriveMismatch, DriveSilent
 from .frame import ERROR_FLAG, REMOTE_FLAG, iter_frames, pack_frame
@@ -70,6 +70,7 @@ class CanopenMaster:
         self._network = _LinkNetwork(link)
         self._clients: dict[str, _PumpedClient] = {}
         self._nmt: dict[str, NmtMaster] = {}
+        self._heard: dict[str, int] = {}
         for name, node_id in drives.items():
             client = _PumpedClient(0x600 + node_id, 0x580 + node_id, drive_dictionary())
             client.network = self._network
@@ -78,6 +79,7 @@ class CanopenMaster:
             self._clients[name] = client
             self._nmt[name] = NmtMaster(node_id)
             self._nmt[name].network = self._network
+            self._nmt[name].add_heartbeat_callback(partial(self._heard.__setitem__, name))
             self._network.subscribe(0x700 + node_id, self._nmt[name].on_heartbeat)
 
     def read(self, drive: str, address: Address) -> int:
@@ -105,25 +107,35 @@ class CanopenMaster:
         """Send an NMT command: `OPERATIONAL`, `PRE-OPERATIONAL`, `STOPPED`, `RESET` or `RESET COMMUNICATION`."""
         self._nmt[drive].state = state
 
+    def reset(self, limit: float) -> None:
+        """Restart every drive, so that nothing of a former run is left in it, and wait at most `limit` s for it.
+
+        Raises:
+            DriveSilent: a drive does not boot.
+        """
+        self._command_all("RESET", BOOT_UP, limit, "does not boot after a reset")
+
     def start(self, limit: float) -> None:
         """Bring every drive to OPERATIONAL and wait, at most `limit` s, until its heartbeat says so.
 
         Raises:
             DriveSilent: a drive does not say it.
         """
-        heard: dict[str, int] = {}
-        for name, nmt in self._nmt.items():
-            nmt.add_heartbeat_callback(partial(heard.__setitem__, name))
-            self.command(name, "OPERATIONAL")
+        self._command_all("OPERATIONAL", OPERATIONAL, limit, "does not become OPERATIONAL")
+
+    def _command_all(self, command: str, wanted: int, limit: float, failure: str) -> None:
+        self._heard.clear()
+        for name in self.drives:
+            self.command(name, command)
         deadline = time.monotonic() + limit
         waiting = True
-        while waiting and any(heard.get(name) != OPERATIONAL for name in self.drives):
+        while waiting and any(self._heard.get(name) != wanted for name in self.drives):
             left = deadline - time.monotonic()
             waiting = left > 0 and self._network.pump(left)
         for name in self.drives:
-            if heard.get(name) != OPERATIONAL:
-                what = "does not become OPERATIONAL"
-                raise DriveSilent(name, what, value=heard.get(name), limit=f"{limit:g} s", remedy="check its errors")
+            if self._heard.get(name) != wanted:
+                remedy = "check power, node id, bit rate and the channel it is configured on"
+                raise DriveSilent(name, failure, value=self._heard.get(name), limit=f"{limit:g} s", remedy=remedy)
 
     def configure(self, drive: str, writes: list[tuple[Address, int]], required: dict[Address, int]) -> None:
         """Bring a drive to PRE-OPERATIONAL, write its objects and read every required one back.

@@ -8,6 +8,7 @@ from .cia402 import State, decode_status
 from .emcy import Emergency, decode_emergency
 from .errors import FrameError, UnknownStatusword
 
+BOOT_UP = 0
 OPERATIONAL = 5
 
 
@@ -17,7 +18,8 @@ class DriveHealth:
 
     Attributes:
         name: actuator.
-        state: CiA 402 state of the newest statusword, None before the first.
+        word: newest statusword, None before the first.
+        state: CiA 402 state it encodes.
         state_since: when that state began, ns.
         heard_at: newest heartbeat, ns; None before the first.
         missing: consecutive ticks with a TPDO missing.
@@ -27,6 +29,7 @@ class DriveHealth:
     """
 
     name: str
+    word: int | None = None
     state: State | None = None
     state_since: int = 0
     heard_at: int | None = None
@@ -37,9 +40,11 @@ class DriveHealth:
 
     def on_statusword(self, word: int, now: int) -> str | None:
         """Take a statusword; return a reason to stop when it encodes no state."""
+        self.word = word
         try:
             state = decode_status(word)
         except UnknownStatusword as error:
+            self.state = None
             return f"{self.name}: {error}"
         if state is not self.state:
             self.state, self.state_since = state, now

@@ -1,4 +1,4 @@
-"""Both ends of the wire in one thread and in stepped time: motor driver, CAN links, mock drives and a plant. For tests."""
+"""Both ends of the wire in one thread and stepped time: motor driver, CAN links, mock drives, a plant. For tests."""
 
 from __future__ import annotations
 
@@ -89,6 +89,7 @@ class LockstepRig:
             self.mock.poll()
 
     def close(self) -> None:
-        """Close both ends."""
+        """Close both ends, without the wait that a moving robot needs."""
+        self.driver.disable()
         self.driver.close()
         self.mock.close()

@@ -18,12 +18,14 @@ from sher3_description import ACTUATORS, Robot
 
 from .bus import CanLink, LinkGroup
 from .drive_objects import SYNC_ID
+from .frame import FRAME_SIZE
 from .mock_drive import Feedback, MockDrive
 from .settings import MotorDriverSettings
 from .units import AxisScale
 
 _FRAME = struct.Struct("<IB3x8s")
 _FREE_RUN_PERIODS = 5
+_WATCH_NS = 1_000_000
 
 FrameTamper = Callable[[int, bytes, int], bytes]
 
@@ -40,7 +42,7 @@ class PlantReading(Protocol):
         """Load encoder readings."""
 
     @property
-    def velocity_demand(self) -> Sequence[float]:
+    def demand(self) -> Sequence[float]:
         """Demand the drives executed in the interval that ends now."""
 
     @property
@@ -60,9 +62,14 @@ class _Channel:
         self.link = link
         self.queue: deque[tuple[int, int, bytes]] = deque()
         self.drives: list[MockDrive] = []
+        self.by_node: dict[int, list[MockDrive]] = {}
         self.synced = False
         self.synced_at = 0
         self.live = True
+
+    def receivers(self, can_id: int) -> list[MockDrive]:
+        """Return the drives a frame may concern: the one whose node id it carries, or all for NMT and other nodes."""
+        return self.by_node.get(can_id & 0x7F, self.drives)
 
     def sync_waits(self) -> bool:
         """Whether a further SYNC waits behind the one that is being answered."""
@@ -80,6 +87,7 @@ class MockDriveBus:
         clock: time in ns, monotonic; stepped in tests.
 
     Attributes:
+        links: the channels' links, to wait on.
         drives: the drives by actuator name.
         ticks: SYNCs the plant was stepped with.
         free_steps: steps it made without SYNC.
@@ -101,6 +109,8 @@ class MockDriveBus:
         self._plant, self._clock, self._period = plant, clock, settings.period
         self._period_ns = round(settings.period * 1e9)
         self._stepped_at = clock()
+        self._watch_at = 0
+        self.links = tuple(links)
         self._group = LinkGroup(links)
         self._channels = [_Channel(link) for link in links]
         scales: dict[str, AxisScale] = {
@@ -111,6 +121,7 @@ class MockDriveBus:
             for name in part.drives:
                 drive = MockDrive(scales[name], 1 + ACTUATORS.index(name), self._sender(index))
                 channel.drives.append(drive)
+                channel.by_node[drive.node_id] = [drive]
                 by_name[name] = drive
         self.drives = {name: by_name[name] for name in ACTUATORS}
 
@@ -124,25 +135,28 @@ class MockDriveBus:
         return send
 
     def serve(self, timeout: float) -> None:
-        """Wait at most `timeout` s for frames, then poll."""
-        self._group.wait(timeout)
-        self.poll()
-
-    def poll(self) -> None:
-        """Handle every frame that waits, answer each SYNC, keep heartbeats and watchdogs going."""
+        """Wait at most `timeout` s for frames, then handle everything as `poll` does."""
+        received = self._group.receive(timeout)
         now = self._clock()
-        for channel in self._channels:
-            channel.queue.extend(_FRAME.iter_unpack(channel.link.recv_frames()))
+        for index, frames in received:
+            if len(frames) % FRAME_SIZE == 0:
+                self._channels[index].queue.extend(_FRAME.iter_unpack(frames))
         while self._advance(now):
             self._step(now)
         silent = now - self._stepped_at
-        if silent >= _FREE_RUN_PERIODS * self._period_ns:
+        if self.ticks and silent >= _FREE_RUN_PERIODS * self._period_ns:
             for _ in range(min(silent // self._period_ns, 1000)):
                 self._free_step(now)
             self._stepped_at = now
-        for drive in self.drives.values():
-            drive.check_host(now)
-            drive.node.poll(now)
+        if now >= self._watch_at:
+            self._watch_at = now + _WATCH_NS
+            for drive in self.drives.values():
+                drive.check_host(now)
+                drive.node.poll(now)
+
+    def poll(self) -> None:
+        """Handle every frame that waits, answer each SYNC, keep heartbeats and watchdogs going."""
+        self.serve(0.0)
 
     def _advance(self, now: int) -> bool:
         """Hand out frames up to the next SYNC of every channel; True when the plant is to step.
@@ -156,9 +170,9 @@ class MockDriveBus:
                 if can_id == SYNC_ID:
                     channel.synced = channel.live = True
                     channel.synced_at = now
-                else:
-                    for drive in channel.drives:
-                        drive.receive(can_id, data[:length], now)
+                    continue
+                for drive in channel.receivers(can_id):
+                    drive.receive(can_id, data[:length], now)
         synced = [channel for channel in self._channels if channel.synced]
         if not synced:
             return False
@@ -191,7 +205,8 @@ class MockDriveBus:
     def _plant_step(self) -> dict[str, bytes]:
         drives = self.drives.values()
         reading = self._plant.step([drive.demand(self._period) for drive in drives])
-        axes = zip(reading.motor_position, reading.load_position, reading.velocity_demand, reading.effort, strict=True)
+        columns = (reading.motor_position, reading.load_position, reading.demand, reading.effort)
+        axes = zip(*(map(float, column) for column in columns), strict=True)
         return {d.scale.name: d.sample(Feedback(*axis)) for d, axis in zip(drives, axes, strict=True)}
 
     def close(self) -> None:

@@ -13,7 +13,7 @@ from operator import itemgetter
 from typing import NamedTuple
 
 from . import drive_objects as od
-from .canopen_node import CanopenNode
+from .canopen_device import CanopenDevice
 from .cia402 import CYCLIC_SYNCHRONOUS_VELOCITY
 from .drive_objects import Address
 from .emcy import EMCY
@@ -96,7 +96,7 @@ class MockDrive:
         self._heard_host: int | None = None
         self._limited = False
         factory = od.factory_values(node_id, scale)
-        self.node = CanopenNode(node_id, self._send, factory, self._on_write, self._on_reset)
+        self.node = CanopenDevice(node_id, self._send, factory, self._on_write, self._on_reset)
         self._compile()
 
     def _send(self, frames: bytes) -> None:

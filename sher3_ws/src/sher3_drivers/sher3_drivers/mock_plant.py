@@ -12,7 +12,7 @@ class IntegratorReading(NamedTuple):
 
     motor_position: list[float]
     load_position: list[float]
-    velocity_demand: list[float]
+    demand: list[float]
     effort: list[float]
 
 

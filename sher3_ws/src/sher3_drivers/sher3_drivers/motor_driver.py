@@ -25,6 +25,7 @@ from .settings import MotorDriverSettings
 from .units import AxisScale
 
 _RPDO = struct.Struct(f"<{HEADER_FORMAT}Hi2x")
+_WATCH_NS = 5_000_000
 _SETTLED = {Goal.ENABLED: State.OPERATION_ENABLED, Goal.DISABLED: State.SWITCH_ON_DISABLED}
 
 
@@ -66,18 +67,24 @@ class MotorDriver:
         self._axes = [[ACTUATORS.index(name) for name in channel.drives] for channel in settings.channels]
         self._collector = TpdoCollector(self._scales, self._node_ids, settings.period)
         self._period_ns = round(settings.period * 1e9)
+        self._feedback_ns = round(settings.feedback_limit * settings.period * 1e9)
+        self._braking_time = max(a.limits.velocity / a.limits.acceleration for a in robot.actuators)
         self._stamp = 0
         self._ticks = self._command_tick = 0
-        self._synced_at = self._started_at = self._heartbeat_at = 0
+        self._synced_at = self._started_at = self._heartbeat_at = self._watch_at = 0
         self._heartbeat = pack_frame(od.HEARTBEAT_BASE + settings.host_id, bytes([OPERATIONAL]))
         self._sync = pack_frame(od.SYNC_ID)
         self._reset_words = 0
         self._running = False
+        self._all_enabled = False
 
     # Start.
 
-    def configure(self) -> None:
-        """Bring every drive to PRE-OPERATIONAL without power, write its configuration and verify it by read-back.
+    def configure(self, patience: float = 1.0) -> None:
+        """Restart every drive, write its configuration, verify it by read-back, bring it to OPERATIONAL without power.
+
+        Args:
+            patience: longest wait for a drive to boot, s.
 
         Raises:
             DriveSilent: a drive does not answer.
@@ -88,15 +95,14 @@ class MotorDriver:
             for link, axes in zip(self._group.links, self._axes, strict=True)
         ]
         for master in masters:
+            master.reset(patience)
+        for master in masters:
             for name, node_id in master.drives.items():
                 scale = self._scales[node_id - 1]
-                master.command(name, "PRE-OPERATIONAL")
-                master.write(name, od.CONTROLWORD, Command.DISABLE_VOLTAGE.value)
                 writes = od.required_writes(node_id, scale, self.settings)
                 master.configure(name, writes, od.required_values(node_id, scale, self.settings))
         for master in masters:
             master.start(self.settings.drive_heartbeat_limit)
-        self._started_at = self._clock()
 
     def enable(self) -> None:
         """Take the drives to OPERATION ENABLED, over the next ticks.
@@ -135,12 +141,11 @@ class MotorDriver:
         Raises:
             CommandRefused: there is nothing to reset.
         """
-        faulty = any(health.state is State.FAULT for health in self.health)
-        if self.stop.reason is None and not faulty:
+        if not self.needs_reset:
             raise CommandRefused("reset is refused: nothing is stopped", remedy="reset only after a stop or in FAULT")
         self.stop.clear()
         self.goal = Goal.DISABLED
-        self._reset_words = 1 if faulty else 0
+        self._reset_words = 1
         self._restart_transitions()
 
     def _restart_transitions(self) -> None:
@@ -149,9 +154,19 @@ class MotorDriver:
             health.state_since = now
 
     @property
+    def needs_reset(self) -> bool:
+        """Whether there is a stop to reset, or a drive in FAULT."""
+        return self.stop.reason is not None or any(health.state is State.FAULT for health in self.health)
+
+    @property
+    def dropped(self) -> int:
+        """Frames the links could not deliver."""
+        return sum(link.dropped for link in self._group.links)
+
+    @property
     def enabled(self) -> bool:
         """Whether every drive follows velocity commands."""
-        return self.goal is Goal.ENABLED and all(h.state is State.OPERATION_ENABLED for h in self.health)
+        return self.goal is Goal.ENABLED and self._all_enabled
 
     # The tick.
 
@@ -166,6 +181,7 @@ class MotorDriver:
         self._stamp = stamp
         self._ticks += 1
         now = self._clock()
+        self._started_at = self._started_at or now
         burst = self._sync
         if now >= self._heartbeat_at:
             self._heartbeat_at = now + round(self.settings.host_heartbeat * 1e9)
@@ -186,10 +202,12 @@ class MotorDriver:
         now = self._clock()
         missing = set() if complete else set(self._collector.missing())
         for axis, health in enumerate(self.health):
-            health.on_tick(axis in missing)
+            if missing or health.missing:
+                health.on_tick(axis in missing)
             word = self._collector.statuswords[axis]
-            if word is not None and axis not in missing:
+            if word is not None and word != health.word and axis not in missing:
                 self._stop_if(health.on_statusword(word, now))
+        self._all_enabled = all([health.state is State.OPERATION_ENABLED for health in self.health])
         self.counters["incomplete"] += not complete
         self._watch(now)
         if not self.enabled:
@@ -197,14 +215,13 @@ class MotorDriver:
         return self._collector.feedback(self._stamp) if complete else None
 
     def _collect(self, mask: int) -> bool:
-        deadline = self._synced_at + round(self.settings.feedback_limit * self._period_ns)
-        while True:
-            self._receive()
-            if self._collector.has(mask):
-                return True
+        deadline = self._synced_at + self._feedback_ns
+        while not self._collector.has(mask):
             left = deadline - self._clock()
-            if left <= 0 or not self._group.wait(left * 1e-9):
-                return False
+            came = self._receive(left * 1e-9)
+            if left <= 0 or not (came or self._group.waits):
+                return self._collector.has(mask)
+        return True
 
     def command(self, stamp: int, velocity: Sequence[float]) -> bool:
         """Send a velocity command (5,) of tick `stamp`; False when it is ignored because the drives are not enabled.
@@ -246,19 +263,22 @@ class MotorDriver:
         return counts
 
     def close(self) -> None:
-        """Take the power off and leave the bus; safe at any time, twice too."""
-        self.goal = Goal.DISABLED
+        """Brake if the drives are enabled, take the power off and leave the bus; safe at any time, twice too."""
+        if self.enabled:
+            self.quick_stop("the driver was closed")
+            time.sleep(self._braking_time)
         self._steer(Command.DISABLE_VOLTAGE)
         self._group.close()
 
     # Inside.
 
-    def _receive(self) -> None:
-        for index, link in enumerate(self._group.links):
-            frames = link.recv_frames()
-            if frames:
-                for can_id, data in self._collector.take(frames):
-                    self._on_other(index, can_id, data)
+    def _receive(self, timeout: float = 0.0) -> bool:
+        """Take in what waits, waiting at most `timeout` s for it; False when nothing came."""
+        received = self._group.receive(timeout)
+        for channel, frames in received:
+            for can_id, data in self._collector.take(frames):
+                self._on_other(channel, can_id, data)
+        return bool(received)
 
     def _on_other(self, channel: int, can_id: int, data: bytes) -> None:
         """Take a frame that is no TPDO: error frame, heartbeat or EMCY; the rest belongs to others."""
@@ -286,11 +306,20 @@ class MotorDriver:
             self.quick_stop(reason)
 
     def _watch(self, now: int) -> None:
-        """Look for what has gone silent or does not get where it should."""
+        """Look for what has gone silent: TPDOs and commands every tick, what has long limits every 5 ms."""
         settings = self.settings
         for health in self.health:
             if health.missing >= settings.missing_limit:
                 self._stop_if(f"{health.name}: no TPDO for {health.missing} ticks (limit {settings.missing_limit})")
+        if now >= self._watch_at:
+            self._watch_at = now + _WATCH_NS
+            self._watch_drives(now)
+        self._watch_commands()
+
+    def _watch_drives(self, now: int) -> None:
+        """Look for drives whose heartbeat stays away or that do not get where they should."""
+        settings = self.settings
+        for health in self.health:
             silence = (now - (health.heard_at or self._started_at)) * 1e-9
             if silence > settings.drive_heartbeat_limit:
                 self._stop_if(f"{health.name}: no heartbeat for {silence:.3f} s ({settings.drive_heartbeat_limit:g} s)")
@@ -299,7 +328,6 @@ class MotorDriver:
             if wanted and health.state is not wanted and stuck > settings.transition_limit:
                 name = health.state.name if health.state else "an unknown state"
                 self._stop_if(f"{health.name}: stays in {name} for {stuck:.3f} s instead of going to {wanted.name}")
-        self._watch_commands()
 
     def _watch_commands(self) -> None:
         """Watch the age of the newest command; it counts from the tick in which the drives became enabled."""

@@ -64,9 +64,9 @@ def run_cycle(rig):
 
 @pytest.mark.parametrize("period", [0.002, 0.001])
 def test_the_cycle_on_every_back_end(open_pair, period):
-    """Both ends of every channel on virtual, local and socketcan (one bus each: channels are told apart by node ids)."""
+    """Both ends of every channel; the loop is the one of the stepped tests, the link is the back-end's."""
     if open_pair.kind == "socketcan":
-        pytest.skip("needs one CAN interface per channel; run bench/can.py --links socketcan:can0,socketcan:can1")
+        pytest.skip("needs one CAN interface per channel; run bench/can_bus.py --links socketcan:can0,socketcan:can1")
     kind, prefix = open_pair.kind, f"c{next(_numbers)}"
     rig = LockstepRig(ROBOT, default_settings(period), lambda i: open_link(f"{kind}:{prefix}-{i}"))
     run_cycle(rig)
@@ -123,7 +123,7 @@ def test_a_drive_that_does_not_answer_is_named(make_rig):
 )
 def test_a_foreign_drive_is_refused_with_object_expected_and_found(make_rig, address, value):
     rig = make_rig()
-    rig.mock.drives["delta_2"].node.values[address] = value
+    rig.mock.drives["delta_2"].node.factory[address] = value
     with pytest.raises(DriveMismatch) as caught:
         rig.driver.configure()
     assert caught.value.drive == "delta_2"

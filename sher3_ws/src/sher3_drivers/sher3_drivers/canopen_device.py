@@ -46,7 +46,7 @@ class _NodeNetwork(canopen.Network):
         return _PolledTask(self.tasks, can_id, data, period)
 
 
-class CanopenNode:
+class CanopenDevice:
     """One node.
 
     Args:
@@ -55,6 +55,11 @@ class CanopenNode:
         factory: value of every object after power-up or reset.
         on_write: called with (address, value) before an SDO write takes effect.
         on_reset: called after an NMT reset.
+
+    Attributes:
+        values: every object as it is now.
+        factory: every object as it is after a reset.
+        operational: whether PDOs are served.
     """
 
     OPERATIONAL = "OPERATIONAL"
@@ -69,7 +74,8 @@ class CanopenNode:
     ) -> None:
         self.values = dict(factory)
         self.operational = False
-        self._factory, self._on_write, self._on_reset = factory, on_write, on_reset
+        self.factory = dict(factory)
+        self._on_write, self._on_reset = on_write, on_reset
         self._network = _NodeNetwork(send)
         self._node = LocalNode(node_id, drive_dictionary())
         self._node.add_read_callback(self._read)
@@ -79,7 +85,7 @@ class CanopenNode:
 
     def _boot(self) -> None:
         """Enter INITIALISING, say so with the boot-up message, and go on to PRE-OPERATIONAL."""
-        self.values.update(self._factory)
+        self.values.update(self.factory)
         self.operational = False
         self._node.nmt.stop_heartbeat()
         self._node.nmt.state = "INITIALISING"
@@ -111,7 +117,7 @@ class CanopenNode:
         if operational != self.operational:
             self.operational = operational
             for task in self._network.tasks:  # say so at once, not a heartbeat later
-                task.due = None
+                self._network.send_message(task.can_id, task.data)
 
     def poll(self, now: int) -> None:
         """Send the heartbeat when it is due; `now` in ns."""

@@ -1,0 +1,265 @@
+"""The CAN cycle between two processes: SYNC + 5 RPDO + 10 TPDO over the channels of the default layout.
+
+Three implementations over the same local links, in one run: `driver` is the product (MotorDriver and the mock
+drives with an ideal plant), `frames` its floor (raw frames, nothing else), `messages` the same cycle with
+python-can Message objects. Round trip: from SYNC handed to the link until the last TPDO is taken in. CPU in per
+cent of one core, each process alone.
+
+    python bench/can_bus.py [--rate 1000] [--seconds 10] [--kind local] [--json]
+    python bench/can_bus.py --budget [--json]
+"""
+
+from __future__ import annotations
+
+import argparse
+import ctypes
+import gc
+import json
+import multiprocessing
+import os
+import select
+import statistics
+import struct
+import time
+from collections.abc import Callable
+from multiprocessing.connection import Connection
+
+import can
+from sher3_description import ACTUATORS, load_robot
+from sher3_drivers.bus import LinkGroup, open_link
+from sher3_drivers.bus_load import channel_budget
+from sher3_drivers.bus_python_can import LinkBus
+from sher3_drivers.frame import pack_frame
+from sher3_drivers.mock_bus import MockDriveBus
+from sher3_drivers.mock_plant import IntegratorPlant
+from sher3_drivers.motor_driver import MotorDriver
+from sher3_drivers.settings import MotorDriverSettings, default_settings
+
+ROBOT = load_robot()
+_FRAME = struct.Struct("<IB3x8s")
+Serve = Callable[[MotorDriverSettings, Callable[[], bool]], None]
+Cycle = Callable[[int], float]
+
+
+def device_driver(settings: MotorDriverSettings, stopped: Callable[[], bool]) -> None:
+    """Serve the product's device side."""
+    links = [open_link(channel.link) for channel in settings.channels]
+    mock = MockDriveBus(links, IntegratorPlant(ROBOT, settings.period), ROBOT, settings)
+    while not stopped():
+        mock.serve(0.005)
+    mock.close()
+
+
+def host_driver(settings: MotorDriverSettings) -> tuple[Cycle, Callable[[], object]]:
+    """Return the product's host side: enabled and moving."""
+    driver = MotorDriver(ROBOT, settings, [open_link(channel.link) for channel in settings.channels])
+    driver.configure(2.0)
+    driver.enable()
+    velocity = [0.001, -0.001, 0.001, 0.01, -0.001]
+
+    def cycle(stamp: int) -> float:
+        begin = time.perf_counter_ns()
+        driver.tick(stamp)
+        driver.collect_positions()
+        complete = driver.collect()
+        end = time.perf_counter_ns()
+        driver.command(stamp, velocity)
+        return (end - begin) / 1e3 if complete else float("nan")
+
+    return cycle, driver.close
+
+
+def device_frames(settings: MotorDriverSettings, stopped: Callable[[], bool]) -> None:
+    """Send ten precomputed TPDOs for each SYNC, raw."""
+    group = LinkGroup([open_link(channel.link) for channel in settings.channels])
+    answers = [b"".join(tpdos(channel.drives)) for channel in settings.channels]
+    while not stopped():
+        for index, frames in group.receive(0.005):
+            for can_id, _, _ in _FRAME.iter_unpack(frames):
+                if can_id == 0x80:
+                    group.links[index].send_frames(answers[index])
+    group.close()
+
+
+def host_frames(settings: MotorDriverSettings) -> tuple[Cycle, Callable[[], object]]:
+    """Return SYNC, ten TPDOs in, five RPDOs out, raw."""
+    group = LinkGroup([open_link(channel.link) for channel in settings.channels])
+    sync = [pack_frame(0x80)] * len(group.links)
+    commands = [b"".join(rpdos(channel.drives)) for channel in settings.channels]
+
+    def cycle(stamp: int) -> float:
+        begin = time.perf_counter_ns()
+        group.send_each(sync)
+        count, deadline = 0, time.monotonic() + settings.period
+        while count < 10 and (left := deadline - time.monotonic()) > 0:
+            count += sum(1 for _, frames in group.receive(left) for _ in _FRAME.iter_unpack(frames))
+        end = time.perf_counter_ns()
+        group.send_each(commands)
+        return (end - begin) / 1e3 if count == 10 else float("nan")
+
+    return cycle, group.close
+
+
+def device_messages(settings: MotorDriverSettings, stopped: Callable[[], bool]) -> None:
+    """Send ten TPDOs for each SYNC as python-can messages."""
+    buses = [LinkBus(channel.link) for channel in settings.channels]
+    while not stopped():
+        select.select(buses, (), (), 0.005)
+        for bus, channel in zip(buses, settings.channels, strict=True):
+            while (message := bus.recv(0.0)) is not None:
+                if message.arbitration_id == 0x80:
+                    for frame in tpdos(channel.drives):
+                        bus.send(as_message(frame))
+    for bus in buses:
+        bus.shutdown()
+
+
+def host_messages(settings: MotorDriverSettings) -> tuple[Cycle, Callable[[], object]]:
+    """Return the cycle with python-can messages."""
+    buses = [LinkBus(channel.link) for channel in settings.channels]
+
+    def cycle(stamp: int) -> float:
+        begin = time.perf_counter_ns()
+        for bus in buses:
+            bus.send(can.Message(arbitration_id=0x80, is_extended_id=False))
+        count, deadline = 0, time.monotonic() + settings.period
+        while count < 10 and time.monotonic() < deadline:
+            select.select(buses, (), (), max(0.0, deadline - time.monotonic()))
+            for bus in buses:
+                while bus.recv(0.0) is not None:
+                    count += 1
+        end = time.perf_counter_ns()
+        for bus, channel in zip(buses, settings.channels, strict=True):
+            for frame in rpdos(channel.drives):
+                bus.send(as_message(frame))
+        return (end - begin) / 1e3 if count == 10 else float("nan")
+
+    return cycle, lambda: [bus.shutdown() for bus in buses]
+
+
+def tpdos(drives: tuple[str, ...]) -> list[bytes]:
+    return [pack_frame(base + 1 + ACTUATORS.index(name), bytes(8)) for base in (0x180, 0x280) for name in drives]
+
+
+def rpdos(drives: tuple[str, ...]) -> list[bytes]:
+    return [pack_frame(0x201 + ACTUATORS.index(name), bytes(6)) for name in drives]
+
+
+def as_message(frame: bytes) -> can.Message:
+    can_id, length, data = _FRAME.unpack(frame)
+    return can.Message(arbitration_id=can_id, is_extended_id=False, data=data[:length])
+
+
+SIDES: dict[str, tuple[Serve, Callable[..., tuple[Cycle, Callable[[], object]]]]] = {
+    "driver": (device_driver, host_driver),
+    "frames": (device_frames, host_frames),
+    "messages": (device_messages, host_messages),
+}
+
+
+def device_process(serve: Serve, settings: MotorDriverSettings, pipe: Connection) -> None:
+    """Serve until told to stop; report the CPU time used between `start` and `stop`."""
+    begun = time.process_time()
+
+    def stopped() -> bool:
+        nonlocal begun
+        if not pipe.poll():
+            return False
+        if pipe.recv() == "start":
+            begun = time.process_time()
+            return False
+        pipe.send(time.process_time() - begun)
+        return True
+
+    serve(settings, stopped)
+
+
+def measure(name: str, settings: MotorDriverSettings, seconds: float) -> dict[str, object]:
+    """Run one implementation; return its figures."""
+    serve, make_host = SIDES[name]
+    ours, theirs = multiprocessing.Pipe()
+    device = multiprocessing.get_context("fork").Process(target=device_process, args=(serve, settings, theirs))
+    device.start()
+    time.sleep(0.3)
+    cycle, close = make_host(settings)
+    period = round(settings.period * 1e9)
+    ticks = round(seconds / settings.period)
+    for k in range(100):  # enables the drives, warms up
+        paced(cycle, k, period)
+    ours.send("start")
+    cpu, wall, late = time.process_time(), time.perf_counter(), 0
+    trips = []
+    due = time.monotonic_ns() + period
+    for k in range(100, 100 + ticks):
+        time.sleep(max(0.0, (due - time.monotonic_ns()) * 1e-9))
+        late += time.monotonic_ns() - due > period
+        due += period
+        trips.append(cycle(k * period))
+    cpu, wall = time.process_time() - cpu, time.perf_counter() - wall
+    ours.send("stop")
+    device_cpu = ours.recv()
+    close()
+    device.join(2.0)
+    good = sorted(t for t in trips if t == t)
+    return {
+        "implementation": name, "rate": 1.0 / settings.period, "channels": len(settings.channels), "cycles": ticks,
+        "incomplete": len(trips) - len(good), "late": late,
+        "p50_us": statistics.median(good), "p99_us": good[int(0.99 * len(good))], "max_us": good[-1],
+        "host_cpu_percent": 100 * cpu / wall, "device_cpu_percent": 100 * device_cpu / wall,
+    }  # fmt: skip
+
+
+def paced(cycle: Cycle, k: int, period: int) -> None:
+    time.sleep(period * 1e-9)
+    cycle(k * period)
+
+
+def budget_rows() -> list[dict[str, float]]:
+    """Return the bus-load table of docs/can.md."""
+    rows = []
+    for rate in (200.0, 500.0, 1000.0):
+        for drives in (1, 2, 3, 5):
+            b, cyclic = channel_budget(drives, rate, 200.0 + 20.0 * drives), channel_budget(drives, rate)
+            rows.append({
+                "rate": rate, "drives": drives, "load_percent": 100 * cyclic.load,
+                "with_heartbeats_percent": 100 * b.load, "unstuffed_percent": 100 * cyclic.load_unstuffed,
+                "feedback_us": 1e6 * b.feedback, "slack_us": 1e6 * b.slack,
+            })  # fmt: skip
+    return rows
+
+
+def show(rows: list[dict[str, object]] | list[dict[str, float]]) -> None:
+    print("  ".join(f"{key:>{max(len(key), 10)}}" for key in rows[0]))
+    for row in rows:
+        cells = [f"{v:.1f}" if isinstance(v, float) else str(v) for v in row.values()]
+        print("  ".join(f"{cell:>{max(len(key), 10)}}" for key, cell in zip(row, cells, strict=True)))
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--rate", type=float, nargs="*", default=[500.0, 1000.0])
+    parser.add_argument("--seconds", type=float, default=10.0)
+    parser.add_argument("--kind", default="local", help="link kind of the channels; socketcan needs can0, can1, can2")
+    parser.add_argument("--links", help="comma-separated link specifications instead of --kind")
+    parser.add_argument("--budget", action="store_true", help="print the bus-load budget and exit")
+    parser.add_argument("--json", action="store_true")
+    arguments = parser.parse_args()
+    if arguments.budget:
+        rows: list = budget_rows()
+    else:
+        ctypes.CDLL(None).prctl(29, ctypes.c_ulong(1), 0, 0, 0)  # PR_SET_TIMERSLACK: wake when asked for
+        gc.freeze()
+        rows = []
+        for rate in arguments.rate:
+            names = arguments.links.split(",") if arguments.links else None
+            for name in SIDES:
+                settings = default_settings(1.0 / rate, names, arguments.kind)
+                if names is None:
+                    links = [f"{arguments.kind}:bench{os.getpid()}-{i}" for i in range(len(settings.channels))]
+                    settings = default_settings(1.0 / rate, links)
+                rows.append(measure(name, settings, arguments.seconds))
+    print(json.dumps(rows)) if arguments.json else show(rows)
+
+
+if __name__ == "__main__":
+    main()

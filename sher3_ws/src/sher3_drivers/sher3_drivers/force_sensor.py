@@ -1,0 +1,63 @@
+"""The force sensor as the driver sees it, and the in-process one of stepped tests."""
+
+from __future__ import annotations
+
+from typing import NamedTuple, Protocol
+
+Wrench = tuple[float, float, float, float, float, float]
+
+
+class WrenchRecord(NamedTuple):
+    """One reading of the sensor.
+
+    Attributes:
+        wrench: (fx, fy, fz, mx, my, mz) in {f}, N and N m, as the device gave it.
+        sequence: the device's 32-bit record counter.
+        status: the device's status word, 0 when it is well.
+        drained: number of records taken since the last reading; more than one when the device is faster than the loop.
+    """
+
+    wrench: Wrench
+    sequence: int
+    status: int = 0
+    drained: int = 1
+
+
+class ForceSensorDevice(Protocol):
+    """A force sensor back-end."""
+
+    def read(self, since: int, timeout: float) -> WrenchRecord | None:
+        """Return the newest record that arrived at `since` (ns of the driver's clock) or later.
+
+        Waits for one at most `timeout` s; None when none came.
+
+        Raises:
+            DeviceMissing: the device is gone.
+        """
+
+    def close(self) -> None:
+        """Let the device go."""
+
+
+class InProcessForceSensor:
+    """A sensor whose device end is a method call; for stepped tests and single-process runs."""
+
+    def __init__(self) -> None:
+        self._record: WrenchRecord | None = None
+        self._sequence = 0
+
+    def put(self, wrench: Wrench, status: int = 0) -> None:
+        """Be the device: produce one record."""
+        self._sequence += 1
+        drained = 1 if self._record is None else self._record.drained + 1
+        self._record = WrenchRecord(wrench, self._sequence, status, drained)
+
+    def read(self, since: int, timeout: float) -> WrenchRecord | None:
+        """Return the record put since the last reading; see `ForceSensorDevice`."""
+        del since, timeout
+        record, self._record = self._record, None
+        return record
+
+    def close(self) -> None:
+        """Forget the record."""
+        self._record = None

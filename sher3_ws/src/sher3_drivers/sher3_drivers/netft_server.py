@@ -1,0 +1,97 @@
+"""The device end of a NetFT: the mock force sensor of the plant process, on loopback unless told otherwise."""
+
+from __future__ import annotations
+
+import socket
+from collections.abc import Callable
+
+from .errors import DeviceMissing
+from .force_sensor import Wrench
+from .netft import HEADER, PORT, RECORD, REQUEST, SET_BIAS, STOP, STREAM, NetFtScale
+
+RecordTamper = Callable[[bytes], bytes]
+
+
+class NetFtServer:
+    """A mock NetFT: streams to whoever asked last, as the device does.
+
+    Args:
+        address: where to listen; port 0 takes a free one.
+        scale: counts per unit.
+
+    Attributes:
+        address: where it listens.
+        status: status word of the next records.
+        tamper: changes a record on its way out (b"" loses it); the seam for garbage, stuck, lost and duplicated ones.
+
+    Raises:
+        DeviceMissing: the port is taken.
+    """
+
+    def __init__(self, address: tuple[str, int] = ("127.0.0.1", PORT), scale: NetFtScale | None = None) -> None:
+        self.status = 0
+        self.tamper: RecordTamper | None = None
+        self._scale = scale or NetFtScale()
+        self._client: tuple[str, int] | None = None
+        self._sequence = 0
+        self._bias: tuple[int, ...] = (0,) * 6
+        self._counts: tuple[int, ...] = (0,) * 6
+        self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self._socket.setblocking(False)
+        try:
+            self._socket.bind(address)
+        except OSError as error:
+            self._socket.close()
+            remedy = "end the other process or use another port"
+            raise DeviceMissing(f"mock netft {address[0]}:{address[1]}", str(error), remedy=remedy) from error
+        self.address: tuple[str, int] = self._socket.getsockname()
+
+    def fileno(self) -> int:
+        """Return the socket's descriptor: readable when a request waits."""
+        return self._socket.fileno()
+
+    def poll(self) -> None:
+        """Serve every request that waits; what is no request is ignored."""
+        try:
+            while True:
+                data, client = self._socket.recvfrom(64)
+                if len(data) == REQUEST.size:
+                    header, command, _ = REQUEST.unpack(data)
+                    if header == HEADER:
+                        self._serve(command, client)
+        except (BlockingIOError, ConnectionRefusedError):
+            return
+
+    def _serve(self, command: int, client: tuple[str, int]) -> None:
+        if command == STREAM:
+            self._client = client
+            self._send()
+        elif command == STOP and client == self._client:
+            self._client = None
+        elif command == SET_BIAS:
+            self._bias = self._counts
+
+    def publish(self, wrench: Wrench) -> None:
+        """Take a new reading, N and N m in {f}, and stream it if somebody asked."""
+        self._counts = self._scale.to_counts(wrench)
+        self._sequence = self._sequence + 1 & 0xFFFFFFFF
+        self._send()
+
+    def _send(self) -> None:
+        if self._client is None:
+            return
+        counts = [max(-(2**31), min(2**31 - 1, c - b)) for c, b in zip(self._counts, self._bias, strict=True)]
+        record = RECORD.pack(self._sequence, self._sequence, self.status, *counts)
+        if self.tamper is not None:
+            record = self.tamper(record)
+        if record:
+            try:
+                self._socket.sendto(record, self._client)
+            except ConnectionRefusedError:
+                self._client = None
+            except BlockingIOError:
+                pass
+
+    def close(self) -> None:
+        """Stop listening."""
+        self._socket.close()
