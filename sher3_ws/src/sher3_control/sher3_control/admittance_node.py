@@ -19,6 +19,7 @@ from std_srvs.srv import Trigger
 
 from .admittance import NO_WRENCH, LawInput, initial_state, step
 from .angles import roll_and_tilt
+from .heard import HeardState, status_of
 from .law_parameters import law_parameters, nanoseconds
 from .live_parameters import apply_command, live_parameters, to_json, with_bias
 from .ownership import Mode
@@ -45,7 +46,8 @@ class AdmittanceNode(Node):
         self._wrench: tuple[int, Wrench] = (-1, NO_WRENCH)
         self._pedal: tuple[int, float, bool] = (-1, 0.0, False)
         self._joints: tuple[int, tuple[float, ...], float, float] = (-1, (), 0.0, 0.0)
-        self._enabled = self._owner = False
+        self._state_heard = HeardState(self.settings.supervisor.publish_period)
+        self._owner = False
         self._tick_count, self._last = 0, -1
         self._reason: Reason | None = None
         self._window = TareWindow(robot, self.settings.tare)
@@ -67,6 +69,8 @@ class AdmittanceNode(Node):
         self.create_service(Trigger, "admittance/tare", self._on_tare)
         self._now = clock_of(self).now
         on_tick(self, self._tick, phase=LATE * period)
+        every = max(1, round(self.settings.supervisor.publish_period / period))
+        on_tick(self, lambda _stamp: self._report(), phase=LATE * period, every=every)
         self._publish_settings(TextSample(to_json(self._live, self.settings)))
 
     def _on_joints(self, sample: JointSample) -> None:
@@ -87,10 +91,10 @@ class AdmittanceNode(Node):
             self._tick(sample.stamp)
 
     def _on_state(self, sample: TextSample) -> None:
-        self._enabled = sample.text == "ENABLED"
+        self._state_heard.feed(sample.text, self._now())
 
     def _on_motion(self, sample: TextSample) -> None:
-        self._owner = json.loads(sample.text)["mode"] in (None, Mode.COOPERATIVE.value)
+        self._owner = status_of(sample.text).get("mode", "unknown") in (None, Mode.COOPERATIVE.value)
 
     def _tick(self, stamp: int) -> None:
         if stamp <= self._last:
@@ -113,7 +117,7 @@ class AdmittanceNode(Node):
     def _input(self, stamp: int) -> LawInput:
         live, pedal, joints, wrench = self._live, self._pedal, self._joints, self._wrench
         return LawInput(
-            stamp, self._enabled, self._owner, wrench[0], wrench[1], pedal[0], pedal[1], pedal[2],
+            stamp, self._state_heard.enabled(stamp), self._owner, wrench[0], wrench[1], pedal[0], pedal[1], pedal[2],
             joints[0], joints[2], joints[3],
             live.speed_scale, live.linear_gain, live.angular_gain, int(live.lock), live.bias,
         )  # fmt: skip

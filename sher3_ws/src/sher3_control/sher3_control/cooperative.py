@@ -7,7 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from sher3_kinematics import InverseVelocity, RobotKinematics
+from sher3_kinematics import InverseVelocity, LimitedVelocity, RobotKinematics
+from sher3_kinematics.inverse_velocity import describe
+from sher3_kinematics.kernel_velocity import NOT_FINITE
 
 from .errors import SettingsError
 from .limits import ZERO_TWIST
@@ -18,6 +20,7 @@ from .reasons import Reason
 Array = NDArray[np.float64]
 
 RESTING: Vector = (0.0, 0.0, 0.0, 0.0, 0.0)
+_NOT_FINITE = describe(NOT_FINITE)
 DEVIATION_LIMIT = 1e-3
 """A shaft further than this [m] from the remote centre is no longer held by it: the robot stops."""
 CAPTURE_LIMIT = 1e-4
@@ -80,8 +83,7 @@ class VelocityModes:
         if not math.isfinite(sum(twist)):
             return Velocity(RESTING, Reason.COMMAND_NOT_FINITE, "", 0.0)
         if self.centre is None:
-            limited = self._inverse(q, twist, previous)
-            return Velocity(tuple(limited.q_dot.tolist()), Reason.MOVING, limited.limited_by, 0.0)
+            return _velocity(self._inverse(q, twist, previous), 0.0)
         return self._about_centre(q, twist, previous, self.centre)
 
     def _about_centre(self, q: Vector, twist: Vector, previous: Vector, centre: Array) -> Velocity:
@@ -93,10 +95,14 @@ class VelocityModes:
             return Velocity(RESTING, Reason.SINGULAR, "", 0.0)
         if not deviation <= DEVIATION_LIMIT:
             return Velocity(RESTING, Reason.OFF_CENTRE, "", deviation)
-        limited = self._inverse.limit(joints, wanted, previous)
-        return Velocity(tuple(limited.q_dot.tolist()), Reason.MOVING, limited.limited_by, deviation)
+        return _velocity(self._inverse.limit(joints, wanted, previous), deviation)
 
     def from_joints(self, q: Vector, wanted: Vector, previous: Vector) -> Velocity:
         """Return the permitted part of an actuator velocity (5,)."""
-        limited = self._inverse.limit(q, wanted, previous)
-        return Velocity(tuple(limited.q_dot.tolist()), Reason.MOVING, limited.limited_by, 0.0)
+        return _velocity(self._inverse.limit(q, wanted, previous), 0.0)
+
+
+def _velocity(limited: LimitedVelocity, deviation: float) -> Velocity:
+    if limited.limited_by == _NOT_FINITE:
+        return Velocity(RESTING, Reason.SINGULAR, "", deviation)
+    return Velocity(tuple(limited.q_dot.tolist()), Reason.MOVING, limited.limited_by, deviation)

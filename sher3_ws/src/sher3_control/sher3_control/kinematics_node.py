@@ -18,6 +18,7 @@ from sher3_runtime import JointSample, PoseSample, TextSample, TwistSample
 from sher3_runtime.ports import NODE_OPTIONS, advertise, clock_of, on_tick, subscribe
 
 from .cooperative import RESTING
+from .heard import HeardState, status_of
 from .motion import MotionController, MotionInput, MotionOutput
 from .ownership import MODE_CODES, Mode
 from .pose import tip_pose_sample
@@ -42,7 +43,7 @@ class KinematicsNode(Node):
         self._kernel = np.array(kernel_parameters(robot))
         self._joints = JointSample(-1, RESTING)
         self._twist = TwistSample(-1, (0.0,) * 6)
-        self._enabled = False
+        self._state_heard = HeardState(self.settings.supervisor.publish_period)
         self._tick_count, self._last, self._version = 0, -1, 0
         self._shown: tuple[Any, ...] = ()
         self._refused: dict[str, Any] | None = None
@@ -82,15 +83,17 @@ class KinematicsNode(Node):
             self._tick(sample.stamp)
 
     def _on_state(self, sample: TextSample) -> None:
-        self._enabled = sample.text == "ENABLED"
+        self._state_heard.feed(sample.text, self._now())
 
     def _on_admittance(self, sample: TextSample) -> None:
-        wants = json.loads(sample.text)["reason"] == Reason.MOVING.name
-        self.motion.cooperative_wants(wants and self._enabled, self._now())
+        wants = status_of(sample.text).get("reason") == Reason.MOVING.name
+        now = self._now()
+        self.motion.cooperative_wants(wants and self._state_heard.enabled(now), now)
 
     def _input(self, stamp: int) -> MotionInput:
         joints, twist = self._joints, self._twist
-        return MotionInput(stamp, self._enabled, joints.stamp, joints.position or (), twist.stamp, twist.twist)
+        enabled = self._state_heard.enabled(stamp)
+        return MotionInput(stamp, enabled, joints.stamp, joints.position or (), twist.stamp, twist.twist)
 
     def _tick(self, stamp: int) -> None:
         if stamp <= self._last:

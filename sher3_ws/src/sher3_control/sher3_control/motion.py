@@ -12,7 +12,6 @@ from sher3_runtime import PoseSample
 from .cooperative import RESTING, VelocityModes
 from .errors import CommandRejected
 from .law_parameters import nanoseconds
-from .limits import ZERO_TWIST
 from .modes import MotionMode, Step, Vector
 from .move_modes import MoveJoints, MoveTip
 from .ownership import Mode, Ownership
@@ -56,7 +55,7 @@ class MotionController:
 
     Attributes:
         ownership: who commands the robot.
-        velocity_modes: twists and actuator velocities, and the remote centre.
+        velocity_modes: tip twists and actuator velocities, and the remote centre.
         previous: velocity commanded last (5,).
     """
 
@@ -65,6 +64,7 @@ class MotionController:
         self.ownership = Ownership()
         self.velocity_modes = VelocityModes(kinematics, settings.rcm_gain)
         self.previous: Vector = RESTING
+        self._rearm = True
         self._gain = robot.position_gain
         self._limits = tuple(a.limits.velocity for a in robot.actuators)
         self._age_limit = nanoseconds(settings.joints_age_limit)
@@ -105,9 +105,13 @@ class MotionController:
         self.ownership.claim(mode, state.stamp)
 
     def cooperative_wants(self, wants: bool, now: int) -> None:
-        """Let the cooperative mode take the free robot while the armed pedal is pressed, and leave it after."""
+        """Let the cooperative mode take the free robot while the armed pedal is pressed, and leave it after.
+
+        After a stop it takes it only once the law has been seen at rest: release, then press.
+        """
         owner = self.ownership.owner
-        if wants and owner is None:
+        self._rearm = self._rearm and wants
+        if wants and owner is None and not self._rearm:
             self.ownership.claim(Mode.COOPERATIVE, now)
         elif not wants and owner is Mode.COOPERATIVE:
             self.ownership.release(now)
@@ -144,11 +148,13 @@ class MotionController:
     def _cooperate(self, i: MotionInput) -> MotionOutput:
         missing, stale = Reason.COMMAND_MISSING, Reason.COMMAND_STALE
         reason = check_age(i.stamp, i.twist_stamp, self._age_limit, self._period, missing, stale)
+        if reason is Reason.MOVING and self._rearm:
+            reason = Reason.NOT_REARMED
         if reason is not Reason.MOVING:
             return self._stop(i.stamp, reason)
-        if self.ownership.owner is None and i.twist != ZERO_TWIST:
-            self.ownership.claim(Mode.COOPERATIVE, i.stamp)
         result = self.velocity_modes.from_twist(i.q, i.twist, self.previous)
+        if result.reason is not Reason.MOVING:
+            return self._stop(i.stamp, result.reason)
         self.previous = result.velocity
         return MotionOutput(result.velocity, None, result.reason, result.limited_by)
 
@@ -169,6 +175,8 @@ class MotionController:
         owner = self.ownership.owner
         if owner in self._modes:
             self._modes[owner].reset()
+        # The law disarms itself when the robot is not enabled; here it has to be told to see the pedal released.
+        self._rearm = self._rearm or reason is not Reason.NOT_ENABLED
         self.ownership.release(now)
         self.previous = RESTING
         return MotionOutput(RESTING, None, reason)

@@ -85,11 +85,16 @@ class _Servo(Generic[C]):
 
 
 class ServoPosition(_Servo[tuple[Vector, Vector]]):
-    """`servo_jp`: references for the host law; between two samples the last position is held with zero feed-forward."""
+    """`servo_jp`: references for the host law.
+
+    Between two samples the last position is held with zero feed-forward, before the first one the position at its
+    arrival.
+    """
 
     def __init__(self, robot: Robot, settings: MotionSettings, name: str = "servo_jp") -> None:
         super().__init__(name, settings)
         self._limits = [a.limits for a in robot.actuators]
+        self._hold: Vector = ()
         self._step = [settings.step_factor * a.limits.velocity / robot.position_gain for a in robot.actuators]
 
     def accept(self, command: JointSample, now: int, q: Vector) -> None:
@@ -102,6 +107,8 @@ class ServoPosition(_Servo[tuple[Vector, Vector]]):
         velocity = require_finite(self.name, command.velocity or (0.0,) * 5, 5, "velocities")
         self._check_stamp(command.stamp, now)
         newest = self._stream.newest
+        if newest is None:
+            self._hold = q
         self._check_reach(position, q if newest is None else newest[0])
         self._stream.push(command.stamp, (position, velocity))
 
@@ -128,7 +135,7 @@ class ServoPosition(_Servo[tuple[Vector, Vector]]):
         """Return the reference in force."""
         reason, command, exact = self._stream.at(now)
         if command is None:
-            return Step(reason, setpoint=(q, (0.0,) * 5) if reason is Reason.MOVING else None)
+            return Step(reason, setpoint=(self._hold, (0.0,) * 5) if reason is Reason.MOVING else None)
         return Step(setpoint=command if exact else (command[0], (0.0,) * 5))
 
 

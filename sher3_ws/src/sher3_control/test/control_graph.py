@@ -81,7 +81,7 @@ class ControlGraph:
         """Wait until every node has heard of the operating state: latched samples take their own time."""
         nodes = (self.admittance, self.kinematics)
         enabled = state == "ENABLED"
-        heard = lambda: all(node._enabled == enabled for node in nodes)  # noqa: E731
+        heard = lambda: all(node._state_heard.enabled(self.now) == enabled for node in nodes)  # noqa: E731
         self.graph.until(lambda: heard() and self.status("supervisor/status")["state"] == state, state)
 
     def until_mode(self, mode):
