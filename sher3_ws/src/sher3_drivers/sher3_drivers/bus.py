@@ -41,7 +41,10 @@ class CanLink(Protocol):
         """Send whole 16-byte frames in order without blocking; raise LinkError when the link cannot take them."""
 
     def recv_frames(self) -> bytes:
-        """Return every frame that waits, error frames included, in order; own frames never come back."""
+        """Return the next frames that wait, one or many, error frames included, in order; b"" when none waits.
+
+        Own frames never come back. Call it again until it returns nothing to have all.
+        """
 
     def fileno(self) -> int:
         """Return a descriptor that is readable when frames wait, or -1 when there is none (in process)."""
@@ -80,7 +83,7 @@ class LinkGroup:
         self.waits = len(self._by_descriptor) == len(self.links)
 
     def receive(self, timeout: float = 0.0) -> list[tuple[int, bytes]]:
-        """Return (index of the link, frames) of every link that has some, waiting at most `timeout` s for the first.
+        """Return (index of the link, next frames) of every link that has some, waiting at most `timeout` s.
 
         Links within the process are never waited on. `select` and not `poll`: its timeout resolves microseconds, not
         milliseconds, and one call in place of a failing read per link is what the hot path can afford.

@@ -127,10 +127,11 @@ class LocalLink:
 
     def send_frames(self, frames: bytes) -> None:
         """Send whole frames to every participant as one datagram each."""
+        if len(frames) % FRAME_SIZE:
+            check_frames(frames)
         if self._socket.fileno() < 0:
             raise LinkError("is closed", link=self.name, remedy="open it again")
-        check_frames(frames)
-        for peer in tuple(self._peers.values()):
+        for peer in list(self._peers.values()):
             if peer.backlog:
                 self._postpone(peer, frames)
                 self._flush(peer)
@@ -161,24 +162,19 @@ class LocalLink:
             peer.path.unlink(missing_ok=True)
 
     def recv_frames(self) -> bytes:
-        """Return the frames that wait."""
-        parts = []
-        receive = self._socket.recv
+        """Return the frames of the next datagram."""
         try:
             while True:
-                datagram = receive(65536)
+                datagram = self._socket.recv(65536)
                 if datagram.startswith(_GREETING):
                     self._meet(datagram[len(_GREETING) :].decode("ascii", "replace").replace("/", "_"))
-                elif len(datagram) % FRAME_SIZE == 0:
-                    parts.append(datagram)
+                elif datagram and len(datagram) % FRAME_SIZE == 0:
+                    self.received_at = time.monotonic_ns()
+                    return datagram
         except BlockingIOError:
-            pass
+            return b""
         except OSError as error:
             raise LinkError(f"cannot receive: {error}", link=self.name, remedy="open it again") from error
-        if not parts:
-            return b""
-        self.received_at = time.monotonic_ns()
-        return parts[0] if len(parts) == 1 else b"".join(parts)
 
     def fileno(self) -> int:
         """Return the receiving socket's descriptor."""

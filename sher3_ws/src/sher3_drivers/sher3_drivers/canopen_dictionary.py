@@ -39,7 +39,7 @@ def drive_dictionary() -> ObjectDictionary:
 
 
 def _variable(address: Address, row: DriveObject) -> ODVariable:
-    variable = ODVariable(f"{row.name} {address}", *address)
+    variable = ODVariable(f"{row.name} {address}", address.main, address.sub)
     variable.data_type = _TYPES[row.kind]
     variable.access_type = row.access
     return variable

@@ -89,7 +89,7 @@ class CanopenMaster:
             DriveSilent: no answer in time, or the drive does not have the object.
         """
         try:
-            data = self._clients[drive].upload(*address)
+            data = self._clients[drive].upload(address.main, address.sub)
         except (SdoCommunicationError, SdoAbortedError) as error:
             raise _silent(drive, f"cannot read {address} ({OBJECTS[address].name}): {error}") from error
         return int.from_bytes(data, "little", signed=OBJECTS[address].kind in _SIGNED)
@@ -99,7 +99,7 @@ class CanopenMaster:
         kind = OBJECTS[address].kind
         data = value.to_bytes(int(kind[1:]) // 8, "little", signed=kind in _SIGNED)
         try:
-            self._clients[drive].download(*address, data)
+            self._clients[drive].download(address.main, address.sub, data)
         except (SdoCommunicationError, SdoAbortedError) as error:
             raise _silent(drive, f"cannot write {address} ({OBJECTS[address].name}): {error}") from error
 

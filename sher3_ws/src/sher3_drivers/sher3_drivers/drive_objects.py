@@ -22,14 +22,28 @@ INVALID = 0x80000000
 """Bit 31 of a PDO's COB-ID: the PDO does not exist."""
 
 
-class Address(NamedTuple):
-    """Index and sub-index of an object."""
+class Address(int):
+    """Index and sub-index of an object in one number, as cheap a dictionary key as there is."""
 
-    main: int
-    sub: int
+    def __new__(cls, main: int, sub: int) -> Address:
+        """Return the address of index `main`, sub-index `sub`."""
+        return super().__new__(cls, main << 8 | sub)
+
+    @property
+    def main(self) -> int:
+        """Index of the object."""
+        return self >> 8
+
+    @property
+    def sub(self) -> int:
+        """Sub-index of the object."""
+        return self & 0xFF
 
     def __str__(self) -> str:
         return f"0x{self.main:04X}:{self.sub:02X}"
+
+    def __format__(self, spec: str) -> str:
+        return format(str(self), spec)
 
 
 class DriveObject(NamedTuple):

@@ -7,8 +7,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from .drive_objects import TPDO_BASES
-from .errors import FrameError
-from .frame import FRAME_SIZE
+from .frame import FRAME_SIZE, check_frames
 from .units import AxisScale
 
 _FRAME = struct.Struct("<IB3x8s")
@@ -58,7 +57,11 @@ class TpdoCollector:
         self.misfits = 0
         self._scales = tuple(scales)
         self._period = period
-        self._slots = {base + n: (i, pdo) for pdo, base in enumerate(TPDO_BASES) for i, n in enumerate(node_ids)}
+        self._slots = {
+            base + n: (i, 1 << i + pdo * count, pdo)
+            for pdo, base in enumerate(TPDO_BASES)
+            for i, n in enumerate(node_ids)
+        }
         self.positions_mask = (1 << count) - 1
         self.all_mask = (1 << 2 * count) - 1
         self._count = count
@@ -76,28 +79,26 @@ class TpdoCollector:
     def take(self, frames: bytes) -> list[tuple[int, bytes]]:
         """Sort frames in; return (can_id, data) of those that are no TPDO."""
         if len(frames) % FRAME_SIZE:
-            raise FrameError("not a whole number of frames", value=len(frames), limit=f"a multiple of {FRAME_SIZE}")
+            check_frames(frames)
         others = []
+        slots = self._slots
         for can_id, length, data in _FRAME.iter_unpack(frames):
-            slot = self._slots.get(can_id)
+            slot = slots.get(can_id)
             if slot is None:
                 others.append((can_id, data[:length]))
-            elif length != 8:
+                continue
+            axis, bit, second = slot
+            if length != 8:
                 self.misfits += 1
+            elif self._mask & bit:
+                self.duplicates += 1
             else:
-                self._sort_in(*slot, data)
+                self._mask |= bit
+                if second:
+                    self._motor[axis], self._demand[axis] = _TPDO2.unpack(data)
+                else:
+                    self._load[axis], self.statuswords[axis], self._torque[axis] = _TPDO1.unpack(data)
         return others
-
-    def _sort_in(self, axis: int, pdo: int, data: bytes) -> None:
-        bit = 1 << axis + pdo * self._count
-        if self._mask & bit:
-            self.duplicates += 1
-            return
-        self._mask |= bit
-        if pdo:
-            self._motor[axis], self._demand[axis] = _TPDO2.unpack(data)
-        else:
-            self._load[axis], self.statuswords[axis], self._torque[axis] = _TPDO1.unpack(data)
 
     def has(self, mask: int) -> bool:
         """Whether every TPDO of `mask` is in."""

@@ -26,6 +26,7 @@ from .units import AxisScale
 _FRAME = struct.Struct("<IB3x8s")
 _FREE_RUN_PERIODS = 5
 _WATCH_NS = 1_000_000
+_BATCHES = 64
 
 FrameTamper = Callable[[int, bytes, int], bytes]
 
@@ -124,6 +125,7 @@ class MockDriveBus:
                 channel.by_node[drive.node_id] = [drive]
                 by_name[name] = drive
         self.drives = {name: by_name[name] for name in ACTUATORS}
+        self._in_order = tuple(self.drives.values())
 
     def _sender(self, index: int) -> Callable[[bytes], None]:
         def send(frames: bytes) -> None:
@@ -134,8 +136,11 @@ class MockDriveBus:
 
         return send
 
-    def serve(self, timeout: float) -> None:
-        """Wait at most `timeout` s for frames, then handle everything as `poll` does."""
+    def serve(self, timeout: float) -> bool:
+        """Wait at most `timeout` s for frames and handle the next batch of every channel; False when none came.
+
+        SYNCs are answered, heartbeats and watchdogs kept going.
+        """
         received = self._group.receive(timeout)
         now = self._clock()
         for index, frames in received:
@@ -153,10 +158,13 @@ class MockDriveBus:
             for drive in self.drives.values():
                 drive.check_host(now)
                 drive.node.poll(now)
+        return bool(received)
 
     def poll(self) -> None:
-        """Handle every frame that waits, answer each SYNC, keep heartbeats and watchdogs going."""
-        self.serve(0.0)
+        """Handle every frame that waits, as `serve` does."""
+        for _ in range(_BATCHES):
+            if not self.serve(0.0):
+                return
 
     def _advance(self, now: int) -> bool:
         """Hand out frames up to the next SYNC of every channel; True when the plant is to step.
@@ -203,12 +211,16 @@ class MockDriveBus:
         self.free_steps += 1
 
     def _plant_step(self) -> dict[str, bytes]:
-        drives = self.drives.values()
-        reading = self._plant.step([drive.demand(self._period) for drive in drives])
-        columns = (reading.motor_position, reading.load_position, reading.demand, reading.effort)
-        axes = zip(*(map(float, column) for column in columns), strict=True)
-        return {d.scale.name: d.sample(Feedback(*axis)) for d, axis in zip(drives, axes, strict=True)}
+        reading = self._plant.step([drive.demand(self._period) for drive in self._in_order])
+        columns = [_floats(c) for c in (reading.motor_position, reading.load_position, reading.demand, reading.effort)]
+        axes = zip(self.drives.items(), *columns, strict=True)
+        return {name: drive.sample(Feedback(*axis)) for (name, drive), *axis in axes}
 
     def close(self) -> None:
         """Leave every channel."""
         self._group.close()
+
+
+def _floats(column: Sequence[float]) -> list[float]:
+    """Return a column as Python floats, which round three times as fast as those of NumPy."""
+    return column.tolist() if hasattr(column, "tolist") else list(column)

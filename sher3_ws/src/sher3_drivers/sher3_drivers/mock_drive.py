@@ -108,7 +108,8 @@ class MockDrive:
         rpdos = [_Pdo(values, c, m) for c, m in ((0x1400, 0x1600), (0x1401, 0x1601))]
         tpdos = [_Pdo(values, c, m) for c, m in ((0x1800, 0x1A00), (0x1801, 0x1A01), (0x1802, 0x1A02))]
         self._rpdos = {pdo.can_id: pdo for pdo in rpdos if pdo.exists}
-        self._tpdos = [pdo for pdo in tpdos if pdo.exists and 1 <= pdo.transmission <= 240]
+        synchronous = [pdo for pdo in tpdos if pdo.exists and 1 <= pdo.transmission <= 240]
+        self._tpdos = [(pdo.frame.pack, pdo.can_id, pdo.length, pdo.pick) for pdo in synchronous]
 
     def _on_reset(self) -> None:
         self.state = SWITCH_ON_DISABLED
@@ -206,7 +207,7 @@ class MockDrive:
         values[od.STATUSWORD] = self.statusword
         if not (self.powered and self.node.operational):
             return b""
-        return b"".join([pdo.frame.pack(pdo.can_id, pdo.length, *pdo.pick(values)) for pdo in self._tpdos])
+        return b"".join([pack(can_id, length, *pick(values)) for pack, can_id, length, pick in self._tpdos])
 
     @property
     def statusword(self) -> int:

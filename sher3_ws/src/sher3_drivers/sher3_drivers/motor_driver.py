@@ -26,6 +26,9 @@ from .units import AxisScale
 
 _RPDO = struct.Struct(f"<{HEADER_FORMAT}Hi2x")
 _WATCH_NS = 5_000_000
+_BATCHES = 64
+"""Batches of frames taken in before a SYNC at most: a flooded bus must not hold the loop."""
+
 _SETTLED = {Goal.ENABLED: State.OPERATION_ENABLED, Goal.DISABLED: State.SWITCH_ON_DISABLED}
 
 
@@ -176,7 +179,9 @@ class MotorDriver:
         The heartbeat has no timer of its own: when the loop that calls this hangs, it falls silent and the
         drives stop the robot.
         """
-        self._receive()
+        for _ in range(_BATCHES):
+            if not self._receive():
+                break
         self._collector.begin()
         self._stamp = stamp
         self._ticks += 1
