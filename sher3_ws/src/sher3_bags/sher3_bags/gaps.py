@@ -57,7 +57,7 @@ class GapCounter:
                 if step > max(PAUSE_NS, 3 * self.period):
                     self.pauses += 1
                 else:
-                    self.dropped += round(step / self.period) - 1
+                    self.dropped += max(0, round(step / self.period) - 1)
         self.last = stamp
 
     def counts(self) -> dict[str, int]:
@@ -77,5 +77,6 @@ def count_gaps(stamp: NDArray[np.int64], period: int | None) -> GapCounter:
     if period is not None:
         pause = step > max(PAUSE_NS, 3 * period)
         counter.pauses = int(pause.sum())
-        counter.dropped = int((np.rint(step[~pause] / period).astype(np.int64) - 1).sum())
+        missing = np.rint(step[~pause] / period).astype(np.int64) - 1
+        counter.dropped = int(missing.clip(0).sum())
     return counter

@@ -1,26 +1,77 @@
-"""Record the graph: raw bytes of every topic of the table into a new bag."""
+"""Record the graph: raw bytes of every topic of the table into a new bag.
+
+In stepped time samples are taken as they come, so that a step ends with all of them recorded.
+"""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable
+from operator import itemgetter
 from pathlib import Path
 from typing import Any
 
 import rclpy
+from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 from sher3_description import TOPICS, Robot, load_robot
 from sher3_runtime import environment
-from sher3_runtime.ports import NODE_OPTIONS, clock_of, subscribe_raw
+from sher3_runtime.messages import message_class
+from sher3_runtime.ports import NODE_OPTIONS, clock_of, find_topic, on_tick, ports, qos_profile, subscribe_raw
 from sher3_runtime.process import stop_on_signals
 from sher3_runtime.spinning import spin
 
 from sher3_bags.recorder import Recorder
 from sher3_bags.run import RunMetadata
 
+POLL_NS = 5_000_000
+
 DEPTH = 2000
 """Samples that may wait while a chunk is compressed or the disk is slow: four seconds of a 500 Hz stream."""
+
+
+class Ears(Node):
+    """The recorder's subscriptions in stillness: a node that no executor waits on, emptied by `listen`.
+
+    Waking up for each of thousands of samples per second would cost the recorder five times the work of writing them.
+    The middleware notes when a sample arrived, so nothing is lost by looking later.
+    """
+
+    def __init__(self, owner: Node, names: Iterable[str], **options: Any) -> None:
+        super().__init__(f"{owner.get_name()}_ears", **{**NODE_OPTIONS, **options})
+        self._now = clock_of(owner).now
+        self._received = ports(owner).received
+        self._takes: list[tuple[str, Callable[..., Any], Any]] = []
+        for name in names:
+            topic, kind = find_topic(name), message_class(find_topic(name).type)
+            profile = qos_profile(topic.qos)
+            profile.depth = DEPTH
+            events = SubscriptionEventCallbacks(use_default_callbacks=False)
+            subscription = self.create_subscription(
+                kind, topic.full_name, _never, profile, raw=True, event_callbacks=events
+            )
+            # The start barrier counts the owner's subscriptions.
+            ports(owner).subscriptions[name] = subscription
+            self._received[name] = 0
+            self._takes.append((name, subscription.handle.take_message, kind))
+
+    def listen(self) -> list[tuple[int, str, bytes, int]]:
+        """Return (arrival [ns], topic, data, time of sending [ns]) of all samples since the last call, by arrival."""
+        # The middleware stamps with the system time, the graph with its own clock.
+        shift = self._now() - time.time_ns()
+        samples = []
+        for name, take, kind in self._takes:
+            while (taken := take(kind, True)) is not None:
+                data, info = taken
+                samples.append((info["received_timestamp"] + shift, name, data, info["source_timestamp"] + shift))
+                self._received[name] += 1
+        samples.sort(key=itemgetter(0))
+        return samples
+
+
+def _never(_: bytes) -> None:
+    raise AssertionError("no executor runs this node")
 
 
 class RecorderNode(Node):
@@ -44,18 +95,32 @@ class RecorderNode(Node):
         super().__init__("recorder", **{**NODE_OPTIONS, **options})
         self.recorder = Recorder(Path(output), robot or load_robot(), metadata, parameters)
         self.counts: dict[str, dict[str, int]] = {}
-        for name in TOPICS if topics is None else topics:
-            subscribe_raw(self, name, self._receiver(name), depth=DEPTH)
+        self._ears: Ears | None = None
+        names = tuple(TOPICS if topics is None else topics)
+        if clock_of(self).stepped:
+            for name in names:
+                subscribe_raw(self, name, self._receiver(name), depth=DEPTH)
+        else:
+            self._ears = Ears(self, names, **options)
+            on_tick(self, self._poll, every=max(1, round(POLL_NS / clock_of(self).period_ns)))
 
     def _receiver(self, name: str) -> Callable[[bytes], None]:
         write, now = self.recorder.write, clock_of(self).now
         return lambda data: write(name, data, now())
 
+    def _poll(self, _: int) -> None:
+        if self._ears is not None:
+            for arrived, name, data, sent in self._ears.listen():
+                self.recorder.write(name, data, arrived, sent)
+
     def close(self) -> None:
         """Complete the bag; say what is in it and what was missed."""
         if self.recorder.closed:
             return
+        self._poll(0)
         self.counts = self.recorder.close()
+        if self._ears is not None:
+            self._ears.destroy_node()
         total = sum(entry["messages"] for entry in self.counts.values())
         self.get_logger().info(f"recorded {total} messages of {len(self.counts)} topics in {self.recorder.folder}")
         for topic, entry in self.counts.items():
