@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 
 from sher3_description import Robot
 from sher3_kinematics import RobotKinematics
-from sher3_runtime import PoseSample
 
+from .commands import PoseCommand
 from .cooperative import RESTING, VelocityModes
 from .errors import CommandRejected
 from .law_parameters import nanoseconds
@@ -20,7 +20,7 @@ from .position_controller import position_command
 from .reasons import Reason
 from .servo_modes import ServoJointVelocity, ServoPose, ServoPosition, ServoTwist
 from .settings import MotionSettings
-from .wrench_check import check_age
+from .wrench_check import judge_age
 
 
 class MotionInput(NamedTuple):
@@ -79,7 +79,7 @@ class MotionController:
             Mode.MOVE_CP: MoveTip(robot, kinematics, settings),
         }
 
-    def _inverse(self, pose: PoseSample) -> Vector:
+    def _inverse(self, pose: PoseCommand) -> Vector:
         return tuple(self._kinematics.inverse(pose.position, tool_axis(pose.orientation)).tolist())
 
     @property
@@ -138,7 +138,7 @@ class MotionController:
         return output
 
     def _check_joints(self, i: MotionInput) -> Reason:
-        reason = check_age(
+        reason = judge_age(
             i.stamp, i.joints_stamp, self._age_limit, self._period, Reason.JOINTS_MISSING, Reason.JOINTS_STALE
         )
         if reason is Reason.MOVING and not (len(i.q) == 5 and math.isfinite(sum(i.q))):
@@ -147,7 +147,7 @@ class MotionController:
 
     def _cooperate(self, i: MotionInput) -> MotionOutput:
         missing, stale = Reason.COMMAND_MISSING, Reason.COMMAND_STALE
-        reason = check_age(i.stamp, i.twist_stamp, self._age_limit, self._period, missing, stale)
+        reason = judge_age(i.stamp, i.twist_stamp, self._age_limit, self._period, missing, stale)
         if reason is Reason.MOVING and self._rearm:
             reason = Reason.NOT_REARMED
         if reason is not Reason.MOVING:

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from sher3_description import Robot
 from sher3_kinematics import RobotKinematics
-from sher3_runtime import JointSample, PoseSample
 
+from .commands import JointCommand, PoseCommand
 from .errors import CommandRejected
 from .law_parameters import nanoseconds
 from .modes import Step, Vector, require_finite, require_timely
@@ -80,7 +80,7 @@ class MoveJoints(_Move):
     def __init__(self, robot: Robot, kinematics: RobotKinematics, settings: MotionSettings) -> None:
         super().__init__("move_jp", robot, kinematics, settings)
 
-    def accept(self, command: JointSample, now: int, q: Vector) -> None:
+    def accept(self, command: JointCommand, now: int, q: Vector) -> None:
         """Plan the move from the measured positions.
 
         Raises:
@@ -102,7 +102,7 @@ class MoveTip(_Move):
     def __init__(self, robot: Robot, kinematics: RobotKinematics, settings: MotionSettings) -> None:
         super().__init__("move_cp", robot, kinematics, settings)
 
-    def accept(self, command: PoseSample, now: int, q: Vector) -> None:
+    def accept(self, command: PoseCommand, now: int, q: Vector) -> None:
         """Plan the move from the measured positions.
 
         Raises:

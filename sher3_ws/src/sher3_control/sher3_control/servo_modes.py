@@ -7,8 +7,8 @@ from collections.abc import Callable
 from typing import Generic, TypeVar
 
 from sher3_description import Robot
-from sher3_runtime import JointSample, PoseSample, TwistSample
 
+from .commands import JointCommand, PoseCommand, TwistCommand
 from .errors import CommandRejected
 from .law_parameters import nanoseconds
 from .modes import Step, Vector, require_finite, require_timely
@@ -16,7 +16,7 @@ from .reasons import Reason
 from .settings import MotionSettings
 
 C = TypeVar("C")
-Inverse = Callable[[PoseSample], Vector]
+Inverse = Callable[[PoseCommand], Vector]
 """Pose inverse: actuator positions (5,) of a tip pose; raises a Sher3Error that names the limit."""
 
 
@@ -97,20 +97,23 @@ class ServoPosition(_Servo[tuple[Vector, Vector]]):
         self._hold: Vector = ()
         self._step = [settings.step_factor * a.limits.velocity / robot.position_gain for a in robot.actuators]
 
-    def accept(self, command: JointSample, now: int, q: Vector) -> None:
+    def accept(self, command: JointCommand, now: int, q: Vector) -> None:
         """Queue a reference (position, and velocity or zero).
 
         Raises:
             CommandRejected: not finite, beyond the travel, too large a step, stale, early or out of order.
         """
-        position = require_finite(self.name, command.position, 5, "positions")
-        velocity = require_finite(self.name, command.velocity or (0.0,) * 5, 5, "velocities")
-        self._check_stamp(command.stamp, now)
+        self._queue(command.stamp, command.position, command.velocity or (0.0,) * 5, now, q)
+
+    def _queue(self, stamp: int, positions: Vector | None, velocities: Vector, now: int, q: Vector) -> None:
+        position = require_finite(self.name, positions, 5, "positions")
+        velocity = require_finite(self.name, velocities, 5, "velocities")
+        self._check_stamp(stamp, now)
         newest = self._stream.newest
         if newest is None:
             self._hold = q
         self._check_reach(position, q if newest is None else newest[0])
-        self._stream.push(command.stamp, (position, velocity))
+        self._stream.push(stamp, (position, velocity))
 
     def _check_reach(self, position: Vector, before: Vector) -> None:
         for k, limits in enumerate(self._limits):
@@ -146,7 +149,7 @@ class ServoPose(ServoPosition):
         super().__init__(robot, settings, "servo_cp")
         self._inverse = inverse
 
-    def accept(self, command: PoseSample, now: int, q: Vector) -> None:  # type: ignore[override]
+    def accept(self, command: PoseCommand, now: int, q: Vector) -> None:  # type: ignore[override]
         """Queue a tip pose in {b}.
 
         Raises:
@@ -155,7 +158,7 @@ class ServoPose(ServoPosition):
         """
         require_finite(self.name, command.position, 3, "coordinates")
         require_finite(self.name, command.orientation, 4, "quaternion components")
-        super().accept(JointSample(command.stamp, self._inverse(command)), now, q)
+        self._queue(command.stamp, self._inverse(command), (0.0,) * 5, now, q)
 
 
 class ServoJointVelocity(_Servo[Vector]):
@@ -164,7 +167,7 @@ class ServoJointVelocity(_Servo[Vector]):
     def __init__(self, settings: MotionSettings) -> None:
         super().__init__("servo_jv", settings)
 
-    def accept(self, command: JointSample, now: int, q: Vector) -> None:
+    def accept(self, command: JointCommand, now: int, q: Vector) -> None:
         """Queue actuator velocities; raises CommandRejected."""
         velocity = require_finite(self.name, command.velocity, 5, "velocities")
         self._check_stamp(command.stamp, now)
@@ -182,7 +185,7 @@ class ServoTwist(_Servo[Vector]):
     def __init__(self, settings: MotionSettings) -> None:
         super().__init__("servo_cv", settings)
 
-    def accept(self, command: TwistSample, now: int, q: Vector) -> None:
+    def accept(self, command: TwistCommand, now: int, q: Vector) -> None:
         """Queue a twist; raises CommandRejected."""
         twist = require_finite(self.name, command.twist, 6, "components")
         self._check_stamp(command.stamp, now)

@@ -33,8 +33,7 @@ def check_wrench(wrench: Wrench, limit: Wrench, saturation: float) -> Reason:
     return Reason.WRENCH_SATURATED if saturated else Reason.MOVING
 
 
-@compiled
-def check_age(now: int, stamp: int, age_limit: int, ahead_limit: int, missing: Reason, stale: Reason) -> Reason:
+def judge_age(now: int, stamp: int, age_limit: int, ahead_limit: int, missing: Reason, stale: Reason) -> Reason:
     """Judge the stamp of a sample against the tick `now` [ns].
 
     A negative stamp is no sample at all. A late tick may find samples of the next one, up to `ahead_limit`; more is a
@@ -47,3 +46,7 @@ def check_age(now: int, stamp: int, age_limit: int, ahead_limit: int, missing: R
     if now - stamp > age_limit:
         return stale
     return Reason.MOVING
+
+
+check_age = compiled(judge_age)
+"""`judge_age` for compiled code; from Python an enumeration is a slow argument, so call `judge_age` itself there."""
