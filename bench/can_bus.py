@@ -27,7 +27,7 @@ from multiprocessing.connection import Connection
 import can
 from sher3_description import ACTUATORS, load_robot
 from sher3_drivers.bus import LinkGroup, open_link
-from sher3_drivers.bus_load import channel_budget
+from sher3_drivers.bus_load import channel_budget, fd_frame_seconds, frame_bits
 from sher3_drivers.bus_python_can import LinkBus
 from sher3_drivers.frame import pack_frame
 from sher3_drivers.mock_bus import MockDriveBus
@@ -228,6 +228,22 @@ def budget_rows() -> list[dict[str, float]]:
     return rows
 
 
+def alternative_rows() -> list[dict[str, object]]:
+    """Return other mappings of the five drives at 1 kHz, worst case: frames per cycle on the fullest channel."""
+    sync, six, eight = frame_bits(0), frame_bits(6), frame_bits(8)
+    classic = {
+        "three channels (2, 2, 1), RPDO6 + 2 TPDO8: ours": sync + 2 * (six + 2 * eight),
+        "one channel, RPDO6 + 2 TPDO8": sync + 5 * (six + 2 * eight),
+        "two channels (3, 2), RPDO6 + 2 TPDO8": sync + 3 * (six + 2 * eight),
+        "two channels, RPDO6 + TPDO8 (no motor encoder, no echo)": sync + 3 * (six + eight),
+        "two channels, one group RPDO8 of int16 + 2 TPDO8": sync + eight + 3 * 2 * eight,
+        "one channel, two group RPDO8 of int16 + TPDO8": sync + 2 * eight + 5 * eight,
+    }
+    fd = fd_frame_seconds(0) + 5 * (fd_frame_seconds(6) + fd_frame_seconds(16))
+    rows: list[dict[str, object]] = [{"mapping": name, "load_percent": bits / 10.0} for name, bits in classic.items()]
+    return [*rows, {"mapping": "one CAN FD channel 1/5 Mbit/s, RPDO6 + TPDO16", "load_percent": 1e5 * fd}]
+
+
 def show(rows: list[dict[str, object]] | list[dict[str, float]]) -> None:
     print("  ".join(f"{key:>{max(len(key), 10)}}" for key in rows[0]))
     for row in rows:
@@ -246,6 +262,12 @@ def main() -> None:
     arguments = parser.parse_args()
     if arguments.budget:
         rows: list = budget_rows()
+        alternatives = alternative_rows()
+        if arguments.json:
+            print(json.dumps({"budget": rows, "alternatives_at_1_khz": alternatives}))
+            return
+        show(rows)
+        rows = alternatives
     else:
         ctypes.CDLL(None).prctl(29, ctypes.c_ulong(1), 0, 0, 0)  # PR_SET_TIMERSLACK: wake when asked for
         gc.freeze()

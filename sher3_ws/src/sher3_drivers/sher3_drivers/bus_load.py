@@ -24,6 +24,18 @@ def frame_bits(data_bytes: int, stuffed: bool = True) -> int:
     return 47 + 8 * data_bytes + ((34 + 8 * data_bytes - 1) // 4 if stuffed else 0)
 
 
+def fd_frame_seconds(data_bytes: int, arbitration_rate: float = 1e6, data_rate: float = 5e6) -> float:
+    """Return the worst-case time of one CAN FD frame with its inter-frame space, s; for comparison only.
+
+    ISO 11898-1:2015, base format with bit-rate switch: 17 bits before the switch and 13 after the CRC at the nominal
+    rate, one stuff bit per four; ESI, DLC, data, stuff count and CRC (17 bits to 16 bytes, else 21) at the data rate.
+    """
+    crc, fixed_stuff = (17, 6) if data_bytes <= 16 else (21, 7)
+    slow = 17 + (17 - 1) // 4 + 13
+    fast = 5 + 8 * data_bytes + (5 + 8 * data_bytes - 1) // 4 + 4 + crc + fixed_stuff
+    return slow / arbitration_rate + fast / data_rate
+
+
 @dataclass(frozen=True)
 class ChannelBudget:
     """What one channel carries.

@@ -1,13 +1,18 @@
 """The bus-load budget against the published frame lengths and against frames stuffed bit by bit."""
 
 import pytest
-from sher3_drivers.bus_load import channel_budget, check_budget, frame_bits
+from sher3_drivers.bus_load import channel_budget, check_budget, fd_frame_seconds, frame_bits
 from sher3_drivers.errors import BusLoadError
 
 
 @pytest.mark.parametrize(("n", "unstuffed", "worst"), [(0, 47, 55), (6, 95, 115), (8, 111, 135)])
 def test_frame_lengths(n, unstuffed, worst):
     assert (frame_bits(n, stuffed=False), frame_bits(n)) == (unstuffed, worst)
+
+
+def test_can_fd_figure_of_the_literature():
+    """SYNC + 10 frames of 8 bytes at 1/5 Mbit/s and 1 kHz: 61 % of the bus."""
+    assert fd_frame_seconds(0) + 10 * fd_frame_seconds(8) == pytest.approx(0.61e-3, abs=0.01e-3)
 
 
 def stuff(bits):
