@@ -12,6 +12,7 @@ from scipy.signal import correlate
 from sher3_description import ACTUATORS, Sher3Error
 
 from sher3_bags.errors import BagError
+from sher3_bags.messages import TYPES
 from sher3_bags.run import Run, Stream
 
 MAX_LAG = 0.5
@@ -102,11 +103,12 @@ def compare(a: Run, b: Run, *, alignment: Alignment = "auto", topics: Iterable[s
     both = [topic for topic in a.streams if topic in b and topic in wanted and a[topic].type == b[topic].type]
     if not both:
         raise BagError("no topic in common", path=b.path, value=", ".join(b.streams), limit=", ".join(a.streams))
-    shared = max(0, min(a.end, b.end) - max(a.start, b.start))
+    (start_a, end_a), (start_b, end_b) = _span(a, both), _span(b, both)
+    shared = max(0, min(end_a, end_b) - max(start_a, start_b))
     if alignment == "auto":
-        alignment = "stamp" if 2 * shared >= min(a.end - a.start, b.end - b.start) else "start"
-    shift = 0 if alignment == "stamp" else a.start - b.start
-    overlap = max(0, min(a.end, b.end + shift) - max(a.start, b.start + shift)) * 1e-9
+        alignment = "stamp" if 2 * shared >= min(end_a - start_a, end_b - start_b) else "start"
+    shift = 0 if alignment == "stamp" else start_a - start_b
+    overlap = max(0, min(end_a, end_b + shift) - max(start_a, start_b + shift)) * 1e-9
     if overlap <= 0:
         remedy = "compare them from their starts (alignment 'start')"
         raise BagError("the runs do not overlap in time", path=b.path, value=f"{overlap} s", remedy=remedy)
@@ -124,6 +126,12 @@ def compare(a: Run, b: Run, *, alignment: Alignment = "auto", topics: Iterable[s
         only_in_b=tuple(t for t in b.streams if t in wanted and t not in a),
         messages={topic: (len(a[topic]), len(b[topic])) for topic in both},
     )
+
+
+def _span(run: Run, topics: list[str]) -> tuple[int, int]:
+    """Return the first and last header stamp of the topics: what only one of two runs recorded must not shift them."""
+    stamps = [run[t].stamp for t in topics if TYPES[run[t].type].header and len(run[t])]
+    return min((int(s[0]) for s in stamps), default=0), max((int(s[-1]) for s in stamps), default=0)
 
 
 def _compare_streams(a: Stream, b: Stream, shift: int) -> dict[str, tuple[AxisResidual, ...]]:

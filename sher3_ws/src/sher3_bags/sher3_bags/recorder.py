@@ -77,7 +77,7 @@ class Recorder:
             raise BagError("exists already", path=folder, remedy="choose another name")
         folder.mkdir(parents=True)
         self.folder = folder
-        self._file = (folder / f"{folder.name}.mcap").open("xb", buffering=0)
+        self._file = (folder / f"{folder.name}.mcap").open("xb")
         self._writer = McapWriter(self._file)
         self._writer.add_metadata(RUN_RECORD, (metadata or RunMetadata(origin="robot")).to_record())
         self._writer.add_metadata(PROVENANCE_RECORD, provenance(robot, parameters))
@@ -86,6 +86,7 @@ class Recorder:
         self._sources: dict[str, _Source] = {}
         self._chunk = _OpenChunk()
         self.closed = False
+        self._file.flush()
 
     def write(self, topic: str, data: bytes, log_time: int, publish_time: int | None = None) -> None:
         """Record one message.
@@ -98,7 +99,10 @@ class Recorder:
 
         Raises:
             TopicError: the topic is not in the table.
+            BagError: the recorder is closed, or the disk does not take the chunk.
         """
+        if self.closed:
+            raise BagError("the recording is complete", path=self.folder, remedy="start another one")
         source = self._sources.get(topic) or self._add(topic)
         if source.stamped and len(data) >= STAMP + _STAMP.size:
             seconds, nanoseconds = _STAMP.unpack_from(data, STAMP)
@@ -119,12 +123,22 @@ class Recorder:
         source.sequence = (source.sequence + 1) & 0xFFFFFFFF
 
     def flush(self) -> None:
-        """Write what has been recorded so far to the file."""
+        """Write what has been recorded so far to the file.
+
+        Raises:
+            BagError: the disk does not take it; what was written before can be recovered.
+        """
         chunk, self._chunk = self._chunk, _OpenChunk()
-        if chunk.body:
+        if not chunk.body:
+            return
+        try:
             self._writer.add_chunk(
                 bytes(chunk.body), np.array(chunk.channel), np.array(chunk.log_time), np.array(chunk.position)
             )
+            self._file.flush()
+        except OSError as error:
+            remedy = "free some space; `sher3 recover` saves what was written before"
+            raise BagError(f"cannot be written: {error.strerror}", path=self.folder, remedy=remedy) from error
 
     def counts(self) -> dict[str, dict[str, int]]:
         """Return messages, dropped samples, pauses and disorder per topic so far."""

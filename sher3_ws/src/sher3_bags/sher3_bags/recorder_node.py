@@ -105,11 +105,16 @@ class RecorderNode(Node):
             on_tick(self, self._poll, every=max(1, round(POLL_NS / clock_of(self).period_ns)))
 
     def _receiver(self, name: str) -> Callable[[bytes], None]:
-        write, now = self.recorder.write, clock_of(self).now
-        return lambda data: write(name, data, now())
+        recorder, now = self.recorder, clock_of(self).now
+
+        def receive(data: bytes) -> None:
+            if not recorder.closed:
+                recorder.write(name, data, now())
+
+        return receive
 
     def _poll(self, _: int) -> None:
-        if self._ears is not None:
+        if self._ears is not None and not self.recorder.closed:
             for arrived, name, data, sent in self._ears.listen():
                 self.recorder.write(name, data, arrived, sent)
 

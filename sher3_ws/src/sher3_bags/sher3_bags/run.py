@@ -107,7 +107,7 @@ class RunMetadata:
         amplitude: scale of the excitation.
         payload: known tip loads, rows (from [s], to [s], Fx, Fy, Fz [N in {b}]) on the clock of the first stamp.
         posture: name of the posture.
-        origin: `plant` or `robot`.
+        origin: `plant` or `robot`; empty when a bag does not say.
         seed: of the plant's noise, where there is one.
         extra: further entries of the record, kept as text.
     """
@@ -129,7 +129,7 @@ class RunMetadata:
             TopicError: an entry does not parse.
         """
         known = {key: record[key] for key in _PARSERS if key in record}
-        parsed: dict[str, Any] = {}
+        parsed: dict[str, Any] = {"origin": ""}
         for key, text in known.items():
             try:
                 parsed[key] = _PARSERS[key](text)

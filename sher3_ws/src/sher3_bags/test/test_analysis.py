@@ -152,6 +152,13 @@ def test_runs_at_different_times_are_aligned_from_their_starts():
         compare(delayed(0.0), delayed(0.0, start=START + 86_400_000_000_000), alignment="stamp")
 
 
+def test_a_topic_of_one_run_alone_does_not_shift_the_other():
+    one, two = delayed(0.0), delayed(0.0, start=START + 86_400_000_000_000)
+    early = stream("temperature", [START + 86_000_000_000_000], temperature=[22.0])
+    two.streams["temperature"] = early
+    assert compare(one, two).residuals["measured_js"]["position"][0].max < 1e-9
+
+
 def test_no_lag_where_there_is_none_to_see(build):
     run = delayed(0.0)
     table = run["measured_js"]

@@ -71,6 +71,8 @@ def test_bad_input(tmp_path, run):
         recorder.write("measured", b"", 0)
     recorder.close()
     recorder.close()
+    with pytest.raises(BagError, match="recording is complete"):
+        recorder.write("measured_js", b"", 0)
     with pytest.raises(BagError, match="exists already"):
         Recorder(tmp_path / "bag", ROBOT)
     assert read_run(tmp_path / "bag").streams == {}
@@ -81,6 +83,19 @@ def test_recorded_messages_are_kept_even_when_they_are_garbage(tmp_path):
         recorder.write("measured_js", b"\x00", 1)
     with pytest.raises(TopicError, match="measured_js, message 0"):
         read_run(tmp_path / "bag")
+
+
+def test_a_full_disk_is_said_and_what_was_written_is_recovered(tmp_path, build):
+    recorder = Recorder(tmp_path / "bag", ROBOT)
+    feed(recorder, build(300))
+    recorder.flush()
+    whole, recorder._file = recorder._file, open("/dev/full", "wb")  # noqa: SIM115
+    recorder._writer._stream = recorder._file
+    with pytest.raises(BagError, match="cannot be written: No space left"):
+        feed(recorder, build(3000, start=1_800_000_000_000_000_000))
+    whole.close()
+    recovery = recover(tmp_path / "bag")
+    assert len(read_run(recovery.target)["measured_js"]) == 300
 
 
 KILLED = """
