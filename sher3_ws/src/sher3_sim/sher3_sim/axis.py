@@ -18,6 +18,9 @@ from scipy.linalg import expm
 from sher3_sim.parameters import Records
 
 PENDING = 64
+"""Demands that can be under way to one drive."""
+FINER = 16
+"""Parts of a step in which the drive begins or ceases to saturate."""
 
 AXIS_STATE = np.dtype(
     [
@@ -33,18 +36,19 @@ TWO_PI = 2.0 * math.pi
 
 
 def propagators(axis: Records, step: float) -> NDArray[np.float64]:
-    """Return (5, 2, 4, 5): for each axis, unsaturated and saturated, the exact step of its linear part.
+    """Return (5, 2, 2, 4, 5): for each axis, step and step / FINER, unsaturated and saturated, the exact linear step.
 
     The rows give (v, I, F) at the end of the step and the distance travelled, the columns multiply (v, I, F) at its
     beginning and the inputs (u, D). I = ki xi is the integral force, F the force behind the lag, D the sum of the other
     forces, u the demand v_d, or the limiting force when saturated:
     m v' = K F - b v - D, I' = ki (v_d - v) (frozen when saturated), lag F' = kp (v_d - v) + I - F, or = u - F.
     """
-    out = np.zeros((len(axis), 2, 4, 5))
+    out = np.zeros((len(axis), 2, 2, 4, 5))
     for i, a in enumerate(axis):
-        for saturated in (False, True):
-            full = expm(_rates(a, saturated) * step)
-            out[i, int(saturated)] = full[:4, [0, 1, 2, 4, 5]]
+        for saturated in (0, 1):
+            rates = _rates(a, bool(saturated))
+            for j, h in enumerate((step, step / FINER)):
+                out[i, j, saturated] = expm(rates * h)[:4, [0, 1, 2, 4, 5]]
     return out
 
 
@@ -120,13 +124,36 @@ def drive_force(a: Any, s: Any) -> float:
 
 
 @njit(cache=True)
+def linear_step(
+    a: Any, maps: Any, v: float, integral: float, force: float, demand: float, other: float, h: float
+) -> tuple[float, float, float, float]:
+    """Advance drive and motor by a step under a constant demand and load, saturated throughout or not at all.
+
+    Returns:
+        Distance travelled, and velocity, integral force and lagged force at the end.
+    """
+    wanted = a.kp * (demand - v) + integral
+    saturated = abs(wanted) > a.limit
+    m = maps[1] if saturated else maps[0]
+    u = math.copysign(a.limit, wanted) if saturated else demand
+    v_end = m[0, 0] * v + m[0, 1] * integral + m[0, 2] * force + m[0, 3] * u + m[0, 4] * other
+    i_end = m[1, 0] * v + m[1, 1] * integral + m[1, 2] * force + m[1, 3] * u + m[1, 4] * other
+    f_end = m[2, 0] * v + m[2, 1] * integral + m[2, 2] * force + m[2, 3] * u + m[2, 4] * other
+    moved = m[3, 0] * v + m[3, 1] * integral + m[3, 2] * force + m[3, 3] * u + m[3, 4] * other
+    error = demand * h - moved
+    if saturated and error * wanted < 0.0:
+        i_end += a.ki * error
+    return moved, v_end, i_end, f_end
+
+
+@njit(cache=True)
 def advance(a: Any, s: Any, step_maps: Any, load: float, time: float, period: float, substeps: int) -> None:
     """Advance one axis over one control period under a constant load.
 
     Args:
         a: its AXIS record.
         s: its AXIS_STATE record, changed in place.
-        step_maps: (2, 4, 5) its propagators for `period / substeps`.
+        step_maps: (2, 2, 4, 5) its propagators for `period / substeps`.
         load: gravity less contact force along the axis [N], positive against positive motion.
         time: since the start of the run [s].
         period: [s].
@@ -162,18 +189,15 @@ def advance(a: Any, s: Any, step_maps: Any, load: float, time: float, period: fl
             s.cable = bristle_step(s.cable, h * v, a.cable_displacement)
             other += a.cable_stiffness * middle + a.cable_force * s.cable / a.cable_displacement
 
-        wanted = a.kp * (acted - v) + integral
-        saturated = abs(wanted) > a.limit
-        m = step_maps[1] if saturated else step_maps[0]
-        u = math.copysign(a.limit, wanted) if saturated else acted
-        moved = m[3, 0] * v + m[3, 1] * integral + m[3, 2] * force + m[3, 3] * u + m[3, 4] * other
-        v_end = m[0, 0] * v + m[0, 1] * integral + m[0, 2] * force + m[0, 3] * u + m[0, 4] * other
-        integral_end = m[1, 0] * v + m[1, 1] * integral + m[1, 2] * force + m[1, 3] * u + m[1, 4] * other
-        force = m[2, 0] * v + m[2, 1] * integral + m[2, 2] * force + m[2, 3] * u + m[2, 4] * other
-        error = acted * h - moved
-        if saturated and error * wanted < 0.0:
-            integral_end += a.ki * error
-        q, v, integral = q + moved, v_end, integral_end
+        begins = abs(a.kp * (acted - v) + integral) > a.limit
+        moved, v_end, i_end, f_end = linear_step(a, step_maps[0], v, integral, force, acted, other, h)
+        if begins != (abs(a.kp * (acted - v_end) + i_end) > a.limit):
+            # the drive begins or ceases to saturate within the step: find out when
+            moved, v_end, i_end, f_end = 0.0, v, integral, force
+            for _ in range(FINER):
+                part, v_end, i_end, f_end = linear_step(a, step_maps[1], v_end, i_end, f_end, acted, other, h / FINER)
+                moved += part
+        q, v, integral, force = q + moved, v_end, i_end, f_end
     s.position, s.velocity, s.integral, s.force = q, v, integral, force
     s.demand, s.echo = demand, echo / period
     _drop_executed(s, executed, period)

@@ -186,7 +186,7 @@ def step(
         axis: AXIS records.
         b: BODY record.
         p: geometry of the true mechanism.
-        maps: (5, 2, 4, 5) propagators for `period / substeps`.
+        maps: (5, 2, 2, 4, 5) propagators for `period / substeps`.
         substeps: steps in the period.
         state: AXIS_STATE records, changed in place.
         s: BODY_STATE record, changed in place.

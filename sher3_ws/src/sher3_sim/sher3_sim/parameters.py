@@ -105,8 +105,7 @@ class PlantParameters:
     def without_noise(self) -> PlantParameters:
         """Return a copy whose sensors neither scatter nor round: the mean of what the plant does, for fits."""
         quiet = self.copy()
-        for name in ("effort_noise", "jitter"):
-            quiet.axis[name] = 0.0
+        quiet.axis["effort_noise"] = 0.0
         for name in ("motor_count", "load_count", "effort_count"):
             quiet.axis[name] *= 1e-6
         quiet.body["wrench_noise"], quiet.body["tracker_noise"] = 0.0, 0.0
