@@ -1,8 +1,8 @@
 """What the recorded topics can tell apart at all: structural isolability, computed before anything is fitted.
 
-One DAE of the signal chain with one fault per effect (gap-diagnosis §4, L1), analysed by its Dulmage-Mendelsohn decomposition
-(Krysander and Frisk 2008) with `faultdiagnosistoolbox`. Effects in one group show in the same equations: only the *shape* of
-their signature (over speed, position, load, time) can tell them apart, never the place where they show.
+One DAE of the signal chain with one fault per effect, analysed by its Dulmage-Mendelsohn decomposition (Krysander and
+Frisk 2008) with `faultdiagnosistoolbox`. Effects in one group show in the same equations: only the *shape* of their
+signature (over speed, position, load, time) can tell them apart, never the place where they show.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ def _at(*stages: str) -> tuple[str, ...]:
 
 
 def _chain() -> list[Equation]:
-    """The chain of one axis from set-point to tip; `tip` twice, because loads come and go within a run."""
+    """Return the chain of one axis from set-point to tip; the tip twice, because loads come and go within a run."""
     sensing = _at("sensing")
     wrist = tuple(e for e in sensing if e.startswith("force_") or e in ("tool_gravity", "cable_drag"))
     load_encoder = tuple(e for e in sensing if e.startswith("encoder_"))

@@ -37,9 +37,11 @@ def test_without_a_tracker_the_tip_is_invisible():
     assert "backlash" not in structure(without).invisible
 
 
-def test_an_unknown_load_joins_wrist_and_mechanics():
-    hand = structure(FULL, known_load=False)
-    assert len(hand.groups) < len(structure(FULL).groups)
+def test_a_load_that_nothing_measures_mixes_mechanics_and_structure():
+    without = tuple(t for t in FULL if t != "force/measured_cf")
+    hand = next(g for g in isolability(without, known_load=False) if "coulomb_friction" in g)
+    assert "structural_compliance" in hand
+    assert "structural_compliance" not in group(without, "coulomb_friction")
 
 
 def test_without_the_load_encoder_its_errors_look_like_the_controllers():
