@@ -4,6 +4,8 @@
 what a node needs.
 """
 
+from typing import TYPE_CHECKING
+
 from .samples import DiagnosticSample as DiagnosticSample
 from .samples import JointSample as JointSample
 from .samples import JoySample as JoySample
@@ -13,6 +15,22 @@ from .samples import TemperatureSample as TemperatureSample
 from .samples import TextSample as TextSample
 from .samples import TwistSample as TwistSample
 from .samples import WrenchSample as WrenchSample
+
+if TYPE_CHECKING:
+    from .clock import Clock as Clock
+    from .clock import SteppedClock as SteppedClock
+    from .graph import Graph as Graph
+    from .ports import NODE_OPTIONS as NODE_OPTIONS
+    from .ports import advertise as advertise
+    from .ports import advertise_raw as advertise_raw
+    from .ports import clock_of as clock_of
+    from .ports import on_readable as on_readable
+    from .ports import on_tick as on_tick
+    from .ports import statistics_of as statistics_of
+    from .ports import subscribe as subscribe
+    from .ports import subscribe_raw as subscribe_raw
+    from .ports import use_clock as use_clock
+    from .spinning import spin as spin
 
 _DOORS = {
     "NODE_OPTIONS": "ports",

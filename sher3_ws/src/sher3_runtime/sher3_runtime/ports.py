@@ -17,6 +17,7 @@ from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallba
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.utilities import get_default_context
 from sher3_description import ACTUATORS, Sher3Error
 from sher3_description.topics import NAMESPACE, TOPICS, Qos, Topic
 
@@ -29,6 +30,7 @@ from .timing import Histogram, Statistics
 EXECUTOR_VARIABLE = "SHER3_EXECUTOR"
 PERIOD_VARIABLE = "SHER3_CONTROL_PERIOD"
 TRACE_VARIABLE = "SHER3_TRACE"
+STATISTICS_VARIABLE = "SHER3_STATISTICS"
 
 NODE_OPTIONS: dict[str, Any] = {
     "namespace": NAMESPACE,
@@ -59,7 +61,12 @@ def use_clock(context: Context, clock: Clock) -> None:
 
 def clock_of(node: Node) -> Clock:
     """Return the clock of the node's context; by default the wall clock of period `SHER3_CONTROL_PERIOD` [s]."""
-    context = node.context
+    return context_clock(node.context)
+
+
+def context_clock(context: Context | None = None) -> Clock:
+    """Return the clock of a context, by default the process's own; for devices that are made before their node."""
+    context = context or get_default_context()
     if context not in _clocks:
         _clocks[context] = Clock(round(float(os.environ.get(PERIOD_VARIABLE, "0.002")) * 1e9))
     return _clocks[context]

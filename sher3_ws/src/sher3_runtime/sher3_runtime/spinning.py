@@ -14,7 +14,7 @@ from rclpy.node import Node
 from .baseline import BaselineExecutor
 from .clock import set_timer_slack
 from .executor import RawExecutor
-from .ports import TRACE_VARIABLE, ports, raw_mode
+from .ports import STATISTICS_VARIABLE, TRACE_VARIABLE, ports, raw_mode
 from .report import report_statistics
 
 
@@ -76,7 +76,7 @@ def close(nodes: Iterable[Node], executor: Executor | None = None) -> None:
     if executor is not None:
         executor.shutdown()
     for node in nodes:
-        if folder := os.environ.get(TRACE_VARIABLE):
+        if folder := os.environ.get(TRACE_VARIABLE) or os.environ.get(STATISTICS_VARIABLE):
             ports(node).statistics.write(Path(folder), node.get_name())
         node.destroy_node()
     if failure is not None:

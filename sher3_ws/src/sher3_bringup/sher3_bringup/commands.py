@@ -1,0 +1,130 @@
+"""The commands of this package: `up`, `teleop`, `demo`, `completion`."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import Annotated, Optional
+
+import typer
+
+from .completion import Shell, completion_script
+
+app = typer.Typer(rich_markup_mode="markdown")
+
+Json = Annotated[bool, typer.Option("--json", help="Print one JSON object instead of text.")]
+Robot = Annotated[Optional[Path], typer.Option(help="Robot file; the nominal robot by default.")]  # noqa: UP045
+Domain = Annotated[int, typer.Option(help="ROS domain id.", min=0, max=232)]
+
+
+@app.command(
+    epilog="Examples: `sher3 up` · `sher3 up --rate 1000 --record bags/run` · "
+    "`sher3 up --effects backlash.yaml` · `sher3 up --nodes force_sensor+pedal,admittance+kinematics,"
+    "motor_driver,plant,supervisor` · `sher3 up --real --can socketcan:can0 --can socketcan:can1`"
+)
+def up(
+    mock: Annotated[
+        bool, typer.Option("--mock/--real", help="Emulated drives, sensor and pedal, or the hardware.")
+    ] = True,
+    rate: Annotated[float, typer.Option(help="Control rate [Hz].")] = 500.0,
+    nodes: Annotated[
+        str, typer.Option(help="Nodes to run: `,` between processes, `+` within one; all by default.")
+    ] = "",
+    effects: Annotated[Optional[Path], typer.Option(help="Effects for the plant (YAML, sher3.effects/1).")] = None,  # noqa: UP045
+    record: Annotated[Optional[Path], typer.Option(help="Record the run into this new folder.")] = None,  # noqa: UP045
+    duration: Annotated[Optional[float], typer.Option(help="Stop after so many seconds.")] = None,  # noqa: UP045
+    robot: Robot = None,
+    can: Annotated[Optional[list[str]], typer.Option(help="CAN link of each channel, as socketcan:can0.")] = None,  # noqa: UP045
+    force_device: Annotated[str, typer.Option(help="Device of the force sensor (real robot).")] = "",
+    pedal_device: Annotated[str, typer.Option(help="Device of the pedal (real robot).")] = "",
+    realtime: Annotated[
+        int, typer.Option(help="SCHED_FIFO priority, 0 for none; -1: 40 where permitted.", min=-1, max=90)
+    ] = -1,
+    seed: Annotated[int, typer.Option(help="Seed of the plant's noise.")] = 0,
+    domain: Domain = 0,
+    other_hosts: Annotated[
+        bool, typer.Option("--other-hosts", help="Also talk to other machines; loopback by default.")
+    ] = False,
+    as_json: Json = False,
+) -> None:
+    """Start the robot and keep it running until Ctrl-C.
+
+    Every node is a process of its own unless `--nodes` joins some. A line says when all are ready. If a process ends,
+    everything is stopped, drives first.
+
+    Exit codes: 0 stopped as asked, 2 wrong option, 1 bad file, 3 not started (a device is missing), 4 a process died,
+    5 a process had to be killed.
+    """
+    from .settings import checked, parse_processes
+    from .up import run_graph
+
+    settings = checked(
+        mock=mock,
+        rate=rate,
+        processes=parse_processes(nodes, mock, record is not None),
+        robot_path=robot,
+        effects=effects,
+        record=record,
+        duration=duration,
+        links=tuple(can or ()),
+        force_device=force_device,
+        pedal_device=pedal_device,
+        realtime=realtime,
+        seed=seed,
+        domain=domain,
+        other_hosts=other_hosts,
+    )
+    run_graph(settings, say=_say(as_json))
+
+
+@app.command(
+    epilog="Examples: `sher3 teleop` (keyboard) · `sher3 teleop surgeon.yaml` · `sher3 teleop --print > surgeon.yaml`"
+)
+def teleop(
+    script: Annotated[
+        Path | None, typer.Argument(help="Script (YAML, sher3.teleop/1); the keyboard without one.")
+    ] = None,
+    show: Annotated[bool, typer.Option("--print", help="Print the script of the demo and leave.")] = False,
+    rate: Annotated[float, typer.Option(help="Control rate of the running graph [Hz].")] = 500.0,
+    domain: Domain = 0,
+) -> None:
+    """Act the surgeon on a running mock: press the pedal and push the tool."""
+    from .surgeon import demo_script, load_script
+
+    if show:
+        typer.echo(demo_script().read_text(), nl=False)
+        return
+    from .teleop import run_keyboard, run_script
+
+    if script is None:
+        run_keyboard(rate, domain)
+    else:
+        run_script(load_script(script), rate, domain)
+
+
+@app.command(epilog="Examples: `sher3 demo` · `sher3 demo --rate 1000` · `sher3 demo --effects backlash.yaml --json`")
+def demo(
+    rate: Annotated[float, typer.Option(help="Control rate [Hz].")] = 500.0,
+    effects: Annotated[Optional[Path], typer.Option(help="Effects for the plant.")] = None,  # noqa: UP045
+    script: Annotated[Optional[Path], typer.Option(help="Script of the surgeon.")] = None,  # noqa: UP045
+    folder: Annotated[Path, typer.Option(help="Where the run's folder is made.")] = Path("bags"),
+    as_json: Json = False,
+) -> None:
+    """Run every node on mocks with a scripted surgeon, record it, analyse the recording, show figures and a picture."""
+    from .demo import run_demo
+
+    result = run_demo(rate, effects, script, folder, say=_say(as_json))
+    if as_json:
+        typer.echo(json.dumps(result))
+
+
+@app.command(epilog="Example: `sher3 completion bash >> ~/.bashrc`")
+def completion(shell: Shell) -> None:
+    """Print the completion script of a shell."""
+    typer.echo(completion_script(shell))
+
+
+def _say(quiet: bool):
+    """Return what prints progress: to standard error when standard output carries JSON."""
+    return lambda text: print(text, file=sys.stderr if quiet else sys.stdout, flush=True)

@@ -1,0 +1,120 @@
+"""`sher3 demo`: a scripted surgeon on mocks, recorded, computed again, analysed, drawn."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+from collections.abc import Callable
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+
+from sher3_runtime.ports import STATISTICS_VARIABLE
+
+from .errors import ConfigurationError
+from .settings import RunSettings, checked, parse_processes
+from .surgeon import Script, demo_script, load_script
+from .up import run_graph
+
+DOMAIN = 73
+"""Not the default: a demo must not meet a robot that is running."""
+AFTERWARDS = 0.4
+"""Seconds the graph goes on behind the script."""
+
+
+def run_demo(
+    rate: float, effects: Path | None, script_path: Path | None, folder: Path, say: Callable[[str], None] = print
+) -> dict[str, Any]:
+    """Run the demo and return its figures as plain data.
+
+    Raises:
+        Sher3Error: a bad option or file, or a part that failed; see `up`.
+    """
+    script = load_script(script_path or demo_script())
+    if not os.access(folder if folder.exists() else folder.parent, os.W_OK):
+        raise ConfigurationError(f"{folder} cannot be written", remedy="name another --folder")
+    bag = folder / f"demo_{datetime.now():%Y%m%d_%H%M%S}"
+    settings = checked(
+        rate=rate,
+        effects=effects,
+        record=bag,
+        processes=parse_processes(None, mock=True, record=True),
+        duration=script.duration + AFTERWARDS,
+        domain=DOMAIN,
+        realtime=-1,
+    )
+    statistics = bag.parent / f".{bag.name}.statistics"
+    os.environ[STATISTICS_VARIABLE] = str(statistics)
+    try:
+        run_graph(settings, say, {"teleop": lambda: [_surgeon(script)]}, _Progress(script, say))
+        nodes = {path.stem: json.loads(path.read_text())["statistics"] for path in sorted(statistics.glob("*.json"))}
+    finally:
+        shutil.rmtree(statistics, ignore_errors=True)
+    return _evaluate(settings, bag, nodes, say)
+
+
+def _surgeon(script: Script) -> Any:
+    from .teleop_node import script_node
+
+    return script_node(script)
+
+
+class _Progress:
+    """Says each step of the script as it begins."""
+
+    def __init__(self, script: Script, say: Callable[[str], None]) -> None:
+        self._script, self._say = script, say
+        self._step = -1
+
+    def __call__(self, elapsed: float) -> None:
+        step, _ = self._script.step_at(elapsed)
+        if step != self._step and elapsed < self._script.duration:
+            self._step = step
+            self._say(f"  {elapsed:5.1f} s of {self._script.duration:.1f} s  {self._script.steps[step].name}")
+
+
+def _evaluate(
+    settings: RunSettings, bag: Path, nodes: dict[str, dict[str, Any]], say: Callable[[str], None]
+) -> dict[str, Any]:
+    from sher3_bags.analysis import analyse
+    from sher3_bags.picture import draw
+    from sher3_bags.reading import read_run
+    from sher3_bags.report import analysis_text
+    from sher3_control.replay import replay_admittance, replay_motion
+
+    robot = settings.robot()
+    say("analysing the recording")
+    run = read_run(bag)
+    analysis = analyse(run, robot)
+    picture = draw(run, analysis, bag / "summary.png")
+    again = {"servo_cv": replay_admittance(run, robot), "servo_jv": replay_motion(run, robot)}
+    say("\n" + analysis_text(analysis) + "\n")
+    say(nodes_text(nodes) + "\n")
+    for topic, replay in again.items():
+        say(f"{topic} computed again from the recording: {replay.compared} commands, {replay.different} differ")
+    say(f"\nbag      {bag}\npicture  {picture}")
+    return {
+        "bag": str(bag),
+        "picture": str(picture),
+        "rate": settings.rate,
+        "analysis": analysis.to_dict(),
+        "nodes": nodes,
+        "computed_again": {topic: vars(replay) for topic, replay in again.items()},
+    }
+
+
+def nodes_text(nodes: dict[str, dict[str, Any]]) -> str:
+    """Return a table of the nodes' timing, microseconds as p50/p99/max."""
+
+    def spread(histogram: dict[str, int]) -> str:
+        return "/".join(f"{histogram[key] / 1e3:.0f}" for key in ("p50", "p99", "max")) if histogram["count"] else "-"
+
+    lines = [f"{'node [us p50/p99/max]':22}{'period':>19}{'wake-up':>17}{'tick':>17}{'lost':>6}{'drops':>6}"]
+    for name, figures in nodes.items():
+        tick = figures["callback"].get("tick", {"count": 0})
+        lines.append(
+            f"{name:22}{spread(figures['period']):>19}{spread(figures['wakeup']):>17}{spread(tick):>17}"
+            f"{figures['lost_cycles']:>6}{sum(figures['dropped'].values()):>6}"
+        )
+    return "\n".join(lines)

@@ -1,0 +1,34 @@
+"""How a run can fail, and the exit code of each."""
+
+from __future__ import annotations
+
+from sher3_description import Sher3Error
+
+USAGE = 2
+NOT_STARTED = 3
+DIED = 4
+KILLED = 5
+
+
+class ConfigurationError(Sher3Error):
+    """The options of a run contradict each other or a limit."""
+
+    exit_code = USAGE
+
+
+class StartError(Sher3Error):
+    """A process could not be started: a device is missing, or the processes did not find each other."""
+
+    exit_code = NOT_STARTED
+
+
+class ProcessDied(Sher3Error):
+    """A process ended while the robot was running; everything else has been stopped."""
+
+    exit_code = DIED
+
+
+class NotStopped(Sher3Error):
+    """A process did not stop when asked to and had to be killed."""
+
+    exit_code = KILLED

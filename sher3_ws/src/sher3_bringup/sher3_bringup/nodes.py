@@ -1,0 +1,113 @@
+"""How each node of a run is made from its settings; each is imported only by who runs it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from importlib import import_module
+from typing import Any
+
+from .settings import RunSettings
+from .warm import warm_up
+
+Factory = Callable[[RunSettings], Any]
+
+
+def make_nodes(settings: RunSettings, names: Sequence[str]) -> list[Any]:
+    """Return the nodes of one process, in the order of `names`."""
+    return [_FACTORIES[name](settings) for name in names]
+
+
+def preload(settings: RunSettings) -> None:
+    """Import and compile what the nodes of the run need, once, before the processes are forked."""
+    from sher3_description import TOPICS
+    from sher3_runtime.messages import message_class
+
+    for topic in TOPICS.values():
+        message_class(topic.type)
+    for name in settings.names:
+        import_module(_MODULES[name])
+    warm_up(settings.robot(), settings.names)
+
+
+_MODULES = {
+    "plant": "sher3_sim.plant_node",
+    "force_sensor": "sher3_drivers.force_sensor_node",
+    "pedal": "sher3_drivers.pedal_node",
+    "admittance": "sher3_control.admittance_node",
+    "kinematics": "sher3_control.kinematics_node",
+    "motor_driver": "sher3_drivers.motor_driver_node",
+    "supervisor": "sher3_control.supervisor_node",
+    "recorder": "sher3_bags.recorder_node",
+}
+
+
+def _force_sensor(settings: RunSettings) -> Any:
+    from sher3_drivers.force_sensor_node import ForceSensorNode
+    from sher3_drivers.netft import NetFtSensor
+    from sher3_runtime.ports import context_clock
+
+    return ForceSensorNode(settings.robot(), NetFtSensor(settings.force_address(), context_clock().now))
+
+
+def _pedal(settings: RunSettings) -> Any:
+    from sher3_drivers.pedal import JoystickPedal, LocalPedal
+    from sher3_drivers.pedal_node import PedalNode
+
+    device = LocalPedal(settings.mock_name()) if settings.mock else JoystickPedal(settings.pedal_device)
+    return PedalNode(settings.robot(), device)
+
+
+def _admittance(settings: RunSettings) -> Any:
+    from sher3_control.admittance_node import AdmittanceNode
+
+    return AdmittanceNode(settings.robot())
+
+
+def _kinematics(settings: RunSettings) -> Any:
+    from sher3_control.kinematics_node import KinematicsNode
+
+    return KinematicsNode(settings.robot())
+
+
+def _motor_driver(settings: RunSettings) -> Any:
+    from sher3_drivers.motor_driver_node import MotorDriverNode
+
+    return MotorDriverNode(settings.robot(), settings.drives())
+
+
+def _supervisor(settings: RunSettings) -> Any:
+    from sher3_control.supervisor_node import SupervisorNode
+
+    return SupervisorNode(settings.robot())
+
+
+def _recorder(settings: RunSettings) -> Any:
+    from sher3_bags.recorder_node import RecorderNode
+    from sher3_bags.run import RunMetadata
+
+    assert settings.record is not None, "checked by the settings"
+    metadata = RunMetadata(
+        excitation="session",
+        origin="plant" if settings.mock else "robot",
+        seed=settings.seed if settings.mock else None,
+    )
+    parameters = settings.model_dump(mode="json", exclude_defaults=True)
+    return RecorderNode(settings.record, settings.robot(), metadata=metadata, parameters=parameters)
+
+
+def _plant(settings: RunSettings) -> Any:
+    from sher3_sim.plant_node import PlantNode
+
+    return PlantNode(settings.robot())
+
+
+_FACTORIES: dict[str, Factory] = {
+    "plant": _plant,
+    "force_sensor": _force_sensor,
+    "pedal": _pedal,
+    "admittance": _admittance,
+    "kinematics": _kinematics,
+    "motor_driver": _motor_driver,
+    "supervisor": _supervisor,
+    "recorder": _recorder,
+}

@@ -1,0 +1,135 @@
+"""What a run can be told, validated once before anything starts."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from sher3_description import Robot, load_robot
+from sher3_drivers.settings import MotorDriverSettings, default_settings
+
+from .errors import ConfigurationError
+
+NODES = ("plant", "force_sensor", "pedal", "admittance", "kinematics", "motor_driver", "supervisor", "recorder")
+MOCK_ONLY = frozenset({"plant"})
+RATES = (100, 1000)
+MOCK_FORCE_PORT = 7640
+"""DDS takes 7400 + 250 * domain and the first hundred or two behind it."""
+NETFT_PORT = 49152
+
+
+class RunSettings(BaseModel):
+    """One run of the graph.
+
+    Attributes:
+        mock: drives, sensor and pedal are emulated by the plant process.
+        rate: control rate [Hz]; sets `control_period` of the robot.
+        processes: node names, grouped into processes.
+        robot_path: robot file, or None for the nominal one.
+        effects: file of effects for the plant.
+        links: CAN link per channel, as `socketcan:can0`; by default local ones of this run.
+        record: folder of the recorded run.
+        duration: seconds until the run ends by itself, or None.
+        domain: ROS domain id.
+        other_hosts: talk to other machines; by default everything stays on the loopback interface.
+        realtime: SCHED_FIFO priority of every process, 0 for none, -1 for the default where the user may.
+        force_device: address of the force sensor on the real robot, host or host:port.
+        pedal_device: joystick device of the pedal on the real robot.
+        seed: of the plant's noise.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    mock: bool = True
+    rate: Annotated[float, Field(ge=RATES[0], le=RATES[1])] = 500.0
+    processes: tuple[tuple[str, ...], ...] = ()
+    robot_path: Path | None = None
+    effects: Path | None = None
+    links: tuple[str, ...] = ()
+    record: Path | None = None
+    duration: Annotated[float, Field(gt=0.0)] | None = None
+    domain: Annotated[int, Field(ge=0, le=231)] = 0
+    other_hosts: bool = False
+    realtime: Annotated[int, Field(ge=-1, le=90)] = 0
+    force_device: str = ""
+    pedal_device: str = ""
+    seed: Annotated[int, Field(ge=0)] = 0
+
+    @model_validator(mode="after")
+    def _consistent(self) -> RunSettings:
+        named = [name for process in self.processes for name in process]
+        if unknown := [name for name in named if name not in NODES]:
+            raise ValueError(f"unknown node {unknown[0]}; known: {', '.join(NODES)}")
+        if twice := {name for name in named if named.count(name) > 1}:
+            raise ValueError(f"node {twice.pop()} is named twice")
+        if not self.mock and (mocks := MOCK_ONLY & set(named)):
+            raise ValueError(f"{', '.join(mocks)} is for mocks only; leave it out or use --mock")
+        if not self.mock and self.effects:
+            raise ValueError("effects change the plant, and a real robot has none; use --mock")
+        if not self.mock and not self.links:
+            raise ValueError("the real robot needs --can, one link per channel, as socketcan:can0")
+        if not self.mock and "force_sensor" in named and not self.force_device:
+            raise ValueError("the real robot needs --force-device, the address of its force sensor")
+        if not self.mock and "pedal" in named and not self.pedal_device:
+            raise ValueError("the real robot needs --pedal-device, as /dev/input/js0")
+        if any({"plant", "motor_driver"} <= set(process) for process in self.processes):
+            raise ValueError("plant and motor_driver wait for each other on the CAN link; give each a process")
+        if self.record is None and "recorder" in named:
+            raise ValueError("the recorder needs --record FOLDER")
+        return self
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Every node of the run."""
+        return tuple(name for process in self.processes for name in process)
+
+    def force_address(self) -> tuple[str, int]:
+        """Return host and port of the force sensor; the mock's lies in the domain's own block of DDS ports."""
+        if self.mock:
+            return "127.0.0.1", MOCK_FORCE_PORT + 250 * self.domain
+        host, _, port = self.force_device.partition(":")
+        return host, int(port or NETFT_PORT)
+
+    def mock_name(self) -> str:
+        """Return the name that the devices of this domain's mocks go by."""
+        return f"sher3-{self.domain}"
+
+    def robot(self) -> Robot:
+        """Return the robot with the control period of this run."""
+        robot = load_robot(self.robot_path)
+        return robot.model_copy(update={"control_period": 1.0 / self.rate})
+
+    def drives(self) -> MotorDriverSettings:
+        """Return the motor driver's settings: CAN channels that can carry the rate."""
+        if self.links:
+            return default_settings(1.0 / self.rate, self.links)
+        settings = default_settings(1.0 / self.rate)
+        links = tuple(f"local:{self.mock_name()}-{i}" for i in range(len(settings.channels)))
+        return default_settings(1.0 / self.rate, links)
+
+
+def parse_processes(text: str | None, mock: bool, record: bool) -> tuple[tuple[str, ...], ...]:
+    """Return the nodes of each process from `a+b,c` (a and b in one process); None means one process for each node."""
+    if text:
+        return tuple(tuple(name.strip() for name in process.split("+")) for process in text.split(","))
+    skip = {*(() if mock else MOCK_ONLY), *(() if record else ("recorder",))}
+    return tuple((name,) for name in NODES if name not in skip)
+
+
+def checked(**options: object) -> RunSettings:
+    """Return validated settings of a run, and check that the CAN channels carry its rate.
+
+    Raises:
+        ConfigurationError: an option is out of range, unknown, or contradicts another.
+        Sher3Error: the robot file or the CAN layout is invalid.
+    """
+    try:
+        settings = RunSettings.model_validate(options)
+    except ValidationError as error:
+        details = [(".".join(map(str, e["loc"])), str(e["msg"]).removeprefix("Value error, ")) for e in error.errors()]
+        what = "; ".join(f"{where}: {message}" if where else message for where, message in details)
+        raise ConfigurationError(what, remedy="see 'sher3 up --help'") from None
+    settings.robot()
+    settings.drives().budgets()
+    return settings

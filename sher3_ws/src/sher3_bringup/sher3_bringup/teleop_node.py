@@ -1,0 +1,82 @@
+"""The surgeon of a mock robot as a node: hand and foot from a script or from the keyboard."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from typing import Any
+
+import rclpy
+from rclpy.node import Node
+from rclpy.signals import SignalHandlerOptions
+from sher3_runtime import JoySample, TextSample, WrenchSample, environment
+from sher3_runtime.ports import NODE_OPTIONS, PERIOD_VARIABLE, advertise, on_tick
+from sher3_runtime.process import stop_on_signals
+from sher3_runtime.spinning import spin
+
+from .surgeon import Script, Six
+
+Hands = Callable[[float], tuple[float, Six]]
+"""Pedal travel and wrench on the tip in {b} at a time [s] since the first tick."""
+
+
+class TeleopNode(Node):
+    """Publishes what the surgeon does at every tick.
+
+    Attributes:
+        elapsed: seconds since the first tick.
+    """
+
+    def __init__(self, hands: Hands, commands: Callable[[float], str] = lambda _: "", **options: Any) -> None:
+        """Take the hands, and the state command to send at a time, empty for none."""
+        super().__init__("teleop", **{**NODE_OPTIONS, **options})
+        self._hands, self._commands = hands, commands
+        self._publish_wrench = advertise(self, "mock/contact_wrench")
+        self._publish_pedal = advertise(self, "mock/pedal")
+        self._publish_command = advertise(self, "command/state_command")
+        self._start = 0
+        self.elapsed = 0.0
+        on_tick(self, self._tick)
+
+    def _tick(self, stamp: int) -> None:
+        self._start = self._start or stamp
+        self.elapsed = (stamp - self._start) * 1e-9
+        if command := self._commands(self.elapsed):
+            self._publish_command(TextSample(command))
+        pedal, wrench = self._hands(self.elapsed)
+        self._publish_pedal(JoySample(stamp, (pedal,), (0,)))
+        self._publish_wrench(WrenchSample(stamp, wrench))
+
+
+class ScriptCommands:
+    """The state commands of a script, each once when its step begins."""
+
+    def __init__(self, script: Script) -> None:
+        self._script = script
+        self._step = -1
+
+    def __call__(self, elapsed: float) -> str:
+        """Return the command that is due, empty for none."""
+        step, _ = self._script.step_at(elapsed)
+        if step == self._step:
+            return ""
+        self._step = step
+        return self._script.steps[step].command
+
+
+def script_node(script: Script, **options: Any) -> TeleopNode:
+    """Return the node of a scripted surgeon."""
+    return TeleopNode(script.at, ScriptCommands(script), **options)
+
+
+def run_node(make: Callable[[], TeleopNode], stop: Callable[[TeleopNode], bool], rate: float, domain: int) -> None:
+    """Run a surgeon in this process beside a running graph until `stop(node)` or a signal."""
+    environment.apply(domain)
+    os.environ[PERIOD_VARIABLE] = repr(1.0 / rate)
+    rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
+    try:
+        signalled = stop_on_signals()
+        node = make()
+        spin([node], stop=lambda: signalled() or stop(node), diagnostics=False)
+    finally:
+        rclpy.try_shutdown()

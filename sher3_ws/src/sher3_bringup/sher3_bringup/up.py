@@ -1,0 +1,88 @@
+"""`sher3 up`: start the processes of a run, say when they are ready, keep them together, stop them."""
+
+from __future__ import annotations
+
+import os
+import signal
+import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+
+from sher3_runtime import environment
+from sher3_runtime.ports import PERIOD_VARIABLE
+from sher3_runtime.process import REALTIME_VARIABLE, realtime_permitted
+
+from .fleet import Fleet
+from .nodes import make_nodes, preload
+from .settings import RunSettings
+
+DEFAULT_REALTIME = 40
+
+
+def run_graph(
+    settings: RunSettings,
+    say: Callable[[str], None] = print,
+    extra: Mapping[str, Callable[[], object]] | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> None:
+    """Run the graph until Ctrl-C, SIGTERM or the end of its duration.
+
+    Args:
+        settings: of the run, checked.
+        say: prints a line.
+        extra: further processes by name, each given by what makes its nodes.
+        progress: called every 50 ms with the seconds since the first tick.
+
+    Raises:
+        StartError, ProcessDied, NotStopped: see `errors`; whatever was running has been stopped.
+    """
+    begin = time.monotonic()
+    prepare(settings)
+    imported = time.monotonic()
+    with _signals() as caught, Fleet() as fleet:
+        for process in settings.processes:
+            fleet.launch("+".join(process), lambda names=process: make_nodes(settings, names))  # type: ignore[misc]
+            if "plant" in process:
+                # The devices are there before their drivers look for them.
+                fleet.gather("publishes")
+        for name, make in (extra or {}).items():
+            fleet.launch(name, make)
+        fleet.start()
+        started = time.monotonic()
+        count, seconds = len(fleet.members), started - imported
+        say(
+            f"ready: {count} processes at {settings.rate:g} Hz on {'mocks' if settings.mock else 'hardware'} "
+            f"in {seconds:.2f} s after {imported - begin:.2f} s of imports; Ctrl-C stops"
+        )
+
+        def finished() -> bool:
+            elapsed = time.monotonic() - started
+            if progress is not None:
+                progress(elapsed)
+            return bool(caught) or (settings.duration is not None and elapsed >= settings.duration)
+
+        fleet.watch(finished)
+    say("stopped" + (f"; recorded {settings.record}" if settings.record else ""))
+
+
+def prepare(settings: RunSettings) -> None:
+    """Set the environment of the run and import what its processes share."""
+    environment.apply(settings.domain, settings.other_hosts)
+    os.environ[PERIOD_VARIABLE] = repr(1.0 / settings.rate)
+    realtime = settings.realtime
+    if realtime < 0:
+        realtime = DEFAULT_REALTIME if realtime_permitted() else 0
+    os.environ[REALTIME_VARIABLE] = str(realtime)
+    preload(settings)
+
+
+@contextmanager
+def _signals() -> Iterator[list[int]]:
+    """Collect SIGINT and SIGTERM instead of dying of them."""
+    caught: list[int] = []
+    before = {n: signal.signal(n, lambda number, _: caught.append(number)) for n in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        yield caught
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
