@@ -53,7 +53,13 @@ class AdmittanceNode(Node):
         self._window = TareWindow(robot, self.settings.tare)
         self._drift = DriftMonitor(self.settings.tare, robot.control_period)
         self._events: dict[str, Any] = {}
+        self._warm_up()
         self._connect(robot.control_period)
+
+    def _warm_up(self) -> None:
+        """Compile before the first tick instead of in it."""
+        roll_and_tilt(self._kernel, 0.0, 0.0)
+        step(initial_state(), self._input(0), self._p)
 
     def _connect(self, period: float) -> None:
         self._publish_twist = advertise(self, "servo_cv")

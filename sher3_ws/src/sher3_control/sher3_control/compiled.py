@@ -25,7 +25,9 @@ def _folder() -> str:
         return str(outer)
     digest = hashlib.sha256()
     for path in sorted(Path(__file__).parent.glob("*.py")):
-        digest.update(path.name.encode() + b"\0" + path.read_bytes())
+        source = path.read_bytes()
+        if b".compiled import" in source or path.name == "reasons.py":
+            digest.update(path.name.encode() + b"\0" + source)
     return str(Path(outer).with_name(f"{Path(outer).name}-control-{digest.hexdigest()[:16]}"))
 
 

@@ -50,6 +50,12 @@ class VelocityModes:
         self._inverse = InverseVelocity(kinematics)
         self._parameters = np.array(kinematics.parameters)
 
+    def warm_up(self) -> None:
+        """Run every compiled part once."""
+        shaft_deviation(np.eye(3), np.zeros(3), np.zeros(3))
+        rcm_velocity(self._parameters, np.zeros(5), np.zeros(6), np.zeros(3), self._gain, self._inverse.period)
+        self._inverse(RESTING, (1e-6, 0.0, 0.0, 0.0, 0.0, 0.0), RESTING)
+
     def set_centre(self, centre: Vector | None, q: Vector) -> None:
         """Set the remote centre [m] in {b}, or leave it with None.
 

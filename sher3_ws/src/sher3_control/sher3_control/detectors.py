@@ -81,11 +81,20 @@ class EmergencyStopDetector:
 
 @dataclass
 class ReportedFault:
-    """A fault that another node reports; it stays until that node reports it gone."""
+    """A fault that another node reports; it stays until that node reports it gone.
+
+    The drives reset their fault only on the way from FAULT to DISABLED, so it must not stand in the way of that step:
+    it is asked in ENABLED and PAUSED, and before `enable`.
+    """
 
     source: str
     finding: Finding | None = None
-    active_when_disabled: bool = True
+    active_when_disabled: bool = False
+
+    def feed(self, faulty: bool, message: str) -> None:
+        """Take note of a report; `message` says what is wrong."""
+        source = f"{self.source}: {message}"
+        self.finding = Finding(f"{code_of(self.source)}_STOPPED", 1.0, 0.0, "reported", source) if faulty else None
 
     def check(self, now: int) -> Finding | None:
         """Object while the report stands."""

@@ -47,7 +47,13 @@ class KinematicsNode(Node):
         self._tick_count, self._last, self._version = 0, -1, 0
         self._shown: tuple[Any, ...] = ()
         self._refused: dict[str, Any] | None = None
+        self._warm_up()
         self._connect(robot.control_period)
+
+    def _warm_up(self) -> None:
+        """Compile before the first tick instead of in it."""
+        tip_pose_sample(self._kernel, RESTING)
+        self.motion.warm_up()
 
     def _connect(self, period: float) -> None:
         self._publish_velocity = advertise(self, "servo_jv")

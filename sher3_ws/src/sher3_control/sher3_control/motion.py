@@ -82,6 +82,11 @@ class MotionController:
     def _inverse(self, pose: PoseCommand) -> Vector:
         return tuple(self._kinematics.inverse(pose.position, tool_axis(pose.orientation)).tolist())
 
+    def warm_up(self) -> None:
+        """Run every compiled part once, so that none compiles during a tick."""
+        position_command(RESTING, RESTING, RESTING, self._gain, self._limits)
+        self.velocity_modes.warm_up()
+
     @property
     def busy(self) -> bool:
         """CRTK is_busy: a move is going on."""

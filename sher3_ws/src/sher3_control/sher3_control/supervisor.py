@@ -55,15 +55,14 @@ class Supervisor:
         """The present operating state."""
         return self.status.state
 
-    def findings(self, now: int, enabling: bool = False) -> list[Finding]:
-        """Return all present objections; those about streams count only while the drives are on, or are about to be."""
-        drives_on = enabling or self.state in (OperatingState.ENABLED, OperatingState.PAUSED)
-        asked = [d for d in self.detectors if drives_on or d.active_when_disabled]
+    def findings(self, now: int, everything: bool = True) -> list[Finding]:
+        """Return all present objections, or only those of the detectors that are `active_when_disabled`."""
+        asked = [d for d in self.detectors if everything or d.active_when_disabled]
         return [finding for d in asked if (finding := d.check(now)) is not None]
 
     def check(self, now: int) -> bool:
         """Ask the detectors; return whether the status changed."""
-        found = self.findings(now)
+        found = self.findings(now, everything=self.state is not OperatingState.DISABLED)
         if self.state is OperatingState.FAULT:
             return self._count(found)
         if not found:
@@ -99,7 +98,7 @@ class Supervisor:
         if command is StateCommand.DISABLE and self.state is not OperatingState.FAULT:
             return
         if command in (StateCommand.ENABLE, StateCommand.RESUME, StateCommand.DISABLE):
-            found = self.findings(now, enabling=command is not StateCommand.DISABLE)
+            found = self.findings(now, everything=command is not StateCommand.DISABLE)
             if found:
                 listing = "; ".join(map(str, found))
                 raise StateCommandRefused(command.value, self.state.value, listing, remedy="remove these causes first")

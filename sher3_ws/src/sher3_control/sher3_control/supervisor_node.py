@@ -8,14 +8,17 @@ from typing import Any
 
 from rclpy.node import Node
 from sher3_description import Robot, Sher3Error
-from sher3_runtime import JoySample, TextSample
+from sher3_runtime import DiagnosticSample, JoySample, TextSample
 from sher3_runtime.ports import NODE_OPTIONS, advertise, clock_of, on_tick, subscribe
 
-from .detectors import Detector, EmergencyStopDetector, SilenceDetector
+from .detectors import Detector, EmergencyStopDetector, ReportedFault, SilenceDetector
 from .settings import ControlSettings
 from .supervisor import Supervisor
 
 WATCHED = ("force/measured_cf", "measured_js", "servo_jv")
+DRIVES = "motor_driver: drives"
+"""The diagnostic whose error level says that the driver has stopped by itself."""
+ERROR = 2
 CHECK_PERIOD = 0.01
 """Period at which silence is looked for [s]; the emergency stop is judged when its sample arrives."""
 
@@ -35,13 +38,15 @@ class SupervisorNode(Node):
         self.settings = (ControlSettings.from_robot(robot) if settings is None else settings).supervisor
         self._silence = {s: SilenceDetector(s, self.settings.stream_age_limit) for s in (*WATCHED, "pedal/measured")}
         self._button = EmergencyStopDetector()
-        self.supervisor = Supervisor([self._button, *self._silence.values(), *detectors])
+        self._drives = ReportedFault("motor_driver")
+        self.supervisor = Supervisor([self._button, self._drives, *self._silence.values(), *detectors])
         self._refused: dict[str, Any] | None = None
         self._publish_state = advertise(self, "operating_state")
         self._publish_status = advertise(self, "supervisor/status")
         for name in WATCHED:
             subscribe(self, name, self._feed(name))
         subscribe(self, "pedal/measured", self._on_pedal)
+        subscribe(self, "diagnostics", self._on_diagnostics)
         subscribe(self, "command/state_command", self._on_command)
         self._now = clock_of(self).now
         period = robot.control_period
@@ -64,7 +69,12 @@ class SupervisorNode(Node):
             self._button.feed(pressed)
             self._check(self._now())
 
-    def _check(self, now: int) -> None:
+    def _on_diagnostics(self, sample: DiagnosticSample) -> None:
+        if sample.name == DRIVES:
+            self._drives.feed(sample.level >= ERROR, sample.message)
+            self._check(self._now())
+
+    def _check(self, _now: int) -> None:
         if self.supervisor.check(self._now()):
             self._publish()
 

@@ -59,7 +59,7 @@ class ControlGraph:
         self.supervisor = graph.add(SupervisorNode, ROBOT)
         self.kinematics = graph.add(KinematicsNode, ROBOT)
         self.admittance = graph.add(AdmittanceNode, ROBOT)
-        self.probe = graph.probe(*RECORDED, sends=tuple(f"command/{name}" for name in COMMANDS))
+        self.probe = graph.probe(*RECORDED, sends=("diagnostics", *(f"command/{name}" for name in COMMANDS)))
         self.step = graph.step
 
     @property

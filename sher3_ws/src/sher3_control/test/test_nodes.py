@@ -3,7 +3,7 @@
 import pytest
 from control_graph import control_graph
 from law_bench import ROBOT
-from sher3_runtime import JointSample, TwistSample
+from sher3_runtime import DiagnosticSample, JointSample, TwistSample
 
 pytestmark = pytest.mark.graph
 T = 2_000_000
@@ -75,6 +75,22 @@ def test_emergency_stop_faults_in_its_tick():
         assert g.last("servo_jv").velocity == REST
         g.until_state("FAULT")
         assert g.status("supervisor/status")["first_fault"]["code"] == "EMERGENCY_STOP"
+
+
+def test_a_drive_fault_faults_and_its_reset_on_the_way_to_disabled_is_not_blocked():
+    with control_graph() as g:
+        g.enable()
+        g.probe.send("diagnostics", DiagnosticSample(g.now, "motor_driver: drives", 2, "stopped: roll in FAULT"))
+        g.until_state("FAULT")
+        assert "roll in FAULT" in g.status("supervisor/status")["first_fault"]["source"]
+        g.text("state_command", "disable")
+        g.until_state("DISABLED")
+        g.text("state_command", "enable")
+        g.graph.until(lambda: g.status("supervisor/status")["refused"], "refusal")
+        g.probe.send("diagnostics", DiagnosticSample(g.now, "motor_driver: drives", 0, "DISABLED"))
+        g.graph.settle()
+        g.text("state_command", "enable")
+        g.until_state("ENABLED")
 
 
 def test_servo_jp_for_the_tick_of_its_stamp_gives_the_host_law():

@@ -133,7 +133,7 @@ class Histories(RuleBasedStateMachine):
     @rule(faulty=st.booleans())
     def drive_fault(self, faulty):
         self._advance()
-        self.drive.finding = Finding("DRIVE", 1.0, 0.0, "", "d") if faulty else None
+        self.drive.feed(faulty, "following error")
         self.supervisor.check(self.now)
 
     @invariant()
