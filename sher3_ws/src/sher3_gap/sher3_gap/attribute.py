@@ -24,6 +24,9 @@ WORTH = 0.35
 RIVAL = 0.03
 """A rival explains all but this share of what the chosen effect explains."""
 
+RANKED = 6
+"""Effects kept in the ranking of a cause."""
+
 Progress = Callable[[str], None]
 
 
@@ -110,6 +113,8 @@ class Attribution:
     rivals: tuple[tuple[Fit, ...], ...]
     explained: tuple[float, ...]
     """Loss that removing each cause (and refitting the others) adds."""
+    ranking: tuple[tuple[Fit, ...], ...] = ()
+    """For each cause the effects that come closest to it in its place, best first, itself among them."""
 
 
 def attribute(
@@ -191,12 +196,15 @@ def _prune(evidence: Evidence, current: Fit, significant: Callable[[Fit | None],
 def _with_rivals(evidence: Evidence, current: Fit, candidates: Candidates) -> Attribution:
     rivals: list[tuple[Fit, ...]] = []
     explained: list[float] = []
+    ranking: list[tuple[Fit, ...]] = []
     for i, term in enumerate(current.terms):
         others = [t for j, t in enumerate(current.terms) if j != i]
         without = fit(evidence.data, others).total
         worth = without - current.total
         margin = max(3.0 * PRICE, RIVAL * worth)
-        alike = [f for f in candidates.search(term.channels, others) if f.total - current.total < margin]
+        ranked = candidates.search(term.channels, others)
+        ranking.append(tuple(ranked[:RANKED]))
+        alike = [f for f in ranked if f.total - current.total < margin]
         rivals.append(tuple(f for f in alike if f.terms[-1].effect.id != term.effect.id))
         explained.append(worth)
-    return Attribution(current, tuple(rivals), tuple(explained))
+    return Attribution(current, tuple(rivals), tuple(explained), tuple(ranking))
