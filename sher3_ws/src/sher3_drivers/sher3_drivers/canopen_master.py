@@ -108,7 +108,9 @@ class CanopenMaster:
         self._nmt[drive].state = state
 
     def reset(self, limit: float) -> None:
-        """Restart every drive, so that nothing of a former run is left in it, and wait at most `limit` s for it.
+        """Restart every drive, so that nothing of a former run is left, and wait at most `limit` s for its boot-up.
+
+        A drive that gets its power later says its boot-up by itself.
 
         Raises:
             DriveSilent: a drive does not boot.

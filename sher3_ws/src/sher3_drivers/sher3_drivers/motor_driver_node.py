@@ -45,7 +45,7 @@ class MotorDriverNode(Node):
         robot: Robot,
         settings: MotorDriverSettings | None = None,
         links: Sequence[CanLink] | None = None,
-        patience: float = 5.0,
+        patience: float = 10.0,
         **options: Any,
     ) -> None:
         super().__init__("motor_driver", **{**NODE_OPTIONS, **options})

@@ -64,7 +64,7 @@ class NetFtSensor:
         address: tuple[str, int],
         clock: Callable[[], int] = time.monotonic_ns,
         scale: NetFtScale | None = None,
-        answer_limit: float = 2.0,
+        answer_limit: float = 10.0,
     ) -> None:
         self.name = f"netft {address[0]}:{address[1]}"
         self._clock = clock

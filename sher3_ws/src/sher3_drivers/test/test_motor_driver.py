@@ -2,6 +2,8 @@
 
 import itertools
 import math
+import threading
+import time
 
 import pytest
 from sher3_description import ACTUATORS, load_robot
@@ -15,6 +17,9 @@ from sher3_drivers.drive_objects import Address
 from sher3_drivers.errors import CommandRefused, ConfigurationError, DriveMismatch, DriveSilent
 from sher3_drivers.frame import pack_frame
 from sher3_drivers.lockstep_rig import LockstepRig
+from sher3_drivers.mock_bus import MockDriveBus
+from sher3_drivers.mock_plant import IntegratorPlant
+from sher3_drivers.motor_driver import MotorDriver
 from sher3_drivers.settings import MotorDriverSettings, default_settings
 
 ROBOT = load_robot()
@@ -71,6 +76,37 @@ def test_the_cycle_on_every_back_end(open_pair, period):
     rig = LockstepRig(ROBOT, default_settings(period), lambda i: open_link(f"{kind}:{prefix}-{i}"))
     run_cycle(rig)
     rig.close()
+
+
+def test_drives_that_get_their_power_late_are_waited_for_and_run_in_real_time(tmp_path, monkeypatch):
+    """The two sides in two threads on the local link, the drives half a second after the driver."""
+    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
+    settings = default_settings()
+    over = threading.Event()
+
+    def drives():
+        time.sleep(0.5)
+        links = [open_link(channel.link) for channel in settings.channels]
+        mock = MockDriveBus(links, IntegratorPlant(ROBOT, settings.period), ROBOT, settings)
+        while not over.is_set():
+            mock.serve(0.005)
+        mock.close()
+
+    thread = threading.Thread(target=drives)
+    thread.start()
+    try:
+        driver = MotorDriver(ROBOT, settings, [open_link(channel.link) for channel in settings.channels])
+        driver.configure(10.0)
+        complete = 0
+        for k in range(20):
+            driver.tick(k)
+            complete += driver.collect() is not None
+            time.sleep(0.002)
+        driver.close()
+    finally:
+        over.set()
+        thread.join()
+    assert complete > 0
 
 
 def test_nothing_is_powered_before_enable(make_rig):
