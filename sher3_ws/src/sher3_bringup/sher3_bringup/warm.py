@@ -1,4 +1,4 @@
-"""Compile what the control loop calls before it runs: the first call of a compiled function takes seconds, not microseconds.
+"""Compile what the control loop calls before it runs: a first call takes seconds, the next ones microseconds.
 
 Done once in the supervising process; the processes of the graph are forks of it and find the compiled code in place.
 """
