@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from sher3_description import ACTUATORS
 
-from sher3_bags.cdr import STAMP, Bytes, read_layout
+from sher3_bags.cdr import STAMP, read_layout
 from sher3_bags.messages import TEXT, TYPES, Field
 from sher3_bags.run import Stream
 
@@ -20,7 +20,7 @@ from sher3_bags.run import Stream
 class Encoded:
     """CDR messages one behind the other in `payload`."""
 
-    payload: Bytes
+    payload: NDArray[np.uint8]
     start: NDArray[np.int64]
     length: NDArray[np.int64]
 

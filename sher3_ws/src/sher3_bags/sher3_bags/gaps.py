@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from sher3_description import Robot
 
+from sher3_bags.run import CONTRACT_TOPICS
+
 PAUSE_NS = 250_000_000
 """A longer silence is a source that was switched off (`servo_cv` outside cooperative mode), not a loss of samples."""
 
@@ -15,12 +17,8 @@ PAUSE_NS = 250_000_000
 def grid_periods(robot: Robot) -> dict[str, int]:
     """Return the period [ns] of every topic that the contract puts on a grid (section 4)."""
     host = round(robot.control_period * 1e9)
-    robot_streams = (
-        "setpoint_js servo_cv servo_jv drives/setpoint_jv drives/measured_js measured_js measured_cp "
-        "force/measured_cf pedal/measured"
-    )
-    periods = dict.fromkeys(robot_streams.split(), host)
-    return {**periods, "tracker/measured_cp": round(1e9 / robot.tracker.rate), "temperature": 1_000_000_000}
+    others = {"tracker/measured_cp": round(1e9 / robot.tracker.rate), "temperature": 1_000_000_000}
+    return {topic: others.get(topic, host) for topic in CONTRACT_TOPICS if topic != "operating_state"}
 
 
 @dataclass

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from sher3_description import NAMESPACE, TOPICS
 
-from sher3_bags.cdr import decode
+from sher3_bags.cdr_decode import Raw, decode
 from sher3_bags.contents import Contents, read_contents
 from sher3_bags.errors import ForeignBagError, TopicError, WrongTypeError
 from sher3_bags.messages import TYPES, same_definition
@@ -88,7 +88,8 @@ def _stream(contents: Contents, channel_id: int, topic: str, run: Run) -> Stream
         return None
     if topic in run.streams:
         raise TopicError("recorded on two channels", topic=topic, remedy="record from one publisher")
-    return decode(topic, found, contents.buffer, table.offset[rows], table.length[rows], table.log_time[rows])
+    raw = Raw(topic, found, contents.buffer, table.offset[rows], table.length[rows], table.log_time[rows])
+    return decode(raw)
 
 
 def _metadata(contents: Contents) -> RunMetadata:

@@ -24,8 +24,11 @@ NODE_OF_TOPIC = {
     "temperature": "plant",
     "tracker/measured_cp": "plant",
     "operating_state": "supervisor",
+    "admittance": "admittance",
+    "motion": "kinematics",
+    "supervisor": "supervisor",
 }
-"""Which node publishes a topic (architecture, one tick)."""
+"""Which node publishes a topic, or the topics under that name (architecture, one tick)."""
 
 
 @dataclass(frozen=True)
@@ -71,7 +74,7 @@ def _timing(topic: str, table: Stream, period: int | None, force: Stream | None)
     arrivals = _arrivals(table)
     span = (table.stamp[-1] - table.stamp[0]) * 1e-9 if len(table) > 1 else 0.0
     return TopicTiming(
-        node=NODE_OF_TOPIC.get(topic, ""),
+        node=NODE_OF_TOPIC.get(topic) or NODE_OF_TOPIC.get(topic.split("/")[0], ""),
         messages=len(table),
         rate=(len(table) - 1) / span if span > 0 else 0.0,
         period=Spread.of(np.diff(table.stamp if arrivals is None else arrivals) * 1e-9),

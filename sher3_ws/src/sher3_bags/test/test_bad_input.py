@@ -17,12 +17,14 @@ from sher3_bags import (
     MalformedMessageError,
     MissingTopicError,
     NotFiniteError,
+    Run,
     StampError,
     TopicError,
     WrongTypeError,
     check_run,
     read_case,
     read_run,
+    stream,
     write_case,
     write_run,
 )
@@ -80,6 +82,22 @@ def test_big_endian(tmp_path):
     table = read_run(path)["temperature"]
     assert table.temperature.tolist() == [20.0, 21.0, 22.0]
     assert table.stamp.tolist() == [5 * 10**9, 5 * 10**9 + 1, 5 * 10**9 + 2]
+
+
+def test_texts(tmp_path):
+    def text(content: bytes, order: str = "<") -> bytes:
+        return (b"\0\1" if order == "<" else b"\0\0") + b"\0\0" + struct.pack(order + "I", len(content)) + content
+
+    kind, topic = "std_msgs/msg/String", "/sher3/operating_state"
+    data = [text(b"ENABLED\0"), text("größer\0".encode()), text(b"\0") + bytes(3), text(b"PAUSED\0", ">")]
+    expected = ("ENABLED", "größer", "", "PAUSED")
+    for last in (3, 4):  # all little endian, then mixed
+        path = write_raw(tmp_path / "a.mcap", topic, kind, data[:last])
+        assert read_run(path)["operating_state"].data == expected[:last]
+    for bad in (b"", b"\0\1\0\0", text(b"\xff\0"), text(b"cut\0")[:-1]):
+        path = write_raw(tmp_path / "b.mcap", topic, kind, [data[0], bad])
+        with pytest.raises(MalformedMessageError, match="operating_state, message 1"):
+            read_run(path)
 
 
 def test_joints_in_another_order_are_sorted(tmp_path, run, monkeypatch):
@@ -161,6 +179,10 @@ def test_stamps_and_values(tmp_path, run):
     run.streams["measured_js"] = replace(table, columns={"position": position})
     with pytest.raises(NotFiniteError, match=r"measured_js, message 9: position is not finite in 1 of 2000 values"):
         read_run(write_run(tmp_path / "nan", run))
+    command = stream("command/servo_jp", [5, 5], position=np.full((2, 5), np.nan))
+    check_run(Run({"command/servo_jp": command}))
+    with pytest.raises(StampError, match="command/servo_jp"):
+        check_run(Run({"command/servo_jp": command}), ["command/servo_jp"])
     with pytest.raises(MissingTopicError, match="no topic 'tracker/measured_cp'"):
         check_run(run, ["tracker/measured_cp"])
     with pytest.raises(KeyError):
