@@ -41,7 +41,7 @@ def fk(
 
         sher3 fk --mm-deg 4 -3 1 -10 5 --json
     """
-    with _reported(as_json):
+    with reported(as_json):
         _expect(len(q), 5, "positions", "delta_1 delta_2 delta_3 roll tilt")
         kinematics = RobotKinematics(load_robot(robot))
         positions = np.array(q) * (_scale(mm_deg) if mm_deg else 1.0)
@@ -70,7 +70,7 @@ def ik(
 
         sher3 ik --mm-deg 200 5 100 0.1 -0.2 -1 --json
     """
-    with _reported(as_json):
+    with reported(as_json):
         if len(pose) == 3:
             pose = [*pose, 0.0, 0.0, -1.0]
         _expect(len(pose), 6, "numbers", "X Y Z or X Y Z AX AY AZ")
@@ -80,7 +80,7 @@ def ik(
         _print_actuators(kinematics, q, as_json, mm_deg)
 
 
-class _reported:
+class reported:
     """Turns an error of the project into one sentence (or JSON) and exit code 1."""
 
     def __init__(self, as_json: bool) -> None:

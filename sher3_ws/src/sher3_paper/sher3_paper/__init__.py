@@ -1,1 +1,1 @@
-"""The SHER 3.0 paper recomputed: deflection, design, bench-top evaluation."""
+"""The SHER 3.0 paper recomputed: deflection, design optimisation, bench-top evaluation."""

@@ -36,7 +36,7 @@ class Setup:
 
 
 def grasp_compliance(robot: Robot, positions: Floats, setup: Setup, arm: ArmCompliance) -> Floats:
-    """Return the secant compliances along x, y, z (n, 3) [m/N] of the grasping point at platform positions (n, 2) [m]."""
+    """Return the secant compliances along x, y, z (n, 3) [m/N] of the grasp at platform positions (n, 2) [m]."""
     model = TipDeflection(robot, LinkLaw.of(robot, springs=setup.springs), arm)
     centres = np.column_stack((positions, np.zeros(len(positions))))
     lever = np.broadcast_to(np.array(setup.lever), centres.shape)

@@ -13,7 +13,7 @@ from sher3_description import read_yaml
 from .errors import BadData
 
 Floats = NDArray[np.float64]
-DATA = Path(__file__).with_name("data")
+DATA = Path(__file__).parent
 
 
 class TorsionTable(NamedTuple):
@@ -41,7 +41,7 @@ class DeflectionTable(NamedTuple):
 
 @lru_cache(maxsize=1)
 def printed() -> dict[str, Any]:
-    """Return the printed values as they stand in `data/paper.yaml`, in the paper's units."""
+    """Return the printed values as they stand in `paper.yaml`, in the paper's units."""
     return read_yaml(DATA / "paper.yaml")
 
 

@@ -46,7 +46,8 @@ def leg_slope(table: TorsionTable, geometry: Geometry = "hole rows") -> Floats:
     if geometry == "literal":
         return np.sin(table.label)
     labels = np.unique(table.label)
-    return ROW_PITCH / LINK_LENGTH * (np.searchsorted(labels, table.label) + 1.0)
+    row = np.searchsorted(labels, table.label).astype(np.float64) + 1.0
+    return ROW_PITCH / LINK_LENGTH * row
 
 
 def link_force(torque: Floats | float, leg_width: Floats, slope: Floats) -> Floats:

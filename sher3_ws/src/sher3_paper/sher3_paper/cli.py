@@ -1,0 +1,171 @@
+"""Commands `design` and `paper`: the optimisation, and everything the paper computes beside what it prints."""
+
+from __future__ import annotations
+
+import json
+import time
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+import typer
+from sher3_kinematics.cli import reported
+
+from .constraints import AS_STATED, REACH_ONLY, RELAXED, Constraints
+from .design import CHOSEN, READINGS, Reading
+from .errors import BadData, InfeasibleDesign
+from .optimise import Search, best, fine_grid, search, search_parallel
+
+app = typer.Typer(no_args_is_help=True, help="The SHER 3.0 paper recomputed.")
+
+SETS: dict[str, Constraints] = {"stated": AS_STATED, "relaxed": RELAXED, "reach": REACH_ONLY}
+JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON.")]
+
+
+@app.command()
+def design(
+    reading: Annotated[str, typer.Option(help="Reading of the radii: circumradius or midplane.")] = "circumradius",
+    constraints: Annotated[str, typer.Option(help="stated, relaxed or reach.")] = "stated",
+    poses: Annotated[int, typer.Option(help="Positions over the workspace per design.", min=1)] = 432,
+    torque: Annotated[float, typer.Option(help="Moment [N m] at which T_c is taken.")] = 1.0,
+    fine: Annotated[int, typer.Option(help="Search at least this many designs instead of the paper's 960.")] = 0,
+    jobs: Annotated[int, typer.Option(help="Processes of a fine search.")] = 1,
+    dask: Annotated[str | None, typer.Option(help="Address of a Dask scheduler for a fine search.")] = None,
+    figure: Annotated[Path | None, typer.Option(help="Write the pictures of the search to this PNG.")] = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Search the designs of the paper for stiffness and conditioning, and say where its choice stands.
+
+    Examples:
+        sher3 design
+
+        sher3 design --constraints relaxed --reading midplane --json
+
+        sher3 design --fine 1000000 --jobs 2
+    """
+    with reported(as_json):
+        taken, chosen_set = _choices(reading, constraints)
+        start = time.perf_counter()
+        if fine:
+            found = search_parallel(fine_grid(fine), taken, poses, jobs, dask)
+        else:
+            found = search(reading=taken, poses=poses, torque=torque)
+        seconds = time.perf_counter() - start
+        result = _summary(found, chosen_set, seconds)
+        if figure is not None:
+            from .figures import draw
+
+            picture = {"found": found, "sets": {constraints: chosen_set}} if fine else {"found": found}
+            figure.write_bytes(draw("pareto" if fine else "trends", picture))
+    typer.echo(json.dumps(result, indent=2) if as_json else _text(result))
+
+
+@app.command()
+def paper(
+    out: Annotated[Path | None, typer.Option(help="Folder for report.html; made if missing.")] = None,
+    markdown: Annotated[Path | None, typer.Option(help="Write the tables as Markdown to this file.")] = None,
+    only: Annotated[list[str] | None, typer.Option(help="Only this part; may be repeated.")] = None,
+    benchtop: Annotated[Path | None, typer.Option(help="Results of a bench-top evaluation (JSON).")] = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Recompute every table and figure of the paper, printed beside computed, with a verdict for each.
+
+    Parts: geometry, torsion, identification, design, grasp, compensation, benchtop.
+
+    Examples:
+        sher3 paper --out report
+
+        sher3 paper --only design --only torsion
+
+        sher3 paper --json
+    """
+    with reported(as_json):
+        from .report import html
+        from .report import markdown as as_markdown
+        from .sections import build
+
+        sections = build(only, benchtop)
+        if markdown is not None:
+            markdown.write_text(as_markdown(sections), encoding="utf-8")
+        if out is not None:
+            out.mkdir(parents=True, exist_ok=True)
+            (out / "report.html").write_text(html(sections), encoding="utf-8")
+    if as_json:
+        typer.echo(json.dumps([section.to_dict() for section in sections], indent=2))
+        return
+    for section in sections:
+        typer.echo(f"\n{section.title}")
+        for line in section.comparisons:
+            values = f"{_short(line.printed):>9s} {_short(line.computed):>9s} {line.unit:10s}"
+            typer.echo(f"  {line.quantity:46s} {values} {line.verdict:12s} {line.note}")
+    if out is not None:
+        typer.echo(f"\nwrote {out / 'report.html'}")
+
+
+def _choices(reading: str, constraints: str) -> tuple[Reading, Constraints]:
+    taken = next((name for name in READINGS if name == reading), None)
+    if taken is None:
+        raise BadData("reading", value=reading, limit=" or ".join(READINGS), remedy="choose one")
+    if constraints not in SETS:
+        raise BadData("constraints", value=constraints, limit=", ".join(SETS), remedy="choose one")
+    return taken, SETS[constraints]
+
+
+def _summary(found: Search, constraints: Constraints, seconds: float) -> dict[str, Any]:
+    met = constraints.met(found.values)
+    front = found.pareto(met)
+
+    def entry(k: int) -> dict[str, Any]:
+        gci, t_c = float(found.index[k]), float(np.degrees(found.compliance[k]))
+        return {"design": str(found.design(k)), "gci": gci, "t_c_deg_per_Nm": t_c}
+
+    result: dict[str, Any] = {
+        "designs": len(found),
+        "reading": found.reading,
+        "seconds": seconds,
+        "reach": int(found.values.reaches.sum()),
+        "feasible": int(met.sum()),
+        "best": {name: entry(k) for name, k in best(found, constraints).items()},
+        "pareto_size": len(front),
+        "pareto": [entry(int(k)) for k in front[:200]],
+    }
+    try:
+        k = found.find(CHOSEN)
+    except InfeasibleDesign:
+        return result
+    each = {name: bool(flags[k]) for name, flags in constraints.each(found.values).items()}
+    rank, among = found.rank(k, found.values.reaches)
+    better = len(found.dominating(k, found.values.reaches))
+    result["chosen"] = {**entry(k), "meets": each, "rank": rank, "of": among, "dominated_by": better}
+    return result
+
+
+def _text(result: dict[str, Any]) -> str:
+    lines = [
+        f"{result['designs']} designs in {result['seconds']:.2f} s, reading {result['reading']}",
+        f"  {result['reach']} reach, {result['feasible']} meet the constraints, {result['pareto_size']} on the front",
+    ]
+    for name, entry in result["best"].items():
+        lines.append(f"  {name:30s} {_entry(entry)}")
+    if "chosen" in result:
+        chosen = result["chosen"]
+        failed = [name for name, met in chosen["meets"].items() if not met]
+        lines.append(f"  {'chosen by the paper':30s} {_entry(chosen)}")
+        verdict = "violates " + ", ".join(failed) if failed else "meets the constraints"
+        lines.append(
+            f"  it {verdict}; rank {chosen['rank']} of {chosen['of']} by GCI / T_c among designs that reach, "
+            f"{chosen['dominated_by']} are better in both"
+        )
+    return "\n".join(lines)
+
+
+def _entry(entry: dict[str, Any]) -> str:
+    return f"{entry['design']:34s} GCI {entry['gci']:.4f}  T_c {entry['t_c_deg_per_Nm']:.4f} deg/(N m)"
+
+
+def _short(value: float | None) -> str:
+    return "-" if value is None else f"{value:.4g}"
+
+
+if __name__ == "__main__":
+    app()
