@@ -1,0 +1,151 @@
+"""The plant process on mocks: the robot behind the CAN links, the force sensor's cable and the pedal's.
+
+The plant takes a step at each SYNC of the mock drives. The wrench on the tip and the foot on the pedal come in on
+`mock/contact_wrench` and `mock/pedal`; whoever sends them and falls silent has let go of both.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any, cast
+
+import numpy as np
+from rclpy.node import Node
+from sher3_description import Robot
+from sher3_drivers.bus import CanLink, open_link
+from sher3_drivers.force_sensor import InProcessForceSensor
+from sher3_drivers.mock_bus import DrivePlant, MockDriveBus
+from sher3_drivers.netft_server import NetFtServer
+from sher3_drivers.pedal import InProcessPedal, PedalSender, PedalState
+from sher3_drivers.settings import MotorDriverSettings, default_settings
+from sher3_runtime import (
+    NODE_OPTIONS,
+    JoySample,
+    PoseSample,
+    TemperatureSample,
+    WrenchSample,
+    advertise,
+    clock_of,
+    on_readable,
+    on_tick,
+    subscribe,
+)
+
+from sher3_sim.effects import Effect
+from sher3_sim.plant import Plant, Reading
+from sher3_sim.scatter import RunScatter
+
+HOLD = 0.2
+"""Seconds after which a wrench or a pedal that is no longer sent counts as let go."""
+RELEASED = PedalState(0.0, False)
+NOTHING = (0.0,) * 6
+
+
+class PlantNode(Node):
+    """The simulated robot with its mock devices.
+
+    Args:
+        robot: the nominal robot.
+        settings: CAN channels and period; by default the local links of the robot's control period.
+        effects: what the plant does that the model does not.
+        seed: of all noise.
+        scatter: run-to-run variation, drawn from the seed.
+        links: opened links instead of those the settings name (stepped tests).
+        force_device: the sensor's device end; default one on its standard port.
+        pedal_device: the pedal's device end, or the name of its socket.
+
+    Raises:
+        EffectError: an effect does not fit the robot.
+        LinkError, DeviceMissing: a link or a port is taken.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        settings: MotorDriverSettings | None = None,
+        effects: Iterable[Effect] = (),
+        seed: int = 0,
+        scatter: RunScatter | None = None,
+        links: Sequence[CanLink] | None = None,
+        force_device: NetFtServer | InProcessForceSensor | None = None,
+        pedal_device: PedalSender | InProcessPedal | str = "pedal",
+        **options: Any,
+    ) -> None:
+        super().__init__("plant", **{**NODE_OPTIONS, **options})
+        settings = settings or default_settings(robot.control_period)
+        self._now, self._period = clock_of(self).now, robot.control_period
+        self._plant = Plant(robot, effects, seed, scatter=scatter)
+        self._reading = self._plant.reset(np.zeros(5))
+        self._wrench: tuple[float, ...] = NOTHING
+        self._wrench_at = 0
+        self._foot, self._foot_at = RELEASED, 0
+        self._streamed = False
+        self._force = force_device if force_device is not None else NetFtServer()
+        self._pedal = PedalSender(pedal_device) if isinstance(pedal_device, str) else pedal_device
+        self._say_wrench: Callable[[Any], object] = (
+            self._force.publish if isinstance(self._force, NetFtServer) else self._force.put
+        )
+        self._say_pedal: Callable[[PedalState], object] = (
+            self._pedal.send if isinstance(self._pedal, PedalSender) else self._pedal.put
+        )
+        if links is None:
+            links = [open_link(channel.link) for channel in settings.channels]
+        self.drives = MockDriveBus(links, cast(DrivePlant, self), robot, settings, self._now)
+        self._publish_tip = advertise(self, "tracker/measured_cp")
+        self._publish_temperature = advertise(self, "temperature")
+        subscribe(self, "mock/contact_wrench", self._on_wrench)
+        subscribe(self, "mock/pedal", self._on_pedal)
+        for link in links:
+            if link.fileno() >= 0:
+                on_readable(self, link, self.drives.poll)
+        if isinstance(self._force, NetFtServer):
+            on_readable(self, self._force, self._force.poll)
+        on_tick(self, self._tick, 0.5 * self._period)
+        on_tick(self, self._second, 0.5 * self._period, max(1, round(1.0 / self._period)))
+
+    def step(self, velocity_command: Sequence[float]) -> Reading:
+        """Advance the plant by one period, as `MockDriveBus` asks at a SYNC, and let the sensors speak."""
+        fresh = self._now() - self._wrench_at < HOLD * 1e9
+        self._reading = reading = self._plant.step(velocity_command, self._wrench if fresh else NOTHING)
+        self._stream()
+        if reading.tracker is not None:
+            pose = reading.tracker.tolist()
+            self._publish_tip(PoseSample(self._stamp(), tuple(pose[:3]), tuple(pose[3:])))
+        return reading
+
+    def _stamp(self) -> int:
+        """Return the stamp of the present tick; SYNCs come at the ticks or a little later."""
+        period = round(self._period * 1e9)
+        return self._now() // period * period
+
+    def _stream(self) -> None:
+        self._streamed = True
+        self._say_wrench(tuple(self._reading.wrench.tolist()))
+
+    def _tick(self, stamp: int) -> None:
+        """Speak for devices that have a clock of their own: sensor and pedal go on when no SYNC comes."""
+        self.drives.poll()
+        if not self._streamed:
+            self._stream()
+        self._streamed = False
+        self._say_pedal(self._foot if self._now() - self._foot_at < HOLD * 1e9 else RELEASED)
+
+    def _second(self, stamp: int) -> None:
+        self._publish_temperature(TemperatureSample(stamp, self._reading.temperature))
+
+    def _on_wrench(self, sample: WrenchSample) -> None:
+        if all(math.isfinite(value) for value in sample.wrench):
+            self._wrench, self._wrench_at = sample.wrench, self._now()
+        else:
+            self.get_logger().error(f"mock/contact_wrench is not finite and was ignored: {sample.wrench}")
+
+    def _on_pedal(self, sample: JoySample) -> None:
+        self._foot = PedalState(sample.axes[0] if sample.axes else math.nan, any(sample.buttons))
+        self._foot_at = self._now()
+
+    def close(self) -> None:
+        """Take the devices off their lines."""
+        self.drives.close()
+        self._force.close()
+        self._pedal.close()
