@@ -75,10 +75,12 @@ class LinkGroup:
     Attributes:
         links: the links.
         waits: whether there is something to wait on; not so within the process.
+        failures: links that could not be read, by index; they are left alone from then on.
     """
 
     def __init__(self, links: Sequence[CanLink]) -> None:
         self.links = tuple(links)
+        self.failures: dict[int, LinkError] = {}
         self._by_descriptor = {link.fileno(): (i, link) for i, link in enumerate(self.links) if link.fileno() >= 0}
         self.waits = len(self._by_descriptor) == len(self.links)
 
@@ -92,8 +94,21 @@ class LinkGroup:
             ready, _, _ = select.select(self._by_descriptor, (), (), timeout if timeout > 0.0 else 0.0)
             candidates = [self._by_descriptor[descriptor] for descriptor in ready]
         else:
-            candidates = list(enumerate(self.links))
-        return [(index, frames) for index, link in candidates if (frames := link.recv_frames())]
+            candidates = [(index, link) for index, link in enumerate(self.links) if index not in self.failures]
+        received = []
+        for index, link in candidates:
+            try:
+                frames = link.recv_frames()
+            except LinkError as error:
+                self._leave_alone(index, error)
+                continue
+            if frames:
+                received.append((index, frames))
+        return received
+
+    def _leave_alone(self, index: int, error: LinkError) -> None:
+        self.failures[index] = error
+        self._by_descriptor = {fd: entry for fd, entry in self._by_descriptor.items() if entry[0] != index}
 
     def send_each(self, frames: Sequence[bytes]) -> None:
         """Send `frames[i]` on link i; empty ones are skipped."""

@@ -12,7 +12,7 @@ from typing import Any
 
 from rclpy.node import Node
 from sher3_description import Robot
-from sher3_runtime import NODE_OPTIONS, DiagnosticSample, WrenchSample, advertise, clock_of, on_tick
+from sher3_runtime import NODE_OPTIONS, DiagnosticSample, WrenchSample, advertise, on_tick
 
 from .force_sensor import ForceSensorDevice
 from .wrench_checks import WrenchFault, WrenchLimits, WrenchWatch, check_wrench
@@ -42,7 +42,6 @@ class ForceSensorNode(Node):
         self._wait = WAIT * robot.control_period
         self._publish = advertise(self, "force/measured_cf")
         self._publish_report = advertise(self, "diagnostics")
-        clock_of(self)
         on_tick(self, self._tick, phase)
         period = robot.control_period
         on_tick(self, self._report, 0.5 * period, max(1, round(REPORT_PERIOD / period)))

@@ -92,8 +92,8 @@ class MockDriveBus:
         drives: the drives by actuator name.
         ticks: SYNCs the plant was stepped with.
         free_steps: steps it made without SYNC.
-        tamper_frames: called with (channel, frames, now) on everything the drives send; returns what goes on the
-            wire.
+        tamper_frames: called with (channel, frames, now) on what the drives send; returns what goes on the wire.
+        tamper_received: the same on what they are sent; called with b"" too, so that it can deliver later.
     """
 
     def __init__(
@@ -107,6 +107,7 @@ class MockDriveBus:
         self.ticks = 0
         self.free_steps = 0
         self.tamper_frames: FrameTamper | None = None
+        self.tamper_received: FrameTamper | None = None
         self._plant, self._clock, self._period = plant, clock, settings.period
         self._period_ns = round(settings.period * 1e9)
         self._stepped_at = clock()
@@ -142,7 +143,13 @@ class MockDriveBus:
         SYNCs are answered, heartbeats and watchdogs kept going.
         """
         received = self._group.receive(timeout)
+        for error in self._group.failures.values():
+            raise error
         now = self._clock()
+        if self.tamper_received is not None:
+            by_channel = dict(received)
+            channels = range(len(self._channels))
+            received = [(i, self.tamper_received(i, by_channel.get(i, b""), now)) for i in channels]
         for index, frames in received:
             if len(frames) % FRAME_SIZE == 0:
                 self._channels[index].queue.extend(_FRAME.iter_unpack(frames))
@@ -158,7 +165,7 @@ class MockDriveBus:
             for drive in self.drives.values():
                 drive.check_host(now)
                 drive.node.poll(now)
-        return bool(received)
+        return any(frames for _, frames in received)
 
     def poll(self) -> None:
         """Handle every frame that waits, as `serve` does."""

@@ -80,6 +80,7 @@ class MotorDriver:
         self._reset_words = 0
         self._running = False
         self._all_enabled = False
+        self._dead_links = 0
 
     # Start.
 
@@ -283,6 +284,11 @@ class MotorDriver:
         for channel, frames in received:
             for can_id, data in self._collector.take(frames):
                 self._on_other(channel, can_id, data)
+        if len(self._group.failures) > self._dead_links:
+            self._dead_links = len(self._group.failures)
+            for channel, error in self._group.failures.items():
+                self.bus_conditions[channel] = BusCondition.OFF
+                self._stop_if(str(error))
         return bool(received)
 
     def _on_other(self, channel: int, can_id: int, data: bytes) -> None:

@@ -171,6 +171,23 @@ def test_wait_sees_frames_of_any_link(tmp_path, monkeypatch):
     other.close()
 
 
+def test_a_link_that_fails_is_left_alone_and_the_others_go_on(tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
+    group, other = LinkGroup([LocalLink("a"), LocalLink("b")]), LocalLink("b")
+
+    def down():
+        raise LinkError("cannot receive: network is down", link="local:a")
+
+    group.links[0].recv_frames = down
+    LocalLink("a").send_frames(burst(1))
+    other.send_frames(burst(2))
+    group.links[1].recv_frames()
+    other.send_frames(burst(2))
+    assert group.receive(1.0) == [(1, burst(2))]
+    assert list(group.failures) == [0]
+    assert group.receive(0.0) == []
+
+
 @pytest.mark.parametrize("specification", ["can0", "usb:can0", "local:", "local:../x", "local:" + "x" * 40])
 def test_bad_specifications_are_named(specification, tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))

@@ -27,15 +27,17 @@ SLOW = [0.001, -0.002, 0.003, 0.1, -0.004]
 _numbers = itertools.count()
 
 
-@pytest.fixture
-def make_rig():
-    """A function that builds a rig on the in-process link."""
+@pytest.fixture(params=["virtual", "local"])
+def make_rig(request, tmp_path, monkeypatch):
+    """A function that builds a rig; the whole suite runs on both links that need no hardware."""
+    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
     rigs = []
 
     def make(**changes):
-        prefix = f"d{next(_numbers)}"
-        settings = default_settings().model_copy(update=changes)
-        rigs.append(LockstepRig(ROBOT, settings, lambda i: open_link(f"virtual:{prefix}-{i}")))
+        prefix = f"{request.param}:d{next(_numbers)}"
+        rigs.append(
+            LockstepRig(ROBOT, default_settings().model_copy(update=changes), lambda i: open_link(f"{prefix}-{i}"))
+        )
         return rigs[-1]
 
     yield make
@@ -68,12 +70,19 @@ def run_cycle(rig):
 
 
 @pytest.mark.parametrize("period", [0.002, 0.001])
-def test_the_cycle_on_every_back_end(open_pair, period):
-    """Both ends of every channel; the loop is the one of the stepped tests, the link is the back-end's."""
-    if open_pair.kind == "socketcan":
-        pytest.skip("needs one CAN interface per channel; run bench/can_bus.py --links socketcan:can0,socketcan:can1")
-    kind, prefix = open_pair.kind, f"c{next(_numbers)}"
-    rig = LockstepRig(ROBOT, default_settings(period), lambda i: open_link(f"{kind}:{prefix}-{i}"))
+@pytest.mark.parametrize("kind", ["virtual", "local"])
+def test_the_cycle_on_the_default_layouts(kind, period, tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
+    prefix = f"{kind}:c{next(_numbers)}"
+    rig = LockstepRig(ROBOT, default_settings(period), lambda i: open_link(f"{prefix}-{i}"))
+    run_cycle(rig)
+    rig.close()
+
+
+def test_the_cycle_on_one_channel_of_every_back_end(open_pair):
+    """All five drives on one bus at 200 Hz, which one CAN interface carries."""
+    layout = [{"link": "given", "drives": ACTUATORS}]
+    rig = LockstepRig(ROBOT, MotorDriverSettings.checked(channels=layout, period=0.005), lambda i: open_pair())
     run_cycle(rig)
     rig.close()
 
@@ -314,6 +323,55 @@ def test_error_passive_and_bus_off_stop_all(rig, condition):
     assert rig.driver.bus_conditions[1] is condition
 
 
+def test_a_drive_without_heartbeat_stops_all_though_its_tpdos_come(rig):
+    is_heartbeat = lambda frame: int.from_bytes(frame[:4], "little") & 0x780 == od.HEARTBEAT_BASE  # noqa: E731
+    rig.mock.tamper_frames = lambda channel, frames, now: b"".join(
+        frames[k : k + 16] for k in range(0, len(frames), 16) if not is_heartbeat(frames[k : k + 16])
+    )
+    for _ in range(round(rig.settings.drive_heartbeat_limit / rig.settings.period) + 5):
+        rig.tick(SLOW)
+    assert "no heartbeat" in rig.driver.stop.reason
+
+
+def test_a_drive_that_faults_while_enabling_stops_all_at_once(make_rig):
+    rig = make_rig()
+    rig.driver.configure()
+    rig.driver.enable()
+    rig.tick()
+    rig.mock.drives["delta_1"].state = mock_drive.FAULT  # and its EMCY got lost
+    rig.tick()
+    rig.tick()
+    assert rig.driver.stop.reason == "delta_1: went to FAULT"
+
+
+def test_a_drive_that_does_not_change_state_is_named(make_rig):
+    rig = make_rig()
+    rig.driver.configure()
+    rig.mock.drives["roll"]._on_controlword = lambda word: None
+    rig.driver.enable()
+    for _ in range(round(rig.settings.transition_limit / rig.settings.period) + 10):
+        rig.tick()
+    assert "roll: stays in SWITCH_ON_DISABLED" in rig.driver.stop.reason
+    assert not rig.driver.enabled
+
+
+def test_frames_to_the_drives_can_be_held_back(rig):
+    """The seam for a slow bus: everything but SYNC and heartbeats reaches the drives one tick later."""
+    held = {0: [], 1: []}
+
+    def later(channel, frames, now):
+        parts = [frames[k : k + 16] for k in range(0, len(frames), 16)]
+        rpdos = [p for p in parts if int.from_bytes(p[:4], "little") & 0x780 == od.RPDO_BASE]
+        held[channel] += [(now + rig.period_ns, p) for p in rpdos]
+        due = [p for at, p in held[channel] if at <= now]
+        held[channel] = [(at, p) for at, p in held[channel] if at > now]
+        return b"".join([p for p in parts if p not in rpdos] + due)
+
+    rig.mock.tamper_received = later
+    demands = [rig.tick([0.001 * k] + [0.0] * 4).velocity_demand[0] for k in range(1, 8)]
+    assert demands[-1] == pytest.approx(0.001 * 5, abs=1e-10)
+
+
 def test_a_warning_stops_nothing(rig):
     rig.device_links[0].send_frames(pack_frame(*error_frame(BusCondition.WARNING)))
     rig.tick(SLOW)
@@ -331,7 +389,7 @@ def test_a_dead_link_stops_the_robot_on_the_others(rig):
     rig.host_links[1].close()
     for _ in range(10):
         rig.tick(SLOW)
-    assert "is closed" in rig.driver.stop.reason and rig.driver.bus_conditions[1] is BusCondition.OFF
+    assert rig.host_links[1].name in rig.driver.stop.reason and rig.driver.bus_conditions[1] is BusCondition.OFF
     assert rig.mock.drives["delta_1"].state == mock_drive.QUICK_STOP
 
 
