@@ -24,7 +24,7 @@ _NOT_FINITE = describe(NOT_FINITE)
 DEVIATION_LIMIT = 1e-3
 """A shaft further than this [m] from the remote centre is no longer held by it: the robot stops."""
 CAPTURE_LIMIT = 1e-4
-"""A remote centre is accepted when the shaft passes within this [m]; at the default gain it is pulled in at 1 mm/s."""
+"""A remote centre is accepted when the shaft passes within this [m]."""
 
 
 class Velocity(NamedTuple):

@@ -22,6 +22,8 @@ from .compiled import compiled
 
 Array = NDArray[np.float64]
 
+PULL_LIMIT = 1e-3
+"""Fastest approach [m/s] of a shaft that is off the centre."""
 LENGTH = 0.02
 """Lever [m] that makes rad/s and m/s comparable: about the depth of the tip behind the sclera."""
 
@@ -94,11 +96,13 @@ def rcm_velocity(
     for a in range(5):
         for i in range(3):
             right[a] += jacobian[i, a] * twist[i] + LENGTH * LENGTH * jacobian[3 + i, a] * twist[3 + i]
-    right[5], right[6] = -gain * x, -gain * y
+    deviation = np.hypot(x, y)
+    pull = min(gain, PULL_LIMIT / deviation) if deviation > 0.0 else gain
+    right[5], right[6] = -pull * x, -pull * y
     velocity = np.linalg.solve(matrix, right)[:5]
     tip_pose_into(p, q + period * velocity, rotation, position)
     end_x, end_y, _ = shaft_deviation(rotation, position, centre)
-    left = 1.0 - gain * period
+    left = 1.0 - pull * period
     right[:5] = 0.0
     right[5], right[6] = (left * x - end_x) / period, (left * y - end_y) / period
-    return velocity + np.linalg.solve(matrix, right)[:5], np.hypot(x, y)
+    return velocity + np.linalg.solve(matrix, right)[:5], deviation

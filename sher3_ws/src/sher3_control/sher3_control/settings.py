@@ -122,7 +122,8 @@ class MotionSettings(Settings):
         acceleration: fraction of the acceleration limits that move_* uses [1].
         ramp_time: time to build up that acceleration [s]; it sets the jerk.
         linear_speed, angular_speed: tip caps of move_cp [m/s], [rad/s].
-        rcm_gain: rate at which a deviation from the remote centre decays [1/s].
+        rcm_gain: rate at which a deviation from the remote centre decays [1/s]; with the 8 ms of transport and drive it
+            leaves 67 degrees of phase margin.
     """
 
     servo_timeout: Seconds = 0.020
@@ -136,7 +137,7 @@ class MotionSettings(Settings):
     ramp_time: Annotated[Number, Field(gt=0.0, le=1.0)] = 0.020
     linear_speed: Annotated[Number, Field(gt=0.0, le=0.05)] = 0.005
     angular_speed: Annotated[Number, Field(gt=0.0, le=3.0)] = 0.3
-    rcm_gain: Annotated[Number, Field(ge=0.0, le=100.0)] = 10.0
+    rcm_gain: Annotated[Number, Field(ge=0.0, le=100.0)] = 50.0
 
 
 class SupervisorSettings(Settings):

@@ -105,3 +105,12 @@ def test_a_shaft_that_left_the_centre_stops():
     result = modes.from_twist(moved, (1e-3, 0.0, 0.0, 0.0, 0.0, 0.0), REST)
     assert (result.velocity, result.reason) == (REST, Reason.OFF_CENTRE)
     assert result.deviation > 1e-3
+
+
+def test_a_shaft_off_the_centre_is_not_pulled_in_faster_than_stated():
+    q = np.zeros(5)
+    rotation, tip = pose(q)
+    centre = tip + 0.02 * rotation[:, 2] + 5e-4 * rotation[:, 1]
+    before = deviation(q, centre)
+    q = q + T * rcm_velocity(PARAMETERS, q, np.zeros(6), centre, 50.0, T)[0]
+    assert (before - deviation(q, centre)) / T == pytest.approx(1e-3, rel=1e-3)
