@@ -10,25 +10,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
-from sher3_description import ACTUATORS, Robot, load_robot
+from sher3_description import Robot, load_robot
 
 from sher3_bags.run import Run
-from sher3_bags.statistics import common, smooth
+from sher3_bags.statistics import common, smooth, width_of
 from sher3_bags.timing import TopicTiming, topic_timing
-
-_SMOOTHING = 0.02
-"""Force and tip velocity are averaged over this many s: encoder steps dominate a single period's difference."""
-
-
-@dataclass(frozen=True)
-class AxisError:
-    """Error of one actuator in m or rad, or in m/s or rad/s."""
-
-    actuator: str
-    unit: str
-    mean: float
-    rms: float
-    max: float
+from sher3_bags.tracking import SMOOTHING, AxisError, axis_errors, drive_error, position_error, velocity_error
 
 
 @dataclass(frozen=True)
@@ -66,7 +53,8 @@ class Analysis:
         duration: s between first and last stamp.
         topics: timing by topic.
         position_tracking: setpoint_js against measured_js (load encoder).
-        velocity_tracking: drives/setpoint_jv against the motor velocity.
+        drive_tracking: the integral of drives/setpoint_jv against the way of the motor.
+        velocity_tracking: drives/setpoint_jv against the motor velocity, averaged over 20 ms.
         tip: path by measured_cp.
         tracker_rms: distance of the tracker from measured_cp, rms in m.
         force_velocity: see there.
@@ -77,6 +65,7 @@ class Analysis:
     duration: float
     topics: dict[str, TopicTiming]
     position_tracking: tuple[AxisError, ...]
+    drive_tracking: tuple[AxisError, ...]
     velocity_tracking: tuple[AxisError, ...]
     tip: TipPath | None
     tracker_rms: float | None
@@ -105,41 +94,13 @@ def analyse(run: Run, robot: Robot | None = None) -> Analysis:
         source=str(run.path or ""),
         duration=(run.end - run.start) * 1e-9,
         topics=topic_timing(run, robot),
-        position_tracking=_tracking(run, robot, "setpoint_js", "measured_js", "position"),
-        velocity_tracking=_tracking(run, robot, "drives/setpoint_jv", "drives/measured_js", "velocity"),
+        position_tracking=axis_errors(run, robot, position_error),
+        drive_tracking=axis_errors(run, robot, drive_error),
+        velocity_tracking=axis_errors(run, robot, velocity_error),
         tip=_tip(run),
         tracker_rms=_tracker_rms(run),
         force_velocity=_force_velocity(run, robot),
         recorder_drops=_recorder_drops(run),
-    )
-
-
-def tracking_error(run: Run, wanted: str, measured: str, column: str) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-    """Return stamps (n,) and wanted minus measured (n, 5) at the stamps both topics have."""
-    if wanted not in run or measured not in run:
-        return np.empty(0, np.int64), np.empty((0, len(ACTUATORS)))
-    a, b = run[wanted], run[measured]
-    if getattr(a, column) is None or getattr(b, column) is None:
-        return np.empty(0, np.int64), np.empty((0, len(ACTUATORS)))
-    rows_a, rows_b = common(a.stamp, b.stamp)
-    return a.stamp[rows_a], getattr(a, column)[rows_a] - getattr(b, column)[rows_b]
-
-
-def _tracking(run: Run, robot: Robot, wanted: str, measured: str, column: str) -> tuple[AxisError, ...]:
-    _, error = tracking_error(run, wanted, measured, column)
-    error = error[np.isfinite(error).all(axis=1)]
-    if not len(error):
-        return ()
-    per = "/s" if column == "velocity" else ""
-    return tuple(
-        AxisError(
-            actuator.name,
-            ("rad" if actuator.kind == "revolute" else "m") + per,
-            float(e.mean()),
-            float(np.sqrt(np.mean(e**2))),
-            float(np.abs(e).max()),
-        )
-        for actuator, e in zip(robot.actuators, error.T, strict=True)
     )
 
 
@@ -158,8 +119,7 @@ def tip_velocity(run: Run) -> NDArray[np.float64]:
     seconds = table.seconds()
     if len(table) < 2 or not (np.diff(seconds) > 0).all():
         return np.zeros((len(table), 3))
-    width = max(1, round(_SMOOTHING / float(np.median(np.diff(seconds)))))
-    return smooth(np.gradient(table.position, seconds, axis=0), width)
+    return smooth(np.gradient(table.position, seconds, axis=0), width_of(table.stamp, SMOOTHING))
 
 
 def force_in_base(run: Run) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.bool_]]:
@@ -176,8 +136,7 @@ def force_in_base(run: Run) -> tuple[NDArray[np.int64], NDArray[np.float64], NDA
     orientation = Rotation.from_quat(pose.orientation[rows_p])
     base = orientation.apply(force.force[rows_f])
     base -= np.median(base[~pressed], axis=0) if (~pressed).any() else base[0]
-    width = max(1, round(_SMOOTHING / float(np.median(np.diff(stamp)) * 1e-9))) if len(stamp) > 1 else 1
-    return stamp, smooth(base, width), pressed
+    return stamp, smooth(base, width_of(stamp, SMOOTHING)), pressed
 
 
 def force_and_velocity(run: Run) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:

@@ -6,14 +6,14 @@ from pathlib import Path
 from typing import Any
 
 import matplotlib as mpl
-import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from sher3_bags.analysis import Analysis, AxisError, force_and_velocity, tracking_error
+from sher3_bags.analysis import Analysis, force_and_velocity
 from sher3_bags.report import quantity
 from sher3_bags.run import Run
 from sher3_bags.statistics import Spread
+from sher3_bags.tracking import AxisError, Error, drive_error, position_error, velocity_error
 
 _MAX_POINTS = 5000
 _COLOURS = ("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9")
@@ -29,8 +29,11 @@ def draw(run: Run, analysis: Analysis, path: str | Path) -> Path:
     with mpl.rc_context({"font.size": 9}):
         _tip_path(axes[0, 0], run)
         _force_velocity(axes[0, 1], run, analysis)
-        _tracking(axes[0, 2], run, analysis.position_tracking, "setpoint_js", "measured_js", "position")
-        _tracking(axes[1, 2], run, analysis.velocity_tracking, "drives/setpoint_jv", "drives/measured_js", "velocity")
+        if analysis.position_tracking:
+            _tracking(axes[0, 2], run, analysis.position_tracking, position_error(run), "position error")
+        else:
+            _tracking(axes[0, 2], run, analysis.drive_tracking, drive_error(run), "drive error")
+        _tracking(axes[1, 2], run, analysis.velocity_tracking, velocity_error(run), "velocity error")
         _times(axes[1, 0], analysis)
         _drops(axes[1, 1], analysis)
     target = Path(path)
@@ -80,19 +83,18 @@ def _force_velocity(axis: Any, run: Run, analysis: Analysis) -> None:
     return None
 
 
-def _tracking(axis: Any, run: Run, figures: tuple[AxisError, ...], wanted: str, measured: str, column: str) -> None:
+def _tracking(axis: Any, run: Run, figures: tuple[AxisError, ...], error: Error | None, title: str) -> None:
     """Draw one trace per axis, each to its own scale, which stands beside its name."""
-    stamp, error = tracking_error(run, wanted, measured, column)
-    if not figures:
-        return _absent(axis, f"{column} error", f"no {wanted} or {measured}")
-    seconds, thin = (stamp - run.start) * 1e-9, _thin(len(stamp))
-    scale = np.maximum([figure.max for figure in figures], 1e-30)
-    for k in range(len(figures)):
-        axis.plot(seconds[thin], 0.48 * error[thin, k] / scale[k] - k, lw=0.6, color=_COLOURS[k])
+    if error is None or not figures:
+        return _absent(axis, title, "no set-point, or no measurement")
+    thin = _thin(len(error.stamp))
+    seconds = (error.stamp[thin] - run.start) * 1e-9
+    for k, figure in enumerate(figures):
+        axis.plot(seconds, 0.48 * error.values[thin, k] / max(figure.max, 1e-30) - k, lw=0.6, color=_COLOURS[k])
         axis.axhline(-k, lw=0.4, color="0.6")
     names = [f"{figure.actuator}\n±{quantity(figure.max, figure.unit)}" for figure in figures]
     axis.set_yticks([-k for k in range(len(figures))], names, fontsize=8)
-    axis.set_title(f"{column} error, own scales")
+    axis.set_title(f"{title}, own scales")
     axis.set_xlabel("time [s]")
     return None
 
@@ -113,7 +115,7 @@ def _drops(axis: Any, analysis: Analysis) -> None:
     timed = {
         f"{t}, {x.dropped} dropped": x.period
         for t, x in analysis.topics.items()
-        if x.period is not None and x.period.p50 > 0
+        if x.off_grid is not None and x.period is not None and x.period.p50 > 0
     }
     if not timed:
         return _absent(axis, "period", "no samples")

@@ -63,6 +63,9 @@ def run_from_contents(contents: Contents, topics: Iterable[str] | None = None, *
             value=", ".join(run.skipped),
             remedy="name its namespace",
         )
+    # In the order of the topic table; others behind, in the order of the file.
+    place = {topic: index for index, topic in enumerate(TOPICS)}
+    run.streams = dict(sorted(run.streams.items(), key=lambda item: place.get(item[0], len(place))))
     return run
 
 

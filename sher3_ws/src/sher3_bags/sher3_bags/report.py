@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from sher3_bags.analysis import Analysis, AxisError
+from sher3_bags.analysis import Analysis
 from sher3_bags.compare import Comparison
 from sher3_bags.statistics import Spread
+from sher3_bags.tracking import AxisError
 
 _PREFIXES = ((1.0, ""), (1e-3, "m"), (1e-6, "u"), (1e-9, "n"))
 
@@ -47,7 +48,8 @@ def analysis_text(analysis: Analysis) -> str:
     parts = [f"{analysis.source}: {analysis.duration:.3f} s, {count} messages, {analysis.dropped} dropped"]
     parts.append(_timing_text(analysis))
     parts += _tracking_text("position tracking (setpoint_js - measured_js)", analysis.position_tracking)
-    parts += _tracking_text("velocity tracking (drives/setpoint_jv - motor)", analysis.velocity_tracking)
+    parts += _tracking_text("drive tracking (integral of drives/setpoint_jv - motor position)", analysis.drive_tracking)
+    parts += _tracking_text("velocity tracking (drives/setpoint_jv - motor, 20 ms average)", analysis.velocity_tracking)
     if analysis.tip is not None:
         extent = " x ".join(f"{1e3 * value:.3g}" for value in analysis.tip.extent)
         speed = quantity(analysis.tip.max_speed, "m/s")

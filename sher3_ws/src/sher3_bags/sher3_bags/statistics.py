@@ -38,3 +38,9 @@ def smooth(values: NDArray[np.float64], width: int) -> NDArray[np.float64]:
     kernel = np.ones(width)
     weight = np.convolve(np.ones(len(values)), kernel, "same")
     return np.stack([np.convolve(column, kernel, "same") / weight for column in values.T], axis=1)
+
+
+def width_of(stamp: NDArray[np.int64], seconds: float) -> int:
+    """Return how many samples fill `seconds` at the median rate of these stamps [ns], at least one."""
+    period = float(np.median(np.diff(stamp))) if len(stamp) > 1 else 0.0
+    return max(1, round(seconds * 1e9 / period)) if period > 0 else 1

@@ -69,6 +69,25 @@ def test_tracking_matches_by_stamp(build):
         assert error.max == pytest.approx(1e-6)
 
 
+def test_drive_error_in_any_mode():
+    n, stuck = 500, 300
+    stamp = START + np.arange(n) * T
+    velocity = 1e-3 * np.sin(0.02 * np.arange(n))[:, None] * np.ones(5)
+    way = np.cumsum(velocity, axis=0) * 0.002 - velocity[0] * 0.002
+    way[stuck:, 2] = way[stuck, 2]
+    drives = {
+        "drives/setpoint_jv": stream("drives/setpoint_jv", stamp, velocity=velocity),
+        "drives/measured_js": stream("drives/measured_js", stamp, position=0.01 + way, velocity=0 * velocity),
+    }
+    analysis = analyse(Run(drives))
+    errors = [error.max for error in analysis.drive_tracking]
+    expected = np.abs(np.cumsum(velocity[:, 0]) * 0.002 - velocity[0, 0] * 0.002 - way[stuck, 2])[stuck:].max()
+    assert errors[2] == pytest.approx(expected)
+    assert max(errors[:2] + errors[3:]) < 1e-12
+    assert analysis.position_tracking == ()
+    assert analysis.velocity_tracking[0].max == pytest.approx(1e-3, rel=0.01)
+
+
 def test_timing_and_drops(build):
     run = build()
     table = run["setpoint_js"]
