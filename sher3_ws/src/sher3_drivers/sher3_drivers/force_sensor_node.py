@@ -19,6 +19,8 @@ from .wrench_checks import WrenchFault, WrenchLimits, WrenchWatch, check_wrench
 
 NOT_A_WRENCH = (math.nan,) * 6
 REPORT_PERIOD = 0.1
+PHASE = 1e-5
+"""Delay of the reading behind the tick, s: in stepped time the drives' SYNC comes first."""
 WAIT = 0.5
 """Share of the period that a tick waits for its record."""
 
@@ -32,7 +34,7 @@ class ForceSensorNode(Node):
         phase: delay of the reading behind the tick, s.
     """
 
-    def __init__(self, robot: Robot, device: ForceSensorDevice, phase: float = 0.0, **options: Any) -> None:
+    def __init__(self, robot: Robot, device: ForceSensorDevice, phase: float = PHASE, **options: Any) -> None:
         super().__init__("force_sensor", **{**NODE_OPTIONS, **options})
         self._device = device
         self._limits = WrenchLimits.of(robot.force_sensor)

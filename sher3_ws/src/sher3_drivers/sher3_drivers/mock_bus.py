@@ -63,6 +63,7 @@ class _Channel:
         self.link = link
         self.queue: deque[tuple[int, int, bytes]] = deque()
         self.drives: list[MockDrive] = []
+        self.axes: list[int] = []
         self.by_node: dict[int, list[MockDrive]] = {}
         self.synced = False
         self.synced_at = 0
@@ -118,10 +119,13 @@ class MockDriveBus:
         scales: dict[str, AxisScale] = {
             actuator.name: AxisScale.from_actuator(actuator) for actuator in robot.actuators
         }
+        self._senders: list[Callable[[bytes], None]] = []
         by_name: dict[str, MockDrive] = {}
         for index, (channel, part) in enumerate(zip(self._channels, settings.channels, strict=True)):
+            channel.axes = [ACTUATORS.index(name) for name in part.drives]
+            self._senders.append(self._sender(index))
             for name in part.drives:
-                drive = MockDrive(scales[name], 1 + ACTUATORS.index(name), self._sender(index))
+                drive = MockDrive(scales[name], 1 + ACTUATORS.index(name), self._senders[index])
                 channel.drives.append(drive)
                 channel.by_node[drive.node_id] = [drive]
                 by_name[name] = drive
@@ -205,9 +209,9 @@ class MockDriveBus:
         for index, channel in enumerate(self._channels):
             if channel.synced:
                 channel.synced = False
-                part = b"".join([frames[drive.scale.name] for drive in channel.drives])
+                part = b"".join([frames[axis] for axis in channel.axes])
                 if part:
-                    self._sender(index)(part)
+                    self._senders[index](part)
         self.ticks += 1
         self._stepped_at = now
 
@@ -217,11 +221,14 @@ class MockDriveBus:
         self._plant_step()
         self.free_steps += 1
 
-    def _plant_step(self) -> dict[str, bytes]:
-        reading = self._plant.step([drive.demand(self._period) for drive in self._in_order])
-        columns = [_floats(c) for c in (reading.motor_position, reading.load_position, reading.demand, reading.effort)]
-        axes = zip(self.drives.items(), *columns, strict=True)
-        return {name: drive.sample(Feedback(*axis)) for (name, drive), *axis in axes}
+    def _plant_step(self) -> list[bytes]:
+        """Step the plant with the drives' demands; return the TPDOs of every drive."""
+        drives = self._in_order
+        reading = self._plant.step([drive.demand(self._period) for drive in drives])
+        columns = map(_floats, (reading.motor_position, reading.load_position, reading.demand, reading.effort))
+        return [
+            drive.sample(Feedback._make(axis)) for drive, axis in zip(drives, zip(*columns, strict=True), strict=True)
+        ]
 
     def close(self) -> None:
         """Leave every channel."""

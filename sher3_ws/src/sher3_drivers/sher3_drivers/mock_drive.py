@@ -23,6 +23,7 @@ from .units import SI_UNIT_VELOCITY, AxisScale
 NOT_READY, SWITCH_ON_DISABLED, READY, SWITCHED_ON, ENABLED = 0x00, 0x40, 0x21, 0x23, 0x27
 QUICK_STOP, FAULT_REACTION, FAULT = 0x07, 0x0F, 0x08
 _VOLTAGE_REMOTE, _LIMIT_ACTIVE, _FOLLOWS = 0x0210, 0x0800, 0x1000
+_UNIT = Address(0x60A9, 0)
 _FORMATS = {"u8": "B", "i8": "b", "u16": "H", "i16": "h", "u32": "I", "i32": "i"}
 
 
@@ -181,29 +182,30 @@ class MockDrive:
     def demand(self, period: float) -> float:
         """Return the velocity demand of the next interval, m/s or rad/s: the target if enabled, else a ramp to zero."""
         values = self.node.values
-        micro = values[Address(0x60A9, 0)] == SI_UNIT_VELOCITY
+        micro = 1 if values[_UNIT] == SI_UNIT_VELOCITY else 1_000_000
         self._limited = False
         if self.state == ENABLED and values[od.MODE_DISPLAY] == CYCLIC_SYNCHRONOUS_VELOCITY:
-            limit = values[od.MAX_MOTOR_SPEED] * (1_000_000 if micro else 1)
+            limit = values[od.MAX_MOTOR_SPEED] * 1_000_000 // micro
             target = values[od.TARGET_VELOCITY]
-            self._demand = max(-limit, min(limit, target))
-            self._limited = self._demand != target
+            self._limited = not -limit <= target <= limit
+            self._demand = max(-limit, min(limit, target)) if self._limited else target
         elif self._demand:
-            step = int(values[od.QUICK_STOP_DECELERATION] * period * (1_000_000 if micro else 1))
+            step = int(values[od.QUICK_STOP_DECELERATION] * period * 1e6 / micro)
             self._demand = max(0, self._demand - step) if self._demand > 0 else min(0, self._demand + step)
         if self.state == FAULT_REACTION and self._demand == 0:
             self.state = FAULT
-        return self._demand * self.scale.velocity * (1.0 if micro else 1e6)
+        return self._demand * self.scale.velocity * micro
 
     def sample(self, feedback: Feedback) -> bytes:
         """Take the feedback of a SYNC and return the synchronous TPDOs as frames."""
         if self.tamper is not None:
             feedback = self.tamper(feedback)
+        motor, load, demand, effort = feedback
         values, scale = self.node.values, self.scale
-        values[od.MOTOR_POSITION] = round(feedback.motor_position / scale.motor_encoder)
-        values[od.LOAD_POSITION] = round(feedback.load_position / scale.load_encoder)
-        values[od.VELOCITY_DEMAND] = round(feedback.velocity_demand / scale.velocity)
-        values[od.TORQUE] = max(-32768, min(32767, round(feedback.effort / scale.effort)))
+        values[od.MOTOR_POSITION] = round(motor / scale.motor_encoder)
+        values[od.LOAD_POSITION] = round(load / scale.load_encoder)
+        values[od.VELOCITY_DEMAND] = round(demand / scale.velocity)
+        values[od.TORQUE] = max(-32768, min(32767, round(effort / scale.effort)))
         values[od.STATUSWORD] = self.statusword
         if not (self.powered and self.node.operational):
             return b""

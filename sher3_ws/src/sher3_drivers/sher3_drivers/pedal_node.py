@@ -17,6 +17,8 @@ from .errors import DeviceMissing
 from .pedal import PedalDevice, PedalState, check_pedal
 
 LOST = PedalState(math.nan, True)
+PHASE = 1e-5
+"""Delay of the reading behind the tick, s: in stepped time the drives' SYNC comes first."""
 REPORT_PERIOD = 0.1
 
 
@@ -29,7 +31,7 @@ class PedalNode(Node):
         phase: delay of the reading behind the tick, s.
     """
 
-    def __init__(self, robot: Robot, device: PedalDevice, phase: float = 0.0, **options: Any) -> None:
+    def __init__(self, robot: Robot, device: PedalDevice, phase: float = PHASE, **options: Any) -> None:
         super().__init__("pedal", **{**NODE_OPTIONS, **options})
         self._device = device
         self._fault: str | None = None
