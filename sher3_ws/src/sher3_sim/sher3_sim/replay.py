@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
-from scipy.ndimage import uniform_filter1d
+from scipy.signal import savgol_filter
 from sher3_bags.run import Run
 from sher3_description import Robot
 from sher3_kinematics.kernel import (
@@ -24,8 +24,8 @@ from sher3_sim.effects.base import Effect
 from sher3_sim.simulate import Array, Excitation, excitation, simulate
 from sher3_sim.tip import cross
 
-SMOOTHING = 9
-"""Ticks over which the recorded wrench is averaged before it acts on the model."""
+SMOOTHING = 11
+"""Ticks over which a parabola is fitted to the recorded wrench before it acts on the model: noise goes, edges stay."""
 
 
 def contact_wrench(run: Run, robot: Robot, smoothing: int = SMOOTHING) -> Array:
@@ -41,7 +41,7 @@ def contact_wrench(run: Run, robot: Robot, smoothing: int = SMOOTHING) -> Array:
     q, sensor = run["measured_js"].position, robot.force_sensor
     place, com = np.array(sensor.position), np.array(sensor.tool_com)
     raw = _to_tip(kernel_parameters(robot), q, readings, sensor.tool_mass * GRAVITY, com, place)
-    return uniform_filter1d(raw, smoothing, axis=0, mode="nearest")
+    return savgol_filter(raw, min(smoothing, (len(raw) - 1) // 2 * 2 + 1), min(2, len(raw) - 1), axis=0)
 
 
 @njit(cache=True)
