@@ -27,8 +27,9 @@ def benchtop(results: Path | None = None) -> Section:
     measured = _read(results) if results is not None else {}
     lines = [_line(name, unit, value, measured) for name, unit, value in quantities()]
     text = (
-        "Accuracy, repeatability, resolution and compliance as measured on the running graph with the two-camera model. "
-        "Values appear once a bench-top evaluation has been run and its results are passed with `--benchtop`."
+        "Accuracy, repeatability, resolution and compliance as measured on the running graph with the two-camera "
+        "model. Values appear once a bench-top evaluation has been run and its results are passed with "
+        "`--benchtop`."
     )
     return Section("benchtop", "Bench-top evaluation", text, lines)
 

@@ -20,8 +20,8 @@ def deflection_compensation() -> Section:
             computed(f"tip error compensated, robot {name}", "um", after, COMMAND, f"{result.left:.1%} is left")
         )
     text = (
-        "The plant holds six random poses under 1 N of hand force in random directions; its links and structure give "
-        "way as the model says, or 20 % more or less. The command is corrected by the modelled deflection of the wrench "
-        "that the noisy force sensor reports."
+        "The plant holds six random poses under 1 N of hand force in random directions; its links and structure "
+        "give way as the model says, or 20 % more or less. The command is corrected by the modelled deflection of "
+        "the wrench that the noisy force sensor reports."
     )
     return Section("compensation", "Force-aware deflection compensation", text, lines)

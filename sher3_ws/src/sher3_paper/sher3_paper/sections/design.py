@@ -28,9 +28,9 @@ def design() -> Section:
     lines.append(computed("time of the exhaustive search", "s", seconds, COMMAND, note))
     tables = [_constraint_table(found), _optimum_table(found), _trend_table(found)]
     text = (
-        "L 60:2:90 mm, w 25:5:40 mm, psi 18:1:32 deg over the cylinder of 55 by 60 mm. GCI is the mean over the disc of "
-        "sigma_min / sigma_max of the Jacobian, T_c the mean secant at 1 N m. Relaxed means: no limits of clearance and "
-        "slider range, and swing measured about the best axis."
+        "L 60:2:90 mm, w 25:5:40 mm, psi 18:1:32 deg over the cylinder of 55 by 60 mm. GCI is the mean over the "
+        "disc of sigma_min / sigma_max of the Jacobian, T_c the mean secant at 1 N m. Relaxed means: no limits of "
+        "clearance and slider range, and swing measured about the best axis."
     )
     shown = found["circumradius"]
     figures: list[tuple[str, dict[str, Any]]] = [

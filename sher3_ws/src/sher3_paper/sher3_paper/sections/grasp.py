@@ -32,10 +32,10 @@ def grasp() -> Section:
         computed("compliance along x behind the links", "um/N", arm.along_x * 1e6, COMMAND),
     ]
     text = (
-        "The link model alone explains under a fifth of the measured compliance; rails, roll, tilt, arm and stand are "
-        "lumped about the platform centre and fitted to the three means. Lever 220 mm along x and 40 mm up, 7 N, "
-        "springs in: assumptions, the variants are in the table. C_x cannot meet its band at every position: it does "
-        "not vary in the model, and the printed 20 and 28 um/N lie 14 % below and 21 % above their own mean."
+        "The link model alone explains under a fifth of the measured compliance; rails, roll, tilt, arm and stand "
+        "are lumped about the platform centre and fitted to the three means. Lever 220 mm along x and 40 mm up, 7 "
+        "N, springs in: assumptions, the variants are in the table. C_x cannot meet its band at every position: it "
+        "does not vary in the model, and the printed 20 and 28 um/N lie 14 % below and 21 % above their own mean."
     )
     figures = [("grasp", {"table": table, "model": model})]
     return Section("grasp", "Compliance of the grasping point", text, lines, [_variants()], figures)

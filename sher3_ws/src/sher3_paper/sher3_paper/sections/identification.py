@@ -33,13 +33,13 @@ def identification() -> Section:
     ]
     lines += _fit_lines("plant, six geometries", identify_from_loops(loops), law["a"], law["b"])
     text = (
-        "Every torque-twist reading is turned into a link force and a link deflection, and a power law is fitted in the "
-        "logarithm, as in the paper. On the plant, whose links follow the printed law, it is recovered. On the table "
-        "the printed values fall with r_p, which the model cannot produce at all: under a pure moment the forces of a "
-        "leg's links cancel, and r_p drops out. In the words of the gap diagnosis that is a gap of stage `structure`, "
-        "family compliance or friction, systematic in r_p and w and so not noise: candidates are friction torque in the "
-        "spherical joints (which a rotation turns by r_p dtheta / L) and lateral compliance of the joints; the table "
-        "alone does not tell them apart."
+        "Every torque-twist reading is turned into a link force and a link deflection, and a power law is fitted in "
+        "the logarithm, as in the paper. On the plant, whose links follow the printed law, it is recovered. On the "
+        "table the printed values fall with r_p, which the model cannot produce at all: under a pure moment the "
+        "forces of a leg's links cancel, and r_p drops out. In the words of the gap diagnosis that is a gap of "
+        "stage `structure`, family compliance or friction, systematic in r_p and w and so not noise: candidates are "
+        "friction torque in the spherical joints (which a rotation turns by r_p dtheta / L) and lateral compliance "
+        "of the joints; the table alone does not tell them apart."
     )
     figures = [("link_law", {"table": table, "loops": loops, "law": truth})]
     return Section("identification", "Identification of the link law", text, lines, [_exponent_table()], figures)

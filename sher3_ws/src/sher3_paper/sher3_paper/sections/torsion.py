@@ -44,9 +44,9 @@ def torsion() -> Section:
     ]
     columns = ["psi [deg]", "r_p [mm]", "w [mm]", "printed", *(f"model, {name}" for name in models)]
     text = (
-        "Torsional compliance of the tested geometries at the centre, link law as printed, one torque for all entries. "
-        "The paper states neither the torque nor the kind of average; with a power law all averages differ by a factor "
-        "alone, so the torque is fitted and stated."
+        "Torsional compliance of the tested geometries at the centre, link law as printed, one torque for all "
+        "entries. The paper states neither the torque nor the kind of average; with a power law all averages differ "
+        "by a factor alone, so the torque is fitted and stated."
     )
     figures = [("torsion", {"table": table, "models": models})]
     return Section("torsion", "Torsional compliance", text, lines, [Table("deg/(N m)", columns, rows)], figures)
