@@ -129,6 +129,8 @@ BAD = {
     Reason.CLOCK: {"wrench_stamp": law_bench.START + 10**12},
 }
 
+NO_FORCE = [reason for reason, changes in BAD.items() if "wrench" in changes]
+
 
 @pytest.mark.parametrize("reason", BAD)
 def test_every_bad_input_stops_in_the_same_tick_and_needs_release_then_press(reason):
@@ -231,3 +233,26 @@ def test_the_step_is_pure():
     assert a == b
     assert one.state == two.state
     assert one.state.s1 != ZERO_WRENCH
+
+
+event = st.tuples(st.sampled_from([0.0, 0.07, 1.0]), st.sampled_from([None, None, None, *BAD]))
+
+
+@given(st.lists(event, max_size=60))
+@settings(max_examples=100, deadline=None)
+def test_motion_is_allowed_exactly_after_release_then_press_with_nothing_to_object_to(history):
+    """Against a model of three sentences: a bad tick disarms, a released good one arms, a pressed armed one moves."""
+    bench = LawBench()
+    bench.k = 20
+    armed = pressed = False
+    for travel, bad in history:
+        bad = None if bad is Reason.PEDAL_RELEASED else bad
+        push = {} if bad in NO_FORCE else {"force": (3.0, 0.0, 0.0)}
+        out = bench.tick(**{"travel": travel, **push, **(BAD[bad] if bad else {})})
+        if bad is not None:
+            armed = pressed = False
+        else:
+            pressed = travel > 0.05 if pressed else travel >= 0.1
+            armed = armed or not pressed
+        assert (out.reason is Reason.MOVING) == (bad is None and armed and pressed)
+        assert out.reason is Reason.MOVING or out.twist == ZERO_TWIST
