@@ -16,6 +16,8 @@ def driver_report(driver: MotorDriver, refused: str | None = None) -> tuple[int,
         refused: the newest refusal, if there was one.
     """
     values = [(name, str(count)) for name, count in driver.counters.items()]
+    collector = driver.collector
+    values += [("duplicate_tpdos", str(collector.duplicates)), ("misfit_tpdos", str(collector.misfits))]
     values += [("dropped", str(driver.dropped)), ("goal", driver.goal.value), ("later_stops", str(driver.stop.later))]
     for channel, condition in zip(driver.settings.channels, driver.bus_conditions, strict=True):
         values.append((f"{channel.link}", condition.name))
@@ -37,6 +39,8 @@ def _verdict(driver: MotorDriver, refused: str | None) -> tuple[int, str]:
     worst = max(driver.bus_conditions)
     if worst > BusCondition.ACTIVE:
         return WARNING, f"CAN controller {worst.name}"
-    if driver.dropped or driver.counters["incomplete"] or driver.counters["refused"]:
-        return WARNING, refused or "frames or ticks were lost"
+    if refused is not None:
+        return WARNING, refused
+    if driver.dropped or driver.counters["incomplete"] or driver.collector.duplicates or driver.collector.misfits:
+        return WARNING, "frames were lost, came late, twice or misshapen"
     return OK, driver.goal.value

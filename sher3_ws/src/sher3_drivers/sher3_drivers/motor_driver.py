@@ -15,9 +15,9 @@ from sher3_description import ACTUATORS, Robot
 from . import drive_objects as od
 from .bus import CanLink, LinkGroup
 from .can_errors import BusCondition, decode_error
-from .canopen_master import CanopenMaster
 from .cia402 import Command, Goal, State, next_command
 from .drive_health import OPERATIONAL, DriveHealth, StopLog
+from .drive_setup import set_up_drives
 from .errors import CommandRefused, DriverError, LinkError
 from .feedback import Feedback, TpdoCollector, Vector
 from .frame import ERROR_FLAG, HEADER_FORMAT, Frame, pack_frame
@@ -45,6 +45,7 @@ class MotorDriver:
         goal: where the drives are being taken.
         stop: why the driver stopped by itself, if it did.
         health: one record per drive.
+        collector: the TPDOs of the present tick, and those that came twice or with a wrong length.
         counters: frames and ticks that were lost or refused, by name.
         bus_conditions: health of every channel's controller.
     """
@@ -68,7 +69,7 @@ class MotorDriver:
         self._scales = [AxisScale.from_actuator(actuator) for actuator in robot.actuators]
         self._node_ids = [1 + i for i in range(len(ACTUATORS))]
         self._axes = [[ACTUATORS.index(name) for name in channel.drives] for channel in settings.channels]
-        self._collector = TpdoCollector(self._scales, self._node_ids, settings.period)
+        self.collector = TpdoCollector(self._scales, self._node_ids, settings.period)
         self._period_ns = round(settings.period * 1e9)
         self._feedback_ns = round(settings.feedback_limit * settings.period * 1e9)
         self._braking_time = max(a.limits.velocity / a.limits.acceleration for a in robot.actuators)
@@ -94,19 +95,7 @@ class MotorDriver:
             DriveSilent: a drive does not answer.
             DriveMismatch: a drive does not hold what it must. Nothing is enabled, no drive becomes OPERATIONAL.
         """
-        masters = [
-            CanopenMaster(link, {ACTUATORS[i]: self._node_ids[i] for i in axes}, self.settings.sdo_limit)
-            for link, axes in zip(self._group.links, self._axes, strict=True)
-        ]
-        for master in masters:
-            master.reset(patience)
-        for master in masters:
-            for name, node_id in master.drives.items():
-                scale = self._scales[node_id - 1]
-                writes = od.required_writes(node_id, scale, self.settings)
-                master.configure(name, writes, od.required_values(node_id, scale, self.settings))
-        for master in masters:
-            master.start(self.settings.drive_heartbeat_limit)
+        set_up_drives(self._group.links, self.settings, self._scales, patience)
 
     def enable(self) -> None:
         """Take the drives to OPERATION ENABLED, over the next ticks.
@@ -183,7 +172,7 @@ class MotorDriver:
         for _ in range(_BATCHES):
             if not self._receive():
                 break
-        self._collector.begin()
+        self.collector.begin()
         self._stamp = stamp
         self._ticks += 1
         now = self._clock()
@@ -197,20 +186,20 @@ class MotorDriver:
 
     def collect_positions(self) -> Vector | None:
         """Return the load encoder positions (5,) of this tick as soon as they are in; None when one stays away."""
-        return self._collector.load_position() if self._collect(self._collector.positions_mask) else None
+        return self.collector.load_position() if self._collect(self.collector.positions_mask) else None
 
     def collect(self) -> Feedback | None:
         """Return the whole feedback of this tick, None when a TPDO stays away; watch, and steer drives not enabled.
 
         A tick with a TPDO missing has no feedback: nothing is invented. After `missing_limit` of them the robot stops.
         """
-        complete = self._collect(self._collector.all_mask)
+        complete = self._collect(self.collector.all_mask)
         now = self._clock()
-        missing = set() if complete else set(self._collector.missing())
+        missing = set() if complete else set(self.collector.missing())
         for axis, health in enumerate(self.health):
             if missing or health.missing:
                 health.on_tick(axis in missing)
-            word = self._collector.statuswords[axis]
+            word = self.collector.statuswords[axis]
             if word is not None and word != health.word and axis not in missing:
                 self._stop_if(health.on_statusword(word, now))
         self._all_enabled = all([health.state is State.OPERATION_ENABLED for health in self.health])
@@ -218,15 +207,15 @@ class MotorDriver:
         self._watch(now)
         if not self.enabled:
             self._steer()
-        return self._collector.feedback(self._stamp) if complete else None
+        return self.collector.feedback(self._stamp) if complete else None
 
     def _collect(self, mask: int) -> bool:
         deadline = self._synced_at + self._feedback_ns
-        while not self._collector.has(mask):
+        while not self.collector.has(mask):
             left = deadline - self._clock()
             came = self._receive(left * 1e-9)
             if left <= 0 or not (came or self._group.waits):
-                return self._collector.has(mask)
+                return self.collector.has(mask)
         return True
 
     def command(self, stamp: int, velocity: Sequence[float]) -> bool:
@@ -282,7 +271,7 @@ class MotorDriver:
         """Take in what waits, waiting at most `timeout` s for it; False when nothing came."""
         received = self._group.receive(timeout)
         for channel, frames in received:
-            for can_id, data in self._collector.take(frames):
+            for can_id, data in self.collector.take(frames):
                 self._on_other(channel, can_id, data)
         if len(self._group.failures) > self._dead_links:
             self._dead_links = len(self._group.failures)

@@ -315,6 +315,17 @@ def test_a_drive_that_restarts_stops_all(rig):
     assert "restarted" in rig.driver.stop.reason or "TPDO" in rig.driver.stop.reason
 
 
+@pytest.mark.parametrize(("state", "stops"), [(127, True), (4, True), (0, True), (5, False)])
+def test_a_heartbeat_of_a_drive_that_is_not_operational_stops_all(rig, state, stops):
+    """Its TPDOs may still come: the drive is on its way out."""
+    for _ in range(30):
+        rig.tick(SLOW)
+    rig.device_links[0].send_frames(pack_frame(0x702, bytes([state])))
+    rig.tick(SLOW)
+    assert (rig.driver.stop.reason is not None) == stops
+    assert not stops or rig.driver.stop.reason.startswith(f"delta_2: NMT state {state}")
+
+
 @pytest.mark.parametrize("condition", [BusCondition.PASSIVE, BusCondition.OFF])
 def test_error_passive_and_bus_off_stop_all(rig, condition):
     rig.tick(SLOW)
@@ -436,6 +447,20 @@ def test_reset_needs_a_stop_and_enabling_needs_a_reset(rig):
     rig.tick(SLOW)
 
 
+def test_enabling_is_refused_in_fault_without_a_stop(make_rig):
+    rig = make_rig()
+    rig.driver.configure()
+    rig.mock.drives["delta_3"].state = mock_drive.FAULT
+    rig.tick()
+    assert rig.driver.stop.reason is None
+    with pytest.raises(CommandRefused, match="delta_3"):
+        rig.driver.enable()
+    rig.driver.reset()
+    rig.tick()
+    rig.tick()
+    rig.enable()
+
+
 def test_a_fault_is_reset_by_one_rising_edge_and_leaves_the_drive_disabled(rig):
     words = []
     drive = rig.mock.drives["delta_2"]
@@ -451,6 +476,21 @@ def test_a_fault_is_reset_by_one_rising_edge_and_leaves_the_drive_disabled(rig):
     assert words.count(0x80) == 1
     assert rig.states() == {"SWITCH_ON_DISABLED"} and rig.driver.stop.reason is None
     rig.enable()
+
+
+def test_a_fault_after_a_recovery_needs_a_reset_of_its_own(rig):
+    drive = rig.mock.drives["roll"]
+    drive.fault(0x2310)
+    for _ in range(10):
+        rig.tick()
+    rig.driver.reset()
+    for _ in range(10):
+        rig.tick()
+    rig.enable()
+    drive.fault(0x2310)
+    for _ in range(20):
+        rig.tick()
+    assert drive.state == mock_drive.FAULT and rig.driver.stop.reason.startswith("roll")
 
 
 def test_the_first_reason_is_kept_and_later_ones_counted(rig):
