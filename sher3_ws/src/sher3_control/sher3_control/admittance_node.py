@@ -48,7 +48,7 @@ class AdmittanceNode(Node):
         self._joints: tuple[int, tuple[float, ...], float, float] = (-1, (), 0.0, 0.0)
         self._state_heard = HeardState(self.settings.supervisor.publish_period)
         self._owner = False
-        self._tick_count, self._last = 0, -1
+        self._tick_count, self._last, self._since = 0, -1, -1
         self._reason: Reason | None = None
         self._window = TareWindow(robot, self.settings.tare)
         self._drift = DriftMonitor(self.settings.tare, robot.control_period)
@@ -74,7 +74,7 @@ class AdmittanceNode(Node):
         subscribe(self, "command/admittance", self._on_command)
         self.create_service(Trigger, "admittance/tare", self._on_tare)
         self._now = clock_of(self).now
-        on_tick(self, self._tick, phase=LATE * period)
+        self._late = on_tick(self, self._tick, phase=LATE * period)
         every = max(1, round(self.settings.supervisor.publish_period / period))
         on_tick(self, lambda _stamp: self._report(), phase=LATE * period, every=every)
         self._publish_settings(TextSample(to_json(self._live, self.settings)))
@@ -106,6 +106,7 @@ class AdmittanceNode(Node):
         if stamp <= self._last:
             return
         self._last = stamp
+        self._late.done(stamp)
         law_input = self._input(stamp)
         self._state, output = step(self._state, law_input, self._p)
         if law_input.owner:
@@ -116,7 +117,7 @@ class AdmittanceNode(Node):
         if output.reason is Reason.PEDAL_RELEASED:
             self._drift.feed(output.wrench)
         if output.reason is not self._reason:
-            self._reason = output.reason
+            self._reason, self._since = output.reason, stamp
             self._drift.reset()
             self._report()
 
@@ -166,5 +167,5 @@ class AdmittanceNode(Node):
         self._events.update(event)
         reason = Reason.NOT_ENABLED if self._reason is None else self._reason
         drift = {"drift": self._drift.drift, "drift_exceeded": self._drift.exceeded()}
-        status = {"reason": reason.name, "text": TEXT[reason], "since": self._last, **drift, **self._events}
+        status = {"reason": reason.name, "text": TEXT[reason], "since": self._since, **drift, **self._events}
         self._publish_status(TextSample(json.dumps(status, default=str)))

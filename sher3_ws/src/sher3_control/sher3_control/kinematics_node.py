@@ -70,7 +70,7 @@ class KinematicsNode(Node):
         for mode in COMMANDS:
             subscribe(self, f"command/{mode.value}", self._command(mode))
         self._now = clock_of(self).now
-        on_tick(self, self._tick, phase=LATE * period)
+        self._late = on_tick(self, self._tick, phase=LATE * period)
         self._report_settings()
         self._report(Reason.NOT_ENABLED, "")
 
@@ -105,6 +105,7 @@ class KinematicsNode(Node):
         if stamp <= self._last:
             return
         self._last = stamp
+        self._late.done(stamp)
         state = self._input(stamp)
         output = self.motion.tick(state)
         self._publish_velocity(JointSample(stamp, velocity=output.velocity))
