@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 import sys
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 
 from sher3_bags.errors import TopicError
@@ -30,6 +30,12 @@ _DEFINITIONS = {
         "std_msgs/Header header\nstring[] name\nfloat64[] position\nfloat64[] velocity\nfloat64[] effort"
     ),
     "sensor_msgs/Joy": "std_msgs/Header header\nfloat32[] axes\nint32[] buttons",
+    "diagnostic_msgs/KeyValue": "string key\nstring value",
+    "diagnostic_msgs/DiagnosticStatus": (
+        "byte OK=0\nbyte WARN=1\nbyte ERROR=2\nbyte STALE=3\n"
+        "byte level\nstring name\nstring message\nstring hardware_id\nKeyValue[] values"
+    ),
+    "diagnostic_msgs/DiagnosticArray": "std_msgs/Header header\nDiagnosticStatus[] status",
     "sensor_msgs/Temperature": "std_msgs/Header header\nfloat64 temperature\nfloat64 variance",
 }
 
@@ -122,7 +128,7 @@ def field_lines(text: str) -> list[str]:
     return [line for line in lines if line]
 
 
-@cache
+@lru_cache(maxsize=64)
 def same_definition(schema: str, type_name: str) -> bool:
     """Whether a schema declares the fields of our definition: same types, names and order; defaults do not matter."""
     return _declarations(schema) == _declarations(schema_text(type_name))

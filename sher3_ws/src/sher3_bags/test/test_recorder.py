@@ -2,14 +2,17 @@
 
 import os
 import signal
+import struct
 import subprocess
 import sys
 
 import pytest
+from mcap.reader import make_reader
+from rosbags.highlevel import AnyReader
 from sher3_bags import BagError, Recorder, RunMetadata, TopicError, read_run, recover
 from sher3_bags.cdr_encode import encode
 from sher3_bags.gaps import GapCounter
-from sher3_description import load_robot
+from sher3_description import TOPICS, load_robot
 
 ROBOT = load_robot()
 
@@ -44,6 +47,26 @@ def test_recorded_equals_given(tmp_path, run, same_streams):
     assert '"numpy"' in record["versions"]
     assert record["git"]
     assert '"dropped": 0' in again.records["sher3.recording"]["measured_js"]
+
+
+def test_independent_readers_open_a_recording(tmp_path, run):
+    """Also with a type whose definition comes from the installed message files."""
+    with Recorder(tmp_path / "bag", ROBOT) as recorder:
+        feed(recorder, run)
+        # Header with stamp 1 s and empty frame, no status entries.
+        recorder.write("diagnostics", bytes((0, 1, 0, 0)) + struct.pack("<iIIBxxxI", 1, 0, 1, 0, 0), 5)
+        counts = recorder.counts()
+    with AnyReader([tmp_path / "bag"]) as reader:
+        found = {topic: info.msgcount for topic, info in reader.topics.items()}
+        messages = {c.topic: reader.deserialize(raw, c.msgtype) for c, _, raw in reader.messages()}
+    assert found == {TOPICS[name].full_name: entry["messages"] for name, entry in counts.items()}
+    assert messages["/diagnostics"].status == []
+    assert messages["/sher3/operating_state"].data == "ENABLED, größer"
+    with (tmp_path / "bag" / "bag.mcap").open("rb") as file:
+        mcap = make_reader(file, validate_crcs=True)
+        assert sum(1 for _ in mcap.iter_messages()) == sum(found.values())
+        assert [m.name for m in mcap.iter_metadata()] == ["sher3.run", "sher3.provenance", "sher3.recording"]
+    assert read_run(tmp_path / "bag").skipped == {"/diagnostics": "outside /sher3"}
 
 
 def test_drops_are_counted_per_source_and_kept_in_the_bag(tmp_path, run):

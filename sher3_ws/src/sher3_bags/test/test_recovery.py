@@ -1,9 +1,11 @@
 """A bag cut anywhere gives back every whole chunk, and says what is lost."""
 
 import struct
+from pathlib import Path
 
 import numpy as np
 import pytest
+from rosbags.highlevel import AnyReader
 from sher3_bags import BagError, DamagedBagError, ForeignBagError, read_run, recover, write_run
 
 NAMES = {
@@ -88,6 +90,15 @@ def test_what_remains_is_unchanged(tmp_path, whole, same_streams, build):
         assert (table.stamp == run[topic].stamp[:n]).all()
         for name, column in run[topic].columns.items():
             assert np.array_equal(table.columns[name], column[:n])
+
+
+def test_independent_readers_open_what_is_recovered(tmp_path, whole):
+    path = tmp_path / "cut.mcap"
+    path.write_bytes(whole[: len(whole) * 2 // 3])
+    recovery = recover(path)
+    with AnyReader([Path(recovery.target)]) as reader:
+        assert reader.message_count == sum(recovery.messages.values())
+        assert sum(reader.deserialize(raw, c.msgtype) is not None for c, _, raw in reader.messages()) > 1000
 
 
 def test_a_corrupt_chunk_in_the_middle_is_left_out(tmp_path, whole):

@@ -12,7 +12,7 @@ from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader
 from sher3_bags import BagError, Case, TopicError, read_case, read_run, stream, write_case, write_run
 from sher3_bags.messages import TYPES, same_definition, schema_text
-from sher3_description import load_robot
+from sher3_description import TOPICS, load_robot
 
 
 @pytest.mark.parametrize("name", ["bag", "bag.mcap"])
@@ -91,9 +91,12 @@ def test_metadata_yaml_says_what_rosbag2_needs(tmp_path, run):
     assert names["/sher3/measured_js"] == 400
 
 
-@pytest.mark.parametrize("type_name", sorted(TYPES))
+@pytest.mark.parametrize("type_name", sorted({*TYPES, *(topic.type for topic in TOPICS.values())}))
 def test_definitions_are_those_of_the_installed_messages(type_name, monkeypatch):
-    ours = schema_text(type_name)
+    schema_text.cache_clear()
+    with monkeypatch.context() as without_files:
+        without_files.setattr("sys.prefix", "/nowhere")
+        ours = schema_text(type_name)
     monkeypatch.setattr("sher3_bags.messages._DEFINITIONS", {})
     schema_text.cache_clear()
     try:
