@@ -38,9 +38,10 @@ class MotorDriverSettings(_Part):
         drive_heartbeat: period of the drives' heartbeats, s.
         drive_heartbeat_limit: silence after which the host gives a drive up, s.
         feedback_limit: longest wait for the TPDOs of a tick, as a share of the period.
-        missing_limit: consecutive ticks with a missing TPDO after which the driver stops the robot.
+        missing_limit: consecutive ticks with a missing TPDO after which the driver stops the robot. Motion ends
+            before: such ticks are not published, the controller falls silent, and `zero_age` acts.
         zero_age: age of the newest command after which zero velocity is sent, in periods.
-        stop_age: age after which the drives are quick-stopped, in periods.
+        stop_age: age after which the drives are quick-stopped, in periods; wide, since zero is being sent by then.
         transition_limit: longest time for one CiA 402 transition, s.
         sdo_limit: longest wait for an SDO response, s.
     """
@@ -53,9 +54,9 @@ class MotorDriverSettings(_Part):
     drive_heartbeat: Seconds = 0.050
     drive_heartbeat_limit: Seconds = 0.200
     feedback_limit: Annotated[float, Field(gt=0.0, lt=1.0)] = 0.7
-    missing_limit: Annotated[int, Field(ge=1, le=1000)] = 3
+    missing_limit: Annotated[int, Field(ge=1, le=1000)] = 10
     zero_age: Annotated[int, Field(ge=1, le=1000)] = 4
-    stop_age: Annotated[int, Field(ge=1, le=1000)] = 10
+    stop_age: Annotated[int, Field(ge=1, le=1000)] = 50
     transition_limit: Seconds = 0.5
     sdo_limit: Seconds = 0.3
 

@@ -55,7 +55,7 @@ class Drives:
             self.graph.settle()
 
     def report(self):
-        self.graph.step(60)
+        self.graph.step(120)
         return [s for s in self.probe.samples["diagnostics"] if s.name.startswith("motor_driver")][-1]
 
 
