@@ -72,7 +72,7 @@ class KinematicsNode(Node):
         self._now = clock_of(self).now
         self._late = on_tick(self, self._tick, phase=LATE * period)
         self._report_settings()
-        self._report(Reason.NOT_ENABLED, "")
+        self._report(MotionOutput(RESTING, None, Reason.NOT_ENABLED))
 
     def _on_joints(self, sample: JointSample) -> None:
         if sample.position is None or len(sample.position) != 5:
@@ -112,7 +112,7 @@ class KinematicsNode(Node):
         if output.setpoint is not None:
             self._publish_setpoint(JointSample(stamp, *output.setpoint))
         self._record(state, output)
-        self._report(output.reason, output.limited_by)
+        self._report(output)
 
     def _record(self, i: MotionInput, output: MotionOutput) -> None:
         mode = MODE_CODES[self.motion.ownership.owner]
@@ -150,19 +150,28 @@ class KinematicsNode(Node):
             self._refused = shown
             self._shown = ()
 
+    def _singularity(self, reason: Reason) -> dict[str, Any] | None:
+        """Return how near which singularity is, for a stop at one."""
+        q = self._joints.position
+        if reason is not Reason.SINGULAR or q is None:
+            return None
+        return self.motion.velocity_modes.kinematics.singularity_distance(q)._asdict()
+
     def _report_settings(self) -> None:
         centre = self.motion.velocity_modes.centre
         rcm = None if centre is None else centre.tolist()
         data = {"version": self._version, "rcm": rcm, "settings": self.settings.motion.model_dump()}
         self._publish_settings(TextSample(json.dumps(data)))
 
-    def _report(self, reason: Reason, limited_by: str) -> None:
+    def _report(self, output: MotionOutput) -> None:
         """Publish the status when it changes; the acceleration limit comes and goes too often to be news."""
+        reason, limited_by = output.reason, output.limited_by
         owner = self.motion.ownership.owner
         shown = (owner, reason, self.motion.busy, "" if limited_by == "acceleration" else limited_by)
         if shown == self._shown:
             return
         self._shown = shown
-        status = {"mode": None if owner is None else owner.value, "since": self.motion.ownership.since}
+        status: dict[str, Any] = {"mode": None if owner is None else owner.value, "since": self.motion.ownership.since}
         status |= {"reason": reason.name, "text": TEXT[reason], "limited_by": shown[3], "is_busy": shown[2]}
+        status |= {"rcm_deviation": output.deviation, "singularity": self._singularity(reason)}
         self._publish_status(TextSample(json.dumps({**status, "refused": self._refused})))

@@ -42,12 +42,21 @@ class MotionInput(NamedTuple):
 
 
 class MotionOutput(NamedTuple):
-    """Result of one tick: commanded velocity (5,), reference of a position mode, and why there is no motion."""
+    """Result of one tick.
+
+    Attributes:
+        velocity: commanded actuator velocity (5,).
+        setpoint: reference position and velocity of a position mode.
+        reason: why there is no motion.
+        limited_by: what limits it, see `sher3_kinematics.InverseVelocity`.
+        deviation: distance of the shaft from the remote centre [m], 0 without one.
+    """
 
     velocity: Vector
     setpoint: tuple[Vector, Vector] | None
     reason: Reason
     limited_by: str = ""
+    deviation: float = 0.0
 
 
 class MotionController:
@@ -136,7 +145,7 @@ class MotionController:
             return self._stop(i.stamp, step.reason)
         output = self._carry_out(step, i)
         if output.reason is not Reason.MOVING:
-            return self._stop(i.stamp, output.reason)
+            return self._stop(i.stamp, output.reason, output.deviation)
         if step.finished:
             self.ownership.release(i.stamp)
         self.previous = output.velocity
@@ -159,9 +168,9 @@ class MotionController:
             return self._stop(i.stamp, reason)
         result = self.velocity_modes.from_twist(i.q, i.twist, self.previous)
         if result.reason is not Reason.MOVING:
-            return self._stop(i.stamp, result.reason)
+            return self._stop(i.stamp, result.reason, result.deviation)
         self.previous = result.velocity
-        return MotionOutput(result.velocity, None, result.reason, result.limited_by)
+        return MotionOutput(result.velocity, None, result.reason, result.limited_by, result.deviation)
 
     def _carry_out(self, step: Step, i: MotionInput) -> MotionOutput:
         if step.setpoint is not None:
@@ -174,9 +183,9 @@ class MotionController:
             result = self.velocity_modes.from_twist(i.q, step.twist, self.previous)
         else:
             return MotionOutput(RESTING, None, Reason.MOVING)
-        return MotionOutput(result.velocity, None, result.reason, result.limited_by)
+        return MotionOutput(result.velocity, None, result.reason, result.limited_by, result.deviation)
 
-    def _stop(self, now: int, reason: Reason) -> MotionOutput:
+    def _stop(self, now: int, reason: Reason, deviation: float = 0.0) -> MotionOutput:
         owner = self.ownership.owner
         if owner in self._modes:
             self._modes[owner].reset()
@@ -184,4 +193,4 @@ class MotionController:
         self._rearm = self._rearm or reason is not Reason.NOT_ENABLED
         self.ownership.release(now)
         self.previous = RESTING
-        return MotionOutput(RESTING, None, reason)
+        return MotionOutput(RESTING, None, reason, "", deviation)

@@ -272,3 +272,15 @@ def test_remote_centre_commands():
     motion.cooperative_wants(True, START)
     with pytest.raises(SettingsError, match="pedal"):
         apply_rcm_command(motion, "rcm off", REST)
+
+
+@pytest.mark.parametrize("centre", [False, True])
+def test_where_the_kinematics_fail_the_robot_stops_and_says_so(centre):
+    bench = Bench()
+    if centre:
+        apply_rcm_command(bench.motion, "rcm here 0.018", REST)
+    bench.motion.cooperative_wants(True, bench.now)
+    out = bench.tick(twist=PUSH, q=(0.038, -0.038, -0.038, 0.0, 0.0))
+    assert out.velocity == REST
+    assert out.reason in ((Reason.SINGULAR, Reason.OFF_CENTRE) if centre else (Reason.SINGULAR,))
+    assert bench.tick(twist=PUSH).reason is Reason.NOT_REARMED
