@@ -11,10 +11,13 @@ from sher3_description import Robot, Sher3Error
 
 from .arrays import vector
 from .deflection import DeltaDeflection
+from .deflection_kernel import point_deflection
 from .link_law import LinkLaw
 from .robot_kinematics import RobotKinematics
 
 Floats = NDArray[np.float64]
+ABSURD_FORCE = 1e6
+"""Link force [N] that no load within the sensor's range causes except near a singularity."""
 
 
 class LoadBeyondRange(Sher3Error):
@@ -74,6 +77,9 @@ class TipDeflection:
         sensor = robot.force_sensor
         self._range = np.array([*sensor.range_force, *sensor.range_torque])
         self._sensor_position = np.array(sensor.position)
+        law = self.delta.law
+        self._law = np.array([law.a * law.factor, law.b, law.force_floor**2])
+        self._arm = np.array([1.0 / self.arm.pitch, 1.0 / self.arm.yaw, self.arm.along_x])
 
     def at_point(self, centre: Floats, lever: Floats, wrench: Floats) -> Floats:
         """Return the deflection (..., 6) of a point under a wrench (..., 6) that acts there.
@@ -99,7 +105,19 @@ class TipDeflection:
         transform = self.kinematics.transform_tip_to_base(positions)
         self._require_measurable(transform[:3, :3], load)
         centre = self.kinematics.delta.forward(positions[:3])
-        return self.at_point(centre, transform[:3, 3] - centre, load)
+        return self._at_point_fast(centre, transform[:3, 3] - centre, load)
+
+    def _at_point_fast(self, centre: Floats, lever: Floats, load: Floats) -> Floats:
+        """Return what `at_point` does, compiled; where links carry absurd forces leave it to `at_point` to say why."""
+        delta = self.delta
+        geometry = delta.platform, delta.base, delta.link_length
+        try:
+            moved, force = point_deflection(*geometry, self._law, self._arm, centre, lever, load)
+        except np.linalg.LinAlgError:
+            return self.at_point(centre, lever, load)
+        if not force < ABSURD_FORCE:
+            return self.at_point(centre, lever, load)
+        return moved
 
     def compensated(
         self, q: Sequence[float] | Floats, wrench: Sequence[float] | Floats, position: Sequence[float] | Floats
@@ -113,7 +131,11 @@ class TipDeflection:
 
     def _require_measurable(self, rotation: Floats, wrench: Floats) -> None:
         force, moment = rotation.T @ wrench[:3], rotation.T @ wrench[3:]
-        seen = np.concatenate((force, moment - np.cross(self._sensor_position, force)))
-        for name, value, limit in zip(("fx", "fy", "fz", "tx", "ty", "tz"), seen, self._range, strict=True):
-            if abs(value) > limit:
-                raise LoadBeyondRange(name, value=float(value), limit=float(limit))
+        x, y, z = self._sensor_position
+        lever = np.array([y * force[2] - z * force[1], z * force[0] - x * force[2], x * force[1] - y * force[0]])
+        seen = np.concatenate((force, moment - lever))
+        if (np.abs(seen) <= self._range).all():
+            return
+        worst = int(np.argmax(np.abs(seen) / self._range))
+        names = ("fx", "fy", "fz", "tx", "ty", "tz")
+        raise LoadBeyondRange(names[worst], value=float(seen[worst]), limit=float(self._range[worst]))

@@ -173,9 +173,9 @@ def test_one_newton_sideways_moves_the_tip_by_a_quarter_of_a_millimetre(robot: R
 
 def test_load_beyond_the_sensor_is_refused(robot: Robot) -> None:
     with pytest.raises(LoadBeyondRange) as caught:
-        TipDeflection(robot)(np.zeros(5), [0, 13.0, 0, 0, 0, 0])
-    assert caught.value.component == "fy"
-    assert caught.value.limit == 12.0
+        TipDeflection(robot)(np.zeros(5), [0, 0, -17.5, 0, 0, 0])
+    assert caught.value.component == "fz"
+    assert (caught.value.value, caught.value.limit) == (pytest.approx(-17.5), 17.0)
     with pytest.raises(LoadBeyondRange):
         TipDeflection(robot)(np.zeros(5), [0, 0, 0, 0, 0, 0.2])
 
@@ -188,6 +188,21 @@ def test_compensation_is_first_order_exact(robot: Robot) -> None:
     corrected = model.kinematics.inverse(model.compensated(q, wrench, target[:3, 3]), -target[:3, 2])
     reached = model.kinematics.transform_tip_to_base(corrected)[:3, 3] + model(corrected, wrench)[:3]
     assert np.abs(reached - target[:3, 3]).max() < 5e-3 * np.abs(model(q, wrench)[:3]).max()
+
+
+def test_compiled_tip_deflection_is_the_vectorised_one(robot: Robot, workspace_q: np.ndarray) -> None:
+    model, rng = TipDeflection(robot), np.random.default_rng(8)
+    for q in workspace_q[:50]:
+        wrench = rng.uniform(-1, 1, 6) * [3, 3, 3, 0.01, 0.01, 0.01]
+        centre = model.kinematics.delta.forward(q[:3])
+        lever = model.kinematics.transform_tip_to_base(q)[:3, 3] - centre
+        assert model(q, wrench) == pytest.approx(model.at_point(centre, lever, wrench), rel=1e-9, abs=1e-15)
+
+
+def test_singular_delta_is_reported_by_the_tip_too(robot: Robot) -> None:
+    narrow = TipDeflection(robot.replace({"delta.leg_width": 1e-9}))
+    with pytest.raises(Singular):
+        narrow(np.zeros(5), [0, 1.0, 0, 0, 0, 0])
 
 
 def test_rigid_arm_does_not_move() -> None:

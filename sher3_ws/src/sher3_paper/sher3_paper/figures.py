@@ -41,6 +41,9 @@ def torsion(table: TorsionTable, models: dict[str, TableModel]) -> Figure:
     axes.plot(ends, ends, "k-", lw=0.8)
     axes.fill_between(ends, ends / 1.27, ends * 1.27, color="0.9", label="27 %", zorder=0)
     axes.set(xscale="log", yscale="log", xlabel="printed T_c [deg/(N m)]", ylabel="modelled T_c [deg/(N m)]")
+    axes.set_xticks([0.2, 0.5, 1, 2, 5], ["0.2", "0.5", "1", "2", "5"])
+    axes.set_yticks([0.2, 0.5, 1, 2, 5], ["0.2", "0.5", "1", "2", "5"])
+    axes.minorticks_off()
     axes.legend()
     return figure
 
@@ -98,6 +101,8 @@ def pareto(found: Search, sets: dict[str, Constraints]) -> Figure:
     k = found.find(CHOSEN)
     axes.plot(compliance[k], found.index[k], "r*", ms=13, label="chosen by the paper")
     axes.set(xlabel="mean T_c at 1 N m [deg/(N m)]", ylabel="GCI", xscale="log")
+    axes.set_xticks([0.1, 0.2, 0.3, 0.5], ["0.1", "0.2", "0.3", "0.5"])
+    axes.minorticks_off()
     axes.legend(fontsize=8)
     return figure
 
