@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 from rclpy.node import Node
 from sher3_description import Robot, Sher3Error
 from sher3_runtime import DiagnosticSample, JoySample, TextSample
-from sher3_runtime.ports import NODE_OPTIONS, advertise, clock_of, on_tick, subscribe
+from sher3_runtime.ports import NODE_OPTIONS, advertise, clock_of, latest, on_tick, subscribe
 
 from .detectors import Detector, EmergencyStopDetector, ReportedFault, SilenceDetector
 from .settings import ControlSettings
@@ -43,8 +43,7 @@ class SupervisorNode(Node):
         self._refused: dict[str, Any] | None = None
         self._publish_state = advertise(self, "operating_state")
         self._publish_status = advertise(self, "supervisor/status")
-        for name in WATCHED:
-            subscribe(self, name, self._feed(name))
+        self._watched = [(self._silence[name], latest(self, name)) for name in WATCHED]
         subscribe(self, "pedal/measured", self._on_pedal)
         subscribe(self, "diagnostics", self._on_diagnostics)
         subscribe(self, "command/state_command", self._on_command)
@@ -54,13 +53,11 @@ class SupervisorNode(Node):
         on_tick(self, self._repeat, phase=0.5 * period, every=max(1, round(self.settings.publish_period / period)))
         self._publish()
 
-    def _feed(self, name: str) -> Callable[[Any], None]:
-        detector = self._silence[name]
-
-        def feed(sample: Any) -> None:
-            detector.last = sample.stamp
-
-        return feed
+    def _look(self) -> None:
+        """Note the newest sample of each watched stream; waking up for all of them would cost more than the rest."""
+        for detector, take in self._watched:
+            if (sample := take()) is not None:
+                detector.last = sample.stamp
 
     def _on_pedal(self, sample: JoySample) -> None:
         self._silence["pedal/measured"].last = sample.stamp
@@ -75,10 +72,12 @@ class SupervisorNode(Node):
             self._check(self._now())
 
     def _check(self, _now: int) -> None:
+        self._look()
         if self.supervisor.check(self._now()):
             self._publish()
 
     def _on_command(self, sample: TextSample) -> None:
+        self._look()
         try:
             self.supervisor.command(sample.text, self._now())
             self._refused = None
