@@ -10,7 +10,7 @@ class AxisSkew(LibraryEffect):
     """Read off the echo tick by tick in `sher3_gap.timing`: the stage is exact and needs no fit."""
 
     id, family, stage = "axis_skew", "timing", "transport"
-    explanation = " one axis gets its commands later than the others.:One drive acts later than the others by a constant: a straight line in space becomes a hook."
+    explanation = "One drive acts later than the others by a constant: a straight line in space becomes a hook."
     siblings = {"drive_lag": "the echo is on time, the force is late"}
 
     def channels(self, site: str) -> tuple[Channel, ...]:

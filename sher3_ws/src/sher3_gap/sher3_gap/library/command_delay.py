@@ -10,7 +10,7 @@ class CommandDelay(LibraryEffect):
     """Read off the echo tick by tick in `sher3_gap.timing`: the stage is exact and needs no fit."""
 
     id, family, stage = "command_delay", "timing", "transport"
-    explanation = " every command reaches the drives late by a constant.:A constant dead time between the host's command and the drives' demand, the same on every axis."
+    explanation = "A constant dead time between the host's command and the drives' demand, the same on every axis."
     siblings = {"drive_lag": "the echo is on time, the force is late"}
 
     def channels(self, site: str) -> tuple[Channel, ...]:

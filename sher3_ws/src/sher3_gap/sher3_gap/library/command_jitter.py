@@ -10,7 +10,9 @@ class CommandJitter(LibraryEffect):
     """Read off the echo tick by tick in `sher3_gap.timing`: the stage is exact and needs no fit."""
 
     id, family, stage = "command_jitter", "timing", "transport"
-    explanation = " commands arrive at irregular times.:The time a command takes varies from tick to tick; the drives hold the old one a little longer or shorter."
+    explanation = (
+        "The time a command takes varies from tick to tick; the drives hold the old one a little longer or shorter."
+    )
     siblings = {"drive_lag": "the echo is on time, the force is late"}
 
     def channels(self, site: str) -> tuple[Channel, ...]:

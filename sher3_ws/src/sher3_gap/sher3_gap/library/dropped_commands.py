@@ -10,7 +10,7 @@ class DroppedCommands(LibraryEffect):
     """Read off the echo tick by tick in `sher3_gap.timing`: the stage is exact and needs no fit."""
 
     id, family, stage = "dropped_commands", "timing", "transport"
-    explanation = " now and then a command does not arrive.:Some ticks the drives hold the previous command for a whole period, as when a frame is lost."
+    explanation = "Some ticks the drives hold the previous command for a whole period, as when a frame is lost."
     siblings = {"drive_lag": "the echo is on time, the force is late"}
 
     def channels(self, site: str) -> tuple[Channel, ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from sher3_gap.report.style import CORRECTED, FLOOR, NOMINAL, figure, place, to_svg, words
+from sher3_gap.report.style import CORRECTED, FLOOR, NOMINAL, figure, place, share, to_svg, words
 from sher3_gap.verdict import Interval, Verdict
 
 
@@ -22,7 +22,7 @@ def closure_bars(verdict: Verdict) -> str | None:
         ax.barh(row, max(closure.value, 0.0), height=0.55, color=color, alpha=0.85)
         if closure.low is not None and closure.high is not None:
             ax.plot([closure.low, closure.high], [row, row], color="#111827", lw=1.4, marker="|", ms=9)
-        ax.text(1.03, row, f"{100 * closure.value:.0f} %", va="center", fontsize=9, color="#111827")
+        ax.text(1.03, row, share(closure.value), va="center", fontsize=9, color="#111827")
     ax.axvline(1.0, color=FLOOR, lw=1.0)
     ax.axvline(0.0, color=FLOOR, lw=1.0)
     ax.axvline(0.5, color=NOMINAL, lw=0.8, ls=":")
