@@ -26,6 +26,7 @@ $(READY): requirements.txt pyproject.toml tools/find-python
 	test -x $(BIN)/python || "$$(tools/find-python)" -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements.txt
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation -e .
+	$(BIN)/python -m sher3_bringup.warm
 	touch $@
 
 clean:

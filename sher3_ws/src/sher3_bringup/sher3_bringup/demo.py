@@ -85,7 +85,7 @@ def _evaluate(
 
     robot = settings.robot()
     say("analysing the recording")
-    run = read_run(bag)
+    run = read_run(bag, check=False)
     analysis = analyse(run, robot)
     picture = draw(run, analysis, bag / "summary.png")
     again = {"servo_cv": replay_admittance(run, robot), "servo_jv": replay_motion(run, robot)}

@@ -158,8 +158,13 @@ class Fleet:
     def __enter__(self) -> Fleet:
         return self
 
-    def __exit__(self, *_: object) -> None:
-        self.stop()
+    def __exit__(self, kind: object, *_: object) -> None:
+        try:
+            self.stop()
+        except NotStopped as error:
+            if kind is None:
+                raise
+            print(f"sher3: {error}", file=sys.stderr)
 
     def _drain(self, member: Member) -> None:
         try:

@@ -96,9 +96,17 @@ def _recorder(settings: RunSettings) -> Any:
 
 
 def _plant(settings: RunSettings) -> Any:
+    from sher3_drivers.netft_server import NetFtServer
     from sher3_sim.plant_node import PlantNode
 
-    return PlantNode(settings.robot())
+    return PlantNode(
+        settings.robot(),
+        settings.drives(),
+        settings.load_effects(),
+        settings.seed,
+        force_device=NetFtServer(settings.force_address()),
+        pedal_device=settings.mock_name(),
+    )
 
 
 _FACTORIES: dict[str, Factory] = {

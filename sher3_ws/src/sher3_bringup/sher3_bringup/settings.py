@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 from sher3_description import Robot, load_robot
@@ -100,6 +100,16 @@ class RunSettings(BaseModel):
         robot = load_robot(self.robot_path)
         return robot.model_copy(update={"control_period": 1.0 / self.rate})
 
+    def load_effects(self) -> list[Any]:
+        """Return the effects of the plant, checked against the robot."""
+        if self.effects is None:
+            return []
+        from sher3_sim.effects import load_effects, with_effects
+
+        effects = load_effects(self.effects)
+        with_effects(self.robot(), effects)
+        return effects
+
     def drives(self) -> MotorDriverSettings:
         """Return the motor driver's settings: CAN channels that can carry the rate."""
         if self.links:
@@ -132,4 +142,5 @@ def checked(**options: object) -> RunSettings:
         raise ConfigurationError(what, remedy="see 'sher3 up --help'") from None
     settings.robot()
     settings.drives().budgets()
+    settings.load_effects()
     return settings

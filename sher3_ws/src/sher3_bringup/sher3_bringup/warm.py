@@ -68,3 +68,14 @@ def _plant(robot: Robot) -> None:
 
 
 _WARM: dict[str, Callable[[Robot], None]] = {"admittance": _admittance, "kinematics": _kinematics, "plant": _plant}
+
+
+def main() -> None:
+    """Fill the cache of compiled code, so that the first start is as fast as the others."""
+    from sher3_description import load_robot
+
+    warm_up(load_robot(), tuple(_WARM))
+
+
+if __name__ == "__main__":
+    main()

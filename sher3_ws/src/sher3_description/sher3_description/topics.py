@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 NAMESPACE = "/sher3"
@@ -45,6 +45,15 @@ class Topic:
     def full_name(self) -> str:
         """The absolute name; `diagnostics` is the only topic outside the namespace (ROS convention)."""
         return f"/{self.name}" if self.name == "diagnostics" else f"{NAMESPACE}/{self.name}"
+
+    @property
+    def subscriber_qos(self) -> Qos:
+        """What the control loop's own subscribers ask for; `qos` is what publishers offer, and a recorder asks for.
+
+        A lost sample of a stream is not repaired: the next one comes sooner, and acknowledging each costs the loop.
+        """
+        stream = self.qos.durability == "volatile" and not self.name.startswith("command/")
+        return replace(self.qos, reliability="best_effort") if stream else self.qos
 
 
 STREAM = Qos()

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from .ports import advertise as advertise
     from .ports import advertise_raw as advertise_raw
     from .ports import clock_of as clock_of
+    from .ports import latest as latest
     from .ports import on_readable as on_readable
     from .ports import on_tick as on_tick
     from .ports import statistics_of as statistics_of
@@ -37,6 +38,7 @@ _DOORS = {
     "advertise": "ports",
     "advertise_raw": "ports",
     "clock_of": "ports",
+    "latest": "ports",
     "on_readable": "ports",
     "on_tick": "ports",
     "statistics_of": "ports",

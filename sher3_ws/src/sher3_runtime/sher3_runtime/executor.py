@@ -28,6 +28,10 @@ IDLE_NS = 100_000_000
 """Longest wait; bounds the time to notice a shutdown that woke nobody."""
 
 
+Take = Callable[[Any], Any]
+Others = dict[str, list[tuple[Any, Take]]]
+
+
 class RawExecutor(Executor):
     """Runs the callbacks of its nodes in the calling thread, in this order: topics, ticks, everything else."""
 
@@ -35,26 +39,27 @@ class RawExecutor(Executor):
         super().__init__(context=context)
         self._held = ExitStack()
         self._wait_set: Any = None
+        self._stale = True
         self._add: list[tuple[Callable[[Any], object], Any]] = []
         self._topics: dict[int, tuple[Callable[..., Any], Any, bool, Callable[[Any], None]]] = {}
-        self._others: dict[str, list[tuple[Any, Callable[[Any], Any]]]] = {}
+        self._others: list[tuple[str, list[tuple[Any, Take]]]] = []
         self._waitables: list[Any] = []
         self._ticks: list[Tick] = []
         self._files: dict[int, Callable[[], None]] = {}
         self._clock_of_ticks: Clock | None = None
         self._period_ns = IDLE_NS
         self._events: list[Any] = []
-        self._added_events: list[Any] = []
+        self._asked: list[Any] = []
         self._events_due_ns = 0
 
     def spin_once(self, timeout_sec: float | None = None) -> None:
         """Wait until something is ready or due, at most `timeout_sec`, and run all of it."""
-        if self._wait_set is None:
+        if self._stale:
             self._rebuild()
         timeout = IDLE_NS if timeout_sec is None or timeout_sec < 0 else min(int(timeout_sec * 1e9), IDLE_NS)
         clock = self._clock_of_ticks
         if clock is not None:
-            timeout = max(0, min(timeout, self._ticks[0].due_ns - clock.now()))
+            timeout = max(0, min(timeout, min([tick.due_ns for tick in self._ticks]) - clock.now()))
         if self._files:
             self._wait_on_files(timeout)
             timeout = 0
@@ -66,7 +71,7 @@ class RawExecutor(Executor):
 
     def settle(self) -> bool:
         """Run what is ready now, without waiting; return whether there was anything (for stepped time)."""
-        if self._wait_set is None:
+        if self._stale:
             self._rebuild()
         files = bool(self._files) and self._wait_on_files(0)
         self._wait(0)
@@ -81,14 +86,23 @@ class RawExecutor(Executor):
     def shutdown(self, timeout_sec: float | None = None) -> bool:
         """Let go of all entities."""
         self._held.close()
-        self._wait_set = None
         return super().shutdown(timeout_sec)
+
+    def wake(self) -> None:
+        """Note that an entity came or went, and wake the wait."""
+        self._stale = True
+        super().wake()
+
+    def add_node(self, node: Node) -> bool:
+        """Run the callbacks of a node from now on."""
+        self._stale = True
+        return super().add_node(node)
 
     def remove_node(self, node: Node) -> None:
         """Stop running the callbacks of a node; its entities are let go of at once."""
         super().remove_node(node)
         self._held.close()
-        self._wait_set = None
+        self._stale = True
 
     # The wait set.
 
@@ -96,23 +110,28 @@ class RawExecutor(Executor):
         """Collect every entity of every node and size the wait set for them."""
         self._held.close()
         nodes = self.get_nodes()
+        self._stale = False
         self._topics, subscriptions = {}, []
-        self._others = {"guard_condition": [], "service": [], "timer": [], "client": []}
+        others: Others = {"guard_condition": [], "service": [], "timer": [], "client": []}
         for node in nodes:
-            deliveries = ports(node).deliveries
+            deliveries, polled = ports(node).deliveries, ports(node).polled
             for sub in node.subscriptions:
-                if self._hold(sub.handle):
+                if sub.handle.pointer not in polled and self._hold(sub.handle):
                     deliver = deliveries.get(sub.handle.pointer, sub.callback)
                     self._topics[sub.handle.pointer] = (sub.handle.take_message, sub.msg_type, sub.raw, deliver)
                     subscriptions.append(sub.handle)
-            self._collect("service", node.services, self._take_service)
-            self._collect("timer", node.timers, self._take_ready_timer)
-            self._collect("client", node.clients, self._take_client)
-            self._collect("guard_condition", node.guards, self._take_guard_condition)
-        self._collect("guard_condition", [g for g in (self._guard, self._sigint_gc) if g is not None], _nothing)
-        self._waitables = [waitable for node in nodes for waitable in node.waitables if self._hold(waitable)]
+            self._collect(others["service"], node.services, self._take_service)
+            self._collect(others["timer"], node.timers, self._take_ready_timer)
+            self._collect(others["client"], node.clients, self._take_client)
+            self._collect(others["guard_condition"], node.guards, self._take_guard_condition)
+        waitables = [waitable for node in nodes for waitable in node.waitables if self._hold(waitable)]
         self._hold(self._context.handle)
-        self._size_wait_set(subscriptions)
+        # Our own guard condition only has to wake the wait: `wake` has marked the wait set as stale already.
+        guards = [
+            guard.handle for guard in (self._guard, self._sigint_gc) if guard is not None and self._hold(guard.handle)
+        ]
+        self._size_wait_set(subscriptions, guards, others, waitables)
+        self._others = [(kind, entities) for kind, entities in others.items() if entities]
         self._schedule(nodes)
 
     def _hold(self, handle: Any) -> bool:
@@ -123,34 +142,36 @@ class RawExecutor(Executor):
             return False
         return True
 
-    def _collect(self, kind: str, entities: Any, take: Callable[[Any], Any]) -> None:
-        self._others[kind].extend((entity, take) for entity in entities if self._hold(entity.handle))
+    def _collect(self, found: list[tuple[Any, Take]], entities: Any, take: Take) -> None:
+        found.extend((entity, take) for entity in entities if self._hold(entity.handle))
 
-    def _size_wait_set(self, subscriptions: list[Any]) -> None:
-        counts = {kind: len(entities) for kind, entities in self._others.items()}
+    def _size_wait_set(self, subscriptions: list[Any], guards: list[Any], others: Others, waitables: list[Any]) -> None:
+        counts = {kind: len(entities) for kind, entities in others.items()}
         counts["subscription"], counts["event"] = len(subscriptions), 0
-        for waitable in self._waitables:
+        counts["guard_condition"] += len(guards)
+        for waitable in waitables:
             more = waitable.get_num_entities()
             for kind in counts:
                 counts[kind] += getattr(more, f"num_{kind}s")
         order = ("subscription", "guard_condition", "timer", "client", "service", "event")
         wait_set = _rclpy.WaitSet(*(counts[kind] for kind in order), self._context.handle)
         self._add = [(wait_set.add_subscription, handle) for handle in subscriptions]
-        for kind, entities in self._others.items():
+        self._add += [(wait_set.add_guard_condition, handle) for handle in guards]
+        for kind, entities in others.items():
             add = getattr(wait_set, f"add_{kind}")
             self._add += [(add, entity.handle) for entity, _ in entities]
         # Most waitables are event handlers nobody waits for; the others (actions) are worth their place.
-        events = [w for w in self._waitables if isinstance(w, EventHandler)]
-        self._add += [(w.add_to_wait_set, wait_set) for w in self._waitables if w not in events]
-        self._wait_set, self._events = wait_set, events
-        self._waitables = [w for w in self._waitables if w not in events]
+        self._events = [waitable for waitable in waitables if isinstance(waitable, EventHandler)]
+        self._waitables = [waitable for waitable in waitables if waitable not in self._events]
+        self._add += [(waitable.add_to_wait_set, wait_set) for waitable in self._waitables]
+        self._wait_set = wait_set
 
     def _schedule(self, nodes: list[Node]) -> None:
         ticks = [tick for node in nodes for tick in ports(node).ticks]
         for tick in ticks:
             if tick.due_ns == 0:
                 tick.schedule()
-        self._ticks = sorted(ticks, key=lambda tick: tick.due_ns)
+        self._ticks = sorted(ticks, key=lambda tick: tick.phase_ns)
         self._files = {file.fileno(): callback for node in nodes for file, callback in ports(node).readables}
         self._period_ns = min((clock_of(node).period_ns for node in nodes), default=IDLE_NS)
         self._clock_of_ticks = clock_of(nodes[0]) if ticks and not clock_of(nodes[0]).stepped else None
@@ -166,9 +187,9 @@ class RawExecutor(Executor):
             self._events_due_ns = now + IDLE_NS
             for event in self._events:
                 event.add_to_wait_set(wait_set)
-            self._added_events = self._events
+            self._asked = self._waitables + self._events
         else:
-            self._added_events = []
+            self._asked = self._waitables
         wait_set.wait(timeout_ns)
 
     def _wait_on_files(self, timeout_ns: int) -> bool:
@@ -187,40 +208,28 @@ class RawExecutor(Executor):
         return bool(ready)
 
     def _run_ticks(self, clock: Clock) -> None:
-        ticks, ran = self._ticks, False
-        for tick in ticks:
-            now = clock.now()
-            if now < tick.due_ns:
-                break
-            tick.run(now)
-            ran = True
-        if ran and len(ticks) > 1:
-            ticks.sort(key=_due)
+        now = clock.now()
+        for tick in self._ticks:
+            if now >= tick.due_ns:
+                tick.run(now)
+                now = clock.now()
 
     def _run_others(self) -> bool:
         """Run services, timers, clients, guard conditions and event handlers through rclpy's own takers."""
-        wait_set, anything, stale = self._wait_set, False, False
-        for kind, entities in self._others.items():
-            if not entities:
-                continue
-            ready = wait_set.get_ready_entities(kind)
-            for entity, take in entities if ready else ():
-                if entity.handle.pointer not in ready:
-                    continue
-                anything = True
-                if entity is self._guard:
-                    stale = True
-                else:
-                    self._run(take(entity))
-        for waitable in (*self._waitables, *self._added_events):
+        wait_set, anything = self._wait_set, False
+        for kind, entities in self._others:
+            if ready := wait_set.get_ready_entities(kind):
+                for entity, take in entities:
+                    if entity.handle.pointer in ready:
+                        anything = True
+                        self._run(take(entity))
+        for waitable in self._asked:
             if waitable.is_ready(wait_set):
                 anything = True
                 self._run(self._take_waitable(waitable))
         if self._tasks:
             anything = True
             self._run_tasks()
-        if stale:
-            self._wait_set = None
         return anything
 
     def _run(self, work: Any) -> None:
@@ -241,11 +250,3 @@ class RawExecutor(Executor):
 
     def _take_ready_timer(self, timer: Any) -> Any:
         return self._take_timer(timer) if timer.handle.is_timer_ready() else None
-
-
-def _nothing(_: Any) -> None:
-    return None
-
-
-def _due(tick: Tick) -> int:
-    return tick.due_ns

@@ -80,6 +80,7 @@ class Ports:
         self.clock = clock_of(node)
         self.statistics = Statistics()
         self.statistics.traces = {} if os.environ.get(TRACE_VARIABLE) else None
+        self.polled: set[int] = set()
         self.deliveries: dict[int, Callable[[bytes], None]] = {}
         self.ticks: list[Tick] = []
         self.readables: list[tuple[Any, Callable[[], None]]] = []
@@ -143,7 +144,7 @@ def subscribe(node: Node, name: str, callback: Callable[[Any], None], depth: int
     """
     topic, port = find_topic(name), ports(node)
     receive = _receiver(port, topic, callback)
-    profile = qos_profile(topic.qos)
+    profile = qos_profile(topic.subscriber_qos)
     if depth is not None:
         profile.depth = depth
     raw = raw_mode()
@@ -228,7 +229,9 @@ def advertise(node: Node, name: str) -> Publish:
         event_callbacks=PublisherEventCallbacks(use_default_callbacks=False),
     )
     port.publishers[name] = publisher
-    sent, trace, now = port.sent, port.statistics.trace(f"publish {name}"), port.clock.now
+    stamped = not topic.type.endswith("/String")
+    trace = port.statistics.trace(f"publish {name}") if stamped else None
+    sent, now = port.sent, port.clock.now
     sent[name] = 0
     encode, raw = codec(topic.type, topic.frame_id, ACTUATORS).encode, raw_mode()
     # The handle's own method: rclpy's wrapper would enter the handle's context at each call.
@@ -243,6 +246,38 @@ def advertise(node: Node, name: str) -> Publish:
     if trace is None and raw and not port.clock.stepped:
         return lambda sample: send(encode(sample))
     return publish
+
+
+def latest(node: Node, name: str) -> Callable[[], Any]:
+    """Return `take()` of a topic of the table: the newest sample since the last call, or None.
+
+    For who looks at its own pace: nothing wakes up when a sample arrives.
+
+    Raises:
+        UnknownTopic: the name is not in the table.
+    """
+    topic, port = find_topic(name), ports(node)
+    kind, profile = message_class(topic.type), qos_profile(topic.subscriber_qos)
+    profile.depth = 1
+    events = SubscriptionEventCallbacks(use_default_callbacks=False)
+    subscription = node.create_subscription(
+        kind, topic.full_name, lambda _: None, profile, raw=True, event_callbacks=events
+    )
+    port.subscriptions[name] = subscription
+    port.polled.add(subscription.handle.pointer)
+    decode, take = codec(topic.type, topic.frame_id, ACTUATORS).decode, subscription.handle.take_message
+    garbage = port.statistics.garbage
+
+    def take_newest() -> Any:
+        sample = None
+        while (taken := take(kind, True)) is not None:
+            try:
+                sample = decode(taken[0])
+            except CdrError:
+                garbage[name] = garbage.get(name, 0) + 1
+        return sample
+
+    return take_newest
 
 
 def subscribe_raw(node: Node, name: str, callback: Callable[[bytes], None], depth: int | None = None) -> None:
@@ -287,7 +322,7 @@ def advertise_raw(node: Node, name: str) -> Callable[[bytes], None]:
     return publish
 
 
-def on_tick(node: Node, callback: Callable[[int], None], phase: float = 0.0, every: int = 1) -> None:
+def on_tick(node: Node, callback: Callable[[int], None], phase: float = 0.0, every: int = 1) -> Tick:
     """Call `callback(stamp_ns)` at every grid stamp plus `phase`.
 
     A tick that comes so late that the next one is due is skipped and counted as a lost cycle; ticks are never made up
@@ -298,11 +333,16 @@ def on_tick(node: Node, callback: Callable[[int], None], phase: float = 0.0, eve
         callback: gets the grid stamp `t_k` in ns, the same in every process.
         phase: delay behind the stamp, s.
         every: call only at stamps that are a multiple of `every` periods.
+
+    Returns:
+        The tick; a node whose tick only looks after late samples tells it `done(stamp)` when they were in time.
     """
     port = ports(node)
-    port.ticks.append(Tick(callback, round(phase * 1e9), every, port.clock, port.statistics))
+    tick = Tick(callback, round(phase * 1e9), every, port.clock, port.statistics)
+    port.ticks.append(tick)
     if node.executor is not None:
         node.executor.wake()
+    return tick
 
 
 def on_readable(node: Node, file: Any, callback: Callable[[], None]) -> None:

@@ -43,12 +43,19 @@ def run(make_nodes: Callable[[], Sequence[Node]]) -> None:
     """
     control = _control_socket()
     die_with_parent()
-    use_realtime(int(os.environ.get(REALTIME_VARIABLE) or 0))
     rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
     stop = stop_on_signals()
     try:
         nodes = make_nodes()
-        spin(nodes, stop=stop, meet=None if control is None else Barrier(nodes, control, stop))
+        barrier = None if control is None else Barrier(nodes, control, stop)
+
+        def meet(executor: Executor) -> None:
+            if barrier is not None:
+                barrier(executor)
+            # Not earlier: what start-up costs would use up the share of the processor that the kernel leaves to FIFO.
+            use_realtime(int(os.environ.get(REALTIME_VARIABLE) or 0))
+
+        spin(nodes, stop=stop, meet=meet)
     except Exception as error:
         if control is not None:
             with suppress(OSError):
@@ -73,11 +80,12 @@ def die_with_parent() -> None:
 
 
 def use_realtime(priority: int) -> bool:
-    """Put this process under SCHED_FIFO, and the middleware's later threads with it; return whether it worked."""
+    """Put every thread of this process, the middleware's too, under SCHED_FIFO; return whether it worked."""
     if priority <= 0:
         return False
     try:
-        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(priority))
+        for thread in os.listdir("/proc/self/task"):
+            os.sched_setscheduler(int(thread), os.SCHED_FIFO, os.sched_param(priority))
     except (OSError, AttributeError):
         return False
     return True
@@ -85,10 +93,12 @@ def use_realtime(priority: int) -> bool:
 
 def realtime_permitted() -> bool:
     """Tell whether this user may use SCHED_FIFO."""
-    policy, parameter = os.sched_getscheduler(0), os.sched_getparam(0)
-    if not use_realtime(1):
+    try:
+        policy, parameter = os.sched_getscheduler(0), os.sched_getparam(0)
+        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(1))
+        os.sched_setscheduler(0, policy, parameter)
+    except (OSError, AttributeError):
         return False
-    os.sched_setscheduler(0, policy, parameter)
     return True
 
 

@@ -58,7 +58,11 @@ def spin(
         if isinstance(executor, BaselineExecutor):
             executor.start()
         while nodes[0].context.ok() and not stop():
-            executor.spin_once(0.1)
+            # Asking the context takes a lock; a shutdown has time for a few spins.
+            for _ in range(20):
+                executor.spin_once(0.05)
+                if stop():
+                    break
     except ExternalShutdownException:
         pass
     finally:

@@ -12,6 +12,7 @@ from sher3_runtime import (
     WrenchSample,
     advertise,
     advertise_raw,
+    latest,
     on_tick,
     statistics_of,
     subscribe,
@@ -163,6 +164,30 @@ def test_raw_ports_pass_bytes_through():
         send(codec("geometry_msgs/msg/WrenchStamped", "b").encode(WrenchSample(5, (2.0,) * 6)))
         graph.settle()
         assert sink.samples["mock/contact_wrench"] == [WrenchSample(5, (2.0,) * 6)]
+
+
+def test_latest_is_the_newest_and_wakes_nobody():
+    with Graph() as graph:
+        graph.add(Source)
+        probe = graph.probe()
+        take = latest(probe, "force/measured_cf")
+        graph.step(5)
+        graph.until(lambda: (sample := take()) is not None and sample.wrench[0] == 4.0)
+        assert take() is None
+
+
+def test_a_tick_that_is_done_is_skipped():
+    """What looks after late samples costs nothing when they are in time."""
+    with Graph() as graph:
+        probe, calls = graph.probe(), []
+        tick = on_tick(probe, calls.append, phase=0.001)
+        stamp = graph.step()
+        due = tick.due_ns
+        tick.done(stamp)
+        assert tick.due_ns == due
+        tick.done(due - tick.phase_ns)
+        assert tick.due_ns == due + 2_000_000
+        assert calls == [stamp]
 
 
 def test_slow_ticks_and_names():

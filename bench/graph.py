@@ -1,0 +1,118 @@
+"""Speed of the whole graph: force sample to CAN frame, jitter, lost cycles and processor time, at 200, 500 and 1000 Hz.
+
+Starts the real graph on mocks in its own processes with a surgeon who pushes, traces every sample at both ends of the
+chain, and joins the ends by stamp. `--baseline` runs the same nodes on rclpy's own executor with message objects; by
+default both are run. Figures in microseconds; processor time in percent of one core.
+
+    python bench/graph.py                      # 200, 500, 1000 Hz, ours beside the default, 10 s each
+    python bench/graph.py --rate 1000 --seconds 60 --only ours --json
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+DOMAIN = 74
+SETTLE = 3.0
+"""Seconds after the start that are not counted."""
+EXECUTORS = {"ours": "", "default": "default"}
+
+
+def main() -> None:
+    """Run the cases and print a table, or one JSON object."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--rate", type=float, nargs="+", default=[200.0, 500.0, 1000.0])
+    parser.add_argument("--seconds", type=float, default=10.0)
+    parser.add_argument("--only", choices=EXECUTORS)
+    parser.add_argument("--realtime", type=int, default=-1, help="SCHED_FIFO priority, -1 where permitted, 0 never")
+    parser.add_argument("--json", action="store_true")
+    options = parser.parse_args()
+    results = []
+    for rate in options.rate:
+        for executor in [options.only] if options.only else EXECUTORS:
+            result = measure(rate, options.seconds, executor, options.realtime)
+            results.append(result)
+            if not options.json:
+                print(text(result), flush=True)
+    if options.json:
+        print(json.dumps({"load": os.getloadavg(), "cores": os.cpu_count(), "results": results}))
+    elif not options.only:
+        for ours, default in zip(results[::2], results[1::2], strict=True):
+            ratio = default["latency"]["p50"] / ours["latency"]["p50"]
+            print(f"{ours['rate']:6.0f} Hz: {ratio:.1f} times the default executor in p50")
+
+
+def measure(rate: float, seconds: float, executor: str, realtime: int) -> dict[str, Any]:
+    """Run the graph in a process of its own, which reports the processor time of each node, and read the traces."""
+    with tempfile.TemporaryDirectory() as folder:
+        command = [sys.executable, __file__.replace("graph.py", "graph_run.py")]
+        arguments = [str(rate), str(seconds + SETTLE), str(SETTLE), str(realtime), str(DOMAIN)]
+        from sher3_runtime.environment import child_environment
+
+        environment = child_environment(SHER3_TRACE=folder, SHER3_EXECUTOR=EXECUTORS[executor])
+        run = subprocess.run([*command, *arguments], env=environment, capture_output=True, text=True, check=False)
+        if run.returncode:
+            sys.exit(f"the graph at {rate:g} Hz on the {executor} executor failed:\n{run.stderr}")
+        cpu = json.loads(run.stdout.splitlines()[-1])
+        return {"rate": rate, "executor": executor, "seconds": seconds, **evaluate(Path(folder), rate, seconds), **cpu}
+
+
+def evaluate(folder: Path, rate: float, seconds: float) -> dict[str, Any]:
+    """Return latencies, jitter and losses from the traces."""
+    nodes = {path.stem: json.loads(path.read_text()) for path in folder.glob("*.json")}
+    sent = trace(nodes["force_sensor"], "publish force/measured_cf")
+    done = trace(nodes["motor_driver"], "handled servo_jv")
+    first = min(sent) + round(SETTLE * 1e9)
+    window = [stamp for stamp in sent if first <= stamp < first + round(seconds * 1e9)]
+    latency = np.array([done[stamp] - sent[stamp] for stamp in window if stamp in done]) / 1e3
+    starts = np.array([sent[stamp] for stamp in sorted(window)])
+    period = np.abs(np.diff(starts) / 1e3 - 1e6 / rate)
+    grid = round(seconds * rate)
+    return {
+        "latency": spread(latency),
+        "jitter": spread(period),
+        "cycles": grid,
+        "lost_samples": grid - len(window),
+        "lost_frames": grid - len(latency),
+        "nodes": {name: node["statistics"] for name, node in sorted(nodes.items())},
+    }
+
+
+def trace(node: dict[str, Any], point: str) -> dict[int, int]:
+    """Return time by stamp at a point of the chain; the first passage counts."""
+    data = node["traces"][point]
+    return dict(zip(reversed(data["stamps"]), reversed(data["times"]), strict=True))
+
+
+def spread(values: np.ndarray) -> dict[str, float]:
+    """Return p50, p99, p99.9 and maximum."""
+    if not len(values):
+        return dict.fromkeys(("p50", "p99", "p99.9", "max"), float("nan"))
+    p50, p99, p999, most = np.percentile(values, [50, 99, 99.9, 100])
+    return {"p50": float(p50), "p99": float(p99), "p99.9": float(p999), "max": float(most)}
+
+
+def text(result: dict[str, Any]) -> str:
+    """Return a result in a few lines."""
+    latency, jitter = result["latency"], result["jitter"]
+    cpu = " ".join(f"{name} {share:.1f}" for name, share in result["cpu"].items())
+    return (
+        f"{result['rate']:6.0f} Hz {result['executor']:8} force -> CAN frame p50 {latency['p50']:.0f} p99 "
+        f"{latency['p99']:.0f} max {latency['max']:.0f} us; jitter p50 {jitter['p50']:.0f} p99 {jitter['p99']:.0f} us; "
+        f"lost {result['lost_frames']} of {result['cycles']} cycles; CPU {result['cpu_sum']:.0f} % of a core ({cpu})"
+    )
+
+
+if __name__ == "__main__":
+    begin = time.monotonic()
+    main()

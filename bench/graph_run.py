@@ -1,0 +1,81 @@
+"""One run of the graph for `graph.py`: prints the processor time of each process as the last line."""
+
+from __future__ import annotations
+
+import json
+import sys
+import time
+from pathlib import Path
+from tempfile import NamedTemporaryFile
+
+import psutil
+from sher3_bringup.settings import checked, parse_processes
+from sher3_bringup.surgeon import load_script
+from sher3_bringup.up import run_graph
+
+PUSH = """
+schema: sher3.teleop/1
+steps:
+  - {name: settle, duration: 1.0}
+  - {name: enable, duration: 0.5, command: enable}
+  - {name: push, duration: 3600, pedal: 1.0, dither: [1.0, 0.8, 0.5, 0, 0, 0], frequency: 0.5}
+"""
+
+
+class CpuTimes:
+    """Processor time of the processes of the graph between the settling time and the last look."""
+
+    def __init__(self, settle: float) -> None:
+        self._settle = settle
+        self._first: dict[int, float] = {}
+        self._last: dict[int, float] = {}
+        self._begin = self._end = 0.0
+        self._seen = 0.0
+
+    def __call__(self, elapsed: float) -> None:
+        """Look every half second."""
+        if elapsed < self._settle or elapsed - self._seen < 0.5:
+            return
+        self._seen = self._end = elapsed
+        self._last = {p.pid: sum(p.cpu_times()[:2]) for p in psutil.Process().children()}
+        if not self._first:
+            self._first, self._begin = self._last, elapsed
+
+    def percent(self) -> list[float]:
+        """Return the percent of a core that each process took, in the order they were started."""
+        span = self._end - self._begin
+        return [100.0 * (self._last[pid] - self._first[pid]) / span for pid in sorted(self._last)]
+
+
+def main() -> None:
+    """Run the graph with a surgeon who pushes all the time."""
+    rate, seconds, settle = map(float, sys.argv[1:4])
+    realtime, domain = map(int, sys.argv[4:6])
+    with NamedTemporaryFile("w", suffix=".yaml") as file:
+        file.write(PUSH)
+        file.flush()
+        script = load_script(Path(file.name))
+    settings = checked(
+        rate=rate,
+        processes=parse_processes(None, True, False),
+        duration=seconds + 0.5,
+        realtime=realtime,
+        domain=domain,
+    )
+
+    def surgeon() -> list:
+        from sher3_bringup.teleop_node import script_node
+
+        return [script_node(script)]
+
+    cpu = CpuTimes(settle)
+    begin = time.monotonic()
+    run_graph(settings, lambda text: print(text, file=sys.stderr), {"surgeon": surgeon}, cpu)
+    names = ["+".join(process) for process in settings.processes] + ["surgeon"]
+    share = dict(zip(names, cpu.percent(), strict=True))
+    robot = {name: percent for name, percent in share.items() if name != "surgeon"}
+    print(json.dumps({"cpu": share, "cpu_sum": sum(robot.values()), "wall": time.monotonic() - begin}))
+
+
+if __name__ == "__main__":
+    main()
