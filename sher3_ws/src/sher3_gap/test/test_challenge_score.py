@@ -116,8 +116,10 @@ def test_intervals():
 
 
 def test_summary_filters_by_gap_and_bins_it():
-    rows = [score_case(truth(ratio=r), verdict(causes=[cause()] if r > 2 else [], status="attributed" if r > 2 else "no_gap"))
-            for r in (1.2, 1.8, 4.0, 20.0)]  # fmt: skip
+    rows = [
+        score_case(truth(ratio=r), verdict(causes=[cause()]) if r > 2 else verdict("no_gap"))
+        for r in (1.2, 1.8, 4.0, 20.0)
+    ]
     assert summarise(rows).rates["detection"].value == 0.5
     high = summarise(rows, least=3.0)
     assert high.rates["detection"].value == 1.0 and high.rates["detection"].n == 2
@@ -156,8 +158,12 @@ def random_pairs(n, seed):
             ("presliding_friction", "friction"),
             ("lead_error", "scale"),
         ]
-        causes = [cause(*names[rng.integers(4)], rivals=["lead_error"] if rng.random() < 0.4 else [], low=float(rng.choice([4e-6, 6e-6])))
-                  for _ in range(rng.integers(0, 3))]  # fmt: skip
+        causes = [
+            cause(
+                *names[rng.integers(4)], ["lead_error"] * int(rng.random() < 0.4), low=float(rng.choice([4e-6, 6e-6]))
+            )
+            for _ in range(rng.integers(0, 3))
+        ]
         said = str(rng.choice(["no_gap", "attributed", "under_excited", "outside_library"]))
         stage, actuator = str(rng.choice(["transmission", "mechanism", "drive"])), str(rng.choice(["tilt", "roll"]))
         v = verdict(said, causes, stage, actuator,

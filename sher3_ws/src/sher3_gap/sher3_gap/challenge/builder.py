@@ -15,9 +15,9 @@ from joblib import Parallel, delayed
 from sher3_bags import Run, write_case
 from sher3_description import Robot, load_robot
 
-from .calibrate import calibrated, distinct_runs, ideal_residuals, residual_keys
+from .calibrate import calibrated, distinct_runs, ideal_residuals, reference_floor, residual_keys
 from .oracle import StageOracle, excess, floors, oracle, stage_residuals
-from .plan import CasePlan, ChallengeError, draw_plan
+from .plan import TARGETS, CasePlan, ChallengeError, draw_plan
 from .truth.plant import Plant
 
 CASES, LABELS, MANIFEST = "cases", "labels", "manifest.json"
@@ -26,12 +26,13 @@ STATUS = {"healthy": "no_gap", "outside": "outside_library", "under_excited": "u
 
 @dataclass(frozen=True)
 class Request:
-    """One case to build: its seed, its kind and effect where they are not drawn, whether the effect is withheld."""
+    """One case to build: its seed; kind and effect where not drawn; whether the effect is withheld; gap over floor."""
 
     seed: int
     kind: str | None = None
     effect: str | None = None
     withheld: bool = False
+    gap: tuple[float, float] = TARGETS
 
 
 def build_case(request: Request, cases: Path, robot: Robot | None = None) -> dict[str, Any]:
@@ -43,8 +44,9 @@ def build_case(request: Request, cases: Path, robot: Robot | None = None) -> dic
         robot: nominal robot in force.
     """
     robot = robot or load_robot()
-    plan = calibrated(draw_plan(robot, request.seed, kind=request.kind, effect=request.effect), robot)
-    plant = Plant(robot, plan.seed, plan.faults, plan.climate, plan.tracker)
+    drawn = draw_plan(robot, request.seed, kind=request.kind, effect=request.effect, gap=request.gap)
+    plan = calibrated(drawn, robot)
+    plant = Plant(robot, plan.seed, plan.faults, plan.climate, plan.tracker, region=plan.region)
     runs = [plant.run(run) for run in plan.runs]
     truth = label(plan, plant, runs)
     if request.withheld:
@@ -99,7 +101,9 @@ def _oracles(plan: CasePlan, plant: Plant, runs: list[Run]) -> tuple[dict[str, S
     reference = ideal_residuals(nominal, chosen)
     faulty = excess(ideal_residuals(plant, chosen), reference)
     own = excess(ideal_residuals(built, chosen), reference)
-    every = oracle(floors(runs, [stage_residuals(run, robot) for run in runs], robot), faulty, own)
+    measured = floors(runs, [stage_residuals(run, robot) for run in runs], robot)
+    # a stage that no repeated excitation shows has the floor of another robot
+    every = oracle({**reference_floor(robot), **measured}, faulty, own)
     tips = {name: every.pop(f"{name}/tip") for name in ("tip", "tip_free")}
     if not plan.faults:
         return every, tips

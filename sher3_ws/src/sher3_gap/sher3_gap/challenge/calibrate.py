@@ -27,7 +27,7 @@ def residual_keys(fault: Fault) -> list[str]:
     """Return the residuals that show a fault: several for one that sits on all actuators."""
     stage, actuator = fault.kind.stage, fault.actuator
     if stage in ("mechanism", "structure"):
-        return [f"{stage}/tip"]
+        return [f"{name}/tip" for name in (stage, *fault.kind.also)]
     if actuator == "all":
         return [f"{stage}/{name}" for name in ACTUATORS]
     if stage == "sensing" and actuator in ACTUATORS:
@@ -67,7 +67,7 @@ class Calibration:
 
     def ratio(self, fault: Fault) -> float:
         """Return sqrt(D / F): the fault's own part of the gap over the floor, the largest of its residuals."""
-        plant = Plant(self.robot, 0, (fault,), self.plan.climate, built=False)
+        plant = Plant(self.robot, 0, (fault,), self.plan.climate, built=False, region=self.plan.region)
         own = excess(ideal_residuals(plant, self.runs), self.nominal)
         return max((math.sqrt(own[key] / self.floor[key]) for key in residual_keys(fault) if key in own), default=0.0)
 

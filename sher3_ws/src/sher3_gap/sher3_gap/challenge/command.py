@@ -39,11 +39,20 @@ def parse_seeds(text: str) -> tuple[int, int]:
     return int(match.group(1)), int(match.group(2))
 
 
+def parse_gap(text: str) -> tuple[float, float]:
+    """Return the two ends of a range of gap over floor; raises ChallengeError."""
+    match = re.fullmatch(r"(\d+(?:\.\d+)?):(\d+(?:\.\d+)?)", text)
+    if match is None or not 0 < float(match.group(1)) < float(match.group(2)) <= 100:
+        raise ChallengeError("gap over floor is not a range", value=text, limit="0 < A < B <= 100, as in 0.5:30")
+    return float(match.group(1)), float(match.group(2))
+
+
 def challenge(
     seeds: Annotated[str, typer.Option(help="Range A:B of seeds, one case each.")] = "0:40",
     kinds: Annotated[
         str, typer.Option(help="Kinds dealt in turn: healthy,single,compound,outside,under_excited,withheld.")
     ] = "",
+    gap: Annotated[str, typer.Option(help="Range of gap over floor of single faults, log-uniform.")] = "0.5:30",
     jobs: Annotated[int, typer.Option(min=1, help="Processes.")] = 2,
     without: Annotated[str | None, typer.Option(help="Leave this effect out; every case has it.")] = None,
     out: Annotated[Path | None, typer.Option(help="New folder that keeps cases, labels, verdicts and scores.")] = None,
@@ -51,7 +60,7 @@ def challenge(
     as_json: Annotated[bool, typer.Option("--json", help="Print the scores as JSON.")] = False,
 ) -> None:
     """Build sealed cases from the truth plant, diagnose them blind and score the verdicts."""
-    wanted = requests(parse_seeds(seeds), [k for k in kinds.split(",") if k], without)
+    wanted = requests(parse_seeds(seeds), [k for k in kinds.split(",") if k], without, parse_gap(gap))
     console = Console(stderr=True)
     with tempfile.TemporaryDirectory() as scratch:
         folder = out or Path(scratch) / "challenge"

@@ -52,6 +52,11 @@ class CasePlan:
     tracker: bool
     rivals: tuple[str, ...] = ()
 
+    @property
+    def region(self) -> tuple[float, ...]:
+        """Mean position of the set-points of the repeated runs, actuator units."""
+        return tuple(np.mean([run.excitation.position.mean(axis=0) for run in self.runs[:6]], axis=0).tolist())
+
 
 @dataclass(frozen=True)
 class Recipe:
@@ -99,7 +104,14 @@ _PAIRS = {
 _ALL_PAIRS = tuple(dict.fromkeys(_PAIRS.values()))
 
 
-def draw_plan(robot: Robot, seed: int, *, kind: str | None = None, effect: str | None = None) -> CasePlan:
+def draw_plan(
+    robot: Robot,
+    seed: int,
+    *,
+    kind: str | None = None,
+    effect: str | None = None,
+    gap: tuple[float, float] = TARGETS,
+) -> CasePlan:
     """Draw the plan of the case of a seed.
 
     Args:
@@ -107,6 +119,7 @@ def draw_plan(robot: Robot, seed: int, *, kind: str | None = None, effect: str |
         seed: fixes everything.
         kind: one of `KINDS`; drawn where None.
         effect: name of a kind of fault (its catalogue name) for a single or outside case; drawn where None.
+        gap: range of the fault's own part of the gap over the floor, of single and outside cases.
 
     Raises:
         ChallengeError: unknown kind or effect.
@@ -124,7 +137,7 @@ def draw_plan(robot: Robot, seed: int, *, kind: str | None = None, effect: str |
     elif kind == "compound":
         targets = tuple(0.0 if f.kind.exact else float(np.exp(rng.uniform(np.log(3), np.log(15)))) for f in faults)
     else:
-        low, high = np.log(TARGETS)
+        low, high = np.log(gap)
         targets = tuple(0.0 if f.kind.exact else float(np.exp(rng.uniform(low, high))) for f in faults)
     origin = 1_790_000_000_000_000_000 + int(rng.integers(10**6)) * 10**9
     warm = any(f.kind.family == "drift" for f in faults)

@@ -19,7 +19,7 @@ from joblib.externals.loky import get_reusable_executor
 
 from .builder import CASES, LABELS, MANIFEST, Request, build_case, hashes
 from .diagnosing import Answers, ask
-from .plan import KINDS, ChallengeError
+from .plan import KINDS, TARGETS, ChallengeError
 from .score import CaseScore, Summary, score_case, summarise
 from .truth.catalogue import EFFECTS, LIBRARY
 
@@ -51,7 +51,12 @@ class Outcome:
         }
 
 
-def requests(seeds: tuple[int, int], kinds: Sequence[str] = (), without: str | None = None) -> list[Request]:
+def requests(
+    seeds: tuple[int, int],
+    kinds: Sequence[str] = (),
+    without: str | None = None,
+    gap: tuple[float, float] = TARGETS,
+) -> list[Request]:
     """Return the cases of a seed range.
 
     Args:
@@ -59,6 +64,7 @@ def requests(seeds: tuple[int, int], kinds: Sequence[str] = (), without: str | N
         kinds: kinds of cases, dealt in turn; empty draws them in the standard mix. `withheld` is a single fault whose
             effect the diagnosis must do without.
         without: an effect: every case has it as its fault, and the diagnosis must do without it.
+        gap: range of gap over floor of single faults.
 
     Raises:
         ChallengeError: empty or too long range, unknown kind or effect.
@@ -76,11 +82,11 @@ def requests(seeds: tuple[int, int], kinds: Sequence[str] = (), without: str | N
     for n, seed in enumerate(range(first, last)):
         kind = kinds[n % len(kinds)] if kinds else None
         if without is not None:
-            made.append(Request(seed, "single", names[n % len(names)], withheld=True))
+            made.append(Request(seed, "single", names[n % len(names)], True, gap))
         elif kind == WITHHELD:
-            made.append(Request(seed, "single", withheld=True))
+            made.append(Request(seed, "single", None, True, gap))
         else:
-            made.append(Request(seed, kind))
+            made.append(Request(seed, kind, gap=gap))
     return made
 
 

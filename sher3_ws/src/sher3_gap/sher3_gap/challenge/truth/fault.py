@@ -24,13 +24,14 @@ class FaultError(Sher3Error):
 
 @dataclass
 class Rig:
-    """What a fault may change: the robot's parameters and the transport of commands."""
+    """What a fault may change: parameters and transport. `region` is where the runs work, for local faults."""
 
     robot: Robot
     truth: TruthParameters
     delay: Array = field(default_factory=lambda: np.zeros(AXES))
     jitter: float = 0.0
     loss: float = 0.0
+    region: Array = field(default_factory=lambda: np.zeros(AXES))
 
 
 @dataclass(frozen=True)

@@ -70,7 +70,7 @@ def sticky_region(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The axis sticks in one short region of its stroke."""
     m = rig.truth.motor
     m.sticky[site.rows] = site.scaled(x, "force")
-    m.sticky_place[site.rows] = site.scaled(site.rng.uniform(-0.3e-3, 0.6e-3), "length")
+    m.sticky_place[site.rows] = rig.region[site.index] + site.scaled(site.rng.uniform(-0.3e-3, 0.3e-3), "length")
     m.sticky_width[site.rows] = site.scaled(0.15e-3, "length")
     return {"force": site.scaled(x, "force")}
 
@@ -87,7 +87,7 @@ def compliance_bump(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The transmission is soft in one short region."""
     t = rig.truth.transmission
     t.bump[site.rows] = x
-    t.bump_place[site.rows] = site.rng.uniform(-0.3e-3, 0.6e-3)
+    t.bump_place[site.rows] = rig.region[site.index] + site.rng.uniform(-0.3e-3, 0.3e-3)
     t.bump_width[site.rows] = 0.3e-3
     return {"compliance": x}
 

@@ -12,7 +12,7 @@ from sher3_description import Robot
 
 from ...excitation import Excitation
 from .fault import Fault, Rig
-from .parameters import Array, TruthParameters, copied
+from .parameters import AXES, Array, TruthParameters, copied
 from .record import Condition, Timing, record
 from .robot import individual, nominal, scatter
 
@@ -53,6 +53,7 @@ class Plant:
         climate: temperature over the case.
         tracker: whether the tip is tracked.
         built: False gives the robot exactly as its file says.
+        region: (5,) positions about which the runs work, actuator units.
     """
 
     robot: Robot
@@ -61,6 +62,7 @@ class Plant:
     climate: Climate
     tracker: bool = True
     built: bool = True
+    region: tuple[float, ...] = (0.0,) * AXES
 
     @cached_property
     def individual(self) -> TruthParameters:
@@ -69,7 +71,7 @@ class Plant:
 
     def rig(self, run_seed: int) -> Rig:
         """Return robot and transport of one run: a copy with the faults in it and the run's scatter."""
-        rig = Rig(self.robot, copied(self.individual))
+        rig = Rig(self.robot, copied(self.individual), region=np.array(self.region))
         for fault in self.faults:
             fault.apply(rig)
         if self.built:
@@ -88,5 +90,5 @@ class Plant:
 
     def parameters(self) -> list[dict[str, float]]:
         """Return the parameters of each fault by the contract's names."""
-        rig = Rig(self.robot, copied(self.individual))
+        rig = Rig(self.robot, copied(self.individual), region=np.array(self.region))
         return [fault.apply(rig) for fault in self.faults]
