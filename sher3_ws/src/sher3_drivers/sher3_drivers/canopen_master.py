@@ -34,7 +34,10 @@ class _LinkNetwork(canopen.Network):
         self._link.send_frames(pack_frame(can_id | REMOTE_FLAG * remote, bytes(data)))
 
     def pump(self, timeout: float) -> bool:
-        """Hand every waiting frame to its subscribers; False when none came within `timeout` s."""
+        """Hand every waiting frame to its subscribers; False when none came within `timeout` s.
+
+        What waits already is taken even when the time is over: this process may have been kept from running.
+        """
         frames = wait_frames(self._link, timeout)
         for frame in iter_frames(frames):
             if not frame.can_id & (ERROR_FLAG | REMOTE_FLAG):
@@ -50,8 +53,7 @@ class _PumpedClient(SdoClient):
     def read_response(self) -> bytes:
         deadline = time.monotonic() + self.RESPONSE_TIMEOUT
         while self.responses.empty():
-            left = deadline - time.monotonic()
-            if left <= 0 or not self.network.pump(left):
+            if not self.network.pump(deadline - time.monotonic()):
                 raise SdoCommunicationError(f"no response within {self.RESPONSE_TIMEOUT:g} s")
         return super().read_response()
 
@@ -130,10 +132,9 @@ class CanopenMaster:
         for name in self.drives:
             self.command(name, command)
         deadline = time.monotonic() + limit
-        waiting = True
-        while waiting and any(self._heard.get(name) != wanted for name in self.drives):
-            left = deadline - time.monotonic()
-            waiting = left > 0 and self._network.pump(left)
+        while any(self._heard.get(name) != wanted for name in self.drives):
+            if not self._network.pump(deadline - time.monotonic()):
+                break
         for name in self.drives:
             if self._heard.get(name) != wanted:
                 remedy = "check power, node id, bit rate and the channel it is configured on"

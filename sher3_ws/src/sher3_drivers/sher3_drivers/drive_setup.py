@@ -40,4 +40,4 @@ def set_up_drives(
             writes = required_writes(node_id, scale, settings)
             master.configure(name, writes, required_values(node_id, scale, settings))
     for master in masters:
-        master.start(settings.drive_heartbeat_limit)
+        master.start(patience)

@@ -4,9 +4,13 @@ import itertools
 import os
 
 import pytest
+from sher3_description import load_robot
 from sher3_drivers.bus import open_link
 from sher3_drivers.errors import LinkError
+from sher3_drivers.lockstep_rig import LockstepRig
+from sher3_drivers.settings import default_settings
 
+ROBOT = load_robot()
 _numbers = itertools.count()
 
 
@@ -30,3 +34,29 @@ def open_pair(request, tmp_path, monkeypatch):
     yield open_one
     for link in links:
         link.close()
+
+
+@pytest.fixture(params=["virtual", "local"])
+def make_rig(request, tmp_path, monkeypatch):
+    """A function that builds a rig; the whole suite runs on both links that need no hardware."""
+    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
+    rigs = []
+
+    def make(**changes):
+        prefix = f"{request.param}:d{next(_numbers)}"
+        rigs.append(
+            LockstepRig(ROBOT, default_settings().model_copy(update=changes), lambda i: open_link(f"{prefix}-{i}"))
+        )
+        return rigs[-1]
+
+    yield make
+    for rig in rigs:
+        rig.close()
+
+
+@pytest.fixture
+def rig(make_rig):
+    """An enabled rig."""
+    made = make_rig()
+    made.enable()
+    return made

@@ -1,0 +1,176 @@
+"""What stops the robot, and that it stays stopped."""
+
+import itertools
+
+import pytest
+from sher3_description import ACTUATORS, load_robot
+from sher3_drivers import drive_objects as od
+from sher3_drivers import mock_drive
+from sher3_drivers.can_errors import BusCondition, error_frame
+from sher3_drivers.frame import pack_frame
+
+ROBOT = load_robot()
+SLOW = [0.001, -0.002, 0.003, 0.1, -0.004]
+_numbers = itertools.count()
+
+
+def stopped_by(rig, text):
+    """Whether the robot came to rest with this reason and stays there, commands or not."""
+    for _ in range(10):
+        rig.tick(SLOW)
+    position = list(rig.plant.position)
+    for _ in range(20):
+        rig.tick(SLOW)
+    return text in (rig.driver.stop.reason or "") and rig.plant.position == position and not rig.driver.enabled
+
+
+@pytest.mark.parametrize("name", ACTUATORS)
+def test_an_emergency_of_one_drive_stops_all(rig, name):
+    rig.tick(SLOW)
+    rig.mock.drives[name].fault(0x4310)
+    assert stopped_by(rig, f"{name}: EMCY 0x4310 (over-temperature of the drive)")
+
+
+def test_a_drive_that_falls_silent_stops_all(rig):
+    rig.tick(SLOW)
+    rig.mock.drives["delta_3"].powered = False
+    missing = [rig.tick(SLOW) for _ in range(rig.settings.missing_limit)]
+    assert missing == [None] * rig.settings.missing_limit
+    rig.mock.drives["delta_3"].powered = True
+    assert stopped_by(rig, f"delta_3: no TPDO for {rig.settings.missing_limit} ticks")
+
+
+def test_one_lost_tpdo_is_counted_and_no_reason_to_stop(rig):
+    rig.tick(SLOW)
+    rig.mock.tamper_frames = lambda channel, frames, now: frames[16:] if channel else frames
+    assert rig.tick(SLOW) is None
+    rig.mock.tamper_frames = None
+    feedback = rig.tick(SLOW)
+    assert feedback is not None and rig.driver.stop.reason is None
+    assert rig.driver.counters["incomplete"] == 1
+    assert feedback.motor_velocity == pytest.approx([0.001, -0.002, 0.003, 0.1, -0.004], abs=0.02)
+
+
+def test_a_drive_that_loses_power_is_not_enabled_again_by_itself(rig):
+    rig.tick(SLOW)
+    rig.mock.drives["tilt"].state = mock_drive.SWITCH_ON_DISABLED
+    assert stopped_by(rig, "tilt: went to SWITCH_ON_DISABLED")
+
+
+def test_a_drive_that_restarts_stops_all(rig):
+    rig.tick(SLOW)
+    rig.mock.drives["roll"].node.handle(0, bytes([129, 4]))
+    assert stopped_by(rig, "roll")
+    assert "restarted" in rig.driver.stop.reason or "TPDO" in rig.driver.stop.reason
+
+
+@pytest.mark.parametrize(("state", "stops"), [(127, True), (4, True), (0, True), (5, False)])
+def test_a_heartbeat_of_a_drive_that_is_not_operational_stops_all(rig, state, stops):
+    """Its TPDOs may still come: the drive is on its way out."""
+    for _ in range(30):
+        rig.tick(SLOW)
+    rig.device_links[0].send_frames(pack_frame(0x702, bytes([state])))
+    rig.tick(SLOW)
+    assert (rig.driver.stop.reason is not None) == stops
+    assert not stops or rig.driver.stop.reason.startswith(f"delta_2: NMT state {state}")
+
+
+@pytest.mark.parametrize("condition", [BusCondition.PASSIVE, BusCondition.OFF])
+def test_error_passive_and_bus_off_stop_all(rig, condition):
+    rig.tick(SLOW)
+    rig.device_links[1].send_frames(pack_frame(*error_frame(condition)))
+    assert stopped_by(rig, "error passive" if condition is BusCondition.PASSIVE else "bus off")
+    assert rig.driver.bus_conditions[1] is condition
+
+
+def test_a_drive_without_heartbeat_stops_all_though_its_tpdos_come(rig):
+    is_heartbeat = lambda frame: int.from_bytes(frame[:4], "little") & 0x780 == od.HEARTBEAT_BASE  # noqa: E731
+    rig.mock.tamper_frames = lambda channel, frames, now: b"".join(
+        frames[k : k + 16] for k in range(0, len(frames), 16) if not is_heartbeat(frames[k : k + 16])
+    )
+    for _ in range(round(rig.settings.drive_heartbeat_limit / rig.settings.period) + 5):
+        rig.tick(SLOW)
+    assert "no heartbeat" in rig.driver.stop.reason
+
+
+def test_a_drive_that_faults_while_enabling_stops_all_at_once(make_rig):
+    rig = make_rig()
+    rig.driver.configure()
+    rig.driver.enable()
+    rig.tick()
+    rig.mock.drives["delta_1"].state = mock_drive.FAULT  # and its EMCY got lost
+    rig.tick()
+    rig.tick()
+    assert rig.driver.stop.reason == "delta_1: went to FAULT"
+
+
+def test_a_drive_that_does_not_change_state_is_named(make_rig):
+    rig = make_rig()
+    rig.driver.configure()
+    rig.mock.drives["roll"]._on_controlword = lambda word: None
+    rig.driver.enable()
+    for _ in range(round(rig.settings.transition_limit / rig.settings.period) + 10):
+        rig.tick()
+    assert "roll: stays in SWITCH_ON_DISABLED" in rig.driver.stop.reason
+    assert not rig.driver.enabled
+
+
+def test_frames_to_the_drives_can_be_held_back(rig):
+    """The seam for a slow bus: everything but SYNC and heartbeats reaches the drives one tick later."""
+    held = {0: [], 1: []}
+
+    def later(channel, frames, now):
+        parts = [frames[k : k + 16] for k in range(0, len(frames), 16)]
+        rpdos = [p for p in parts if int.from_bytes(p[:4], "little") & 0x780 == od.RPDO_BASE]
+        held[channel] += [(now + rig.period_ns, p) for p in rpdos]
+        due = [p for at, p in held[channel] if at <= now]
+        held[channel] = [(at, p) for at, p in held[channel] if at > now]
+        return b"".join([p for p in parts if p not in rpdos] + due)
+
+    rig.mock.tamper_received = later
+    demands = [rig.tick([0.001 * k] + [0.0] * 4).velocity_demand[0] for k in range(1, 8)]
+    assert demands[-1] == pytest.approx(0.001 * 5, abs=1e-10)
+
+
+def test_a_warning_stops_nothing(rig):
+    rig.device_links[0].send_frames(pack_frame(*error_frame(BusCondition.WARNING)))
+    rig.tick(SLOW)
+    assert rig.driver.stop.reason is None and rig.driver.bus_conditions[0] is BusCondition.WARNING
+
+
+def test_a_meaningless_statusword_stops_all(rig):
+    drive = rig.mock.drives["delta_1"]
+    drive.state = 0x6C & ~0x40 | 0x04  # no CiA 402 state
+    assert stopped_by(rig, "delta_1")
+
+
+def test_a_dead_link_stops_the_robot_on_the_others(rig):
+    rig.tick(SLOW)
+    rig.host_links[1].close()
+    for _ in range(10):
+        rig.tick(SLOW)
+    assert rig.host_links[1].name in rig.driver.stop.reason and rig.driver.bus_conditions[1] is BusCondition.OFF
+    assert rig.mock.drives["delta_1"].state == mock_drive.QUICK_STOP
+
+
+def test_the_host_dies_and_every_drive_stops_within_its_limits(rig):
+    """Neither SYNC nor heartbeat: the drives hold the last demand until the consumer time, then brake on the ramp."""
+    for _ in range(5):
+        rig.tick([0.0122, -0.0122, 0.0122, 1.2, -0.0122])
+    start = list(rig.plant.position)
+    rig.idle(50)
+    assert {drive.state for drive in rig.mock.drives.values()} == {mock_drive.FAULT}
+    settled = list(rig.plant.position)
+    rig.idle(50)
+    assert rig.plant.position == settled
+    limit = rig.settings.host_heartbeat_limit + rig.settings.host_heartbeat
+    for begin, end, actuator in zip(start, settled, rig.driver._scales, strict=True):
+        ramp = actuator.velocity_limit / (2.0 * 1.83 if actuator.name != "roll" else 2.0 * 20.0)
+        worst = actuator.velocity_limit * (limit + ramp + 6 * rig.settings.period)
+        assert 0 < abs(end - begin) < worst
+
+
+def test_after_the_host_comes_back_nothing_moves_without_a_reset(rig):
+    rig.tick(SLOW)
+    rig.idle(50)
+    assert stopped_by(rig, "heartbeat of the host lost")
