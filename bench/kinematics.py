@@ -18,6 +18,7 @@ from sher3_description import load_robot
 from sher3_kinematics import InverseVelocity, RobotKinematics
 from sher3_kinematics import kernel_batch as batch
 from sher3_kinematics.arm import whole_robot_model
+from sher3_kinematics.tip_deflection import TipDeflection
 
 SCALAR_LIMIT_US = 10.0
 BATCH_LIMIT_MPS = 5.0
@@ -39,8 +40,9 @@ def scalar_figures(kinematics: RobotKinematics) -> dict[str, float]:
     """Return microseconds per Python call, checks of the arguments and limits included."""
     q = np.array([0.01, -0.005, 0.02, 0.3, 0.01])
     transform = kinematics.transform_tip_to_base(q)
-    tip, axis = transform[:3, 3], -transform[:3, 2]
+    tip, axis, centre = transform[:3, 3].copy(), -transform[:3, 2], np.array([0.0, 0.0, 0.06])
     velocity, twist, rest = InverseVelocity(kinematics), np.full(6, 0.001), np.zeros(5)
+    deflection, wrench = TipDeflection(kinematics.robot), np.array([0.5, 1.0, -0.5, 0.0, 0.0, 0.0])
     model = whole_robot_model(kinematics.robot)
     data, frame = model.createData(), model.getFrameId("t")
     x, aligned = pin.neutral(model), pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
@@ -49,8 +51,9 @@ def scalar_figures(kinematics: RobotKinematics) -> dict[str, float]:
         "pose inverse": lambda: kinematics.inverse(tip, axis),
         "tip Jacobian": lambda: kinematics.jacobian(q),
         "inverse velocity with limits": lambda: velocity(q, twist, rest),
+        "tip deflection under a wrench": lambda: deflection(q, wrench),
         "delta forward": lambda: kinematics.delta.forward(q[:3]),
-        "delta inverse": lambda: kinematics.delta.inverse(tip - transform[:3, 3] + [0.0, 0.0, 0.06]),
+        "delta inverse": lambda: kinematics.delta.inverse(centre),
         "Pinocchio, same tree: frame Jacobian": lambda: pin.computeFrameJacobian(model, data, x, frame, aligned),
     }
     return {name: best_seconds(call, 2000) * 1e6 for name, call in calls.items()}

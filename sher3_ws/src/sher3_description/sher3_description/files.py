@@ -51,7 +51,7 @@ def parse_yaml(text: str, source: Path | str = "<text>", max_bytes: int = MAX_CO
         raise FileError("too large [characters]", path=source, value=len(text), limit=max_bytes)
     try:
         _refuse_aliases_and_depth(text, source)
-        data = yaml.safe_load(text)
+        data = yaml.load(text, Loader=_StrictLoader)
     except (yaml.YAMLError, RecursionError, ValueError) as error:
         if isinstance(error, FileError):
             raise
@@ -60,6 +60,17 @@ def parse_yaml(text: str, source: Path | str = "<text>", max_bytes: int = MAX_CO
     if not isinstance(data, dict):
         raise FileError("holds no mapping", path=source, value=type(data).__name__, remedy="start with 'key: value'")
     return data
+
+
+class _StrictLoader(yaml.SafeLoader):
+    """Safe loading that refuses a key given twice, of which YAML would silently keep the last."""
+
+    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
+        keys = [key.value for key, _ in node.value]
+        twice = next((key for key in keys if keys.count(key) > 1), None)
+        if twice is not None:
+            raise yaml.constructor.ConstructorError(None, None, f"key {twice!r} is given twice", node.start_mark)
+        return super().construct_mapping(node, deep=deep)
 
 
 def _refuse_aliases_and_depth(text: str, source: Path | str) -> None:

@@ -5,6 +5,8 @@ import pickle
 from pathlib import Path
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from sher3_description import ACTUATORS, FileError, InvalidRobot, Robot, Sher3Error, load_robot, parse_yaml, read_text
 
 SHARED = Path(os.environ.get("SHER3_SHARED", Path(__file__).resolve().parents[4].parent / "shared"))
@@ -150,8 +152,47 @@ def test_large_and_binary_files_are_refused(tmp_path: Path) -> None:
         "\x00",
         "a: " + "[" * 5000,
         "a: 2001-99-99",
+        "a: 1\nb: 2\na: 3",
+        "x: {a: 1, a: 2}",
     ],
 )
 def test_yaml_that_is_not_plain_data_is_refused(text: str) -> None:
     with pytest.raises(FileError):
         parse_yaml(text)
+
+
+def test_whole_numbers_are_the_same_robot() -> None:
+    robot = load_robot().replace({"actuators[0].viscous": 60})
+    assert robot.digest() == load_robot().digest()
+
+
+JUNK = st.one_of(
+    st.none(),
+    st.booleans(),
+    st.integers(),
+    st.floats(),
+    st.text(max_size=8),
+    st.lists(st.floats(), max_size=4),
+    st.dictionaries(st.text(max_size=4), st.integers(), max_size=2),
+)
+
+
+def paths_of(data: object, prefix: str = "") -> list[str]:
+    if isinstance(data, dict):
+        return [p for key, value in data.items() for p in paths_of(value, f"{prefix}.{key}" if prefix else key)]
+    if isinstance(data, list):
+        return [p for k, value in enumerate(data) for p in paths_of(value, f"{prefix}[{k}]")]
+    return [prefix]
+
+
+@settings(max_examples=300, deadline=None, derandomize=True)
+@given(path=st.sampled_from(paths_of(load_robot().to_dict())), value=JUNK)
+def test_any_value_at_any_place_is_taken_or_refused_in_words(path: str, value: object) -> None:
+    """Whatever stands at a place of the file: a valid robot that round-trips, or an error that names a place."""
+    try:
+        robot = load_robot().replace({path: value})
+    except InvalidRobot as error:
+        assert error.problems[0].path
+        assert str(error)
+        return
+    assert Robot.from_yaml(robot.to_yaml()) == robot
