@@ -9,8 +9,6 @@ from .inverse_velocity import InverseVelocity as InverseVelocity
 from .inverse_velocity import LimitedVelocity as LimitedVelocity
 from .kernel_parameters import KernelParameters as KernelParameters
 from .kernel_parameters import kernel_parameters as kernel_parameters
-from .remote_centre import RemoteCentre as RemoteCentre
-from .remote_centre import ShaftPoint as ShaftPoint
 from .robot_kinematics import RobotKinematics as RobotKinematics
 from .robot_kinematics import SingularityDistance as SingularityDistance
 from .tilt_linkage import TiltLinkage as TiltLinkage
