@@ -31,24 +31,40 @@ class Finding:
 
 
 class Detector(Protocol):
-    """Anything the supervisor can ask; `active_when_disabled` ones are asked in every state."""
+    """Anything the supervisor can ask."""
 
     @property
     def active_when_disabled(self) -> bool:
-        """Whether it objects in DISABLED too, as the emergency stop does."""
+        """Whether it leads from DISABLED into FAULT too, as the emergency stop does."""
+
+    @property
+    def cleared_by_recovery(self) -> bool:
+        """Whether its cause can only go on the way from FAULT to DISABLED, and so must not bar it."""
+
+    def recover(self, now: int) -> None:
+        """Take note of that way being gone at `now` [ns]."""
 
     def check(self, now: int) -> Finding | None:
         """Return the objection at time `now` [ns], or None."""
 
 
+class _Plain:
+    """Defaults of a detector whose cause comes and goes by itself."""
+
+    active_when_disabled = False
+    cleared_by_recovery = False
+
+    def recover(self, now: int) -> None:
+        """Nothing to forget."""
+
+
 @dataclass
-class SilenceDetector:
+class SilenceDetector(_Plain):
     """A stream that has gone silent: age of the newest sample against `limit` [s]."""
 
     source: str
     limit: float
     last: int = -1
-    active_when_disabled: bool = False
 
     def feed(self, stamp: int) -> None:
         """Take note of a sample [ns]."""
@@ -63,12 +79,12 @@ class SilenceDetector:
 
 
 @dataclass
-class EmergencyStopDetector:
+class EmergencyStopDetector(_Plain):
     """The latched button of the pedal box: 1 is pressed."""
 
     source: str = "pedal/measured"
     pressed: bool = False
-    active_when_disabled: bool = True
+    active_when_disabled = True
 
     def feed(self, pressed: bool) -> None:
         """Take note of the button."""
@@ -80,25 +96,35 @@ class EmergencyStopDetector:
 
 
 @dataclass
-class ReportedFault:
-    """A fault that another node reports; it stays until that node reports it gone.
+class ReportedFault(_Plain):
+    """A fault that the motor driver reports; it stays until the driver reports it gone.
 
-    The drives reset their fault only on the way from FAULT to DISABLED, so it must not stand in the way of that step:
-    it is asked in ENABLED and PAUSED, and before `enable`.
+    Driver and drives reset only on the way from FAULT to DISABLED. Reports made before they have done so are not
+    taken up again: for `grace` [s] after the recovery a report counts as an old one.
     """
 
     source: str
+    grace: float = 0.5
     finding: Finding | None = None
-    active_when_disabled: bool = False
+    deaf_until: int = -1
+    active_when_disabled = True
+    cleared_by_recovery = True
 
-    def feed(self, faulty: bool, message: str) -> None:
-        """Take note of a report; `message` says what is wrong."""
-        source = f"{self.source}: {message}"
-        self.finding = Finding(f"{code_of(self.source)}_STOPPED", 1.0, 0.0, "reported", source) if faulty else None
+    def feed(self, faulty: bool, message: str, now: int) -> None:
+        """Take note of a report at `now` [ns]; `message` says what is wrong."""
+        if not faulty:
+            self.finding, self.deaf_until = None, -1
+        elif now > self.deaf_until:
+            source = f"{self.source}: {message}"
+            self.finding = Finding(f"{code_of(self.source)}_STOPPED", 1.0, 0.0, "reported", source)
 
     def check(self, now: int) -> Finding | None:
         """Object while the report stands."""
         return self.finding
+
+    def recover(self, now: int) -> None:
+        """Wait for the first report after the reset."""
+        self.finding, self.deaf_until = None, now + round(self.grace * 1e9)
 
 
 def code_of(source: str) -> str:

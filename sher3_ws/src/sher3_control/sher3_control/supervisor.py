@@ -90,6 +90,9 @@ class Supervisor:
             self.status = _replace(self.status, homed=command is StateCommand.HOME)
         elif target is not state:
             self._seen.clear()
+            if self.state is OperatingState.FAULT:
+                for detector in self.detectors:
+                    detector.recover(now)
             self.status = Status(target, now, text, homed=self.status.homed)
         return self.status
 
@@ -98,12 +101,18 @@ class Supervisor:
         if command is StateCommand.DISABLE and self.state is not OperatingState.FAULT:
             return
         if command in (StateCommand.ENABLE, StateCommand.RESUME, StateCommand.DISABLE):
-            found = self.findings(now, everything=command is not StateCommand.DISABLE)
+            found = self._objections(command, now)
             if found:
                 listing = "; ".join(map(str, found))
                 raise StateCommandRefused(command.value, self.state.value, listing, remedy="remove these causes first")
         if command is StateCommand.ENABLE and not self.status.homed:
             raise StateCommandRefused(command.value, self.state.value, "not homed", remedy="send home first")
+
+    def _objections(self, command: StateCommand, now: int) -> list[Finding]:
+        """Return what stands against a command; against recovery only what would be a fault in DISABLED at once."""
+        recovery = command is StateCommand.DISABLE
+        asked = [d for d in self.detectors if not recovery or (d.active_when_disabled and not d.cleared_by_recovery)]
+        return [finding for d in asked if (finding := d.check(now)) is not None]
 
     def _fault(self, now: int, found: list[Finding]) -> None:
         self._seen = {f.code for f in found}

@@ -68,7 +68,7 @@ class SupervisorNode(Node):
 
     def _on_diagnostics(self, sample: DiagnosticSample) -> None:
         if sample.name == DRIVES:
-            self._drives.feed(sample.level >= ERROR, sample.message)
+            self._drives.feed(sample.level >= ERROR, sample.message, self._now())
             self._check(self._now())
 
     def _check(self, _now: int) -> None:

@@ -92,6 +92,21 @@ def test_unknown_commands_are_refused_by_name():
         Supervisor().command("self_destruct", 0)
 
 
+def test_a_drive_fault_faults_in_every_state_and_recovery_waits_for_the_reset():
+    drive = ReportedFault("motor_driver")
+    supervisor = Supervisor([drive])
+    drive.feed(True, "roll in FAULT", 0)
+    assert supervisor.check(1)
+    assert supervisor.state is S.FAULT
+    assert supervisor.command("disable", 10**9).state is S.DISABLED
+    drive.feed(True, "roll in FAULT", 10**9 + 10**8)
+    assert not supervisor.check(10**9 + 10**8)
+    drive.feed(False, "DISABLED", 10**9 + 2 * 10**8)
+    drive.feed(True, "roll in FAULT", 10**9 + 3 * 10**8)
+    assert supervisor.check(10**9 + 3 * 10**8)
+    assert supervisor.state is S.FAULT
+
+
 class Histories(RuleBasedStateMachine):
     """Random commands, streams and faults; the rules that may never break are the invariants."""
 
@@ -133,7 +148,7 @@ class Histories(RuleBasedStateMachine):
     @rule(faulty=st.booleans())
     def drive_fault(self, faulty):
         self._advance()
-        self.drive.feed(faulty, "following error")
+        self.drive.feed(faulty, "following error", self.now)
         self.supervisor.check(self.now)
 
     @invariant()
