@@ -21,7 +21,7 @@ NOT_A_WRENCH = (math.nan,) * 6
 REPORT_PERIOD = 0.1
 PHASE = 1e-5
 """Delay of the reading behind the tick, s: in stepped time the drives' SYNC comes first."""
-WAIT = 0.5
+WAIT = 0.8
 """Share of the period that a tick waits for its record."""
 
 

@@ -79,11 +79,10 @@ class MotorDriver:
         self._heartbeat = pack_frame(od.HEARTBEAT_BASE + settings.host_id, bytes([OPERATIONAL]))
         self._sync = pack_frame(od.SYNC_ID)
         self._reset_words = 0
+        self._early: tuple[int, list[int]] | None = None
         self._running = False
         self._all_enabled = False
         self._dead_links = 0
-
-    # Start.
 
     def configure(self, patience: float = 1.0) -> None:
         """Restart every drive, write its configuration, verify it by read-back, bring it to OPERATIONAL without power.
@@ -122,6 +121,7 @@ class MotorDriver:
     def quick_stop(self, reason: str) -> None:
         """Brake now, all drives, and stay stopped until `reset`; the first reason is kept."""
         self.stop.add(reason, self._clock())
+        self._early = None
         if self.goal is not Goal.STOPPED:
             self.goal = Goal.STOPPED
             self._steer()
@@ -160,8 +160,6 @@ class MotorDriver:
     def enabled(self) -> bool:
         """Whether every drive follows velocity commands."""
         return self.goal is Goal.ENABLED and self._all_enabled
-
-    # The tick.
 
     def tick(self, stamp: int) -> None:
         """Begin the tick `stamp` (ns): take what came in between, send SYNC, and the host's heartbeat when it is due.
@@ -207,6 +205,7 @@ class MotorDriver:
         self._watch(now)
         if not self.enabled:
             self._steer()
+        self._follow_early()
         return self.collector.feedback(self._stamp) if complete else None
 
     def _collect(self, mask: int) -> bool:
@@ -221,34 +220,48 @@ class MotorDriver:
     def command(self, stamp: int, velocity: Sequence[float]) -> bool:
         """Send a velocity command (5,) of tick `stamp`; False when it is ignored because the drives are not enabled.
 
+        A command may be early by less than `zero_age` periods, when this loop is late: it waits for its tick.
+
         Raises:
-            CommandRefused: not five finite values within the velocity limits, or not of this or a recent tick. Zero
+            CommandRefused: not five finite values within the velocity limits, or not of this or a near tick. Zero
                 velocity is sent in its place.
         """
         try:
             counts = self._checked(stamp, velocity)
         except DriverError:
             self.counters["refused"] += 1
+            self._early = None
             self._steer()
             raise
         if not self.enabled:
             self.counters["ignored"] += 1
             return False
+        if stamp > self._stamp:
+            self._early = stamp, counts
+        else:
+            self._follow(counts)
+        return True
+
+    def _follow(self, counts: Sequence[int]) -> None:
         self._command_tick = self._ticks
         self._send_commands([Command.ENABLE_OPERATION] * len(counts), counts)
-        return True
+
+    def _follow_early(self) -> None:
+        """Send a command that came before its tick, now that it is there."""
+        if self._early is not None and self._early[0] <= self._stamp:
+            (_, counts), self._early = self._early, None
+            if self.enabled:
+                self._follow(counts)
 
     def _checked(self, stamp: int, velocity: Sequence[float]) -> list[int]:
         age = self._stamp - stamp
-        if not 0 <= age < self.settings.zero_age * self._period_ns:
-            limit = f"0 to {self.settings.zero_age * self.settings.period * 1e3:g} ms"
-            raise CommandRefused(
-                "age of the command", value=f"{age * 1e-6:g} ms", limit=limit, remedy="check its sender"
-            )
+        if not abs(age) < self.settings.zero_age * self._period_ns:
+            limit = f"less than {self.settings.zero_age * self.settings.period * 1e3:g} ms either way"
+            what = "age of the command"
+            raise CommandRefused(what, value=f"{age * 1e-6:g} ms", limit=limit, remedy="check its sender")
         if len(velocity) != len(self._scales):
-            raise CommandRefused(
-                "number of velocities", value=len(velocity), limit=len(self._scales), remedy="send five"
-            )
+            what = "number of velocities"
+            raise CommandRefused(what, value=len(velocity), limit=len(self._scales), remedy="send five")
         counts = []
         for scale, value in zip(self._scales, velocity, strict=True):
             if not abs(value) <= scale.velocity_limit * (1.0 + 1e-9):  # a NaN compares false
@@ -264,8 +277,6 @@ class MotorDriver:
             time.sleep(self._braking_time)
         self._steer(Command.DISABLE_VOLTAGE)
         self._group.close()
-
-    # Inside.
 
     def _receive(self, timeout: float = 0.0) -> bool:
         """Take in what waits, waiting at most `timeout` s for it; False when nothing came."""

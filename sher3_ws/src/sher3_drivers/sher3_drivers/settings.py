@@ -53,7 +53,7 @@ class MotorDriverSettings(_Part):
     host_heartbeat_limit: Seconds = 0.020
     drive_heartbeat: Seconds = 0.050
     drive_heartbeat_limit: Seconds = 0.200
-    feedback_limit: Annotated[float, Field(gt=0.0, lt=1.0)] = 0.7
+    feedback_limit: Annotated[float, Field(gt=0.0, lt=1.0)] = 0.8
     missing_limit: Annotated[int, Field(ge=1, le=1000)] = 10
     zero_age: Annotated[int, Field(ge=1, le=1000)] = 4
     stop_age: Annotated[int, Field(ge=1, le=1000)] = 50

@@ -108,5 +108,11 @@ def test_disabling_ends_without_power(state):
     assert reach(state, Goal.DISABLED)[-1] is S.SWITCH_ON_DISABLED
 
 
+@pytest.mark.parametrize("goal", list(Goal))
+def test_a_stopped_drive_is_never_told_to_go_on(goal):
+    """Drives have transition 16: from QUICK STOP ACTIVE, ENABLE_OPERATION would set them moving again."""
+    assert next_command(S.QUICK_STOP_ACTIVE, goal) in (C.QUICK_STOP, C.DISABLE_VOLTAGE)
+
+
 def test_stopping_brakes_an_enabled_drive_and_holds_it():
     assert reach(S.OPERATION_ENABLED, Goal.STOPPED)[-1] is S.QUICK_STOP_ACTIVE

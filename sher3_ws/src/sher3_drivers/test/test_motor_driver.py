@@ -124,6 +124,15 @@ def test_a_drive_that_does_not_answer_is_named(make_rig):
         rig.driver.configure()
 
 
+def test_a_drive_that_does_not_become_operational_is_named(make_rig):
+    rig = make_rig()
+    node = rig.mock.drives["tilt"].node
+    handle = node.handle
+    node.handle = lambda can_id, data: None if can_id == 0 and data[:1] == b"\x01" else handle(can_id, data)
+    with pytest.raises(DriveSilent, match="tilt: does not become OPERATIONAL"):
+        rig.driver.configure()
+
+
 @pytest.mark.parametrize(
     ("address", "value"),
     [
@@ -197,12 +206,32 @@ def test_a_bad_command_is_refused_and_zero_is_sent(rig, bad, axis):
     assert rig.tick().velocity_demand == (0.0,) * 5
 
 
-@pytest.mark.parametrize("periods", [-1, 4, 1000])
+@pytest.mark.parametrize("periods", [-1000, -4, 4, 1000])
 def test_a_command_of_another_time_is_refused(rig, periods):
     rig.tick(SLOW)
     with pytest.raises(CommandRefused, match="age"):
         rig.driver.command(rig.stamp - periods * rig.period_ns, SLOW)
     assert rig.tick().velocity_demand == (0.0,) * 5
+
+
+def test_an_early_command_waits_for_its_tick(rig):
+    """A driver process that runs late finds the commands of ticks it has not begun."""
+    rig.tick(SLOW)
+    rig.driver.command(rig.stamp + rig.period_ns, [2 * v for v in SLOW])
+    assert rig.tick().velocity_demand == pytest.approx(SLOW, abs=6e-10)
+    assert rig.tick().velocity_demand == pytest.approx([2 * v for v in SLOW], abs=6e-10)
+
+
+def test_an_early_command_is_forgotten_at_a_stop(rig):
+    rig.tick(SLOW)
+    rig.driver.command(rig.stamp + rig.period_ns, SLOW)
+    rig.driver.quick_stop("test")
+    for _ in range(10):
+        rig.tick()
+    position = list(rig.plant.position)
+    rig.driver.reset()
+    rig.tick()
+    assert rig.plant.position == position
 
 
 def test_the_wrong_number_of_axes_is_refused(rig):
