@@ -14,7 +14,7 @@ from rclpy.node import Node
 from sher3_description import Robot, Sher3Error
 from sher3_kinematics import kernel_parameters
 from sher3_runtime import JointSample, JoySample, TextSample, TwistSample, WrenchSample
-from sher3_runtime.ports import NODE_OPTIONS, advertise, clock_of, on_tick, subscribe
+from sher3_runtime.ports import NODE_OPTIONS, advertise, clock_of, latest, on_tick, subscribe
 from std_srvs.srv import Trigger
 
 from .admittance import NO_WRENCH, LawInput, initial_state, step
@@ -66,7 +66,7 @@ class AdmittanceNode(Node):
         self._publish_inputs = advertise(self, "admittance/inputs")
         self._publish_settings = advertise(self, "admittance/settings")
         self._publish_status = advertise(self, "admittance/status")
-        subscribe(self, "measured_js", self._on_joints)
+        self._take_joints = latest(self, "measured_js")
         subscribe(self, "pedal/measured", self._on_pedal)
         subscribe(self, "force/measured_cf", self._on_wrench)
         subscribe(self, "operating_state", self._on_state)
@@ -79,9 +79,9 @@ class AdmittanceNode(Node):
         on_tick(self, lambda _stamp: self._report(), phase=LATE * period, every=every)
         self._publish_settings(TextSample(to_json(self._live, self.settings)))
 
-    def _on_joints(self, sample: JointSample) -> None:
-        q = sample.position
-        if q is not None and len(q) == 5:
+    def _look_at_joints(self) -> None:
+        sample: JointSample | None = self._take_joints()
+        if sample is not None and (q := sample.position) is not None and len(q) == 5:
             self._joints = (sample.stamp, q, *roll_and_tilt(self._kernel, q[3], q[4]))
 
     def _on_pedal(self, sample: JoySample) -> None:
@@ -107,6 +107,7 @@ class AdmittanceNode(Node):
             return
         self._last = stamp
         self._late.done(stamp)
+        self._look_at_joints()
         law_input = self._input(stamp)
         self._state, output = step(self._state, law_input, self._p)
         if law_input.owner:

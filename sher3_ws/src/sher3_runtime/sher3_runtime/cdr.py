@@ -59,6 +59,8 @@ def codec(type_name: str, frame_id: str = "", joints: tuple[str, ...] = ()) -> C
         return _joint_codec(frame_id, joints)
     if name in _DOUBLES:
         return _doubles_codec(frame_id, *_DOUBLES[name])
+    if name == "Joy":
+        return _joy_codec(frame_id)
     if name in _VARIABLE:
         write, read = _VARIABLE[name]
         return Codec(_guarded_encode(write, frame_id), _guarded_decode(read, frame_id))
@@ -183,7 +185,25 @@ def _joint_layout(blob: int, n: int, key: int) -> struct.Struct:
     return struct.Struct(text)
 
 
-# Messages of variable length, rarely on a fast path.
+# Messages of variable length. A Joy of one axis and one button, our pedal, has a fast path.
+
+
+def _joy_codec(frame_id: str) -> Codec:
+    writer = Writer()
+    writer.string(frame_id)
+    writer.align(4)
+    blob = bytes(writer.data)
+    layout = struct.Struct(f"<4siI{len(blob)}sIfIi")
+    unpack, size, slow = layout.unpack, layout.size, _guarded_decode(_read_joy, frame_id)
+
+    def decode(data: bytes) -> JoySample:
+        if len(data) == size:
+            kind, sec, nanosec, constant, axes, travel, buttons, button = unpack(data)
+            if kind == _LITTLE_ENDIAN and constant == blob and nanosec < SECOND and axes == buttons == 1:
+                return JoySample(sec * SECOND + nanosec, (travel,), (button,))
+        return slow(data)
+
+    return Codec(_guarded_encode(_write_joy, frame_id), decode)
 
 
 def _read_joy(reader: Reader, frame_id: str) -> JoySample:

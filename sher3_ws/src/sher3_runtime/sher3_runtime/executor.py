@@ -33,7 +33,7 @@ Others = dict[str, list[tuple[Any, Take]]]
 
 
 class RawExecutor(Executor):
-    """Runs the callbacks of its nodes in the calling thread, in this order: topics, ticks, everything else."""
+    """Runs the callbacks of its nodes in the calling thread, topics before ticks."""
 
     def __init__(self, *, context: Any = None) -> None:
         super().__init__(context=context)
@@ -50,7 +50,7 @@ class RawExecutor(Executor):
         self._period_ns = IDLE_NS
         self._events: list[Any] = []
         self._asked: list[Any] = []
-        self._events_due_ns = 0
+        self._events_due_ns = self._topics_due_ns = 0
 
     def spin_once(self, timeout_sec: float | None = None) -> None:
         """Wait until something is ready or due, at most `timeout_sec`, and run all of it."""
@@ -63,11 +63,12 @@ class RawExecutor(Executor):
         if self._files:
             self._wait_on_files(timeout)
             timeout = 0
-        self._wait(timeout)
-        self._take_topics()
+        if not self._files or self._topics_are_due():
+            self._wait(timeout)
+            self._take_topics()
+            self._run_others()
         if clock is not None:
             self._run_ticks(clock)
-        self._run_others()
 
     def settle(self) -> bool:
         """Run what is ready now, without waiting; return whether there was anything (for stepped time)."""
@@ -192,11 +193,20 @@ class RawExecutor(Executor):
             self._asked = self._waitables
         wait_set.wait(timeout_ns)
 
+    def _topics_are_due(self) -> bool:
+        """Tell whether to look at the topics: who waits on files does it twice a period, not at each wake-up."""
+        now = monotonic_ns()
+        if now < self._topics_due_ns:
+            return False
+        self._topics_due_ns = now + self._period_ns // 2
+        return True
+
     def _wait_on_files(self, timeout_ns: int) -> bool:
-        """Wait on the files instead, no longer than a period, since the topics are only looked at afterwards."""
-        readable, _, _ = select.select(list(self._files), (), (), min(timeout_ns, self._period_ns) * 1e-9)
-        for number in readable:
-            self._files[number]()
+        """Wait on the files instead, no longer than half a period, since the topics are only looked at afterwards."""
+        readable, _, _ = select.select(self._files, (), (), min(timeout_ns, self._period_ns // 2) * 1e-9)
+        # Several files may share a callback, which serves them all.
+        for callback in dict.fromkeys([self._files[number] for number in readable]):
+            callback()
         return bool(readable)
 
     def _take_topics(self) -> bool:
