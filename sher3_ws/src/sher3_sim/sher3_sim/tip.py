@@ -145,7 +145,8 @@ def true_tip(
         twist = np.zeros(6)
         add_clearance(p, axis, q, load, jacobian, twist)
         add_lumped(b.lumped_fraction, arm, wrench, twist)
-        add_links(p, b, q, arm, wrench, twist)
+        if np.any(b.link_fraction != 0.0) or np.any(b.link_difference != 0.0):
+            add_links(p, b, q, arm, wrench, twist)
         shift += twist[:3] + cross(twist[3:], arm)
         for k in range(3):
             rotation[:, k] += cross(twist[3:], rotation[:, k])
