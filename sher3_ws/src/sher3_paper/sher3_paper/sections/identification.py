@@ -3,17 +3,26 @@
 from __future__ import annotations
 
 import numpy as np
+from sher3_description import load_robot
 from sher3_kinematics.link_law import LinkLaw
 
 from ..comparison import Comparison, Section, Table, computed
 from ..design import Design
+from ..optimise import PAPER_LAW
 from ..simulated import identify_from_loops, twist_loop
 from ..tables import printed, torsion_table
-from ..torsion import GEOMETRIES, LINK_LENGTH, PowerFit, empirical_exponents, identify_from_table, leave_one_out
+from ..torsion import (
+    GEOMETRIES,
+    LINK_LENGTH,
+    PowerFit,
+    effective_torque,
+    empirical_exponents,
+    identify_from_table,
+    leave_one_out,
+    leg_slope,
+)
 
 COMMAND = "sher3 paper --only identification"
-TORQUES = {"hole rows": 0.96, "literal": 1.65}
-"""Moments [N m] at which the table is read, from the torsion part; they scale a but not b."""
 
 
 def identification() -> Section:
@@ -21,14 +30,14 @@ def identification() -> Section:
     law, table = printed()["link_law"], torsion_table()
     lines: list[Comparison] = []
     for geometry in GEOMETRIES:
-        fit = identify_from_table(table, TORQUES[geometry], geometry)
+        torque = effective_torque(table, leg_slope(table, geometry), PAPER_LAW)
+        fit = identify_from_table(table, torque, geometry)
         lines += _fit_lines(f"table, {geometry}", fit, law["a"], law["b"])
-        error = leave_one_out(table, TORQUES[geometry], geometry)
+        error = leave_one_out(table, torque, geometry)
         rms = 100 * float(np.sqrt((error**2).mean()))
         lines.append(computed(f"leave-one-out rms, table, {geometry}", "%", rms, COMMAND))
-    truth = LinkLaw(law["a"] * 1e-6, law["b"])
     loops = [
-        twist_loop(Design(LINK_LENGTH, width, float(psi)), fraction=1.0 / 0.481, seed=seed)
+        twist_loop(Design(LINK_LENGTH, width, float(psi)), fraction=1.0 / load_robot().delta.spring_factor, seed=seed)
         for seed, (width, psi) in enumerate((w, p) for w in (0.025, 0.035) for p in np.radians([12.0, 18.0, 24.0]))
     ]
     lines += _fit_lines("plant, six geometries", identify_from_loops(loops), law["a"], law["b"])
@@ -41,7 +50,7 @@ def identification() -> Section:
         "friction torque in the spherical joints (which a rotation turns by r_p dtheta / L) and lateral compliance "
         "of the joints; the table alone does not tell them apart."
     )
-    figures = [("link_law", {"table": table, "loops": loops, "law": truth})]
+    figures = [("link_law", {"table": table, "loops": loops, "law": LinkLaw.of(load_robot(), springs=False)})]
     return Section("identification", "Identification of the link law", text, lines, [_exponent_table()], figures)
 
 
