@@ -109,7 +109,7 @@ def _ticks(nodes: dict[str, Any], start: int, clock: SteppedClock) -> dict[str, 
 
     def admittance(k: int) -> None:
         t = hear(a, k)
-        a._on_joints(JointSample(t, REST))
+        a._take_joints = lambda: JointSample(t, REST)
         a._on_pedal(JoySample(t, (0.0 if k == 0 else 1.0,), (0,)))
         a._on_wrench(WrenchSample(t, (0.5 + 1e-9 * k, 0.1, -0.2, 0.001, 0.0, 0.0)))
 
@@ -121,8 +121,8 @@ def _ticks(nodes: dict[str, Any], start: int, clock: SteppedClock) -> dict[str, 
     def supervisor(k: int) -> None:
         t = start + k * T
         clock.time_ns = t
-        for feed in s._silence.values():
-            feed.last = t
+        for detector in s._silence.values():
+            detector.feed(t)
         s._on_pedal(JoySample(t, (1.0,), (0,)))
         s._check(t)
 
