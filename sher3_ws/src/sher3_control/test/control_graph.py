@@ -42,7 +42,7 @@ class IdealRobot(Node):
         if self.joints_alive:
             self._joints(JointSample(stamp, tuple(self.q)))
         if self.travel is not None:
-            self._pedal(JoySample(stamp, (self.travel,), (self.button,)))
+            self._pedal(JoySample(stamp, (self.travel,), () if self.button is None else (self.button,)))
         if self.force is not None:
             x, y, z = self.force
             wiggle = 1e-6 * (self.count % 7)

@@ -4,6 +4,7 @@ import pytest
 from control_graph import control_graph
 from law_bench import ROBOT
 from sher3_runtime import DiagnosticSample, JointSample, TwistSample
+from std_srvs.srv import Trigger
 
 pytestmark = pytest.mark.graph
 T = 2_000_000
@@ -77,6 +78,36 @@ def test_emergency_stop_faults_in_its_tick():
         assert g.status("supervisor/status")["first_fault"]["code"] == "EMERGENCY_STOP"
 
 
+def test_a_pedal_without_its_stop_button_counts_as_stopped():
+    with control_graph() as g:
+        g.enable()
+        g.press(force=(1.0, 0.0, 0.0))
+        g.step(50)
+        g.robot.button = None
+        g.step()
+        assert g.last("servo_cv").twist == (0.0,) * 6
+        g.until_state("FAULT")
+
+
+def test_tare_and_live_parameters_answer_over_the_graph():
+    with control_graph() as g:
+        g.enable()
+        g.step(260)
+        client = g.probe.create_client(Trigger, "admittance/tare")
+        g.graph.until(client.service_is_ready, "service")
+        for travel, good in ((1.0, False), (0.0, True)):
+            g.robot.travel = travel
+            g.step(3)
+            future = client.call_async(Trigger.Request())
+            g.graph.until(future.done, "answer")
+            assert future.result().success == good, future.result().message
+        assert g.admittance._live.version == 1
+        g.text("admittance", "speed_scale 7")
+        g.graph.until(lambda: g.status("admittance/status").get("refused", {}).get("value") == 7.0, "refusal")
+        g.text("admittance", "rcm here 0.018")
+        assert g.kinematics.motion.velocity_modes.centre is not None
+
+
 def test_a_drive_fault_faults_and_its_reset_on_the_way_to_disabled_is_not_blocked():
     with control_graph() as g:
         g.enable()
@@ -123,6 +154,9 @@ def test_move_jp_reaches_its_goal_and_refuses_a_second_owner():
         g.step(20)
         g.until_mode("move_jp")
         assert g.status("motion/status")["is_busy"]
+        twists = len(g.probe.samples["servo_cv"])
+        g.step(5)
+        assert len(g.probe.samples["servo_cv"]) == twists
         g.probe.send("command/servo_cv", TwistSample(g.now, (1e-3, 0.0, 0.0, 0.0, 0.0, 0.0)))
         g.graph.settle()
         g.step()
