@@ -170,6 +170,15 @@ def test_the_host_dies_and_every_drive_stops_within_its_limits(rig):
         assert 0 < abs(end - begin) < worst
 
 
+def test_the_drives_stop_without_the_hosts_heartbeat_though_sync_and_commands_go_on(rig):
+    rig.tick(SLOW)
+    rig.driver._heartbeat_at = rig.now + 10**12
+    for _ in range(50):
+        rig.tick(SLOW)
+    assert {drive.state for drive in rig.mock.drives.values()} == {mock_drive.FAULT}
+    assert "0x8130" in rig.driver.stop.reason
+
+
 def test_after_the_host_comes_back_nothing_moves_without_a_reset(rig):
     rig.tick(SLOW)
     rig.idle(50)
