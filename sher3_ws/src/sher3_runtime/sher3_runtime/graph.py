@@ -8,6 +8,7 @@ from __future__ import annotations
 import os
 import time
 from collections.abc import Callable
+from itertools import groupby
 from types import TracebackType
 from typing import Any, TypeVar
 
@@ -20,6 +21,7 @@ from .clock import SteppedClock, set_timer_slack
 from .executor import RawExecutor
 from .ports import NODE_OPTIONS, advertise, ports, subscribe, use_clock
 from .spinning import close
+from .tick import Tick
 
 N = TypeVar("N", bound=Node)
 
@@ -62,20 +64,22 @@ class Graph:
         """Add a node that keeps every sample of `topics` and can publish on the topics `sends`."""
         return self.add(Probe, *topics, name=f"probe_{len(self.nodes)}", sends=sends)
 
-    def step(self, count: int = 1, before_settling: Callable[[int], None] | None = None) -> int:
-        """Run `count` ticks of all nodes in the order of their phases; return the stamp of the last one."""
+    def step(self, count: int = 1) -> int:
+        """Run `count` ticks of all nodes in the order of their phases; return the stamp of the last one.
+
+        Ticks of one phase run in the order in which their nodes were added; then every sample is delivered.
+        """
         if not self._matched:
             self._match()
         for _ in range(count):
             stamp = self._stamp
             self._stamp += self.clock.period_ns
             ticks = [tick for node in self.nodes for tick in ports(node).ticks if stamp % tick.period_ns == 0]
-            for tick in sorted(ticks, key=lambda tick: tick.phase_ns):
-                self.clock.time_ns = stamp + tick.phase_ns
-                tick.due_ns = self.clock.time_ns
-                tick.run(self.clock.time_ns)
-                if before_settling is not None:
-                    before_settling(stamp)
+            for phase, together in groupby(sorted(ticks, key=_phase), key=_phase):
+                self.clock.time_ns = stamp + phase
+                for tick in together:
+                    tick.due_ns = self.clock.time_ns
+                    tick.run(self.clock.time_ns)
                 self.settle()
         return stamp
 
@@ -149,6 +153,10 @@ class Graph:
 
     def __exit__(self, kind: type | None, error: BaseException | None, trace: TracebackType | None) -> None:
         self.close()
+
+
+def _phase(tick: Tick) -> int:
+    return tick.phase_ns
 
 
 class Probe(Node):
