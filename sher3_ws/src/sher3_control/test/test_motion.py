@@ -161,8 +161,9 @@ def test_commands_out_of_order_are_refused_and_leave_the_stream_alone():
 
 def test_goals_out_of_reach_are_refused():
     bench = Bench()
-    with pytest.raises(Sher3Error):
-        bench.command(Mode.MOVE_JP, joints(bench, (0.05, 0.0, 0.0, 0.0, 0.0)))
+    for goal in ((0.05, 0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.9, 0.0), (0.0, 0.0, 0.0, 0.0, 0.027)):
+        with pytest.raises(Sher3Error):
+            bench.command(Mode.MOVE_JP, joints(bench, goal))
     with pytest.raises(Sher3Error):
         bench.command(Mode.MOVE_JP, joints(bench, (0.038, -0.038, -0.038, 0.0, 0.0)))
     with pytest.raises(Sher3Error):
