@@ -21,9 +21,11 @@ PARSIMONY = 0.004
 """The same as a share of what the effect explains."""
 WORTH = 0.35
 """Share of the gap that is left which a further cause must explain."""
-RIVAL = 0.03
+RIVAL = 0.02
 """A rival explains all but this share of what the chosen effect explains."""
 
+ROUNDS = 3
+"""Rounds of the search over shapes: the effect's own, then around the best so far."""
 RANKED = 6
 """Effects kept in the ranking of a cause."""
 
@@ -51,16 +53,17 @@ class Candidates:
 
     def best(self, effect: LibraryEffect, site: str, given: Sequence[Term] = ()) -> Fit | None:
         """Best shape of an effect at a site together with the terms given (the effect is the last term)."""
-        views = self.evidence.views
         found: Fit | None = None
-        for shapes in (
-            lambda: effect.shapes(views, site),
-            lambda: effect.refine(found.terms[-1].shape) if found else [],
-        ):
-            for shape in shapes():
+        shapes = effect.shapes(self.evidence.views, site)
+        for _ in range(ROUNDS):
+            before = found
+            for shape in shapes:
                 trial = fit(self.evidence.data, [*given, self.term(effect, site, shape)])
                 if self._allowed(trial) and (found is None or cost(trial) < cost(found)):
                     found = trial
+            if found is None or found is before:
+                break
+            shapes = effect.refine(found.terms[-1].shape)
         return found
 
     @staticmethod

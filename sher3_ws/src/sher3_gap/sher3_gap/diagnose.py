@@ -28,8 +28,10 @@ from sher3_gap.tip import tip_closure
 from sher3_gap.verdict import Cause, Closure, Interval, Residual, Unexplained, Verdict, Where
 
 Say = Callable[[str], None]
-REMAINDER = 0.15
+REMAINDER = 0.22
 """Share of a channel's gap that may be left when its cause is known: laws are idealisations."""
+SLIGHT = 1.6
+"""Power over threshold below which a gap beside an explained one is taken as spill-over, not as a cause of its own."""
 LOST_MOTION = ("backlash", "transmission_hysteresis", "transmission_compliance")
 """Effects between motor and load that show only against a load-side friction: that friction is their companion."""
 
@@ -120,6 +122,10 @@ def _verdict(
     causes = [_cause(evidence, attribution, i, null) for i in range(len(attribution.fit.terms))]
     where = _where(evidence, initial, attribution)
     open_ = left_over(evidence, initial, attribution.fit)
+    if causes or exact:
+        slight = {c for c in open_ if initial[c].power < SLIGHT}
+        initial = {c: g for c, g in initial.items() if c not in slight}
+        open_ = {c: x for c, x in open_.items() if c not in slight}
     if not initial and not exact:
         return Verdict(status="no_gap")
     causes = _order([*(c for f in exact for c in f.causes), *causes])

@@ -62,6 +62,8 @@ def transport_finding(
 
 SKEW = 0.02
 """Difference of the axes' latencies from which they are not alike, periods."""
+APART = 0.05
+"""Share of the stage's energy that latencies of their own must explain beyond a common one."""
 SMALL = 0.005
 """Share of the stage's energy below which a further timing effect is not named."""
 
@@ -72,7 +74,8 @@ def _timing_causes(t: Timing, runs: Sequence[RunSignals], without: Collection[st
     closure = 0.0
     constant = 1.0 - t.constant / t.energy
     usual = float(np.median(t.latency))
-    odd = [i for i in range(len(t.latency)) if abs(t.latency[i] - usual) > SKEW]
+    apart = (t.shared - t.constant) / t.energy > APART
+    odd = [i for i in range(len(t.latency)) if apart and abs(t.latency[i] - usual) > SKEW]
     per_tick = 1.0 - t.per_tick / t.energy
     random_share = per_tick - constant
     jittery = t.scatter > 0.35 * max(usual, 1e-9) and random_share > SMALL and t.drops < 0.5

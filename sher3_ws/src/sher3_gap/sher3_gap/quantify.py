@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from sher3_gap.channels import Array, Channel
@@ -15,7 +13,9 @@ from sher3_gap.verdict import Interval, Parameter
 RESAMPLES = 400
 MIN_RUNS = 5
 """Fewer runs than this carry no interval."""
-LAW_UNCERTAINTY = 0.03
+FLOOR_UNCERTAINTY = 0.05
+"""Relative standard error of the floor's power with a handful of repeats."""
+LAW_UNCERTAINTY = 0.06
 """Relative uncertainty of a parameter that comes from the effect's law being an idealisation."""
 
 
@@ -60,9 +60,10 @@ def interval_of(rows: Array) -> Interval:
         return Interval(value=value)
     rng = np.random.default_rng(0)
     picks = rng.integers(0, len(rows), (RESAMPLES, len(rows)))
-    draws = np.array([_kappa(rows[p].mean(axis=0)) for p in picks])
+    floors = rng.normal(1.0, FLOOR_UNCERTAINTY, RESAMPLES)
+    draws = np.array([_kappa(rows[p].mean(axis=0) * [1.0, 1.0, f]) for p, f in zip(picks, floors, strict=True)])
     low, high = np.percentile(draws, [2.5, 97.5])
-    return Interval(value=value, low=float(min(low, value)), high=float(max(high, value)))
+    return Interval(value=value, low=float(min(low, value - 0.01)), high=float(min(1.0, max(high, value + 0.01))))
 
 
 def _kappa(row: Array) -> float:

@@ -32,7 +32,7 @@ class Timing:
     """How commands reach the drives in one case.
 
     Attributes:
-        energy: of the nominal echo error; `constant`: with each axis' own constant latency; `per_tick`: with every tick's own.
+        energy: of the nominal echo error; `shared`: with one latency for all axes; `constant`: with each axis' own; `per_tick`: with every tick's own.
         latency: (axes,) constant latency in periods.
         common: latency shared by all axes, periods.
         samples: per-tick latencies shared by the axes, periods (telling ticks only).
@@ -41,6 +41,7 @@ class Timing:
     """
 
     energy: float
+    shared: float
     constant: float
     per_tick: float
     latency: Array
@@ -107,7 +108,7 @@ def timing_of(runs: Sequence[RunSignals], robot: Robot) -> Timing | None:
     energy = sum(float(np.sum((e - delayed(c, 1)) ** 2)) for c, e in pairs)
     axes = [constant_latency(pairs, i) for i in range(pairs[0][0].shape[1])]
     latency = np.array([a[0] for a in axes])
-    common, _ = constant_latency(pairs)
+    common, together = constant_latency(pairs)
     told, left = [], 0.0
     for command, echo in pairs:
         ticks, error = tick_latency(command, echo, latency)
@@ -120,6 +121,7 @@ def timing_of(runs: Sequence[RunSignals], robot: Robot) -> Timing | None:
     scatter = float(np.std(rest)) if len(rest) else 0.0
     return Timing(
         energy,
+        together,
         sum(a[1] for a in axes),
         left,
         latency,

@@ -13,6 +13,7 @@ from typing import ClassVar
 
 import numpy as np
 from sher3_description import ACTUATORS, Robot
+
 from sher3_gap.channels import Array, Channel
 from sher3_gap.geometry import Geometry, Path
 from sher3_gap.library.operators import dahl

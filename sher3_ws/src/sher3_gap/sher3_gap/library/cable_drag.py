@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 from sher3_description import ACTUATORS
+
 from sher3_gap.channels import Array, Channel
 from sher3_gap.library.base import LibraryEffect, Shape, Signature, View, axis_of, column, lead
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+
 from sher3_gap.channels import Array, Channel
 from sher3_gap.library.base import LibraryEffect, Shape, Signature, View, axis_of
 from sher3_gap.library.operators import first_order

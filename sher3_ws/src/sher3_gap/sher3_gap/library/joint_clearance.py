@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+
 from sher3_gap.channels import Array, Channel
 from sher3_gap.library.base import LibraryEffect, Shape, Signature, View, axis_of, lead
 
@@ -29,20 +30,23 @@ class JointClearance(LibraryEffect):
         return (Channel("mechanism", "tip"), Channel("structure", "tip"))
 
     def shapes(self, views: Sequence[View], site: str) -> list[Shape]:
-        """What decides the side: 0 the direction of the slider, 1 the force along the leg."""
-        return [{"by_load": 0.0}, {"by_load": 1.0}]
+        """What decides the side: 0 the direction of the slider, 1 the force along the leg; a side that never changes is none."""
+        shapes: list[Shape] = [{"by_load": 0.0}, {"by_load": 1.0}]
+        return [s for s in shapes if np.ptp(np.concatenate([self._side(v, site, s) for v in views])) > 1.0]
 
-    def signature(self, view: View, site: str, shape: Shape) -> Signature:
-        """One column: half the change of the pose per metre of leg, with the sign of the side."""
+    def _side(self, view: View, site: str, shape: Shape) -> Array:
         axis = axis_of(site)
-        change = view.geometry.pose_change(view.run, 1e-5, **{f"link_{site[-1]}": 1.0})
         if shape["by_load"]:
             force = view.path.contact_force[:, axis] - view.path.gravity[:, axis]
-            side = np.tanh(force / 0.05)
-        else:
-            side = view.sliding(axis, 2.5e-3 * lead(view, site))[view.run.grid]
-        return Signature(view.at_tip(0.5 * (change * side[:, None])[:, :, None]))
+            return np.tanh(force / 0.05)
+        return view.sliding(axis, 2.5e-3 * lead(view, site))[view.run.grid]
+
+    def signature(self, view: View, site: str, shape: Shape) -> Signature:
+        """Two columns: half the change of the pose per metre of either link, with the sign of the side."""
+        first = 2 * axis_of(site)
+        change = view.link_changes[:, :, first : first + 2] * self._side(view, site, shape)[:, None, None]
+        return Signature(view.at_tip(0.5 * change))
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Clearance along the leg."""
-        return {"clearance": abs(float(coefficients[0]))}
+        return {"clearance": float(np.abs(coefficients).mean())}

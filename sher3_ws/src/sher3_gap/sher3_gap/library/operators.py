@@ -6,6 +6,7 @@ import math
 
 import numba
 import numpy as np
+
 from sher3_gap.channels import Array
 
 

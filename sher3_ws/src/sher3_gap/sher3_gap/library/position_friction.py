@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+
 from sher3_gap.channels import Array, Channel
 from sher3_gap.library.base import LibraryEffect, Shape, Signature, View, axis_of, column, lead
 
@@ -17,17 +18,19 @@ class PositionFriction(LibraryEffect):
     explanation = "Friction changes along the stroke (seal, guide, ball return): at the same place the extra force has the opposite sign in the other direction."
     siblings = {"cogging": "at the same place the force has the same sign in both directions"}
     units = {"force": "N", "amplitude": "N", "wavelength": "m"}
-    WAVELENGTHS = (0.25, 0.5, 1.0, 1.5, 2.0, 3.0, 5.0)
+    WAVELENGTHS = tuple(np.geomspace(0.2, 8.0, 28))
     """In motor revolutions."""
 
     def shapes(self, views: Sequence[View], site: str) -> list[Shape]:
         """Wavelength along the stroke."""
         scale = lead(views[0], site)
-        return [{"wavelength": n * scale, "displacement": 2.5e-3 * scale} for n in self.WAVELENGTHS]
+        return [{"wavelength": float(n) * scale, "displacement": 2.5e-3 * scale} for n in self.WAVELENGTHS]
 
     def refine(self, shape: Shape) -> list[Shape]:
-        """Wavelengths between the neighbours."""
-        return [{**shape, "wavelength": shape["wavelength"] * f} for f in (0.8, 0.87, 0.93, 1.07, 1.15, 1.25)]
+        """Wavelengths between the neighbours, and a shorter displacement."""
+        near = (0.91, 0.94, 0.96, 0.98, 0.99, 1.01, 1.02, 1.04, 1.06, 1.1)
+        out: list[Shape] = [{**shape, "wavelength": shape["wavelength"] * f} for f in near]
+        return [*out, {**shape, "displacement": 0.4 * shape["displacement"]}]
 
     def signature(self, view: View, site: str, shape: Shape) -> Signature:
         """Three columns: the mean force and its two quadratures."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+
 from sher3_gap.channels import Array, Channel
 from sher3_gap.library.base import LibraryEffect, Shape, Signature, View
 

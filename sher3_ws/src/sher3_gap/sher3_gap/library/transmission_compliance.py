@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from sher3_gap.channels import Array, Channel
 from sher3_gap.library.base import LibraryEffect, Shape, Signature, View, axis_of, column
+from sher3_gap.library.operators import oscillator
 
 
 class TransmissionCompliance(LibraryEffect):
@@ -21,16 +24,34 @@ class TransmissionCompliance(LibraryEffect):
     }
     units = {"stiffness": "N/m", "compliance": "m/N"}
 
+    FREQUENCIES = (8.0, 11.0, 14.0, 17.0, 20.0, 24.0, 28.0, 34.0, 40.0, 50.0)
+
     def shapes(self, views: Sequence[View], site: str) -> list[Shape]:
-        """Share of the axis' mass on the load side of the spring."""
-        return [{"load_mass": s} for s in (0.0, 0.1, 0.3, 1.0)]
+        """Share of the axis' mass on the load side; resonance of that mass on the spring (0: far above the bandwidth)."""
+        static: list[Shape] = [{"load_mass": s, "frequency": 0.0, "damping": 0.0} for s in (0.0, 0.1, 0.3, 1.0)]
+        ringing = [{"load_mass": s, "frequency": f, "damping": 0.1} for s in (0.1, 0.3) for f in self.FREQUENCIES]
+        return [*static, *ringing]
+
+    def refine(self, shape: Shape) -> list[Shape]:
+        """Around the resonance."""
+        if not shape["frequency"]:
+            return [{**shape, "load_mass": s} for s in (0.03, 0.06, 0.2, 0.5)]
+        near = [{**shape, "frequency": shape["frequency"] * f} for f in (0.9, 0.95, 1.05, 1.1)]
+        return [*near, *({**shape, "damping": z} for z in (0.02, 0.05, 0.2, 0.4)), {**shape, "load_mass": 0.5}]
 
     def signature(self, view: View, site: str, shape: Shape) -> Signature:
-        """One column: minus the force on the spring."""
-        axis = axis_of(site)
-        static = view.path.gravity[:, axis] - view.path.contact_force[:, axis]
-        moving = view.run.to_grid(view.run.acceleration[:, axis]) * view.robot.actuators[axis].mass
-        return Signature({Channel(self.stage, site): column(-(static + shape["load_mass"] * moving))})
+        """One column: minus the force on the spring, ringing; the motor feels the load's mass move against it."""
+        axis, run = axis_of(site), view.run
+        clock = run.stage_clock
+        mass = shape["load_mass"] * view.robot.actuators[axis].mass
+        pull = np.interp(clock, clock[run.grid], view.path.gravity[:, axis] - view.path.contact_force[:, axis])
+        force = (pull + mass * np.gradient(run.velocity[:, axis], run.period))[:, None]
+        if not shape["frequency"]:
+            return Signature({Channel(self.stage, site): column(-run.to_grid(force[:, 0]))})
+        bend = oscillator(force, shape["frequency"], shape["damping"], run.period)[:, 0]
+        back = mass * np.gradient(np.gradient(bend, run.period), run.period)
+        motor = Channel("motor_mechanics", site)
+        return Signature({Channel(self.stage, site): column(-run.to_grid(bend)), motor: column(-run.to_grid(back))})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Stiffness and its inverse."""

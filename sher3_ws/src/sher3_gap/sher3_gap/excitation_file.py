@@ -1,0 +1,109 @@
+"""Excitations as files, for the player on the graph and for the simulator alike.
+
+Format `sher3.excitation/1`: a YAML header, and beside it an npz with `position` and `velocity`, (n, 5) each, one row per control
+period, actuators in the fixed order, SI units. The header's keys: `schema`, `name`, `amplitude`, `posture`, `period` [s],
+`loads` (rows from [s], to [s], Fx, Fy, Fz [N in {b}]), `data` (the npz by its plain name), and `about`, free text for people.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path, PurePosixPath
+from typing import Any, Literal
+
+import numpy as np
+import yaml
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from sher3_description import FileError, Robot
+
+from sher3_gap.excitation import Excitation, check_limits
+
+SCHEMA = "sher3.excitation/1"
+MAX_TICKS = 600_000
+
+
+class _Header(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+    schema_: Literal["sher3.excitation/1"] = Field(alias="schema")
+    name: str = Field(min_length=1, max_length=64, pattern=r"^[a-z][a-z0-9_]*$")
+    amplitude: float = Field(gt=0.0, le=10.0)
+    posture: str = ""
+    period: float = Field(gt=0.0, le=0.1)
+    loads: list[tuple[float, float, float, float, float]] = []
+    data: str
+    about: dict[str, Any] = {}
+
+
+def save_excitation(path: Path, excitation: Excitation, about: Mapping[str, Any] | None = None) -> Path:
+    """Write header and samples; return the header's path.
+
+    Raises:
+        FileError: the files cannot be written.
+    """
+    data = path.with_suffix(".npz")
+    header = {
+        "schema": SCHEMA,
+        "name": excitation.name,
+        "amplitude": excitation.amplitude,
+        "posture": excitation.posture,
+        "period": excitation.period,
+        "loads": [list(row) for row in excitation.loads],
+        "data": data.name,
+        "about": dict(about or {}),
+    }
+    try:
+        path.write_text(yaml.safe_dump(header, sort_keys=False), encoding="utf-8")
+        np.savez_compressed(data, position=excitation.position, velocity=excitation.velocity)
+    except OSError as error:
+        raise FileError("cannot be written", path=path, value=error.strerror, remedy="choose another name") from error
+    return path
+
+
+def load_excitation(path: Path, robot: Robot) -> Excitation:
+    """Read an excitation and check it against the robot's limits.
+
+    Raises:
+        FileError: a file is missing, not of the schema, or of another control period.
+        ExcitationError: a limit of the robot is not kept.
+    """
+    header = _read_header(path)
+    if abs(header.period / robot.control_period - 1.0) > 1e-6:
+        remedy = "design it again for this robot"
+        raise FileError("control period", path=path, value=header.period, limit=robot.control_period, remedy=remedy)
+    position, velocity = _read_samples(path.parent / header.data)
+    made = Excitation(
+        header.name, header.amplitude, header.posture, robot.control_period, position, velocity, tuple(header.loads)
+    )
+    return check_limits(made, robot)
+
+
+def _read_header(path: Path) -> _Header:
+    try:
+        header = _Header.model_validate(yaml.safe_load(path.read_text(encoding="utf-8")))
+    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
+        raise FileError(f"cannot be read: {error}", path=path, remedy="name an excitation's YAML file") from error
+    except ValidationError as error:
+        first = error.errors()[0]
+        where = ".".join(str(x) for x in first["loc"]) or "the file"
+        raise FileError(f"is not an excitation: {where}: {first['msg']}", path=path, limit=SCHEMA) from error
+    if PurePosixPath(header.data).name != header.data:
+        raise FileError("data must be named by its plain name", path=path, value=header.data)
+    return header
+
+
+def _read_samples(path: Path) -> tuple[np.ndarray, np.ndarray]:
+    try:
+        with np.load(path, allow_pickle=False) as stored:
+            position, velocity = (np.asarray(stored[key], dtype=float) for key in ("position", "velocity"))
+    except (OSError, KeyError, ValueError) as error:
+        raise FileError(f"samples cannot be read: {error}", path=path, remedy="keep the npz beside its YAML") from error
+    if position.ndim != 2 or position.shape[1] != 5 or velocity.shape != position.shape:
+        raise FileError(
+            "samples have the wrong shape", path=path, value=(position.shape, velocity.shape), limit="(n, 5)"
+        )
+    if not 2 <= len(position) <= MAX_TICKS:
+        raise FileError("number of samples", path=path, value=len(position), limit=f"2 to {MAX_TICKS}")
+    if not (np.isfinite(position).all() and np.isfinite(velocity).all()):
+        raise FileError("a sample is not finite", path=path, remedy="design it again")
+    return position, velocity
