@@ -8,13 +8,17 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from numba import njit
-
+from .compiled import compiled_inner
 from .hysteresis import drag_anchors, slip_state
 from .parameters import Array, Drive, Motor, Transmission
 
 STEP = 2.0e-4
 TWO_PI = 2 * math.pi
+
+# Classical Runge-Kutta: how far each stage reaches into the step, and its weight.
+REACHES = (0.0, 0.5, 0.5, 1.0)
+WEIGHTS = (1 / 6, 1 / 3, 1 / 3, 1 / 6)
+NO_RATES = (0.0,) * 7
 
 # State of one axis.
 Q, V, XI, DEMAND, CURRENT, LOAD_Q, LOAD_V = range(7)
@@ -23,7 +27,7 @@ STATES = 7
 Rates = tuple[float, float, float, float, float, float, float]
 
 
-@njit(cache=True, error_model="numpy")
+@compiled_inner
 def drive_force(d: Drive, demand: float, v: float, xi: float, time: float) -> tuple[float, float]:
     """Return the force the drive asks for and the rate of its integrator."""
     error = demand - v
@@ -43,7 +47,7 @@ def drive_force(d: Drive, demand: float, v: float, xi: float, time: float) -> tu
     return force, rate
 
 
-@njit(cache=True, error_model="numpy")
+@compiled_inner
 def dead(d: Drive, demand: float) -> float:
     """Return the demand behind the drive's deadband."""
     width = d.deadband
@@ -54,7 +58,7 @@ def dead(d: Drive, demand: float) -> float:
     return demand - math.copysign(width, demand) if d.deadband_soft > 0.0 else demand
 
 
-@njit(cache=True, error_model="numpy")
+@compiled_inner
 def friction_level(m: Motor, q: float, v: float, time: float) -> float:
     """Return the friction force of full slip (Stribeck curve, position wave, fading, sticky region)."""
     level = m.coulomb
@@ -70,7 +74,7 @@ def friction_level(m: Motor, q: float, v: float, time: float) -> float:
     return level
 
 
-@njit(cache=True, error_model="numpy")
+@compiled_inner
 def motor_force(m: Motor, q: float, v: float, force: float, time: float, slip: Array, cable: Array) -> float:
     """Return what accelerates the motor side, external load left out."""
     gain = m.torque_gain
@@ -89,7 +93,7 @@ def motor_force(m: Motor, q: float, v: float, force: float, time: float, slip: A
     return total
 
 
-@njit(cache=True, error_model="numpy")
+@compiled_inner
 def inertia(m: Motor, q: float) -> float:
     """Return the moving mass at `q`."""
     if m.mass_wave == 0.0:
@@ -97,7 +101,7 @@ def inertia(m: Motor, q: float) -> float:
     return m.mass + m.mass_wave * math.sin(TWO_PI * q / m.mass_period)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled_inner
 def input_position(t: Transmission, q: float) -> float:
     """Return where the motor would put a rigid load: ratio and ripple, without lost motion."""
     x = (1 + t.lead_error) * q
@@ -106,7 +110,7 @@ def input_position(t: Transmission, q: float) -> float:
     return x
 
 
-@njit(cache=True, error_model="numpy")
+@compiled_inner
 def rates(
     m: Motor, d: Drive, t: Transmission, y: Any, demand: float, load: float, time: float, slip: Array, cable: Array
 ) -> Rates:
@@ -136,7 +140,7 @@ def rates(
     )  # fmt: skip
 
 
-@njit(cache=True, error_model="numpy")
+@compiled_inner
 def shifted(y: Any, k: Any, h: float) -> Rates:
     """Return y + h k."""
     return (
@@ -145,7 +149,7 @@ def shifted(y: Any, k: Any, h: float) -> Rates:
     )  # fmt: skip
 
 
-@njit(cache=True, error_model="numpy")
+@compiled_inner
 def advance(
     m: Motor, d: Drive, t: Transmission, state: Array, demand: float, load: Array,
     time: float, duration: float, slip: Array, cable: Array,
@@ -155,14 +159,11 @@ def advance(
     h = duration / steps
     y = (state[0], state[1], state[2], state[3], state[4], state[5], state[6])
     for _ in range(steps):
-        f0 = load[0] + load[1] * time
-        f1 = f0 + 0.5 * h * load[1]
-        f2 = f0 + h * load[1]
-        k1 = rates(m, d, t, y, demand, f0, time, slip, cable)
-        k2 = rates(m, d, t, shifted(y, k1, 0.5 * h), demand, f1, time + 0.5 * h, slip, cable)
-        k3 = rates(m, d, t, shifted(y, k2, 0.5 * h), demand, f1, time + 0.5 * h, slip, cable)
-        k4 = rates(m, d, t, shifted(y, k3, h), demand, f2, time + h, slip, cable)
-        y = shifted(shifted(shifted(shifted(y, k1, h / 6), k2, h / 3), k3, h / 3), k4, h / 6)
+        begin, k = y, NO_RATES
+        for stage in range(4):  # one call site keeps the compiled code, and its compilation, small
+            at = REACHES[stage] * h
+            k = rates(m, d, t, shifted(begin, k, at), demand, load[0] + load[1] * (time + at), time + at, slip, cable)
+            y = shifted(y, k, WEIGHTS[stage] * h)
         time += h
         drag_anchors(y[0], slip, m.presliding)
         drag_anchors(y[0], cable, m.cable_reach)
@@ -170,7 +171,7 @@ def advance(
         state[i] = y[i]
 
 
-@njit(cache=True, error_model="numpy")
+@compiled_inner
 def reported_force(d: Drive, state: Array, demand: float, time: float) -> float:
     """Return the force the drive reports: what it makes now, before a new demand acts."""
     if d.current_lag > 0.0:

@@ -6,8 +6,8 @@ Lampaert, Swevers and Al-Bender (2003) for the Maxwell-slip view of pre-sliding;
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from .compiled import compiled
 from .parameters import Array
 
 REACH = np.array([0.25, 0.7, 1.3, 2.2])
@@ -17,7 +17,7 @@ SHARE = np.array([0.4, 0.3, 0.2, 0.1])
 ELEMENTS = len(REACH)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def slip_state(x: float, anchor: Array, reach: float) -> float:
     """Return the normalised state in [-1, 1] of a Maxwell-slip stack at displacement `x`; anchors stay."""
     z = 0.0
@@ -26,7 +26,7 @@ def slip_state(x: float, anchor: Array, reach: float) -> float:
     return z
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def drag_anchors(x: float, anchor: Array, reach: float) -> None:
     """Move the anchors of the elements that slip, after a step that ended at `x`."""
     for i in range(ELEMENTS):
@@ -34,7 +34,7 @@ def drag_anchors(x: float, anchor: Array, reach: float) -> None:
         anchor[i] = min(x + width, max(x - width, anchor[i]))
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def play_offset(x: float, width: float, follower: Array) -> float:
     """Advance a stack of plays around `width` to input `x`; return output less input.
 

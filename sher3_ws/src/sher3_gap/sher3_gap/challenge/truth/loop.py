@@ -6,9 +6,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from .axis import LOAD_Q, LOAD_V, STATES, XI, Q, V, advance, input_position, motor_force, reported_force
+from .compiled import compiled, compiled_inner
 from .hysteresis import ELEMENTS, drag_anchors, play_offset, slip_state
 from .mechanism import load_forces
 from .parameters import AXES, Array, Drive, Geometry, Host, Motor, Transmission, TruthParameters, axis_slice
@@ -44,13 +44,13 @@ class Script(NamedTuple):
     period: float
 
 
-@njit(cache=True, error_model="numpy")
+@compiled_inner
 def rounded(x: float, resolution: float) -> float:
     """Return `x` rounded to the nearest multiple of `resolution`; 0 means exact."""
     return x if resolution == 0.0 else round(x / resolution) * resolution
 
 
-@njit(cache=True, error_model="numpy")
+@compiled_inner
 def load_of(t: Transmission, state: Array, load: float, slip: Array, follower: Array) -> float:
     """Advance lost motion of an axis to its present input; return the load position."""
     x = state[LOAD_Q] if t.compliance > 0.0 else input_position(t, state[Q])
@@ -66,14 +66,14 @@ def load_of(t: Transmission, state: Array, load: float, slip: Array, follower: A
     return out
 
 
-@njit(cache=True, error_model="numpy")
+@compiled_inner
 def encoder_angle(h: Host, j: int, load: float, speed: float) -> float:
     """Return what the load encoder would read without quantisation, hysteresis and jumps."""
     x = (1 + h.encoder_scale[j]) * (load - h.encoder_lag[j] * speed)
     return x + h.eccentricity[j] * math.sin(2 * math.pi * load / h.lead[j] + h.eccentricity_phase[j])
 
 
-@njit(cache=True, error_model="numpy")
+@compiled_inner
 def start_states(
     m: Motors, d: Drives, t: Transmissions, h: Host, g: Geometry, s: Script, pose: Array, slip: Array, follower: Array
 ) -> Array:
@@ -106,7 +106,7 @@ def start_states(
     return state
 
 
-@njit(cache=True, error_model="numpy")
+@compiled_inner
 def host_command(h: Host, j: int, s: Script, k: int, readings: Array) -> float:
     """Return the host's velocity command of axis `j` at tick `k`."""
     seen = readings[max(0, k - 1), j] if h.stale[j] > 0.0 else readings[k, j]
@@ -115,7 +115,7 @@ def host_command(h: Host, j: int, s: Script, k: int, readings: Array) -> float:
     return rounded(u, h.command_resolution[j])
 
 
-@njit(cache=True, error_model="numpy")
+@compiled_inner
 def taken(h: Host, j: int, demand: float, held: float, period: float) -> float:
     """Return the demand the drive takes from a command, given the one it holds."""
     demand = rounded(demand, h.demand_resolution[j])
@@ -125,29 +125,31 @@ def taken(h: Host, j: int, demand: float, held: float, period: float) -> float:
     return demand
 
 
-@njit(cache=True, error_model="numpy")
+@compiled_inner
 def tick_interval(
     m: Motor, d: Drive, t: Transmission, h: Host, j: int, k: int, s: Script, state: Array, held: float,
     load: Array, command: Array, slip: Array,
 ) -> tuple[float, float]:  # fmt: skip
     """Integrate axis `j` over the interval after tick `k`; return the demand held at its end and the mean demand."""
-    at, total, begin = 0.0, 0.0, k * s.period
-    for c in range(max(0, k - HISTORY), k + 1):
-        arrival = (c - k) * s.period + s.delay[c, j]
-        if not at <= arrival < s.period:
+    at, total, begin, whole = 0.0, 0.0, k * s.period, False
+    for c in range(max(0, k - HISTORY), k + 2):
+        end = c > k
+        arrival = s.period if end else (c - k) * s.period + s.delay[c, j]
+        if not at <= arrival < s.period and not end:
             continue
         if arrival > at:
             advance(m, d, t, state, held, load, begin + at, arrival - at, slip[0, j], slip[1, j])
             total += held * (arrival - at)
+            whole = at == 0.0 and end
             at = arrival
-        held = taken(h, j, command[c, j], held, s.period)
-    advance(m, d, t, state, held, load, begin + at, s.period - at, slip[0, j], slip[1, j])
-    if at == 0.0:
+        if not end:
+            held = taken(h, j, command[c, j], held, s.period)
+    if whole:
         return held, held
-    return held, (total + held * (s.period - at)) / s.period
+    return held, total / s.period
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def _run(m: Motors, d: Drives, t: Transmissions, h: Host, g: Geometry, s: Script) -> Course:
     """Run the closed loop over the script."""
     n = len(s.position)

@@ -8,15 +8,15 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
+from .compiled import compiled
 from .parameters import Array, Geometry
 
 GRAVITY = 9.81
 TOLERANCE = 1e-15  # of the squared lengths: 1e-14 m of a link
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def rotation(w: Array) -> Array:
     """Return the rotation matrix of a rotation vector (Rodrigues)."""
     angle = math.sqrt(w[0] ** 2 + w[1] ** 2 + w[2] ** 2)
@@ -25,7 +25,7 @@ def rotation(w: Array) -> Array:
     return np.eye(3) + a * k + b * (k @ k)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def link_rows(g: Geometry, pose: Array, turn: Array, s: Array, length: Array) -> tuple[Array, Array, Array]:
     """Return residuals (6,) and their Jacobians by the pose, P and a rotation vector, and by the sliders (6, 3)."""
     residual, by_pose, by_slider = np.empty(6), np.empty((6, 6)), np.zeros((6, 3))
@@ -42,7 +42,7 @@ def link_rows(g: Geometry, pose: Array, turn: Array, s: Array, length: Array) ->
     return residual, by_pose, by_slider
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def solve_platform(g: Geometry, s: Array, length: Array, pose: Array) -> Array:
     """Move `pose` (6,) in place to the platform pose at slider positions `s`; return its Jacobian (6, 3)."""
     for _ in range(12):
@@ -53,7 +53,7 @@ def solve_platform(g: Geometry, s: Array, length: Array, pose: Array) -> Array:
     return -np.linalg.solve(by_pose, by_slider)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def link_forces(g: Geometry, pose: Array, s: Array, force: Array, torque: Array) -> Array:
     """Return (6,) tension of the links that balances a force and a torque (about P) on the platform."""
     turn = rotation(pose[3:])
@@ -68,7 +68,7 @@ def link_forces(g: Geometry, pose: Array, s: Array, force: Array, torque: Array)
     return -np.linalg.solve(wrench_of, np.concatenate((force, torque)))
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def tilt_angle(g: Geometry, q: float, guess: float) -> tuple[float, float]:
     """Return the tilt angle at slider travel `q`, by Newton's method, and its derivative d angle / d q."""
     r, c, e = g.linkage[0], g.linkage[1], g.linkage[2]
@@ -84,7 +84,7 @@ def tilt_angle(g: Geometry, q: float, guess: float) -> tuple[float, float]:
     return angle, 1.0 / slope
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def arm_pose(g: Geometry, pose: Array, roll: float, angle: float) -> tuple[Array, Array]:
     """Return tip position (3,) and rotation (3, 3) in {b} for a platform pose, roll and tilt angle."""
     base = rotation(pose[3:])
@@ -94,7 +94,7 @@ def arm_pose(g: Geometry, pose: Array, roll: float, angle: float) -> tuple[Array
     return tip + turned @ g.arm[3:], turned
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def load_forces(g: Geometry, q: Array, pose: Array, force: Array) -> tuple[Array, Array]:
     """Return (5,) gravity G(q) and (5,) external force of `force` at the tip; `pose` is updated in place."""
     by_slider = solve_platform(g, q[:3], g.link, pose)

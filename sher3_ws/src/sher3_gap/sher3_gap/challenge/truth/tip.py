@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
+from .compiled import compiled, compiled_inner
 from .hysteresis import ELEMENTS, play_offset
 from .mechanism import GRAVITY, arm_pose, link_forces, rotation, solve_platform, tilt_angle
 from .parameters import Array, Geometry
@@ -15,7 +15,7 @@ OUTER_HINGE = 0.05
 """Distance from P along the arm at which the outer part of the structural compliance sits [m]."""
 
 
-@njit(cache=True, error_model="numpy")
+@compiled_inner
 def grown(g: Geometry, kelvin: float) -> Geometry:
     """Return the geometry at `kelvin` above its reference temperature; the rails' scale does not grow."""
     k = 1 + g.expansion[0] * kelvin
@@ -26,7 +26,7 @@ def grown(g: Geometry, kelvin: float) -> Geometry:
     )  # fmt: skip
 
 
-@njit(cache=True, error_model="numpy")
+@compiled_inner
 def stretched(g: Geometry, pose: Array, s: Array, tip: Array, force: Array) -> Array:
     """Return (6,) link lengths under a force at the tip: a |F|^b per link, finite slope at zero, rattling legs.
 
@@ -43,7 +43,7 @@ def stretched(g: Geometry, pose: Array, s: Array, tip: Array, force: Array) -> A
     return length
 
 
-@njit(cache=True, error_model="numpy")
+@compiled_inner
 def deflected(g: Geometry, pose: Array, tip: Array, turn: Array, force: Array) -> tuple[Array, Array]:
     """Return tip and rotation under a force at the tip: hinges at P and on the arm, then the tool."""
     hinge = g.hinge
@@ -66,7 +66,7 @@ def deflected(g: Geometry, pose: Array, tip: Array, turn: Array, force: Array) -
     return tip, turn
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def follow_tip(g: Geometry, q: Array, contact: Array, kelvin: Array, period: float) -> tuple[Array, Array]:
     """Return tip positions (n, 3) and rotations (n, 3, 3) in the tracker's frame.
 
@@ -110,7 +110,7 @@ def follow_tip(g: Geometry, q: Array, contact: Array, kelvin: Array, period: flo
     return tips, turns
 
 
-@njit(cache=True, error_model="numpy")
+@compiled_inner
 def _vibrate(g: Geometry, tips: Array, period: float) -> None:
     """Add the structure's mode, excited by the acceleration of the tip (semi-implicit Euler, ten steps per tick)."""
     gain, frequency, damping = g.vibration[0], g.vibration[1], g.vibration[2]
