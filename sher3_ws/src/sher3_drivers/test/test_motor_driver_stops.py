@@ -1,6 +1,7 @@
 """What stops the robot, and that it stays stopped."""
 
 import itertools
+import struct
 
 import pytest
 from sher3_description import ACTUATORS, load_robot
@@ -130,6 +131,26 @@ def test_frames_to_the_drives_can_be_held_back(rig):
     rig.mock.tamper_received = later
     demands = [rig.tick([0.001 * k] + [0.0] * 4).velocity_demand[0] for k in range(1, 8)]
     assert demands[-1] == pytest.approx(0.001 * 5, abs=1e-10)
+
+
+def test_the_drives_hold_their_own_speed_limit(rig):
+    """A target the driver would refuse, put on the bus by somebody else."""
+    rig.tick(SLOW)
+    frame = pack_frame(od.RPDO_BASE + 1, struct.pack("<Hi", 0x0F, 2_000_000_000))
+    rig.mock.poll()
+    rig.mock.drives["delta_1"].receive(od.RPDO_BASE + 1, frame[8:14], rig.now)
+    demand = rig.tick(SLOW).velocity_demand[0]
+    assert demand == pytest.approx(ROBOT.actuators[0].limits.velocity, rel=1e-9)
+    assert rig.mock.drives["delta_1"].statusword & 0x0800
+
+
+@pytest.mark.parametrize("length", [0, 6, 7])
+def test_a_tpdo_of_another_length_is_counted_and_not_taken(rig, length):
+    rig.mock.tamper_frames = lambda channel, frames, now: (
+        frames[:4] + bytes([length]) + frames[5:] if channel else frames
+    )
+    assert rig.tick(SLOW) is None
+    assert rig.driver.collector.misfits == 1
 
 
 def test_a_warning_stops_nothing(rig):
