@@ -36,6 +36,8 @@ def baseline_inputs(diagnosis: Diagnosis, case: Path, without: Collection[str] =
     candidates = []
     for effect in search.effects():
         for site in effect.sites():
+            if not set(effect.channels(site)) & set(channels):
+                continue  # exact stages are compared by hand, they have no residual to fit
             found = search.best(effect, site)
             if found is not None and found.terms[-1].channels:
                 candidates.append(_candidate(evidence, found))

@@ -8,8 +8,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from sher3_description import Sher3Error
-
 from .baseline_data import baseline_inputs
 from .baselines import BASELINES
 
@@ -30,7 +28,7 @@ def ask(case: Path, without: Collection[str], baselines: bool) -> Answers:
     started = time.perf_counter()
     try:
         diagnosis = diagnose_case(case, without=without)
-    except (Sher3Error, ArithmeticError, ValueError) as error:
+    except Exception as error:  # whatever stops a diagnosis is reported with its case
         return Answers(None, error=f"{type(error).__name__}: {error}")
     verdict = diagnosis.verdict.model_dump(mode="json", by_alias=True)
     verdict["seconds"] = time.perf_counter() - started

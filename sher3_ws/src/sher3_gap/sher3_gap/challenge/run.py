@@ -30,11 +30,12 @@ WITHHELD = "withheld"
 
 @dataclass(frozen=True)
 class Outcome:
-    """Scores of the diagnosis and of every baseline over the same cases."""
+    """Scores of the diagnosis and of every baseline over the same cases, and errors by case."""
 
     scores: dict[str, list[CaseScore]]
     seconds: float
     seeds: tuple[int, int]
+    errors: dict[str, str]
 
     def summary(self, who: str = "diagnosis", *, least: float = 0.0) -> Summary:
         """Return the summary of one competitor over cases with a gap over floor of at least `least`."""
@@ -45,6 +46,7 @@ class Outcome:
         return {
             "seeds": list(self.seeds),
             "seconds": self.seconds,
+            "errors": self.errors,
             "all": {who: self.summary(who).as_dict() for who in self.scores},
             "from_3": {who: self.summary(who, least=3.0).as_dict() for who in self.scores},
             "cases": {who: [s.__dict__ for s in rows] for who, rows in self.scores.items()},
@@ -122,7 +124,8 @@ def run_challenge(
     (out / LABELS).mkdir()
     for name, text in texts.items():
         (out / LABELS / f"{name}.yaml").write_text(text, encoding="utf-8")
-    outcome = Outcome(score_all(labels, answers), time.perf_counter() - started, _range(todo))
+    errors = {name: given.error for name, given in answers.items() if given.error is not None}
+    outcome = Outcome(score_all(labels, answers), time.perf_counter() - started, _range(todo), errors)
     (out / "scores.json").write_text(json.dumps(outcome.as_dict(), indent=1), encoding="utf-8")
     return outcome
 

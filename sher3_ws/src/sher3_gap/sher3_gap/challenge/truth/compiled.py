@@ -54,7 +54,7 @@ def _compiled(function: F, *, inner: bool) -> F:
     if _FOLDER is not None:
         numba.config.CACHE_DIR = str(_FOLDER)  # type: ignore[attr-defined]
     try:
-        flags = {"no_cpython_wrapper": inner, "no_cfunc_wrapper": True}
+        flags: dict[str, Any] = {"no_cpython_wrapper": inner, "no_cfunc_wrapper": True}
         made: Any = numba.njit(cache=True, error_model="numpy", **flags)(function)
     finally:
         numba.config.CACHE_DIR = before  # type: ignore[attr-defined]

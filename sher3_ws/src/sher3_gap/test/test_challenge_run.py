@@ -1,0 +1,64 @@
+"""A whole challenge: built, sealed, diagnosed in other processes, scored; labels out of sight until the end."""
+
+import json
+
+import pytest
+import yaml
+from sher3_gap.challenge.builder import CASES, LABELS, Request, check_seal
+from sher3_gap.challenge.command import challenge
+from sher3_gap.challenge.diagnosing import Answers, ask
+from sher3_gap.challenge.plan import ChallengeError
+from sher3_gap.challenge.run import run_challenge, score_all
+from sher3_gap.challenge.score import summarise
+from sher3_gap.challenge.tables import TARGETS
+from typer import Typer
+from typer.testing import CliRunner
+
+
+def test_scores_are_kept_by_competitor():
+    truth = {"case": "a", "status": "no_gap", "effects": [], "oracle": {}, "tip": None, "rivals": []}
+    answers = {"a": Answers({"status": "no_gap"}, {"best_rmse": {"status": "attributed", "causes": []}})}
+    scores = score_all([truth], answers)
+    assert scores["diagnosis"][0].detected is False and scores["best_rmse"][0].detected is True
+    assert set(TARGETS) <= set(summarise(scores["diagnosis"]).rates)
+
+
+def test_an_error_of_the_diagnosis_is_a_missing_verdict(tmp_path):
+    given = ask(tmp_path / "nothing", (), False)
+    assert given.verdict is None and given.error is not None and "nothing" in given.error
+
+
+def test_an_existing_folder_is_left_alone(tmp_path):
+    with pytest.raises(ChallengeError, match="exists already"):
+        run_challenge(tmp_path, [Request(1)])
+
+
+def test_command_names_bad_ranges():
+    app = Typer()
+    app.command()(challenge)
+    result = CliRunner().invoke(app, ["--seeds", "three"])
+    assert result.exit_code == 2 and "seeds are not a range" in result.output
+
+
+@pytest.mark.slow
+def test_a_whole_challenge(tmp_path):
+    out = tmp_path / "challenge"
+    wanted = [
+        Request(31, "healthy"),
+        Request(32, "single", "lead_error", gap=(9, 10)),
+        Request(33, "single", "force_bias", True, gap=(9, 10)),
+    ]
+    said = []
+    outcome = run_challenge(out, wanted, jobs=2, say=said.append)
+    check_seal(out)
+    assert len(said) == 2 and outcome.seeds == (31, 34)
+    rows = {row.case: row for row in outcome.scores["diagnosis"]}
+    assert rows["case_00032"].detected and rows["case_00032"].stage and rows["case_00032"].actuator
+    assert rows["case_00033"].truth == "outside_library"
+    assert "force_bias" not in rows["case_00033"].answer  # it had to do without
+    assert {"best_rmse", "iid_bic", "all_parameters", "trace_metrics"} < set(outcome.scores)
+    stored = json.loads((out / "scores.json").read_text())
+    assert stored["seeds"] == [31, 34] and set(stored["all"]) == set(outcome.scores)
+    assert sorted(p.name for p in (out / LABELS).iterdir()) == [f"case_000{n}.yaml" for n in (31, 32, 33)]
+    assert yaml.safe_load((out / LABELS / "case_00031.yaml").read_text())["status"] == "no_gap"
+    assert not list((out / CASES).rglob("*label*"))
