@@ -1,0 +1,71 @@
+"""The workspace builds and passes its tests with colcon too, in an environment of its own."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import site
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from sources import PACKAGES, ROOT
+
+pytestmark = [pytest.mark.slow, pytest.mark.timeout(900)]
+
+
+@pytest.fixture(scope="module")
+def colcon(tmp_path_factory):
+    """Return `run(*arguments)`: colcon in a copy of the workspace.
+
+    colcon needs a setuptools below 80, which this environment lacks; the new one sees our libraries behind its own.
+    """
+    folder = tmp_path_factory.mktemp("colcon")
+    python = folder / "venv" / "bin" / "python"
+    subprocess.run([sys.executable, "-m", "venv", folder / "venv"], check=True)
+    pip = [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--require-hashes"]
+    install = subprocess.run([*pip, "-r", ROOT / "tests" / "colcon.txt"], capture_output=True, text=True, check=False)
+    if install.returncode:
+        pytest.skip(f"colcon cannot be installed here: {install.stderr.splitlines()[-1]}")
+    where = [python, "-c", "import site; print(site.getsitepackages()[0])"]
+    packages = Path(subprocess.check_output(where, text=True).strip())
+    # As site directories, so that their own path files count: some libraries live below a prefix.
+    (packages / "libraries.pth").write_text(f"import site; [site.addsitedir(p) for p in {site.getsitepackages()!r}]\n")
+    ignore = shutil.ignore_patterns("__pycache__", "build", "install", "log", "*.egg-info")
+    shutil.copytree(ROOT / "sher3_ws", folder / "project" / "sher3_ws", ignore=ignore)
+    for name in ("pyproject.toml", "docs", "bench"):
+        source = ROOT / name
+        (shutil.copytree if source.is_dir() else shutil.copy)(source, folder / "project" / name)
+
+    def run(*arguments: str) -> subprocess.CompletedProcess:
+        environment = {**os.environ, "PATH": f"{python.parent}:{os.environ['PATH']}", "PYTHONWARNINGS": "ignore"}
+        environment["COLCON_HOME"] = str(folder / "home")
+        result = subprocess.run(
+            [python.parent / "colcon", *arguments],
+            cwd=folder / "project" / "sher3_ws",
+            env=environment,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        assert result.returncode == 0, result.stdout[-4000:] + result.stderr[-4000:]
+        return result
+
+    return run
+
+
+def test_colcon_knows_every_package(colcon):
+    """An invalid manifest would turn a package into a plain Python one without a word."""
+    lines = [line.split() for line in colcon("list").stdout.splitlines()]
+    assert sorted(name for name, *_ in lines) == PACKAGES
+    assert {kind for *_, kind in lines} == {"(ros.ament_python)"}
+
+
+def test_colcon_builds_and_tests(colcon):
+    """Without the tests that start graphs or need more than the package; those have run already."""
+    colcon("build", "--executor", "sequential")
+    select = "not graph and not slow and not shared"
+    colcon("test", "--executor", "sequential", "--return-code-on-test-failure", "--pytest-args", "-m", select, "-q")
+    result = colcon("test-result")
+    assert "0 errors, 0 failures" in result.stdout

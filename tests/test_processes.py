@@ -1,0 +1,139 @@
+"""`sher3 up` in processes of its own: the ready line, Ctrl-C, exit codes, and that nothing is left behind."""
+
+from __future__ import annotations
+
+import os
+import re
+import signal
+import socket
+import subprocess
+import time
+from pathlib import Path
+
+import psutil
+import pytest
+from processes import child_environment, sher3_command
+from sher3_bags.reading import read_run
+from sher3_bringup.settings import MOCK_FORCE_PORT
+
+pytestmark = pytest.mark.graph
+PATIENCE = 120.0
+"""Longest start: a machine that has never compiled the kernels."""
+
+
+class Robot:
+    """A running `sher3 up`."""
+
+    def __init__(self, *arguments: str) -> None:
+        self.process = subprocess.Popen(
+            sher3_command("up", *arguments),
+            env=child_environment(),
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+
+    def ready(self) -> str:
+        """Return the ready line."""
+        line = self.process.stdout.readline()
+        assert line.startswith("ready"), line + self.process.stderr.read()
+        return line
+
+    def children(self) -> list[psutil.Process]:
+        return psutil.Process(self.process.pid).children(recursive=True)
+
+    def finish(self) -> tuple[int, str, str]:
+        out, err = self.process.communicate(timeout=PATIENCE)
+        return self.process.returncode, out, err
+
+
+@pytest.fixture
+def robot(domain):
+    started = []
+
+    def start(*arguments: str) -> Robot:
+        started.append(Robot("--domain", str(domain), "--realtime", "0", *arguments))
+        return started[-1]
+
+    yield start
+    for robot in started:
+        if robot.process.poll() is None:
+            robot.process.kill()
+            robot.process.communicate()
+
+
+def test_ready_line_then_ctrl_c_stops_everything(robot, bag_folder):
+    """One interrupt, exit code 0, no process left, and the recording is complete."""
+    running = robot("--record", bag_folder)
+    assert re.match(r"ready: 8 processes at 500 Hz on mocks in \d+\.\d\d s", running.ready())
+    children = running.children()
+    assert len(children) == 8
+    time.sleep(1.0)
+    running.process.send_signal(signal.SIGINT)
+    status, out, _ = running.finish()
+    assert status == 0
+    assert out.strip().endswith(f"stopped; recorded {bag_folder}")
+    assert not [child for child in children if child.is_running() and child.status() != psutil.STATUS_ZOMBIE]
+    run = read_run(bag_folder, check=False)
+    assert len(run["measured_js"]) > 100 and len(run["force/measured_cf"]) > 100
+
+
+def test_nodes_can_share_processes_and_the_run_can_end_by_itself(robot):
+    nodes = "plant,force_sensor+pedal,admittance+kinematics,motor_driver+supervisor"
+    running = robot("--nodes", nodes, "--duration", "0.5")
+    assert "4 processes" in running.ready()
+    assert running.finish()[0] == 0
+
+
+def test_the_death_of_a_process_stops_the_robot(robot):
+    running = robot()
+    running.ready()
+    children = running.children()
+    children[3].kill()
+    status, _, err = running.finish()
+    assert status == 4
+    assert re.search(r"sher3: \w+ stopped: killed by SIGKILL; the robot has been stopped", err)
+    assert not [child for child in children if child.is_running() and child.status() != psutil.STATUS_ZOMBIE]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (("--can", "socketcan:nocan0", "--can", "socketcan:nocan1", "--nodes", "motor_driver"), "socketcan:nocan0"),
+        (("--can", "a", "--can", "b", "--nodes", "pedal", "--pedal-device", "/dev/input/none"), "/dev/input/none"),
+        (("--can", "a", "--can", "b", "--nodes", "force_sensor", "--force-device", "127.0.0.1:9"), "127.0.0.1:9"),
+    ],
+)
+def test_a_missing_device_is_exit_code_3_and_a_sentence(robot, arguments, sentence):
+    status, _, err = robot("--real", *arguments).finish()
+    assert status == 3
+    (line,) = [line for line in err.splitlines() if line.startswith("sher3: ")]
+    assert sentence in line
+
+
+def test_a_second_robot_on_the_same_domain_is_refused(robot, domain):
+    """Two mocks would share their devices; the port of the force sensor tells."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
+        taken.bind(("127.0.0.1", MOCK_FORCE_PORT + 250 * domain))
+        status, _, err = robot().finish()
+    assert status == 3
+    assert "plant: mock netft 127.0.0.1" in err
+
+
+def test_interrupt_during_start_up_is_clean(robot):
+    running = robot()
+    deadline = time.monotonic() + PATIENCE
+    while not running.children() and time.monotonic() < deadline:
+        time.sleep(0.01)
+    running.process.send_signal(signal.SIGINT)
+    status, _, err = running.finish()
+    assert status in (0, 130), err
+    assert "Traceback" not in err
+
+
+def test_nothing_is_left_in_shared_memory(robot):
+    before = set(os.listdir("/dev/shm")) if Path("/dev/shm").is_dir() else set()
+    running = robot("--duration", "0.3")
+    running.ready()
+    running.finish()
+    assert not {name for name in set(os.listdir("/dev/shm")) - before if name.startswith(("fastrtps", "fastdds"))}
