@@ -88,6 +88,29 @@ def apply(
             typer.echo(applied_text(effects, stages, output))
 
 
+@app.command(epilog="Example: sher3 gap experiment gap/case_001/verdict.json -o tell_apart.yaml")
+def experiment(
+    verdict: VerdictFile,
+    output: Annotated[Path, typer.Option("--output", "-o", help="Excitation file to write.")] = Path("experiment.yaml"),
+    robot: RobotFile = None,
+    as_json: Json = False,
+) -> None:
+    """Design the excitation that best tells a verdict's rivals apart; `sher3 gap excite FILE` runs it."""
+    from sher3_description import load_robot
+
+    from sher3_gap.apply import read_verdict
+    from sher3_gap.cli_print import experiment_data, experiment_text, steps
+    from sher3_gap.excitation_file import save_excitation
+    from sher3_gap.experiment import design_experiment
+
+    with reported(as_json):
+        with steps() as say:
+            made = design_experiment(read_verdict(verdict), load_robot(robot), say)
+        data = experiment_data(made)
+        save_excitation(output, made.excitation, data)
+        typer.echo(json.dumps({"file": str(output), **data}) if as_json else experiment_text(made, output))
+
+
 @app.command(epilog="Example: sher3 gap library friction")
 def library(
     which: Annotated[str, typer.Argument(help="Effect id or family; all by default.")] = "",

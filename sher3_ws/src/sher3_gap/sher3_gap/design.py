@@ -5,8 +5,7 @@ Its parameters are what tells causes apart on a robot: amplitude, speed, dwell, 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 
 import numpy as np
 from sher3_description import ACTUATORS, Robot
@@ -48,12 +47,7 @@ class Design:
     posture: str = "p0"
     load: float = 0.0
     actuator: str = "all"
-    duration: float = 6.0
-
-    def neighbours(self) -> Iterator[Design]:
-        """Yield the members that differ in one parameter."""
-        for name, values in CHOICES.items():
-            yield from (replace(self, **{name: v}) for v in values if v != getattr(self, name))
+    duration: float = 4.6
 
     def as_dict(self) -> dict[str, float | str]:
         """Return the parameters as plain data."""

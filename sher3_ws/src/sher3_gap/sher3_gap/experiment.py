@@ -1,14 +1,15 @@
 """The experiment that best tells the rivals of a cause apart, each refitted.
 
 T-optimal design (Atkinson and Fedorov 1975): of the excitations u within the limits, take the one that maximises
-min over theta of |y_A(u, theta_A) - y_B(u, theta)|^2 over the floor, for the rival B that comes closest. The simulator makes the data of A;
-the diagnosis itself fits every B to them and scores them on held-out repeats, so what is maximised is what will decide.
+min over theta of |y_A(u, theta_A) - y_B(u, theta)|^2 over the floor, for the rival B that comes closest. The simulator
+makes the data of A; the diagnosis itself fits every B to them and scores them on held-out repeats, so what is maximised
+is what will decide.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from sher3_description import ACTUATORS, Robot, Sher3Error
@@ -16,7 +17,7 @@ from sher3_sim import Effect
 
 from sher3_gap.attribute import PRICE, RIVAL, Candidates
 from sher3_gap.channels import Channel
-from sher3_gap.design import Design, build
+from sher3_gap.design import CHOICES, Design, build
 from sher3_gap.evidence import Evidence, gather
 from sher3_gap.excitation import Excitation, catalogue, excite
 from sher3_gap.fitting import Fit, fit
@@ -28,8 +29,6 @@ from sher3_gap.verdict import Cause, Verdict
 
 REPEATS = 2
 """Repeats a design is scored on: each with coefficients fitted to the other."""
-ROUNDS = 2
-"""Passes of the coordinate search over the design's parameters."""
 
 
 class ExperimentError(Sher3Error):
@@ -83,37 +82,47 @@ def design_experiment(verdict: Verdict, robot: Robot, say: Callable[[str], None]
     """
     cause, rivals = rivals_of(verdict)
     truth = to_effects([cause], robot)
-    others = [c for c in verdict.causes if c is not cause and not LIBRARY[c.effect].stage == "transport"]
+    others = [c for c in verdict.causes if c is not cause and LIBRARY[c.effect].stage != "transport"]
     truth += [e for e in to_effects(others, robot) if (e.id, e.actuator) not in {(t.id, t.actuator) for t in truth}]
-    judge = _Judge(robot, cause, rivals, truth)
-    site = cause.actuator if cause.actuator in ACTUATORS else "all"
+    search = _Search(_Judge(robot, cause, rivals, truth), robot, say)
+    search.standard()
+    search.family(Design(actuator=cause.actuator if cause.actuator in ACTUATORS else "all"))
+    assert search.best is not None
+    predicted, excitation, about = search.best
+    return Experiment(excitation, about, (cause.effect, *rivals), predicted, search.judge.count)
+
+
+@dataclass
+class _Search:
+    """Tries excitations and keeps the best."""
+
+    judge: _Judge
+    robot: Robot
+    say: Callable[[str], None]
     best: tuple[Separation, Excitation, dict[str, float | str]] | None = None
-    for made, about in _candidates(robot, site, lambda: best):
-        found = judge.separation(made)
-        say(f"{made.label} {about.get('posture', '')}: {found.floors:.2f} floors")
-        if best is None or found.margin > best[0].margin:
-            best = (found, made, about)
-    assert best is not None
-    separates = (cause.effect, *rivals)
-    return Experiment(best[1], best[2], separates, best[0], judge.count)
 
+    def standard(self) -> None:
+        """Try the standard set."""
+        for name in catalogue():
+            if name != "task":
+                self._try(excite(name, self.robot), {"standard": name})
 
-def _candidates(
-    robot: Robot, site: str, best: Callable[[], tuple | None]
-) -> Iterable[tuple[Excitation, dict[str, float | str]]]:
-    """Yield the standard set, then the neighbours of the best design so far, parameter by parameter."""
-    for name in catalogue():
-        if name != "task":
-            yield excite(name, robot, duration=6.0), {"standard": name, "posture": "p0"}
-    seen = {Design(actuator=site)}
-    yield build(Design(actuator=site), robot), Design(actuator=site).as_dict()
-    for _ in range(ROUNDS):
-        kept = best()
-        centre = Design(**kept[2]) if kept and "standard" not in kept[2] else Design(actuator=site)
-        fresh = [d for d in centre.neighbours() if d not in seen]
-        for design in fresh:
-            seen.add(design)
-            yield build(design, robot), design.as_dict()
+    def family(self, start: Design) -> None:
+        """Search the family one parameter after the other, each from the best member so far."""
+        best, kept = self._try(build(start, self.robot), start.as_dict()), start
+        for parameter, values in CHOICES.items():
+            centre = kept
+            for design in (replace(centre, **{parameter: v}) for v in values if v != getattr(centre, parameter)):
+                margin = self._try(build(design, self.robot), design.as_dict())
+                if margin > best:
+                    best, kept = margin, design
+
+    def _try(self, excitation: Excitation, about: dict[str, float | str]) -> float:
+        found = self.judge.separation(excitation)
+        self.say(f"{excitation.label}: {found.floors:.2f} floors from {found.closest}")
+        if self.best is None or found.margin > self.best[0].margin:
+            self.best = (found, excitation, about)
+        return found.margin
 
 
 class _Judge:
@@ -138,7 +147,7 @@ class _Judge:
         worth = fit(evidence.data, []).total - own.total
         samples = _samples(evidence, own.terms[-1].channels)
         floors = float(np.sqrt(max(behind, 0.0) / max(samples, 1)))
-        return Separation(floors, behind / max(3.0 * PRICE, RIVAL * worth), closest)
+        return Separation(floors, float(behind / max(3.0 * PRICE, RIVAL * worth)), closest)
 
     def _loss(self, candidates: Candidates, rival: str, own: Fit) -> float:
         """Return the least held-out loss of a rival, at any site where it shows in the cause's channels."""
