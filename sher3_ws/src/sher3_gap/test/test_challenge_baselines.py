@@ -1,8 +1,12 @@
 """Baselines do what their namesakes do, on residuals whose truth is known."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from scipy.signal import lfilter
+from sher3_description import load_robot
+from sher3_gap.challenge.baseline_exact import exact_inputs
 from sher3_gap.challenge.baselines import (
     BASELINES,
     Candidate,
@@ -84,3 +88,21 @@ def test_trace_metrics_see_a_delay_but_not_behind_an_offset():
     answer = trace_metrics(Inputs([], [], Traces(("a", "b"), [np.c_[sim, real]], [np.c_[sim, sim]])))
     assert answer["where"][0] == {"stage": "transport", "actuator": "b"}
     assert answer["causes"][0]["effect"] == "command_delay"
+
+
+def run_with(command, echo):
+    return {"servo_jv": SimpleNamespace(velocity=command), "drives/setpoint_jv": SimpleNamespace(velocity=echo)}
+
+
+@pytest.mark.parametrize(
+    ("late", "effect", "place"), [([1, 1, 1, 1, 1], "command_delay", "all"), ([0, 0, 1, 0, 0], "axis_skew", "delta_3")]
+)
+def test_exact_stages_tell_a_common_delay_from_that_of_one_axis(late, effect, place):
+    u = np.random.default_rng(2).standard_normal((300, 5)) * 1e-3
+    prompt = np.roll(u, 1, axis=0)
+    mixed = 0.7 * prompt + 0.3 * np.roll(u, 2, axis=0)
+    echo = np.where(np.array(late, bool), mixed, prompt)
+    stages, candidates = exact_inputs([run_with(u, echo)], load_robot())
+    answer = best_rmse(Inputs(stages, candidates))
+    assert (answer["causes"][0]["effect"], answer["where"][0]["actuator"]) == (effect, place)
+    assert answer["closure"]["stage"]["value"] == pytest.approx(1.0, abs=0.02)

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
-from sher3_bags import Run, read_case
+from sher3_bags import Case, Run, read_case
 from sher3_description import ACTUATORS, Robot
 
+from .baseline_exact import exact_inputs
 from .baselines import Candidate, Inputs, Stage, Traces
 from .oracle import contact_of
 from .truth.loop import Script, run_loop
@@ -37,11 +38,14 @@ def baseline_inputs(diagnosis: Diagnosis, case: Path, without: Collection[str] =
     for effect in search.effects():
         for site in effect.sites():
             if not set(effect.channels(site)) & set(channels):
-                continue  # exact stages are compared by hand, they have no residual to fit
+                continue  # the exact stages have candidates of their own
             found = search.best(effect, site)
             if found is not None and found.terms[-1].channels:
                 candidates.append(_candidate(evidence, found))
-    return Inputs(stages, candidates, _traces(case))
+    recorded = read_case(case)
+    exact_stages, exact_candidates = exact_inputs(recorded.runs, recorded.robot)
+    exact_candidates = [c for c in exact_candidates if c.effect not in without]
+    return Inputs(stages + exact_stages, candidates + exact_candidates, _traces(recorded))
 
 
 def _runs(evidence: Evidence, channel: Channel) -> list[Array]:
@@ -73,8 +77,7 @@ def _candidate(evidence: Evidence, found: Fit) -> Candidate:
     return Candidate(term.effect.id, term.effect.family, place, term.width + len(term.shape), best[2])
 
 
-def _traces(case: Path) -> Traces | None:
-    recorded = read_case(case)
+def _traces(recorded: Case) -> Traces | None:
     runs = [run for run in recorded.runs if "setpoint_js" in run and "measured_js" in run]
     if not runs:
         return None
