@@ -14,7 +14,7 @@ from sher3_gap.evidence import Evidence
 from sher3_gap.fitting import Fit, Term, fit, make_term
 from sher3_gap.library import LIBRARY, LibraryEffect, Shape
 
-MAX_CAUSES = 4
+MAX_CAUSES = 3
 PRICE = 12.0
 """Held-out loss that a coefficient or shape parameter must buy."""
 PARSIMONY = 0.004

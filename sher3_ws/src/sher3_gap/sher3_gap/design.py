@@ -1,11 +1,14 @@
 """The family of safe excitations an experiment is chosen from: a staircase of reversals, then known loads at rest.
 
-Its parameters are what tells causes apart on a robot: amplitude, speed, dwell, posture, load. Every member keeps the limits.
+Its parameters are what tells causes apart on a robot: amplitude, speed, dwell, posture, load. Every member keeps the
+limits.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
+from typing import Any
 
 import numpy as np
 from sher3_description import ACTUATORS, Robot
@@ -18,7 +21,8 @@ STAIRS = (0.1, 0.3, 0.6, 1.0)
 """Heights of the reversals, in amplitudes."""
 LOADED_SHARE = 0.45
 """Share of the run that belongs to the loads, where there are any."""
-CHOICES: dict[str, tuple[float | str, ...]] = {
+Choices = Mapping[str, tuple[Any, ...]]
+CHOICES: Choices = {
     "amplitude": (0.02, 0.08, 0.3, 1.0, 1.5),
     "speed": (0.05, 0.2, 0.5, 0.8),
     "dwell": (0.05, 0.2, 0.5),

@@ -28,8 +28,11 @@ from sher3_gap.tip import tip_closure
 from sher3_gap.verdict import Cause, Closure, Interval, Residual, Unexplained, Verdict, Where
 
 Say = Callable[[str], None]
-REMAINDER = 0.22
-"""Share of a channel's gap that may be left when its cause is known: laws are idealisations."""
+REMAINDER = (0.10, 0.25)
+"""Share of a channel's gap that may be left when its cause is known, and the share that may be left if it is also small: laws are
+idealisations."""
+SMALL_REMAINDER = 2.5
+"""Power over floor of what is left up to which it is small."""
 SLIGHT = 1.6
 """Power over threshold below which a gap beside an explained one is taken as spill-over, not as a cause of its own."""
 LOST_MOTION = ("backlash", "transmission_hysteresis", "transmission_compliance")
@@ -110,7 +113,9 @@ def left_over(evidence: Evidence, initial: dict[Channel, Gap], current: Fit | No
         if gap is None or not gap.significant or current is None:
             continue
         now, null = excess(evidence, channel, current)
-        if now > REMAINDER * max(null, 0.0) or null <= 0.0:
+        count = sum(n for (_, c), n in evidence.data.samples.items() if c == channel)
+        allowed = REMAINDER[1] if now < SMALL_REMAINDER * count else REMAINDER[0]
+        if null <= 0.0 or now > allowed * null:
             out[channel] = max(now, 1.0)
     return out
 

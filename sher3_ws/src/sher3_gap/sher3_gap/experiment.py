@@ -17,7 +17,7 @@ from sher3_sim import Effect
 
 from sher3_gap.attribute import PRICE, RIVAL, Candidates
 from sher3_gap.channels import Channel
-from sher3_gap.design import CHOICES, Design, build
+from sher3_gap.design import CHOICES, Choices, Design, build
 from sher3_gap.evidence import Evidence, gather
 from sher3_gap.excitation import Excitation, catalogue, excite
 from sher3_gap.fitting import Fit, fit
@@ -74,8 +74,16 @@ def rivals_of(verdict: Verdict) -> tuple[Cause, tuple[str, ...]]:
     return cause, tuple(r for r in cause.rivals if r not in exact)
 
 
-def design_experiment(verdict: Verdict, robot: Robot, say: Callable[[str], None] = lambda _: None) -> Experiment:
+def design_experiment(
+    verdict: Verdict, robot: Robot, say: Callable[[str], None] = lambda _: None, choices: Choices = CHOICES
+) -> Experiment:
     """Choose the excitation that separates the first cause with rivals from the closest of them.
+
+    Args:
+        verdict: with rivals.
+        robot: whose limits are kept.
+        say: progress.
+        choices: values of each parameter of the family that are tried.
 
     Raises:
         ExperimentError: the verdict has no rivals.
@@ -86,7 +94,7 @@ def design_experiment(verdict: Verdict, robot: Robot, say: Callable[[str], None]
     truth += [e for e in to_effects(others, robot) if (e.id, e.actuator) not in {(t.id, t.actuator) for t in truth}]
     search = _Search(_Judge(robot, cause, rivals, truth), robot, say)
     search.standard()
-    search.family(Design(actuator=cause.actuator if cause.actuator in ACTUATORS else "all"))
+    search.family(Design(actuator=cause.actuator if cause.actuator in ACTUATORS else "all"), choices)
     assert search.best is not None
     predicted, excitation, about = search.best
     return Experiment(excitation, about, (cause.effect, *rivals), predicted, search.judge.count)
@@ -107,10 +115,10 @@ class _Search:
             if name != "task":
                 self._try(excite(name, self.robot), {"standard": name})
 
-    def family(self, start: Design) -> None:
+    def family(self, start: Design, choices: Choices) -> None:
         """Search the family one parameter after the other, each from the best member so far."""
         best, kept = self._try(build(start, self.robot), start.as_dict()), start
-        for parameter, values in CHOICES.items():
+        for parameter, values in choices.items():
             centre = kept
             for design in (replace(centre, **{parameter: v}) for v in values if v != getattr(centre, parameter)):
                 margin = self._try(build(design, self.robot), design.as_dict())

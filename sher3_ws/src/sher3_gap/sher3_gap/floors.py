@@ -71,6 +71,15 @@ def chatter_floors(run: RunSignals, robot: Robot) -> Floors:
     return out
 
 
+def averaged(run: RunSignals, robot: Robot, channel: Channel) -> bool:
+    """Whether rounding averages out: two encoders that cross many counts in a run; at rest it is an offset."""
+    if channel.stage != "transmission":
+        return False
+    i = ACTUATORS.index(channel.actuator)
+    moving = np.abs(np.diff(run.smooth[:, i])) > 0.02 * robot.actuators[i].motor_encoder
+    return bool(moving.mean() > 0.5)
+
+
 def repeat_floors(runs: Sequence[RunSignals], residuals: Sequence[Residuals]) -> Floors:
     """Floor from pairs of repeats, pooled over excitations; channels without repeats are absent."""
     groups: dict[str, list[int]] = defaultdict(list)
@@ -106,6 +115,7 @@ def floors(
     out: list[Floors] = []
     for run, found, twins in zip(runs, residuals, simulated, strict=True):
         chatter = chatter_floors(run, robot)
-        base = {c: np.maximum(repeats.get(c, least[c]), np.hypot(least[c], chatter.get(c, 0.0))) for c in found}
+        known = {c: 0.5 * x if averaged(run, robot, c) and any(twins) else x for c, x in least.items()}
+        base = {c: np.maximum(repeats.get(c, least[c]), np.hypot(known[c], chatter.get(c, 0.0))) for c in found}
         out.append({c: np.max([b, *(t[c].rms() for t in twins if c in t)], axis=0) for c, b in base.items()})
     return out

@@ -14,9 +14,9 @@ from sher3_gap.evidence import Evidence
 POOLED = {
     "drive": 1.3,
     "motor_mechanics": 1.3,
-    "transmission": 1.1,
-    "mechanism": 1.6,
-    "structure": 1.6,
+    "transmission": 1.25,
+    "mechanism": 1.75,
+    "structure": 1.75,
     "sensing": 1.35,
 }
 """Power over allowance, over all runs, from which a channel has a gap: what healthy plants stay below."""

@@ -6,7 +6,7 @@ import numpy as np
 
 from sher3_gap.channels import Array, Channel
 from sher3_gap.evidence import Evidence
-from sher3_gap.fitting import Fit
+from sher3_gap.fitting import Fit, Term
 from sher3_gap.localise import PARTS
 from sher3_gap.verdict import Interval, Parameter
 
@@ -15,6 +15,10 @@ MIN_RUNS = 5
 """Fewer runs than this carry no interval."""
 FLOOR_UNCERTAINTY = 0.05
 """Relative standard error of the floor's power with a handful of repeats."""
+SHAPE_UNCERTAINTY = 0.25
+"""Relative uncertainty of a nonlinear parameter: the step of its search and the meaning it has in another form of the law."""
+AS_BUILT_SHARE = 0.5
+"""Systematic residual of a healthy robot at tip and force sensor, over the floor."""
 LAW_UNCERTAINTY = 0.06
 """Relative uncertainty of a parameter that comes from the effect's law being an idealisation."""
 
@@ -74,22 +78,42 @@ def _kappa(row: Array) -> float:
 
 
 def parameters(evidence: Evidence, fit: Fit, index: int) -> dict[str, Parameter]:
-    """Parameters of one cause with intervals: run jackknife for coefficients, loss profile for shapes, plus the law's own error."""
+    """Parameters of one cause with 95 % intervals.
+
+    They add up from the jackknife over runs, what the robot's as-built deviations can move a coefficient by, how coarsely a shape was
+    searched, and the law being an idealisation: the last two dominate where noise averages out.
+    """
     term = fit.terms[index]
-    value = term.effect.parameters(term.shape, fit.of(index))
+    best = fit.of(index)
+    value = term.effect.parameters(term.shape, best)
     runs = len(fit.loro_coefficients)
     draws = [term.effect.parameters(term.shape, c) for c in fit.loro_of(index)]
+    moved = [term.effect.parameters(term.shape, best + step) for step in np.diag(_as_built_steps(term))]
     out: dict[str, Parameter] = {}
     for name, x in value.items():
         spread = np.array([d[name] for d in draws])
         jackknife = float(np.sqrt((runs - 1) / runs * np.sum((spread - spread.mean()) ** 2)))
-        half = 2.3 * jackknife + LAW_UNCERTAINTY * abs(x)
+        built = float(np.sqrt(sum((m[name] - x) ** 2 for m in moved)))
+        half = 2.3 * jackknife + built + LAW_UNCERTAINTY * abs(x)
         if name in term.shape or term.width == 0:
-            half = max(half, 0.12 * abs(x))
+            half = max(half, SHAPE_UNCERTAINTY * abs(x))
         unit = term.effect.unit(name, term.site)
         bounded = runs >= MIN_RUNS
         out[name] = Parameter(value=x, low=x - half if bounded else None, high=x + half if bounded else None, unit=unit)
     return out
+
+
+def _as_built_steps(term: Term) -> Array:
+    """Change of each coefficient that a systematic residual of `AS_BUILT_SHARE` of the floor could cause at tip and sensor, (p,)."""
+    energy, count = np.zeros(term.width), np.zeros(term.width)
+    for run in term.columns:
+        for channel, x in run.items():
+            if channel.stage in ("mechanism", "structure", "sensing"):
+                used = np.any(x != 0.0, axis=1)
+                energy[: x.shape[1]] += np.sum(x**2, axis=0)
+                count[: x.shape[1]] += used.sum()
+    rms = np.sqrt(energy / np.maximum(count, 1.0))
+    return np.where(rms > 0.0, AS_BUILT_SHARE / np.where(rms > 0.0, rms, 1.0), 0.0)
 
 
 def excess(evidence: Evidence, channel: Channel, fit: Fit) -> tuple[float, float]:

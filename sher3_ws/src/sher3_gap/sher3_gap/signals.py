@@ -8,7 +8,7 @@ them counts information.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -129,5 +129,9 @@ def low_pass(x: Array, period: float, cutoff: float = BANDWIDTH) -> Array:
     """Zero-phase second-order Butterworth low-pass along the first axis; a cut-off above 0.4 / period leaves `x` as it is."""
     if cutoff * period >= 0.4 or len(x) < 30:
         return np.asarray(x, dtype=float)
-    sos = butter(2, cutoff, fs=1.0 / period, output="sos")
-    return sosfiltfilt(sos, x, axis=0)
+    return sosfiltfilt(_butterworth(period, cutoff), x, axis=0)
+
+
+@lru_cache(maxsize=32)
+def _butterworth(period: float, cutoff: float) -> Array:
+    return butter(2, cutoff, fs=1.0 / period, output="sos")

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from sher3_gap.channels import Array, Channel
-from sher3_gap.library.base import LibraryEffect, Shape, Signature, View
+from sher3_gap.library.base import LibraryEffect, Shape, Signature, View, axis_of
 
 
 class PlatformGeometryError(LibraryEffect):
@@ -24,17 +26,25 @@ class PlatformGeometryError(LibraryEffect):
         """Seen at the tip."""
         return (Channel("mechanism", "tip"), Channel("structure", "tip"))
 
+    def shapes(self, views: Sequence[View], site: str) -> list[Shape]:
+        """Which of the leg's two balls: both (0), the first (1), the second (2)."""
+        return [{"ball": 0.0}] if site == "tip" else [{"ball": float(b)} for b in range(3)]
+
     def signature(self, view: View, site: str, shape: Shape) -> Signature:
-        """Two columns per leg (x, y of the joint), or one: the radius of all."""
+        """Two columns (x, y of the balls) per leg, or one: the radius of all.
+
+        A ball displaced by d changes what its link spans by u . d, u the link's direction.
+        """
+        azimuth = view.robot.delta.leg_azimuth
+        span = view.links[:, :3]
         if site == "tip":
-            azimuth = view.robot.delta.leg_azimuth
-            grow = {f"anchor_{k + 1}{a}": -f(azimuth[k]) for k in range(3) for a, f in (("x", np.cos), ("y", np.sin))}
-            change = view.geometry.pose_change(view.run, 1e-5, **{k: float(v) for k, v in grow.items()})[:, :, None]
+            outward = np.repeat([[np.cos(a), np.sin(a), 0.0] for a in azimuth], 2, axis=0)
+            change = np.einsum("gij,gkj,jk->gi", view.link_changes, span, outward)[:, :, None]
         else:
-            change = np.stack(
-                [view.geometry.pose_change(view.run, 1e-5, **{f"anchor_{site[-1]}{a}": -1.0}) for a in "xy"], axis=-1
-            )
-        return Signature(view.at_tip(change))
+            first = 2 * axis_of(site)
+            links = {0: (first, first + 1), 1: (first,), 2: (first + 1,)}[int(shape["ball"])]
+            change = sum(view.link_changes[:, :, [j]] * span[:, None, :2, j] for j in links)
+        return Signature(view.at_tip(-change))
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Offsets of the platform's joint."""
