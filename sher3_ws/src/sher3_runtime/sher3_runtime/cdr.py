@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 from sher3_description.errors import Sher3Error
 
-from .cdr_fields import Reader, Writer
+from .cdr_fields import MAX_STRING, Reader, Writer
 from .samples import (
     DiagnosticSample,
     JointSample,
@@ -61,10 +61,12 @@ def codec(type_name: str, frame_id: str = "", joints: tuple[str, ...] = ()) -> C
         return _doubles_codec(frame_id, *_DOUBLES[name])
     if name == "Joy":
         return _joy_codec(frame_id)
+    if name == "String":
+        return Codec(_encode_text, _guarded_decode(_read_text, frame_id))
     if name in _VARIABLE:
         write, read = _VARIABLE[name]
         return Codec(_guarded_encode(write, frame_id), _guarded_decode(read, frame_id))
-    known = ", ".join(["JointState", *_DOUBLES, *_VARIABLE])
+    known = ", ".join(["JointState", "Joy", "String", *_DOUBLES, *_VARIABLE])
     raise CdrError("no codec for this message type", value=type_name, limit=known, remedy="use one of these")
 
 
@@ -203,7 +205,18 @@ def _joy_codec(frame_id: str) -> Codec:
                 return JoySample(sec * SECOND + nanosec, (travel,), (button,))
         return slow(data)
 
-    return Codec(_guarded_encode(_write_joy, frame_id), decode)
+    pack, slow_encode = layout.pack, _guarded_encode(_write_joy, frame_id)
+
+    def encode(sample: JoySample) -> bytes:
+        if len(sample.axes) == len(sample.buttons) == 1:
+            try:
+                sec, nanosec = divmod(sample.stamp, SECOND)
+                return pack(_LITTLE_ENDIAN, sec, nanosec, blob, 1, sample.axes[0], 1, sample.buttons[0])
+            except (struct.error, TypeError, OverflowError) as error:
+                raise _refusal(sample, error) from None
+        return slow_encode(sample)
+
+    return Codec(encode, decode)
 
 
 def _read_joy(reader: Reader, frame_id: str) -> JoySample:
@@ -222,8 +235,17 @@ def _read_text(reader: Reader, _: str) -> TextSample:
     return TextSample(reader.string())
 
 
-def _write_text(writer: Writer, _: str, sample: TextSample) -> None:
-    writer.string(sample.text)
+_TEXT_HEAD = struct.Struct("<4sI")
+
+
+def _encode_text(sample: TextSample) -> bytes:
+    try:
+        raw = sample.text.encode("utf-8")
+    except (AttributeError, UnicodeError) as error:
+        raise _refusal(sample, error) from None
+    if len(raw) >= MAX_STRING or b"\0" in raw:
+        raise CdrError("text cannot be sent", value=f"{len(raw)} bytes", limit=f"{MAX_STRING} bytes and no NUL")
+    return _TEXT_HEAD.pack(_LITTLE_ENDIAN, len(raw) + 1) + raw + b"\0"
 
 
 def _read_diagnostic(reader: Reader, frame_id: str) -> DiagnosticSample:
@@ -248,8 +270,6 @@ def _write_diagnostic(writer: Writer, frame_id: str, sample: DiagnosticSample) -
 
 
 _VARIABLE: dict[str, tuple[Callable[[Writer, str, Any], None], Callable[[Reader, str], Any]]] = {
-    "Joy": (_write_joy, _read_joy),
-    "String": (_write_text, _read_text),
     "DiagnosticArray": (_write_diagnostic, _read_diagnostic),
 }
 

@@ -98,6 +98,11 @@ def test_wrong_frame_names_and_lengths_are_named():
         joints.decode(swapped.encode(JointSample(0, FIVE)))
     with pytest.raises(CdrError, match="cannot be sent"):
         joints.encode(JointSample(0, (1.0, 2.0)))
+    with pytest.raises(CdrError, match="cannot be sent"):
+        codec("Joy").encode(JoySample(0, ("full",), (1,)))
+    for text in ("a\0b", "x" * 70_000, None):
+        with pytest.raises(CdrError, match="cannot be sent"):
+            codec("String").encode(TextSample(text))
     with pytest.raises(CdrError, match="no codec"):
         codec("sensor_msgs/msg/Image")
 
