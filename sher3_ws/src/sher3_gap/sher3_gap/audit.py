@@ -1,7 +1,7 @@
-"""Checks on a case before it is diagnosed: slips that would look like a cause are named, missing data narrow the answer.
+"""Checks on a case before it is diagnosed: slips that would look like a cause are named, missing data are said.
 
-`audit` raises for data no answer could rest on and returns notes for data that narrow it. Ranges are the robot's own: a reading
-far outside what the machine can do is a slip, and the factor by which it is outside names the slip.
+`audit` raises for data no answer could rest on and returns notes for data that narrow it. Ranges are the robot's own: a
+reading far outside what the machine can do is a slip, and the factor by which it is outside names the slip.
 """
 
 from __future__ import annotations

@@ -1,6 +1,7 @@
 """Excitations as files, for the player on the graph and for the simulator alike.
 
-Format `sher3.excitation/1`: a YAML header, and beside it an npz with `position` and `velocity`, (n, 5) each, one row per
+Format `sher3.excitation/1`: a YAML header, and beside it an npz with `position` and `velocity`, (n, 5) each,
+one row per
 control period, actuators in the fixed order, SI units. Keys of the header: `schema`, `name`, `amplitude`, `posture`,
 `period` [s], `loads` (rows from [s], to [s], Fx, Fy, Fz [N in {b}]), `data` (the npz by its plain name), and `about`,
 free text for people.

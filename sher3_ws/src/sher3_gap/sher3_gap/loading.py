@@ -1,4 +1,6 @@
-"""From bags to signals: alignment on the tick grid, known loads, and the checks that refuse data no answer could rest on."""
+"""From bags to signals: alignment on the tick grid, known loads, and the checks that refuse data no answer could
+rest on.
+"""
 
 from __future__ import annotations
 
@@ -7,17 +9,15 @@ from pathlib import Path
 
 import numpy as np
 from sher3_bags import Case, Run, read_case
-from sher3_description import Robot, Sher3Error, load_robot
+from sher3_description import Robot, load_robot
 
+from sher3_gap.audit import check_parameters
 from sher3_gap.channels import Array
+from sher3_gap.errors import CaseError as CaseError
 from sher3_gap.signals import RunSignals, low_pass
 
 RAMP_LIMIT = 0.25
 """Longest time from an unloaded tip to a stated plateau over which the load is taken as unknown, s."""
-
-
-class CaseError(Sher3Error):
-    """A case that cannot be diagnosed."""
 
 
 def load_case(path: Path, robot: Path | None = None) -> tuple[list[RunSignals], Robot]:
@@ -28,6 +28,7 @@ def load_case(path: Path, robot: Path | None = None) -> tuple[list[RunSignals], 
     """
     case: Case = read_case(path, check=False)
     model = load_robot(robot) if robot is not None else case.robot
+    check_parameters(case)
     runs = [signals_of(run, model, f"run {i}") for i, run in enumerate(case.runs)]
     first = min(run.start for run in runs)
     return [replace(run, session_time=(run.start - first) * 1e-9) for run in runs], model
@@ -173,6 +174,8 @@ def _temperature(run: Run, ticks: np.ndarray) -> Array | None:
     if "temperature" not in run or len(run["temperature"]) == 0:
         return None
     stream = run["temperature"]
+    if not np.isfinite(stream.temperature).all():
+        raise CaseError("temperature: not a finite number", remedy="drop this run")
     clock, reading = (stream.stamp - ticks[0]) * 1e-9, np.asarray(stream.temperature, dtype=float)
     degree = 1 if len(reading) >= 3 else 0
     slope = np.polynomial.Polynomial.fit(clock, reading, degree)

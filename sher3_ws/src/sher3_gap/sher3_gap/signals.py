@@ -1,7 +1,9 @@
 """A recorded run as the diagnosis sees it: aligned arrays on the tick grid, smoothed motion, known contact load.
 
-Everything downstream (residuals, effects) reads a `RunSignals`; nothing downstream opens a bag. The residuals live on a coarser
-grid: after a zero-phase low-pass at `BANDWIDTH` the samples `DECIMATED_RATE` apart are close to independent, so that counting
+Everything downstream (residuals, effects) reads a `RunSignals`; nothing downstream opens a bag. The residuals
+live on a coarser
+grid: after a zero-phase low-pass at `BANDWIDTH` the samples `DECIMATED_RATE` apart are close to independent, so
+that counting
 them counts information.
 """
 
@@ -37,7 +39,8 @@ class RunSignals:
         motor, effort: motor encoder position and reported effort; `load`: load encoder position.
         wrench: (n, 6) force sensor reading in {f}.
         tracker_index: (m,) tick of each tracker sample; `tracker_position` (m, 3), `tracker_rotation` (m, 4) x y z w.
-        contact: (n, 3) known force on the tip in {b}, N; `contact_known`: (n,) False where it is not known (load ramps).
+        contact: (n, 3) known force on the tip in {b}, N; `contact_known`: (n,) False where it is not known
+            (load ramps).
         temperature: (n,) deg C; `session_time`: s from the first run's start to this one's.
         payload: known tip loads as recorded; `start`: first stamp, ns.
     """
@@ -126,7 +129,9 @@ class RunSignals:
 
 
 def low_pass(x: Array, period: float, cutoff: float = BANDWIDTH) -> Array:
-    """Zero-phase second-order Butterworth low-pass along the first axis; a cut-off above 0.4 / period leaves `x` as it is."""
+    """Zero-phase second-order Butterworth low-pass along the first axis; a cut-off above 0.4 / period leaves `x` as it
+    is.
+    """
     if cutoff * period >= 0.4 or len(x) < 30:
         return np.asarray(x, dtype=float)
     return sosfiltfilt(_butterworth(period, cutoff), x, axis=0)

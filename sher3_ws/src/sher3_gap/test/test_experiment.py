@@ -1,0 +1,88 @@
+"""The designed experiment: within limits, readable by player and simulator, and it resolves the ambiguity."""
+
+import numpy as np
+import pytest
+from sher3_description import FileError
+from sher3_gap import Verdict, diagnose_runs
+from sher3_gap.design import CHOICES, Design, build
+from sher3_gap.excitation import ExcitationError
+from sher3_gap.excitation_file import load_excitation, save_excitation
+from sher3_gap.experiment import ExperimentError, design_experiment
+from sher3_gap.rehearsal import rehearse
+from sher3_sim import EFFECTS
+from simulated import ROBOT, SCATTER, runs_of, signals
+
+TRUTH = EFFECTS["presliding_friction"]("tilt", force=0.5, displacement=12e-6)
+
+
+@pytest.fixture(scope="module")
+def ambiguous():
+    return runs_of(["task"], [TRUTH])
+
+
+def test_the_experiment_resolves_what_the_task_left_open(ambiguous, tmp_path):
+    before = diagnose_runs(signals(ambiguous), ROBOT).verdict
+    assert {"coulomb_friction", "presliding_friction"} == {before.causes[0].effect, *before.causes[0].rivals}
+
+    designed = design_experiment(before, ROBOT, choices={"dwell": (0.5,), "load": (1.0,)})
+    assert designed.predicted.margin > 1.0
+    save_excitation(tmp_path / "tell.yaml", designed.excitation)
+    again = load_excitation(tmp_path / "tell.yaml", ROBOT)
+    more = rehearse(ROBOT, [(again, r) for r in range(3)], [TRUTH], seed=9, scatter=SCATTER)
+
+    after = diagnose_runs(signals(more), ROBOT).verdict
+    assert after.status == "attributed"
+    assert after.causes[0].effect == "presliding_friction"
+    assert after.causes[0].actuator == "tilt"
+    assert after.causes[0].rivals == []
+
+
+def test_nothing_to_tell_apart():
+    with pytest.raises(ExperimentError, match="no rivals"):
+        design_experiment(Verdict(status="no_gap"), ROBOT)
+
+
+@pytest.mark.parametrize("parameter", CHOICES)
+def test_every_member_of_the_family_keeps_the_limits(parameter):
+    for value in CHOICES[parameter]:
+        made = build(Design(**{parameter: value}), ROBOT)
+        assert np.ptp(made.position, axis=0).max() > 0.0
+
+
+def test_a_file_round_trips(tmp_path):
+    made = build(Design(load=1.0, posture="p2"), ROBOT)
+    again = load_excitation(save_excitation(tmp_path / "e.yaml", made), ROBOT)
+    assert (again.position == made.position).all() and (again.velocity == made.velocity).all()
+    assert np.allclose(again.loads, made.loads)
+    assert (again.name, again.posture) == (made.name, made.posture)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"schema": "sher3.effects/1"}, "not an excitation"),
+        ({"period": 0.001}, "control period"),
+        ({"data": "../e.npz"}, "plain name"),
+        ({"data": "gone.npz"}, "cannot be read"),
+        ({"surprise": 1}, "not an excitation"),
+    ],
+)
+def test_a_wrong_file_is_refused(tmp_path, change, words):
+    import yaml
+
+    path = save_excitation(tmp_path / "e.yaml", build(Design(), ROBOT))
+    header = yaml.safe_load(path.read_text()) | change
+    path.write_text(yaml.safe_dump(header))
+    with pytest.raises(FileError, match=words):
+        load_excitation(path, ROBOT)
+
+
+def test_set_points_beyond_the_limits_are_refused(tmp_path):
+    made = build(Design(), ROBOT)
+    path = save_excitation(tmp_path / "e.yaml", made)
+    np.savez(tmp_path / "e.npz", position=made.position + 0.05, velocity=made.velocity)
+    with pytest.raises(ExcitationError, match="limit"):
+        load_excitation(path, ROBOT)
+    np.savez(tmp_path / "e.npz", position=made.position * np.nan, velocity=made.velocity)
+    with pytest.raises(FileError, match="finite"):
+        load_excitation(path, ROBOT)
