@@ -32,3 +32,13 @@ class NotStopped(Sher3Error):
     """A process did not stop when asked to and had to be killed."""
 
     exit_code = KILLED
+
+
+class BenchtopStopped(Sher3Error):
+    """The robot did not do as commanded during a bench-top test; carries `test`."""
+
+    exit_code = DIED
+
+    def __init__(self, test: str, why: str) -> None:
+        super().__init__(f"{test} stopped: {why}", remedy="look at motion/status and supervisor/status in its bag")
+        self.test = test

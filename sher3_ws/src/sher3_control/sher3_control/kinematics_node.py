@@ -14,11 +14,13 @@ import numpy as np
 from rclpy.node import Node
 from sher3_description import Robot, Sher3Error
 from sher3_kinematics import kernel_parameters
-from sher3_runtime import JointSample, PoseSample, TextSample, TwistSample
+from sher3_runtime import JointSample, PoseSample, TextSample, TwistSample, WrenchSample
 from sher3_runtime.ports import NODE_OPTIONS, advertise, clock_of, on_tick, subscribe
 
 from .cooperative import RESTING
+from .deflection_compensation import DeflectionCompensation
 from .heard import HeardState, status_of
+from .live_parameters import from_json
 from .motion import MotionController, MotionInput, MotionOutput
 from .ownership import MODE_CODES, Mode
 from .pose import tip_pose_sample
@@ -39,7 +41,9 @@ class KinematicsNode(Node):
         """Take the robot, whose `control_period` is the rate in force, and settings (default: those of the robot)."""
         super().__init__("kinematics", **{**NODE_OPTIONS, **options})
         self.settings = ControlSettings.from_robot(robot) if settings is None else settings
-        self.motion = MotionController(robot, self.settings.motion)
+        wanted = self.settings.motion.deflection_compensation
+        self._compensation = DeflectionCompensation(robot, self.settings) if wanted else None
+        self.motion = MotionController(robot, self.settings.motion, self._compensation)
         self._kernel = np.array(kernel_parameters(robot))
         self._joints = JointSample(-1, RESTING)
         self._twist = TwistSample(-1, (0.0,) * 6)
@@ -67,6 +71,9 @@ class KinematicsNode(Node):
         subscribe(self, "operating_state", self._on_state)
         subscribe(self, "admittance/status", self._on_admittance)
         subscribe(self, "command/admittance", self._on_rcm)
+        if self._compensation is not None:
+            subscribe(self, "force/measured_cf", self._on_wrench)
+            subscribe(self, "admittance/settings", self._on_tare)
         for mode in COMMANDS:
             subscribe(self, f"command/{mode.value}", self._command(mode))
         self._now = clock_of(self).now
@@ -87,6 +94,15 @@ class KinematicsNode(Node):
         self._twist = sample
         if sample.stamp == self._joints.stamp:
             self._tick(sample.stamp)
+
+    def _on_wrench(self, sample: WrenchSample) -> None:
+        if self._compensation is not None:
+            self._compensation.feed(sample.stamp, sample.wrench)
+
+    def _on_tare(self, sample: TextSample) -> None:
+        """Take the bias of a tare from the settings in force of the cooperative law."""
+        if self._compensation is not None:
+            self._compensation.bias = from_json(sample.text)[0].bias
 
     def _on_state(self, sample: TextSample) -> None:
         self._state_heard.feed(sample.text, self._now())

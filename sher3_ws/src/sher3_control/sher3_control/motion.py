@@ -10,6 +10,7 @@ from sher3_kinematics import RobotKinematics
 
 from .commands import PoseCommand
 from .cooperative import RESTING, VelocityModes
+from .deflection_compensation import DeflectionCompensation
 from .errors import CommandRejected
 from .law_parameters import nanoseconds
 from .modes import MotionMode, Step, Vector
@@ -21,6 +22,9 @@ from .reasons import Reason
 from .servo_modes import ServoJointVelocity, ServoPose, ServoPosition, ServoTwist
 from .settings import MotionSettings
 from .wrench_check import judge_age
+
+
+POSE_MODES = (Mode.SERVO_CP, Mode.MOVE_CP)
 
 
 class MotionInput(NamedTuple):
@@ -68,8 +72,11 @@ class MotionController:
         previous: velocity commanded last (5,).
     """
 
-    def __init__(self, robot: Robot, settings: MotionSettings) -> None:
+    def __init__(
+        self, robot: Robot, settings: MotionSettings, compensation: DeflectionCompensation | None = None
+    ) -> None:
         kinematics = RobotKinematics(robot)
+        self._compensation = compensation
         self.ownership = Ownership()
         self.velocity_modes = VelocityModes(kinematics, settings.rcm_gain)
         self.previous: Vector = RESTING
@@ -115,6 +122,8 @@ class MotionController:
         if reason is not Reason.MOVING:
             raise CommandRejected(mode.value, f"no joint positions ({reason.name})", remedy="check the drives")
         self.ownership.require_free(mode, publishers)
+        if self._compensation is not None and mode in POSE_MODES:
+            sample = self._compensation.corrected(mode.value, sample, state.stamp, state.q)
         self._modes[mode].accept(sample, state.stamp, state.q)
         self.ownership.claim(mode, state.stamp)
 

@@ -124,6 +124,9 @@ class MotionSettings(Settings):
         linear_speed, angular_speed: tip caps of move_cp [m/s], [rad/s].
         rcm_gain: rate at which a deviation from the remote centre decays [1/s]; with the 8 ms of transport and drive it
             leaves 67 degrees of phase margin.
+        deflection_compensation: correct pose commands by the modelled deflection of the measured wrench.
+        deflection_cutoff: of the first-order low-pass on that wrench [Hz]; a hand is slower, and 2 Hz leave 0.1 um of
+            the sensor's noise.
     """
 
     servo_timeout: Seconds = 0.020
@@ -138,6 +141,8 @@ class MotionSettings(Settings):
     linear_speed: Annotated[Number, Field(gt=0.0, le=0.05)] = 0.005
     angular_speed: Annotated[Number, Field(gt=0.0, le=3.0)] = 0.3
     rcm_gain: Annotated[Number, Field(ge=0.0, le=100.0)] = 50.0
+    deflection_compensation: bool = False
+    deflection_cutoff: Annotated[Number, Field(gt=0.0, le=50.0)] = 2.0
 
 
 class SupervisorSettings(Settings):

@@ -1,0 +1,82 @@
+"""The bench-top evaluation on the graph: each test a session of its own in stepped time, recorded and evaluated."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+
+from sher3_bags.live import recorded
+from sher3_bags.reading import read_run
+from sher3_control.settings import ControlSettings
+from sher3_description import Robot
+from sher3_paper.benchtop.pictures import Shots, taken
+from sher3_paper.benchtop.protocol import Plan, planned
+from sher3_paper.benchtop.timeline import Timeline
+from sher3_runtime import Graph
+from sher3_sim import Effect
+
+from .benchtop_node import START, BenchtopNode
+from .errors import BenchtopStopped
+from .stepped_robot import SteppedRobot
+
+PART = 250
+"""Ticks between two looks at whether the robot still does as commanded."""
+
+
+def run_timeline(
+    timeline: Timeline,
+    robot: Robot,
+    effects: Sequence[Effect],
+    folder: Path,
+    control: ControlSettings | None = None,
+    seed: int = 1,
+) -> dict[str, Shots]:
+    """Run one test on a new graph, record it into `folder/<name>`, and return its pictures by group.
+
+    Args:
+        timeline: of the test.
+        robot: on the bench, see `sher3_paper.benchtop.fixture.bench_robot`.
+        effects: of the plant.
+        folder: of the bags; a former bag of the test is replaced.
+        control: settings of the control nodes.
+        seed: of the plant's noise.
+
+    Raises:
+        BenchtopStopped: a command was refused, or the robot stopped.
+    """
+    with Graph(period=robot.control_period) as graph:
+        bench = graph.add(BenchtopNode, timeline, robot)
+        SteppedRobot(graph, effects, seed, robot, control)
+        with recorded(graph, timeline.name, robot=robot, root=folder) as recorder:
+            left = START + len(timeline)
+            while left > 0 and not bench.objection:
+                graph.step(min(left, PART))
+                left -= PART
+        if bench.objection:
+            raise BenchtopStopped(timeline.name, bench.objection)
+        run = read_run(recorder.recorder.folder)
+    return taken(timeline, run["tracker/measured_cp"], bench.first, robot.control_period, robot)
+
+
+def run_tests(
+    names: Iterable[str],
+    robot: Robot,
+    plan: Plan,
+    effects: Sequence[Effect],
+    folder: Path,
+    control: ControlSettings | None = None,
+    say: Callable[[str], None] = lambda _: None,
+) -> dict[str, dict[str, Shots]]:
+    """Check all tests, then run them one after the other; return the pictures by test and group.
+
+    Raises:
+        Unreachable, OutsideLimits, LoadBeyondRange: a test asks for too much; nothing has moved.
+        BenchtopStopped: see `run_timeline`.
+    """
+    timelines = [planned(name, robot, plan) for name in names]
+    shots = {}
+    for timeline in timelines:
+        seconds = len(timeline) * robot.control_period
+        say(f"{timeline.name}: {len(timeline.pictures)} pictures in {seconds:.0f} s of the robot's time")
+        shots[timeline.name] = run_timeline(timeline, robot, effects, folder, control)
+    return shots

@@ -1,0 +1,56 @@
+"""The whole robot on mocks in one process and in stepped time: every node, the CAN frames and all topics."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+
+from sher3_control.admittance_node import AdmittanceNode
+from sher3_control.kinematics_node import KinematicsNode
+from sher3_control.settings import ControlSettings
+from sher3_control.supervisor_node import SupervisorNode
+from sher3_description import Robot, load_robot
+from sher3_drivers.bus import LockstepLink, open_link
+from sher3_drivers.force_sensor import InProcessForceSensor
+from sher3_drivers.force_sensor_node import ForceSensorNode
+from sher3_drivers.motor_driver_node import MotorDriverNode
+from sher3_drivers.pedal import InProcessPedal
+from sher3_drivers.pedal_node import PedalNode
+from sher3_drivers.settings import default_settings
+from sher3_runtime import Graph
+from sher3_sim import Effect
+from sher3_sim.plant_node import PlantNode
+
+_numbers = itertools.count()
+
+
+class SteppedRobot:
+    """Every node of `sher3 up` but the recorder, in one `Graph`.
+
+    Attributes:
+        graph: the graph; `force` and `pedal_device`: the device ends; the nodes by their names.
+    """
+
+    def __init__(
+        self,
+        graph: Graph,
+        effects: Sequence[Effect] = (),
+        seed: int = 1,
+        robot: Robot | None = None,
+        control: ControlSettings | None = None,
+    ) -> None:
+        robot = robot or load_robot()
+        self.graph = graph
+        self.force, self.pedal_device = InProcessForceSensor(), InProcessPedal()
+        settings, channel = default_settings(robot.control_period), f"stepped{next(_numbers)}"
+        count = len(settings.channels)
+        device_ends, host_ends = ([open_link(f"virtual:{channel}-{i}") for i in range(count)] for _ in range(2))
+        devices = {"force_device": self.force, "pedal_device": self.pedal_device}
+        self.plant = graph.add(PlantNode, robot, settings, effects, seed, None, device_ends, **devices)
+        links = [LockstepLink(link, [self.plant.drives.poll]) for link in host_ends]
+        self.motor_driver = graph.add(MotorDriverNode, robot, settings, links)
+        self.force_sensor = graph.add(ForceSensorNode, robot, self.force)
+        self.pedal = graph.add(PedalNode, robot, self.pedal_device)
+        self.supervisor = graph.add(SupervisorNode, robot, control)
+        self.kinematics = graph.add(KinematicsNode, robot, control)
+        self.admittance = graph.add(AdmittanceNode, robot, control)
