@@ -1,16 +1,18 @@
 """A whole challenge: built, sealed, diagnosed in other processes, scored; labels out of sight until the end."""
 
 import json
+from io import StringIO
 
 import pytest
 import yaml
+from rich.console import Console
 from sher3_gap.challenge.builder import CASES, LABELS, Request, check_seal
 from sher3_gap.challenge.command import challenge
 from sher3_gap.challenge.diagnosing import Answers, ask
 from sher3_gap.challenge.plan import ChallengeError
-from sher3_gap.challenge.run import run_challenge, score_all
+from sher3_gap.challenge.run import Outcome, run_challenge, score_all
 from sher3_gap.challenge.score import summarise
-from sher3_gap.challenge.tables import TARGETS
+from sher3_gap.challenge.tables import TARGETS, print_outcome
 from typer import Typer
 from typer.testing import CliRunner
 
@@ -62,3 +64,14 @@ def test_a_whole_challenge(tmp_path):
     assert sorted(p.name for p in (out / LABELS).iterdir()) == [f"case_000{n}.yaml" for n in (31, 32, 33)]
     assert yaml.safe_load((out / LABELS / "case_00031.yaml").read_text())["status"] == "no_gap"
     assert not list((out / CASES).rglob("*label*"))
+
+
+def test_tables_show_targets_intervals_and_errors():
+    truth = {"case": "a", "status": "no_gap", "effects": [], "oracle": {}, "tip": None, "rivals": []}
+    scores = score_all([truth], {"a": Answers({"status": "no_gap"}, {"best_rmse": {"status": "attributed"}})})
+    console = Console(width=100, record=True, file=StringIO())
+    print_outcome(Outcome(scores, 2.0, (7, 8), {"b": "CaseError: cut"}), console)
+    text = console.export_text()
+    row = next(line for line in text.splitlines() if "false_alarm" in line)
+    assert "<= 0.02" in row and "0.000 0.00-0.79 (n 1)" in row and "1.00" in row
+    assert "b: no verdict, CaseError: cut" in text and "seeds 7:8" in text

@@ -72,20 +72,24 @@ class Recipe:
 
 
 RECIPES = (
+    # a ratio error on strokes far below a revolution: a piece of a sine looks the same
     Recipe(
-        ("lead_error", "encoder_eccentricity"), ("lead_error", "encoder_scale", "encoder_eccentricity"),
-        ("reversals_0.1", "steps_0.2"), ("steps_0.15", "reversals_0.15", "loads"),
+        ("lead_error",), ("lead_error", "encoder_scale", "encoder_eccentricity", "transmission_ripple"),
+        ("reversals_0.05", "steps_0.1"), ("steps_0.15", "reversals_0.08", "loads"),
     ),
+    # a constant force in one posture at one temperature
     Recipe(
-        ("force_bias", "force_drift", "tool_gravity"), ("force_bias", "force_drift", "tool_gravity"),
+        ("force_bias", "force_drift"), ("force_bias", "force_drift"),
         ("reversals_0.15", "steps_0.2"), ("steps_0.3", "reversals_0.2", "sweep_0.1"),
     ),
+    # a constant force on an axis that hardly accelerates
     Recipe(
         ("torque_constant", "gravity_load"), ("torque_constant", "gravity_load", "payload_mass"),
-        ("reversals_0.1", "sweep_0.1"), ("reversals_0.15", "sweep_0.15", "reversals_0.2"),
+        ("task_0.1", "task_0.15"), ("task_0.2", "task_0.12", "task_0.18"),
     ),
+    # a shift of the tip in one posture at one temperature
     Recipe(
-        ("thermal_expansion", "tool_offset"), ("thermal_expansion", "tool_offset", "base_tilt", "encoder_offset"),
+        ("thermal_expansion",), ("thermal_expansion", "tool_offset"),
         ("reversals_0.1", "steps_0.2"), ("steps_0.15", "reversals_0.15", "sweep_0.1"), tracker=True,
     ),
 )  # fmt: skip

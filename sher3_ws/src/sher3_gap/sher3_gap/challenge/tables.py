@@ -39,21 +39,25 @@ def print_outcome(outcome: Outcome, console: Console) -> None:
 
 
 def rates_table(title: str, summaries: dict[str, Summary]) -> Table:
-    """Return the table of rates, one column per competitor, with the targets."""
-    table = Table("rate", "target", *summaries, title=title)
-    first = next(iter(summaries.values()))
-    for name in first.rates:
+    """Return the table of rates: the diagnosis with number and interval beside its targets, then the baselines."""
+    table = Table(title=title)
+    for name in ("rate", "target", *summaries):
+        table.add_column(name, no_wrap=name == "rate")
+    first, *others = summaries.values()
+    for name, rate in first.rates.items():
         sign, limit = TARGETS.get(name, ("", 0.0))
         target = f"{sign} {limit:g}" if sign else ""
-        table.add_row(name, target, *(_cell(summary.rates[name]) for summary in summaries.values()))
+        table.add_row(name, target, _full(rate), *(_short(other.rates[name]) for other in others))
     return table
 
 
-def _cell(rate: Rate) -> str:
-    if rate.value is None:
-        return "-"
-    interval = f" [{rate.low:.2f}, {rate.high:.2f}]" if rate.low is not None else ""
-    return f"{rate.value:.3f}{interval} n={rate.n}"
+def _short(rate: Rate) -> str:
+    return "-" if rate.value is None else f"{rate.value:.2f}"
+
+
+def _full(rate: Rate) -> str:
+    interval = "" if rate.low is None else f" {rate.low:.2f}-{rate.high:.2f}"
+    return "-" if rate.value is None else f"{rate.value:.3f}{interval} (n {rate.n})"
 
 
 def confusion_table(title: str, confusion: dict[str, dict[str, int]]) -> Table:

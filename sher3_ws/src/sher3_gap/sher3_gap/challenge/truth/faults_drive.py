@@ -1,6 +1,6 @@
 """Faults between the host and the load: timing, limits, scale, friction, inertia, periodic and lost motion."""
 
-# ruff: noqa: D401 -- a fault's docstring says what is wrong, not what the function does
+
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """Faults no catalogue names: the right answer to them is that the library does not explain the gap."""
 
-# ruff: noqa: D401 -- a fault's docstring says what is wrong, not what the function does
+
 
 from __future__ import annotations
 

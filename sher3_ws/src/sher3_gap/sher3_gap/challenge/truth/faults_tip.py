@@ -1,6 +1,6 @@
 """Faults behind the load encoders and in the sensors: geometry, compliance, drift, encoders, force sensor."""
 
-# ruff: noqa: D401 -- a fault's docstring says what is wrong, not what the function does
+
 
 from __future__ import annotations
 
