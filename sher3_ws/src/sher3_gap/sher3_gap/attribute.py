@@ -1,4 +1,5 @@
-"""Which effects explain the gaps: forward selection with pairs, backward pass, and the rivals that cannot be told apart.
+"""Which effects explain the gaps: forward selection with pairs, backward pass, and the rivals that cannot be told
+apart.
 
 All comparisons are of held-out loss (every run scored with coefficients fitted to the others), in units of the floor.
 """
@@ -73,7 +74,10 @@ class Candidates:
         return bool(term.channels) and term.effect.admissible(term.shape, trial.of(last))
 
     def search(self, channels: Collection[Channel], given: Sequence[Term] = ()) -> list[Fit]:
-        """Fit every effect that shows on any of `channels`, best first, without those a simpler relative explains as well."""
+        """Fit every effect that shows on any of `channels`, best first.
+
+        Without those a simpler relative explains as well.
+        """
         taken = {t.key for t in given}
         out: list[Fit] = []
         for effect in self.effects():

@@ -1,7 +1,9 @@
 """Residual channels: where in the signal chain a difference between robot and simulation is measured.
 
-A channel is one stage at one actuator (or `tip`, `force_sensor`). Its residual is measured output minus the nominal prediction
-from the *measured* input of that stage, so that an upstream gap does not leak downstream (gap-diagnosis: conditional predictors).
+A channel is one stage at one actuator (or `tip`, `force_sensor`). Its residual is measured output minus the
+nominal prediction
+from the *measured* input of that stage, so that an upstream gap does not leak downstream (gap-diagnosis:
+conditional predictors).
 """
 
 from __future__ import annotations

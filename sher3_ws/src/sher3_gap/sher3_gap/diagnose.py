@@ -5,13 +5,14 @@ from __future__ import annotations
 import importlib.metadata
 import time
 from collections.abc import Callable, Collection, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 from sher3_description import Robot
 
 from sher3_gap.attribute import Attribution, Candidates, attribute
+from sher3_gap.audit import audit
 from sher3_gap.channels import Channel, unit_of
 from sher3_gap.evidence import Evidence, gather
 from sher3_gap.exact_causes import ExactFinding, controller_finding, transport_finding
@@ -25,11 +26,12 @@ from sher3_gap.separate import next_experiment
 from sher3_gap.signals import RunSignals
 from sher3_gap.signature import signature
 from sher3_gap.tip import tip_closure
-from sher3_gap.verdict import Cause, Closure, Interval, Residual, Unexplained, Verdict, Where
+from sher3_gap.verdict import Cause, Closure, Interval, Residual, Status, Unexplained, Verdict, Where
 
 Say = Callable[[str], None]
 REMAINDER = (0.10, 0.25)
-"""Share of a channel's gap that may be left when its cause is known, and the share that may be left if it is also small: laws are
+"""Share of a channel's gap that may be left when its cause is known, and the share that may be left if it is also
+small: laws are
 idealisations."""
 SMALL_REMAINDER = 2.5
 """Power over floor of what is left up to which it is small."""
@@ -68,7 +70,10 @@ def diagnose_case(
     started = time.perf_counter()
     say("reading the bags")
     runs, model = load_case(Path(case), robot)
-    return diagnose_runs(runs, model, without, say, started)
+    notes = audit(runs, model)
+    found = diagnose_runs(runs, model, without, say, started)
+    verdict = found.verdict.model_copy(update={"notes": [*notes, *found.verdict.notes]})
+    return replace(found, verdict=verdict)
 
 
 def diagnose_runs(
@@ -85,6 +90,7 @@ def diagnose_runs(
         robot: the nominal model.
         without: effect ids that are left out of the library.
         say: progress.
+        started: clock at which the work began, s; now when None.
     """
     started = time.perf_counter() if started is None else started
     unknown = set(without) - LIBRARY.keys()
@@ -138,6 +144,7 @@ def _verdict(
     unexplained = _unexplained(evidence, open_, attribution, exact)
     experiment = next_experiment(evidence, attribution)
     crossed = any({LIBRARY[r].family for r in c.rivals} - {c.family} for c in causes)
+    status: Status
     if unexplained is not None:
         status = "outside_library"
     elif crossed and experiment is not None:

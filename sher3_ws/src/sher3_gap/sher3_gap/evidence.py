@@ -62,7 +62,9 @@ def gather(runs: Sequence[RunSignals], robot: Robot) -> Evidence:
 def _follow_the_drive(
     run: RunSignals, robot: Robot, geometry: Geometry, residuals: Residuals, floor: Floors
 ) -> Residuals:
-    """Where a drive does not follow its law, its force need not step with the demand: take the reading that fits better."""
+    """Where a drive does not follow its law, its force need not step with the demand: take the reading that fits
+    better.
+    """
     odd = [a for a in ACTUATORS if _ratio(residuals, floor, Channel("drive", a)) > 1.3]
     if not odd:
         return residuals

@@ -127,7 +127,9 @@ def _drop_share(t: Timing) -> float:
 
 
 def _sigma(t: Timing, period: float) -> Parameter:
-    """Scale of a jitter that only delays: root mean square of the latencies (half-normal), with its standard deviation below."""
+    """Scale of a jitter that only delays: root mean square of the latencies (half-normal), with its standard deviation
+    below.
+    """
     rms = float(np.sqrt(np.mean(t.samples**2))) * period
     low = float(np.std(t.samples)) * period
     return Parameter(value=rms, low=0.95 * low, high=1.2 * rms, unit="s")

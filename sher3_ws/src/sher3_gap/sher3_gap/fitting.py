@@ -1,7 +1,9 @@
 """Fitting effects to residuals: whitened least squares with an exact leave-one-run-out loss.
 
-Residuals are divided by their floor, so that a channel at its floor has a mean square of one. For a given shape an effect is
-linear in its coefficients; dropping a run from the normal equations is then a subtraction, and the loss of every run under the
+Residuals are divided by their floor, so that a channel at its floor has a mean square of one. For a given shape an
+effect is
+linear in its coefficients; dropping a run from the normal equations is then a subtraction, and the loss of every
+run under the
 coefficients of all others costs a small solve. No score of a fit here was seen by that fit.
 """
 

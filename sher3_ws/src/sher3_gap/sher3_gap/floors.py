@@ -1,6 +1,7 @@
 """What repeats differ by: the floor below which a gap is no gap.
 
-Per channel and component, F = mean((y_a - y_b)^2) / 2 over pairs of runs with the same excitation (contract §8), but never less
+Per channel and component, F = mean((y_a - y_b)^2) / 2 over pairs of runs with the same excitation (contract
+§8), but never less
 than what the readings' resolution alone makes, which repeats of a robot at rest do not show.
 """
 
@@ -104,7 +105,8 @@ def floors(
 ) -> list[Floors]:
     """Per run the largest of the repeat floor, the resolution floor and the pipeline's own.
 
-    `simulated` are, per run, residuals of the nominal plant on its set-points: what quantisation leaves at rest or at a crawl
+    `simulated` are, per run, residuals of the nominal plant on its set-points: what quantisation leaves at rest or
+    at a crawl
     differs from run to run, and no repeat of another excitation shows it.
     """
     least = resolution_floors(robot, runs[0].period)

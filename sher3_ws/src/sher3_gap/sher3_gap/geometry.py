@@ -45,7 +45,8 @@ class Path:
         position: (g, 3) tip in {b}; rotation: (g, 3, 3) R_bt; jacobian: (g, 6, 5); gravity: (g, 5) G(q).
         contact: (g, 3) known force on the tip in {b}; contact_force: (g, 5) J^T W.
         loaded: (g,) a known load is on the tip.
-        tool_wrench, contact_wrench: (g, 6) what the sensor reads nominally of the tool's weight and of the contact, in {f}.
+        tool_wrench, contact_wrench: (g, 6) what the sensor reads nominally of the tool's weight and of the
+            contact, in {f}.
     """
 
     position: Array
@@ -83,7 +84,10 @@ class Geometry:
         return self._paths[run.name]
 
     def positions(self, run: RunSignals) -> Array:
-        """Joint positions at the residual grid, (g, 5): the reading of the tick, as the tracker's sample belongs to it."""
+        """Joint positions at the residual grid, (g, 5).
+
+        The reading of the tick, as the tracker's sample belongs to it.
+        """
         source = run.motor if run.load is None else run.load
         return np.ascontiguousarray(source[run.grid])
 
@@ -135,7 +139,9 @@ class Geometry:
         return rotation, position
 
     def tip_error(self, run: RunSignals) -> Array:
-        """Tracked pose minus nominal pose at the residual grid, (g, 6): position, rotation vector in {b}; 0 where no sample."""
+        """Tracked pose minus nominal pose at the residual grid, (g, 6): position, rotation vector in {b}; 0 where no
+        sample.
+        """
         assert run.tracker_position is not None and run.tracker_rotation is not None and run.tracker_index is not None
         path = self.path(run)
         out = np.zeros((len(run.grid), 6))

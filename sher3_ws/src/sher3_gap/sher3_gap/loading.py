@@ -64,7 +64,7 @@ def signals_of(run: Run, robot: Robot, label: str = "run") -> RunSignals:
         excitation=run.metadata.excitation,
         repeat=run.metadata.repeat,
         period=period,
-        stage_clock=np.arange(ticks) * period,
+        stage_clock=np.arange(ticks, dtype=np.float64) * period,
         motor=motor,
         effort=column("drives/measured_js", "effort"),
         reference=column("setpoint_js", "position"),
@@ -116,11 +116,11 @@ def _on_grid(stamp: np.ndarray, values: Array, ticks: np.ndarray, what: str) -> 
         raise CaseError(f"{what}: not a finite number in sample {at}", value=str(values[at]), remedy="drop this run")
     if len(stamp) == len(ticks) and (stamp == ticks).all():
         return np.ascontiguousarray(values)
-    at = np.clip(np.searchsorted(stamp, ticks, side="right") - 1, 0, len(stamp) - 1)
-    lost = np.count_nonzero(stamp[at] != ticks)
+    nearest = np.clip(np.searchsorted(stamp, ticks, side="right") - 1, 0, len(stamp) - 1)
+    lost = np.count_nonzero(stamp[nearest] != ticks)
     if lost > 0.002 * len(ticks):
         raise CaseError(f"{what}: samples are missing", value=f"{lost} of {len(ticks)}", limit="0.2 %")
-    return np.ascontiguousarray(values[at])
+    return np.ascontiguousarray(values[nearest])
 
 
 def _contact(run: Run, wrench: Array | None, ticks: np.ndarray, period: float) -> tuple[Array, np.ndarray]:

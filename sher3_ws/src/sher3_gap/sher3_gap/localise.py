@@ -33,7 +33,8 @@ class Gap:
     """Gap and floor of one channel.
 
     Attributes:
-        power: mean square over its allowance (floor, and as-built tolerance where there is one), the larger of pooled and worst group,
+        power: mean square over its allowance (floor, and as-built tolerance where there is one), the larger of
+            pooled and worst group,
             each over its threshold: above 1 there is a gap.
         ratio: rms gap over rms floor, over all runs of the worst part.
         gap, floor: rms in SI units of that part.

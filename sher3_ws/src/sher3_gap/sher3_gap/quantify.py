@@ -16,7 +16,9 @@ MIN_RUNS = 5
 FLOOR_UNCERTAINTY = 0.05
 """Relative standard error of the floor's power with a handful of repeats."""
 SHAPE_UNCERTAINTY = 0.25
-"""Relative uncertainty of a nonlinear parameter: the step of its search and the meaning it has in another form of the law."""
+"""Relative uncertainty of a nonlinear parameter: the step of its search and the meaning it has in another form of
+the law.
+"""
 AS_BUILT_SHARE = 0.5
 """Systematic residual of a healthy robot at tip and force sensor, over the floor."""
 LAW_UNCERTAINTY = 0.06
@@ -24,7 +26,9 @@ LAW_UNCERTAINTY = 0.06
 
 
 def residual_after(evidence: Evidence, fit: Fit, channel: Channel) -> dict[int, Array]:
-    """Residual of a channel with the fit's effects added, {run: (N_ok, d)} in SI units, with coefficients of the other runs."""
+    """Residual of a channel with the fit's effects added, {run: (N_ok, d)} in SI units, with coefficients of the other
+    runs.
+    """
     out: dict[int, Array] = {}
     data = evidence.data
     for r, targets in enumerate(data.target):
@@ -44,7 +48,7 @@ def residual_after(evidence: Evidence, fit: Fit, channel: Channel) -> dict[int, 
 
 
 def closure(evidence: Evidence, channel: Channel, before: Fit, after: Fit) -> Interval:
-    """kappa = (L0 - L1) / (L0 - F) of a channel on held-out runs, with a 95 % interval from resampling runs.
+    """Closure kappa = (L0 - L1) / (L0 - F) of a channel on held-out runs, with a 95 % interval from resampling runs.
 
     At the tip the position counts, as the contract's closure does.
     """
@@ -80,7 +84,8 @@ def _kappa(row: Array) -> float:
 def parameters(evidence: Evidence, fit: Fit, index: int) -> dict[str, Parameter]:
     """Parameters of one cause with 95 % intervals.
 
-    They add up from the jackknife over runs, what the robot's as-built deviations can move a coefficient by, how coarsely a shape was
+    They add up from the jackknife over runs, what the robot's as-built deviations can move a coefficient by, how
+    coarsely a shape was
     searched, and the law being an idealisation: the last two dominate where noise averages out.
     """
     term = fit.terms[index]
@@ -104,7 +109,9 @@ def parameters(evidence: Evidence, fit: Fit, index: int) -> dict[str, Parameter]
 
 
 def _as_built_steps(term: Term) -> Array:
-    """Change of each coefficient that a systematic residual of `AS_BUILT_SHARE` of the floor could cause at tip and sensor, (p,)."""
+    """Change of each coefficient that a systematic residual of `AS_BUILT_SHARE` of the floor could cause at tip and
+    sensor, (p,).
+    """
     energy, count = np.zeros(term.width), np.zeros(term.width)
     for run in term.columns:
         for channel, x in run.items():

@@ -10,7 +10,10 @@ from sher3_gap.evidence import Evidence
 
 
 def regime_powers(evidence: Evidence, channel: Channel) -> dict[str, float]:
-    """Mean power over floor of a channel per regime: motion, direction, time since reversal, speed, load, excitation."""
+    """Mean power over floor of a channel per regime.
+
+    Motion, direction, time since reversal, speed, load, excitation.
+    """
     axis = ACTUATORS.index(channel.actuator) if channel.actuator in ACTUATORS else None
     total: dict[str, list[float]] = {}
     for r, view in enumerate(evidence.views):

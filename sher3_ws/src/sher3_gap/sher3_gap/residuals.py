@@ -1,6 +1,7 @@
 """Residuals of the continuous stages: drive, motor mechanics, transmission, mechanism, structure, sensing.
 
-Each function takes a run and the nominal model and returns {channel: Residual}. The exact stages (transport, controller) are in
+Each function takes a run and the nominal model and returns {channel: Residual}. The exact stages (transport,
+controller) are in
 `exact.py`. Equations: recorded-run contract §3.
 """
 
@@ -34,7 +35,8 @@ class Demand:
 def drive_law(run: RunSignals, robot: Robot, demand: Array, position: Array | None = None) -> Array:
     """Nominal PI force at each tick for the demand held and the measured motion, (n, axes), up to a constant per axis.
 
-    `demand` (n, axes) is the velocity demand in force just before each tick. The integral of the demand is that of the echo
+    `demand` (n, axes) is the velocity demand in force just before each tick. The integral of the demand is
+    that of the echo
     (its mean over each interval), the integral of the motion is the encoder itself, so no velocity is integrated.
     """
     assert run.echo is not None
@@ -62,7 +64,8 @@ def centred(x: Array, ok: np.ndarray) -> Residual:
 def mean_force(run: RunSignals, robot: Robot, demand: Demand | None = None, steps: bool = True) -> Array:
     """Mean motor force around each tick, weighted as the second difference of the position weighs it, (n, axes).
 
-    The reported effort is F just before the demand changes; F then steps by kp * (change of demand), at once or a share `late` of the
+    The reported effort is F just before the demand changes; F then steps by kp * (change of demand), at once
+    or a share `late` of the
     period later. `steps` is False for a drive whose force follows continuously.
     """
     assert run.effort is not None
@@ -80,7 +83,9 @@ def mean_force(run: RunSignals, robot: Robot, demand: Demand | None = None, step
 def motor_residual(
     run: RunSignals, robot: Robot, geometry: Geometry, demand: Demand | None = None, steps: bool = True
 ) -> Residuals:
-    """Force that the nominal rigid axis does not explain: F - m a - viscous v - G(q) + tau_ext (positive: resists forward)."""
+    """Force that the nominal rigid axis does not explain: F - m a - viscous v - G(q) + tau_ext (positive: resists
+    forward).
+    """
     if run.effort is None:
         return {}
     mass = np.array([a.mass for a in robot.actuators])
@@ -114,7 +119,7 @@ def tip_residual(run: RunSignals, geometry: Geometry) -> Residuals:
 
     Components: position in {b} (m), then the rotation vector in {b} (rad).
     """
-    if run.tracker_position is None:
+    if run.tracker_position is None or run.tracker_index is None:
         return {}
     values = geometry.tip_error(run)
     path = geometry.path(run)

@@ -15,7 +15,8 @@ from sher3_gap.signals import RunSignals
 def driven_as(run: RunSignals, robot: Robot, seed: int = 0, shift: float = 0.0, **plant: object) -> RunSignals | None:
     """Simulate the plant on a run's set-points, loads and temperature; None for a run without set-points.
 
-    `shift` moves the set-points by that share of a motor encoder count: whether a reading at rest sits still or chatters between
+    `shift` moves the set-points by that share of a motor encoder count: whether a reading at rest sits still or
+    chatters between
     two counts depends on where between them it is. `plant` goes to `sher3_sim.simulate` (effects, parameters).
     """
     if run.reference is None:

@@ -14,7 +14,9 @@ from sher3_gap.signals import DECIMATED_RATE
 
 
 def signature(evidence: Evidence, channel: Channel, after: Fit) -> str:
-    """Describe what is left: regimes, frequency, position period, and the share that any smooth function of the inputs closes."""
+    """Describe what is left: regimes, frequency, position period, and the share that any smooth function of the inputs
+    closes.
+    """
     left = residual_after(evidence, after, channel)
     parts = [f"largest {regime(evidence, channel)}"]
     frequency, share = dominant_frequency(list(left.values()))
@@ -61,7 +63,8 @@ def position_period(evidence: Evidence, channel: Channel, left: dict[int, Array]
 
 
 def ceiling(evidence: Evidence, channel: Channel, left: dict[int, Array]) -> float:
-    """Held-out closure of a free function of position, velocity, direction and effort: binned regression trees, boosted.
+    """Held-out closure of a free function of position, velocity, direction and effort: binned regression trees,
+    boosted.
 
     An upper bound on what any static model of the stage's inputs could close.
     """

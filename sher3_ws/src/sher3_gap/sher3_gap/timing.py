@@ -1,6 +1,7 @@
 """What the echo of the drives tells about the way of the commands: a constant latency, jitter, drops, one axis late.
 
-The stage is exact, so the latency is read off tick by tick instead of being fitted to noise. Energies are sums of squares of the
+The stage is exact, so the latency is read off tick by tick instead of being fitted to noise. Energies are sums of
+squares of the
 echo's error with every axis scaled by its velocity limit.
 """
 
@@ -32,7 +33,8 @@ class Timing:
     """How commands reach the drives in one case.
 
     Attributes:
-        energy: of the nominal echo error; `shared`: with one latency for all axes; `constant`: with each axis' own; `per_tick`: with every tick's own.
+        energy: of the nominal echo error; `shared`: with one latency for all axes; `constant`: with each axis' own;
+        `per_tick`: with every tick's own.
         latency: (axes,) constant latency in periods.
         common: latency shared by all axes, periods.
         samples: per-tick latencies shared by the axes, periods (telling ticks only).
@@ -78,7 +80,8 @@ def constant_latency(pairs: Sequence[tuple[Array, Array]], axis: int | None = No
 
 
 def tick_latency(command: Array, echo: Array, around: Array) -> tuple[Array, Array]:
-    """Latency of every tick shared by the axes, (n,) periods (NaN where no step tells), and the echo error left, (n, axes).
+    """Latency of every tick shared by the axes, (n,) periods (NaN where no step tells), and the echo error left,
+    (n, axes).
 
     `around` (axes,) are the constant latencies; a tick's own deviation from them is common to all axes.
     """

@@ -1,4 +1,4 @@
-"""Axis skew"""
+"""Axis skew."""
 
 from __future__ import annotations
 

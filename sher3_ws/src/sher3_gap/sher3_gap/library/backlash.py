@@ -15,7 +15,10 @@ class Backlash(LibraryEffect):
     """load = follower behind a gap of `width`; between the flanks the load drifts under its own weight and load."""
 
     id, family, stage = "backlash", "lost_motion", "transmission"
-    explanation = "After a reversal the motor moves by a fixed amount before the load follows; a load that pushes the other way takes the load across the gap without the motor moving."
+    explanation = (
+        "After a reversal the motor moves by a fixed amount before the load follows; a load that pushes the "
+        "other way takes the load across the gap without the motor moving."
+    )
     siblings = {
         "transmission_compliance": "in proportion to the force, no fixed width",
         "transmission_hysteresis": "the lag builds up over a stroke much longer than itself",
@@ -25,7 +28,8 @@ class Backlash(LibraryEffect):
     WIDTHS = (0.7, 0.8, 0.9, 1.0, 1.1, 1.25)
     """In spans of the residual."""
     DRIFTS = ((np.inf, 0.0), (1000.0, 0.0), (200.0, 0.0), (1000.0, 1.0), (200.0, 1.0))
-    """How the load moves in the gap: viscous drag in units of the nominal coefficient / 60, and whether the axis' friction
+    """How the load moves in the gap: viscous drag in units of the nominal coefficient / 60, and whether the axis'
+    friction
     holds it until the pull on it is larger."""
 
     def shapes(self, views: Sequence[View], site: str) -> list[Shape]:

@@ -1,6 +1,7 @@
 """What an effect of the library is: where it may sit, what it adds to the residuals, and how its numbers read.
 
-A signature is linear in its coefficients and, where need be, nonlinear in a `shape` that is searched over a few values. That
+A signature is linear in its coefficients and, where need be, nonlinear in a `shape` that is searched over a few
+values. That
 keeps every fit a small least-squares problem whose held-out loss is exact.
 """
 
@@ -92,7 +93,10 @@ class View:
 
     @cached_property
     def link_changes(self) -> Array:
-        """Change of the tip pose (g, 6, 6) per change of the length of each of the six links: Gamma^-T, moved to the tip."""
+        """Change of the tip pose (g, 6, 6) per change of the length of each of the six links.
+
+        Gamma^-T, moved to the tip.
+        """
         twist = np.linalg.inv(np.swapaxes(self.links, 1, 2))
         swing = np.cross(np.swapaxes(twist[:, 3:], 1, 2), self.lever[:, None, :])
         return np.concatenate([twist[:, :3] + np.swapaxes(swing, 1, 2), twist[:, 3:]], axis=1)

@@ -12,7 +12,10 @@ class BaseTilt(LibraryEffect):
     """{b} is rotated by two small angles about x and y."""
 
     id, family, stage = "base_tilt", "geometry", "mechanism"
-    explanation = "The base leans: position and orientation of the tip are rotated about the origin of the base, the same in every pose."
+    explanation = (
+        "The base leans: position and orientation of the tip are rotated about the origin of the base, the "
+        "same in every pose."
+    )
     siblings = {"rail_tilt": "one rail only, the orientation stays", "tool_offset": "turns with the tool"}
     units = {"angle": "rad", "x": "rad", "y": "rad"}
 

@@ -12,11 +12,16 @@ from sher3_gap.library.base import LibraryEffect, Shape, Signature, View, axis_o
 
 
 class CableDrag(LibraryEffect):
-    """On an axis: k q + k0 + hysteresis over a long stroke; on the force sensor: the same of roll and tilt, per component."""
+    """On an axis: k q + k0 + hysteresis over a long stroke; on the force sensor: the same of roll and tilt, per
+    component.
+    """
 
     id, family, stage = "cable_drag", "wrench", "motor_mechanics"
     extends = ("gravity_load", "presliding_friction")
-    explanation = "A cable or tube pulls: the force changes smoothly with the pose and differs a little between the two directions."
+    explanation = (
+        "A cable or tube pulls: the force changes smoothly with the pose and differs a little between the two "
+        "directions."
+    )
     siblings = {
         "gravity_load": "in proportion to weight",
         "presliding_friction": "saturates within a short stroke",

@@ -1,4 +1,4 @@
-"""Command delay"""
+"""Command delay."""
 
 from __future__ import annotations
 

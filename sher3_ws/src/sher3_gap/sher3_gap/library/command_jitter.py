@@ -1,4 +1,4 @@
-"""Command jitter"""
+"""Command jitter."""
 
 from __future__ import annotations
 

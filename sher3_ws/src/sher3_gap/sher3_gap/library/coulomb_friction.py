@@ -13,7 +13,8 @@ class CoulombFriction(LibraryEffect):
 
     id, family, stage = "coulomb_friction", "friction", "motor_mechanics"
     explanation = (
-        "The axis needs a constant extra force whose sign follows the direction of motion: a step at every reversal, the same "
+        "The axis needs a constant extra force whose sign follows the direction of motion: a step at every "
+        "reversal, the same "
         "at every speed."
     )
     siblings = {

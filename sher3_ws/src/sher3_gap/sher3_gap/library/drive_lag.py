@@ -15,7 +15,10 @@ class DriveLag(LibraryEffect):
     """effort = first-order lag of the PI law."""
 
     id, family, stage = "drive_lag", "timing", "drive"
-    explanation = "The force follows the velocity loop's demand with a lag: too small at the start of each step, too large at its end."
+    explanation = (
+        "The force follows the velocity loop's demand with a lag: too small at the start of each step, too "
+        "large at its end."
+    )
     siblings = {"command_delay": "the echo itself is late", "torque_constant": "a ratio, no lag"}
     units = {"time_constant": "s"}
     TIMES = (0.0002, 0.0005, 0.001, 0.0015, 0.002, 0.003, 0.004, 0.006, 0.009, 0.013, 0.02)
@@ -31,6 +34,7 @@ class DriveLag(LibraryEffect):
     def signature(self, view: View, site: str, shape: Shape) -> Signature:
         """No coefficient: lagged law minus law."""
         run, axis = view.run, axis_of(site)
+        assert run.echo is not None
         if shape["of_demand"]:
             change = first_order(run.echo, shape["time_constant"], run.period) - run.echo
             drive = view.robot.actuators[axis].drive

@@ -1,4 +1,4 @@
-"""Dropped commands"""
+"""Dropped commands."""
 
 from __future__ import annotations
 

@@ -10,7 +10,10 @@ class EncoderOffset(LibraryEffect):
     """Both encoders of the axis read q + offset."""
 
     id, family, stage = "encoder_offset", "geometry", "mechanism"
-    explanation = "Both encoders of an axis are off by the same constant: only the tip shows it, along that axis' direction of motion."
+    explanation = (
+        "Both encoders of an axis are off by the same constant: only the tip shows it, along that axis' "
+        "direction of motion."
+    )
     siblings = {
         "tool_offset": "constant in the tool frame",
         "link_length_error": "along the leg instead of along the rail",

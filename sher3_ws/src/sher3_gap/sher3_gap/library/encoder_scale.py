@@ -10,7 +10,10 @@ class EncoderScale(LibraryEffect):
     """reading = (1 + relative) * load."""
 
     id, family, stage = "encoder_scale", "scale", "sensing"
-    explanation = "The load encoder reads a little too much or too little, in proportion to the travel; the tip shows that the load is where the motor says."
+    explanation = (
+        "The load encoder reads a little too much or too little, in proportion to the travel; the tip shows "
+        "that the load is where the motor says."
+    )
     siblings = {"lead_error": "the tip follows the load encoder"}
 
     def channels(self, site: str) -> tuple[Channel, ...]:

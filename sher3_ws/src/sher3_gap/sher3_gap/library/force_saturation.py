@@ -33,6 +33,7 @@ class ForceSaturation(LibraryEffect):
     def signature(self, view: View, site: str, shape: Shape) -> Signature:
         """No coefficient: clamped law minus law."""
         run, axis = view.run, axis_of(site)
+        assert run.echo is not None
         drive = view.robot.actuators[axis].drive
         start = float(view.path.gravity[0, axis] - view.path.contact_force[0, axis])
         clamped, free = clamped_law(

@@ -15,7 +15,10 @@ class FrictionDrift(LibraryEffect):
 
     id, family, stage = "friction_drift", "friction", "motor_mechanics"
     extends = ("coulomb_friction", "presliding_friction")
-    explanation = "Friction is not the same early and late, cold and warm: the step at a reversal changes with time or temperature."
+    explanation = (
+        "Friction is not the same early and late, cold and warm: the step at a reversal changes with time or "
+        "temperature."
+    )
     siblings = {"coulomb_friction": "the same step in every run"}
     units = {"force": "N", "drift": "N", "time_constant": "s"}
     TIMES = (0.5, 1.0, 2.0, 4.0, 10.0, 60.0, 300.0)

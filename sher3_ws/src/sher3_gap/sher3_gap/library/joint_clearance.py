@@ -11,10 +11,15 @@ from sher3_gap.library.base import LibraryEffect, Shape, Signature, View, axis_o
 
 
 class JointClearance(LibraryEffect):
-    """A leg's length jumps by +-clearance / 2 with the direction of its slider, or with the sign of the load on the tip."""
+    """A leg's length jumps by +-clearance / 2 with the direction of its slider, or with the sign of the load on the
+    tip.
+    """
 
     id, family, stage = "joint_clearance", "lost_motion", "mechanism"
-    explanation = "A ball joint has play: the tip jumps by a fixed amount when the leg's load or direction reverses, with no trace in the encoders."
+    explanation = (
+        "A ball joint has play: the tip jumps by a fixed amount when the leg's load or direction reverses, "
+        "with no trace in the encoders."
+    )
     siblings = {
         "backlash": "the load encoder lags behind the motor's",
         "structural_compliance": "in proportion to the load",
@@ -30,7 +35,9 @@ class JointClearance(LibraryEffect):
         return (Channel("mechanism", "tip"), Channel("structure", "tip"))
 
     def shapes(self, views: Sequence[View], site: str) -> list[Shape]:
-        """What decides the side: 0 the direction of the slider, 1 the force along the leg; a side that never changes is none."""
+        """What decides the side: 0 the direction of the slider, 1 the force along the leg; a side that never changes is
+        none.
+        """
         shapes: list[Shape] = [{"by_load": 0.0}, {"by_load": 1.0}]
         return [s for s in shapes if np.ptp(np.concatenate([self._side(v, site, s) for v in views])) > 1.0]
 

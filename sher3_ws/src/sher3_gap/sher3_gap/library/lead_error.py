@@ -10,7 +10,10 @@ class LeadError(LibraryEffect):
     """load = (1 + relative) * motor."""
 
     id, family, stage = "lead_error", "scale", "transmission"
-    explanation = "The load moves a little more or less than the motor, in proportion to the travel; the load encoder and the tip agree."
+    explanation = (
+        "The load moves a little more or less than the motor, in proportion to the travel; the load encoder "
+        "and the tip agree."
+    )
     siblings = {
         "encoder_scale": "the tip does not follow the load encoder",
         "thermal_expansion": "grows with temperature",

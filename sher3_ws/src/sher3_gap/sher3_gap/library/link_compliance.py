@@ -14,7 +14,10 @@ class LinkCompliance(LibraryEffect):
     """Each link shortens by fraction * spring_factor * a |F|^b: six links carry the load on the platform."""
 
     id, family, stage = "link_compliance", "compliance", "structure"
-    explanation = "The six links of the delta and their joints give way under the load on the tip, relatively more at small forces than at large ones."
+    explanation = (
+        "The six links of the delta and their joints give way under the load on the tip, relatively more at "
+        "small forces than at large ones."
+    )
     siblings = {"structural_compliance": "in proportion to the force"}
     units = {"fraction": "1"}
 

@@ -12,7 +12,10 @@ class LinkLengthError(LibraryEffect):
     """Links of leg k: link_length + length +- difference."""
 
     id, family, stage = "link_length_error", "geometry", "mechanism"
-    explanation = "One leg of the delta is a little too long or short: the tip is off by an amount that changes smoothly with the pose."
+    explanation = (
+        "One leg of the delta is a little too long or short: the tip is off by an amount that changes "
+        "smoothly with the pose."
+    )
     siblings = {
         "encoder_offset": "the leg's slider is off along its rail",
         "platform_geometry_error": "a joint of the leg is off sideways",

@@ -12,7 +12,10 @@ from sher3_gap.channels import Array
 
 @numba.njit(cache=True)
 def dahl(x: Array, displacement: float) -> Array:
-    """Dahl's solid friction state of a path x (n,): dz/dx = (1 - z sgn dx) / displacement, z(0) = 0 -> (n,) in -1..1."""
+    """Dahl's solid friction state of a path x (n,).
+
+    Dz/dx = (1 - z sgn dx) / displacement, z(0) = 0 -> (n,) in -1..1.
+    """
     out = np.zeros(len(x))
     z = 0.0
     for k in range(1, len(x)):
@@ -29,8 +32,10 @@ def dahl(x: Array, displacement: float) -> Array:
 def play(x: Array, drive: Array, width: float, damping: float, period: float, start: float) -> Array:
     """Follower behind a gap of `width`, minus x, (n,): -width/2..width/2.
 
-    Between the flanks the follower moves under the load `drive` (n,), against a viscous `damping` (inf: it stays put), which is
-    how a lost motion goes to and fro when the load reverses without the motor moving. `start` in -1..1 places it at first.
+    Between the flanks the follower moves under the load `drive` (n,), against a viscous `damping` (inf: it
+    stays put), which is
+    how a lost motion goes to and fro when the load reverses without the motor moving. `start` in -1..1 places it at
+    first.
     """
     out = np.empty(len(x))
     half = 0.5 * width
@@ -47,7 +52,9 @@ def play(x: Array, drive: Array, width: float, damping: float, period: float, st
 
 @numba.njit(cache=True)
 def oscillator(force: Array, frequency: float, damping: float, period: float) -> Array:
-    """Response x of x'' + 2 z w x' + w^2 x = w^2 force (n, d), unit static gain, w = 2 pi frequency; exact for a held input."""
+    """Response x of x'' + 2 z w x' + w^2 x = w^2 force (n, d), unit static gain, w = 2 pi frequency; exact for a held
+    input.
+    """
     w = 2.0 * math.pi * frequency
     wd = w * math.sqrt(1.0 - damping * damping)
     e, c, s = math.exp(-damping * w * period), math.cos(wd * period), math.sin(wd * period)
@@ -80,9 +87,11 @@ def first_order(x: Array, time_constant: float, period: float) -> Array:
 def clamped_law(
     demand: Array, position: Array, kp: float, ki: float, limit: float, start: float, period: float
 ) -> tuple[Array, Array]:
-    """PI force with and without a clamp, (n,) each, for the demand held over each past interval and the measured motion.
+    """PI force with and without a clamp, (n,) each, for the demand held over each past interval and the measured
+    motion.
 
-    The integrator starts at `start` / ki and stands still while the force is clamped and the error would drive it further in.
+    The integrator starts at `start` / ki and stands still while the force is clamped and the error would drive it
+    further in.
     """
     clamped, free = np.empty(len(demand)), np.empty(len(demand))
     xi = start / ki

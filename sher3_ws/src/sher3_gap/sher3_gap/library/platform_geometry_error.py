@@ -14,7 +14,10 @@ class PlatformGeometryError(LibraryEffect):
     """Ball joints of one leg (or all, radially) displaced by x, y in {b}: they shift the leg's anchor."""
 
     id, family, stage = "platform_geometry_error", "geometry", "mechanism"
-    explanation = "The ball joints of the platform or the base are off sideways: the tip error changes smoothly with the position of the platform, not with roll or tilt."
+    explanation = (
+        "The ball joints of the platform or the base are off sideways: the tip error changes smoothly with "
+        "the position of the platform, not with roll or tilt."
+    )
     siblings = {"link_length_error": "along the leg", "rail_tilt": "grows with the height of the slider"}
     units = {"x": "m", "y": "m", "radius": "m"}
 

@@ -15,7 +15,10 @@ class PositionFriction(LibraryEffect):
 
     id, family, stage = "position_friction", "friction", "motor_mechanics"
     extends = ("coulomb_friction",)
-    explanation = "Friction changes along the stroke (seal, guide, ball return): at the same place the extra force has the opposite sign in the other direction."
+    explanation = (
+        "Friction changes along the stroke (seal, guide, ball return): at the same place the extra force has "
+        "the opposite sign in the other direction."
+    )
     siblings = {"cogging": "at the same place the force has the same sign in both directions"}
     units = {"force": "N", "amplitude": "N", "wavelength": "m"}
     WAVELENGTHS = tuple(np.geomspace(0.2, 8.0, 28))

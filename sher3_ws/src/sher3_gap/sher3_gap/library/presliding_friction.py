@@ -13,7 +13,8 @@ class PreslidingFriction(LibraryEffect):
 
     id, family, stage = "presliding_friction", "friction", "motor_mechanics"
     explanation = (
-        "After a reversal the friction force builds up gradually, over a micrometre-scale stroke, as bristles bend before they "
+        "After a reversal the friction force builds up gradually, over a micrometre-scale stroke, as bristles "
+        "bend before they "
         "slip: force-displacement loops whose width grows with the stroke."
     )
     siblings = {

@@ -15,7 +15,10 @@ class StribeckFriction(LibraryEffect):
 
     id, family, stage = "stribeck_friction", "friction", "motor_mechanics"
     extends = ("coulomb_friction",)
-    explanation = "Friction is higher when the axis starts or creeps than when it runs: a hump of extra force at low speed, and a tendency to stick and slip."
+    explanation = (
+        "Friction is higher when the axis starts or creeps than when it runs: a hump of extra force at low "
+        "speed, and a tendency to stick and slip."
+    )
     siblings = {"coulomb_friction": "the same force at every speed", "viscous_friction": "the force grows with speed"}
     units = {"force": "N", "static": "N", "stribeck_velocity": "m/s"}
     VELOCITIES = (0.1, 0.2, 0.4, 0.8, 1.6)

@@ -14,7 +14,10 @@ class StructuralCompliance(LibraryEffect):
     """A share of the paper's lumped compliance: rotation springs about y and z at the platform and a spring along x."""
 
     id, family, stage = "structural_compliance", "compliance", "structure"
-    explanation = "A force on the tip displaces and turns it in proportion, most across the arm, as if the arm were hinged at the platform with springs."
+    explanation = (
+        "A force on the tip displaces and turns it in proportion, most across the arm, as if the arm were "
+        "hinged at the platform with springs."
+    )
     siblings = {
         "tool_bending": "only across the tool",
         "link_compliance": "softer at small forces",
@@ -22,7 +25,10 @@ class StructuralCompliance(LibraryEffect):
     }
     units = {"x": "m/N", "y": "rad/(N*m)", "z": "rad/(N*m)"}
     LUMPED = (15.0e-6, 1.0 / 244.0, 1.0 / 213.0)
-    """Along x, about y, about z: the deflection table's means less the delta's own share (m/N, rad/(N m), rad/(N m))."""
+    """Along x, about y, about z: the deflection table's means less the delta's own share (m/N, rad/(N m).
+
+    Rad/(N m)).
+    """
 
     def sites(self) -> tuple[str, ...]:
         """The tip."""

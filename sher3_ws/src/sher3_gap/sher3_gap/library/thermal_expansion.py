@@ -14,7 +14,10 @@ class ThermalExpansion(LibraryEffect):
     """Lengths grow by coefficient * (T - 22 deg C): the links, the arm, the rails, or everything."""
 
     id, family, stage = "thermal_expansion", "drift", "mechanism"
-    explanation = "The tip wanders with the temperature of the structure, in every pose, in proportion to the warming since 22 deg C."
+    explanation = (
+        "The tip wanders with the temperature of the structure, in every pose, in proportion to the warming "
+        "since 22 deg C."
+    )
     siblings = {
         "tool_offset": "does not change with temperature",
         "link_length_error": "does not change with temperature",

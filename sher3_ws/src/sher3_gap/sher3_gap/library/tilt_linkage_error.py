@@ -12,7 +12,10 @@ class TiltLinkageError(LibraryEffect):
     """Crank, coupler or offset of the tilt linkage is off by `length`."""
 
     id, family, stage = "tilt_linkage_error", "geometry", "mechanism"
-    explanation = "The tilt angle is not the one its slider should give: the tip turns too far or not far enough, by an amount that depends on the tilt."
+    explanation = (
+        "The tilt angle is not the one its slider should give: the tip turns too far or not far enough, by an "
+        "amount that depends on the tilt."
+    )
     siblings = {
         "encoder_offset": "a constant slider error",
         "encoder_scale": "the load encoder disagrees with the motor's",

@@ -12,7 +12,10 @@ class ToolBending(LibraryEffect):
     """Displacement compliance * F across the tool axis, with the slope of a cantilever."""
 
     id, family, stage = "tool_bending", "compliance", "structure"
-    explanation = "A force across the tool bends it: the tip moves across the tool's axis, in proportion, whatever the pose; a force along the tool does nothing."
+    explanation = (
+        "A force across the tool bends it: the tip moves across the tool's axis, in proportion, whatever the "
+        "pose; a force along the tool does nothing."
+    )
     siblings = {"structural_compliance": "a force along the tool moves the tip too"}
     units = {"compliance": "m/N", "slope": "rad/N"}
 

@@ -12,7 +12,10 @@ class ToolOffset(LibraryEffect):
     """The tip in {a} is off by x, y, z: a constant in the tool frame."""
 
     id, family, stage = "tool_offset", "geometry", "mechanism"
-    explanation = "The needle is bent or seated differently: the tip error is constant in the tool's own frame and turns with roll and tilt."
+    explanation = (
+        "The needle is bent or seated differently: the tip error is constant in the tool's own frame and "
+        "turns with roll and tilt."
+    )
     siblings = {
         "encoder_offset": "constant in one joint",
         "base_tilt": "constant in the base, the orientation is off too",

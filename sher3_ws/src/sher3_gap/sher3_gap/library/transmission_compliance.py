@@ -27,7 +27,10 @@ class TransmissionCompliance(LibraryEffect):
     FREQUENCIES = (8.0, 11.0, 14.0, 17.0, 20.0, 24.0, 28.0, 34.0, 40.0, 50.0)
 
     def shapes(self, views: Sequence[View], site: str) -> list[Shape]:
-        """Share of the axis' mass on the load side; resonance of that mass on the spring (0: far above the bandwidth)."""
+        """Share of the axis' mass on the load side.
+
+        Resonance of that mass on the spring (0: far above the bandwidth).
+        """
         static: list[Shape] = [{"load_mass": s, "frequency": 0.0, "damping": 0.0} for s in (0.0, 0.1, 0.3, 1.0)]
         ringing = [{"load_mass": s, "frequency": f, "damping": 0.1} for s in (0.1, 0.3) for f in self.FREQUENCIES]
         return [*static, *ringing]

@@ -31,6 +31,7 @@ class VelocityDeadband(LibraryEffect):
     def signature(self, view: View, site: str, shape: Shape) -> Signature:
         """No coefficient: law of the dead-banded demand minus law."""
         run, axis, width = view.run, axis_of(site), shape["width"]
+        assert run.echo is not None
         drive = view.robot.actuators[axis].drive
         demand = run.echo[:, axis]
         if shape["soft"]:

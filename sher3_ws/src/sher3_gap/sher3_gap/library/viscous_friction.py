@@ -10,7 +10,10 @@ class ViscousFriction(LibraryEffect):
     """F = extra * v."""
 
     id, family, stage = "viscous_friction", "friction", "motor_mechanics"
-    explanation = "The axis needs more force the faster it moves, in proportion: lubricant or seals are stiffer than the model says."
+    explanation = (
+        "The axis needs more force the faster it moves, in proportion: lubricant or seals are stiffer than "
+        "the model says."
+    )
     siblings = {
         "coulomb_friction": "the force does not depend on speed",
         "torque_constant": "all forces are scaled, gravity too",
