@@ -8,6 +8,7 @@ Exact for the nominal axis in one step per period, second order in the step for 
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -48,8 +49,14 @@ def propagators(axis: Records, step: float) -> NDArray[np.float64]:
         for saturated in (0, 1):
             rates = _rates(a, bool(saturated))
             for j, h in enumerate((step, step / FINER)):
-                out[i, j, saturated] = expm(rates * h)[:4, [0, 1, 2, 4, 5]]
+                out[i, j, saturated] = _exact_step((rates * h).tobytes())
     return out
+
+
+@lru_cache(maxsize=4096)
+def _exact_step(rates: bytes) -> NDArray[np.float64]:
+    """Return the used part (4, 5) of the exponential; runs of one robot share most of theirs."""
+    return expm(np.frombuffer(rates).reshape(6, 6))[:4, [0, 1, 2, 4, 5]]
 
 
 def _rates(a: Any, saturated: bool) -> NDArray[np.float64]:
