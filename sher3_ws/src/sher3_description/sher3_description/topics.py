@@ -101,6 +101,7 @@ _TABLE = (
     Topic("motion/status", _TEXT, "", LATCHED, "owner, reason, is_busy and the last refused command"),
     Topic("supervisor/status", _TEXT, "", LATCHED, "operating state with reason, since when, first and later faults"),
     Topic("diagnostics", "diagnostic_msgs/msg/DiagnosticArray", "", STREAM, "health of every node, with numbers"),
+    Topic("gap/diagnostics", "diagnostic_msgs/msg/DiagnosticArray", "", AHEAD, "gap over floor per stage and actuator"),
     # Between a scripted surgeon, the plant process and the device ends of sensor and pedal; mocks only.
     Topic("mock/contact_wrench", _WRENCH, "b", STREAM, "wrench on the tip in {b}, into the plant"),
     Topic("mock/pedal", _JOY, "", STREAM, "pedal as the foot presses it, into the pedal's device end"),

@@ -1,0 +1,53 @@
+"""The gap monitor on the graph: gap over floor per stage on `gap/diagnostics` at 1 Hz; all else is in `monitor`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from rclpy.node import Node
+from sher3_description import Robot
+from sher3_runtime import DiagnosticSample
+from sher3_runtime.ports import NODE_OPTIONS, advertise, on_tick, subscribe
+from sher3_sim import Effect
+
+from sher3_gap.monitor import TOPICS, Monitor, StageStatus
+
+TOPIC = "gap/diagnostics"
+MESSAGES = ("at the floor", "gap above the floor", "gap far above the floor")
+STALE = 3
+
+
+class GapMonitorNode(Node):
+    """Listens to the robot's streams and publishes one status per stage and axis at 1 Hz."""
+
+    def __init__(self, robot: Robot, effects: Sequence[Effect] = (), *, window: float = 4.0, **options: Any) -> None:
+        super().__init__("gap_monitor", **{**NODE_OPTIONS, **options})
+        self.monitor = Monitor(robot, effects, window)
+        self._publish = advertise(self, TOPIC)
+        for topic in TOPICS:
+            subscribe(self, topic, self._feeder(topic), depth=500)
+        on_tick(self, self._tick, every=round(1.0 / robot.control_period))
+
+    def _feeder(self, topic: str) -> Callable[[Any], None]:
+        feed = self.monitor.feed
+        return lambda sample: feed(topic, sample)
+
+    def _tick(self, stamp: int) -> None:
+        found = self.monitor.judge()
+        for status in found:
+            self._publish(diagnostic(stamp, status))
+        if not found:
+            self._publish(DiagnosticSample(stamp, "gap", STALE, "waiting for an unbroken window of samples"))
+
+
+def diagnostic(stamp: int, status: StageStatus) -> DiagnosticSample:
+    """Return a stage's status as a diagnostic: gap, floor and their ratio."""
+    values = (
+        ("gap", f"{status.gap:.6g}"),
+        ("floor", f"{status.floor:.6g}"),
+        ("ratio", f"{status.ratio:.4g}"),
+        ("unit", status.unit),
+    )
+    name = f"gap/{status.stage}/{status.actuator}"
+    return DiagnosticSample(stamp, name, status.level, MESSAGES[status.level], values)

@@ -1,0 +1,189 @@
+"""The gap while the robot runs: the model beside it, gap over floor per stage and axis, window by window.
+
+Plain code that takes samples. Samples of one tick are joined by their stamp; a full window is judged by the residuals of
+the diagnosis (`residuals.py`, `exact.py`). With effects given, what the corrected model makes of the same set-points is
+subtracted, so that a known effect no longer counts as a gap.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from sher3_bags import RunMetadata
+from sher3_description import ACTUATORS, Robot
+from sher3_runtime.samples import JointSample, WrenchSample
+from sher3_sim import Effect
+
+from sher3_gap.channels import Channel, unit_of
+from sher3_gap.exact import EXACT, controller_error, transport_error
+from sher3_gap.floors import Floors, chatter_floors, resolution_floors
+from sher3_gap.geometry import Geometry
+from sher3_gap.residuals import (
+    Residual,
+    Residuals,
+    drive_residual,
+    motor_residual,
+    transmission_residual,
+    wrench_residual,
+)
+from sher3_gap.selffloor import driven_as
+from sher3_gap.signals import RunSignals
+
+TOPICS = ("setpoint_js", "servo_jv", "drives/setpoint_jv", "drives/measured_js", "measured_js", "force/measured_cf")
+NEEDED = ("drives/measured_js", "drives/setpoint_jv", "measured_js")
+"""Without one of these at a tick, the tick is a hole."""
+WINDOW = 4.0
+"""Seconds a gap is taken over."""
+LOADED = 0.15
+"""Force beside the tool's weight [N] from which the tip is not free: the axes' mechanics are then not judged."""
+WARNING, ERROR = 1.5, 3.0
+"""Gap over floor from which a stage is reported as a warning and as an error."""
+
+
+@dataclass(frozen=True)
+class StageStatus:
+    """Gap of one stage on one axis over the last window, rms in SI units."""
+
+    stage: str
+    actuator: str
+    gap: float
+    floor: float
+    unit: str
+
+    @property
+    def ratio(self) -> float:
+        """Gap over floor."""
+        return self.gap / self.floor
+
+    @property
+    def level(self) -> int:
+        """0 at the floor, 1 above it, 2 far above it (diagnostic levels)."""
+        return int(self.ratio >= WARNING) + int(self.ratio >= ERROR)
+
+
+@dataclass
+class Monitor:
+    """Collects samples and judges windows; `feed` each sample, ask `judge` once a second.
+
+    Args:
+        robot: the nominal model.
+        effects: what the model beside the robot has beyond the nominal one.
+        window: seconds a gap is taken over.
+    """
+
+    robot: Robot
+    effects: Sequence[Effect] = ()
+    window: float = WINDOW
+    _ticks: dict[int, dict[str, Any]] = field(default_factory=dict)
+    _newest: int = 0
+
+    def feed(self, topic: str, sample: JointSample | WrenchSample) -> None:
+        """Take a sample of one of `TOPICS`; samples older than two windows are forgotten."""
+        self._ticks.setdefault(sample.stamp, {})[topic] = sample
+        self._newest = max(self._newest, sample.stamp)
+        keep = round(2.0 * self.window / self.robot.control_period)
+        while len(self._ticks) > keep:
+            del self._ticks[next(iter(self._ticks))]
+
+    def judge(self) -> list[StageStatus]:
+        """Return gap and floor per stage over the newest unbroken window; empty while it is not full."""
+        run = self._window()
+        if run is None:
+            return []
+        geometry = Geometry(self.robot)
+        real = _residuals(run, self.robot, geometry)
+        if self.effects and run.reference is not None:
+            real = self._less_the_known(run, real)
+        floors = resolution_floors(self.robot, run.period)
+        chatter = chatter_floors(run, self.robot)
+        out = [_status(c, r, floors, chatter) for c, r in sorted(real.items()) if c in floors and r.ok.any()]
+        return [*_exact(run, self.robot), *out]
+
+    def _less_the_known(self, run: RunSignals, real: Residuals) -> Residuals:
+        """Residuals less those that the effects alone make on the same set-points."""
+        twin = driven_as(run, self.robot, effects=list(self.effects))
+        assert twin is not None
+        known = _residuals(twin, self.robot, Geometry(self.robot))
+        return {c: Residual(r.values - known[c].values, r.ok) for c, r in real.items() if c in known}
+
+    def _window(self) -> RunSignals | None:
+        """Return the newest window as a run, or None while a tick of it is missing."""
+        period = round(self.robot.control_period * 1e9)
+        count = round(self.window / self.robot.control_period)
+        last = self._last_complete()
+        stamps = [last - k * period for k in range(count - 1, -1, -1)]
+        rows = [self._ticks.get(s, {}) for s in stamps]
+        if not all(all(t in row for t in NEEDED) for row in rows):
+            return None
+        return _as_run(rows, stamps, self.robot)
+
+    def _last_complete(self) -> int:
+        """Return the newest stamp at which every needed stream has arrived."""
+        return next((s for s in reversed(self._ticks) if all(t in self._ticks[s] for t in NEEDED)), self._newest)
+
+
+def _as_run(rows: list[dict[str, Any]], stamps: list[int], robot: Robot) -> RunSignals:
+    def column(topic: str, name: str) -> np.ndarray | None:
+        if not all(topic in row and getattr(row[topic], name) is not None for row in rows):
+            return None
+        return np.array([getattr(row[topic], name) for row in rows], dtype=float)
+
+    motor = column("drives/measured_js", "position")
+    assert motor is not None, "needed"
+    wrench = column("force/measured_cf", "wrench")
+    return RunSignals(
+        name=f"window at {stamps[-1]}",
+        excitation=RunMetadata().excitation,
+        repeat=0,
+        period=robot.control_period,
+        stage_clock=np.arange(len(rows)) * robot.control_period,
+        motor=motor,
+        effort=column("drives/measured_js", "effort"),
+        reference=column("setpoint_js", "position"),
+        reference_velocity=column("setpoint_js", "velocity"),
+        command=column("servo_jv", "velocity"),
+        echo=column("drives/setpoint_jv", "velocity"),
+        load=column("measured_js", "position"),
+        wrench=wrench,
+        contact=np.zeros((len(rows), 3)),
+        contact_known=np.ones(len(rows), dtype=bool) if wrench is None else _free(wrench, robot),
+        start=stamps[0],
+    )
+
+
+def _free(wrench: np.ndarray, robot: Robot) -> np.ndarray:
+    """Ticks at which no more than the tool's weight, in any orientation, acts on the sensor."""
+    weight = robot.force_sensor.tool_mass * 9.81
+    return np.linalg.norm(wrench[:, :3], axis=1) < weight + LOADED
+
+
+def _residuals(run: RunSignals, robot: Robot, geometry: Geometry) -> Residuals:
+    return {
+        **drive_residual(run, robot),
+        **motor_residual(run, robot, geometry),
+        **transmission_residual(run),
+        **wrench_residual(run, geometry),
+    }
+
+
+def _status(channel: Channel, residual: Residual, floors: Floors, chatter: Floors) -> StageStatus:
+    part = slice(0, 3) if residual.values.shape[1] == 6 else slice(0, 1)
+    floor = np.hypot(floors[channel], chatter.get(channel, 0.0))[part]
+    gap = float(np.sqrt(np.mean(residual.rms()[part] ** 2)))
+    return StageStatus(channel.stage, channel.actuator, gap, float(np.sqrt(np.mean(floor**2))), unit_of(channel))
+
+
+def _exact(run: RunSignals, robot: Robot) -> list[StageStatus]:
+    """Transport and controller, axis by axis; the window's first ticks lack the command before them."""
+    out = []
+    for stage, error in (("transport", transport_error(run)), ("controller", controller_error(run, robot))):
+        if error is None:
+            continue
+        for i, name in enumerate(ACTUATORS):
+            gap = float(np.sqrt(np.mean(error[2:, i] ** 2)))
+            top = robot.actuators[i].limits.velocity
+            out.append(StageStatus(stage, name, gap, 1e3 * EXACT * top, unit_of(Channel(stage, name))))
+    return out
