@@ -1,0 +1,98 @@
+"""Data files as named arrays: CSV (lists in cells too), MAT (up to version 7), NPZ, JSON; a folder is a set of tables."""
+
+from __future__ import annotations
+
+import csv
+import json
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+import numpy as np
+import scipy.io
+
+from sher3_gap.channels import Array
+from sher3_gap.machines.errors import MachineError
+
+Tables = dict[str, Array]
+MAX_BYTES = 2_000_000_000
+
+
+def read_tables(path: Path) -> Tables:
+    """Return the numeric arrays of a file, or of a folder's files as `stem/name`; the first index counts samples.
+
+    Raises:
+        MachineError: no such file, no known format, or a table that cannot be read.
+    """
+    if path.is_dir():
+        files = [f for f in sorted(path.iterdir()) if f.suffix.lower() in READERS]
+        if not files:
+            raise MachineError(f"{path}: no data files", limit=", ".join(READERS), remedy="give a file or its folder")
+        return {f"{f.stem}/{name}": x for f in files for name, x in _read(f).items()}
+    if not path.is_file():
+        raise MachineError(f"{path}: no such file", remedy="check the path")
+    return _read(path)
+
+
+def _read(path: Path) -> Tables:
+    reader = READERS.get(path.suffix.lower())
+    if reader is None:
+        raise MachineError(
+            f"{path}: format is not read", value=path.suffix, limit=", ".join(READERS), remedy="convert it"
+        )
+    if path.stat().st_size > MAX_BYTES:
+        raise MachineError(f"{path}: too large", value=path.stat().st_size, limit=MAX_BYTES, remedy="cut the record")
+    try:
+        return reader(path)
+    except (OSError, ValueError, KeyError, IndexError, NotImplementedError) as error:
+        raise MachineError(f"{path}: cannot be read", value=str(error)[:120], remedy="check the file") from error
+
+
+def _csv(path: Path) -> Tables:
+    with path.open(newline="", encoding="utf-8-sig") as file:
+        rows = list(csv.reader(file))
+    header, body = [h.strip() for h in rows[0]], [r for r in rows[1:] if r]
+    out: Tables = {}
+    for i, name in enumerate(header):
+        values = _numbers([r[i] if i < len(r) else "" for r in body])
+        if values is not None:
+            out[name] = values
+    return out
+
+
+def _numbers(cells: list[str]) -> Array | None:
+    """Cells as (n,) or, where they hold lists, (n, k); None for text."""
+    try:
+        if cells and cells[0].lstrip().startswith("["):
+            return np.array([json.loads(c.replace("nan", "NaN")) for c in cells], dtype=float)
+        return np.array([float(c) if c.strip() else np.nan for c in cells])
+    except ValueError:
+        return None
+
+
+def _mat(path: Path) -> Tables:
+    return _numeric({k: v for k, v in scipy.io.loadmat(path).items() if not k.startswith("__")})
+
+
+def _npz(path: Path) -> Tables:
+    with np.load(path, allow_pickle=False) as archive:
+        return _numeric({k: archive[k] for k in archive.files})
+
+
+def _json(path: Path) -> Tables:
+    data = json.loads(path.read_text(encoding="utf-8"))
+    if not isinstance(data, dict):
+        raise ValueError("the top level is not an object of named arrays")
+    return _numeric({k: v for k, v in data.items() if isinstance(v, list) and v and not isinstance(v[0], dict | str)})
+
+
+def _numeric(data: Mapping[str, object]) -> Tables:
+    out: Tables = {}
+    for name, value in data.items():
+        x = np.asarray(value)
+        if x.dtype.kind in "fiub" and x.ndim:
+            x = np.asarray(x, dtype=float)
+            out[name] = x.ravel() if x.ndim == 2 and 1 in x.shape else x
+    return out
+
+
+READERS: dict[str, Callable[[Path], Tables]] = {".csv": _csv, ".mat": _mat, ".npz": _npz, ".json": _json}
