@@ -30,9 +30,7 @@ def benchtop(
     compensate: Annotated[bool, typer.Option("--compensate", help="Compensate the deflection under load.")] = False,
     centre: Annotated[tuple[float, float, float], typer.Option(help="Centre of the grids from home [mm].")] = (0, 0, 0),
     force: Annotated[tuple[float, float], typer.Option(help="Ends of the force in the deflection test [N].")] = (-6, 8),
-    spread: Annotated[
-        int, typer.Option(help="Only the accuracy of so many robots as built, without the graph.", min=0)
-    ] = 0,
+    spread: Annotated[int, typer.Option(help="Only the accuracy of so many robots, without the graph.", min=0)] = 0,
     out: Annotated[Optional[Path], typer.Option(help=HELP_OUT)] = None,  # noqa: UP045
     as_json: Annotated[bool, typer.Option("--json", help="Print the figures as one JSON object.")] = False,
 ) -> None:
@@ -54,9 +52,21 @@ def benchtop(
     if spread:
         _print_spread(robot, spread, as_json)
         return
-    plan = replace(FAST if fast else Plan(), centre=tuple(1e-3 * c for c in centre), pull=min(force), push=max(force))
+    plan = replace(
+        FAST if fast else Plan(),
+        centre=in_metres(centre),
+        pull=min(force),
+        push=max(force),
+        dwell=1.2 if compensate else 0.4,
+    )
     kind, chosen = _robot(nominal, effects)
     _run(names, robot, plan, kind, chosen, compensate, out, as_json)
+
+
+def in_metres(millimetres: tuple[float, float, float]) -> tuple[float, float, float]:
+    """Return lengths in m."""
+    x, y, z = millimetres
+    return 1e-3 * x, 1e-3 * y, 1e-3 * z
 
 
 def _robot(nominal: bool, effects: Path | None) -> tuple[str, list[Effect]]:

@@ -21,7 +21,7 @@ from typing import Any
 
 from sher3_description import Sher3Error
 from sher3_runtime.clock import OFFSET_VARIABLE, system_offset
-from sher3_runtime.process import CONTROL_VARIABLE, run
+from sher3_runtime.process import CONTROL_VARIABLE, REALTIME_VARIABLE, run
 
 from .errors import NotStopped, ProcessDied, StartError
 
@@ -80,13 +80,14 @@ class Fleet:
         self.members: list[Member] = []
         os.environ[OFFSET_VARIABLE] = str(system_offset())
 
-    def launch(self, name: str, make_nodes: Callable[[], Any]) -> Member:
-        """Fork a process that makes and runs nodes."""
+    def launch(self, name: str, make_nodes: Callable[[], Any], realtime: int = 0) -> Member:
+        """Fork a process that makes and runs nodes, at SCHED_FIFO priority `realtime` from its first tick on."""
         ours, theirs = socket.socketpair()
         sys.stdout.flush()
         sys.stderr.flush()
         pid = os.fork()
         if pid == 0:
+            os.environ[REALTIME_VARIABLE] = str(realtime)
             _child(name, make_nodes, theirs, [ours, *(member.control for member in self.members)])
         theirs.close()
         ours.setblocking(False)

@@ -7,16 +7,19 @@ import signal
 import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from functools import partial
 
 from sher3_runtime import environment
 from sher3_runtime.ports import PERIOD_VARIABLE
-from sher3_runtime.process import REALTIME_VARIABLE, realtime_permitted
+from sher3_runtime.process import realtime_permitted
 
 from .fleet import Fleet
 from .nodes import make_nodes, preload
 from .settings import RunSettings
 
 DEFAULT_REALTIME = 40
+UNHURRIED = frozenset({"recorder"})
+"""Compressing a chunk would hold up the control loop at the same priority; the recorder's queues can wait."""
 
 
 def run_graph(
@@ -37,16 +40,17 @@ def run_graph(
         StartError, ProcessDied, NotStopped: see `errors`; whatever was running has been stopped.
     """
     begin = time.monotonic()
-    prepare(settings)
+    realtime = prepare(settings)
     imported = time.monotonic()
     with _signals() as caught, Fleet() as fleet:
         for process in settings.processes:
-            fleet.launch("+".join(process), lambda names=process: make_nodes(settings, names))  # type: ignore[misc]
+            priority = 0 if set(process) <= UNHURRIED else realtime
+            fleet.launch("+".join(process), partial(make_nodes, settings, process), priority)
             if "plant" in process:
                 # The devices are there before their drivers look for them.
                 fleet.gather("publishes")
         for name, make in (extra or {}).items():
-            fleet.launch(name, make)
+            fleet.launch(name, make, realtime)
         fleet.start()
         started = time.monotonic()
         count, seconds = len(fleet.members), started - imported
@@ -65,15 +69,14 @@ def run_graph(
     say("stopped" + (f"; recorded {settings.record}" if settings.record else ""))
 
 
-def prepare(settings: RunSettings) -> None:
-    """Set the environment of the run and import what its processes share."""
+def prepare(settings: RunSettings) -> int:
+    """Set the environment of the run and import what its processes share; return the priority it may use."""
     environment.apply(settings.domain, settings.other_hosts)
     os.environ[PERIOD_VARIABLE] = repr(1.0 / settings.rate)
-    realtime = settings.realtime
-    if realtime < 0:
-        realtime = DEFAULT_REALTIME if realtime_permitted() else 0
-    os.environ[REALTIME_VARIABLE] = str(realtime)
     preload(settings)
+    if settings.realtime >= 0:
+        return settings.realtime
+    return DEFAULT_REALTIME if realtime_permitted() else 0
 
 
 @contextmanager

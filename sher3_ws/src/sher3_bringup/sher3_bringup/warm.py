@@ -35,7 +35,8 @@ def _admittance(robot: Robot) -> None:
     period = round(robot.control_period * 1e9)
     for k in range(20):
         stamp, travel = STAMP + k * period, min(0.2 * k, 1.0)
-        wrench = tuple(component * (1.0 + 0.01 * k) for component in PUSH)
+        fx, fy, fz, mx, my, mz = (component * (1.0 + 0.01 * k) for component in PUSH)
+        wrench = (fx, fy, fz, mx, my, mz)
         tick = LawInput(
             stamp, True, True, stamp, wrench, stamp, travel, False, stamp, roll, tilt,
             live.speed_scale, live.linear_gain, live.angular_gain, int(live.lock), live.bias,

@@ -81,6 +81,7 @@ class PlantNode(Node):
         self._wrench_at = 0
         self._foot, self._foot_at = RELEASED, 0
         self._streamed = False
+        self._tip_stamp = -1
         self._force = force_device if force_device is not None else NetFtServer()
         self._pedal = PedalSender(pedal_device) if isinstance(pedal_device, str) else pedal_device
         self._say_wrench: Callable[[Any], object] = (
@@ -109,9 +110,11 @@ class PlantNode(Node):
         fresh = self._now() - self._wrench_at < HOLD * 1e9
         self._reading = reading = self._plant.step(velocity_command, self._wrench if fresh else NOTHING)
         self._stream()
-        if reading.tracker is not None:
-            pose = reading.tracker.tolist()
-            self._publish_tip(PoseSample(self._stamp(), tuple(pose[:3]), tuple(pose[3:])))
+        stamp = self._stamp()
+        # A SYNC that comes a period late would give its sample the stamp of the next one.
+        if reading.tracker is not None and stamp > self._tip_stamp:
+            self._tip_stamp, pose = stamp, reading.tracker.tolist()
+            self._publish_tip(PoseSample(stamp, tuple(pose[:3]), tuple(pose[3:])))
         return reading
 
     def _stamp(self) -> int:
