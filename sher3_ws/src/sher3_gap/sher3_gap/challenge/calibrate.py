@@ -9,13 +9,15 @@ from functools import lru_cache
 
 from sher3_description import ACTUATORS, Robot, load_robot
 
+from ..excitation import excite
 from .oracle import Residuals, excess, floors, stage_residuals
-from .plan import CasePlan, draw_plan
+from .plan import RUN_SPACING_NS, CasePlan
 from .truth.fault import Fault
-from .truth.plant import Plant, RunPlan
+from .truth.plant import Climate, Plant, RunPlan
 
 ITERATIONS = 4
 CLOSE_ENOUGH = 0.12
+REFERENCE_SEED = 990_001
 
 
 def distinct_runs(plan: CasePlan) -> tuple[RunPlan, ...]:
@@ -42,15 +44,14 @@ def ideal_residuals(plant: Plant, runs: Sequence[RunPlan]) -> list[Residuals]:
 
 @lru_cache(maxsize=4)
 def reference_floor(robot: Robot) -> dict[str, float]:
-    """Return the floor of every stage of one healthy robot, over all pairs of repeated excitations."""
-    total: dict[str, list[float]] = {}
-    for seed in (1, 2, 5):
-        plan = draw_plan(robot, 990_000 + seed, kind="healthy")
-        plant = Plant(robot, plan.seed, (), plan.climate)
-        runs = [plant.run(run) for run in plan.runs[:6]]
-        for key, value in floors(runs, [stage_residuals(run, robot) for run in runs], robot).items():
-            total.setdefault(key, []).append(value)
-    return {key: sum(values) / len(values) for key, values in total.items()}
+    """Return the floor of every stage of one healthy robot, from three repeats of motion, postures and loads."""
+    plant = Plant(robot, REFERENCE_SEED, (), Climate(22.0, 1.0, 200.0, 0))
+    runs = []
+    for n, name in enumerate(("sweep", "postures", "loads")):
+        excitation = excite(name, robot, posture="p1")
+        repeats = (RunPlan(excitation, k, (3 * n + k) * RUN_SPACING_NS, REFERENCE_SEED + 3 * n + k) for k in range(3))
+        runs += [plant.run(repeat) for repeat in repeats]
+    return floors(runs, [stage_residuals(run, robot) for run in runs], robot)
 
 
 @dataclass

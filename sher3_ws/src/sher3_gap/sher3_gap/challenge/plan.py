@@ -14,7 +14,7 @@ from .truth.fault import Fault, Kind
 from .truth.plant import Climate, RunPlan
 
 KINDS = ("healthy", "single", "compound", "outside", "under_excited")
-MIX = (0.30, 0.38, 0.12, 0.13, 0.07)
+MIX = (0.32, 0.36, 0.12, 0.13, 0.07)
 """Shares of the kinds when they are drawn."""
 
 RUN_SPACING_NS = 28_600_000_000

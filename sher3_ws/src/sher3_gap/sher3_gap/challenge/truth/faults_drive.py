@@ -1,7 +1,5 @@
 """Faults between the host and the load: timing, limits, scale, friction, inertia, periodic and lost motion."""
 
-
-
 from __future__ import annotations
 
 import math

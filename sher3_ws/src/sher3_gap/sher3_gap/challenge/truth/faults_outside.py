@@ -1,7 +1,5 @@
 """Faults no catalogue names: the right answer to them is that the library does not explain the gap."""
 
-
-
 from __future__ import annotations
 
 from sher3_description import ACTUATORS

@@ -1,7 +1,5 @@
 """Faults behind the load encoders and in the sensors: geometry, compliance, drift, encoders, force sensor."""
 
-
-
 from __future__ import annotations
 
 import math

@@ -1,0 +1,51 @@
+"""Building sealed cases: seconds per case and per simulated run of the truth plant.
+
+python bench/challenge.py            # six cases
+python bench/challenge.py --json
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import tempfile
+import time
+from pathlib import Path
+
+from sher3_description import load_robot
+from sher3_gap.challenge.builder import Request, build_case
+from sher3_gap.challenge.plan import draw_plan
+from sher3_gap.challenge.truth.plant import Plant
+
+
+def main() -> None:
+    """Print or dump the figures."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--json", action="store_true")
+    parser.add_argument("--cases", type=int, default=6)
+    arguments = parser.parse_args()
+    robot = load_robot()
+    plan = draw_plan(robot, 1)
+    plant = Plant(robot, 1, (), plan.climate)
+    plant.run(plan.runs[0])  # compiles
+    started = time.perf_counter()
+    for run in plan.runs:
+        plant.run(run)
+    per_run = (time.perf_counter() - started) / len(plan.runs)
+    seconds = []
+    with tempfile.TemporaryDirectory() as folder:
+        for seed in range(arguments.cases):
+            started = time.perf_counter()
+            build_case(Request(seed), Path(folder), robot)
+            seconds.append(time.perf_counter() - started)
+    figures = {
+        "seconds_per_run": per_run,
+        "simulated_seconds_per_run": len(plan.runs[0].excitation.position) * robot.control_period,
+        "seconds_per_case": sum(seconds) / len(seconds),
+        "slowest_case": max(seconds),
+    }
+    print(json.dumps(figures) if arguments.json else "\n".join(f"{k:28s}{v:8.3f}" for k, v in figures.items()))
+
+
+if __name__ == "__main__":
+    main()
