@@ -22,7 +22,8 @@ def imports(path: Path) -> set[str]:
         if isinstance(node, ast.Import):
             names |= {alias.name.split(".")[0] for alias in node.names}
         elif isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
-            if node.module == "sher3_runtime" and all(alias.name.endswith("Sample") for alias in node.names):
+            samples = all(alias.name.endswith("Sample") for alias in node.names)
+            if samples and node.module in ("sher3_runtime", "sher3_runtime.samples"):
                 continue
             names.add(node.module.split(".")[0])
     return names
