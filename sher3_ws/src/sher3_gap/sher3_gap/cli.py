@@ -127,8 +127,14 @@ def library(
 def _mount() -> None:
     """Add the commands that live in files of their own."""
     from sher3_gap.challenge.command import challenge
+    from sher3_gap.cli_excite import excite_command, monitor_command
+    from sher3_gap.cli_import import IMPORT_EXAMPLE, import_data
 
+    example = "Examples: sher3 gap excite · sher3 gap excite all -o case · sher3 gap excite sweep --simulate -o case"
+    app.command("excite", epilog=example)(excite_command)
+    app.command("monitor", epilog="Example: sher3 gap monitor --effects effects.yaml")(monitor_command)
     app.command(epilog="Example: sher3 gap challenge --seeds 0:40 --json")(challenge)
+    app.command("import", epilog=f"Example: {IMPORT_EXAMPLE}")(import_data)
 
 
 _mount()

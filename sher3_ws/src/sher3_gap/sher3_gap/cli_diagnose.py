@@ -43,7 +43,10 @@ class Answer:
 def answer(task: Task, say: Say = lambda _: None) -> Answer:
     """Diagnose one case; input errors come back as the answer, mistakes of ours are raised."""
     from sher3_gap.diagnose import diagnose_case
+    from sher3_gap.machines import is_machine_case
 
+    if is_machine_case(task.case):
+        return _machine_answer(task, say)
     try:
         found = diagnose_case(task.case, task.robot, task.without, say)
     except Sher3Error as error:
@@ -55,6 +58,21 @@ def answer(task: Task, say: Say = lambda _: None) -> Answer:
         say("writing the report")
         html = render(found, task.case.resolve().name)
     return Answer(task, found.verdict, html)
+
+
+def _machine_answer(task: Task, say: Say) -> Answer:
+    """Diagnose the case of another machine."""
+    from sher3_gap.machines.diagnose import diagnose_machine
+
+    try:
+        found = diagnose_machine(task.case, task.without, say)
+    except Sher3Error as error:
+        return Answer(task, error=error)
+    if not task.report:
+        return Answer(task, found.verdict)
+    from sher3_gap.machines.report import render
+
+    return Answer(task, found.verdict, render(found.verdict, found.findings, task.case.resolve().name))
 
 
 def check_effects(without: Sequence[str]) -> tuple[str, ...]:

@@ -15,6 +15,7 @@ from sher3_gap.machines.description import Axis
 from sher3_gap.machines.identify import identify_mass
 from sher3_gap.machines.intake import AxesRun
 from sher3_gap.residuals import Residuals, settled
+from sher3_gap.signals import low_pass
 
 BLOCKS = 8
 """Least number of blocks that held-out losses and intervals are taken over."""
@@ -58,7 +59,7 @@ def gather_axis(runs: Sequence[AxesRun], axis: Axis, repeats: bool) -> AxisEvide
     blocks = [(r, b) for r, x in enumerate(found) for b in _blocks(x, -(-BLOCKS // len(records)))]
     data = Whitened([records[r] for r, _ in blocks], [b for _, b in blocks], [floors[r] for r, _ in blocks])
     views = [records[r] for r, _ in blocks]
-    return AxisEvidence(axis, [v.run for v in views], views, data, records, mass or 0.0, interval)  # type: ignore[misc]
+    return AxisEvidence(axis, [v.signals for v in views], views, data, records, mass or 0.0, interval)
 
 
 def residuals(view: AxisView) -> Residuals:
@@ -88,7 +89,7 @@ def floors_of(records: Sequence[AxisView], found: Sequence[Residuals], repeats: 
 
 def resolution_floor(view: AxisView) -> dict[str, Array]:
     """What quantisation alone makes: white noise of a count's variance through the same filters."""
-    run, axis = view.run, view.axis
+    run, axis = view.signals, view.axis
     count = axis.encoder_resolution / np.sqrt(12.0)
     noise = np.random.default_rng(0).normal(size=(max(run.ticks, 400), 1))
     bend = np.zeros_like(noise)
@@ -103,8 +104,6 @@ def resolution_floor(view: AxisView) -> dict[str, Array]:
 
 def run_filter(run: AxisSignals, x: Array) -> Array:
     """The low-pass of a run on a signal of any length."""
-    from sher3_gap.signals import low_pass
-
     return low_pass(x, run.period, run.bandwidth)
 
 

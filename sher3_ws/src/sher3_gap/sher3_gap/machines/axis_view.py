@@ -20,6 +20,7 @@ from sher3_gap.geometry import Geometry, Path
 from sher3_gap.library import View
 from sher3_gap.machines.description import Axis
 from sher3_gap.machines.intake import AxesRun
+from sher3_gap.residuals import settled
 from sher3_gap.signals import BANDWIDTH, DECIMATED_RATE, EDGE, RunSignals, low_pass
 
 SEEN_AS = ACTUATORS[0]
@@ -68,7 +69,7 @@ def signals_of(run: AxesRun, axis: Axis, excitation: str) -> AxisSignals:
         excitation=excitation,
         repeat=0,
         period=run.period,
-        stage_clock=run.period * np.arange(len(found["position"])),
+        stage_clock=run.period * np.arange(len(found["position"]), dtype=np.float64),
         motor=found["position"],
         effort=effort,
         reference=found.get("reference"),
@@ -93,6 +94,7 @@ class AxisView(View):
         )
         super().__init__(run, cast(Robot, SimpleNamespace(actuators=[actuator])), cast(Geometry, None))
         self.axis = axis
+        self.signals = run
 
     @cached_property
     def path(self) -> Path:
@@ -130,6 +132,4 @@ class AxisView(View):
     @cached_property
     def at_rest(self) -> NDArray[np.bool_]:
         """(g,) True well inside a stretch without motion."""
-        from sher3_gap.residuals import settled
-
         return self.run.inner & self.free & settled(~self.moving, 2)

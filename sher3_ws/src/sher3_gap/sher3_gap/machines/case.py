@@ -45,7 +45,7 @@ def import_case(data: Sequence[Path], description: Path, out: Path) -> list[str]
     for stale in (out / RUNS).glob("*.npz"):
         stale.unlink()
     for name, content in arrays.items():
-        np.savez_compressed(out / RUNS / f"{name}.npz", **content)
+        np.savez_compressed(out / RUNS / f"{name}.npz", **content)  # type: ignore[arg-type]
     (out / MACHINE).write_text(_resolved(description, machine), encoding="utf-8")
     (out / "import.json").write_text(
         json.dumps({"data": [str(p) for p in data], "notes": notes}, indent=1), encoding="utf-8"
@@ -104,3 +104,9 @@ def _resolved(description: Path, machine: AxesMachine | ArmMachine) -> str:
     if isinstance(machine, ArmMachine) and machine.urdf is not None:
         text = text.replace(str(machine.urdf), str((description.parent / machine.urdf).resolve()))
     return text
+
+
+def described(path: Path) -> Path:
+    """A description's path; a bare name is one of the descriptions that come with the project."""
+    known = Path(__file__).parent / "descriptions" / f"{path.name}.yaml"
+    return known if path.suffix == "" and not path.exists() and known.is_file() else path

@@ -5,7 +5,7 @@ from __future__ import annotations
 import importlib.metadata
 import time
 from collections.abc import Callable, Collection
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import cast
 
@@ -16,44 +16,38 @@ from sher3_gap.channels import Channel
 from sher3_gap.diagnose import left_over
 from sher3_gap.evidence import Evidence
 from sher3_gap.fitting import Fit, fit
-from sher3_gap.localise import Gap, gap_of, localise
+from sher3_gap.library import LIBRARY
+from sher3_gap.localise import gap_of, localise
 from sher3_gap.machines.arm_diagnose import diagnose_arm
-from sher3_gap.machines.axis_evidence import AxisEvidence, gather_axis
+from sher3_gap.machines.axis_evidence import gather_axis
 from sher3_gap.machines.case import load_axes
 from sher3_gap.machines.describe import regime_of, remainder_of
 from sher3_gap.machines.description import ArmMachine, AxesMachine, Axis
 from sher3_gap.machines.effects import MachineCandidates, effects_on, polished
+from sher3_gap.machines.finding import AxisFinding, unit_of
 from sher3_gap.machines.intake import AxesRun
 from sher3_gap.machines.limits import limit_finding
-from sher3_gap.machines.replay import Replay, refine_free, replay_closure
+from sher3_gap.machines.replay import refine_free, replay_closure
 from sher3_gap.machines.rest import rest_loss
 from sher3_gap.quantify import closure, excess, parameters, residual_after
-from sher3_gap.verdict import Cause, Closure, Interval, NextExperiment, Residual, Unexplained, Verdict, Where
+from sher3_gap.verdict import Cause, Closure, Interval, NextExperiment, Residual, Status, Unexplained, Verdict, Where
 
 Say = Callable[[str], None]
-UNITS = {
-    ("linear", "motor_mechanics"): "N",
-    ("rotary", "motor_mechanics"): "N*m",
-    ("linear", "transmission"): "m",
-    ("rotary", "transmission"): "rad",
-}
+NO_REPEATS = (
+    "no repeats: floors are the residuals' innovations or the sensors' resolution, and intervals come from blocks of a "
+    "record: what differs from day to day is in neither"
+)
 
 
-@dataclass
-class AxisFinding:
-    """What was found on one axis."""
+@dataclass(frozen=True)
+class MachineDiagnosis:
+    """A verdict with what was found on each axis; an arm has no axes."""
 
-    axis: Axis
-    evidence: AxisEvidence
-    gaps: dict[Channel, Gap]
-    attribution: Attribution
-    causes: list[Cause]
-    open: dict[Channel, float]
-    notes: list[str] = field(default_factory=list)
-    replay: Replay | None = None
+    verdict: Verdict
+    findings: list[AxisFinding]
 
 
-def diagnose_machine(case: Path, without: Collection[str] = (), say: Say = lambda _: None) -> Verdict:
+def diagnose_machine(case: Path, without: Collection[str] = (), say: Say = lambda _: None) -> MachineDiagnosis:
     """Diagnose the case of another machine.
 
     Raises:
@@ -61,15 +55,19 @@ def diagnose_machine(case: Path, without: Collection[str] = (), say: Say = lambd
     """
     started = time.perf_counter()
     machine, runs, arms = load_axes(Path(case))
+    findings: list[AxisFinding] = []
     if isinstance(machine, ArmMachine):
         verdict = diagnose_arm(machine, arms, without, say)
     else:
-        verdict = diagnose_axes(machine, runs, without, say)
+        verdict, findings = diagnose_axes(machine, runs, without, say)
     versions = {p: importlib.metadata.version(p) for p in ("sher3", "numpy", "scipy")}
-    return verdict.model_copy(update={"seconds": time.perf_counter() - started, "versions": versions})
+    verdict = verdict.model_copy(update={"seconds": time.perf_counter() - started, "versions": versions})
+    return MachineDiagnosis(verdict, findings)
 
 
-def diagnose_axes(machine: AxesMachine, runs: list[AxesRun], without: Collection[str], say: Say) -> Verdict:
+def diagnose_axes(
+    machine: AxesMachine, runs: list[AxesRun], without: Collection[str], say: Say
+) -> tuple[Verdict, list[AxisFinding]]:
     """Diagnose every axis of a chain and gather the answers."""
     notes = [n for r in runs for n in r.notes]
     if not (machine.repeats and len(runs) > 1):
@@ -81,12 +79,11 @@ def diagnose_axes(machine: AxesMachine, runs: list[AxesRun], without: Collection
     for axis in machine.axes:
         say(f"axis {axis.name}")
         findings.append(_axis(runs, axis, machine.repeats and len(runs) > 1, without, say))
-    for f in findings:
-        notes += f.notes
+    notes += [n for f in findings for n in f.notes]
     where = [x.where for x in limits] + _where(findings)
     causes = [x.cause for x in limits] + [c for f in findings for c in f.causes]
     if not where:
-        return Verdict(status="no_gap", notes=notes)
+        return Verdict(status="no_gap", notes=notes), findings
     order = np.argsort([-w.gap / max(w.floor, 1e-300) for w in where], kind="stable")
     left = [f for f in findings if f.open]
     unexplained = _unexplained(left[0]) if left else None
@@ -100,7 +97,7 @@ def diagnose_axes(machine: AxesMachine, runs: list[AxesRun], without: Collection
     if limit is not None:
         held, rest = limit.cause.closure, limit.residual
     tips = [f.replay for f in findings if f.replay is not None]
-    return Verdict(
+    verdict = Verdict(
         status=status,
         where=[where[i] for i in order],
         causes=sorted(causes, key=lambda c: -c.closure.value),
@@ -110,6 +107,7 @@ def diagnose_axes(machine: AxesMachine, runs: list[AxesRun], without: Collection
         next_experiment=experiment,
         notes=notes,
     )
+    return verdict, findings
 
 
 def _axis(runs: list[AxesRun], axis: Axis, repeats: bool, without: Collection[str], say: Say) -> AxisFinding:
@@ -191,14 +189,7 @@ def _where(findings: list[AxisFinding]) -> list[Where]:
     ]
 
 
-def unit_of(axis: Axis, stage: str) -> str:
-    """Unit of a channel; a servo's error is a position."""
-    return UNITS[axis.motion, "transmission" if axis.command_law.kind == "position" else stage]
-
-
-def _status(causes: list[Cause], unexplained: Unexplained | None) -> tuple[str, NextExperiment | None]:
-    from sher3_gap.library import LIBRARY
-
+def _status(causes: list[Cause], unexplained: Unexplained | None) -> tuple[Status, NextExperiment | None]:
     crossed = [c for c in causes if {LIBRARY[r].family for r in c.rivals} - {c.family}]
     experiment = None
     if crossed:

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from itertools import combinations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sher3_gap.channels import Array
 from sher3_gap.fitting import solve
@@ -55,7 +56,7 @@ def _equations(view: AxisView) -> tuple[Array, Array]:
     return x[ok], y[ok]
 
 
-def _held_out(x: Array, y: Array, block: Array) -> tuple[float, Array]:
+def _held_out(x: Array, y: Array, block: NDArray[np.int64]) -> tuple[float, Array]:
     """Loss of every block under the others' coefficients, and the mass without each block."""
     loss, draws = 0.0, []
     for k in range(BLOCKS):
