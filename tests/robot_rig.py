@@ -1,53 +1,17 @@
-"""The whole robot on mocks in one process and in stepped time: every node, the CAN frames and all topics."""
+"""The stepped robot of the tests, with a scripted surgeon."""
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Sequence
-
+from sher3_bringup.stepped_robot import SteppedRobot
 from sher3_bringup.surgeon import Script
 from sher3_bringup.teleop_node import script_node
-from sher3_control.admittance_node import AdmittanceNode
-from sher3_control.kinematics_node import KinematicsNode
-from sher3_control.supervisor_node import SupervisorNode
 from sher3_description import load_robot
-from sher3_drivers.bus import LockstepLink, open_link
-from sher3_drivers.force_sensor import InProcessForceSensor
-from sher3_drivers.force_sensor_node import ForceSensorNode
-from sher3_drivers.motor_driver_node import MotorDriverNode
-from sher3_drivers.pedal import InProcessPedal
-from sher3_drivers.pedal_node import PedalNode
-from sher3_drivers.settings import default_settings
-from sher3_runtime import Graph
-from sher3_sim import Effect
-from sher3_sim.plant_node import PlantNode
 
 ROBOT = load_robot()
-_numbers = itertools.count()
 
 
-class RobotRig:
-    """Every node of `sher3 up` but the recorder, in one `Graph`.
-
-    Attributes:
-        graph: the graph; `force` and `pedal`: the device ends; the nodes by their names.
-    """
-
-    def __init__(self, graph: Graph, effects: Sequence[Effect] = (), seed: int = 1) -> None:
-        self.graph = graph
-        self.force, self.pedal_device = InProcessForceSensor(), InProcessPedal()
-        settings, channel = default_settings(ROBOT.control_period), f"rig{next(_numbers)}"
-        count = len(settings.channels)
-        device_ends, host_ends = ([open_link(f"virtual:{channel}-{i}") for i in range(count)] for _ in range(2))
-        devices = {"force_device": self.force, "pedal_device": self.pedal_device}
-        self.plant = graph.add(PlantNode, ROBOT, settings, effects, seed, None, device_ends, **devices)
-        links = [LockstepLink(link, [self.plant.drives.poll]) for link in host_ends]
-        self.motor_driver = graph.add(MotorDriverNode, ROBOT, settings, links)
-        self.force_sensor = graph.add(ForceSensorNode, ROBOT, self.force)
-        self.pedal = graph.add(PedalNode, ROBOT, self.pedal_device)
-        self.supervisor = graph.add(SupervisorNode, ROBOT)
-        self.kinematics = graph.add(KinematicsNode, ROBOT)
-        self.admittance = graph.add(AdmittanceNode, ROBOT)
+class RobotRig(SteppedRobot):
+    """Every node of `sher3 up` but the recorder, in one `Graph`."""
 
     def play(self, script: Script) -> None:
         """Let a scripted surgeon play a script to its end."""

@@ -18,9 +18,7 @@ app = typer.Typer(no_args_is_help=True)
 HELP_OUT = "Folder for bags, figures (benchtop.json), text, picture and effects; bags are kept only with it."
 
 
-@app.command(
-    epilog="Examples: `sher3 benchtop --fast` · `sher3 benchtop --nominal --test grid_10um` · `sher3 benchtop --out bench`"
-)
+@app.command(epilog="Examples: `sher3 benchtop --fast` · `sher3 benchtop --out bench`")
 def benchtop(
     nominal: Annotated[bool, typer.Option("--nominal", help="The plant does what the model says.")] = False,
     built: Annotated[bool, typer.Option("--as-built", help="A robot built to tolerances (default).")] = False,
@@ -107,7 +105,7 @@ def _run(
         (out / "benchtop.txt").write_text(text + "\n", encoding="utf-8")
         (out / "benchtop.json").write_text(data + "\n", encoding="utf-8")
         save_effects(out / "effects.yaml", effects)
-        draw(shots, "field", out / "benchtop.png")
+        draw(shots, out / "benchtop.png")
     typer.echo(data if as_json else text)
 
 

@@ -55,8 +55,10 @@ class DeflectionCompensation:
         self._stamp, self._newest, self._same = -1, NO_BIAS, 0
         self._filtered: Array | None = None
 
-    def feed(self, stamp: int, wrench: Wrench) -> None:
+    def feed(self, stamp: int, sample: Vector) -> None:
         """Take a raw wrench (6,) in {f}; an unusable one is kept for the judgement and empties the filter."""
+        a, b, c, d, e, f = sample
+        wrench: Wrench = (a, b, c, d, e, f)
         self._same = self._same + 1 if wrench == self._newest else 1
         self._stamp, self._newest = stamp, wrench
         if check_wrench(wrench, self._range, self._settings.saturation) is not Reason.MOVING:
@@ -93,7 +95,8 @@ class DeflectionCompensation:
     def _at_tip(self, raw: Array, q: Vector) -> Array:
         """Return the contact wrench (6,) at the tip, axes of {b}."""
         rotation = self._model.kinematics.transform_tip_to_base(q)[:3, :3]
-        flat, sensor = tuple(rotation.ravel().tolist()), self._sensor
+        a, b, c, d, e, f, g, h, i = rotation.ravel().tolist()
+        flat, sensor = (a, b, c, d, e, f, g, h, i), self._sensor
         contact = contact_wrench(tuple(raw.tolist()), flat, float(sensor.tool_mass), sensor.tool_com, self.bias)
         at_tip = np.array(wrench_at_tip(contact, sensor.position))
         return np.concatenate((rotation @ at_tip[:3], rotation @ at_tip[3:]))

@@ -23,7 +23,6 @@ from .servo_modes import ServoJointVelocity, ServoPose, ServoPosition, ServoTwis
 from .settings import MotionSettings
 from .wrench_check import judge_age
 
-
 POSE_MODES = (Mode.SERVO_CP, Mode.MOVE_CP)
 
 

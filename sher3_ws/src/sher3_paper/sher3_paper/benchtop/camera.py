@@ -12,8 +12,8 @@ from ..tables import printed
 
 Floats = NDArray[np.float64]
 Reading = Literal["tip", "noise", "field"]
-READINGS: tuple[Reading, ...] = ("field", "noise", "tip")
-"""`field`: the RMS error is a smooth distortion of the view; `noise`: a new error at every reading; `tip`: no camera."""
+READINGS: tuple[Reading, ...] = ("noise", "field", "tip")
+"""`noise`: the RMS error is made anew at every reading; `field`: it is a smooth distortion; `tip`: no camera."""
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,8 @@ def motion_errors(places: Floats, targets: Floats, axis: int, spacing: float) ->
     table has no negative entries.
 
     Args:
-        places, targets: measured and intended (n, 2) [m].
+        places: measured (n, 2) [m].
+        targets: intended (n, 2) [m].
         axis: 0 or 1.
         spacing: of neighbours [m].
     """

@@ -10,16 +10,15 @@ import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from .camera import Reading
+from .camera import Reading, view
 from .evaluate import Cameras
-from .camera import view
 from .pictures import Shots
 from .protocol import ACCURACY, PLANES, REPEATABILITY, RESOLUTION, Grid
 
 MAGNIFIED = {"grid_10mm": 30.0, "grid_2mm": 30.0, "grid_10um": 1.0}
 
 
-def draw(tests: Mapping[str, Mapping[str, Shots]], reading: Reading, path: Path, seed: int = 0) -> None:
+def draw(tests: Mapping[str, Mapping[str, Shots]], path: Path, reading: Reading = "noise", seed: int = 0) -> None:
     """Write a PNG with the tests that were made."""
     figure = Figure(figsize=(11.0, 10.0), layout="constrained")
     FigureCanvasAgg(figure)
@@ -41,9 +40,10 @@ def _grid(axes: Any, grid: Grid, plane: str, shots: Shots, reading: Reading, see
     targets = grid.points[shots.target]
     targets = targets - targets.mean(axis=0)
     factor = MAGNIFIED[grid.name]
-    shown = targets + factor * (places - places.mean(axis=0) - targets)
     axes.plot(*(scale * np.unique(targets, axis=0).T), "k+", ms=12, label="commanded")
-    axes.plot(*(scale * shown.T), "o", ms=4, mfc="none", label=f"read, error x {factor:.0f}")
+    for found, style, name in ((places, "C0o", "read"), (shots.plane(plane), "C3.", "tip")):
+        shown = targets + factor * (found - found.mean(axis=0) - targets)
+        axes.plot(*(scale * shown.T), style, ms=4, mfc="none", label=f"{name}, error x {factor:.0f}")
     axes.set(
         xlabel=f"{plane[0]} [{unit}]", ylabel=f"{plane[1]} [{unit}]", title=f"{grid.name}, {plane}", aspect="equal"
     )

@@ -34,6 +34,7 @@ class Plan:
         centre: of the grids, seen from the tip at home (3,) [m].
         pull, push: ends of the force at the grasping point [N] (paper: about -6 and 8).
         speed: largest speed of the tip on the way [m/s].
+        dwell: rest before a picture [s], see `Builder`.
         seed: of the random order.
     """
 
@@ -43,6 +44,7 @@ class Plan:
     pull: float = -6.0
     push: float = 8.0
     speed: float = 0.008
+    dwell: float = 0.4
     seed: int = 0
 
     def seconds(self, distance: float) -> float:
@@ -98,7 +100,7 @@ def grid_test(robot: Robot, plan: Plan, grid: Grid, visits: int = 1) -> Timeline
     """Return the visits to a grid in both planes: in the order of the grid once, else in random order."""
     start, rng = home(robot), np.random.default_rng(plan.seed)
     centre = start + np.array(plan.centre)
-    run = Builder(start, robot.control_period)
+    run = Builder(start, robot.control_period, plan.dwell)
     for plane, axes in PLANES.items():
         points = grid.points
         order = list(range(len(points))) if visits == 1 else random_order(len(points), visits, rng)
@@ -112,7 +114,7 @@ def grid_test(robot: Robot, plan: Plan, grid: Grid, visits: int = 1) -> Timeline
 
 def rotation_test(robot: Robot, plan: Plan) -> Timeline:
     """Return roll, then tilt, to and fro by `STEP`: each actuator alone, the others hold."""
-    run = Builder(np.zeros(5), robot.control_period)
+    run = Builder(np.zeros(5), robot.control_period, plan.dwell)
     slider = RobotKinematics(robot).tilt_linkage.slider(STEP)
     for axis, row, stroke in (("roll", 3, STEP), ("tilt", 4, slider)):
         for _ in range(2 * plan.cycles + 4):
@@ -134,7 +136,7 @@ def push_places(robot: Robot) -> Floats:
 
 def deflection_test(robot: Robot, plan: Plan) -> Timeline:
     """Return pushes and pulls along x, y and z at the five places, held until the robot is at rest."""
-    run = Builder(home(robot), robot.control_period)
+    run = Builder(home(robot), robot.control_period, plan.dwell)
     for number, place in enumerate(push_places(robot)):
         run.move(place, plan.seconds(float(np.linalg.norm(place - run.place))))
         for row, axis in enumerate("xyz"):

@@ -7,14 +7,14 @@ from collections.abc import Mapping
 import numpy as np
 
 from ..sections.benchtop import quantities
-from .camera import READINGS, Reading
+from .camera import READINGS, Reading, view
 from .evaluate import Figures
 
 DEFINITIONS = """\
 Definitions
-  field, noise  what the two cameras read if their printed RMS error (18.4 um in the 10 mm view, 4.9 um in the 2 mm
-                view, units corrected) is a smooth distortion of the view, or a new error at every reading; both
-                with the printed pixels; median over 64 random cameras. tip: no camera.
+  noise, field  what the two cameras read if their printed RMS error (18.4 um in the 10 mm view, 4.9 um in the 2 mm
+                view, units corrected, along each image axis) is made anew at every reading, or is a smooth distortion
+                of the view; both with the printed pixels; median over 64 random cameras. tip: no camera.
   accuracy      |measured - intended| of all motions by one spacing, mean and standard deviation (n - 1) over the
                 pairs of points in line. ISO 9283 has no such figure; its pose accuracy AP is the distance of the mean
                 of a point's visits from the point, here after shifting the grid onto its mean. Worst point.
@@ -31,9 +31,16 @@ def as_text(figures: Mapping[Reading, Figures], title: str) -> str:
     printed = {name: value for name, _, value in quantities()}
     lines = [title, f"  {'':46s} {'paper':>8s}" + "".join(f"{name:>9s}" for name in READINGS)]
     for name in [*(n for n in printed if n in names), *(n for n in names if n not in printed)]:
-        paper = f"{printed[name]:8.1f}" if name in printed else f"{'-':>8s}"
-        lines.append(f"  {name:46s} {paper}" + "".join(f"{figures[reading][name]:9.2f}" for reading in READINGS))
-    return "\n".join([*lines, "  lengths in um, compliances in um/N", "", DEFINITIONS])
+        paper = _short(name, printed[name]) if name in printed else "-"
+        cells = "".join(f"{_short(name, figures[r][name], r):>9s}" for r in READINGS)
+        lines.append(f"  {name:46s} {paper:>8s}{cells}")
+    return "\n".join([*lines, "  lengths in um, compliances in um/N; * less than a pixel", "", DEFINITIONS])
+
+
+def _short(name: str, value: float, reading: Reading = "noise") -> str:
+    """Return the number, marked where a camera cannot tell it from zero."""
+    below = reading != "tip" and "repeatability" in name and value < 1e6 * view("2mm").pixel
+    return f"{value:.2f}{'*' if below else ''}"
 
 
 def spread_text(spread: Mapping[str, np.ndarray], robots: int) -> str:
@@ -50,7 +57,7 @@ def spread_text(spread: Mapping[str, np.ndarray], robots: int) -> str:
 
 
 def flat(figures: Mapping[Reading, Figures]) -> Figures:
-    """Return the figures as one flat object: bare names for the first reading, `noise/` and `tip/` before the others.
+    """Return the figures as one flat object: bare names for the first reading, `field/` and `tip/` before others.
 
     Bare names are what `sher3 paper --benchtop` reads.
     """

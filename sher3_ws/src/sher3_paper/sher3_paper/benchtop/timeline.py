@@ -17,7 +17,7 @@ class Picture(NamedTuple):
 
     Attributes:
         tick: when it is taken.
-        group: what it belongs to: a plane (`xz`, `yz`), an axis (`roll`, `tilt`), or `x0` for a push along x at place 0.
+        group: a plane (`xz`, `yz`), an axis (`roll`, `tilt`), or `x0` for a push along x at place 0.
         target: commanded place in that group, in its own numbering.
         force: at the grasping point [N], along the axis of the push.
     """
@@ -67,7 +67,7 @@ class Builder:
 
     place: Floats
     period: float
-    dwell: float = 0.4
+    dwell: float
     _commands: list[Floats] = field(default_factory=list)
     _forces: list[Floats] = field(default_factory=list)
     _pictures: list[Picture] = field(default_factory=list)

@@ -8,7 +8,7 @@ from typing import Any
 
 from sher3_description import FileError, read_text
 
-from ..comparison import Comparison, Section
+from ..comparison import Comparison, Section, Table
 from ..tables import printed
 
 COMMAND = "sher3 benchtop"
@@ -28,10 +28,11 @@ def benchtop(results: Path | None = None) -> Section:
     lines = [_line(name, unit, value, measured) for name, unit, value in quantities()]
     text = (
         "Accuracy, repeatability, resolution and compliance as measured on the running graph with the two-camera "
-        "model. Values appear once a bench-top evaluation has been run and its results are passed with "
-        "`--benchtop`."
+        "model, whose RMS error is made anew at every reading. Values appear once a bench-top evaluation has been run "
+        "and its results are passed with `--benchtop`. The table beside them reads the same motions with the RMS error "
+        "as a smooth distortion of the view, and without cameras."
     )
-    return Section("benchtop", "Bench-top evaluation", text, lines)
+    return Section("benchtop", "Bench-top evaluation", text, lines, _readings(measured))
 
 
 def quantities() -> list[tuple[str, str, float]]:
@@ -55,6 +56,16 @@ def _line(name: str, unit: str, value: float, measured: dict[str, Any]) -> Compa
     if name not in measured:
         return Comparison(name, unit, value, None, "not run", COMMAND)
     return Comparison(name, unit, value, float(measured[name]), "computed", COMMAND, "simulated robot")
+
+
+def _readings(measured: dict[str, Any]) -> list[Table]:
+    """Return the table of every figure, printed or not, by what the error of the cameras is taken for."""
+    names = [name for name in measured if f"tip/{name}" in measured]
+    if not names:
+        return []
+    rows = [[name, *(f"{measured[kind + name]:.3g}" for kind in ("", "field/", "tip/"))] for name in names]
+    columns = ["quantity [um, um/N]", "camera, noise", "camera, distortion", "no camera"]
+    return [Table("What the cameras make of the same motions", columns, rows)]
 
 
 def _read(path: Path) -> dict[str, Any]:
