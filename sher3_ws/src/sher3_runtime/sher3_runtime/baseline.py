@@ -20,13 +20,17 @@ from .tick import Tick
 class BaselineExecutor(SingleThreadedExecutor):
     """rclpy's executor, with each tick as a timer that is started on the grid and each file watched by a thread."""
 
-    def start(self) -> None:
-        """Start the timers and file watchers of the nodes added so far."""
+    def watch_files(self) -> None:
+        """Start the file watchers of the nodes added so far."""
+        for node in self.get_nodes():
+            for file, callback in ports(node).readables:
+                _start_watcher(node, file, callback)
+
+    def start_ticks(self) -> None:
+        """Start the timers of the nodes added so far, each on the grid."""
         for node in self.get_nodes():
             for tick in ports(node).ticks:
                 _start_timer(node, tick)
-            for file, callback in ports(node).readables:
-                _start_watcher(node, file, callback)
 
 
 def _start_timer(node: Node, tick: Tick) -> None:

@@ -53,10 +53,12 @@ def spin(
         # What exists now lives to the end; a collection during the run must not walk through it.
         gc.collect()
         gc.freeze()
+        if isinstance(executor, BaselineExecutor):
+            executor.watch_files()
         if meet is not None:
             meet(executor)
         if isinstance(executor, BaselineExecutor):
-            executor.start()
+            executor.start_ticks()
         while nodes[0].context.ok() and not stop():
             # Asking the context takes a lock; a shutdown has time for a few spins.
             for _ in range(20):
