@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Sequence
 from typing import Any
 
+import rclpy
 from rclpy.node import Node
+from rclpy.signals import SignalHandlerOptions
 from sher3_description import Robot
-from sher3_runtime import DiagnosticSample
-from sher3_runtime.ports import NODE_OPTIONS, advertise, on_tick, subscribe
+from sher3_runtime import DiagnosticSample, environment
+from sher3_runtime.ports import NODE_OPTIONS, PERIOD_VARIABLE, advertise, on_tick, subscribe
+from sher3_runtime.process import stop_on_signals
+from sher3_runtime.spinning import spin
 from sher3_sim import Effect
 
 from sher3_gap.monitor import TOPICS, Monitor, StageStatus
@@ -51,3 +56,15 @@ def diagnostic(stamp: int, status: StageStatus) -> DiagnosticSample:
     )
     name = f"gap/{status.stage}/{status.actuator}"
     return DiagnosticSample(stamp, name, status.level, MESSAGES[status.level], values)
+
+
+def run(robot: Robot, effects: Sequence[Effect], window: float, domain: int = 0) -> None:
+    """Run the monitor in a process of its own beside a running graph until a signal."""
+    environment.apply(domain)
+    os.environ[PERIOD_VARIABLE] = repr(robot.control_period)
+    rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
+    try:
+        stop = stop_on_signals()
+        spin([GapMonitorNode(robot, effects, window=window)], stop=stop, diagnostics=False)
+    finally:
+        rclpy.try_shutdown()

@@ -1,6 +1,6 @@
 """The gap while the robot runs: the model beside it, gap over floor per stage and axis, window by window.
 
-Plain code that takes samples. Samples of one tick are joined by their stamp; a full window is judged by the residuals of
+Samples of one tick are joined by their stamp; a full window is judged by the residuals of
 the diagnosis (`residuals.py`, `exact.py`). With effects given, what the corrected model makes of the same set-points is
 subtracted, so that a known effect no longer counts as a gap.
 """
