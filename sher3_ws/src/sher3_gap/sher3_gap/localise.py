@@ -22,6 +22,8 @@ POOLED = {
 """Power over allowance, over all runs, from which a channel has a gap: what healthy plants stay below."""
 GROUPED = 2.5
 """The same for the runs of one excitation: fewer samples, and more of them looked at."""
+GROUPED_ENCODERS = 5.0
+"""The same for the difference of two encoders: each run has its own share of a count between their zeros."""
 AS_BUILT = {"sensing": np.array([1.0e-3] * 3 + [1.2e-5] * 3)}
 """What a healthy force sensor may deviate from its drawing, which no repeat shows: N and N m."""
 PARTS = {6: (slice(0, 3), slice(3, 6)), 1: (slice(0, 1),)}
@@ -83,7 +85,7 @@ def _part(channel: Channel, part: slice, square: Mapping, floor: Mapping, allowe
     mean, low, limit = (np.mean(x, axis=0)[part] for x in (every, base, limits))
     pooled = float(np.mean(mean / limit)) / POOLED[channel.stage]
     groups = {e: float(np.mean(np.mean(square[e], axis=0)[part] / np.mean(allowed[e], axis=0)[part])) for e in square}
-    worst = max(groups.values()) / GROUPED
+    worst = max(groups.values()) / (GROUPED_ENCODERS if channel.stage == "transmission" else GROUPED)
     return Gap(
         channel,
         max(pooled, worst),
