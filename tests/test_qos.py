@@ -9,6 +9,7 @@ from sher3_bags.recorder_node import RecorderNode
 from sher3_bringup.surgeon import demo_script, load_script
 from sher3_bringup.teleop_node import script_node
 from sher3_description import TOPICS
+from sher3_gap.gap_monitor_node import GapMonitorNode
 from sher3_runtime import Graph
 
 pytestmark = pytest.mark.graph
@@ -27,6 +28,7 @@ def endpoints(tmp_path):
     with Graph(period=ROBOT.control_period) as graph:
         RobotRig(graph)
         graph.add(RecorderNode, tmp_path / "bag", ROBOT)
+        graph.add(GapMonitorNode, ROBOT)
         graph.add(script_node, load_script(demo_script()))
         graph.step(3)
         node = graph.nodes[0]

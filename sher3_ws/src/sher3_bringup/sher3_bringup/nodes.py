@@ -38,6 +38,7 @@ _MODULES = {
     "motor_driver": "sher3_drivers.motor_driver_node",
     "supervisor": "sher3_control.supervisor_node",
     "recorder": "sher3_bags.recorder_node",
+    "gap_monitor": "sher3_gap.gap_monitor_node",
 }
 
 
@@ -109,6 +110,12 @@ def _plant(settings: RunSettings) -> Any:
     )
 
 
+def _gap_monitor(settings: RunSettings) -> Any:
+    from sher3_gap.gap_monitor_node import GapMonitorNode
+
+    return GapMonitorNode(settings.robot())
+
+
 _FACTORIES: dict[str, Factory] = {
     "plant": _plant,
     "force_sensor": _force_sensor,
@@ -118,4 +125,5 @@ _FACTORIES: dict[str, Factory] = {
     "motor_driver": _motor_driver,
     "supervisor": _supervisor,
     "recorder": _recorder,
+    "gap_monitor": _gap_monitor,
 }

@@ -11,8 +11,19 @@ from sher3_drivers.settings import MotorDriverSettings, default_settings
 
 from .errors import ConfigurationError
 
-NODES = ("plant", "force_sensor", "pedal", "admittance", "kinematics", "motor_driver", "supervisor", "recorder")
+NODES = (
+    "plant",
+    "force_sensor",
+    "pedal",
+    "admittance",
+    "kinematics",
+    "motor_driver",
+    "supervisor",
+    "recorder",
+    "gap_monitor",
+)
 MOCK_ONLY = frozenset({"plant"})
+ON_REQUEST = frozenset({"gap_monitor"})
 RATES = (100, 1000)
 MOCK_FORCE_PORT = 7640
 """DDS takes 7400 + 250 * domain and the first hundred or two behind it."""
@@ -123,7 +134,7 @@ def parse_processes(text: str | None, mock: bool, record: bool) -> tuple[tuple[s
     """Return the nodes of each process from `a+b,c` (a and b in one process); None means one process for each node."""
     if text:
         return tuple(tuple(name.strip() for name in process.split("+")) for process in text.split(","))
-    skip = {*(() if mock else MOCK_ONLY), *(() if record else ("recorder",))}
+    skip = {*ON_REQUEST, *(() if mock else MOCK_ONLY), *(() if record else ("recorder",))}
     return tuple((name,) for name in NODES if name not in skip)
 
 

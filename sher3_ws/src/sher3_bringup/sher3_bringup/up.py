@@ -18,8 +18,8 @@ from .nodes import make_nodes, preload
 from .settings import RunSettings
 
 DEFAULT_REALTIME = 40
-UNHURRIED = frozenset({"recorder"})
-"""Compressing a chunk would hold up the control loop at the same priority; the recorder's queues can wait."""
+UNHURRIED = frozenset({"recorder", "gap_monitor"})
+"""Compressing a chunk would hold up the control loop at the same priority; these two can wait."""
 
 
 def run_graph(
