@@ -1,0 +1,83 @@
+"""Seconds of a diagnosis: a case of ten 8 s runs, and what one more effect, run or actuator costs.
+
+`python bench/gap.py [--json]`. The robot of the case rubs on one axis, which most of the search is spent on. Numba has
+compiled before the clock starts.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from sher3_bags import write_case
+from sher3_description import load_robot
+from sher3_gap import diagnose
+from sher3_gap.excitation import excite
+from sher3_gap.library import LIBRARY
+from sher3_gap.rehearsal import rehearse
+from sher3_sim import EFFECTS, Effect, RunScatter
+
+ROBOT = load_robot()
+LABELS = ("sweep", "sweep", "reversals", "reversals", "steps", "steps", "postures", "loads", "task", "task")
+SECONDS = 8.0
+RUBBING = ("delta_2", "tilt", "delta_1")
+LEFT_OUT = ("cogging", "position_friction", "stribeck_friction", "cable_drag")
+
+
+def make_case(folder: Path, runs: int, effects: Sequence[Effect]) -> Path:
+    """Write a case of `runs` runs of `SECONDS` each."""
+    counted: dict[str, int] = {}
+    wanted = []
+    for label in LABELS[:runs]:
+        wanted.append((excite(label, ROBOT, duration=SECONDS), counted.setdefault(label, 0)))
+        counted[label] += 1
+    return write_case(folder, rehearse(ROBOT, wanted, effects, scatter=RunScatter(zero=0.05)), ROBOT)
+
+
+def seconds(case: Path, without: Sequence[str] = ()) -> float:
+    """Return the wall-clock seconds from the folder to the verdict."""
+    started = time.perf_counter()
+    diagnose(case, without=without)
+    return time.perf_counter() - started
+
+
+def measure() -> dict[str, float]:
+    """Return the figures, seconds each."""
+    friction = [EFFECTS["coulomb_friction"](a, force=1.0) for a in RUBBING]
+    with TemporaryDirectory() as scratch:
+        folder = Path(scratch)
+        whole = make_case(folder / "ten", 10, friction[:1])
+        short = make_case(folder / "six", 6, friction[:1])
+        healthy = make_case(folder / "healthy", 10, [])
+        several = make_case(folder / "several", 10, friction)
+        seconds(short)
+        ten, six = seconds(whole), seconds(short)
+        fewer = seconds(whole, LEFT_OUT)
+        return {
+            "ten_runs_of_8_s": ten,
+            "healthy": seconds(healthy),
+            "per_effect": (ten - fewer) / len(LEFT_OUT),
+            "per_run": (ten - six) / 4,
+            "per_faulty_actuator": (seconds(several) - ten) / (len(RUBBING) - 1),
+            "effects": float(len(LIBRARY)),
+        }
+
+
+def main() -> None:
+    """Print the figures."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--json", action="store_true")
+    figures = measure()
+    if parser.parse_args().json:
+        print(json.dumps(figures))
+        return
+    for name, value in figures.items():
+        print(f"{name.replace('_', ' '):<22} {value:7.2f}" + ("" if name == "effects" else " s"))
+
+
+if __name__ == "__main__":
+    main()
