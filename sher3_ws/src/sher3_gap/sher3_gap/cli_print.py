@@ -116,7 +116,7 @@ def experiment_text(made: Experiment, output: Path) -> str:
     lines = [
         f"separates  {' / '.join(made.separates)}",
         f"design     {settings} (best of {made.tried})",
-        f"predicted  {predicted.floors:.2f} floors from {predicted.closest}, each refitted: {_outlook(predicted.margin)}",
+        f"predicted  {predicted.floors:.2f} floors from {predicted.closest}: {_outlook(predicted.margin)}",
         f"file       {output}; run it with `sher3 gap excite {output}`",
     ]
     return "\n".join(lines)

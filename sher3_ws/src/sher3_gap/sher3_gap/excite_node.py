@@ -53,7 +53,8 @@ class ExciteNode(Node):
 
     def __init__(self, player: Player, **options: Any) -> None:
         super().__init__("excite", **{**NODE_OPTIONS, **options})
-        self.player, self.failure = player, None
+        self.player = player
+        self.failure: PlayError | None = None
         self.finished = False
         self._state = advertise(self, "command/state_command")
         self._move = advertise(self, "command/move_jp")

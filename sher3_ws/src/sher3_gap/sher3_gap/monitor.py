@@ -139,7 +139,7 @@ def _as_run(rows: list[dict[str, Any]], stamps: list[int], robot: Robot) -> RunS
         excitation=RunMetadata().excitation,
         repeat=0,
         period=robot.control_period,
-        stage_clock=np.arange(len(rows)) * robot.control_period,
+        stage_clock=np.arange(len(rows), dtype=np.float64) * robot.control_period,
         motor=motor,
         effort=column("drives/measured_js", "effort"),
         reference=column("setpoint_js", "position"),
