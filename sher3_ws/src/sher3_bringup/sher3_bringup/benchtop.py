@@ -54,8 +54,18 @@ def run_timeline(
                 left -= PART
         if bench.objection:
             raise BenchtopStopped(timeline.name, bench.objection)
-        run = read_run(recorder.recorder.folder)
-    return taken(timeline, run["tracker/measured_cp"], bench.first, robot.control_period, robot)
+    return recorded_shots(timeline, recorder.recorder.folder, robot)
+
+
+def recorded_shots(timeline: Timeline, bag: Path, robot: Robot) -> dict[str, Shots]:
+    """Return the pictures by group from the bag of a test; its first command is the timeline's first tick.
+
+    Raises:
+        MissingTopicError, BadData: the bag is not of that test, or ends before it.
+    """
+    run = read_run(bag)
+    first = int(run[f"command/{timeline.mode}"].stamp[0])
+    return taken(timeline, run["tracker/measured_cp"], first, robot.control_period, robot)
 
 
 def run_tests(
@@ -66,8 +76,11 @@ def run_tests(
     folder: Path,
     control: ControlSettings | None = None,
     say: Callable[[str], None] = lambda _: None,
+    again: bool = False,
 ) -> dict[str, dict[str, Shots]]:
     """Check all tests, then run them one after the other; return the pictures by test and group.
+
+    With `again` nothing runs: the bags of a former run of the same plan are read.
 
     Raises:
         Unreachable, OutsideLimits, LoadBeyondRange: a test asks for too much; nothing has moved.
@@ -76,6 +89,9 @@ def run_tests(
     timelines = [planned(name, robot, plan) for name in names]
     shots = {}
     for timeline in timelines:
+        if again:
+            shots[timeline.name] = recorded_shots(timeline, folder / timeline.name, robot)
+            continue
         seconds = len(timeline) * robot.control_period
         say(f"{timeline.name}: {len(timeline.pictures)} pictures in {seconds:.0f} s of the robot's time")
         shots[timeline.name] = run_timeline(timeline, robot, effects, folder, control)

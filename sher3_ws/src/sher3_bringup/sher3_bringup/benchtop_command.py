@@ -30,6 +30,9 @@ def benchtop(
     force: Annotated[tuple[float, float], typer.Option(help="Ends of the force in the deflection test [N].")] = (-6, 8),
     spread: Annotated[int, typer.Option(help="Only the accuracy of so many robots, without the graph.", min=0)] = 0,
     out: Annotated[Optional[Path], typer.Option(help=HELP_OUT)] = None,  # noqa: UP045
+    again: Annotated[
+        bool, typer.Option("--again", help="Read the bags of a former run in --out; run nothing.")
+    ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print the figures as one JSON object.")] = False,
 ) -> None:
     """Command the robot through the paper's bench-top tests and print its tables beside ours.
@@ -42,6 +45,8 @@ def benchtop(
 
     if nominal + built + (effects is not None) > 1:
         raise ConfigurationError("--nominal, --as-built and --effects exclude each other", remedy="choose one robot")
+    if again and out is None:
+        raise ConfigurationError("--again needs the bags of a former run", remedy="give its folder with --out")
     names = test or list(TESTS)
     for name in names:
         if name not in TESTS:
@@ -58,7 +63,7 @@ def benchtop(
         dwell=1.2 if compensate else 0.4,
     )
     kind, chosen = _robot(nominal, effects)
-    _run(names, robot, plan, kind, chosen, compensate, out, as_json)
+    _run(names, robot, plan, kind, chosen, compensate, out, again, as_json)
 
 
 def in_metres(millimetres: tuple[float, float, float]) -> tuple[float, float, float]:
@@ -83,6 +88,7 @@ def _run(
     effects: list[Effect],
     compensate: bool,
     out: Path | None,
+    again: bool,
     as_json: bool,
 ) -> None:
     from sher3_control.settings import ControlSettings
@@ -97,7 +103,7 @@ def _run(
     with tempfile.TemporaryDirectory() as scratch:
         bags = Path(scratch) if out is None else out / "bags"
         bags.mkdir(parents=True, exist_ok=True)
-        shots = run_tests(names, robot, plan, effects, bags, control, say=lambda text: typer.echo(text, err=True))
+        shots = run_tests(names, robot, plan, effects, bags, control, lambda text: typer.echo(text, err=True), again)
     figures = {reading: evaluate(shots, reading) for reading in READINGS}
     title = f"Robot {kind}" + (", deflection compensated" if compensate else "")
     text, data = as_text(figures, title), json.dumps(flat(figures), indent=2)

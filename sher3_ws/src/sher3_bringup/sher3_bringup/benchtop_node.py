@@ -22,13 +22,12 @@ class BenchtopNode(Node):
     """The operator of the bench: enables the robot, then sends the timeline.
 
     Attributes:
-        first: stamp of the timeline's first tick [ns], -1 before.
         objection: why the robot did not do as commanded, empty while it does.
     """
 
     def __init__(self, timeline: Timeline, robot: Robot, **options: Any) -> None:
         super().__init__("benchtop", **{**NODE_OPTIONS, **options})
-        self.first, self.objection = -1, ""
+        self.objection = ""
         self._wrenches = [tuple(row) for row in wrench_at_tip(robot, timeline.forces).tolist()]
         self._commands = [tuple(row) for row in np.asarray(timeline.commands).tolist()]
         self._cartesian = timeline.mode == "servo_cp"
@@ -50,8 +49,6 @@ class BenchtopNode(Node):
             self._publish_state(TextSample("enable"))
         if not 0 <= k < len(self._commands):
             return
-        if k == 0:
-            self.first = stamp
         self._publish_wrench(WrenchSample(stamp, self._wrenches[k]))
         if self._cartesian:
             self._publish(PoseSample(stamp, self._commands[k], UPRIGHT))
