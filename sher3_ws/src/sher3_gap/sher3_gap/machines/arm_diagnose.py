@@ -1,4 +1,4 @@
-"""The verdict on a serial arm: joint zeros first, then the rest of its geometry, each only where held-out postures ask for it."""
+"""The verdict on a serial arm: joint zeros, then the rest of its geometry, where held-out postures ask for it."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def diagnose_arm(machine: ArmMachine, records: Sequence[ArmData], without: Colle
 
 
 def _grow(found: ArmEvidence, arm: Arm, kinds: Sequence[str], current: Fit, base: float) -> Fit:
-    """Add the error that lowers the held-out loss most, until none is worth its price; then drop those nobody misses."""
+    """Add the error that lowers the held-out loss most while it is worth its price; drop those nobody misses."""
     effects = [JointEffect(k, arm, j) for k in kinds for j in range(len(arm.names))]
     left = [make_term(found.data, e, e.name, {}) for e in effects]
     while left:
@@ -125,7 +125,8 @@ def _lengths(evidence: Evidence, current: Fit) -> np.ndarray:
 def _held_out_text(label: str, evidence: Evidence, current: Fit) -> str:
     e = 1e3 * _lengths(evidence, current)
     seen = 1e3 * np.linalg.norm(_seen(evidence, current)[:, :3], axis=1)
-    return f"{label}: position error on held-out postures {e.mean():.2f} mm mean, {e.max():.1f} mm worst ({seen.mean():.2f} mm on those fitted)"
+    held = f"position error on held-out postures {e.mean():.2f} mm mean, {e.max():.1f} mm worst"
+    return f"{label}: {held} ({seen.mean():.2f} mm on those fitted)"
 
 
 def _seen(evidence: Evidence, current: Fit) -> np.ndarray:

@@ -1,7 +1,8 @@
-"""Residuals of a serial arm: measured pose against the nominal arm's, with the two unknown frames of the measurement free.
+"""Residuals of a serial arm: measured against nominal pose, with the two frames of the measurement free.
 
-measured = Z * T(q) * X: Z is the arm's base seen by the measuring system, X the measured body on the flange. Both are unknown to any
-calibration; their errors are columns of every fit, so that no effect is blamed for what a frame explains.
+measured = Z * T(q) * X: Z is the arm's base seen by the measuring system, X the measured body on the flange. Both are
+unknown to any calibration; their errors are columns of every fit, so that no effect is blamed for what a frame
+explains.
 """
 
 from __future__ import annotations
@@ -63,7 +64,10 @@ class Frames(LibraryEffect):
 
 
 class JointEffect(LibraryEffect):
-    """A geometric error of one joint: its zero (`encoder_offset`), where it sits (`link_length_error`), how its axis lies (`rail_tilt`)."""
+    """A geometric error of one joint.
+
+    `encoder_offset`: its zero; `link_length_error`: where it sits; `rail_tilt`: how its axis lies.
+    """
 
     family, stage = "geometry", "mechanism"
 
@@ -120,7 +124,11 @@ class ArmEvidence:
 
 
 def gather_arm(arm: Arm, q: Array, poses: Array, noise: float, noise_rotation: float | None) -> ArmEvidence:
-    """Residuals of all postures with the frames fitted to all, in folds. Raises `MachineError` when the frames cannot be told."""
+    """Residuals of all postures with the frames fitted to all, in folds.
+
+    Raises:
+        MachineError: the arm has another number of joints, or the frames cannot be told.
+    """
     if q.shape[1] != len(arm.names):
         raise MachineError(
             "joint positions do not fit the arm", value=q.shape[1], limit=len(arm.names), remedy="correct the table"
@@ -167,7 +175,10 @@ def _moved(z: Array, step: Array) -> Array:
 
 
 def hand_eye(tip: Array, poses: Array) -> tuple[Array, Array]:
-    """Z and X of poses = Z tip X: rotations from the linear equations R_poses Y = R_Z R_tip (Y = R_X^T), then the positions."""
+    """Z and X of poses = Z tip X.
+
+    Rotations from the linear equations R_poses Y = R_Z R_tip (Y = R_X^T), then the positions.
+    """
     rows = []
     for a, b in zip(tip[:, :3, :3], poses[:, :3, :3], strict=True):
         rows.append(np.hstack([np.kron(b, np.eye(3)), -np.kron(np.eye(3), a.T)]))

@@ -1,4 +1,4 @@
-"""Forward kinematics of a serial arm from a DH table or a URDF, and how its tip moves with errors of its joints and links."""
+"""Forward kinematics of a serial arm from a DH table or a URDF."""
 
 from __future__ import annotations
 
@@ -30,7 +30,11 @@ class Arm:
 
 @dataclass(frozen=True)
 class Postures:
-    """Along n postures: `tip` (n, 4, 4), joint frames before their turn `frames` (n, k, 4, 4), axes in base `axes` (n, k, 3)."""
+    """Along n postures, in the base frame.
+
+    Attributes:
+        tip: (n, 4, 4); frames: (n, k, 4, 4) joint frames before their turn; axes: (n, k, 3).
+    """
 
     tip: Array
     frames: Array

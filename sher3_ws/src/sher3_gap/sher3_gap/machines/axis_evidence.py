@@ -1,4 +1,4 @@
-"""Residuals and floors of a machine's axes, cut into blocks that take the place of runs when a motion was not repeated."""
+"""Residuals and floors of a machine's axes, in blocks that take the place of runs when nothing was repeated."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""One axis of a machine as the library of effects sees it: a run, nominal constants and nominal forces of a single actuator.
+"""One axis of a machine as the library of effects sees it: a run of a single actuator and its nominal forces.
 
-The library names SHER's actuators. An axis is shown to it under the name of the first of them (`SEEN_AS`), and what comes back is
-put under the axis' own name; the effects themselves are the same code.
+The library names SHER's actuators. An axis is shown to it under the name of the first of them (`SEEN_AS`), and what
+comes back is put under the axis' own name; the effects themselves are the same code.
 """
 
 from __future__ import annotations
@@ -26,6 +26,9 @@ from sher3_gap.signals import BANDWIDTH, DECIMATED_RATE, EDGE, RunSignals, low_p
 SEEN_AS = ACTUATORS[0]
 NYQUIST_SHARE = 0.4
 """Cut-off over the Nyquist rate where the record is too slow for `BANDWIDTH`: two differentiations must survive it."""
+
+SLIP = 1e-9
+"""Viscous coefficient in place of none: effects take it as a scale."""
 
 
 @dataclass(frozen=True)
@@ -61,7 +64,7 @@ def signals_of(run: AxesRun, axis: Axis, excitation: str) -> AxisSignals:
     law = axis.command_law
     effort = found.get("effort")
     if effort is None and "command" in found:
-        effort = law.gain * found["command"]
+        effort = law.gain * (held_mean(found["command"]) if law.held else found["command"])
     if effort is None and law.kind == "none":
         effort = np.zeros_like(found["position"])
     return AxisSignals(
@@ -79,6 +82,13 @@ def signals_of(run: AxesRun, axis: Axis, excitation: str) -> AxisSignals:
     )
 
 
+def held_mean(command: Array) -> Array:
+    """Mean around each sample of a command that is held from one sample to the next, (n, 1)."""
+    out = command.copy()
+    out[1:] = 0.5 * (command[1:] + command[:-1])
+    return out
+
+
 class AxisView(View):
     """A run of one axis with its nominal forces.
 
@@ -90,7 +100,7 @@ class AxisView(View):
         lead = axis.lead or (2.0 * np.pi if axis.motion == "rotary" else 0.02 * max(float(np.ptp(run.motor)), 1e-9))
         top = float(np.abs(run.velocity).max())
         actuator = SimpleNamespace(
-            mass=mass, viscous=axis.viscous, lead=lead, limits=SimpleNamespace(velocity=max(top, 1e-12))
+            mass=mass, viscous=max(axis.viscous, SLIP), lead=lead, limits=SimpleNamespace(velocity=max(top, 1e-12))
         )
         super().__init__(run, cast(Robot, SimpleNamespace(actuators=[actuator])), cast(Geometry, None))
         self.axis = axis

@@ -1,4 +1,4 @@
-"""A machine's case folder: `machine.yaml` (the description) and one `NAME.npz` per run, in SI units on a uniform clock."""
+"""A machine's case folder: `machine.yaml` (the description) and `runs/NAME.npz`, in SI on a uniform clock."""
 
 from __future__ import annotations
 

@@ -51,7 +51,10 @@ class _Model(BaseModel):
 
 
 class Column(_Model):
-    """A recorded signal: `column` names it in the data (`table/name` in a folder), `index` picks an entry of a list or matrix."""
+    """A recorded signal.
+
+    `column` names it in the data (`table/name` in a folder), `index` picks an entry of a list or matrix.
+    """
 
     column: str
     unit: str
@@ -83,10 +86,12 @@ class CommandLaw(_Model):
     """How the axis is driven.
 
     Attributes:
-        kind: `force`: command times `gain` is the force; `position`: a servo that takes the reference, its force not recorded; `none`: free.
+        kind: `force`: command times `gain` is the force; `position`: a servo that takes the reference, its force not
+            recorded; `none`: free.
         gain: N (or N m) per unit of the command.
         position_gain, velocity_gain: command = position_gain * (reference - q) - velocity_gain * v, where known.
         limit: largest command, where known.
+        held: the command acts from its stamp to the next one; else it is the force at its stamp.
         goal: constant reference, where none was recorded.
     """
 
@@ -95,11 +100,12 @@ class CommandLaw(_Model):
     position_gain: float | None = None
     velocity_gain: float = 0.0
     limit: float | None = Field(default=None, gt=0.0)
+    held: bool = False
     goal: float | None = None
 
 
 class Gravity(_Model):
-    """Weight on an axis: `constant` + `arm` * sin(q - hanging), N or N m; `hanging` is where the arm hangs down, rad."""
+    """Weight on an axis, N or N m: `constant` + `arm` * sin(q - hanging); `hanging` is where it hangs down, rad."""
 
     constant: float = 0.0
     arm: float = 0.0
@@ -179,7 +185,7 @@ class Joint(_Model):
 
 
 class ArmMachine(_Model):
-    """A serial arm whose tip poses were measured from outside; given by a DH table, or a URDF with its base and tip link.
+    """A serial arm with tip poses measured from outside; a DH table, or a URDF with its base and tip link.
 
     Attributes:
         joint_positions: (n, joints) of a table; `poses`: (n, 4, 4) of the measured body in the measuring frame.

@@ -1,4 +1,4 @@
-"""The diagnosis of a machine's case: the engine's localisation, attribution and closures, axis by axis, in one verdict."""
+"""The diagnosis of a machine's case: the engine's localisation, attribution and closures, axis by axis."""
 
 from __future__ import annotations
 
@@ -71,9 +71,7 @@ def diagnose_axes(
     """Diagnose every axis of a chain and gather the answers."""
     notes = [n for r in runs for n in r.notes]
     if not (machine.repeats and len(runs) > 1):
-        notes.append(
-            "no repeats: floors are the residuals' innovations or the sensors' resolution, and intervals come from blocks of a record"
-        )
+        notes.append(NO_REPEATS)
     limits = [f for a in machine.axes if (f := limit_finding(runs, a, without)) is not None]
     findings = []
     for axis in machine.axes:
@@ -116,7 +114,7 @@ def _axis(runs: list[AxesRun], axis: Axis, repeats: bool, without: Collection[st
     gaps = {g.channel: g for g in localise(evidence) if g.significant}
 
     def significant(current: Fit | None) -> dict[Channel, float]:
-        """Unlike SHER's model a short description leaves several plain causes out, so the search goes on down to the floor."""
+        """A short description leaves several plain causes out: the search goes on down to the floor."""
         out = {}
         for channel in gaps:
             gap = gap_of(evidence, channel, None if current is None else residual_after(evidence, current, channel))

@@ -96,11 +96,14 @@ class ServoStiction(LibraryEffect):
     """
 
     id, family, stage = "coulomb_friction", "friction", "motor_mechanics"
-    explanation = "The axis does not answer small changes of its reference: it stays until the error is large enough to break it loose."
+    explanation = (
+        "The axis does not answer small changes of its reference: it stays until the error is large enough to break it "
+        "loose."
+    )
     units = {"force": "m", "late": "s"}
     SHARES = (0.02, 0.04, 0.07, 0.1, 0.15, 0.2, 0.3, 0.45)
     LATE = (0.0, 2.0, 4.0)
-    """Lag of what the friction sees behind the reference, in periods of the record: a servo is late before it sticks."""
+    """Lag of what the friction sees, in periods of the record: a servo is late before it sticks."""
 
     def shapes(self, views: Sequence[View], site: str) -> list[Shape]:
         """Half widths as shares of the span of the error."""
@@ -207,7 +210,7 @@ def effects_on(axis: Axis, without: Collection[str]) -> list[LibraryEffect]:
 
 @dataclass
 class MachineCandidates(Candidates):
-    """Candidates from a list of effects; with `dry_first` nothing is tried before a friction that holds an axis at rest."""
+    """Candidates from a list of effects; with `dry_first` a friction that holds an axis at rest comes first."""
 
     listed: list[LibraryEffect] = field(default_factory=list)
     dry_first: bool = False

@@ -1,7 +1,7 @@
 """An unknown mass from the force balance: least squares on acceleration and the usual resisting forces together.
 
-Inverse-dynamics identification (Gautier, Janot): force - weight = M a + Fv v + Fc sign(v) + offset, on filtered, decimated data. Which of
-the last three are there is settled by the held-out loss over blocks of the record.
+Inverse-dynamics identification (Gautier, Janot): force - weight = M a + Fv v + Fc sign(v) + offset, on filtered,
+decimated data. Which of the last three are there is settled by the held-out loss over blocks of the record.
 """
 
 from __future__ import annotations
@@ -19,6 +19,8 @@ from sher3_gap.machines.errors import MachineError
 from sher3_gap.residuals import settled
 
 BLOCKS = 8
+SLOW = 0.2
+"""Share of the rms speed below which samples are left out: around a reversal dry friction is no sign function."""
 LEAST_EXCITED = 2.0
 """Mass over its standard error that an identified mass must have."""
 
@@ -48,7 +50,9 @@ def identify_mass(views: Sequence[AxisView]) -> tuple[float, tuple[float, float]
 
 def _equations(view: AxisView) -> tuple[Array, Array]:
     run = view.run
+    speed = np.abs(view.velocity[:, 0])
     ok = run.inner & view.free & settled(view.moving, 1)
+    ok &= speed > SLOW * np.sqrt(np.mean(speed[ok] ** 2)) if ok.any() else ok
     z = run.to_grid(view.sliding(0, 2.5e-3 * view.robot.actuators[0].lead)[:, None])[:, 0]
     assert run.effort is not None
     y = run.to_grid(run.effort)[:, 0] - view.inertial[:, 0]

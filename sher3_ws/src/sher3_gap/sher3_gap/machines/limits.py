@@ -1,7 +1,8 @@
 """A drive at its limit: the command lies flat at its largest value while the axis does not get where it is sent.
 
-Read off the command itself, as the engine reads timing off the echo: a level at which a record stays is no matter of fitting. The need is
-the commanded law's, where its gains are known, else what holds the nominal weight on the way to the goal.
+Read off the command itself, as the engine reads timing off the echo: a level at which a record stays is no matter of
+fitting. The need is the commanded law's, where its gains are known, else what holds the nominal weight on the way to
+the goal.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from sher3_gap.verdict import Cause, Interval, Parameter, Residual, Where
 FLAT = 1e-3
 """Commands within this share of the largest count as at the limit."""
 PINNED = 0.02
-"""Share of a record at the limit from which a limit is named; an unclamped command touches its largest value for a sample or two."""
+"""Share of a record at the limit from which it is named; a free command touches its largest value for a moment."""
 LONGEST = 10
 """Samples in a row it must stay there."""
 BLOCKS = 8

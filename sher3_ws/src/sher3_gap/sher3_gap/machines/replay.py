@@ -1,6 +1,7 @@
-"""The machine run again from its own reference: simulated position against the measured one, without and with the causes.
+"""The machine run again from its own reference: simulated against measured position, without and with causes.
 
-A free axis starts where it was let go. Friction is a budget, as in BAM: what would stop the axis within a step is what acts, up to the limit.
+A free axis starts where it was let go. Friction is a budget, as in BAM: what would stop the axis within a step acts, up
+to the limit.
 """
 
 from __future__ import annotations
@@ -54,7 +55,7 @@ class Law:
 def replay_closure(
     runs: Sequence[AxesRun], axis: Axis, evidence: AxisEvidence, causes: Sequence[Cause]
 ) -> Replay | None:
-    """Closure of the position; None where the axis cannot be run again: open loop, gains or mass not known, no such cause."""
+    """Closure of the position; None where the axis cannot be run again: gains or mass not known, no such cause."""
     law = axis.command_law
     closed = law.kind == "force" and law.position_gain is not None and axis.signals.reference is not None
     if not (closed or law.kind == "none") or evidence.mass <= 0.0 or not {c.effect for c in causes} & FORCES:
@@ -72,7 +73,8 @@ def replay_closure(
     before, after = np.sqrt(np.mean(squares, axis=0))
     kind = "closed loop run again from its reference" if closed else "free motion run again from its release"
     unit = "m" if axis.motion == "linear" else "rad"
-    note = f"{axis.name}: {kind}: position error {before:.4g} {unit} rms nominal, {after:.4g} with the causes: {1.0 - after / before:.1%} closed in rms"
+    text = f"position error {before:.4g} {unit} rms nominal, {after:.4g} with the causes"
+    note = f"{axis.name}: {kind}: {text}: {1.0 - after / before:.1%} closed in rms"
     return Replay(float(before), float(after), interval_of(np.array(rows)), note)
 
 
@@ -87,8 +89,8 @@ class Refined:
 def refine_free(runs: Sequence[AxesRun], axis: Axis, evidence: AxisEvidence, causes: list[Cause]) -> Refined:
     """Refine mass (where unknown) and forces of a free axis on its simulated motion, from the force balance's values.
 
-    Nothing holds a free axis to a reference: its motion carries the constants better than twice differentiated counts do. Under a
-    position loop it is the other way round, and nothing is refined.
+    Nothing holds a free axis to a reference: its motion carries the constants better than twice differentiated counts
+    do. Under a position loop it is the other way round, and nothing is refined.
     """
     names = [(i, n) for i, c in enumerate(causes) if c.effect in FORCES for n in c.parameters if n in REFINED]
     if axis.command_law.kind != "none" or evidence.mass <= 0.0 or not names:
@@ -178,7 +180,7 @@ def _run(
     nominal: tuple[float, float, float, float, float],
     extra: tuple[float, float, float, float, float, float, float],
 ) -> Array:
-    """Semi-implicit Euler; the drive's velocity is the two-sample mean of the sampled position, its force is held over a period."""
+    """Semi-implicit Euler; the drive sees the two-sample mean velocity and holds its force over a period."""
     mass, viscous, constant, arm, hanging = nominal
     coulomb, static, stribeck, more, offset, relative, scale = extra
     out = np.empty(len(reference))

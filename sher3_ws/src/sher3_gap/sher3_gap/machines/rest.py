@@ -1,7 +1,7 @@
-"""What an axis at rest tells: every force on it that no cause accounts for is held by dry friction, or the causes are wrong.
+"""What an axis at rest tells: a force that no cause accounts for is held by dry friction, or causes are wrong.
 
-The force balance at rest is an inequality and no part of the fits; it decides between sets of causes that motion in one direction alone
-cannot tell apart (a constant force and a constant friction).
+The force balance at rest is an inequality and no part of the fits; it decides between sets of causes that motion in one
+direction alone cannot tell apart (a constant force and a constant friction).
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ STATIC = 1.5
 
 
 def rest_loss(evidence: AxisEvidence, fit: Fit) -> float:
-    """Squares over the floor of what the causes leave at rest beyond what their dry friction holds; 0 for a servo or no rest."""
+    """Squares over the floor of what causes leave at rest beyond what dry friction holds; 0 for a servo."""
     axis = evidence.axis
     channel = Channel("motor_mechanics", axis.name)
     if axis.command_law.kind == "position" or not evidence.mass:

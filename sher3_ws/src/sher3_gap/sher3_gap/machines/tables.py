@@ -1,4 +1,4 @@
-"""Data files as named arrays: CSV (lists in cells too), MAT (up to version 7), NPZ, JSON; a folder is a set of tables."""
+"""Data files as named arrays: CSV (lists in cells too), MAT (to version 7), NPZ, JSON; a folder is many tables."""
 
 from __future__ import annotations
 
