@@ -30,6 +30,9 @@ def draw(tests: Mapping[str, Mapping[str, Shots]], path: Path, reading: Reading 
             else:
                 axes[row, column].set_axis_off()
     _pushes(axes[2], tests.get("deflection"))
+    handles, labels = axes[0, 0].get_legend_handles_labels()
+    if handles:
+        figure.legend(handles, labels, loc="outside upper center", ncols=3)
     figure.savefig(path, dpi=110)
 
 
@@ -43,12 +46,14 @@ def _grid(axes: Any, grid: Grid, plane: str, shots: Shots, reading: Reading, see
     axes.plot(*(scale * np.unique(targets, axis=0).T), "k+", ms=12, label="commanded")
     for found, style, name in ((places, "C0o", "read"), (shots.plane(plane), "C3.", "tip")):
         shown = targets + factor * (found - found.mean(axis=0) - targets)
-        axes.plot(*(scale * shown.T), style, ms=4, mfc="none", label=f"{name}, error x {factor:.0f}")
+        axes.plot(*(scale * shown.T), style, ms=4, mfc="none", label=name)
     axes.set(
-        xlabel=f"{plane[0]} [{unit}]", ylabel=f"{plane[1]} [{unit}]", title=f"{grid.name}, {plane}", aspect="equal"
+        xlabel=f"{plane[0]} [{unit}]",
+        ylabel=f"{plane[1]} [{unit}]",
+        title=f"{grid.name}, {plane}, errors x {factor:.0f}",
+        aspect="equal",
     )
-    axes.margins(0.25)
-    axes.legend(fontsize=7, loc="upper right")
+    axes.margins(0.15)
 
 
 def _pushes(row: Any, shots: Mapping[str, Shots] | None) -> None:
