@@ -81,7 +81,7 @@ class Fleet:
         os.environ[OFFSET_VARIABLE] = str(system_offset())
 
     def launch(self, name: str, make_nodes: Callable[[], Any], realtime: int = 0) -> Member:
-        """Fork a process that makes and runs nodes, at SCHED_FIFO priority `realtime` from its first tick on."""
+        """Fork a process that makes and runs nodes, under SCHED_FIFO from its first tick on (see `use_realtime`)."""
         ours, theirs = socket.socketpair()
         sys.stdout.flush()
         sys.stderr.flush()

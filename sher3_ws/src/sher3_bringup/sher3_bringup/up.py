@@ -19,7 +19,7 @@ from .settings import RunSettings
 
 DEFAULT_REALTIME = 40
 UNHURRIED = frozenset({"recorder", "gap_monitor"})
-"""Compressing a chunk would hold up the control loop at the same priority; these two can wait."""
+"""Compressing a chunk at the loop's priority would hold it up; of these only the receiving threads hurry."""
 
 
 def run_graph(
@@ -44,7 +44,7 @@ def run_graph(
     imported = time.monotonic()
     with _signals() as caught, Fleet() as fleet:
         for process in settings.processes:
-            priority = 0 if set(process) <= UNHURRIED else realtime
+            priority = -realtime if set(process) <= UNHURRIED else realtime
             fleet.launch("+".join(process), partial(make_nodes, settings, process), priority)
             if "plant" in process:
                 # The devices are there before their drivers look for them.

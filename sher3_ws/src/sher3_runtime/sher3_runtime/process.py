@@ -80,12 +80,18 @@ def die_with_parent() -> None:
 
 
 def use_realtime(priority: int) -> bool:
-    """Put every thread of this process, the middleware's too, under SCHED_FIFO; return whether it worked."""
-    if priority <= 0:
+    """Put the threads of this process under SCHED_FIFO; return whether it worked.
+
+    Args:
+        priority: of all threads; 0 for none; a negative one is for the middleware's threads only, which then take what
+            comes in while the main thread is busy with what must not hold up others.
+    """
+    if priority == 0:
         return False
     try:
-        for thread in os.listdir("/proc/self/task"):
-            os.sched_setscheduler(int(thread), os.SCHED_FIFO, os.sched_param(priority))
+        for thread in map(int, os.listdir("/proc/self/task")):
+            if priority > 0 or thread != os.getpid():
+                os.sched_setscheduler(thread, os.SCHED_FIFO, os.sched_param(abs(priority)))
     except (OSError, AttributeError):
         return False
     return True
