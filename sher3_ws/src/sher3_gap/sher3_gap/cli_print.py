@@ -125,7 +125,7 @@ def experiment_text(made: Experiment, output: Path) -> str:
 def _outlook(margin: float) -> str:
     if margin > 1.0:
         return f"{margin:.1f} times what rules a rival out"
-    return f"only {margin:.2f} of what rules a rival out; these sensors are not expected to separate them"
+    return f"only {margin:.2f} of what rules a rival out; no excitation of the family is expected to separate them"
 
 
 def library_data(which: str = "") -> list[dict[str, Any]]:

@@ -59,7 +59,7 @@ def _card(cause: Cause, attribution: Attribution, structure: Structure) -> Cause
         STAGE_NAMES.get(cause.stage, cause.stage),
         LIBRARY[cause.effect].explanation,
         share(cause.closure.value),
-        "too few runs for an interval" if cause.closure.low is None else _interval(cause),
+        "interval: too few runs" if cause.closure.low is None else _interval(cause),
         parameters,
         rows,
         f"{margin:.0f}",
