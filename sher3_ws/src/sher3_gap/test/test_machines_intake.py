@@ -8,6 +8,7 @@ import yaml
 from sher3_gap.machines import MachineError, is_machine_case
 from sher3_gap.machines.case import import_case, load_axes
 from sher3_gap.machines.description import load_machine
+from sher3_gap.machines.tables import read_tables
 
 AXIS = {
     "name": "slide",
@@ -138,3 +139,15 @@ def test_descriptions_of_the_package_are_valid():
     assert len(files) >= 5
     for file in files:
         load_machine(file)
+
+
+def test_tables_of_every_shape(tmp_path):
+    (tmp_path / "a.json").write_text('{"kp": 8, "entries": [{"t": 0.0, "q": 1.5}, {"t": 0.1, "q": 2.5}], "note": "x"}')
+    (tmp_path / "b.csv").write_text("t;q\n0.0;1.5\n0.1;2.5\n")
+    (tmp_path / "c.txt").write_text("0.0 1.5\n0.1 2.5\n")
+    assert read_tables(tmp_path / "a.json")["entries/q"].tolist() == [1.5, 2.5]
+    assert read_tables(tmp_path / "b.csv")["q"].tolist() == [1.5, 2.5]
+    assert read_tables(tmp_path / "c.txt")["c1"].tolist() == [1.5, 2.5]
+    (tmp_path / "d.xls").write_text("")
+    with pytest.raises(MachineError, match="format is not read"):
+        read_tables(tmp_path / "d.xls")

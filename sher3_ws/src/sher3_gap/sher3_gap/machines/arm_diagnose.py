@@ -11,7 +11,7 @@ from sher3_gap.attribute import PARSIMONY, PRICE, complexity
 from sher3_gap.diagnose import left_over
 from sher3_gap.evidence import Evidence
 from sher3_gap.fitting import Fit, Term, fit, make_term
-from sher3_gap.localise import gap_of
+from sher3_gap.localise import Gap, gap_of
 from sher3_gap.machines.arm_data import ArmData
 from sher3_gap.machines.arm_evidence import TIP, ArmEvidence, JointEffect, gather_arm
 from sher3_gap.machines.arm_kinematics import Arm, arm_of
@@ -49,7 +49,7 @@ def diagnose_arm(machine: ArmMachine, records: Sequence[ArmData], without: Colle
         actuator=TIP.actuator,
         gap=gap.gap,
         floor=gap.floor,
-        unit="m" if gap.gap < 10.0 else "rad",
+        unit=_unit(gap, machine),
         regime="everywhere",
         confidence=float(1.0 - np.exp(-gap.power)),
     )
@@ -64,10 +64,15 @@ def diagnose_arm(machine: ArmMachine, records: Sequence[ArmData], without: Colle
         where=[where],
         causes=causes,
         closure=Closure(stage=kappa, tip=kappa),
-        residual=Residual(gap=left.gap, floor=left.floor, unit="m"),
+        residual=Residual(gap=left.gap, floor=left.floor, unit=_unit(left, machine)),
         unexplained=unexplained,
         notes=notes,
     )
+
+
+def _unit(gap: Gap, machine: ArmMachine) -> str:
+    """Unit of the worse of position and orientation."""
+    return "m" if np.isclose(gap.floor, machine.noise) else "rad"
 
 
 def _grow(found: ArmEvidence, arm: Arm, kinds: Sequence[str], current: Fit, base: float) -> Fit:

@@ -53,11 +53,13 @@ class _Model(BaseModel):
 class Column(_Model):
     """A recorded signal.
 
-    `column` names it in the data (`table/name` in a folder), `index` picks an entry of a list or matrix.
+    `column` names it in the data (`table/name` in a folder), `index` picks an entry of a list or matrix;
+    `factor` turns its SI unit into what it stands for (N m per A of a current).
     """
 
     column: str
     unit: str
+    factor: float = 1.0
     index: int | None = None
 
     @model_validator(mode="after")
@@ -69,7 +71,7 @@ class Column(_Model):
     @property
     def scale(self) -> float:
         """Factor to SI."""
-        return UNITS[self.unit]
+        return self.factor * UNITS[self.unit]
 
 
 class Signals(_Model):

@@ -16,10 +16,7 @@ JITTER = 0.01
 """Share of the period by which stamps may be off before the record is resampled."""
 LONGEST_HOLE = 10.0
 """Periods without a sample that are interpolated over; a longer hole is refused."""
-SLIPS = {
-    "linear": ((1e3, "mm recorded as m"), (1e-3, "m recorded as mm")),
-    "rotary": ((180.0 / np.pi, "deg recorded as rad"), (np.pi / 180.0, "rad recorded as deg")),
-}
+SLIPS = {"linear": (1e3, "mm recorded as m"), "rotary": (180.0 / np.pi, "deg recorded as rad")}
 FURTHEST = {"linear": 10.0, "rotary": 40.0}
 """Travel (m, rad) beyond which an axis without a stated range is taken for a unit slip."""
 SIGNALS = ("position", "reference", "command", "effort", "load")
@@ -153,7 +150,7 @@ def check_units(axis: Axis, signals: dict[str, Array], run: str) -> None:
     worst = float(position[np.argmax(np.abs(position))])
     span = max(abs(lowest), abs(highest))
     if not lowest - 0.1 * span <= worst <= highest + 0.1 * span:
-        ratio, slip = SLIPS[axis.motion][0]
+        ratio, slip = SLIPS[axis.motion]
         likely = f"; likely {slip}" if abs(worst) / ratio <= 1.1 * span else ""
         raise MachineError(
             f"{run}: {axis.name}.position leaves the range of the axis{likely}",
@@ -164,11 +161,12 @@ def check_units(axis: Axis, signals: dict[str, Array], run: str) -> None:
     for other in ("reference", "load"):
         if other in signals and np.ptp(signals[other]) > 0.0 and np.ptp(position) > 100.0 * axis.encoder_resolution:
             ratio = float(np.ptp(signals[other]) / np.ptp(position))
-            for factor, slip in SLIPS[axis.motion]:
-                if abs(np.log(ratio / factor)) < np.log(1.25):
-                    raise MachineError(
-                        f"{run}: {axis.name}.{other} is {ratio:.4g} times the position: likely {slip}",
-                        value=f"{ratio:.4g}",
-                        limit="1",
-                        remedy="correct the units in the description",
-                    )
+            factor, slip = SLIPS[axis.motion]
+            if abs(abs(np.log(ratio)) - np.log(factor)) < np.log(1.25):
+                larger = other if ratio > 1.0 else "position"
+                raise MachineError(
+                    f"{run}: {axis.name}.{larger}: likely {slip}",
+                    value=f"{other} spans {ratio:.4g} times the position",
+                    limit="1",
+                    remedy="correct the units in the description",
+                )

@@ -24,7 +24,7 @@ def read_tables(path: Path) -> Tables:
         MachineError: no such file, no known format, or a table that cannot be read.
     """
     if path.is_dir():
-        files = [f for f in sorted(path.iterdir()) if f.suffix.lower() in READERS]
+        files = [f for f in sorted(path.iterdir()) if f.suffix.lower() in READERS and f.suffix != ".txt"]
         if not files:
             raise MachineError(f"{path}: no data files", limit=", ".join(READERS), remedy="give a file or its folder")
         return {f"{f.stem}/{name}": x for f in files for name, x in _read(f).items()}
@@ -43,14 +43,20 @@ def _read(path: Path) -> Tables:
         raise MachineError(f"{path}: too large", value=path.stat().st_size, limit=MAX_BYTES, remedy="cut the record")
     try:
         return reader(path)
-    except (OSError, ValueError, KeyError, IndexError, NotImplementedError) as error:
+    except (OSError, ValueError, KeyError, IndexError, NotImplementedError, csv.Error) as error:
         raise MachineError(f"{path}: cannot be read", value=str(error)[:120], remedy="check the file") from error
 
 
 def _csv(path: Path) -> Tables:
-    with path.open(newline="", encoding="utf-8-sig") as file:
-        rows = list(csv.reader(file))
-    header, body = [h.strip() for h in rows[0]], [r for r in rows[1:] if r]
+    """A header and rows, separated by commas, semicolons, tabs or blanks; without a header columns are c0, c1, ..."""
+    text = path.read_text(encoding="utf-8-sig")
+    first = text.split("\n", 1)[0]
+    mark = next((m for m in ",;\t" if m in first), None)
+    lines = text.splitlines()
+    rows = [r for r in (csv.reader(lines, delimiter=mark) if mark else (x.split() for x in lines)) if r]
+    header, body = [h.strip().lstrip("# ") for h in rows[0]], rows[1:]
+    if _numbers(rows[0]) is not None:
+        header, body = [f"c{i}" for i in range(len(rows[0]))], rows
     out: Tables = {}
     for i, name in enumerate(header):
         values = _numbers([r[i] if i < len(r) else "" for r in body])
@@ -79,10 +85,18 @@ def _npz(path: Path) -> Tables:
 
 
 def _json(path: Path) -> Tables:
+    """Named lists; a list of objects is a table, `name/key`."""
     data = json.loads(path.read_text(encoding="utf-8"))
     if not isinstance(data, dict):
         raise ValueError("the top level is not an object of named arrays")
-    return _numeric({k: v for k, v in data.items() if isinstance(v, list) and v and not isinstance(v[0], dict | str)})
+    found: dict[str, object] = {}
+    for name, value in data.items():
+        if isinstance(value, list) and value and isinstance(value[0], dict):
+            keys = [k for k, x in value[0].items() if isinstance(x, int | float | list)]
+            found |= {f"{name}/{k}": [row.get(k, np.nan) for row in value] for k in keys}
+        elif isinstance(value, list) and value and not isinstance(value[0], str):
+            found[name] = value
+    return _numeric(found)
 
 
 def _numeric(data: Mapping[str, object]) -> Tables:
@@ -95,4 +109,11 @@ def _numeric(data: Mapping[str, object]) -> Tables:
     return out
 
 
-READERS: dict[str, Callable[[Path], Tables]] = {".csv": _csv, ".mat": _mat, ".npz": _npz, ".json": _json}
+READERS: dict[str, Callable[[Path], Tables]] = {
+    ".csv": _csv,
+    ".tsv": _csv,
+    ".txt": _csv,
+    ".mat": _mat,
+    ".npz": _npz,
+    ".json": _json,
+}
