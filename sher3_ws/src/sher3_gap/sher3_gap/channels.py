@@ -49,6 +49,12 @@ class Residual:
         return np.sqrt(np.mean(self.values[self.ok] ** 2, axis=0))
 
 
+CENTRED = frozenset({"drive", "transmission"})
+"""Stages whose residual has an unknown constant in every run.
+
+It is where the drive's integrator started, and the share of a count between the zeros of two encoders.
+"""
+
 UNITS = {
     "transport": "m/s",
     "controller": "m/s",

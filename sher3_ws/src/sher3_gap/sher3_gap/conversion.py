@@ -62,8 +62,17 @@ def _platform(actuator: str, values: Values, robot: Robot) -> list[Part]:
 
 
 def _linkage(actuator: str, values: Values, robot: Robot) -> list[Part]:
+    """Return the member's error, beside an encoder offset where the axis has its own zero: the plant's is drawn."""
     member = LINKAGE[int(values.get("member", 1))]
-    return [("tilt_linkage_error", actuator, {"length": 0.0, member: values["length"]})]
+    error: Part = ("tilt_linkage_error", actuator, {"length": 0.0, member: values["length"]})
+    if values.get("drawn_zero", 1.0):
+        return [error]
+    drawn = robot.tilt_linkage
+    built = {"crank": drawn.crank, "length": drawn.coupler, "offset": drawn.offset}
+    built[member] += values["length"]
+    reach = math.sqrt(built["length"] ** 2 - (built["offset"] - built["crank"]) ** 2)
+    moved = math.sqrt(drawn.coupler**2 - (drawn.offset - drawn.crank) ** 2) - reach
+    return [error, ("encoder_offset", actuator, {"offset": moved})]
 
 
 def _tool_gravity(actuator: str, values: Values, robot: Robot) -> list[Part]:

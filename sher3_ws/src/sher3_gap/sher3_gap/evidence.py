@@ -8,12 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 from sher3_description import ACTUATORS, Robot
 
-from sher3_gap.channels import Channel
+from sher3_gap.channels import Channel, Residual
 from sher3_gap.fitting import Whitened
 from sher3_gap.floors import Floors, floors
 from sher3_gap.geometry import Geometry
 from sher3_gap.library import View
-from sher3_gap.residuals import Residuals, all_residuals, motor_residual
+from sher3_gap.residuals import Demand, Residuals, all_residuals, motor_residual
 from sher3_gap.selffloor import driven_as
 from sher3_gap.signals import RunSignals
 from sher3_gap.timing import Timing, demand_in_force, timing_of
@@ -55,25 +55,30 @@ def gather(runs: Sequence[RunSignals], robot: Robot) -> Evidence:
     simulated = [[own_residuals(run, robot, shift) for shift in SHIFTS] for run in runs]
     own = floors(runs, residuals, simulated, robot)
     views = [View(run, robot, geometry) for run in runs]
-    residuals = [_follow_the_drive(run, robot, geometry, r, f) for run, r, f in zip(runs, residuals, own, strict=True)]
+    residuals = [
+        _follow_the_drive(run, robot, geometry, r, f, d)
+        for run, r, f, d in zip(runs, residuals, own, demands, strict=True)
+    ]
     return Evidence(list(runs), robot, geometry, views, Whitened(views, residuals, own), timing)
 
 
 def _follow_the_drive(
-    run: RunSignals, robot: Robot, geometry: Geometry, residuals: Residuals, floor: Floors
+    run: RunSignals, robot: Robot, geometry: Geometry, residuals: Residuals, floor: Floors, demand: Demand | None
 ) -> Residuals:
-    """Where a drive does not follow its law, its force need not step with the demand: take the reading that fits
-    better.
-    """
+    """Where a drive does not follow its law its force need not step with the demand: take the share that fits best."""
     odd = [a for a in ACTUATORS if _ratio(residuals, floor, Channel("drive", a)) > 1.3]
     if not odd:
         return residuals
-    other = motor_residual(run, robot, geometry, steps=False)
+    smooth = motor_residual(run, robot, geometry, demand, steps=False)
     out = dict(residuals)
-    for a in odd:
-        channel = Channel("motor_mechanics", a)
-        if channel in out and other[channel].rms()[0] < out[channel].rms()[0]:
-            out[channel] = other[channel]
+    for channel in (Channel("motor_mechanics", a) for a in odd):
+        if channel not in out:
+            continue
+        full, ok = out[channel].values, out[channel].ok
+        step = full - smooth[channel].values
+        energy = float(np.sum(step[ok] ** 2))
+        share = float(np.clip(np.sum(step[ok] * full[ok]) / energy, 0.0, 1.0)) if energy > 0.0 else 0.0
+        out[channel] = Residual(full - share * step, ok)
     return out
 
 

@@ -138,12 +138,16 @@ def _contact(run: Run, wrench: Array | None, ticks: np.ndarray, period: float) -
         ramps |= (clock >= start - RAMP_LIMIT) & (clock < start)
         ramps |= (clock > stop) & (clock <= stop + RAMP_LIMIT)
     if wrench is not None:
-        ramps &= ~_unloaded(wrench, ramps | plateau, period)
+        smallest = min(float(np.abs(row[2:]).max()) for row in run.metadata.payload)
+        ramps &= ~_unloaded(wrench, ramps | plateau, period, smallest)
     return contact, plateau | ~ramps
 
 
-def _unloaded(wrench: Array, doubtful: np.ndarray, period: float) -> np.ndarray:
-    """Doubtful ticks at which the force neither changes nor differs from the tip's unloaded reading."""
+def _unloaded(wrench: Array, doubtful: np.ndarray, period: float, smallest: float) -> np.ndarray:
+    """Doubtful ticks at which the force neither changes nor differs from the tip's unloaded reading.
+
+    None where the `smallest` load is too small for the reading to tell.
+    """
     force = low_pass(wrench[:, :3], period, 30.0)
     rest = force[~doubtful]
     if len(rest) < 50:
@@ -152,6 +156,8 @@ def _unloaded(wrench: Array, doubtful: np.ndarray, period: float) -> np.ndarray:
     quiet = 6.0 * np.median(rate[~doubtful]) + 1e-12
     level = np.abs(force - np.median(rest, axis=0)).max(axis=1)
     spread = 6.0 * np.abs(rest - np.median(rest, axis=0)).max(axis=1).mean() + 0.01
+    if spread > 0.15 * smallest:
+        return np.zeros(len(force), dtype=bool)
     return (rate < quiet) & (level < spread)
 
 

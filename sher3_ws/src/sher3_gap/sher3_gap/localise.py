@@ -22,8 +22,8 @@ POOLED = {
 """Power over allowance, over all runs, from which a channel has a gap: what healthy plants stay below."""
 GROUPED = 2.5
 """The same for the runs of one excitation: fewer samples, and more of them looked at."""
-GROUPED_ENCODERS = 5.0
-"""The same for the difference of two encoders: each run has its own share of a count between their zeros."""
+GROUPED_ENCODERS = 3.0
+"""The same for the difference of two encoders, of which a slow run has few independent roundings."""
 AS_BUILT = {"sensing": np.array([1.0e-3] * 3 + [1.2e-5] * 3)}
 """What a healthy force sensor may deviate from its drawing, which no repeat shows: N and N m."""
 PARTS = {6: (slice(0, 3), slice(3, 6)), 1: (slice(0, 1),)}

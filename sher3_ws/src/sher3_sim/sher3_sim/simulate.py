@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -127,8 +128,14 @@ def simulate(
     commanded, readings = simulate_arrays(plant, drive, seed)
     run = _as_run(robot, drive, commanded, readings, start_stamp)
     run.metadata = metadata if metadata is not None else RunMetadata(origin="plant", seed=seed)
-    run.robot_yaml = robot.to_yaml()
+    run.robot_yaml = _text_of(robot)
     return run
+
+
+@lru_cache(maxsize=8)
+def _text_of(robot: Robot) -> str:
+    """Return the robot file; writing it costs as much as a run."""
+    return robot.to_yaml()
 
 
 def _as_run(robot: Robot, drive: Excitation, command: Array, r: NDArray[Any], start_stamp: int) -> Run:

@@ -103,9 +103,9 @@ class View:
 
     @cached_property
     def law(self) -> Array:
-        """Nominal drive law at every tick, (n, 5), of the smoothed motion."""
+        """Nominal drive law just before every tick, (n, 5)."""
         assert self.run.echo is not None
-        return drive_law(self.run, self.robot, self.run.echo, self.run.smooth)
+        return drive_law(self.run, self.robot, self.run.echo)
 
     @cached_property
     def tip_acceleration(self) -> Array:

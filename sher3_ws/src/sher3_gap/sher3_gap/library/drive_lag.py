@@ -33,15 +33,17 @@ class DriveLag(LibraryEffect):
 
     def signature(self, view: View, site: str, shape: Shape) -> Signature:
         """No coefficient: lagged law minus law."""
-        run, axis = view.run, axis_of(site)
+        run, axis, time = view.run, axis_of(site), shape["time_constant"]
         assert run.echo is not None
+        drive, demand = view.robot.actuators[axis].drive, run.echo[:, axis]
         if shape["of_demand"]:
-            change = first_order(run.echo, shape["time_constant"], run.period) - run.echo
-            drive = view.robot.actuators[axis].drive
-            lagged = drive.kp * change[:, axis] + drive.ki * np.cumsum(change[:, axis]) * run.period
+            change = first_order(demand, demand, time, run.period) - demand
+            lagged = drive.kp * change + drive.ki * np.cumsum(change) * run.period
         else:
-            law = view.law[:, [axis]]
-            lagged = (first_order(law, shape["time_constant"], run.period) - law)[:, 0]
+            law = view.law[:, axis]
+            after_step = law.copy()
+            after_step[1:] = law[:-1] + drive.kp * np.diff(demand)
+            lagged = first_order(after_step, law, time, run.period) - law
         return Signature({}, {Channel(self.stage, site): run.to_grid(lagged)[:, None]})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:

@@ -72,14 +72,18 @@ def oscillator(force: Array, frequency: float, damping: float, period: float) ->
 
 
 @numba.njit(cache=True)
-def first_order(x: Array, time_constant: float, period: float) -> Array:
-    """First-order lag of x (n, d), exact for a held input, starting at rest at x[0]."""
-    out = np.empty_like(x)
-    gain = 1.0 - math.exp(-period / time_constant)
-    y = x[0].copy()
-    for k in range(len(x)):
+def first_order(start: Array, end: Array, time_constant: float, period: float) -> Array:
+    """First-order lag (n,) of an input that runs from start[k] to end[k] over the interval that ends at tick k.
+
+    It starts at rest at end[0] and is exact for such an input: a force law steps at a tick and moves on until the next.
+    """
+    out = np.empty(len(end))
+    keep = math.exp(-period / time_constant)
+    share = time_constant / period * (1.0 - keep)
+    y = end[0]
+    for k in range(len(end)):
+        y = keep * y + (share - keep) * start[k] + (1.0 - share) * end[k]
         out[k] = y
-        y += gain * (x[k] - y)
     return out
 
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from sher3_gap.channels import Array, Channel
 from sher3_gap.library.base import LibraryEffect, Shape, Signature, View
 
@@ -32,14 +34,21 @@ class TiltLinkageError(LibraryEffect):
         return (Channel("mechanism", "tip"), Channel("structure", "tip"))
 
     def shapes(self, views: Sequence[View], site: str) -> list[Shape]:
-        """Which member: 0 crank, 1 coupler, 2 offset."""
-        return [{"member": float(i)} for i in range(len(self.MEMBERS))]
+        """Which member (0 crank, 1 coupler, 2 offset), and where the slider's zero is.
+
+        With `drawn_zero` 0 the axis was homed at zero tilt of the linkage as built, with 1 where the drawing has it.
+        """
+        return [{"member": float(i), "drawn_zero": z} for i in range(len(self.MEMBERS)) for z in (0.0, 1.0)]
 
     def signature(self, view: View, site: str, shape: Shape) -> Signature:
         """One column: the change of the pose per metre."""
-        change = view.geometry.pose_change(view.run, 1e-5, **{self.MEMBERS[int(shape["member"])]: 1.0})
+        member = self.MEMBERS[int(shape["member"])]
+        p = view.geometry.parameters
+        reach = np.sqrt(p.coupler**2 - (p.offset - p.crank) ** 2)
+        slope = {"crank": p.offset - p.crank, "coupler": p.coupler, "offset": p.crank - p.offset}[member] / reach
+        change = view.geometry.pose_change(view.run, 1e-5, **{member: 1.0, "zero_5": -shape["drawn_zero"] * slope})
         return Signature(view.at_tip(change[:, :, None]))
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Length error and the member it is of."""
-        return {"length": float(coefficients[0]), "member": shape["member"]}
+        return {"length": float(coefficients[0]), **shape}

@@ -27,5 +27,5 @@ class TorqueConstant(LibraryEffect):
         return {"relative": c / (1.0 - c)}
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Within a factor of two."""
-        return bool(abs(coefficients[0]) < 0.5)
+        """Within a factor of three either way."""
+        return bool(-2.0 < coefficients[0] < 0.67)
