@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from sher3_description import Robot, Sher3Error
+from sher3_description import ACTUATORS, Robot, Sher3Error
 from sher3_sim import Effect, save_effects
 
 from sher3_gap.channels import Array, Channel, unit_of
@@ -25,6 +25,9 @@ from sher3_gap.signals import RunSignals
 from sher3_gap.simulator import to_effects
 from sher3_gap.tip import tip_error
 from sher3_gap.verdict import Verdict
+
+PLACES = (*ACTUATORS, "tip", "force_sensor", "all")
+"""Where a cause can sit on the SHER."""
 
 
 class ApplyError(Sher3Error):
@@ -53,15 +56,24 @@ def read_verdict(path: Path) -> Verdict:
     """Read a verdict file.
 
     Raises:
-        ApplyError: it cannot be read or is not a verdict.
+        ApplyError: it cannot be read, is not a verdict, or is one on another machine than the SHER.
     """
     try:
-        return Verdict.read(path)
+        found = Verdict.read(path)
     except OSError as error:
         raise ApplyError(f"{path}: cannot be read", value=error.strerror, remedy="name a verdict.json") from error
     except ValueError as error:
         reason = str(error).splitlines()[0]
         raise ApplyError(f"{path}: is not a verdict", value=reason, limit="sher3.verdict/1") from error
+    foreign = [c.actuator for c in found.causes if c.actuator not in PLACES]
+    if foreign:
+        raise ApplyError(
+            f"{path}: is a verdict on another machine",
+            value=foreign[0],
+            limit=", ".join(PLACES),
+            remedy="put its parameters into that machine's own simulator",
+        )
+    return found
 
 
 def effects_of(verdict: Verdict, robot: Robot) -> list[Effect]:
