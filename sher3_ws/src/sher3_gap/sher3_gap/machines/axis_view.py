@@ -109,11 +109,12 @@ class AxisView(View):
     @cached_property
     def path(self) -> Path:
         """Nominal weight along the motion; no contact."""
-        run, g = self.run, self.axis.gravity
-        weight = g.constant + g.arm * np.sin(run.smooth[run.grid] - g.hanging)
-        none = np.zeros((len(run.grid), 3))
-        nothing = np.zeros(len(run.grid), dtype=bool)
-        return Path(none, none, none, weight, none, np.zeros_like(weight), nothing, none, none)
+        run, law = self.run, self.axis.gravity
+        weight = law.constant + law.arm * np.sin(run.smooth[run.grid] - law.hanging)
+        g = len(run.grid)
+        none, wrench, turn = np.zeros((g, 3)), np.zeros((g, 6)), np.tile(np.eye(3), (g, 1, 1))
+        unloaded = np.zeros(g, dtype=bool)
+        return Path(none, turn, np.zeros((g, 6, 1)), weight, none, np.zeros_like(weight), unloaded, wrench, wrench)
 
     @cached_property
     def moving(self) -> NDArray[np.bool_]:

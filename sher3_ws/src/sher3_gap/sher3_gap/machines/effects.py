@@ -6,12 +6,13 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+from scipy.signal import lfilter
 
 from sher3_gap.attribute import Candidates
 from sher3_gap.channels import Array, Channel
 from sher3_gap.fitting import Fit, Term
 from sher3_gap.library import LIBRARY, LibraryEffect, Shape, Signature, View
-from sher3_gap.library.operators import first_order, play
+from sher3_gap.library.operators import play
 from sher3_gap.machines.axis_view import SEEN_AS
 from sher3_gap.machines.description import Axis
 
@@ -28,10 +29,23 @@ DRY = ("coulomb_friction", "stribeck_friction", "presliding_friction")
 """Frictions that hold an axis at rest."""
 PERIODIC = ("cogging", "position_friction")
 """Those that need the travel per motor revolution."""
-LINK = ("lead_error", "backlash", "transmission_compliance", "transmission_hysteresis", "encoder_eccentricity")
+LINK = (
+    "lead_error",
+    "backlash",
+    "transmission_compliance",
+    "transmission_hysteresis",
+    "transmission_ripple",
+    "encoder_eccentricity",
+)
 """Those between two encoders."""
 ROTARY_SITE = "roll"
 """SHER's rotary actuator: the library gives its units for it."""
+
+
+def lagged(x: Array, time_constant: float, period: float) -> Array:
+    """First-order lag of x (n, 1), exact for a held input, at rest at first."""
+    keep = float(np.exp(-period / time_constant))
+    return np.asarray(lfilter([0.0, 1.0 - keep], [1.0, -keep], x - x[0], axis=0) + x[0])
 
 
 class ServoLag(LibraryEffect):
@@ -53,7 +67,7 @@ class ServoLag(LibraryEffect):
     def signature(self, view: View, site: str, shape: Shape) -> Signature:
         """No coefficient."""
         assert view.run.reference is not None
-        late = first_order(view.run.reference, shape["time_constant"], view.run.period)
+        late = lagged(view.run.reference, shape["time_constant"], view.run.period)
         return Signature({}, {Channel(self.stage, site): view.run.to_grid(view.run.reference - late)})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
@@ -121,7 +135,7 @@ class ServoStiction(LibraryEffect):
         """No coefficient."""
         assert view.run.reference is not None
         x = view.run.reference
-        x = (first_order(x, shape["late"], view.run.period) if shape["late"] else x)[:, 0]
+        x = (lagged(x, shape["late"], view.run.period) if shape["late"] else x)[:, 0]
         behind = play(x, np.zeros_like(x), 2.0 * shape["force"], np.inf, view.run.period, 0.0)
         return Signature({}, {Channel(self.stage, site): view.run.to_grid(-behind)[:, None]})
 
