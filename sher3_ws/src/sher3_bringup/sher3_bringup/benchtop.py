@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from functools import partial
+from multiprocessing import get_context
 from pathlib import Path
 
 from sher3_bags.live import recorded
@@ -77,8 +80,9 @@ def run_tests(
     control: ControlSettings | None = None,
     say: Callable[[str], None] = lambda _: None,
     again: bool = False,
+    jobs: int = 1,
 ) -> dict[str, dict[str, Shots]]:
-    """Check all tests, then run them one after the other; return the pictures by test and group.
+    """Check all tests, then run them, `jobs` at a time in processes; return the pictures by test and group.
 
     With `again` nothing runs: the bags of a former run of the same plan are read.
 
@@ -87,12 +91,15 @@ def run_tests(
         BenchtopStopped: see `run_timeline`.
     """
     timelines = [planned(name, robot, plan) for name in names]
-    shots = {}
+    if again:
+        return {timeline.name: recorded_shots(timeline, folder / timeline.name, robot) for timeline in timelines}
     for timeline in timelines:
-        if again:
-            shots[timeline.name] = recorded_shots(timeline, folder / timeline.name, robot)
-            continue
         seconds = len(timeline) * robot.control_period
         say(f"{timeline.name}: {len(timeline.pictures)} pictures in {seconds:.0f} s of the robot's time")
-        shots[timeline.name] = run_timeline(timeline, robot, effects, folder, control)
-    return shots
+    run = partial(run_timeline, robot=robot, effects=effects, folder=folder, control=control)
+    if jobs == 1:
+        return {timeline.name: run(timeline) for timeline in timelines}
+    with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
+        longest_first = sorted(timelines, key=len, reverse=True)
+        found = dict(zip((timeline.name for timeline in longest_first), pool.map(run, longest_first), strict=True))
+    return {timeline.name: found[timeline.name] for timeline in timelines}

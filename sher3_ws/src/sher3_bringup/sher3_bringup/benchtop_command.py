@@ -33,6 +33,7 @@ def benchtop(
     again: Annotated[
         bool, typer.Option("--again", help="Read the bags of a former run in --out; run nothing.")
     ] = False,
+    jobs: Annotated[int, typer.Option(help="Tests at a time.", min=1, max=5)] = 1,
     as_json: Annotated[bool, typer.Option("--json", help="Print the figures as one JSON object.")] = False,
 ) -> None:
     """Command the robot through the paper's bench-top tests and print its tables beside ours.
@@ -63,7 +64,7 @@ def benchtop(
         dwell=1.2 if compensate else 0.4,
     )
     kind, chosen = _robot(nominal, effects)
-    _run(names, robot, plan, kind, chosen, compensate, out, again, as_json)
+    _run(names, robot, plan, kind, chosen, compensate, out, again, jobs, as_json)
 
 
 def in_metres(millimetres: tuple[float, float, float]) -> tuple[float, float, float]:
@@ -89,6 +90,7 @@ def _run(
     compensate: bool,
     out: Path | None,
     again: bool,
+    jobs: int,
     as_json: bool,
 ) -> None:
     from sher3_control.settings import ControlSettings
@@ -103,7 +105,7 @@ def _run(
     with tempfile.TemporaryDirectory() as scratch:
         bags = Path(scratch) if out is None else out / "bags"
         bags.mkdir(parents=True, exist_ok=True)
-        shots = run_tests(names, robot, plan, effects, bags, control, lambda text: typer.echo(text, err=True), again)
+        shots = run_tests(names, robot, plan, effects, bags, control, _say, again, jobs)
     figures = {reading: evaluate(shots, reading) for reading in READINGS}
     title = f"Robot {kind}" + (", deflection compensated" if compensate else "")
     text, data = as_text(figures, title), json.dumps(flat(figures), indent=2)
@@ -113,6 +115,10 @@ def _run(
         save_effects(out / "effects.yaml", effects)
         draw(shots, out / "benchtop.png")
     typer.echo(data if as_json else text)
+
+
+def _say(text: str) -> None:
+    typer.echo(text, err=True)
 
 
 def _print_spread(robot: Robot, robots: int, as_json: bool) -> None:
