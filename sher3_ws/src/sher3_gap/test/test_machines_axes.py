@@ -129,3 +129,30 @@ def test_servo_lag_sag_and_stiction(lag, sag, stick):
     assert {timing.get(e, e) for e in found} >= expected
     if sag:
         assert found["gravity_load"].parameters["force"].value == pytest.approx(sag, rel=0.1)
+
+
+def test_wrong_mass_and_force_scale_stay_rivals():
+    """Without weight or friction both scale with the acceleration alone: the answer is a question."""
+    verdict = verdict_of(driven(seconds=12.0), mass=0.8 * MASS)
+    named = {verdict.causes[0].effect, *verdict.causes[0].rivals}
+    assert verdict.status == "under_excited"
+    assert named == {"payload_mass", "torque_constant"}
+    assert verdict.next_experiment is not None
+
+
+def test_a_force_no_effect_makes_is_not_explained():
+    rows = driven(seconds=12.0)
+    rows[:, 2] += np.sin(2.0 * np.pi * 7.0 * np.arange(len(rows)) * PERIOD)
+    verdict = verdict_of(rows)
+    assert verdict.status == "outside_library" and "near 7 Hz" in verdict.unexplained.signature
+
+
+def test_ideal_servo_has_no_gap():
+    t = np.arange(0.0, 20.0, 0.02)
+    r, count = 0.5 * np.sin(t), 1e-3
+    noise = 2e-4 * np.random.default_rng(0).normal(size=len(t))
+    signals = {x: {"column": x, "unit": "rad"} for x in ("position", "reference")}
+    law = {"kind": "position"}
+    chain = machine(motion="rotary", signals=signals, command_law=law, encoder_resolution=count, mass=None)
+    run = AxesRun("run", 0.02, {"slide": {"position": count * np.round((r + noise) / count), "reference": r}})
+    assert diagnose_axes(chain, [run], (), lambda _: None)[0].status == "no_gap"

@@ -12,6 +12,7 @@ from sher3_gap.attribute import Candidates
 from sher3_gap.channels import Array, Channel
 from sher3_gap.fitting import Fit, Term
 from sher3_gap.library import LIBRARY, LibraryEffect, Shape, Signature, View
+from sher3_gap.library.base import column
 from sher3_gap.library.operators import play
 from sher3_gap.machines.axis_view import SEEN_AS
 from sher3_gap.machines.description import Axis
@@ -38,6 +39,8 @@ LINK = (
     "encoder_eccentricity",
 )
 """Those between two encoders."""
+MOVES = 0.45
+"""Share of the reference's stroke that stiction may hold: an axis that never breaks loose tells nothing of it."""
 ROTARY_SITE = "roll"
 """SHER's rotary actuator: the library gives its units for it."""
 
@@ -103,6 +106,26 @@ class ServoDelay(LibraryEffect):
         return {"delay": shape["delay"]}
 
 
+class AxisMass(LibraryEffect):
+    """Mass on one axis that the description does not know: F = mass * a."""
+
+    id, family, stage = "payload_mass", "inertia", "motor_mechanics"
+    explanation = LIBRARY["payload_mass"].explanation
+    units = {"mass": "kg"}
+
+    def signature(self, view: View, site: str, shape: Shape) -> Signature:
+        """One column: the acceleration."""
+        return Signature({Channel(self.stage, site): column(view.run.to_grid(view.run.acceleration)[:, 0])})
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Extra mass, or inertia."""
+        return {"mass": float(coefficients[0])}
+
+    def unit(self, name: str, site: str) -> str:
+        """Inertia on a rotary axis."""
+        return "kg*m^2" if site == ROTARY_SITE else "kg"
+
+
 class ServoStiction(LibraryEffect):
     """Coulomb friction under a proportional servo: the axis stays until the error reaches friction over stiffness.
 
@@ -124,7 +147,9 @@ class ServoStiction(LibraryEffect):
         errors = np.concatenate([(v.run.reference - v.run.motor)[:, 0] for v in views if v.run.reference is not None])
         span = float(np.ptp(np.percentile(errors, [0.5, 99.5])))
         late = [n * views[0].run.period for n in self.LATE]
-        return [{"force": s * span, "late": t} for s in self.SHARES for t in late] if span > 0.0 else []
+        stroke = max(float(np.ptp(v.run.reference)) for v in views if v.run.reference is not None)
+        forces = [s * span for s in self.SHARES if 0.0 < s * span < MOVES * stroke]
+        return [{"force": f, "late": t} for f in forces for t in late]
 
     def refine(self, shape: Shape) -> list[Shape]:
         """Between the neighbours."""
@@ -215,6 +240,8 @@ def effects_on(axis: Axis, without: Collection[str]) -> list[LibraryEffect]:
     else:
         names = BALANCE + (PERIODIC if axis.lead else ())
         found = {n: LIBRARY[n] for n in names}
+        if axis.mass != "unknown":
+            found["payload_mass"] = AxisMass()
         if axis.command_law.kind == "none":
             del found["torque_constant"]
     if axis.signals.load is not None:
