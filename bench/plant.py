@@ -2,8 +2,8 @@
 
     python bench/plant.py [--seconds S] [--json]
 
-Prints multiples of real time (processor time) of whole closed-loop runs, nominal and with more and more effects, the time of one live
-step, and the error of the default integration step against one sixteen times finer, per effect.
+Prints multiples of real time (processor time) of whole closed-loop runs, nominal and with more and more effects,
+the time of one live step, and the error of the default integration step against one sixteen times finer, per effect.
 """
 
 from __future__ import annotations

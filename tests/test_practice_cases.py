@@ -1,4 +1,4 @@
-"""The labelled practice cases of the recorded-run contract, diagnosed and scored; skipped where they are not at hand."""
+"""The labelled practice cases of the recorded-run contract, diagnosed and scored, where they are at hand."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ SHARED = Path(os.environ.get("SHER3_SHARED", ROOT.parent / "shared")) / "contrac
 CASES = sorted((SHARED / "practice").glob("case_*"))
 pytestmark = [
     pytest.mark.shared,
-    pytest.mark.skipif(not CASES, reason="needs the practice cases: set SHER3_SHARED to the folder that holds contract/"),
+    pytest.mark.skipif(not CASES, reason="needs the practice cases: SHER3_SHARED names the folder with contract/"),
 ]
 
 

@@ -1,4 +1,5 @@
 """Build of sher3_gap for colcon; the root pyproject.toml installs every package with pip."""
+
 from setuptools import find_packages, setup
 
 NAME = "sher3_gap"

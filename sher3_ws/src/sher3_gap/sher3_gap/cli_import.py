@@ -14,7 +14,7 @@ IMPORT_EXAMPLE = "sher3 gap import DATA_EMPS.mat emps.yaml --out cases/emps"
 def import_data(
     paths: Annotated[
         list[Path],
-        typer.Argument(help="Data files (csv, mat, npz, json) or folders of them, one a run; the description last."),
+        typer.Argument(help="Data files (csv, mat, npz, json) or folders, one a run; then the description."),
     ],
     out: Annotated[Path, typer.Option(help="Case folder to write.")],
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of text.")] = False,

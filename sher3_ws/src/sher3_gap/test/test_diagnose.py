@@ -1,4 +1,7 @@
-"""Truth in, truth out: the simulator with a known effect, diagnosed. A unit test of the chain, not evidence of its power."""
+"""Truth in, truth out: the simulator with a known effect, diagnosed.
+
+A unit test of the chain, not evidence of its power.
+"""
 
 import pytest
 from sher3_gap.diagnose import diagnose_runs
