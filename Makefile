@@ -3,13 +3,16 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 
-.PHONY: demo test bench lint setup clean
+.PHONY: demo test test-slow bench lint setup clean
 
 demo: $(READY)  ## scripted surgeon on mocks: recorded, analysed, shown
 	$(BIN)/sher3 demo
 
-test: $(READY) lint  ## lint, types and every test
-	$(BIN)/pytest
+test: $(READY) lint  ## lint, types and every test but the slow ones
+	$(BIN)/pytest -m "not slow"
+
+test-slow: $(READY)  ## colcon build and test of the workspace, a sealed challenge end to end
+	$(BIN)/pytest -m slow
 
 lint: $(READY)
 	$(BIN)/ruff check .
