@@ -14,6 +14,7 @@ from sher3_description import Sher3Error
 from sher3_runtime.ports import STATISTICS_VARIABLE
 
 from .errors import ConfigurationError
+from .patience import Patience
 from .settings import RunSettings, checked, parse_processes
 from .surgeon import Script, demo_script, load_script
 from .up import run_graph
@@ -25,7 +26,12 @@ AFTERWARDS = 0.4
 
 
 def run_demo(
-    rate: float, effects: Path | None, script_path: Path | None, folder: Path, say: Callable[[str], None] = print
+    rate: float,
+    effects: Path | None,
+    script_path: Path | None,
+    folder: Path,
+    say: Callable[[str], None] = print,
+    patience: Patience = "patient",
 ) -> dict[str, Any]:
     """Run the demo and return its figures as plain data.
 
@@ -44,6 +50,7 @@ def run_demo(
         duration=script.duration + AFTERWARDS,
         domain=DOMAIN,
         realtime=-1,
+        patience=patience,
     )
     statistics = bag.parent / f".{bag.name}.statistics"
     os.environ[STATISTICS_VARIABLE] = str(statistics)

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from importlib import import_module
 from typing import Any
 
+from .patience import PEDAL_AGE
 from .settings import RunSettings
 from .warm import warm_up
 
@@ -51,23 +52,29 @@ def _force_sensor(settings: RunSettings) -> Any:
 
 
 def _pedal(settings: RunSettings) -> Any:
-    from sher3_drivers.pedal import JoystickPedal, LocalPedal
+    from sher3_drivers.pedal import JoystickPedal
     from sher3_drivers.pedal_node import PedalNode
 
-    device = LocalPedal(settings.mock_name()) if settings.mock else JoystickPedal(settings.pedal_device)
+    device = _mock_pedal(settings) if settings.mock else JoystickPedal(settings.pedal_device)
     return PedalNode(settings.robot(), device)
+
+
+def _mock_pedal(settings: RunSettings) -> Any:
+    from sher3_drivers.pedal import LocalPedal
+
+    return LocalPedal(settings.mock_name(), PEDAL_AGE[settings.patience])
 
 
 def _admittance(settings: RunSettings) -> Any:
     from sher3_control.admittance_node import AdmittanceNode
 
-    return AdmittanceNode(settings.robot())
+    return AdmittanceNode(settings.robot(), settings.control())
 
 
 def _kinematics(settings: RunSettings) -> Any:
     from sher3_control.kinematics_node import KinematicsNode
 
-    return KinematicsNode(settings.robot())
+    return KinematicsNode(settings.robot(), settings.control())
 
 
 def _motor_driver(settings: RunSettings) -> Any:
@@ -79,7 +86,7 @@ def _motor_driver(settings: RunSettings) -> Any:
 def _supervisor(settings: RunSettings) -> Any:
     from sher3_control.supervisor_node import SupervisorNode
 
-    return SupervisorNode(settings.robot())
+    return SupervisorNode(settings.robot(), settings.control())
 
 
 def _recorder(settings: RunSettings) -> Any:

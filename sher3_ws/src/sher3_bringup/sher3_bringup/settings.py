@@ -6,10 +6,12 @@ from pathlib import Path
 from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from sher3_control.settings import ControlSettings
 from sher3_description import Robot, load_robot
 from sher3_drivers.settings import MotorDriverSettings, default_settings
 
 from .errors import ConfigurationError
+from .patience import CONTROL, DRIVES, Patience
 
 NODES = (
     "plant",
@@ -47,6 +49,7 @@ class RunSettings(BaseModel):
         realtime: SCHED_FIFO priority of every process, 0 for none, -1 for the default where the user may.
         force_device: address of the force sensor on the real robot, host or host:port.
         pedal_device: joystick device of the pedal on the real robot.
+        patience: time limits in force, see `patience`; the real robot has only the strict ones.
         seed: of the plant's noise.
     """
 
@@ -65,6 +68,7 @@ class RunSettings(BaseModel):
     realtime: Annotated[int, Field(ge=-1, le=90)] = 0
     force_device: str = ""
     pedal_device: str = ""
+    patience: Patience = "strict"
     seed: Annotated[int, Field(ge=0)] = 0
 
     @model_validator(mode="after")
@@ -78,6 +82,8 @@ class RunSettings(BaseModel):
             raise ValueError(f"{', '.join(mocks)} is for mocks only; leave it out or use --mock")
         if not self.mock and self.effects:
             raise ValueError("effects change the plant, and a real robot has none; use --mock")
+        if not self.mock and self.patience != "strict":
+            raise ValueError(f"{self.patience} time limits are for mocks only; the real robot keeps the strict ones")
         if not self.mock and not self.links:
             raise ValueError("the real robot needs --can, one link per channel, as socketcan:can0")
         if not self.mock and "force_sensor" in named and not self.force_device:
@@ -123,11 +129,17 @@ class RunSettings(BaseModel):
 
     def drives(self) -> MotorDriverSettings:
         """Return the motor driver's settings: CAN channels that can carry the rate."""
-        if self.links:
-            return default_settings(1.0 / self.rate, self.links)
-        settings = default_settings(1.0 / self.rate)
-        links = tuple(f"local:{self.mock_name()}-{i}" for i in range(len(settings.channels)))
-        return default_settings(1.0 / self.rate, links)
+        settings = default_settings(1.0 / self.rate, self.links or None)
+        if not self.links:
+            links = tuple(f"local:{self.mock_name()}-{i}" for i in range(len(settings.channels)))
+            settings = default_settings(1.0 / self.rate, links)
+        if self.patience == "strict":
+            return settings
+        return MotorDriverSettings.checked(**{**settings.model_dump(), **DRIVES})
+
+    def control(self) -> ControlSettings:
+        """Return the settings of the control nodes."""
+        return ControlSettings.from_robot(self.robot(), CONTROL if self.patience == "patient" else None)
 
 
 def parse_processes(text: str | None, mock: bool, record: bool) -> tuple[tuple[str, ...], ...]:

@@ -2,7 +2,9 @@
 
 import pytest
 from sher3_bringup.errors import ConfigurationError
+from sher3_bringup.patience import CONTROL, DRIVES
 from sher3_bringup.settings import NODES, checked, parse_processes
+from sher3_control.settings import ControlSettings
 from sher3_description import Sher3Error
 
 
@@ -28,6 +30,20 @@ def test_the_rate_sets_period_and_channels():
     assert all(budget.load < 0.9 for budget in fast.drives().budgets())
 
 
+def test_patience_lengthens_time_limits_and_nothing_else():
+    """Every limit that differs is a longer time; strict is what drivers and control declare themselves."""
+    strict, patient = checked(), checked(patience="patient")
+    assert strict.control() == ControlSettings.from_robot(strict.robot())
+    assert strict.drives().host_heartbeat_limit == 0.05
+    for part, names in CONTROL.items():
+        before, after = (getattr(run.control(), part).model_dump() for run in (strict, patient))
+        assert {name for name in before if before[name] != after[name]} == set(names)
+        assert all(after[name] > before[name] for name in names)
+    before, after = strict.drives().model_dump(), patient.drives().model_dump()
+    assert {name for name in before if before[name] != after[name]} == set(DRIVES)
+    assert all(after[name] > before[name] for name in DRIVES)
+
+
 @pytest.mark.parametrize(
     ("options", "message"),
     [
@@ -41,6 +57,8 @@ def test_the_rate_sets_period_and_channels():
         ({"mock": False}, "needs --can"),
         ({"mock": False, "links": ("socketcan:can0", "socketcan:can1"), "processes": (("pedal",),)}, "--pedal-device"),
         ({"processes": (("recorder",),)}, "needs --record"),
+        ({"mock": False, "patience": "patient", "links": ("a", "b")}, "patient time limits are for mocks only"),
+        ({"patience": "endless"}, "patience"),
         ({"duration": -1.0}, "duration"),
         ({"domain": 232}, "domain"),
         ({"surprise": 1}, "surprise"),

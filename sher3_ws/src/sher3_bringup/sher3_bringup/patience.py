@@ -1,0 +1,36 @@
+"""Time limits of a run: strict for the robot, patient for mocks on a machine that others use too.
+
+An ordinary computer holds a process up for 10 to 150 ms now and then. At the robot that is a stop, as it must be: the
+tip travels 0.5 mm in 100 ms. On mocks nothing can be hurt, and a demonstration that ends there shows nothing; so its
+limits are longer than what such a machine does. What is longer is written here and nowhere else, and recorded with the
+settings of each run; everything that is no time limit stays as it is.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+Patience = Literal["strict", "patient"]
+"""`strict`: the limits that the settings of drivers and control declare. `patient`: those below; mocks only."""
+
+CONTROL: dict[str, Any] = {
+    "wrench": {"age_limit": 0.4},
+    "pedal": {"age_limit": 0.4},
+    "admittance": {"joints_age_limit": 0.4},
+    "motion": {"servo_timeout": 0.4, "joints_age_limit": 0.4},
+    "supervisor": {"stream_age_limit": 0.6},
+}
+"""Overrides of `ControlSettings` [s]; strict: 0.010 to 0.020, and 0.1 for the supervisor."""
+
+DRIVES: dict[str, Any] = {
+    "host_heartbeat_limit": 0.6,
+    "drive_heartbeat_limit": 1.0,
+    "missing_limit": 200,
+    "stop_age": 300,
+    "transition_limit": 2.0,
+}
+"""Overrides of `MotorDriverSettings` [s; ticks]; strict: 0.050, 0.200, 10, 50, 0.5. Zero velocity is still sent to the
+drives once a command is `zero_age` ticks old, and motion goes on with the next command."""
+
+PEDAL_AGE = {"strict": 0.1, "patient": 0.6}
+"""Longest silence of the mock pedal [s]."""
