@@ -14,6 +14,7 @@ from sher3_description import Robot
 from sher3_gap.attribute import Attribution, Candidates, attribute
 from sher3_gap.audit import audit
 from sher3_gap.channels import Channel, unit_of
+from sher3_gap.constancy import constancy_of
 from sher3_gap.evidence import Evidence, gather
 from sher3_gap.exact_causes import ExactFinding, controller_finding, transport_finding
 from sher3_gap.fitting import Fit, fit
@@ -261,8 +262,23 @@ def _unexplained(
                 signature=f"an exact stage is not reproduced: {finding.note or 'no timing or gain error fits'}",
             )
     if not open_:
-        return None
+        return _inconstant(evidence, attribution)
     channel = max(open_, key=lambda c: open_[c])
     return Unexplained(
         stage=channel.stage, actuator=channel.actuator, signature=signature(evidence, channel, attribution.fit)
     )
+
+
+def _inconstant(evidence: Evidence, attribution: Attribution) -> Unexplained | None:
+    """A cause whose size differs between excitations stands in for an effect the library does not have."""
+    for i, term in enumerate(attribution.fit.terms):
+        found = constancy_of(evidence, attribution.fit, i)
+        if not found.constant:
+            channel = max(term.channels, key=lambda c: excess(evidence, c, fit(evidence.data, []))[0])
+            return Unexplained(
+                stage=channel.stage,
+                actuator=channel.actuator,
+                signature=f"{term.effect.id} fits, but not with one size in all excitations "
+                f"({found.spread:.1%} of what it explains differs); {signature(evidence, channel, attribution.fit)}",
+            )
+    return None
