@@ -36,6 +36,7 @@ def run_demo(
     """Run the demo and return its figures as plain data.
 
     Raises:
+        SessionFailed: the robot faulted, was not enabled or did not move; the recording and its figures are there.
         Sher3Error: a bad option or file, or a part that failed; see `up`.
     """
     script = load_script(script_path or demo_script())
@@ -59,7 +60,7 @@ def run_demo(
         nodes = {path.stem: json.loads(path.read_text())["statistics"] for path in sorted(statistics.glob("*.json"))}
     finally:
         shutil.rmtree(statistics, ignore_errors=True)
-    return _evaluate(settings, bag, nodes, say)
+    return _evaluate(settings, script, bag, nodes, say)
 
 
 def _surgeon(script: Script) -> Any:
@@ -83,13 +84,15 @@ class _Progress:
 
 
 def _evaluate(
-    settings: RunSettings, bag: Path, nodes: dict[str, dict[str, Any]], say: Callable[[str], None]
+    settings: RunSettings, script: Script, bag: Path, nodes: dict[str, dict[str, Any]], say: Callable[[str], None]
 ) -> dict[str, Any]:
     from sher3_bags.analysis import analyse
     from sher3_bags.picture import draw
     from sher3_bags.reading import read_run
     from sher3_bags.report import analysis_text
     from sher3_control.replay import replay_admittance, replay_motion
+
+    from .verdict import judge
 
     robot = settings.robot()
     say("analysing the recording")
@@ -106,6 +109,8 @@ def _evaluate(
         how = found.get("error") or f"{found['compared']} commands, {found['different']} differ"
         say(f"{topic} computed again from the recording: {how}")
     say(f"\nbag      {bag}\npicture  {picture}")
+    judge(run, script, int(run["mock/pedal"].stamp[0]))
+    say("the robot was enabled, moved in every step that asked for it and did not stop by itself")
     return {
         "bag": str(bag),
         "picture": str(picture),

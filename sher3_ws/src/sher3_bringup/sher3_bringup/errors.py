@@ -34,6 +34,12 @@ class NotStopped(Sher3Error):
     exit_code = KILLED
 
 
+class SessionFailed(Sher3Error):
+    """The robot of a recorded session faulted, was not enabled or did not move as its script asked."""
+
+    exit_code = DIED
+
+
 class BenchtopStopped(Sher3Error):
     """The robot did not do as commanded during a bench-top test; carries `test`."""
 

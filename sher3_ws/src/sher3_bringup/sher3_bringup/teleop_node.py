@@ -10,7 +10,7 @@ import rclpy
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 from sher3_runtime import JoySample, TextSample, WrenchSample, environment
-from sher3_runtime.ports import NODE_OPTIONS, PERIOD_VARIABLE, advertise, on_tick
+from sher3_runtime.ports import NODE_OPTIONS, PERIOD_VARIABLE, advertise, on_tick, subscribe
 from sher3_runtime.process import stop_on_signals
 from sher3_runtime.spinning import spin
 
@@ -48,25 +48,44 @@ class TeleopNode(Node):
         self._publish_wrench(WrenchSample(stamp, wrench))
 
 
+REPEAT = 0.1
+"""Seconds after which an `enable` that the robot has not answered is sent again."""
+
+
 class ScriptCommands:
-    """The state commands of a script, each once when its step begins."""
+    """The state commands of a script, each once when its step begins.
+
+    Only `enable` is repeated while its step lasts, until the robot is ENABLED for the first time: a robot whose streams
+    have just come up refuses it. After that, and after a FAULT, nothing is sent that the script does not say.
+    """
 
     def __init__(self, script: Script) -> None:
         self._script = script
         self._step = -1
+        self._sent_at = 0.0
+        self._answered = False
+
+    def heard(self, state: str) -> None:
+        """Take note of an operating state."""
+        self._answered = self._answered or state in ("ENABLED", "FAULT")
 
     def __call__(self, elapsed: float) -> str:
         """Return the command that is due, empty for none."""
         step, _ = self._script.step_at(elapsed)
-        if step == self._step:
+        command = self._script.steps[step].command
+        again = command == "enable" and not self._answered and elapsed - self._sent_at >= REPEAT
+        if step == self._step and not again:
             return ""
-        self._step = step
-        return self._script.steps[step].command
+        self._step, self._sent_at = step, elapsed
+        return command
 
 
 def script_node(script: Script, **options: Any) -> TeleopNode:
     """Return the node of a scripted surgeon."""
-    return TeleopNode(script.at, ScriptCommands(script), **options)
+    commands = ScriptCommands(script)
+    node = TeleopNode(script.at, commands, **options)
+    subscribe(node, "operating_state", lambda sample: commands.heard(sample.text))
+    return node
 
 
 def run_node(make: Callable[[], TeleopNode], stop: Callable[[TeleopNode], bool], rate: float, domain: int) -> None:
