@@ -16,11 +16,11 @@ Patience = Literal["strict", "patient"]
 CONTROL: dict[str, Any] = {
     "wrench": {"age_limit": 0.4},
     "pedal": {"age_limit": 0.4},
-    "admittance": {"joints_age_limit": 0.4},
-    "motion": {"servo_timeout": 0.4, "joints_age_limit": 0.4},
+    "admittance": {"joints_age_limit": 0.4, "lead_limit": 0.4},
+    "motion": {"servo_timeout": 0.4, "joints_age_limit": 0.4, "lead_limit": 0.4},
     "supervisor": {"stream_age_limit": 0.6},
 }
-"""Overrides of `ControlSettings` [s]; strict: 0.010 to 0.020, and 0.1 for the supervisor."""
+"""Overrides of `ControlSettings` [s]; strict: 0.010 to 0.020, lead 0, and 0.1 for the supervisor."""
 
 DRIVES: dict[str, Any] = {
     "host_heartbeat_limit": 0.6,

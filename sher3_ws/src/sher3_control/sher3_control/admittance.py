@@ -28,6 +28,7 @@ class LawParameters(NamedTuple):
     """Constants of the law in the units of one tick; build them with `law_parameters`."""
 
     period: int
+    ahead_limit: int
     low_pass: LowPass
     force_deadband: float
     torque_deadband: float
@@ -135,7 +136,9 @@ def _objection(i: LawInput, previous_stamp: int, repeats: int, p: LawParameters)
     """Return the first thing that forbids motion whatever the pedal does, the most severe first."""
     if previous_stamp >= 0 and not (0 < i.stamp - previous_stamp <= p.wrench_age_limit):
         return Reason.CLOCK
-    reason = check_age(i.stamp, i.pedal_stamp, p.pedal_age_limit, p.period, Reason.PEDAL_MISSING, Reason.PEDAL_STALE)
+    reason = check_age(
+        i.stamp, i.pedal_stamp, p.pedal_age_limit, p.ahead_limit, Reason.PEDAL_MISSING, Reason.PEDAL_STALE
+    )
     if reason != Reason.MOVING:
         return reason
     if i.emergency:
@@ -143,7 +146,7 @@ def _objection(i: LawInput, previous_stamp: int, repeats: int, p: LawParameters)
     if not (0.0 <= i.travel <= 1.0):
         return Reason.PEDAL_INVALID
     reason = check_age(
-        i.stamp, i.wrench_stamp, p.wrench_age_limit, p.period, Reason.WRENCH_MISSING, Reason.WRENCH_STALE
+        i.stamp, i.wrench_stamp, p.wrench_age_limit, p.ahead_limit, Reason.WRENCH_MISSING, Reason.WRENCH_STALE
     )
     if reason != Reason.MOVING:
         return reason
@@ -153,7 +156,7 @@ def _objection(i: LawInput, previous_stamp: int, repeats: int, p: LawParameters)
     if repeats + 1 >= p.frozen_samples:
         return Reason.WRENCH_FROZEN
     reason = check_age(
-        i.stamp, i.joints_stamp, p.joints_age_limit, p.period, Reason.JOINTS_MISSING, Reason.JOINTS_STALE
+        i.stamp, i.joints_stamp, p.joints_age_limit, p.ahead_limit, Reason.JOINTS_MISSING, Reason.JOINTS_STALE
     )
     if reason != Reason.MOVING:
         return reason

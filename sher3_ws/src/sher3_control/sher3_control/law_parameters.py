@@ -20,6 +20,7 @@ def law_parameters(robot: Robot, settings: ControlSettings) -> LawParameters:
     sensor = robot.force_sensor
     return LawParameters(
         period=nanoseconds(period),
+        ahead_limit=nanoseconds(period + a.lead_limit),
         low_pass=design_low_pass(a.filter_cutoff, period),
         force_deadband=a.force_deadband,
         torque_deadband=a.torque_deadband,

@@ -83,7 +83,7 @@ class MotionController:
         self._gain = robot.position_gain
         self._limits = tuple(a.limits.velocity for a in robot.actuators)
         self._age_limit = nanoseconds(settings.joints_age_limit)
-        self._period = nanoseconds(robot.control_period)
+        self._lead_limit = nanoseconds(robot.control_period + settings.lead_limit)
         self._kinematics = kinematics
         self._modes: dict[Mode, MotionMode] = {
             Mode.SERVO_JP: ServoPosition(robot, settings),
@@ -161,7 +161,7 @@ class MotionController:
 
     def _check_joints(self, i: MotionInput) -> Reason:
         reason = judge_age(
-            i.stamp, i.joints_stamp, self._age_limit, self._period, Reason.JOINTS_MISSING, Reason.JOINTS_STALE
+            i.stamp, i.joints_stamp, self._age_limit, self._lead_limit, Reason.JOINTS_MISSING, Reason.JOINTS_STALE
         )
         if reason is Reason.MOVING and not (len(i.q) == 5 and math.isfinite(sum(i.q))):
             return Reason.JOINTS_NOT_FINITE
@@ -169,7 +169,7 @@ class MotionController:
 
     def _cooperate(self, i: MotionInput) -> MotionOutput:
         missing, stale = Reason.COMMAND_MISSING, Reason.COMMAND_STALE
-        reason = judge_age(i.stamp, i.twist_stamp, self._age_limit, self._period, missing, stale)
+        reason = judge_age(i.stamp, i.twist_stamp, self._age_limit, self._lead_limit, missing, stale)
         if reason is Reason.MOVING and self._rearm:
             reason = Reason.NOT_REARMED
         if reason is not Reason.MOVING:

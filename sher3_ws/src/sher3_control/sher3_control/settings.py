@@ -70,6 +70,7 @@ class AdmittanceSettings(Settings):
         scale_rate: largest rise of the speed scale [1/s]; a fall acts at once.
         gain_maximum: live gains are accepted up to this multiple of the gain of the settings [1].
         joints_age_limit: oldest joint sample the frames may be taken from [s].
+        lead_limit: a tick that runs late finds samples of later ones; so far beyond one period they may be ahead [s].
     """
 
     linear_gain: Annotated[Number, Field(ge=0.0, le=0.05)]
@@ -85,6 +86,7 @@ class AdmittanceSettings(Settings):
     scale_rate: Annotated[Number, Field(gt=0.0, le=100.0)] = 2.0
     gain_maximum: Annotated[Number, Field(ge=1.0, le=100.0)] = 5.0
     joints_age_limit: Seconds = 0.020
+    lead_limit: Annotated[Number, Field(ge=0.0, le=1.0)] = 0.0
 
 
 class TareSettings(Settings):
@@ -114,6 +116,7 @@ class MotionSettings(Settings):
         servo_timeout: a servo mode without a newer command for this long ends and the robot stops [s].
         ahead_limit: a command may bear a stamp this far ahead [s].
         joints_age_limit: oldest joint sample a command may be computed from [s].
+        lead_limit: how far beyond one period joints and cooperative twist may be ahead of the tick [s].
         step_factor: largest accepted step of a position reference, in multiples of limits.velocity / position_gain,
             the step that saturates the host law.
         settle_time: how long a finished move may settle before the robot is handed back [s].
@@ -132,6 +135,7 @@ class MotionSettings(Settings):
     servo_timeout: Seconds = 0.020
     ahead_limit: Seconds = 1.0
     joints_age_limit: Seconds = 0.010
+    lead_limit: Annotated[Number, Field(ge=0.0, le=1.0)] = 0.0
     step_factor: Annotated[Number, Field(gt=0.0, le=10.0)] = 1.0
     settle_time: Seconds = 0.5
     settle_factor: Annotated[Number, Field(ge=1.0, le=1000.0)] = 10.0

@@ -335,7 +335,8 @@ class MotorDriver:
             if silence > settings.drive_heartbeat_limit:
                 self._stop_if(f"{health.name}: no heartbeat for {silence:.3f} s ({settings.drive_heartbeat_limit:g} s)")
             wanted = _SETTLED.get(self.goal)
-            stuck = (now - health.state_since) * 1e-9
+            # A drive whose first statusword is still on its way has no state yet, and no time of its own.
+            stuck = (now - (health.state_since or self._started_at)) * 1e-9
             if wanted and health.state is not wanted and stuck > settings.transition_limit:
                 name = health.state.name if health.state else "an unknown state"
                 self._stop_if(f"{health.name}: stays in {name} for {stuck:.3f} s instead of going to {wanted.name}")

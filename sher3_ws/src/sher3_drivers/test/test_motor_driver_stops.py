@@ -204,3 +204,15 @@ def test_after_the_host_comes_back_nothing_moves_without_a_reset(rig):
     rig.tick(SLOW)
     rig.idle(50)
     assert stopped_by(rig, "heartbeat of the host lost")
+
+
+def test_a_first_statusword_that_comes_late_is_no_stop(make_rig):
+    """On a busy machine the first ticks have no TPDO yet; a drive that stays silent is still noticed by its absence."""
+    rig = make_rig()
+    rig.driver.configure()
+    rig.mock.tamper_frames = lambda _channel, _frames, _now: b""
+    for _ in range(rig.settings.missing_limit - 1):
+        rig.tick()
+    assert rig.driver.health[0].state is None and rig.driver.stop.reason is None
+    rig.tick()
+    assert "no TPDO" in rig.driver.stop.reason
