@@ -49,11 +49,25 @@ class Residual:
         return np.sqrt(np.mean(self.values[self.ok] ** 2, axis=0))
 
 
-CENTRED = frozenset({"drive", "transmission"})
-"""Stages whose residual has an unknown constant in every run.
+FREE_MEAN = {"drive": 1.0, "transmission": 0.96}
+"""Share of each run's mean that a stage's residual is relieved of, because part of it is not the robot's.
 
-It is where the drive's integrator started, and the share of a count between the zeros of two encoders.
+Where the drive's integrator started is not recorded. The zeros of two encoders differ by a share of a count from run
+to run: the share that remains weighs a run's mean against that spread (quasi-demeaning of a random intercept).
 """
+
+
+def relieved(channel: Channel, values: Array) -> Array:
+    """Take the free share of the mean off (n, ...) values of one run."""
+    share = FREE_MEAN.get(channel.stage, 0.0)
+    return values - share * values.mean(axis=0) if share else values
+
+
+def restored(channel: Channel, values: Array) -> Array:
+    """Put back what `relieved` took off, where anything remains to tell it."""
+    share = FREE_MEAN.get(channel.stage, 0.0)
+    return values + share / (1.0 - share) * values.mean(axis=0) if 0.0 < share < 1.0 else values
+
 
 UNITS = {
     "transport": "m/s",

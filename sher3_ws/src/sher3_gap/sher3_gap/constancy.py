@@ -14,10 +14,10 @@ from sher3_gap.channels import Array
 from sher3_gap.evidence import Evidence
 from sher3_gap.fitting import Fit, solve
 
-SPREAD = 0.025
+SPREAD = 0.029
 """Share of what a cause explains that varying coefficients may add: measured 0.0001 to 0.013 for true effects of the
 development cases, 0.03 to 0.12 for effects that stand in for another one."""
-CERTAIN = 60.0
+CERTAIN = 100.0
 """Loss that the varying coefficients must explain before it counts."""
 
 

@@ -15,7 +15,7 @@ from functools import cached_property
 
 import numpy as np
 
-from sher3_gap.channels import CENTRED, Array, Channel
+from sher3_gap.channels import Array, Channel, relieved
 from sher3_gap.floors import Floors
 from sher3_gap.library import LibraryEffect, Shape, View
 from sher3_gap.residuals import Residuals
@@ -41,9 +41,7 @@ class Whitened:
     def flat(self, run: int, channel: Channel, values: Array) -> Array:
         """Whiten (g, d) or (g, d, p) values of a channel and flatten the samples that count -> (N,) or (N, p)."""
         ok = self.residuals[run][channel].ok
-        kept = values[ok]
-        if channel.stage in CENTRED:
-            kept = kept - kept.mean(axis=0)
+        kept = relieved(channel, values[ok])
         scale = self.floors[run][channel]
         kept = kept / (scale[:, None] if kept.ndim == 3 else scale)
         return kept.reshape(-1, kept.shape[2]) if kept.ndim == 3 else kept.ravel()

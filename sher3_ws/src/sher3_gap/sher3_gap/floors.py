@@ -14,7 +14,7 @@ from itertools import combinations
 import numpy as np
 from sher3_description import ACTUATORS, Robot
 
-from sher3_gap.channels import Array, Channel
+from sher3_gap.channels import Array, Channel, Residual, relieved
 from sher3_gap.residuals import Residuals
 from sher3_gap.signals import BANDWIDTH, RunSignals
 
@@ -94,10 +94,16 @@ def repeat_floors(runs: Sequence[RunSignals], residuals: Sequence[Residuals]) ->
                 x, y = residuals[a][channel], residuals[b][channel]
                 n = min(len(x.values), len(y.values))
                 ok = x.ok[:n] & y.ok[:n]
-                square = 0.5 * np.sum((x.values[:n] - y.values[:n])[ok] ** 2, axis=0)
+                apart = relieved(channel, (x.values[:n] - y.values[:n])[ok])
+                square = 0.5 * np.sum(apart**2, axis=0)
                 total[channel] = total.get(channel, 0.0) + square
                 count[channel] += int(ok.sum())
     return {c: np.sqrt(t / count[c]) for c, t in total.items() if count[c] > 50}
+
+
+def own_rms(channel: Channel, residual: Residual) -> Array:
+    """Root mean square of a simulated residual relieved of its mean, (d,)."""
+    return np.sqrt(np.mean(relieved(channel, residual.values[residual.ok]) ** 2, axis=0))
 
 
 def floors(
@@ -119,5 +125,5 @@ def floors(
         chatter = chatter_floors(run, robot)
         known = {c: 0.5 * x if averaged(run, robot, c) and any(twins) else x for c, x in least.items()}
         base = {c: np.maximum(repeats.get(c, least[c]), np.hypot(known[c], chatter.get(c, 0.0))) for c in found}
-        out.append({c: np.max([b, *(t[c].rms() for t in twins if c in t)], axis=0) for c, b in base.items()})
+        out.append({c: np.max([b, *(own_rms(c, t[c]) for t in twins if c in t)], axis=0) for c, b in base.items()})
     return out

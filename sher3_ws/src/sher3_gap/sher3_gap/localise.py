@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+from sher3_description import ACTUATORS
 
-from sher3_gap.channels import Array, Channel
+from sher3_gap.channels import FREE_MEAN, Array, Channel, relieved
 from sher3_gap.evidence import Evidence
 
 POOLED = {
@@ -26,6 +27,8 @@ GROUPED_ENCODERS = 3.0
 """The same for the difference of two encoders, of which a slow run has few independent roundings."""
 AS_BUILT = {"sensing": np.array([1.0e-3] * 3 + [1.2e-5] * 3)}
 """What a healthy force sensor may deviate from its drawing, which no repeat shows: N and N m."""
+ZERO_COUNTS = 1.5
+"""Mean difference of two encoders, in counts of the motor's, from which it is a gap."""
 PARTS = {6: (slice(0, 3), slice(3, 6)), 1: (slice(0, 1),)}
 """Components that are judged together: position and rotation, force and torque."""
 
@@ -66,7 +69,7 @@ def gap_of(evidence: Evidence, channel: Channel, residual: Mapping[int, Array] |
         found = evidence.data.residuals[r].get(channel)
         if found is None or not found.ok.any():
             continue
-        values = found.values[found.ok] if residual is None else residual[r]
+        values = relieved(channel, found.values[found.ok]) if residual is None else residual[r]
         base = evidence.floors[r][channel] ** 2
         square[run.excitation].append(np.mean(values**2, axis=0))
         floor[run.excitation].append(base)
@@ -75,7 +78,24 @@ def gap_of(evidence: Evidence, channel: Channel, residual: Mapping[int, Array] |
         return None
     parts = PARTS[len(base)]
     best = max((_part(channel, p, square, floor, allowed) for p in parts), key=lambda g: g.power)
-    return best
+    if channel.stage != "transmission":
+        return best
+    return _with_zeros(evidence, channel, residual, best)
+
+
+def _with_zeros(evidence: Evidence, channel: Channel, residual: Mapping[int, Array] | None, best: Gap) -> Gap:
+    """Judge the runs' mean encoder difference as well, against what their zeros may differ by."""
+    count = evidence.robot.actuators[ACTUATORS.index(channel.actuator)].motor_encoder
+    means = []
+    for r, found in ((r, f) for r, res in enumerate(evidence.data.residuals) if (f := res.get(channel)) is not None):
+        if residual is None:
+            means.append(float(found.values[found.ok].mean()))
+        else:
+            means.append(float(residual[r].mean()) / (1.0 - FREE_MEAN["transmission"]))
+    mean, limit = float(np.sqrt(np.mean(np.square(means)))), ZERO_COUNTS * count
+    if (mean / limit) ** 2 <= best.power:
+        return best
+    return replace(best, power=(mean / limit) ** 2, gap=mean, floor=limit / 3.0, ratio=3.0 * mean / limit)
 
 
 def _part(channel: Channel, part: slice, square: Mapping, floor: Mapping, allowed: Mapping) -> Gap:

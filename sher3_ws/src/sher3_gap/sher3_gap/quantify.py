@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from sher3_gap.channels import Array, Channel
+from sher3_gap.channels import Array, Channel, restored
 from sher3_gap.evidence import Evidence
 from sher3_gap.fitting import Fit, Term
 from sher3_gap.localise import PARTS
@@ -57,7 +57,8 @@ def closure(evidence: Evidence, channel: Channel, before: Fit, after: Fit) -> In
     for r in old:
         part = PARTS[len(evidence.floors[r][channel])][0]
         floor = evidence.floors[r][channel][part]
-        rows.append([np.mean((x[r][:, part] / floor) ** 2) for x in (old, new)] + [1.0])
+        left = (restored(channel, x[r])[:, part] for x in (old, new))
+        rows.append([np.mean((x / floor) ** 2) for x in left] + [1.0])
     return interval_of(np.array(rows))
 
 

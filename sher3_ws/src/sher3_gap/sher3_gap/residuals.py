@@ -107,11 +107,11 @@ def settled(known: np.ndarray, margin: int = 3) -> np.ndarray:
 
 
 def transmission_residual(run: RunSignals) -> Residuals:
-    """Load encoder minus motor encoder, low-passed, each run's mean removed."""
+    """Load encoder minus motor encoder, low-passed."""
     if run.load is None:
         return {}
     values = run.to_grid(run.load - run.motor)
-    return {Channel("transmission", a): centred(values[:, i], run.inner) for i, a in enumerate(ACTUATORS)}
+    return {Channel("transmission", a): Residual(values[:, [i]], run.inner) for i, a in enumerate(ACTUATORS)}
 
 
 def tip_residual(run: RunSignals, geometry: Geometry) -> Residuals:
