@@ -42,7 +42,8 @@ class Sink(Node):
 def run(body: str, *arguments: str) -> subprocess.CompletedProcess:
     """Run a script: forking belongs in a process without ROS threads."""
     domain = str(101 + os.getpid() % 100)
-    command = [sys.executable, "-W", "error::DeprecationWarning", "-c", HEAD + textwrap.dedent(body), domain]
+    script = HEAD + textwrap.dedent(body)
+    command = [sys.executable, "-W", "error:This process:DeprecationWarning", "-c", script, domain]
     return subprocess.run([*command, *arguments], env=child_environment(), capture_output=True, text=True, timeout=60)
 
 

@@ -35,6 +35,10 @@ class Evidence:
         """Floor per run and channel."""
         return self.data.floors
 
+    def count(self, channel: Channel) -> float:
+        """One count of the motor encoder at an actuator, m or rad."""
+        return self.robot.actuators[ACTUATORS.index(channel.actuator)].motor_encoder
+
 
 SHIFTS = (0.0, 0.5)
 """Shares of an encoder count by which the simulated twins are shifted."""

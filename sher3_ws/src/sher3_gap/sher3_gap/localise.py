@@ -7,7 +7,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from sher3_description import ACTUATORS
 
 from sher3_gap.channels import FREE_MEAN, Array, Channel, relieved
 from sher3_gap.evidence import Evidence
@@ -85,7 +84,7 @@ def gap_of(evidence: Evidence, channel: Channel, residual: Mapping[int, Array] |
 
 def _with_zeros(evidence: Evidence, channel: Channel, residual: Mapping[int, Array] | None, best: Gap) -> Gap:
     """Judge the runs' mean encoder difference as well, against what their zeros may differ by."""
-    count = evidence.robot.actuators[ACTUATORS.index(channel.actuator)].motor_encoder
+    count = evidence.count(channel)
     means = []
     for r, found in ((r, f) for r, res in enumerate(evidence.data.residuals) if (f := res.get(channel)) is not None):
         if residual is None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -45,6 +46,10 @@ class AxisEvidence:
     def floors(self) -> list[Floors]:
         """Floor per block and channel."""
         return self.data.floors
+
+    def count(self, channel: Channel) -> float:
+        """Return inf: a description does not say where two encoders have their zeros, so no mean of theirs is a gap."""
+        return math.inf
 
 
 def gather_axis(runs: Sequence[AxesRun], axis: Axis, repeats: bool) -> AxisEvidence:
