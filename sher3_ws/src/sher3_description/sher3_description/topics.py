@@ -107,7 +107,8 @@ _TABLE = (
     Topic("mock/pedal", _JOY, "", STREAM, "pedal as the foot presses it, into the pedal's device end"),
     Topic("mock/force_device", _WRENCH, "f", STREAM, "what the mock force sensor puts on its wire"),
     Topic("mock/pedal_device", _JOY, "", STREAM, "what the mock pedal puts on its wire"),
-    Topic("mock/fault", _TEXT, "", STREAM, "fault to inject or to clear"),
+    Topic("mock/fault", _TEXT, "", STREAM, "fault to inject or to clear, as JSON"),
+    Topic("mock/true_js", _JOINT, "", STREAM, "true load position and executed demand, from the first fault on"),
 )
 
 TOPICS: dict[str, Topic] = {topic.name: topic for topic in _TABLE}
