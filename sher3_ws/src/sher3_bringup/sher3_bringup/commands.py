@@ -33,6 +33,14 @@ def up(
     ] = "",
     effects: Annotated[Optional[Path], typer.Option(help="Effects for the plant (YAML, sher3.effects/1).")] = None,  # noqa: UP045
     record: Annotated[Optional[Path], typer.Option(help="Record the run into this new folder.")] = None,  # noqa: UP045
+    monitor: Annotated[
+        bool,
+        typer.Option("--monitor", help="Also run the gap monitor: gap/diagnostics at 1 Hz against the nominal model."),
+    ] = False,
+    patient: Annotated[
+        bool,
+        typer.Option("--patient", help="Mocks on a busy machine: time limits that a held-up process does not trip."),
+    ] = False,
     duration: Annotated[Optional[float], typer.Option(help="Stop after so many seconds.")] = None,  # noqa: UP045
     robot: Robot = None,
     can: Annotated[Optional[list[str]], typer.Option(help="CAN link of each channel, as socketcan:can0.")] = None,  # noqa: UP045
@@ -62,7 +70,7 @@ def up(
     settings = checked(
         mock=mock,
         rate=rate,
-        processes=parse_processes(nodes, mock, record is not None),
+        processes=parse_processes(nodes, mock, record is not None, monitor),
         robot_path=robot,
         effects=effects,
         record=record,
@@ -72,6 +80,7 @@ def up(
         pedal_device=pedal_device,
         realtime=realtime,
         seed=seed,
+        patience="patient" if patient else "strict",
         domain=domain,
         other_hosts=other_hosts,
     )

@@ -142,12 +142,16 @@ class RunSettings(BaseModel):
         return ControlSettings.from_robot(self.robot(), CONTROL if self.patience == "patient" else None)
 
 
-def parse_processes(text: str | None, mock: bool, record: bool) -> tuple[tuple[str, ...], ...]:
-    """Return the nodes of each process from `a+b,c` (a and b in one process); None means one process for each node."""
+def parse_processes(text: str | None, mock: bool, record: bool, monitor: bool = False) -> tuple[tuple[str, ...], ...]:
+    """Return the nodes of each process from `a+b,c` (a and b in one process); None means one process for each node.
+
+    `monitor` adds the gap monitor in a process of its own, unless the text names it.
+    """
+    watch = (("gap_monitor",),) if monitor and "gap_monitor" not in (text or "") else ()
     if text:
-        return tuple(tuple(name.strip() for name in process.split("+")) for process in text.split(","))
+        return tuple(tuple(name.strip() for name in process.split("+")) for process in text.split(",")) + watch
     skip = {*ON_REQUEST, *(() if mock else MOCK_ONLY), *(() if record else ("recorder",))}
-    return tuple((name,) for name in NODES if name not in skip)
+    return tuple((name,) for name in NODES if name not in skip) + watch
 
 
 def checked(**options: object) -> RunSettings:

@@ -15,7 +15,7 @@ from sher3_description import ACTUATORS, Robot, Sher3Error
 
 from sher3_gap.channels import Array
 from sher3_gap.errors import CaseError
-from sher3_gap.signals import RunSignals
+from sher3_gap.signals import EDGE, RunSignals
 
 BEYOND = 2.0
 """Times its range at which a reading can no longer be meant in SI units."""
@@ -80,7 +80,22 @@ def audit(runs: Sequence[RunSignals], robot: Robot) -> list[str]:
     for run in runs:
         _check_units(run, robot)
     _check_repeats(runs, robot)
-    return [*_few_repeats(runs), *_missing(runs)]
+    return [*_few_repeats(runs), *_missing(runs), *_holes(runs)]
+
+
+def _holes(runs: Sequence[RunSignals]) -> list[str]:
+    """Say how many ticks of a live recording do not count."""
+    ticks = sum(run.ticks for run in runs)
+    lost = sum(int(run.lost.sum()) for run in runs if run.lost is not None)
+    late = sum(int(run.late.sum()) for run in runs if run.late is not None)
+    notes = []
+    if lost:
+        notes.append(
+            f"{lost} of {ticks} ticks were not recorded: bridged, and nothing is judged {EDGE:g} s around them"
+        )
+    if late:
+        notes.append(f"{late} of {ticks} commands left the host after their tick: not held against the transport")
+    return notes
 
 
 def _check_units(run: RunSignals, robot: Robot) -> None:

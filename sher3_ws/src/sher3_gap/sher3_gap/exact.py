@@ -17,10 +17,12 @@ EXACT = 1e-9
 
 
 def transport_error(run: RunSignals) -> Array | None:
-    """Echo minus the command of the tick before, (n, axes); None without both streams."""
+    """Echo minus the command of the tick before, (n, axes), zero where the echo tells nothing; None without both
+    streams.
+    """
     if run.command is None or run.echo is None:
         return None
-    return run.echo - delayed(run.command, 1)
+    return np.where(run.echo_tells[:, None], run.echo - delayed(run.command, 1), 0.0)
 
 
 def delayed(x: Array, ticks: int) -> Array:
@@ -39,10 +41,17 @@ def shifted(command: Array, latency: float) -> Array:
 
 
 def controller_error(run: RunSignals, robot: Robot) -> Array | None:
-    """Recorded velocity command minus the host law of the position modes, (n, axes); None in other modes."""
+    """Recorded velocity command minus the host law of the position modes, (n, axes), zero at lost ticks; None in other
+    modes.
+    """
     if run.command is None or run.reference is None or run.reference_velocity is None or run.load is None:
         return None
-    return run.command - host_law(run, robot, robot.position_gain)
+    return without_lost(run, run.command - host_law(run, robot, robot.position_gain))
+
+
+def without_lost(run: RunSignals, error: Array) -> Array:
+    """Set an (n, axes) error to zero at ticks that were not recorded."""
+    return error if run.lost is None else np.where(run.lost[:, None], 0.0, error)
 
 
 def host_law(run: RunSignals, robot: Robot, gain: float | Array) -> Array:

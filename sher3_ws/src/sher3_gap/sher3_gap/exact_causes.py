@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from sher3_description import ACTUATORS, Robot
 
-from sher3_gap.exact import EXACT, controller_error, host_law
+from sher3_gap.exact import EXACT, controller_error, host_law, without_lost
 from sher3_gap.signals import RunSignals
 from sher3_gap.timing import Timing
 from sher3_gap.verdict import Cause, Interval, Parameter, Where
@@ -154,7 +154,8 @@ def controller_finding(runs: Sequence[RunSignals], robot: Robot, without: Collec
     left = np.zeros(len(top))
     for run, _ in errors:
         assert run.command is not None
-        left += np.sum(((run.command - host_law(run, robot, robot.position_gain * (1.0 + scale))) / top) ** 2, axis=0)
+        error = run.command - host_law(run, robot, robot.position_gain * (1.0 + scale))
+        left += np.sum((without_lost(run, error) / top) ** 2, axis=0)
     closure = 1.0 - float(left[bad].sum() / energy[bad].sum())
     actuator = "all" if len(bad) > 1 else ACTUATORS[bad[0]]
     where = _where("controller", actuator, gap, EXACT * float(np.median(top)), "position modes")
@@ -184,6 +185,8 @@ def _gain_error(runs: Sequence[RunSignals], robot: Robot, axis: int) -> float:
         pull = robot.position_gain * (run.reference - run.load)[:, axis]
         extra = run.command[:, axis] - run.reference_velocity[:, axis] - pull
         free = np.abs(run.command[:, axis]) < 0.999 * top
+        if run.lost is not None:
+            free &= ~run.lost
         slope += float(pull[free] @ extra[free])
         bend += float(pull[free] @ pull[free])
     return slope / bend if bend > 0.0 else 0.0

@@ -15,6 +15,7 @@ from sher3_gap.audit import check_parameters
 from sher3_gap.channels import Array
 from sher3_gap.errors import CaseError as CaseError
 from sher3_gap.signals import RunSignals, low_pass
+from sher3_gap.ticks import Gap, late_commands, on_grid, tick_grid
 
 RAMP_LIMIT = 0.25
 """Longest time from an unloaded tip to a stated plateau over which the load is taken as unknown, s."""
@@ -38,12 +39,11 @@ def signals_of(run: Run, robot: Robot, label: str = "run") -> RunSignals:
     """Align one run on its tick grid; see `RunSignals`. Raises `CaseError`."""
     if "drives/measured_js" not in run:
         raise CaseError(f"{label}: topic drives/measured_js is missing", remedy="record the drives' streams")
-    measured = run["drives/measured_js"]
-    stamps, name = measured.stamp, (run.path.name if run.path else label)
-    period = _period(stamps, robot.control_period, name)
-    ticks = len(stamps)
+    name = run.path.name if run.path else label
+    stamps, lost = tick_grid(run["drives/measured_js"].stamp, robot.control_period, name)
+    period = robot.control_period
 
-    def column(topic: str, *fields: str) -> Array | None:
+    def column(topic: str, *fields: str, gap: Gap = "line", counts: bool = True) -> Array | None:
         if topic not in run:
             return None
         stream = run[topic]
@@ -51,9 +51,12 @@ def signals_of(run: Run, robot: Robot, label: str = "run") -> RunSignals:
         if any(v is None for v in values):
             return None
         table = np.hstack([np.atleast_2d(np.asarray(v, dtype=float).T).T for v in values])
-        return _on_grid(stream.stamp, table, stamps, f"{name}: {topic}")
+        out, missing = on_grid(stream.stamp, table, stamps, f"{name}: {topic}", gap)
+        if counts:
+            np.logical_or(lost, missing, out=lost)
+        return out
 
-    wrench = column("force/measured_cf", "force", "torque")
+    wrench = column("force/measured_cf", "force", "torque", counts=False)
     contact, known = _contact(run, wrench, stamps, period)
     tracker = _tracker(run, stamps, period)
     motor = column("drives/measured_js", "position")
@@ -64,13 +67,13 @@ def signals_of(run: Run, robot: Robot, label: str = "run") -> RunSignals:
         excitation=run.metadata.excitation,
         repeat=run.metadata.repeat,
         period=period,
-        stage_clock=np.arange(ticks, dtype=np.float64) * period,
+        stage_clock=np.arange(len(stamps), dtype=np.float64) * period,
         motor=motor,
         effort=column("drives/measured_js", "effort"),
         reference=column("setpoint_js", "position"),
         reference_velocity=column("setpoint_js", "velocity"),
-        command=column("servo_jv", "velocity"),
-        echo=column("drives/setpoint_jv", "velocity"),
+        command=column("servo_jv", "velocity", gap="hold"),
+        echo=column("drives/setpoint_jv", "velocity", gap="next"),
         load=column("measured_js", "position"),
         wrench=wrench,
         contact=contact,
@@ -78,49 +81,10 @@ def signals_of(run: Run, robot: Robot, label: str = "run") -> RunSignals:
         temperature=_temperature(run, stamps),
         payload=run.metadata.payload,
         start=int(stamps[0]),
+        lost=lost if lost.any() else None,
+        late=late_commands(run, stamps),
         **tracker,  # type: ignore[arg-type]
     )
-
-
-def _period(stamps: np.ndarray, expected: float, name: str) -> float:
-    steps = np.diff(stamps)
-    if len(steps) < 100:
-        raise CaseError(
-            f"{name}: too short", value=f"{len(stamps)} ticks", limit="101 ticks", remedy="record longer runs"
-        )
-    if (steps <= 0).any():
-        at = int(np.argmax(steps <= 0))
-        raise CaseError(f"{name}: the clock jumps back at tick {at}", value=f"{steps[at] * 1e-9:.6f} s", limit="> 0 s")
-    period = float(np.median(steps)) * 1e-9
-    if abs(period / expected - 1.0) > 0.01:
-        raise CaseError(
-            f"{name}: tick period differs from robot.yaml's control_period",
-            value=f"{period:.6f} s",
-            limit=f"{expected:.6f} s",
-            remedy="use the robot.yaml that was in force",
-        )
-    if steps.max() > 1.5e9 * period:
-        at = int(np.argmax(steps))
-        raise CaseError(
-            f"{name}: ticks are missing after tick {at}",
-            value=f"{steps[at] * 1e-9:.6f} s",
-            limit=f"{period:.6f} s",
-            remedy="cut the run at the hole, or record without drops",
-        )
-    return expected
-
-
-def _on_grid(stamp: np.ndarray, values: Array, ticks: np.ndarray, what: str) -> Array:
-    if not np.isfinite(values).all():
-        at = int(np.argmax(~np.isfinite(values).all(axis=1)))
-        raise CaseError(f"{what}: not a finite number in sample {at}", value=str(values[at]), remedy="drop this run")
-    if len(stamp) == len(ticks) and (stamp == ticks).all():
-        return np.ascontiguousarray(values)
-    nearest = np.clip(np.searchsorted(stamp, ticks, side="right") - 1, 0, len(stamp) - 1)
-    lost = np.count_nonzero(stamp[nearest] != ticks)
-    if lost > 0.002 * len(ticks):
-        raise CaseError(f"{what}: samples are missing", value=f"{lost} of {len(ticks)}", limit="0.2 %")
-    return np.ascontiguousarray(values[nearest])
 
 
 def _contact(run: Run, wrench: Array | None, ticks: np.ndarray, period: float) -> tuple[Array, np.ndarray]:

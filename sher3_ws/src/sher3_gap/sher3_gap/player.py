@@ -18,7 +18,7 @@ AHEAD = 0.1
 """Seconds a set-point is sent before its tick."""
 SETTLE = 0.6
 """Seconds of rest at the start posture before the excitation."""
-PATIENCE = 60.0
+PATIENCE = 20.0
 """Seconds to wait for the robot to be enabled and at the start."""
 CLOSE = 5e-3
 """Distance from the start, as a share of an axis' travel, at which the robot has arrived."""
@@ -87,9 +87,9 @@ class Player:
         """
         self._since = self._since or stamp
         if self.phase in (Phase.ENABLE, Phase.APPROACH) and stamp - self._since > PATIENCE * 1e9:
-            raise PlayError(
-                f"still {self.phase.value}", value=self.heard.state or "nothing heard", limit=f"{PATIENCE} s"
-            )
+            heard = self.heard.state or "nothing heard"
+            remedy = "see supervisor/status" if self.heard.state else "start `sher3 up` with the same --domain"
+            raise PlayError(f"still {self.phase.value}", value=heard, limit=f"{PATIENCE:g} s", remedy=remedy)
         state = self._enable(stamp)
         move = self._approach(stamp)
         points = self._play(stamp)

@@ -17,6 +17,8 @@ from sher3_gap.geometry import Geometry
 from sher3_gap.signals import RunSignals
 
 Residuals = dict[Channel, Residual]
+SHORT = 20
+"""Samples below which a mean of their own would take most of a gap away."""
 
 
 @dataclass(frozen=True)
@@ -49,16 +51,24 @@ def drive_law(run: RunSignals, robot: Robot, demand: Array, position: Array | No
 
 
 def drive_residual(run: RunSignals, robot: Robot, demand: Demand | None = None) -> Residuals:
-    """Reported effort minus the PI law. The integrator's start is not recorded: each run's mean is free."""
+    """Reported effort minus the PI law. The integrator's start is not recorded: each run's mean is free, and again
+    behind each lost tick.
+    """
     if run.echo is None or run.effort is None:
         return {}
     values = run.to_grid(run.effort - drive_law(run, robot, run.echo if demand is None else demand.velocity))
-    return {Channel("drive", a): centred(values[:, i], run.inner) for i, a in enumerate(ACTUATORS)}
+    return {Channel("drive", a): centred(values[:, i], run.inner, run.pieces) for i, a in enumerate(ACTUATORS)}
 
 
-def centred(x: Array, ok: np.ndarray) -> Residual:
-    """Residual with the mean over the valid samples removed."""
-    return Residual((x - x[ok].mean())[:, None], ok)
+def centred(x: Array, ok: np.ndarray, pieces: np.ndarray) -> Residual:
+    """Residual with the mean over the valid samples of each piece removed; a piece of a few samples does not count."""
+    out, ok = x - x[ok].mean() if ok.any() else x.copy(), ok.copy()
+    for piece in np.unique(pieces) if pieces[-1] else ():
+        mine = (pieces == piece) & ok
+        ok[mine] = mine.sum() >= SHORT
+        if mine.any():
+            out[mine] = x[mine] - x[mine].mean()
+    return Residual(out[:, None], ok)
 
 
 def mean_force(run: RunSignals, robot: Robot, demand: Demand | None = None, steps: bool = True) -> Array:

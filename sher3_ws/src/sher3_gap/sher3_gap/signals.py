@@ -43,6 +43,8 @@ class RunSignals:
             (load ramps).
         temperature: (n,) deg C; `session_time`: s from the first run's start to this one's.
         payload: known tip loads as recorded; `start`: first stamp, ns.
+        lost: (n,) True where a tick was not recorded and is bridged; `late`: (n,) True where the host's command left
+            after its tick was over. None: no such tick.
     """
 
     name: str
@@ -67,6 +69,8 @@ class RunSignals:
     session_time: float = 0.0
     payload: tuple[tuple[float, float, float, float, float], ...] = ()
     start: int = 0
+    lost: NDArray[np.bool_] | None = None
+    late: NDArray[np.bool_] | None = None
 
     @property
     def ticks(self) -> int:
@@ -90,9 +94,30 @@ class RunSignals:
 
     @cached_property
     def inner(self) -> NDArray[np.bool_]:
-        """(g,) False within `EDGE` of either end."""
+        """(g,) False within `EDGE` of either end and of a lost tick."""
         edge = EDGE / self.period
-        return (self.grid >= edge) & (self.grid < self.ticks - edge)
+        inner = (self.grid >= edge) & (self.grid < self.ticks - edge)
+        if self.lost is None:
+            return inner
+        near = np.flatnonzero(self.lost)
+        return inner & (np.abs(self.grid[:, None] - near).min(axis=1) > edge)
+
+    @cached_property
+    def pieces(self) -> NDArray[np.int64]:
+        """(g,) number of lost ticks before each sample: where it changes, what was summed up since is not known."""
+        if self.lost is None:
+            return np.zeros(len(self.grid), dtype=np.int64)
+        return np.cumsum(self.lost)[self.grid]
+
+    @cached_property
+    def echo_tells(self) -> NDArray[np.bool_]:
+        """(n,) False where the echo cannot be compared: at the first tick, and at and behind lost or late ones."""
+        tells = np.arange(self.ticks) > 0
+        for odd in (self.lost, self.late):
+            if odd is not None:
+                for behind in range(3):
+                    tells[behind:] &= ~odd[: self.ticks - behind]
+        return tells
 
     @cached_property
     def loaded_ok(self) -> NDArray[np.bool_]:

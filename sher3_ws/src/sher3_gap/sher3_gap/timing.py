@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from sher3_description import Robot
 
 from sher3_gap.channels import Array
@@ -53,25 +54,29 @@ class Timing:
     scatter: float
 
 
-def scaled(run: RunSignals, robot: Robot) -> tuple[Array, Array]:
-    """Command and echo over the velocity limits, (n, axes) each."""
+Pair = tuple[Array, Array, NDArray[np.bool_]]
+"""Command and echo over the velocity limits, (n, axes) each, and the ticks whose echo tells, (n,)."""
+
+
+def scaled(run: RunSignals, robot: Robot) -> Pair:
+    """Return command and echo of a run."""
     assert run.command is not None and run.echo is not None
     top = np.array([a.limits.velocity for a in robot.actuators])
-    return run.command / top, run.echo / top
+    return run.command / top, run.echo / top, run.echo_tells
 
 
-def constant_latency(pairs: Sequence[tuple[Array, Array]], axis: int | None = None) -> tuple[float, float]:
+def constant_latency(pairs: Sequence[Pair], axis: int | None = None) -> tuple[float, float]:
     """Best constant latency (periods) and the energy it leaves; of one axis, or of all together."""
     best = (0.0, np.inf)
     pick = slice(None) if axis is None else slice(axis, axis + 1)
     for whole in range(MAX_TICKS):
         slope = bend = 0.0
-        for command, echo in pairs:
-            new, old = delayed(command[:, pick], 1 + whole), delayed(command[:, pick], 2 + whole)
-            slope += float(np.sum((new - old) * (new - echo[:, pick])))
+        for command, echo, ok in pairs:
+            new, old = delayed(command[:, pick], 1 + whole)[ok], delayed(command[:, pick], 2 + whole)[ok]
+            slope += float(np.sum((new - old) * (new - echo[ok][:, pick])))
             bend += float(np.sum((new - old) ** 2))
         part = float(np.clip(slope / bend, 0.0, 1.0)) if bend > 0.0 else 0.0
-        left = sum(float(np.sum((e[:, pick] - shifted(c[:, pick], whole + part)) ** 2)) for c, e in pairs)
+        left = sum(float(np.sum((e[:, pick] - shifted(c[:, pick], whole + part))[ok] ** 2)) for c, e, ok in pairs)
         if left < best[1] - 1e-18:
             best = (whole + part, left)
         elif whole > best[0] + 3:
@@ -108,15 +113,15 @@ def timing_of(runs: Sequence[RunSignals], robot: Robot) -> Timing | None:
     pairs = [scaled(run, robot) for run in runs if run.command is not None and run.echo is not None]
     if not pairs:
         return None
-    energy = sum(float(np.sum((e - delayed(c, 1)) ** 2)) for c, e in pairs)
+    energy = sum(float(np.sum((e - delayed(c, 1))[ok] ** 2)) for c, e, ok in pairs)
     axes = [constant_latency(pairs, i) for i in range(pairs[0][0].shape[1])]
     latency = np.array([a[0] for a in axes])
     common, together = constant_latency(pairs)
     told, left = [], 0.0
-    for command, echo in pairs:
+    for command, echo, ok in pairs:
         ticks, error = tick_latency(command, echo, latency)
-        told.append(ticks[np.isfinite(ticks)])
-        left += float(np.sum(error**2))
+        told.append(ticks[np.isfinite(ticks) & ok])
+        left += float(np.sum(error[ok] ** 2))
     samples = np.concatenate(told)
     middle = float(np.median(samples)) if len(samples) else common
     late = samples > middle + 0.75
