@@ -15,6 +15,7 @@ import lz4.frame
 import numpy as np
 import zstandard
 from mcap.opcode import Opcode
+from sher3_description import FileError, files
 
 from sher3_bags import kernels
 from sher3_bags.errors import DamagedBagError, ForeignBagError, LimitError
@@ -53,12 +54,10 @@ def read_bytes(path: Path) -> memoryview:
         LimitError: it is too large.
     """
     try:
-        size = path.stat().st_size
-        if size > MAX_FILE:
-            raise LimitError("file too large", path=path, value=size, limit=MAX_FILE, remedy="split the recording")
-        data = path.read_bytes()
-    except OSError as error:
-        raise ForeignBagError(f"cannot be read: {error.strerror}", path=path) from error
+        data = files.read_bytes(path, MAX_FILE)
+    except FileError as error:
+        kind = LimitError if error.limit is not None else ForeignBagError
+        raise kind(error.reason, path=path, value=error.value, limit=error.limit, remedy=error.remedy) from error
     if data[: len(MAGIC)] != MAGIC:
         raise ForeignBagError("not an MCAP file", path=path, value=data[:8].hex() or "empty", limit=MAGIC.hex())
     return memoryview(data)

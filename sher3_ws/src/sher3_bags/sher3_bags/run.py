@@ -149,7 +149,7 @@ class RunMetadata:
         for key, text in known.items():
             try:
                 parsed[key] = _PARSERS[key](text)
-            except (ValueError, TypeError) as error:
+            except (ValueError, TypeError, RecursionError) as error:
                 raise TopicError(
                     f"metadata entry {key!r} does not parse", topic="sher3.run", value=text[:80]
                 ) from error

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import shutil
 from collections.abc import Callable
@@ -10,7 +9,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-from sher3_description import Sher3Error
+from sher3_description import Sher3Error, read_json
 from sher3_runtime.ports import STATISTICS_VARIABLE
 
 from .errors import ConfigurationError
@@ -57,7 +56,7 @@ def run_demo(
     os.environ[STATISTICS_VARIABLE] = str(statistics)
     try:
         run_graph(settings, say, {"teleop": lambda: [_surgeon(script)]}, _Progress(script, say))
-        nodes = {path.stem: json.loads(path.read_text())["statistics"] for path in sorted(statistics.glob("*.json"))}
+        nodes = {path.stem: read_json(path)["statistics"] for path in sorted(statistics.glob("*.json"))}
     finally:
         shutil.rmtree(statistics, ignore_errors=True)
     return _evaluate(settings, script, bag, nodes, say)

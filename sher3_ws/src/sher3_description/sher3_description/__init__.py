@@ -1,5 +1,6 @@
 """Parameters, topic table, errors and URDF of the SHER 3.0."""
 
+from .array_files import read_arrays as read_arrays
 from .equipment import ACTUATORS as ACTUATORS
 from .equipment import Actuator as Actuator
 from .equipment import Admittance as Admittance
@@ -9,7 +10,11 @@ from .equipment import Limits as Limits
 from .equipment import Tracker as Tracker
 from .errors import FileError as FileError
 from .errors import Sher3Error as Sher3Error
+from .files import dump_yaml as dump_yaml
+from .files import parse_json as parse_json
 from .files import parse_yaml as parse_yaml
+from .files import read_bytes as read_bytes
+from .files import read_json as read_json
 from .files import read_text as read_text
 from .files import read_yaml as read_yaml
 from .invalid_robot import InvalidRobot as InvalidRobot

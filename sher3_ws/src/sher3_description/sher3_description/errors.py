@@ -43,11 +43,12 @@ class Sher3Error(ValueError):
 
 
 class FileError(Sher3Error):
-    """A file cannot be read or written; carries `path`."""
+    """A file cannot be read or written; carries `path`, and `reason`, what is wrong without the path."""
 
     def __init__(self, what: str, *, path: object, **details: Any) -> None:
         super().__init__(f"{path}: {what}", **details)
         self.path = str(path)
+        self.reason = what
 
 
 def _rebuild(cls: type[Sher3Error], args: tuple[Any, ...], state: dict[str, Any]) -> Sher3Error:

@@ -1,7 +1,14 @@
-"""Reading small text and YAML files: size-limited, safe loading only, no construction of objects."""
+"""The door of every file that is read: regular files of bounded size only, as bytes, text, YAML or JSON.
+
+Plain data alone comes out of it: no construction of objects, no aliases, bounded nesting. Arrays have `array_files`.
+"""
 
 from __future__ import annotations
 
+import json
+import os
+import stat
+from collections import Counter
 from pathlib import Path
 from typing import Any
 
@@ -15,26 +22,48 @@ MAX_CONFIGURATION_BYTES = 1 << 20
 MAX_DEPTH = 32
 """Nesting of mappings and lists that any of our files stays far below."""
 
+_SafeLoader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+_SafeDumper: Any = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
 
-def read_text(path: Path | str, max_bytes: int = MAX_CONFIGURATION_BYTES) -> str:
-    """Return the UTF-8 text of a regular file of at most `max_bytes`.
+
+def read_bytes(path: Path | str, max_bytes: int = MAX_CONFIGURATION_BYTES) -> bytes:
+    """Return the content of a regular file of at most `max_bytes`, as long as it was when it was opened.
 
     Raises:
-        FileError: missing, not a regular file, too large, unreadable or not UTF-8.
+        FileError: missing, not a regular file (folder, pipe, device, socket), too large or unreadable.
     """
     path = Path(path)
-    if not path.is_file():
-        what = "is not a regular file" if path.exists() else "no such file"
-        raise FileError(what, path=path, remedy="give the path of an existing file")
     try:
-        with path.open("rb") as stream:
-            raw = stream.read(max_bytes + 1)
-        if len(raw) > max_bytes:
-            remedy = "give a file of the expected kind"
-            raise FileError("too large [bytes]", path=path, value=path.stat().st_size, limit=max_bytes, remedy=remedy)
-        return raw.decode("utf-8")
+        _require_regular(os.stat(path), path)
+        # Between the two looks it may have become a pipe: never wait for one.
+        with os.fdopen(os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC), "rb") as stream:
+            status = os.fstat(stream.fileno())
+            _require_regular(status, path)
+            if status.st_size > max_bytes:
+                remedy = "give a file of the expected kind"
+                raise FileError("too large [bytes]", path=path, value=status.st_size, limit=max_bytes, remedy=remedy)
+            return stream.read(status.st_size)
+    except FileNotFoundError as error:
+        raise FileError("no such file", path=path, remedy="give the path of an existing file") from error
     except OSError as error:
-        raise FileError(f"cannot be read: {error.strerror}", path=path, remedy="check its permissions") from error
+        raise FileError(f"cannot be read: {error.strerror}", path=path, remedy="check path and permissions") from error
+
+
+def _require_regular(status: os.stat_result, path: Path) -> None:
+    if not stat.S_ISREG(status.st_mode):
+        kind = {stat.S_IFDIR: "folder", stat.S_IFIFO: "pipe", stat.S_IFSOCK: "socket"}
+        value = kind.get(stat.S_IFMT(status.st_mode), "device")
+        raise FileError("is not a regular file", path=path, value=value, remedy="give the path of an existing file")
+
+
+def read_text(path: Path | str, max_bytes: int = MAX_CONFIGURATION_BYTES, encoding: str = "utf-8") -> str:
+    """Return the UTF-8 text (`utf-8-sig`: less its mark) of a regular file of at most `max_bytes`.
+
+    Raises:
+        FileError: as `read_bytes`, or not UTF-8.
+    """
+    try:
+        return read_bytes(path, max_bytes).decode(encoding)
     except UnicodeDecodeError as error:
         raise FileError("is not UTF-8 text", path=path, value=f"byte {error.start}", remedy="save as UTF-8") from error
 
@@ -48,7 +77,8 @@ def parse_yaml(text: str, source: Path | str = "<text>", max_bytes: int = MAX_CO
         FileError: too long, not valid YAML, or not a mapping at the top.
     """
     if len(text) > max_bytes:
-        raise FileError("too large [characters]", path=source, value=len(text), limit=max_bytes)
+        remedy = "give a file of the expected kind"
+        raise FileError("too large [characters]", path=source, value=len(text), limit=max_bytes, remedy=remedy)
     try:
         _refuse_aliases_and_depth(text, source)
         data = yaml.load(text, Loader=_StrictLoader)
@@ -62,12 +92,12 @@ def parse_yaml(text: str, source: Path | str = "<text>", max_bytes: int = MAX_CO
     return data
 
 
-class _StrictLoader(yaml.SafeLoader):
+class _StrictLoader(_SafeLoader):
     """Safe loading that refuses a key given twice, of which YAML would silently keep the last."""
 
     def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
-        keys = [key.value for key, _ in node.value]
-        twice = next((key for key in keys if keys.count(key) > 1), None)
+        keys = Counter(key.value for key, _ in node.value if isinstance(key, yaml.ScalarNode))
+        twice = next((key for key, count in keys.items() if count > 1), None)
         if twice is not None:
             raise yaml.constructor.ConstructorError(None, None, f"key {twice!r} is given twice", node.start_mark)
         return super().construct_mapping(node, deep=deep)
@@ -75,7 +105,7 @@ class _StrictLoader(yaml.SafeLoader):
 
 def _refuse_aliases_and_depth(text: str, source: Path | str) -> None:
     depth = 0
-    for event in yaml.parse(text, Loader=yaml.SafeLoader):
+    for event in yaml.parse(text, Loader=_SafeLoader):
         place = f"line {event.start_mark.line + 1}" if event.start_mark else None
         depth += isinstance(event, yaml.CollectionStartEvent) - isinstance(event, yaml.CollectionEndEvent)
         if depth > MAX_DEPTH:
@@ -87,3 +117,34 @@ def _refuse_aliases_and_depth(text: str, source: Path | str) -> None:
 def read_yaml(path: Path | str, max_bytes: int = MAX_CONFIGURATION_BYTES) -> dict[str, Any]:
     """Read and parse one YAML file; see `read_text` and `parse_yaml` for the errors raised."""
     return parse_yaml(read_text(path, max_bytes), source=path, max_bytes=max_bytes)
+
+
+class _PlainDumper(_SafeDumper):
+    """Writes what occurs twice out in full: `parse_yaml` takes no aliases."""
+
+    def ignore_aliases(self, data: Any) -> bool:
+        return True
+
+
+def dump_yaml(data: Any) -> str:
+    """Return plain data as YAML that `parse_yaml` reads back."""
+    return str(yaml.dump(data, Dumper=_PlainDumper, sort_keys=False))
+
+
+def parse_json(text: str | bytes, source: Path | str = "<text>") -> Any:
+    """Parse JSON.
+
+    Raises:
+        FileError: not valid JSON, or nested too deeply.
+    """
+    try:
+        return json.loads(text)
+    except RecursionError as error:
+        raise FileError("is nested too deeply", path=source, remedy="flatten it") from error
+    except ValueError as error:
+        raise FileError(f"is not valid JSON: {error}", path=source, remedy="correct the file") from error
+
+
+def read_json(path: Path | str, max_bytes: int = MAX_CONFIGURATION_BYTES) -> Any:
+    """Read and parse one JSON file; see `read_text` and `parse_json` for the errors raised."""
+    return parse_json(read_text(path, max_bytes), source=path)

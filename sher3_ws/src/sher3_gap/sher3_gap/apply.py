@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from sher3_description import ACTUATORS, Robot, Sher3Error
+from sher3_description import ACTUATORS, FileError, Robot, Sher3Error
 from sher3_sim import Effect, save_effects
 
 from sher3_gap.channels import Array, Channel, unit_of
@@ -60,8 +60,8 @@ def read_verdict(path: Path) -> Verdict:
     """
     try:
         found = Verdict.read(path)
-    except OSError as error:
-        raise ApplyError(f"{path}: cannot be read", value=error.strerror, remedy="name a verdict.json") from error
+    except FileError as error:
+        raise ApplyError(str(error), value=error.value, limit=error.limit, remedy="name a verdict.json") from error
     except ValueError as error:
         reason = str(error).splitlines()[0]
         raise ApplyError(f"{path}: is not a verdict", value=reason, limit="sher3.verdict/1") from error

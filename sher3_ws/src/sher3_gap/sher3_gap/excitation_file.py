@@ -14,14 +14,14 @@ from pathlib import Path, PurePosixPath
 from typing import Any, Literal
 
 import numpy as np
-import yaml
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
-from sher3_description import FileError, Robot
+from sher3_description import FileError, Robot, dump_yaml, read_arrays, read_yaml
 
 from sher3_gap.excitation import Excitation, check_limits
 
 SCHEMA = "sher3.excitation/1"
 MAX_TICKS = 600_000
+MAX_BYTES = 2 * MAX_TICKS * 5 * 8 + 4096
 
 
 class _Header(BaseModel):
@@ -55,7 +55,7 @@ def save_excitation(path: Path, excitation: Excitation, about: Mapping[str, Any]
         "about": dict(about or {}),
     }
     try:
-        path.write_text(yaml.safe_dump(header, sort_keys=False), encoding="utf-8")
+        path.write_text(dump_yaml(header), encoding="utf-8")
         np.savez_compressed(data, position=excitation.position, velocity=excitation.velocity)
     except OSError as error:
         raise FileError("cannot be written", path=path, value=error.strerror, remedy="choose another name") from error
@@ -66,7 +66,7 @@ def load_excitation(path: Path, robot: Robot) -> Excitation:
     """Read an excitation and check it against the robot's limits.
 
     Raises:
-        FileError: a file is missing, not of the schema, or of another control period.
+        FileError: a file is missing, too large, not of the schema, or of another control period.
         ExcitationError: a limit of the robot is not kept.
     """
     header = _read_header(path)
@@ -82,24 +82,23 @@ def load_excitation(path: Path, robot: Robot) -> Excitation:
 
 def _read_header(path: Path) -> _Header:
     try:
-        header = _Header.model_validate(yaml.safe_load(path.read_text(encoding="utf-8")))
-    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
-        raise FileError(f"cannot be read: {error}", path=path, remedy="name an excitation's YAML file") from error
+        header = _Header.model_validate(read_yaml(path))
     except ValidationError as error:
         first = error.errors()[0]
         where = ".".join(str(x) for x in first["loc"]) or "the file"
         raise FileError(f"is not an excitation: {where}: {first['msg']}", path=path, limit=SCHEMA) from error
-    if PurePosixPath(header.data).name != header.data:
-        raise FileError("data must be named by its plain name", path=path, value=header.data)
+    if PurePosixPath(header.data).name != header.data or header.data in ("", "..") or "\0" in header.data:
+        remedy = "name a file in the same folder"
+        raise FileError("data must be named by its plain name", path=path, value=repr(header.data), remedy=remedy)
     return header
 
 
 def _read_samples(path: Path) -> tuple[np.ndarray, np.ndarray]:
+    stored = read_arrays(path, ("position", "velocity"), MAX_BYTES)
     try:
-        with np.load(path, allow_pickle=False) as stored:
-            position, velocity = (np.asarray(stored[key], dtype=float) for key in ("position", "velocity"))
-    except (OSError, KeyError, ValueError) as error:
-        raise FileError(f"samples cannot be read: {error}", path=path, remedy="keep the npz beside its YAML") from error
+        position, velocity = (np.asarray(stored[key], dtype=float) for key in ("position", "velocity"))
+    except ValueError as error:
+        raise FileError(f"samples are no numbers: {error}", path=path, remedy="design it again") from error
     if position.ndim != 2 or position.shape[1] != 5 or velocity.shape != position.shape:
         raise FileError(
             "samples have the wrong shape", path=path, value=(position.shape, velocity.shape), limit="(n, 5)"

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field, field_validator, model_validator
+from sher3_description import read_text
 
 SCHEMA = "sher3.verdict/1"
 Status = Literal["no_gap", "attributed", "under_excited", "outside_library"]
@@ -131,5 +132,5 @@ class Verdict(_Model):
 
     @classmethod
     def read(cls, path: Path) -> Verdict:
-        """Read and validate a verdict file; raises `pydantic.ValidationError` naming each wrong field."""
-        return cls.model_validate_json(path.read_text(encoding="utf-8"))
+        """Read and validate a verdict file; raises FileError, or `pydantic.ValidationError` naming each wrong field."""
+        return cls.model_validate_json(read_text(path))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import json
 import shutil
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -13,7 +12,7 @@ from typing import Any
 import yaml
 from joblib import Parallel, delayed
 from sher3_bags import Run, write_case
-from sher3_description import Robot, load_robot
+from sher3_description import Robot, load_robot, read_json
 
 from .calibrate import calibrated, distinct_runs, ideal_residuals, reference_floor, residual_keys
 from .oracle import StageOracle, excess, floors, oracle, stage_residuals
@@ -21,6 +20,7 @@ from .plan import TARGETS, CasePlan, ChallengeError, draw_plan
 from .truth.plant import Plant
 
 CASES, LABELS, MANIFEST = "cases", "labels", "manifest.json"
+MAX_MANIFEST_BYTES = 64 << 20
 STATUS = {"healthy": "no_gap", "outside": "outside_library", "under_excited": "under_excited"}
 
 
@@ -148,7 +148,7 @@ def check_seal(folder: Path) -> None:
     Raises:
         ChallengeError: a file is not what was sealed.
     """
-    manifest = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
+    manifest = read_json(folder / MANIFEST, MAX_MANIFEST_BYTES)
     now = hashes(folder / CASES) | hashes(folder / LABELS, LABELS)
     changed = sorted(key for key in now.keys() | manifest.keys() if now.get(key) != manifest.get(key))
     if changed:

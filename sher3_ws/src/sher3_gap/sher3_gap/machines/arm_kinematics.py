@@ -8,10 +8,13 @@ from xml.etree import ElementTree
 
 import numpy as np
 from scipy.spatial.transform import Rotation
+from sher3_description import FileError, read_text
 
 from sher3_gap.channels import Array
 from sher3_gap.machines.description import ArmMachine
 from sher3_gap.machines.errors import MachineError
+
+MAX_URDF_BYTES = 4_000_000
 
 
 @dataclass(frozen=True)
@@ -80,8 +83,11 @@ def postures(arm: Arm, q: Array) -> Postures:
 
 def _from_urdf(path: Path, base: str, tip: str) -> Arm:
     try:
-        root = ElementTree.parse(path).getroot()
-    except (OSError, ElementTree.ParseError) as error:
+        text = read_text(path, MAX_URDF_BYTES)
+        if "<!DOCTYPE" in text:  # what declares entities can expand without bound or name other files
+            raise MachineError(f"{path}: has a document type", value="<!DOCTYPE", remedy="give a plain URDF file")
+        root = ElementTree.fromstring(text)
+    except (FileError, ElementTree.ParseError) as error:
         raise MachineError(f"{path}: cannot be read", value=str(error), remedy="give a URDF file") from error
     above = {j.find("child").attrib["link"]: j for j in root.iter("joint") if j.find("child") is not None}  # type: ignore[union-attr]
     chain, link = [], tip

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
+from sher3_description import FileError, read_json, read_text
 
 from sher3_gap.machines.arm_data import ArmData, arm_data
 from sher3_gap.machines.description import ArmMachine, AxesMachine, load_machine
@@ -93,14 +94,14 @@ def _names(data: Sequence[Path]) -> list[str]:
 
 def _notes(path: Path) -> list[str]:
     try:
-        return list(json.loads(path.read_text(encoding="utf-8"))["notes"])
-    except (OSError, ValueError, KeyError):
+        return list(map(str, read_json(path)["notes"]))
+    except (FileError, KeyError, TypeError):
         return []
 
 
 def _resolved(description: Path, machine: AxesMachine | ArmMachine) -> str:
     """The description as written; a URDF is named by its absolute path, so that the case can be moved away from it."""
-    text = description.read_text(encoding="utf-8")
+    text = read_text(description)
     if isinstance(machine, ArmMachine) and machine.urdf is not None:
         text = text.replace(str(machine.urdf), str((description.parent / machine.urdf).resolve()))
     return text

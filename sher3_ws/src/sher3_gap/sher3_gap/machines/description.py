@@ -10,8 +10,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Literal
 
-import yaml
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError, model_validator
+from sher3_description import FileError, read_yaml
 
 from sher3_gap.machines.errors import MachineError
 
@@ -225,8 +225,8 @@ def load_machine(path: Path) -> AxesMachine | ArmMachine:
         MachineError: the file cannot be read, or a field is wrong; the error names the field.
     """
     try:
-        data = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
+        data = read_yaml(path)
+    except FileError as error:
         raise MachineError(f"{path}: cannot be read", value=str(error), remedy="give a YAML description") from error
     try:
         return TypeAdapter(Machine).validate_python(data)

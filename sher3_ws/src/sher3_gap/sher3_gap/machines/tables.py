@@ -9,12 +9,14 @@ from pathlib import Path
 
 import numpy as np
 import scipy.io
+from sher3_description import read_arrays, read_json, read_text
 
 from sher3_gap.channels import Array
 from sher3_gap.machines.errors import MachineError
 
 Tables = dict[str, Array]
 MAX_BYTES = 2_000_000_000
+MAX_TEXT_BYTES = 500_000_000
 
 
 def read_tables(path: Path) -> Tables:
@@ -49,7 +51,7 @@ def _read(path: Path) -> Tables:
 
 def _csv(path: Path) -> Tables:
     """A header and rows, separated by commas, semicolons, tabs or blanks; without a header columns are c0, c1, ..."""
-    text = path.read_text(encoding="utf-8-sig")
+    text = read_text(path, MAX_TEXT_BYTES, "utf-8-sig")
     first = text.split("\n", 1)[0]
     mark = next((m for m in ",;\t" if m in first), None)
     lines = text.splitlines()
@@ -80,13 +82,12 @@ def _mat(path: Path) -> Tables:
 
 
 def _npz(path: Path) -> Tables:
-    with np.load(path, allow_pickle=False) as archive:
-        return _numeric({k: archive[k] for k in archive.files})
+    return _numeric(read_arrays(path, max_bytes=MAX_BYTES))
 
 
 def _json(path: Path) -> Tables:
     """Named lists; a list of objects is a table, `name/key`."""
-    data = json.loads(path.read_text(encoding="utf-8"))
+    data = read_json(path, MAX_TEXT_BYTES)
     if not isinstance(data, dict):
         raise ValueError("the top level is not an object of named arrays")
     found: dict[str, object] = {}

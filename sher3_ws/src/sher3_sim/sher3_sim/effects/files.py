@@ -6,8 +6,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-import yaml
-from sher3_description import FileError
+from sher3_description import FileError, dump_yaml, read_yaml
 
 from sher3_sim.effects.base import EFFECTS, Effect
 from sher3_sim.errors import EffectError
@@ -49,11 +48,8 @@ def load_effects(path: Path | str) -> list[Effect]:
         FileError: it cannot be read or is not of the schema.
         EffectError: an entry is wrong.
     """
-    try:
-        data = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
-        raise FileError(f"cannot be read: {error}", path=path) from error
-    schema = data.get("schema") if isinstance(data, Mapping) else None
+    data = read_yaml(path)
+    schema = data.get("schema")
     if schema != SCHEMA:
         raise FileError("is not an effects file", path=path, value=schema, limit=SCHEMA, remedy="set schema")
     entries = data.get("effects")
@@ -65,4 +61,4 @@ def load_effects(path: Path | str) -> list[Effect]:
 def save_effects(path: Path | str, effects: Iterable[Effect]) -> None:
     """Write an effects file that `load_effects` reads back to equal effects."""
     content = {"schema": SCHEMA, "effects": [effect_to_dict(effect) for effect in effects]}
-    Path(path).write_text(yaml.safe_dump(content, sort_keys=False), encoding="utf-8")
+    Path(path).write_text(dump_yaml(content), encoding="utf-8")

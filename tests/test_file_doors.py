@@ -1,0 +1,348 @@
+"""Every file the robot reads, at every door: bounded in size and kind, plain data only, and a typed error otherwise."""
+
+import ast
+import contextlib
+import os
+import socket
+import zipfile
+from io import BytesIO
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from sher3_bags import read_case, read_run
+from sher3_bringup.surgeon import load_script
+from sher3_description import (
+    FileError,
+    Sher3Error,
+    load_robot,
+    parse_json,
+    parse_yaml,
+    read_arrays,
+    read_bytes,
+    read_json,
+    read_text,
+    read_yaml,
+)
+from sher3_description.files import MAX_CONFIGURATION_BYTES, MAX_DEPTH
+from sher3_gap.apply import read_verdict
+from sher3_gap.excitation_file import load_excitation
+from sher3_gap.machines.arm_kinematics import _from_urdf
+from sher3_gap.machines.description import load_machine
+from sher3_gap.machines.tables import read_tables
+from sher3_sim import load_effects
+from sources import FILES, ROOT
+
+ROBOT = load_robot()
+HEADER = "schema: sher3.excitation/1\nname: a\namplitude: 1.0\nperiod: 0.002\ndata: "
+
+DOORS = {
+    "robot.yaml": load_robot,
+    "effects.yaml": load_effects,
+    "script.yaml": load_script,
+    "machine.yaml": load_machine,
+    "excitation.yaml": lambda path: load_excitation(path, ROBOT),
+    "verdict.json": read_verdict,
+    "case/case.yaml": lambda path: read_case(path.parent),
+    "run.mcap": read_run,
+    "table.npz": read_tables,
+    "table.csv": read_tables,
+    "table.json": read_tables,
+    "arm.urdf": lambda path: _from_urdf(path, "base", "tip"),
+}
+YAML_DOORS = [name for name in DOORS if name.endswith(".yaml")]
+
+
+def door_and_path(name: str, folder: Path):
+    path = folder / name
+    path.parent.mkdir(exist_ok=True)
+    return DOORS[name], path
+
+
+def refusal(door, path) -> str:
+    with pytest.raises(Sher3Error) as caught:
+        door(path)
+    assert path.name in str(caught.value) or path.parent.name in str(caught.value)
+    return str(caught.value)
+
+
+@pytest.mark.parametrize("name", DOORS)
+def test_what_is_no_regular_file_is_refused_and_never_waited_for(name, tmp_path):
+    """A pipe without a writer and a terminal would hold a reader for ever."""
+    door, path = door_and_path(name, tmp_path)
+    refusal(door, path)
+    path.symlink_to(path)
+    refusal(door, path)
+    path.unlink()
+    os.mkfifo(path)
+    refusal(door, path)
+    path.unlink()
+    path.symlink_to("/dev/zero")
+    refusal(door, path)
+    path.unlink()
+    path.mkdir()
+    refusal(door, path)
+
+
+@pytest.mark.parametrize("name", DOORS)
+def test_a_huge_file_is_refused_by_its_size_before_it_is_read(name, tmp_path):
+    """The file is a hole of a tebibyte: reading it would not fit the memory."""
+    door, path = door_and_path(name, tmp_path)
+    with path.open("wb") as file:
+        file.truncate(1 << 40)
+    text = refusal(door, path)
+    assert "too large" in text and str(1 << 40) in text and "limit" in text
+
+
+@pytest.mark.parametrize("name", [name for name in DOORS if name != "table.csv"])  # any text is a table
+@pytest.mark.parametrize(
+    "content", [b"", b"\0" * 100, b"\xff\xfe\xfd", b"[", b"{", b"PK\x03\x04" + bytes(50), b"- a\n"]
+)
+def test_garbage_is_refused(name, content, tmp_path):
+    door, path = door_and_path(name, tmp_path)
+    path.write_bytes(content)
+    refusal(door, path)
+
+
+@pytest.mark.parametrize("name", YAML_DOORS)
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("a: &a [x, x]\nb: &b [*a, *a]\nc: [*b, *b]\n", "alias"),
+        ("a: !!python/object/apply:os.system ['false']\n", "constructor"),
+        ("a: !!python/name:os.system\n", "constructor"),
+        ("a: " + "[" * 200 + "]" * 200, "nested too deeply"),
+        ("{a: " * 200 + "1" + "}" * 200, "nested too deeply"),
+        ("schema: x\nschema: y\n", "given twice"),
+        ("a: 1" + "0" * 5000 + "\n", "not valid YAML"),
+        ("a: 1\n---\nb: 2\n", "not valid YAML"),
+    ],
+)
+def test_yaml_that_is_not_plain_data_is_refused(name, text, says, tmp_path):
+    door, path = door_and_path(name, tmp_path)
+    path.write_text(text)
+    assert says in refusal(door, path)
+
+
+def test_an_alias_bomb_costs_nothing(tmp_path):
+    """Nine levels of nine aliases would be 9^9 entries."""
+    lines = ["a0: &a0 [x, x, x, x, x, x, x, x, x]"]
+    lines += [f"a{k}: &a{k} [{', '.join([f'*a{k - 1}'] * 9)}]" for k in range(1, 9)]
+    path = tmp_path / "bomb.yaml"
+    path.write_text("\n".join(lines))
+    with pytest.raises(FileError, match="YAML alias; value line 2"):
+        read_yaml(path)
+
+
+def test_limits_name_size_and_limit(tmp_path):
+    path = tmp_path / "big.yaml"
+    path.write_bytes(b"#" * (MAX_CONFIGURATION_BYTES + 1))
+    for read in (read_text, read_yaml, read_json, read_bytes):
+        with pytest.raises(FileError, match="too large") as caught:
+            read(path)
+        assert (caught.value.value, caught.value.limit) == (MAX_CONFIGURATION_BYTES + 1, MAX_CONFIGURATION_BYTES)
+    path.write_bytes(b"#" * MAX_CONFIGURATION_BYTES)
+    assert len(read_bytes(path)) == MAX_CONFIGURATION_BYTES
+    assert parse_yaml("a: " + "[" * (MAX_DEPTH - 1) + "]" * (MAX_DEPTH - 1))
+    with pytest.raises(FileError, match="deeply"):
+        parse_yaml("a: " + "[" * MAX_DEPTH + "]" * MAX_DEPTH)
+
+
+def test_a_socket_is_refused(tmp_path):
+    with socket.socket(socket.AF_UNIX) as server:
+        server.bind(str(tmp_path / "s"))
+        with pytest.raises(FileError, match="socket"):
+            read_bytes(tmp_path / "s")
+
+
+def test_json_is_bounded_in_depth_and_digits(tmp_path):
+    path = tmp_path / "verdict.json"
+    path.write_text("[" * 100_000)
+    refusal(DOORS["verdict.json"], path)
+    with pytest.raises(FileError, match="deeply"):
+        parse_json("[" * 100_000 + "]" * 100_000)
+    with pytest.raises(FileError, match="not valid JSON"):
+        parse_json("1" * 10_000)
+
+
+def test_urdf_entities_are_refused(tmp_path):
+    path = tmp_path / "arm.urdf"
+    path.write_text(
+        '<?xml version="1.0"?>\n<!DOCTYPE x [<!ENTITY a SYSTEM "file:///etc/hostname">]>\n<robot>&a;</robot>'
+    )
+    assert "document type" in refusal(DOORS["arm.urdf"], path)
+
+
+def npz(**arrays) -> bytes:
+    out = BytesIO()
+    np.savez_compressed(out, **arrays)
+    return out.getvalue()
+
+
+def test_arrays_come_back_equal_and_whole(tmp_path):
+    given_arrays = {
+        "a": np.arange(6.0).reshape(2, 3),
+        "b": np.asfortranarray(np.arange(6).reshape(2, 3)),
+        "c": np.empty(0),
+    }
+    path = tmp_path / "a.npz"
+    path.write_bytes(npz(**given_arrays))
+    back = read_arrays(path)
+    assert list(back) == ["a", "b", "c"] and all(np.array_equal(back[k], x) for k, x in given_arrays.items())
+    assert list(read_arrays(path, ["b"])) == ["b"]
+    with pytest.raises(FileError, match="lacks an array; value d; limit a, b, c"):
+        read_arrays(path, ["d"])
+
+
+def test_arrays_that_unpack_to_too_much_are_refused_before_they_do(tmp_path):
+    path = tmp_path / "bomb.npz"
+    path.write_bytes(npz(a=np.zeros(1_000_000)))  # 8 MB in 8 kB
+    assert path.stat().st_size < 20_000
+    with pytest.raises(FileError, match="unpacks to too much") as caught:
+        read_arrays(path, max_bytes=1_000_000)
+    assert caught.value.value > 8_000_000 and caught.value.limit == 1_000_000
+
+
+def test_an_array_that_declares_more_than_it_holds_is_refused(tmp_path):
+    out = BytesIO()
+    np.lib.format.write_array_header_1_0(out, {"descr": "<f8", "fortran_order": False, "shape": (10**15,)})
+    path = tmp_path / "lie.npz"
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr("a.npy", out.getvalue() + bytes(80))
+    with pytest.raises(FileError, match="declares what it does not hold"):
+        read_arrays(path)
+
+
+def test_objects_are_never_unpickled(tmp_path):
+    class Trap:
+        def __reduce__(self):
+            return os.mkdir, (str(tmp_path / "sprung"),)
+
+    path = tmp_path / "trap.npz"
+    path.write_bytes(npz(position=np.array([Trap()], dtype=object)))
+    with pytest.raises(FileError):
+        read_arrays(path)
+    with pytest.raises(Sher3Error):
+        read_tables(path)
+    assert not (tmp_path / "sprung").exists()
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp("spoilt")
+
+
+@settings(max_examples=150, deadline=None, derandomize=True)
+@given(st.data())
+def test_a_spoilt_npz_is_an_error_or_arrays(folder, data):
+    raw = bytearray(npz(a=np.arange(20.0)))
+    for _ in range(data.draw(st.integers(1, 4))):
+        raw[data.draw(st.integers(0, len(raw) - 1))] = data.draw(st.integers(0, 255))
+    del raw[data.draw(st.integers(1, len(raw))) :]
+    path = folder / "spoilt.npz"
+    path.write_bytes(raw)
+    with contextlib.suppress(FileError):
+        assert all(isinstance(x, np.ndarray) for x in read_arrays(path).values())
+
+
+@pytest.mark.parametrize("name", ["../other.npz", "/etc/hostname", "a/b.npz", "..", ".", "''", '"a\\0b.npz"'])
+def test_the_samples_of_an_excitation_lie_beside_its_header(name, tmp_path):
+    folder = tmp_path / "inner"
+    folder.mkdir()
+    (tmp_path / "other.npz").write_bytes(npz(position=np.zeros((9, 5)), velocity=np.zeros((9, 5))))
+    (folder / "e.yaml").write_text(HEADER + name + "\n")
+    with pytest.raises(FileError, match="plain name"):
+        load_excitation(folder / "e.yaml", ROBOT)
+
+
+def test_the_samples_of_an_excitation_are_bounded(tmp_path):
+    (tmp_path / "e.yaml").write_text(HEADER + "e.npz\n")
+    (tmp_path / "e.npz").write_bytes(npz(position=np.zeros((700_000, 5)), velocity=np.zeros((700_000, 5))))
+    with pytest.raises(FileError, match="unpacks to too much"):
+        load_excitation(tmp_path / "e.yaml", ROBOT)
+
+
+# The rule, over the sources: nothing but the doors opens a file for reading.
+
+READERS = {
+    "read_text",
+    "read_bytes",
+    "open",
+    "fromfile",
+    "genfromtxt",
+    "loadtxt",
+    "load",
+    "safe_load",
+    "full_load",
+    "parse",
+}
+OWN_FILES = {
+    "sher3_description/files.py": "the door itself",
+    "sher3_bags/writing.py": "writes",
+    "sher3_bags/recorder.py": "writes",
+    "sher3_bags/recovery.py": "writes",
+    "sher3_bags/messages.py": "message definitions of the installation",
+    "sher3_bringup/cli.py": "the null device",
+    "sher3_bringup/commands.py": "prints the demo script of the package",
+    "sher3_control/compiled.py": "digest of our own sources",
+    "sher3_kinematics/compile_cache.py": "digest of our own sources",
+    "sher3_sim/compile_cache.py": "digest of our own sources",
+    "sher3_gap/challenge/truth/compiled.py": "digest of our own sources",
+    "sher3_gap/challenge/builder.py": "digest of the folder it has just written",
+    "sher3_drivers/pedal.py": "the joystick, a device",
+}
+
+
+def calls(path: Path):
+    """The calls of a file as (name of the object or '', name, line)."""
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute | ast.Name):
+            plain = isinstance(node.func, ast.Name)
+            owner = "" if plain else ast.unparse(node.func.value)
+            yield owner, node.func.id if plain else node.func.attr, node.lineno
+
+
+def short(path: Path) -> str:
+    return "/".join(path.relative_to(ROOT / "sher3_ws" / "src").parts[1:])
+
+
+def test_files_are_read_through_the_door_alone():
+    ours = {"read_text", "read_bytes", "read_json", "read_yaml", "parse_yaml"}  # as plain functions of the description
+    found = {}
+    for path in FILES:
+        for owner, name, line in calls(path):
+            through_the_door = (owner == "" and name in ours) or owner in ("files", "cls", "self")
+            if name in READERS and not through_the_door and _reads(owner, name):
+                found.setdefault(short(path), []).append(f"{line}: {owner}.{name}")
+    strangers = {path: lines for path, lines in found.items() if path not in OWN_FILES}
+    assert not strangers, "read through sher3_description (read_text, read_yaml, read_json, read_arrays)"
+    assert set(OWN_FILES) <= set(found) | {"sher3_description/files.py"}, "an exception that is no longer needed"
+
+
+def _reads(owner: str, name: str) -> bool:
+    """Whether a call of such a name opens a file: `zipfile.open` of a member and our own `load`s do not."""
+    if name in ("load", "parse"):
+        return owner in ("np", "numpy", "yaml", "json", "ElementTree", "joblib", "pickle", "tomllib", "marshal")
+    if name == "open":
+        return owner in ("", "os", "io", "gzip", "codecs") or not owner.startswith(("archive", "webbrowser"))
+    return True
+
+
+def test_nothing_is_unpickled_and_no_yaml_or_text_becomes_an_object():
+    """`Sher3Error` defines how it crosses between our own processes; joblib's workers are our own forks."""
+    forbidden = {"pickle", "cPickle", "_pickle", "dill", "cloudpickle", "shelve", "marshal", "jsonpickle"}
+    for path in FILES:
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.Import | ast.ImportFrom):
+                names = [alias.name for alias in node.names] + [getattr(node, "module", None) or ""]
+                assert not forbidden & {name.split(".")[0] for name in names}, path
+            if isinstance(node, ast.Call):
+                called = ast.unparse(node.func)
+                assert called not in ("eval", "exec", "builtins.eval", "builtins.exec"), f"{path}:{node.lineno}"
+                assert not any(k.arg == "allow_pickle" and ast.unparse(k.value) != "False" for k in node.keywords), path
+                assert called not in ("yaml.unsafe_load", "yaml.full_load", "yaml.load_all", "yaml.Loader"), path
+                if called == "yaml.load":
+                    loaders = [ast.unparse(k.value) for k in node.keywords if k.arg == "Loader"]
+                    assert loaders == ["_StrictLoader"], f"{path}:{node.lineno}"
