@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -10,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
-from sher3_description import Robot, load_robot
+from sher3_description import Robot, load_robot, parse_json
 
 from sher3_bags.run import Run
 from sher3_bags.statistics import common, smooth, width_of
@@ -181,7 +180,7 @@ def _tracker_rms(run: Run) -> float | None:
 
 def _recorder_drops(run: Run) -> dict[str, int]:
     record = run.records.get("sher3.recording", {})
-    return {topic: int(json.loads(entry)["dropped"]) for topic, entry in record.items()}
+    return {topic: int(parse_json(entry)["dropped"]) for topic, entry in record.items()}
 
 
 def analyse_bag(path: str | Path) -> Analysis:

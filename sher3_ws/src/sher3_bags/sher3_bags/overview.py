@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
-from sher3_description import NAMESPACE, Robot, load_robot
+from sher3_description import NAMESPACE, Robot, load_robot, parse_json
 
 from sher3_bags.gaps import grid_periods
 from sher3_bags.provenance import PROVENANCE_RECORD
@@ -51,7 +50,7 @@ def overview(path: str | Path, namespace: str = NAMESPACE) -> dict[str, Any]:
 
 def _plain(text: str) -> Any:
     try:
-        return json.loads(text) if text.startswith("{") else text
+        return parse_json(text) if text.startswith("{") else text
     except ValueError:
         return text
 

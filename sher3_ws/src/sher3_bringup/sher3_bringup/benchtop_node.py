@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from typing import Any
 
 import numpy as np
 from rclpy.node import Node
+from sher3_control.heard import status_of
 from sher3_description import Robot
 from sher3_paper.benchtop.fixture import wrench_at_tip
 from sher3_paper.benchtop.timeline import Timeline
@@ -61,11 +61,11 @@ class BenchtopNode(Node):
         return 0 < self._tick_count - START < len(self._commands)
 
     def _on_motion(self, sample: TextSample) -> None:
-        status = json.loads(sample.text)
-        if status["refused"]:
+        status = status_of(sample.text)
+        if status.get("refused"):
             self.objection = self.objection or status["refused"]["text"]
-        elif self.running and status["reason"] != "MOVING":
-            self.objection = self.objection or status["text"]
+        elif self.running and status.get("reason") != "MOVING":
+            self.objection = self.objection or status.get("text", "motion/status is damaged")
 
     def _on_state(self, sample: TextSample) -> None:
         if self.running and sample.text != "ENABLED":

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from sher3_control.reasons import TEXT, Reason
+from sher3_description import parse_json
 
 from .errors import SessionFailed
 from .surgeon import Script
@@ -31,7 +31,7 @@ def judge(run: Any, script: Script, steps_begin: int) -> None:
     Raises:
         SessionFailed: the robot faulted, was never enabled, stopped by itself, or did not move under the hand.
     """
-    states = [json.loads(text) for text in run["supervisor/status"].data]
+    states = [parse_json(text) for text in run["supervisor/status"].data]
     for status in states:
         if fault := status["first_fault"]:
             text = f"the robot went to FAULT: {fault['code']} of {fault['source']}"
@@ -58,7 +58,7 @@ def _look_for_stops(run: Any, states: list[dict[str, Any]], begin: int) -> None:
     """Refuse a stop by the law itself while the robot was enabled."""
     spans = list(_enabled_spans(states))
     for text in run["admittance/status"].data:
-        status = json.loads(text)
+        status = parse_json(text)
         reason, since = Reason[status["reason"]], int(status["since"])
         if reason not in INTENDED and any(start < since < end for start, end in spans):
             remedy = "see admittance/status in the bag; a machine less busy helps where samples came too late"

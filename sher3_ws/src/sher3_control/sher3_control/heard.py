@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import json
 from typing import Any
+
+from sher3_description import FileError, parse_json
 
 PERIODS = 2.5
 """The operating state is repeated; after this many silent periods the robot counts as not enabled."""
@@ -28,7 +29,7 @@ class HeardState:
 def status_of(text: str) -> dict[str, Any]:
     """Return the fields of a status text; a damaged one has none."""
     try:
-        data = json.loads(text)
-    except ValueError:
+        data = parse_json(text)
+    except FileError:
         return {}
     return data if isinstance(data, dict) else {}

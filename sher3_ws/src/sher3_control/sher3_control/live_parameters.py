@@ -10,6 +10,8 @@ import json
 import math
 from typing import Any, NamedTuple
 
+from sher3_description import parse_json
+
 from .axis_lock import AxisLock
 from .errors import SettingsError
 from .settings import ControlSettings
@@ -75,7 +77,7 @@ def from_json(text: str) -> tuple[LiveParameters, ControlSettings]:
         SettingsError: it is something else.
     """
     try:
-        data = json.loads(text)
+        data = parse_json(text)
         live = data["live"]
         lock, bias = AxisLock(live["lock"]), tuple(map(float, live["bias"]))
         if len(bias) != 6:

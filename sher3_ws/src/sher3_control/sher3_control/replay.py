@@ -5,14 +5,13 @@ Takes anything with `streams` by topic whose columns are arrays (a run of `sher3
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
-from sher3_description import Robot, Sher3Error
+from sher3_description import Robot, Sher3Error, parse_json
 from sher3_kinematics import RobotKinematics, kernel_parameters
 
 from .admittance import NO_WRENCH, LawInput, LawParameters, initial_state, step
@@ -115,7 +114,7 @@ def replay_motion(run: Recording, robot: Robot) -> Replay:
     joints, twists, recorded = (Lookup(run, name) for name in ("measured_js", "servo_cv", "servo_jv"))
     references = Lookup(run, "setpoint_js") if "setpoint_js" in run.streams else None
     limit = np.array([a.limits.velocity for a in robot.actuators])
-    versions = {(data := json.loads(text))["version"]: data for text in run.streams["motion/settings"].data}
+    versions = {(data := parse_json(text))["version"]: data for text in run.streams["motion/settings"].data}
     modes, previous, count = _Modes(robot, versions), RESTING, _Comparison()
     for text in run.streams["motion/inputs"].data:
         line = motion_record(text)

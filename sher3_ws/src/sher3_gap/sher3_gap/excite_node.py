@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import tempfile
 from collections.abc import Callable, Iterable
@@ -17,7 +16,7 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 from sher3_bags import CaseError, Run, Stream, read_run, write_case
 from sher3_bags.recorder_node import RecorderNode
-from sher3_description import Robot
+from sher3_description import FileError, Robot, parse_json
 from sher3_runtime import JointSample, TextSample, WrenchSample, environment
 from sher3_runtime.ports import NODE_OPTIONS, PERIOD_VARIABLE, advertise, on_tick, subscribe
 from sher3_runtime.process import stop_on_signals
@@ -68,7 +67,7 @@ class ExciteNode(Node):
         self._wrench = advertise(self, "mock/contact_wrench") if player.excitation.loads else None
         heard = player.heard
         subscribe(self, "operating_state", lambda s: setattr(heard, "state", s.text))
-        subscribe(self, "motion/status", lambda s: setattr(heard, "mode", json.loads(s.text)["mode"]))
+        subscribe(self, "motion/status", lambda s: setattr(heard, "mode", _mode_of(s.text)))
         subscribe(self, "measured_js", lambda s: setattr(heard, "position", s.position or ()))
         on_tick(self, self._tick)
 
@@ -129,6 +128,14 @@ def excite_graph(
             return write_case(output, runs, robot)
     finally:
         rclpy.try_shutdown()
+
+
+def _mode_of(text: str) -> str | None:
+    """Return the owner in a `motion/status`; a damaged one names an unknown owner, which is never waited out."""
+    try:
+        return parse_json(text)["mode"]
+    except (FileError, KeyError, TypeError):
+        return "unknown"
 
 
 @dataclass

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import csv
-import json
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import numpy as np
 import scipy.io
-from sher3_description import read_arrays, read_json, read_text
+from sher3_description import parse_json, read_arrays, read_json, read_text
 
 from sher3_gap.channels import Array
 from sher3_gap.machines.errors import MachineError
@@ -71,7 +70,7 @@ def _numbers(cells: list[str]) -> Array | None:
     """Cells as (n,) or, where they hold lists, (n, k); None for text."""
     try:
         if cells and cells[0].lstrip().startswith("["):
-            return np.array([json.loads(c.replace("nan", "NaN")) for c in cells], dtype=float)
+            return np.array([parse_json(c.replace("nan", "NaN")) for c in cells], dtype=float)
         return np.array([float(c) if c.strip() else np.nan for c in cells])
     except ValueError:
         return None
