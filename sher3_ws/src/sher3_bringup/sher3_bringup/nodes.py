@@ -105,6 +105,7 @@ def _recorder(settings: RunSettings) -> Any:
 
 def _plant(settings: RunSettings) -> Any:
     from sher3_drivers.netft_server import NetFtServer
+    from sher3_safety.injector import FaultInjector
     from sher3_sim.plant_node import PlantNode
 
     return PlantNode(
@@ -114,6 +115,7 @@ def _plant(settings: RunSettings) -> Any:
         settings.seed,
         force_device=NetFtServer(settings.force_address()),
         pedal_device=settings.mock_name(),
+        faults=FaultInjector,
     )
 
 

@@ -18,6 +18,7 @@ from sher3_drivers.pedal import InProcessPedal
 from sher3_drivers.pedal_node import PedalNode
 from sher3_drivers.settings import default_settings
 from sher3_runtime import Graph
+from sher3_safety.injector import FaultInjector
 from sher3_sim import Effect
 from sher3_sim.plant_node import PlantNode
 
@@ -41,11 +42,11 @@ class SteppedRobot:
     ) -> None:
         robot = robot or load_robot()
         self.graph = graph
-        self.force, self.pedal_device = InProcessForceSensor(), InProcessPedal()
+        self.force, self.pedal_device = InProcessForceSensor(), InProcessPedal(clock=graph.clock.now)
         settings, channel = default_settings(robot.control_period), f"stepped{next(_numbers)}"
         count = len(settings.channels)
         device_ends, host_ends = ([open_link(f"virtual:{channel}-{i}") for i in range(count)] for _ in range(2))
-        devices = {"force_device": self.force, "pedal_device": self.pedal_device}
+        devices = {"force_device": self.force, "pedal_device": self.pedal_device, "faults": FaultInjector}
         self.plant = graph.add(PlantNode, robot, settings, effects, seed, None, device_ends, **devices)
         links = [LockstepLink(link, [self.plant.drives.poll]) for link in host_ends]
         self.motor_driver = graph.add(MotorDriverNode, robot, settings, links)

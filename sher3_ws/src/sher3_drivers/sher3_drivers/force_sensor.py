@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple, Protocol
 
 Wrench = tuple[float, float, float, float, float, float]
@@ -40,17 +41,24 @@ class ForceSensorDevice(Protocol):
 
 
 class InProcessForceSensor:
-    """A sensor whose device end is a method call; for stepped tests and single-process runs."""
+    """A sensor whose device end is a method call; for stepped tests and single-process runs.
+
+    Attributes:
+        tamper: takes a reading and returns those that are sent: none, one or more; the seam for injected faults.
+    """
 
     def __init__(self) -> None:
+        self.tamper: Callable[[WrenchRecord], list[WrenchRecord]] | None = None
         self._record: WrenchRecord | None = None
         self._sequence = 0
 
     def put(self, wrench: Wrench, status: int = 0) -> None:
         """Be the device: produce one record."""
         self._sequence += 1
-        drained = 1 if self._record is None else self._record.drained + 1
-        self._record = WrenchRecord(wrench, self._sequence, status, drained)
+        record = WrenchRecord(wrench, self._sequence, status)
+        for sent in [record] if self.tamper is None else self.tamper(record):
+            drained = 1 if self._record is None else self._record.drained + 1
+            self._record = sent._replace(drained=drained)
 
     def read(self, since: int, timeout: float) -> WrenchRecord | None:
         """Return the record put since the last reading; see `ForceSensorDevice`."""

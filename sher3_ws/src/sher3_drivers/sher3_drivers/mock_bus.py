@@ -132,6 +132,15 @@ class MockDriveBus:
         self.drives = {name: by_name[name] for name in ACTUATORS}
         self._in_order = tuple(self.drives.values())
 
+    @property
+    def clock(self) -> Callable[[], int]:
+        """The clock, in ns."""
+        return self._clock
+
+    def on_channel(self, channel: int) -> Sequence[MockDrive]:
+        """Return the drives of a channel."""
+        return self._channels[channel].drives
+
     def _sender(self, index: int) -> Callable[[bytes], None]:
         def send(frames: bytes) -> None:
             if self.tamper_frames is not None:

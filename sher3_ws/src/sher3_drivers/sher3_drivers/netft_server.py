@@ -6,10 +6,11 @@ import socket
 from collections.abc import Callable
 
 from .errors import DeviceMissing
-from .force_sensor import Wrench
+from .force_sensor import Wrench, WrenchRecord
 from .netft import HEADER, PORT, RECORD, REQUEST, SET_BIAS, STOP, STREAM, NetFtScale
 
 RecordTamper = Callable[[bytes], bytes]
+WrenchTamper = Callable[[WrenchRecord], list[WrenchRecord]]
 
 
 class NetFtServer:
@@ -22,7 +23,8 @@ class NetFtServer:
     Attributes:
         address: where it listens.
         status: status word of the next records.
-        tamper: changes a record on its way out (b"" loses it); the seam for garbage, stuck, lost and duplicated ones.
+        tamper_bytes: changes a record on its way out (b"" loses it).
+        tamper: takes a reading and returns those that are sent: none, one or more; the seam for injected faults.
 
     Raises:
         DeviceMissing: the port is taken.
@@ -30,7 +32,8 @@ class NetFtServer:
 
     def __init__(self, address: tuple[str, int] = ("127.0.0.1", PORT), scale: NetFtScale | None = None) -> None:
         self.status = 0
-        self.tamper: RecordTamper | None = None
+        self.tamper_bytes: RecordTamper | None = None
+        self.tamper: WrenchTamper | None = None
         self._scale = scale or NetFtScale()
         self._client: tuple[str, int] | None = None
         self._sequence = 0
@@ -81,10 +84,18 @@ class NetFtServer:
         if self._client is None:
             return
         counts = [max(-(2**31), min(2**31 - 1, c - b)) for c, b in zip(self._counts, self._bias, strict=True)]
-        record = RECORD.pack(self._sequence, self._sequence, self.status, *counts)
-        if self.tamper is not None:
-            record = self.tamper(record)
-        if record:
+        if self.tamper is None:
+            self._put(RECORD.pack(self._sequence, self._sequence, self.status, *counts))
+            return
+        for reading in self.tamper(WrenchRecord(self._scale.to_wrench(tuple(counts)), self._sequence, self.status)):
+            sequence = reading.sequence
+            self._put(RECORD.pack(sequence, sequence, reading.status, *self._scale.to_counts(reading.wrench)))
+
+    def _put(self, record: bytes) -> None:
+        """Put one datagram on the line."""
+        if self.tamper_bytes is not None:
+            record = self.tamper_bytes(record)
+        if record and self._client is not None:
             try:
                 self._socket.sendto(record, self._client)
             except ConnectionRefusedError:

@@ -33,6 +33,11 @@ class PedalState(NamedTuple):
     emergency_stop: bool
 
 
+PedalTamper = Callable[[PedalState], list[PedalState]]
+AGE_LIMIT = 0.1
+"""Longest silence of a pedal that says its whole state again and again, s."""
+
+
 class PedalDevice(Protocol):
     """A pedal back-end."""
 
@@ -107,7 +112,7 @@ class LocalPedal:
     """
 
     def __init__(
-        self, name: str = "pedal", age_limit: float = 0.1, clock: Callable[[], int] = time.monotonic_ns
+        self, name: str = "pedal", age_limit: float = AGE_LIMIT, clock: Callable[[], int] = time.monotonic_ns
     ) -> None:
         self.name = f"local pedal {name}"
         self._limit_ns, self._clock = round(age_limit * 1e9), clock
@@ -139,16 +144,22 @@ class LocalPedal:
 
 
 class PedalSender:
-    """The device end of a LocalPedal; nothing happens while nobody listens."""
+    """The device end of a LocalPedal; nothing happens while nobody listens.
+
+    Attributes:
+        tamper: takes a state and returns those that are sent: none, one or more; the seam for injected faults.
+    """
 
     def __init__(self, name: str = "pedal") -> None:
+        self.tamper: PedalTamper | None = None
         self._path = str(runtime_directory() / f"{name}.pedal")
         self._socket = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM | socket.SOCK_NONBLOCK)
 
     def send(self, state: PedalState) -> bool:
         """Send the state; False when nobody takes it."""
         try:
-            self._socket.sendto(_DATAGRAM.pack(*state), self._path)
+            for sent in [state] if self.tamper is None else self.tamper(state):
+                self._socket.sendto(_DATAGRAM.pack(*sent), self._path)
         except OSError:
             return False
         return True
@@ -159,21 +170,43 @@ class PedalSender:
 
 
 class InProcessPedal:
-    """A pedal whose device end is a method call; for stepped tests and single-process runs."""
+    """A pedal whose device end is a method call; for stepped tests and single-process runs.
 
-    def __init__(self) -> None:
+    Args:
+        age_limit: longest silence, s, once something was heard; as with `LocalPedal`.
+        clock: time in ns; without one silence does not matter.
+
+    Attributes:
+        tamper: takes a state and returns those that arrive: none, one or more; the seam for injected faults.
+    """
+
+    def __init__(self, age_limit: float = AGE_LIMIT, clock: Callable[[], int] | None = None) -> None:
+        self.tamper: PedalTamper | None = None
+        self._clock, self._limit_ns, self._heard_at = clock, round(age_limit * 1e9), 0
         self._state: PedalState | None = None
         self._lost: str | None = None
 
     def put(self, state: PedalState | None) -> None:
         """Be the device: press it so, or (None) be lost."""
         self._lost = "was unplugged" if state is None else None
+        if state is None or self.tamper is None:
+            self._take(state)
+            return
+        for sent in self.tamper(state):
+            self._take(sent)
+
+    def _take(self, state: PedalState | None) -> None:
         self._state = state
+        self._heard_at = self._clock() if self._clock is not None else 0
 
     def read(self) -> PedalState | None:
         """Return the present state; see `PedalDevice`."""
         if self._lost is not None:
             raise DeviceMissing("in-process pedal", self._lost, remedy="put a state")
+        silence = 0 if self._clock is None or self._state is None else self._clock() - self._heard_at
+        if silence > self._limit_ns:
+            limit = f"{self._limit_ns * 1e-9:g} s"
+            raise DeviceMissing("in-process pedal", "fell silent", value=f"{silence * 1e-9:.3f} s", limit=limit)
         return self._state
 
     def close(self) -> None:

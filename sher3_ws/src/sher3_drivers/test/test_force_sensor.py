@@ -155,10 +155,10 @@ def test_status_and_tamper_reach_the_reader(pair):
     server.publish(QUIET)
     record = sensor.read(0, 1.0)
     assert record is not None and record.status == 2
-    server.tamper = lambda record: b""
+    server.tamper_bytes = lambda record: b""
     server.publish(QUIET)
     assert sensor.read(0, 0.005) is None
-    server.tamper = lambda record: record[:-1]
+    server.tamper_bytes = lambda record: record[:-1]
     server.publish(QUIET)
     assert sensor.read(0, 0.005) is None
 

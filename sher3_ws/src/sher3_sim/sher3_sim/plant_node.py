@@ -1,18 +1,19 @@
 """The plant process on mocks: the robot behind the CAN links, the force sensor's cable and the pedal's.
 
 The plant takes a step at each SYNC of the mock drives. The wrench on the tip and the foot on the pedal come in on
-`mock/contact_wrench` and `mock/pedal`; whoever sends them and falls silent has let go of both.
+`mock/contact_wrench` and `mock/pedal`; whoever sends them and falls silent has let go of both. Faults of the devices
+come in on `mock/fault`; from the first one on the plant tells the truth on `mock/true_js`, for whoever measures.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
-from typing import Any, cast
+from typing import Any, Protocol, cast
 
 import numpy as np
 from rclpy.node import Node
-from sher3_description import Robot
+from sher3_description import Robot, Sher3Error
 from sher3_drivers.bus import CanLink, open_link
 from sher3_drivers.force_sensor import InProcessForceSensor
 from sher3_drivers.mock_bus import DrivePlant, MockDriveBus
@@ -21,9 +22,12 @@ from sher3_drivers.pedal import InProcessPedal, PedalSender, PedalState
 from sher3_drivers.settings import MotorDriverSettings, default_settings
 from sher3_runtime import (
     NODE_OPTIONS,
+    DiagnosticSample,
+    JointSample,
     JoySample,
     PoseSample,
     TemperatureSample,
+    TextSample,
     WrenchSample,
     advertise,
     clock_of,
@@ -42,6 +46,19 @@ RELEASED = PedalState(0.0, False)
 NOTHING = (0.0,) * 6
 
 
+class Faults(Protocol):
+    """What breaks the devices on request; see `sher3_safety.injector`."""
+
+    def take(self, text: str, now: int) -> object:
+        """Take a request of `mock/fault` at `now` [ns]; raise a Sher3Error when it cannot be done."""
+
+    def poll(self, now: int) -> None:
+        """Let what is due begin and end."""
+
+    def report(self) -> tuple[int, str, tuple[tuple[str, str], ...]]:
+        """Return level, sentence and values for `/diagnostics`."""
+
+
 class PlantNode(Node):
     """The simulated robot with its mock devices.
 
@@ -54,6 +71,7 @@ class PlantNode(Node):
         links: opened links instead of those the settings name (stepped tests).
         force_device: the sensor's device end; default one on its standard port.
         pedal_device: the pedal's device end, or the name of its socket.
+        faults: makes what breaks (drives, sensor, pedal) on request; without it `mock/fault` is ignored.
 
     Raises:
         EffectError: an effect does not fit the robot.
@@ -70,6 +88,7 @@ class PlantNode(Node):
         links: Sequence[CanLink] | None = None,
         force_device: NetFtServer | InProcessForceSensor | None = None,
         pedal_device: PedalSender | InProcessPedal | str = "pedal",
+        faults: Callable[[MockDriveBus, Any, Any], Faults] | None = None,
         **options: Any,
     ) -> None:
         super().__init__("plant", **{**NODE_OPTIONS, **options})
@@ -93,10 +112,15 @@ class PlantNode(Node):
         if links is None:
             links = [open_link(channel.link) for channel in settings.channels]
         self.drives = MockDriveBus(links, cast(DrivePlant, self), robot, settings, self._now)
+        self._faults = None if faults is None else faults(self.drives, self._force, self._pedal)
+        self._truth_told = False
+        self._publish_truth = advertise(self, "mock/true_js")
+        self._publish_report = advertise(self, "diagnostics")
         self._publish_tip = advertise(self, "tracker/measured_cp")
         self._publish_temperature = advertise(self, "temperature")
         subscribe(self, "mock/contact_wrench", self._on_wrench)
         subscribe(self, "mock/pedal", self._on_pedal)
+        subscribe(self, "mock/fault", self._on_fault)
         for link in links:
             if link.fileno() >= 0:
                 on_readable(self, link, self.drives.poll)
@@ -111,11 +135,18 @@ class PlantNode(Node):
         self._reading = reading = self._plant.step(velocity_command, self._wrench if fresh else NOTHING)
         self._stream()
         stamp = self._stamp()
+        if self._truth_told:
+            self._tell_truth()
         # A SYNC that comes a period late would give its sample the stamp of the next one.
         if reading.tracker is not None and stamp > self._tip_stamp:
             self._tip_stamp, pose = stamp, reading.tracker.tolist()
             self._publish_tip(PoseSample(stamp, tuple(pose[:3]), tuple(pose[3:])))
         return reading
+
+    def _tell_truth(self) -> None:
+        """Publish where the axes truly are; steps that are made up for bear the same stamp."""
+        position, demand = self._plant.true_position.tolist(), self._reading.demand.tolist()
+        self._publish_truth(JointSample(self._now(), tuple(position), tuple(demand)))
 
     def _stamp(self) -> int:
         """Return the stamp of the present tick; SYNCs come at the ticks or a little later."""
@@ -128,6 +159,8 @@ class PlantNode(Node):
 
     def _tick(self, stamp: int) -> None:
         """Speak for devices that have a clock of their own: sensor and pedal go on when no SYNC comes."""
+        if self._faults is not None:
+            self._faults.poll(self._now())
         self.drives.poll()
         if not self._streamed:
             self._stream()
@@ -146,6 +179,16 @@ class PlantNode(Node):
     def _on_pedal(self, sample: JoySample) -> None:
         self._foot = PedalState(sample.axes[0] if sample.axes else math.nan, any(sample.buttons))
         self._foot_at = self._now()
+
+    def _on_fault(self, sample: TextSample) -> None:
+        if self._faults is None:
+            return
+        self._truth_told = True
+        try:
+            self._faults.take(sample.text, self._now())
+        except Sher3Error as error:
+            self.get_logger().error(str(error))
+        self._publish_report(DiagnosticSample(self._now(), "plant: faults", *self._faults.report()))
 
     def close(self) -> None:
         """Take the devices off their lines."""

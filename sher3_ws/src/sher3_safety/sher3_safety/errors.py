@@ -1,0 +1,22 @@
+"""Typed errors of fault injection and of what is measured afterwards."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from sher3_description import Sher3Error
+
+
+class FaultRefused(Sher3Error):
+    """A fault that cannot be injected; carries `component` and `fault`."""
+
+    exit_code = 2
+
+    def __init__(self, component: str, fault: str, why: str, **details: Any) -> None:
+        super().__init__(f"fault {fault} of {component} refused: {why}", **details)
+        self.component = component
+        self.fault = fault
+
+
+class MeasurementError(Sher3Error):
+    """A bag does not show what a cell of the matrix is to be judged by."""
