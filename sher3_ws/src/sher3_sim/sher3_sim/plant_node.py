@@ -44,6 +44,8 @@ HOLD = 0.2
 """Seconds after which a wrench or a pedal that is no longer sent counts as let go."""
 RELEASED = PedalState(0.0, False)
 NOTHING = (0.0,) * 6
+MAX_CONTACT = 1000.0
+"""What the plant takes as a hand, N and N m: fifty times the sensor; its encoders count to 2^31."""
 
 
 class Faults(Protocol):
@@ -171,10 +173,10 @@ class PlantNode(Node):
         self._publish_temperature(TemperatureSample(stamp, self._reading.temperature))
 
     def _on_wrench(self, sample: WrenchSample) -> None:
-        if all(math.isfinite(value) for value in sample.wrench):
+        if all(abs(value) <= MAX_CONTACT for value in sample.wrench):  # a NaN compares false
             self._wrench, self._wrench_at = sample.wrench, self._now()
         else:
-            self.get_logger().error(f"mock/contact_wrench is not finite and was ignored: {sample.wrench}")
+            self.get_logger().error(f"mock/contact_wrench beyond {MAX_CONTACT:g} N, N m was ignored: {sample.wrench}")
 
     def _on_pedal(self, sample: JoySample) -> None:
         self._foot = PedalState(sample.axes[0] if sample.axes else math.nan, any(sample.buttons))
