@@ -87,14 +87,18 @@ def _holes(runs: Sequence[RunSignals]) -> list[str]:
     """Say how many ticks of a live recording do not count."""
     ticks = sum(run.ticks for run in runs)
     lost = sum(int(run.lost.sum()) for run in runs if run.lost is not None)
-    late = sum(int(run.late.sum()) for run in runs if run.late is not None)
+    held = sum(int(run.held.sum()) for run in runs if run.held is not None)
+    stale = sum(int(run.stale.sum()) for run in runs if run.stale is not None)
     notes = []
     if lost:
         notes.append(
             f"{lost} of {ticks} ticks were not recorded: bridged, and nothing is judged {EDGE:g} s around them"
         )
-    if late:
-        notes.append(f"{late} of {ticks} commands left the host after their tick: not held against the transport")
+    if held or stale:
+        notes.append(
+            f"the computer was late: at {held} of {ticks} ticks the drives held the demand before, at {stale} the host "
+            "used an earlier reading; these are not held against the robot"
+        )
     return notes
 
 

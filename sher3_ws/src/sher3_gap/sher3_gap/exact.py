@@ -6,7 +6,10 @@ echo(k) = (1 - a) command(k-1-n) + a command(k-2-n) for a latency of (n + a) per
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
+from numpy.typing import NDArray
 from sher3_description import Robot
 
 from sher3_gap.channels import Array
@@ -14,6 +17,18 @@ from sher3_gap.signals import RunSignals
 
 EXACT = 1e-9
 """Share of an axis' velocity limit below which a difference is rounding."""
+
+
+ROUNDING = 1e-7
+"""The same for demands that went through the integers of a drive's protocol."""
+SPORADIC = 0.005
+"""Share of ticks at which the demand of a live robot may be held once, beyond twice the share of lost ticks."""
+LATE_SHARE = 0.1
+"""Share of ticks at which the host of a live robot may work with an earlier reading."""
+OLDEST = 8
+"""Age of such a reading, ticks."""
+MOSTLY = 0.8
+"""Share of the odd ticks that lateness must explain before the rest is put down to it too."""
 
 
 def transport_error(run: RunSignals) -> Array | None:
@@ -41,17 +56,12 @@ def shifted(command: Array, latency: float) -> Array:
 
 
 def controller_error(run: RunSignals, robot: Robot) -> Array | None:
-    """Recorded velocity command minus the host law of the position modes, (n, axes), zero at lost ticks; None in other
-    modes.
+    """Recorded velocity command minus the host law of the position modes, (n, axes), zero at ticks that do not count;
+    None in other modes.
     """
     if run.command is None or run.reference is None or run.reference_velocity is None or run.load is None:
         return None
-    return without_lost(run, run.command - host_law(run, robot, robot.position_gain))
-
-
-def without_lost(run: RunSignals, error: Array) -> Array:
-    """Set an (n, axes) error to zero at ticks that were not recorded."""
-    return error if run.lost is None else np.where(run.lost[:, None], 0.0, error)
+    return run.command_counts[:, None] * (run.command - host_law(run, robot, robot.position_gain))
 
 
 def host_law(run: RunSignals, robot: Robot, gain: float | Array) -> Array:
@@ -59,3 +69,43 @@ def host_law(run: RunSignals, robot: Robot, gain: float | Array) -> Array:
     assert run.reference is not None and run.reference_velocity is not None and run.load is not None
     top = np.array([a.limits.velocity for a in robot.actuators])
     return np.clip(run.reference_velocity + gain * (run.reference - run.load), -top, top)
+
+
+def with_lateness(run: RunSignals, robot: Robot) -> RunSignals:
+    """Mark the ticks of a live recording at which the computer, not the robot, was late.
+
+    A host that is late computes with the reading of an earlier tick; one whose command is late leaves the drives with
+    an earlier demand. Both can be told to rounding. They are set aside only while they are few: a busy machine also
+    loses ticks, and what it does to more than that is a gap.
+    """
+    lost = 0.0 if run.lost is None else float(run.lost.mean())
+    limit = SPORADIC + 2.0 * lost
+    stale = held = None
+    top = np.array([a.limits.velocity for a in robot.actuators])
+    error = controller_error(run, robot)
+    if error is not None:
+        odd = np.abs(error / top).max(axis=1) > EXACT
+        stale = _told(odd, _explained(run, robot, top)) if 0.0 < odd.mean() <= LATE_SHARE else None
+    echo = transport_error(run)
+    if echo is not None:
+        assert run.command is not None and run.echo is not None
+        odd = np.abs(echo / top).max(axis=1) > ROUNDING
+        earlier = [np.abs((run.echo - delayed(run.command, n)) / top).max(axis=1) < ROUNDING for n in (2, 3)]
+        held = _told(odd, np.logical_or(*earlier)) if 0.0 < odd.mean() <= limit else None
+    return replace(run, stale=stale, held=held)
+
+
+def _told(odd: NDArray[np.bool_], explained: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Odd ticks that lateness explains; all of them when it explains nearly all."""
+    return odd if (odd & explained).sum() > MOSTLY * odd.sum() else odd & explained
+
+
+def _explained(run: RunSignals, robot: Robot, top: Array) -> NDArray[np.bool_]:
+    """Ticks at which the host law with the load reading of one of the last ticks gives the command."""
+    assert run.command is not None and run.load is not None
+    found = np.zeros(run.ticks, dtype=bool)
+    for age in range(1, OLDEST + 1):
+        earlier = replace(run, load=np.vstack([np.repeat(run.load[:1], age, axis=0), run.load[:-age]]))
+        error = run.command - host_law(earlier, robot, robot.position_gain)
+        found |= np.abs(error / top).max(axis=1) <= EXACT
+    return found

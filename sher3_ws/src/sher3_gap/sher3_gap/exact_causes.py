@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from sher3_description import ACTUATORS, Robot
 
-from sher3_gap.exact import EXACT, controller_error, host_law, without_lost
+from sher3_gap.exact import EXACT, ROUNDING, controller_error, host_law
 from sher3_gap.signals import RunSignals
 from sher3_gap.timing import Timing
 from sher3_gap.verdict import Cause, Interval, Parameter, Where
@@ -48,7 +48,7 @@ def transport_finding(
 ) -> ExactFinding | None:
     """Attribute the echo's error to delay, one late axis, jitter or drops; None when commands arrive on time."""
     samples = sum(run.ticks for run in runs if run.command is not None and run.echo is not None)
-    if timing is None or samples == 0 or timing.energy / samples < EXACT**2:
+    if timing is None or samples == 0 or timing.energy / samples < ROUNDING**2:
         return None
     top = float(np.median([a.limits.velocity for a in robot.actuators]))
     gap = top * float(np.sqrt(timing.energy / (samples * len(robot.actuators))))
@@ -155,7 +155,7 @@ def controller_finding(runs: Sequence[RunSignals], robot: Robot, without: Collec
     for run, _ in errors:
         assert run.command is not None
         error = run.command - host_law(run, robot, robot.position_gain * (1.0 + scale))
-        left += np.sum((without_lost(run, error) / top) ** 2, axis=0)
+        left += np.sum((error[run.command_counts] / top) ** 2, axis=0)
     closure = 1.0 - float(left[bad].sum() / energy[bad].sum())
     actuator = "all" if len(bad) > 1 else ACTUATORS[bad[0]]
     where = _where("controller", actuator, gap, EXACT * float(np.median(top)), "position modes")
@@ -184,9 +184,7 @@ def _gain_error(runs: Sequence[RunSignals], robot: Robot, axis: int) -> float:
         assert run.reference_velocity is not None
         pull = robot.position_gain * (run.reference - run.load)[:, axis]
         extra = run.command[:, axis] - run.reference_velocity[:, axis] - pull
-        free = np.abs(run.command[:, axis]) < 0.999 * top
-        if run.lost is not None:
-            free &= ~run.lost
+        free = (np.abs(run.command[:, axis]) < 0.999 * top) & run.command_counts
         slope += float(pull[free] @ extra[free])
         bend += float(pull[free] @ pull[free])
     return slope / bend if bend > 0.0 else 0.0

@@ -139,17 +139,16 @@ class Geometry:
         return rotation, position
 
     def tip_error(self, run: RunSignals) -> Array:
-        """Tracked pose minus nominal pose at the residual grid, (g, 6): position, rotation vector in {b}; 0 where no
-        sample.
+        """Tracked pose minus nominal pose at its own tick, sorted into the residual grid, (g, 6): position, rotation
+        vector in {b}; 0 where no sample.
         """
         assert run.tracker_position is not None and run.tracker_rotation is not None and run.tracker_index is not None
-        path = self.path(run)
-        out = np.zeros((len(run.grid), 6))
-        on_grid = np.isin(run.tracker_index, run.grid)
-        slot = np.searchsorted(run.grid, run.tracker_index[on_grid])
-        out[slot, :3] = run.tracker_position[on_grid] - path.position[slot]
-        measured = Rotation.from_quat(run.tracker_rotation[on_grid])
-        out[slot, 3:] = (measured * Rotation.from_matrix(path.rotation[slot]).inv()).as_rotvec()
+        source = run.motor if run.load is None else run.load
+        rotation, position = self.poses(self.parameters, source[run.tracker_index])
+        out, slot = np.zeros((len(run.grid), 6)), run.tracker_slot
+        out[slot, :3] = run.tracker_position - position
+        measured = Rotation.from_quat(run.tracker_rotation)
+        out[slot, 3:] = (measured * Rotation.from_matrix(rotation).inv()).as_rotvec()
         return out
 
     def pose_change(self, run: RunSignals, step: float, **changes: float) -> Array:

@@ -14,8 +14,9 @@ from sher3_description import Robot, load_robot
 from sher3_gap.audit import check_parameters
 from sher3_gap.channels import Array
 from sher3_gap.errors import CaseError as CaseError
+from sher3_gap.exact import with_lateness
 from sher3_gap.signals import RunSignals, low_pass
-from sher3_gap.ticks import Gap, late_commands, on_grid, tick_grid
+from sher3_gap.ticks import Gap, on_grid, tick_grid
 
 RAMP_LIMIT = 0.25
 """Longest time from an unloaded tip to a stated plateau over which the load is taken as unknown, s."""
@@ -62,7 +63,7 @@ def signals_of(run: Run, robot: Robot, label: str = "run") -> RunSignals:
     motor = column("drives/measured_js", "position")
     if motor is None:
         raise CaseError(f"{name}: drives/measured_js carries no position", remedy="record the motor encoders")
-    return RunSignals(
+    signals = RunSignals(
         name=name,
         excitation=run.metadata.excitation,
         repeat=run.metadata.repeat,
@@ -82,9 +83,9 @@ def signals_of(run: Run, robot: Robot, label: str = "run") -> RunSignals:
         payload=run.metadata.payload,
         start=int(stamps[0]),
         lost=lost if lost.any() else None,
-        late=late_commands(run, stamps),
         **tracker,  # type: ignore[arg-type]
     )
+    return with_lateness(signals, robot) if run.metadata.origin == "robot" else signals
 
 
 def _contact(run: Run, wrench: Array | None, ticks: np.ndarray, period: float) -> tuple[Array, np.ndarray]:

@@ -133,7 +133,7 @@ def tip_residual(run: RunSignals, geometry: Geometry) -> Residuals:
         return {}
     values = geometry.tip_error(run)
     path = geometry.path(run)
-    at = np.isin(run.grid, run.tracker_index)
+    at = np.isin(np.arange(len(run.grid)), run.tracker_slot)
     ok = run.inner & run.loaded_ok & at
     loaded = path.loaded
     out = {Channel("mechanism", "tip"): Residual(values, ok & ~loaded)}

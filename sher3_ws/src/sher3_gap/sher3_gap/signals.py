@@ -43,8 +43,8 @@ class RunSignals:
             (load ramps).
         temperature: (n,) deg C; `session_time`: s from the first run's start to this one's.
         payload: known tip loads as recorded; `start`: first stamp, ns.
-        lost: (n,) True where a tick was not recorded and is bridged; `late`: (n,) True where the host's command left
-            after its tick was over. None: no such tick.
+        lost: (n,) True where a tick was not recorded and is bridged; `stale`: where the host computed with an earlier
+            reading; `held`: where the drives held an earlier demand for once. None: no such tick.
     """
 
     name: str
@@ -70,7 +70,8 @@ class RunSignals:
     payload: tuple[tuple[float, float, float, float, float], ...] = ()
     start: int = 0
     lost: NDArray[np.bool_] | None = None
-    late: NDArray[np.bool_] | None = None
+    stale: NDArray[np.bool_] | None = None
+    held: NDArray[np.bool_] | None = None
 
     @property
     def ticks(self) -> int:
@@ -111,13 +112,29 @@ class RunSignals:
 
     @cached_property
     def echo_tells(self) -> NDArray[np.bool_]:
-        """(n,) False where the echo cannot be compared: at the first tick, and at and behind lost or late ones."""
+        """(n,) False where the echo cannot be compared: at the first tick, held ones, and lost ones and behind."""
         tells = np.arange(self.ticks) > 0
-        for odd in (self.lost, self.late):
-            if odd is not None:
-                for behind in range(3):
-                    tells[behind:] &= ~odd[: self.ticks - behind]
+        if self.held is not None:
+            tells &= ~self.held
+        if self.lost is not None:
+            for behind in range(3):
+                tells[behind:] &= ~self.lost[: self.ticks - behind]
         return tells
+
+    @property
+    def command_counts(self) -> NDArray[np.bool_]:
+        """(n,) False where the host's command cannot be computed again: at lost and stale ticks."""
+        counts = np.ones(self.ticks, dtype=bool)
+        for odd in (self.lost, self.stale):
+            if odd is not None:
+                counts &= ~odd
+        return counts
+
+    @cached_property
+    def tracker_slot(self) -> NDArray[np.int64]:
+        """(m,) sample of the residual grid that each tracker sample is nearest to."""
+        assert self.tracker_index is not None
+        return np.clip(np.rint(self.tracker_index / self.stride).astype(np.int64), 0, len(self.grid) - 1)
 
     @cached_property
     def loaded_ok(self) -> NDArray[np.bool_]:

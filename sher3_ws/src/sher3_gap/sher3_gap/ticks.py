@@ -6,7 +6,6 @@ from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from sher3_bags import Run
 
 from sher3_gap.channels import Array
 from sher3_gap.errors import CaseError as CaseError
@@ -88,18 +87,3 @@ def on_grid(stamps: Stamps, values: Array, ticks: Stamps, what: str, gap: Gap = 
         return np.ascontiguousarray(values[after]), missing
     filled = np.stack([np.interp(ticks - ticks[0], stamps - ticks[0], column) for column in values.T], axis=1)
     return filled, missing
-
-
-def late_commands(run: Run, ticks: Stamps) -> Mask | None:
-    """Return the ticks whose command was sent only when the tick was over, (n,); None where that is not recorded.
-
-    A late host is no property of the robot; only a few such ticks are set aside, and only of live recordings.
-    """
-    if "servo_jv" not in run or run.metadata.origin != "robot":
-        return None
-    stream = run["servo_jv"]
-    if stream.log_time is None:
-        return None
-    period = int(np.median(np.diff(ticks)))
-    late = np.isin(ticks, stream.stamp[stream.log_time - stream.stamp > period])
-    return late if 0 < late.sum() < LOST_SHARE * len(ticks) else None

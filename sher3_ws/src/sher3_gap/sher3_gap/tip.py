@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 
 from sher3_gap.channels import Array, Channel
 from sher3_gap.evidence import Evidence
@@ -41,8 +42,10 @@ def tip_closure(evidence: Evidence, causes: Sequence[Cause]) -> Interval | None:
 
 
 def tip_error(run: RunSignals, twin: RunSignals | None) -> Array:
-    """Tracked tip of the run minus that of its twin at the same ticks, (m, 3)."""
+    """Tracked tip of the run minus that of its twin at the same ticks, (m, 3); a tracker keeps its own time."""
     assert twin is not None and run.tracker_index is not None and twin.tracker_index is not None
     assert run.tracker_position is not None and twin.tracker_position is not None
-    _, a, b = np.intersect1d(run.tracker_index, twin.tracker_index, return_indices=True)
-    return run.tracker_position[a] - twin.tracker_position[b]
+    ticks = run.tracker_index
+    inside = (ticks >= twin.tracker_index[0]) & (ticks <= twin.tracker_index[-1])
+    path = CubicSpline(twin.tracker_index, twin.tracker_position)
+    return run.tracker_position[inside] - path(ticks[inside])
