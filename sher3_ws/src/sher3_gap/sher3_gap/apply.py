@@ -104,20 +104,41 @@ def compare_case(runs: Sequence[RunSignals], robot: Robot, effects: Sequence[Eff
     Raises:
         ApplyError: no run has set-points to run again.
     """
-    driven = [run for run in runs if run.reference is not None]
-    if not driven:
+    return _compared(runs, robot, [driven_as(run, robot, seed=k, effects=effects) for k, run in enumerate(runs)])
+
+
+def compare_cases(runs: Sequence[RunSignals], robot: Robot, others: Sequence[RunSignals]) -> list[StageGap]:
+    """Compare recorded runs with the nominal simulator, and with recordings of the same excitations elsewhere.
+
+    Raises:
+        ApplyError: the other case has no run of the same excitation, or no run has set-points.
+    """
+    given: dict[str, list[RunSignals]] = defaultdict(list)
+    for other in others:
+        given[other.excitation].append(other)
+    twins = [given[run.excitation].pop(0) if given[run.excitation] else None for run in runs]
+    if not any(twins):
+        names = ", ".join(sorted({run.excitation for run in others}))
+        raise ApplyError("the cases share no excitation", value=names, remedy="run the same excitations on both")
+    kept = [(run, twin) for run, twin in zip(runs, twins, strict=True) if twin is not None]
+    return _compared([run for run, _ in kept], robot, [twin for _, twin in kept])
+
+
+def _compared(runs: Sequence[RunSignals], robot: Robot, twins: Sequence[RunSignals | None]) -> list[StageGap]:
+    if not any(run.reference is not None for run in runs):
         raise ApplyError("no run has set-points to run again", remedy="record setpoint_js")
     before, after = _Sums(), _Sums()
     geometry = Geometry(robot)
-    for k, run in enumerate(driven):
+    for k, (run, twin) in enumerate(zip(runs, twins, strict=True)):
+        nominal = driven_as(run, robot, seed=k)
+        if nominal is None or twin is None:
+            continue
         real = _readings(run, robot, geometry)
-        for sums, given in ((before, ()), (after, effects)):
-            twin = driven_as(run, robot, seed=k, effects=given)
-            assert twin is not None
-            sums.add(real, _readings(twin, robot, Geometry(robot)))
-            if run.tracker_position is not None:
-                sums.add_tip(tip_error(run, twin))
-    return _stages(before, after, robot, driven[0].period)
+        for sums, other in ((before, nominal), (after, twin)):
+            sums.add(real, _readings(other, robot, Geometry(robot)))
+            if run.tracker_position is not None and other.tracker_position is not None:
+                sums.add_tip(tip_error(run, other))
+    return _stages(before, after, robot, runs[0].period)
 
 
 class _Sums:

@@ -88,6 +88,25 @@ def apply(
             typer.echo(applied_text(effects, stages, output))
 
 
+@app.command(epilog="Example: sher3 gap compare case corrected")
+def compare(
+    case: Annotated[Path, typer.Argument(help="Case of the robot.")],
+    other: Annotated[Path, typer.Argument(help="Case of the corrected simulator, of the same excitations.")],
+    robot: RobotFile = None,
+    as_json: Json = False,
+) -> None:
+    """Print per stage how far the robot is from the nominal simulator, and from what another case recorded."""
+    from sher3_gap.apply import compare_cases
+    from sher3_gap.cli_print import stages_text
+    from sher3_gap.loading import load_case
+
+    with reported(as_json):
+        runs, model = load_case(case, robot)
+        stages = compare_cases(runs, model, load_case(other, robot)[0])
+        rows = [{**s.__dict__, "closure": s.closure} for s in stages]
+        typer.echo(json.dumps({"stages": rows}) if as_json else stages_text(stages))
+
+
 @app.command(epilog="Example: sher3 gap experiment gap/case_001/verdict.json -o tell_apart.yaml")
 def experiment(
     verdict: VerdictFile,

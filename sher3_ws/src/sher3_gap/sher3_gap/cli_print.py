@@ -65,7 +65,7 @@ def summary(found: Answer, files: Sequence[Path], named: bool) -> str:
 
 def applied_text(effects: Sequence[Effect], stages: Sequence[StageGap], output: Path) -> str:
     """Return what was written, and the gap per stage before and after."""
-    from sher3_gap.report.style import quantity, share
+    from sher3_gap.report.style import quantity
 
     lines = [f"{output}: {len(effects)} effect{'s' * (len(effects) != 1)}"]
     for effect in effects:
@@ -74,8 +74,14 @@ def applied_text(effects: Sequence[Effect], stages: Sequence[StageGap], output: 
             f"{n} {quantity(v, spec[n].unit.replace(' ', '*'))}" for n, v in effect.parameters.items() if v
         )
         lines.append(f"  {effect.id} on {effect.actuator}: {values}")
-    if stages:
-        lines.append(f"\n{'robot against simulator, rms':<34}{'nominal':>12}{'corrected':>12}{'closed':>9}")
+    return "\n".join([*lines, *(["", stages_text(stages)] if stages else [])])
+
+
+def stages_text(stages: Sequence[StageGap]) -> str:
+    """Return the gap per stage before and after as a table."""
+    from sher3_gap.report.style import quantity, share
+
+    lines = [f"{'robot against simulator, rms':<34}{'nominal':>12}{'corrected':>12}{'closed':>9}"]
     for s in stages:
         closed = "-" if s.closure is None else share(s.closure)
         name = f"{s.stage.replace('_', ' ')}, {s.actuator}"
