@@ -96,8 +96,8 @@ def test_dask_gives_the_same_verdict(answered, case):
     [
         (["diagnose", "nowhere"], "no case.yaml"),
         (["diagnose", "nowhere", "--without", "gremlins"], "no such effect"),
-        (["apply", "nowhere.json"], "cannot be read"),
-        (["experiment", "nowhere.json"], "cannot be read"),
+        (["apply", "nowhere.json"], "no such file"),
+        (["experiment", "nowhere.json"], "no such file"),
         (["library", "gremlins"], "no such effect or family"),
     ],
 )

@@ -63,7 +63,7 @@ def test_a_file_round_trips(tmp_path):
         ({"schema": "sher3.effects/1"}, "not an excitation"),
         ({"period": 0.001}, "control period"),
         ({"data": "../e.npz"}, "plain name"),
-        ({"data": "gone.npz"}, "cannot be read"),
+        ({"data": "gone.npz"}, "no such file"),
         ({"surprise": 1}, "not an excitation"),
     ],
 )
