@@ -52,7 +52,6 @@ def play(case: Path, effects, labels, repeats: int, duration: float) -> Path:
                         if node.finished:
                             break
                 assert node.failure is None and player.phase is Phase.DONE
-                graph.pause(node)
                 runs.append(trimmed(read_run(recorder.recorder.folder), player.first, player.last))
     return write_case(case, runs, ROBOT)
 
