@@ -34,8 +34,8 @@ class PedalState(NamedTuple):
 
 
 PedalTamper = Callable[[PedalState], list[PedalState]]
-AGE_LIMIT = 0.1
-"""Longest silence of a pedal that says its whole state again and again, s."""
+AGE_LIMIT = 0.02
+"""Longest silence of a pedal that says its whole state again and again, s: 100 um at the tip's 5 mm/s."""
 
 
 class PedalDevice(Protocol):

@@ -71,7 +71,7 @@ class FaultInjector:
         self.refused: str | None = None
         self._drives, self._force, self._pedal = drives, force, pedal
         self._clock = clock or drives.clock
-        self._held: dict[tuple[str, str], float] = {}
+        self._held: dict[str, float] = {}
 
     def take(self, text: str, now: int) -> FaultRequest:
         """Take a request as it came on `mock/fault` at `now` [ns].
@@ -93,6 +93,7 @@ class FaultInjector:
             begin = now + round(request.start * 1e9)
             end = None if request.duration is None else begin + round(request.duration * 1e9)
             self.active[request.component] = Active(request, begin, end, self._kinds(request))
+            self._held.pop(request.component, None)
         self._connect()
         return request
 
@@ -182,11 +183,12 @@ class FaultInjector:
 
     def _number(self, name: str, part: str, value: float) -> float:
         """Return a number as a fault leaves it; where it takes the number away, the last one stays."""
-        active, now = self.active.get(f"{name}.{part}"), self._clock()
+        component, now = f"{name}.{part}", self._clock()
+        active = self.active.get(component)
         if active is not None and active.acts(now):
             passed = active.faults[part]([value], now)
-            value = passed[-1] if passed else self._held.get((name, part), value)
-        self._held[name, part] = value
+            value = passed[-1] if passed else self._held.get(component, value)
+        self._held[component] = value
         return value
 
     def _frames(self, way: str) -> Callable[[int, bytes, int], bytes]:

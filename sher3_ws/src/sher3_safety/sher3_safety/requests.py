@@ -25,7 +25,7 @@ DEVICES = (
 )
 """What the plant process can break: `.up` is towards the host, `.down` towards the drives; without either, both."""
 PROCESSES = ("force_sensor", "pedal", "admittance", "kinematics", "motor_driver", "supervisor", "plant", "recorder")
-OTHERS = ("all", "clock", *(f"process.{name}" for name in PROCESSES))
+OTHERS = ("all", "clock", *(f"clock.{name}" for name in PROCESSES), *(f"process.{name}" for name in PROCESSES))
 """`all` goes with `ok`; clock and processes are broken from outside, by `sher3 safety`: the plant only notes them."""
 
 

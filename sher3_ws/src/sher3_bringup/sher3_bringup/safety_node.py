@@ -1,0 +1,44 @@
+"""The operator and the surgeon of the matrix: hand, foot, state commands and faults, as whoever runs it sets them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from rclpy.node import Node
+from sher3_runtime import JoySample, TextSample, WrenchSample
+from sher3_runtime.ports import NODE_OPTIONS, advertise, on_tick, subscribe
+
+
+class OperatorNode(Node):
+    """Publishes hand and foot at every tick.
+
+    Attributes:
+        pedal: travel.
+        force: of the hand along z of {b} [N].
+        state: newest operating state heard.
+    """
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__("operator", **{**NODE_OPTIONS, **options})
+        self.pedal, self.force, self.state = 0.0, 0.0, ""
+        self._publish_wrench = advertise(self, "mock/contact_wrench")
+        self._publish_pedal = advertise(self, "mock/pedal")
+        self._publish_command = advertise(self, "command/state_command")
+        self._publish_fault = advertise(self, "mock/fault")
+        subscribe(self, "operating_state", self._on_state)
+        on_tick(self, self._tick)
+
+    def command(self, text: str) -> None:
+        """Send a state command."""
+        self._publish_command(TextSample(text))
+
+    def inject(self, request: str) -> None:
+        """Send a request for a fault."""
+        self._publish_fault(TextSample(request))
+
+    def _on_state(self, sample: TextSample) -> None:
+        self.state = sample.text
+
+    def _tick(self, stamp: int) -> None:
+        self._publish_pedal(JoySample(stamp, (self.pedal,), (0,)))
+        self._publish_wrench(WrenchSample(stamp, (0.0, 0.0, self.force, 0.0, 0.0, 0.0)))

@@ -1,0 +1,162 @@
+"""The matrix in stepped time: every node, the CAN frames and all topics in one process, faults one after another.
+
+Each cell: the robot does what its state says; the fault sets in; what happens is recorded; the fault ends with the
+pedal still pressed; after a stop the operator recovers the robot, enables it, only then releases the pedal, and
+presses it again. What that shows is read from the bag (`sher3_safety.measure`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+
+from sher3_bags.live import recorded
+from sher3_bags.reading import read_run
+from sher3_bags.run import RunMetadata
+from sher3_description import Robot
+from sher3_runtime import Graph
+from sher3_runtime.ports import ports
+from sher3_safety.kinds import OK
+from sher3_safety.matrix import STATES, Row, State
+from sher3_safety.measure import STANDS, Outcome, Recording
+from sher3_safety.requests import make_request
+
+from .safety_node import OperatorNode
+from .stepped_robot import SteppedRobot
+
+SETTLE, APPROACH, OBSERVE, HELD, RELEASED, AGAIN = 60, 90, 40, 25, 15, 40
+"""Ticks: before enable; up to the speed of the state; behind the end of a fault; enabled with the pedal still pressed;
+released; pressed again."""
+ENABLE_TRIES, ENABLE_TICKS = 16, 30
+
+Cell = tuple[Row, State]
+
+
+class MatrixRun:
+    """A robot on which faults are tried."""
+
+    def __init__(self, graph: Graph, robot: Robot, seed: int) -> None:
+        self.graph, self.seed = graph, seed
+        self.operator = graph.add(OperatorNode)
+        self.rig = SteppedRobot(graph, seed=seed, robot=robot)
+        self._sign = 1.0
+
+    def start(self) -> bool:
+        """Enable the robot; return whether it is."""
+        self.graph.step(SETTLE)
+        return self._enable()
+
+    def play(self, row: Row, state: State) -> bool:
+        """Play one cell; return whether the robot is ready for the next one."""
+        operator, label = self.operator, f"{row.name} | {state.name}"
+        self._sign = -self._sign
+        operator.force, operator.pedal = self._sign * state.force, state.pedal
+        self.graph.step(APPROACH if state.pedal else SETTLE)
+        self._inject(row.request(self.seed, label).to_json())
+        if row.release:
+            operator.pedal = 0.0
+        duration = OBSERVE if row.duration is None else round(row.duration * 1e9 / self.graph.clock.period_ns)
+        with self._from_outside(row):
+            self.graph.step(duration)
+        self.graph.step(OBSERVE)
+        self._inject(make_request(component=row.component, fault=OK, label=label).to_json())
+        if row.effect == "goes on" and operator.state == "ENABLED":
+            self.graph.step(5)
+            operator.pedal = 0.0
+            self.graph.step(RELEASED)
+            return True
+        return self._recover()
+
+    def _inject(self, request: str) -> None:
+        self.operator.inject(request)
+        self.graph.settle()
+
+    def _recover(self) -> bool:
+        """Leave FAULT, enable with the pedal still pressed, release it, press it again."""
+        self.operator.command("disable")
+        self.graph.step(5)
+        if not self._enable():
+            return False
+        self.graph.step(HELD)
+        self.operator.pedal = 0.0
+        self.graph.step(RELEASED)
+        self.operator.pedal = 1.0
+        self.graph.step(AGAIN)
+        self.operator.pedal = 0.0
+        self.graph.step(RELEASED)
+        return True
+
+    def _enable(self) -> bool:
+        for _ in range(ENABLE_TRIES):
+            self.operator.command("enable")
+            self.graph.step(ENABLE_TICKS)
+            if self.operator.state == "ENABLED":
+                return True
+            self.operator.command("disable")
+            self.graph.step(2)
+        return False
+
+    @contextmanager
+    def _from_outside(self, row: Row) -> Iterator[None]:
+        """Carry out what the plant process cannot: hang a node, let clocks jump."""
+        what, _, name = row.component.partition(".")
+        if what == "process":
+            node = getattr(self.rig, name)
+            self.graph.pause(node)
+            yield
+            if row.fault != "off":
+                self.graph.resume(node)
+        elif what == "clock" and name:
+            with self._other_clock(name, row.parameters["offset"]):
+                yield
+        else:
+            if what == "clock":
+                self.graph.jump(row.parameters["offset"])
+            yield
+
+    @contextmanager
+    def _other_clock(self, name: str, offset: float) -> Iterator[None]:
+        """Let one node believe in another time: its stamps are off."""
+        shift, before = round(offset * 1e9), {}
+        for tick in ports(getattr(self.rig, name)).ticks:
+            before[tick] = tick.callback
+            tick.callback = lambda stamp, call=tick.callback: call(stamp + shift)  # type: ignore[misc]
+        yield
+        for tick, call in before.items():
+            tick.callback = call
+
+
+def _stands(label: str) -> float:
+    return STANDS * next(state.budget for state in STATES if label.endswith(f"| {state.name}"))
+
+
+def run_cells(name: str, cells: Sequence[Cell], robot: Robot, folder: Path, seed: int = 1) -> dict[str, Outcome]:
+    """Run cells one after another and return their outcomes by label; bags are `folder/<name>`, `<name>-1`, ...
+
+    A robot that a fault has left beyond recovery is replaced by a new one, with a bag of its own.
+    """
+    left, found, number = list(cells), {}, 0
+    while left:
+        bag = f"{name}-{number}" if number else name
+        count = _run_some(bag, left, robot, folder, seed)
+        for outcome in Recording(read_run(folder / bag, check=False), robot, robot.control_period).outcomes(_stands):
+            found[outcome.label] = outcome
+        left, number = left[count:], number + 1
+    return found
+
+
+def _run_some(bag: str, cells: Sequence[Cell], robot: Robot, folder: Path, seed: int) -> int:
+    """Run cells on a new robot until one is beyond recovery; return how many were run."""
+    metadata = RunMetadata(excitation="faults", origin="plant", seed=seed)
+    with Graph(period=robot.control_period) as graph:
+        run = MatrixRun(graph, robot, seed)
+        with recorded(graph, bag, robot=robot, root=folder, metadata=metadata):
+            run.start()
+            for count, (row, state) in enumerate(cells, 1):
+                if not run.play(row, state):
+                    return count
+    return len(cells)
+
+
+Say = Callable[[str], None]

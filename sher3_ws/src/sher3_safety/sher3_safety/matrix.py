@@ -1,0 +1,96 @@
+"""The matrix as data: which fault of which component, in which state, and what must come of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+from sher3_description import ACTUATORS
+
+from .requests import FaultRequest, make_request
+
+Effect = Literal["stops", "goes on", "either"]
+DETECTION_LIMIT, STOP_LIMIT = 0.050, 0.100
+"""Longest time from the onset to the first reaction, which is what 250 um at 5 mm/s and 25 um at 0.5 mm/s leave, and to
+standstill, s."""
+
+
+@dataclass(frozen=True)
+class State:
+    """What the robot does when the fault sets in.
+
+    Attributes:
+        speed: of the tip [m/s].
+        force: of the hand along +-z, N; along x or y the moment at the sensor would saturate it first.
+        pedal: travel.
+        budget: largest allowed travel [m].
+    """
+
+    name: str
+    speed: float
+    force: float
+    pedal: float
+    budget: float
+
+
+IDLE = State("idle", 0.0, 0.6, 0.0, 25e-6)
+MOVING = State("moving", 0.5e-3, 0.6, 1.0, 25e-6)
+LIMIT = State("at limit", 5e-3, 6.0, 1.0, 250e-6)
+STATES = (IDLE, MOVING, LIMIT)
+"""Enabled and at rest under a hand; at the speed near tissue; at the speed limit."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """One fault of one component, in every state.
+
+    Attributes:
+        effect: `stops`: in time, within the budget, and motion needs the operator; `goes on`: no stop, and the tip stays
+            within the budget of its way; `either`: chance decides between the two.
+        duration: of the fault, s; None: until it is taken away.
+        reasons: of which the first reported one must be; empty: nobody needs to notice (`goes on`).
+        quiet: states in which nothing needs to be noticed, since nothing can move.
+        quick: belongs to the compact set of the default test run.
+        release: the operator releases the pedal as the fault sets in; whatever the fault, the tip has to stop.
+        why: what is behind a `goes on`, for the report.
+    """
+
+    component: str
+    fault: str
+    parameters: Mapping[str, float] = field(default_factory=dict)
+    effect: Effect = "stops"
+    reasons: tuple[str, ...] = ()
+    duration: float | None = 0.12
+    quiet: tuple[str, ...] = ()
+    quick: bool = False
+    release: bool = False
+    why: str = ""
+
+    @property
+    def name(self) -> str:
+        """Component, fault, parameters, and what the operator does."""
+        parts = [f"{name} {value:g}" for name, value in self.parameters.items()]
+        name = f"{self.component} {self.fault}" + (f" ({', '.join(parts)})" if parts else "")
+        return name + ", pedal released" * self.release
+
+    def request(self, seed: int, label: str) -> FaultRequest:
+        """Return what is sent on `mock/fault`."""
+        return make_request(
+            component=self.component,
+            fault=self.fault,
+            parameters=dict(self.parameters),
+            duration=self.duration,
+            seed=seed,
+            label=label,
+        )
+
+
+def select(rows: tuple[Row, ...], only: str = "", quick: bool = False) -> Iterator[Row]:
+    """Yield the rows of a component (a prefix of its name), or of the compact set."""
+    for row in rows:
+        if row.component.startswith(only) and (row.quick or not quick):
+            yield row
+
+
+AXIS = ACTUATORS[0]

@@ -1,0 +1,195 @@
+"""What a recorded run shows of its faults: detection, standstill, travel of the tip, and who started it again.
+
+Everything is read from the bag. The tip is where forward kinematics puts the plant's true joint positions, recorded at
+every step (`mock/true_js`); a fault's onset and end are its requests on `mock/fault`.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from sher3_bags.run import Run
+from sher3_description import Robot
+from sher3_kinematics import kernel_parameters
+from sher3_kinematics.kernel_batch import tip_pose_batch
+
+from .errors import MeasurementError
+from .kinds import OK
+
+STANDS = 0.02
+"""The tip stands once it stays this close to where it ends up, as a share of the budget: 0.5 um of 25 um."""
+BEFORE = 0.020
+"""The speed before a fault is the mean over so many seconds."""
+INTENDED = frozenset({"MOVING", "PEDAL_RELEASED", "NOT_REARMED", "NOT_ENABLED", "NOT_OWNER"})
+REPORTS = ("admittance/status", "motion/status")
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of one fault.
+
+    Attributes:
+        label: of the request.
+        speed: of the tip before, m/s.
+        reason: first reported reason to stop, empty when nobody reported one.
+        detection: from the onset to that report or to the first fall of the executed demand, s.
+        stop: from the onset until the tip stands, s; None: it does not.
+        travel: largest distance of the tip from where it was at the onset, m.
+        excess: largest distance from its way, which is straight on at the speed before, or standing still earlier, m.
+        fault: the operating state became FAULT.
+        alone: motion after the end of the observation before the pedal was released, m.
+        resumed: motion after release-then-press, m.
+    """
+
+    label: str
+    speed: float
+    reason: str
+    detection: float | None
+    stop: float | None
+    travel: float
+    excess: float
+    fault: bool
+    alone: float
+    resumed: float
+
+    @property
+    def tripped(self) -> bool:
+        """Whether anything gave a reason to stop."""
+        return bool(self.reason)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain data."""
+        return asdict(self)
+
+
+class Recording:
+    """A bag of injected faults.
+
+    Args:
+        run: with `mock/true_js`, `mock/fault`, the status topics and the pedal.
+        robot: for the kinematics.
+        period: step of the plant in stepped time, s; None: the stamps tell (wall time).
+
+    Raises:
+        MeasurementError: the truth was not recorded.
+    """
+
+    def __init__(self, run: Run, robot: Robot, period: float | None = None) -> None:
+        if "mock/true_js" not in run or not len(run["mock/true_js"]):
+            raise MeasurementError("mock/true_js is missing", remedy="send a request on mock/fault before the fault")
+        truth = run["mock/true_js"]
+        self._run, self._stamp = run, truth.stamp
+        self._tip = tip_pose_batch(kernel_parameters(robot), np.ascontiguousarray(truth.position))[1]
+        self._demand = np.abs(truth.velocity)
+        rows = np.arange(len(self._stamp))
+        self._time = rows * period if period is not None else (self._stamp - self._stamp[0]) * 1e-9
+        self._events = sorted(self._reported())
+
+    def _reported(self) -> list[tuple[int, str, bool]]:
+        """Return (log time, reason, is FAULT) of every report of a reason to stop."""
+        found = []
+        for topic in REPORTS:
+            for stamp, data in self._texts(topic):
+                if data.get("reason") not in INTENDED:
+                    found.append((stamp, str(data.get("reason")), False))
+        for stamp, data in self._texts("supervisor/status"):
+            if data.get("state") in ("FAULT", "PAUSED") and (first := data.get("first_fault") or data):
+                found.append((stamp, str(first.get("code") or first.get("reason")), data["state"] == "FAULT"))
+        return found
+
+    def _texts(self, topic: str) -> list[tuple[int, dict[str, Any]]]:
+        if topic not in self._run:
+            return []
+        stream = self._run[topic]
+        return [(int(s), json.loads(text)) for s, text in zip(stream.stamp, stream.data, strict=True)]
+
+    def outcomes(self, stands: Callable[[str], float]) -> list[Outcome]:
+        """Return one outcome for each labelled fault that was begun and ended.
+
+        Args:
+            stands: how close to its end the tip must stay to stand, m, by label.
+        """
+        requests = [(stamp, data) for stamp, data in self._texts("mock/fault") if data.get("label")]
+        outcomes = []
+        for (onset, request), (end, closing) in zip(requests, requests[1:], strict=False):
+            if request["fault"] != OK and closing["fault"] == OK and closing["label"] == request["label"]:
+                following = next((s for s, data in requests if s > end and data["fault"] != OK), None)
+                outcomes.append(self._outcome(request["label"], onset, end, following, stands(request["label"])))
+        return outcomes
+
+    def _row(self, stamp: int, after: int = 0) -> int:
+        """Return the first row at or behind a time; only forwards, so that a clock that jumps does no harm."""
+        found = np.nonzero(self._stamp[after:] >= stamp)[0]
+        return after + int(found[0]) if len(found) else len(self._stamp) - 1
+
+    def _outcome(self, label: str, onset: int, end: int, following: int | None, stands: float) -> Outcome:
+        first = self._row(onset)
+        last = self._row(end, first)
+        begin = int(np.searchsorted(self._time, self._time[first] - BEFORE))
+        span = max(self._time[first] - self._time[begin], 1e-9)
+        velocity = (self._tip[first] - self._tip[begin]) / span
+        speed = float(np.linalg.norm(velocity))
+        window, time = self._tip[first : last + 1], self._time[first : last + 1] - self._time[first]
+        reason, detection, fault = self._detection(onset, end, first, last)
+        released, pressed, until = self._operator(last, following)
+        return Outcome(
+            label=label,
+            speed=speed,
+            reason=reason,
+            detection=detection,
+            stop=_standstill(window, time, stands),
+            travel=_reach(window, window[0]),
+            excess=_off_way(window - window[0], time, velocity),
+            fault=fault,
+            alone=_reach(self._tip[last : released + 1], self._tip[last]),
+            resumed=_reach(self._tip[pressed : until + 1], self._tip[pressed]),
+        )
+
+    def _detection(self, onset: int, end: int, first: int, last: int) -> tuple[str, float | None, bool]:
+        """Return first reason, time of the first reaction, and whether FAULT was entered."""
+        events = [event for event in self._events if onset <= event[0] <= end]
+        if not events:
+            return "", None, False
+        at = self._time[self._row(events[0][0], first)] - self._time[first]
+        demand = self._demand[first : last + 1].sum(axis=1)
+        fallen = np.nonzero(demand < 0.8 * demand[0])[0] if demand[0] > 0.0 else []
+        if len(fallen):
+            at = min(at, self._time[first + int(fallen[0])] - self._time[first])
+        return events[0][1], float(at), any(event[2] for event in events)
+
+    def _operator(self, last: int, following: int | None) -> tuple[int, int, int]:
+        """Return the rows at which the pedal is released, pressed again, and the next fault sets in."""
+        until = len(self._stamp) - 1 if following is None else self._row(following, last)
+        pedal = self._run["mock/pedal"]
+        inside = (pedal.stamp >= self._stamp[last]) & (pedal.stamp <= self._stamp[until])
+        stamps, travel = pedal.stamp[inside], pedal.axes[inside, 0]
+        down = stamps[travel <= 0.0]
+        released = self._row(int(down[0]), last) if len(down) else until
+        up = stamps[(travel > 0.0) & (stamps > down[0])] if len(down) else stamps[:0]
+        pressed = self._row(int(up[0]), released) if len(up) else until
+        return released, pressed, until
+
+
+def _reach(tip: NDArray[np.float64], origin: NDArray[np.float64]) -> float:
+    return float(np.linalg.norm(tip - origin, axis=1).max()) if len(tip) else 0.0
+
+
+def _off_way(moved: NDArray[np.float64], time: NDArray[np.float64], velocity: NDArray[np.float64]) -> float:
+    """Return the largest distance from the way at constant `velocity` that ends, at each time, where it has got to."""
+    speed = float(np.linalg.norm(velocity))
+    along = moved @ velocity / speed if speed > 0.0 else np.zeros(len(moved))
+    nearest = np.clip(along, 0.0, speed * time)[:, None] * (velocity / speed if speed > 0.0 else 0.0)
+    return float(np.linalg.norm(moved - nearest, axis=1).max())
+
+
+def _standstill(tip: NDArray[np.float64], time: NDArray[np.float64], stands: float) -> float | None:
+    """Return when the tip has come to rest, None when it is still moving at the end."""
+    away = np.linalg.norm(tip - tip[-1], axis=1) > stands
+    moving = int(np.nonzero(away)[0][-1]) + 1 if away.any() else 0
+    rest = time[-1] - time[min(moving, len(time) - 1)]
+    return float(time[moving]) if rest >= BEFORE else None
