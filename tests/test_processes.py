@@ -13,6 +13,7 @@ from pathlib import Path
 import psutil
 import pytest
 from processes import child_environment, sher3_command
+from sher3_bags import recover
 from sher3_bags.reading import read_run
 from sher3_bringup.settings import MOCK_FORCE_PORT
 
@@ -94,6 +95,23 @@ def test_the_death_of_a_process_stops_the_robot(robot):
     assert status == 4
     assert re.search(r"sher3: \w+ stopped: killed by SIGKILL; the robot has been stopped", err)
     assert not [child for child in children if child.is_running() and child.status() != psutil.STATUS_ZOMBIE]
+
+
+@pytest.mark.parametrize("required", [True, False])
+def test_the_death_of_the_recorder_stops_the_robot_unless_recording_is_optional(robot, bag_folder, required):
+    """In both cases what it had written can be recovered."""
+    running = robot("--record", bag_folder, "--duration", "4", *([] if required else ["--record-optional"]))
+    running.ready()
+    recorder = sorted(child.pid for child in running.children())[-1]
+    time.sleep(1.5)
+    os.kill(recorder, signal.SIGKILL)
+    status, _, err = running.finish()
+    (line,) = [line for line in err.splitlines() if line.startswith("sher3: recorder stopped: killed by SIGKILL; ")]
+    if required:
+        assert status == 4 and line.endswith("the robot has been stopped")
+    else:
+        assert status == 0 and line.endswith("the robot goes on without it")
+    assert len(read_run(recover(bag_folder).target, check=False)["measured_js"]) > 100
 
 
 @pytest.mark.parametrize(

@@ -137,24 +137,34 @@ class Recorder:
             )
             self._file.flush()
         except OSError as error:
-            remedy = "free some space; `sher3 recover` saves what was written before"
-            raise BagError(f"cannot be written: {error.strerror}", path=self.folder, remedy=remedy) from error
+            raise self._unwritable(error) from error
+
+    def _unwritable(self, error: OSError) -> BagError:
+        remedy = "free some space; `sher3 recover` saves what was written before"
+        return BagError(f"cannot be written: {error.strerror}", path=self.folder, remedy=remedy)
 
     def counts(self) -> dict[str, dict[str, int]]:
         """Return messages, dropped samples, pauses and disorder per topic so far."""
         return {name: source.gaps.counts() for name, source in self._sources.items()}
 
     def close(self) -> dict[str, dict[str, int]]:
-        """Complete the bag; return the counts per topic, which are also in the bag as `sher3.recording`."""
+        """Complete the bag; return the counts per topic, which are also in the bag as `sher3.recording`.
+
+        Raises:
+            BagError: the disk does not take it.
+        """
         counts = self.counts()
         if self.closed:
             return counts
         self.closed = True
         self.flush()
-        self._writer.add_metadata(RECORDING_RECORD, {name: json.dumps(entry) for name, entry in counts.items()})
-        self._writer.close()
-        os.fsync(self._file.fileno())
-        self._file.close()
+        try:
+            self._writer.add_metadata(RECORDING_RECORD, {name: json.dumps(entry) for name, entry in counts.items()})
+            self._writer.close()
+            os.fsync(self._file.fileno())
+            self._file.close()
+        except OSError as error:
+            raise self._unwritable(error) from error
         topics = {
             source.topic.full_name: TopicCount(source.topic.type, source.gaps.messages, source.topic.qos)
             for source in self._sources.values()

@@ -1,5 +1,8 @@
 """Record the graph: raw bytes of every topic of the table into a new bag.
 
+When the disk does not take the recording, `/diagnostics` says so; where the recording is required the node then ends,
+which stops the robot, otherwise it stays, counts what it does not record, and the robot goes on.
+
 In stepped time samples are taken as they come, so that a step ends with all of them recorded.
 """
 
@@ -16,16 +19,19 @@ from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 from sher3_description import TOPICS, Robot, load_robot
-from sher3_runtime import environment
+from sher3_runtime import DiagnosticSample, advertise, environment
 from sher3_runtime.messages import message_class
 from sher3_runtime.ports import NODE_OPTIONS, clock_of, find_topic, on_tick, ports, qos_profile, subscribe_raw
 from sher3_runtime.process import stop_on_signals
 from sher3_runtime.spinning import spin
 
+from sher3_bags.errors import BagError
 from sher3_bags.recorder import Recorder
 from sher3_bags.run import RunMetadata
 
 POLL_NS = 5_000_000
+REPORT_NS = 1_000_000_000
+OK, ERROR = 0, 2
 
 DEPTH = 2000
 """Samples that may wait while a chunk is compressed or the disk is slow: four seconds of a 500 Hz stream."""
@@ -88,6 +94,8 @@ class RecorderNode(Node):
     Attributes:
         recorder: the plain recorder behind it.
         counts: per topic, set by `close`.
+        failure: why the bag takes no more, or None.
+        unrecorded: samples that came since.
     """
 
     def __init__(
@@ -98,12 +106,18 @@ class RecorderNode(Node):
         topics: Iterable[str] | None = None,
         metadata: RunMetadata | None = None,
         parameters: dict[str, Any] | None = None,
+        required: bool = True,
         **options: Any,
     ) -> None:
+        """Take the new folder, robot, topics and metadata; `required`: without recording the node ends."""
         super().__init__("recorder", **{**NODE_OPTIONS, **options})
         self.recorder = Recorder(Path(output), robot or load_robot(), metadata, parameters)
         self.counts: dict[str, dict[str, int]] = {}
+        self.failure: BagError | None = None
+        self.unrecorded = 0
+        self._required = required
         self._ears: Ears | None = None
+        self._publish_report = advertise(self, "diagnostics")
         names = tuple(TOPICS if topics is None else topics)
         if clock_of(self).stepped:
             for name in names:
@@ -111,29 +125,60 @@ class RecorderNode(Node):
         else:
             self._ears = Ears(self, names, **options)
             on_tick(self, self._poll, every=max(1, round(POLL_NS / clock_of(self).period_ns)))
+        # In the quieter half of the period.
+        period = clock_of(self).period_ns
+        on_tick(self, self._report, phase=0.7e-9 * period, every=max(1, round(REPORT_NS / period)))
 
     def _receiver(self, name: str) -> Callable[[bytes], None]:
-        recorder, now = self.recorder, clock_of(self).now
+        now = clock_of(self).now
 
         def receive(data: bytes) -> None:
-            if not recorder.closed:
-                recorder.write(name, data, now())
+            self._write(name, data, now())
 
         return receive
 
     def _poll(self, _: int) -> None:
         if self._ears is not None and not self.recorder.closed:
             for arrived, name, data, sent in self._ears.listen():
+                self._write(name, data, arrived, sent)
+
+    def _write(self, name: str, data: bytes, arrived: int, sent: int | None = None) -> None:
+        if self.failure is not None:
+            self.unrecorded += 1
+        elif not self.recorder.closed:
+            try:
                 self.recorder.write(name, data, arrived, sent)
+            except BagError as error:
+                self._fail(error)
+
+    def _fail(self, error: BagError) -> None:
+        """Say that the recording has ended; end with it where it is required."""
+        self.failure = error
+        self.unrecorded += 1
+        self._report(clock_of(self).now())
+        if self._required:
+            raise error
+        self.get_logger().error(f"{error}; the robot goes on without a recording")
+
+    def _report(self, stamp: int) -> None:
+        values = (
+            ("messages", str(sum(entry["messages"] for entry in self.recorder.counts().values()))),
+            ("unrecorded", str(self.unrecorded)),
+            ("required", str(self._required)),
+        )
+        level, message = (OK, "recording") if self.failure is None else (ERROR, f"not recording: {self.failure}")
+        self._publish_report(DiagnosticSample(stamp, "recorder: bag", level, message, values))
 
     def close(self) -> None:
         """Complete the bag; say what is in it and what was missed."""
         if self.recorder.closed:
             return
-        self._poll(0)
-        self.counts = self.recorder.close()
-        if self._ears is not None:
-            self._ears.destroy_node()
+        try:
+            self._poll(0)
+            self.counts = self.recorder.close() if self.failure is None else self.recorder.counts()
+        finally:
+            if self._ears is not None:
+                self._ears.destroy_node()
         total = sum(entry["messages"] for entry in self.counts.values())
         self.get_logger().info(f"recorded {total} messages of {len(self.counts)} topics in {self.recorder.folder}")
         for topic, entry in self.counts.items():

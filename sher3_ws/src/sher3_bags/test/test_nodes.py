@@ -111,3 +111,41 @@ def test_a_test_leaves_its_bag(tmp_path, request):
         assert run["measured_js"].position[:, 4].tolist() == [0.0, 1.0, 2.0, 3.0, 4.0]
         assert run["measured_js"].velocity is None
     assert bag_folder("a/b.py::test_x[1-0.5]").parts[-2:] == ("bags", "a_b.py_test_x_1-0.5")
+
+
+def full_disk(recorder):
+    """Let the recorder's file be one on a full disk."""
+    recorder.flush()
+    recorder._file = open("/dev/full", "wb", buffering=0)  # noqa: SIM115
+    recorder._writer._stream = recorder._file
+
+
+@pytest.mark.parametrize("required", [True, False])
+def test_a_full_disk_is_an_error_in_diagnostics_and_ends_a_required_recording(tmp_path, build, required):
+    """Required: the node ends, and with it the run. Optional: it stays and counts; what was written is recovered."""
+    from sher3_bags import recover
+    from sher3_bags.recorder_node import RecorderNode
+    from sher3_bags.replay_node import ReplayNode
+    from sher3_runtime import Graph
+
+    path = write_run(tmp_path / "bag", build(1200))
+    with Graph() as graph:
+        recorder = graph.add(RecorderNode, tmp_path / "again", load_robot(), topics=TOPICS, required=required)
+        probe = graph.probe("diagnostics")
+        graph.add(ReplayNode, Replay(path, TOPICS), wait_for=1)
+        graph.step(300)
+        assert {(s.level, s.message) for s in probe.samples["diagnostics"] if "recorder" in s.name} <= {
+            (0, "recording")
+        }
+        full_disk(recorder.recorder)
+        if required:
+            with pytest.raises(BagError, match="cannot be written: No space left"):
+                graph.step(800)
+            graph.settle()
+        else:
+            graph.step(800)
+        report = [s for s in probe.samples["diagnostics"] if s.name == "recorder: bag"][-1]
+        assert report.level == 2 and "not recording" in report.message and "No space left" in report.message
+        assert required or int(dict(report.values)["unrecorded"]) > 100
+    found = read_run(recover(tmp_path / "again").target)
+    assert 200 < len(found["measured_js"]) < 1200

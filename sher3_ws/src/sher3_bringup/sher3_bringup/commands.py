@@ -33,6 +33,10 @@ def up(
     ] = "",
     effects: Annotated[Optional[Path], typer.Option(help="Effects for the plant (YAML, sher3.effects/1).")] = None,  # noqa: UP045
     record: Annotated[Optional[Path], typer.Option(help="Record the run into this new folder.")] = None,  # noqa: UP045
+    record_optional: Annotated[
+        bool,
+        typer.Option("--record-optional", help="Go on when the recorder dies or the disk is full; else stop."),
+    ] = False,
     monitor: Annotated[
         bool,
         typer.Option("--monitor", help="Also run the gap monitor: gap/diagnostics at 1 Hz against the nominal model."),
@@ -74,6 +78,7 @@ def up(
         robot_path=robot,
         effects=effects,
         record=record,
+        recording="optional" if record_optional else "required",
         duration=duration,
         links=tuple(can or ()),
         force_device=force_device,

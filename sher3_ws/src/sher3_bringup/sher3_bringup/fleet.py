@@ -15,7 +15,7 @@ import socket
 import sys
 import time
 import traceback
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -112,17 +112,22 @@ class Fleet:
         self._tell({"start_ns": time.monotonic_ns() + int(os.environ[OFFSET_VARIABLE]) + round(lead * 1e9)})
         return time.monotonic() - begin
 
-    def watch(self, until: Callable[[], object], interval: float = 0.05) -> None:
-        """Return when `until()` is true.
+    def watch(self, until: Callable[[], object], interval: float = 0.05, spare: Collection[str] = ()) -> None:
+        """Return when `until()` is true; the end of a process named in `spare` is only said on standard error.
 
         Raises:
-            ProcessDied: a process ended before.
+            ProcessDied: another process ended before.
         """
+        lost: set[str] = set()
         while not until():
             for member in self.members:
                 self._drain(member)
-                if member.poll() is not None:
+                if member.poll() is None or member.name in lost:
+                    continue
+                if member.name not in spare:
                     raise ProcessDied(f"{member.name} {_ended(member)}", remedy="the robot has been stopped")
+                lost.add(member.name)
+                print(f"sher3: {member.name} {_ended(member)}; the robot goes on without it", file=sys.stderr)
             time.sleep(interval)
 
     def stop(self, patience: float = 5.0) -> None:

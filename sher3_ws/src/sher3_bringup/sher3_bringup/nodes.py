@@ -100,7 +100,8 @@ def _recorder(settings: RunSettings) -> Any:
         seed=settings.seed if settings.mock else None,
     )
     parameters = settings.model_dump(mode="json", exclude_defaults=True)
-    return RecorderNode(settings.record, settings.robot(), metadata=metadata, parameters=parameters)
+    required = settings.recording == "required"
+    return RecorderNode(settings.record, settings.robot(), metadata=metadata, parameters=parameters, required=required)
 
 
 def _plant(settings: RunSettings) -> Any:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 from sher3_control.settings import ControlSettings
@@ -43,6 +43,8 @@ class RunSettings(BaseModel):
         effects: file of effects for the plant.
         links: CAN link per channel, as `socketcan:can0`; by default local ones of this run.
         record: folder of the recorded run.
+        recording: `required`: the robot stops when its recorder dies or its disk is full; `optional`: it goes on,
+            and `/diagnostics` says so.
         duration: seconds until the run ends by itself, or None.
         domain: ROS domain id.
         other_hosts: talk to other machines; by default everything stays on the loopback interface.
@@ -62,6 +64,7 @@ class RunSettings(BaseModel):
     effects: Path | None = None
     links: tuple[str, ...] = ()
     record: Path | None = None
+    recording: Literal["required", "optional"] = "required"
     duration: Annotated[float, Field(gt=0.0)] | None = None
     domain: Annotated[int, Field(ge=0, le=231)] = 0
     other_hosts: bool = False

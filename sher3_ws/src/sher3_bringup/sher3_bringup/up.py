@@ -65,7 +65,7 @@ def run_graph(
                 progress(elapsed)
             return bool(caught) or (settings.duration is not None and elapsed >= settings.duration)
 
-        fleet.watch(finished)
+        fleet.watch(finished, spare=("recorder",) if settings.recording == "optional" else ())
     say("stopped" + (f"; recorded {settings.record}" if settings.record else ""))
 
 
