@@ -40,9 +40,10 @@ def _gravity_load(actuator: str, values: Values, robot: Robot) -> list[Part]:
 
 
 def _crosstalk(actuator: str, values: Values, robot: Robot) -> list[Part]:
+    free = {name: value for name, value in values.items() if len(name) == 2}
+    if free:
+        return [("force_crosstalk", actuator, free)]
     source, target = int(values["source"]), int(values["target"])
-    if max(source, target) > 2:
-        return []
     return [("force_crosstalk", actuator, {"xyz"[target] + "xyz"[source]: values["coefficient"]})]
 
 
@@ -83,7 +84,7 @@ def _tool_gravity(actuator: str, values: Values, robot: Robot) -> list[Part]:
 
 
 def _cable(actuator: str, values: Values, robot: Robot) -> list[Part]:
-    drag = {"stiffness": values.get("stiffness", 0.0), "force": values.get("hysteresis", 0.0)}
+    drag = {"stiffness": values.get("stiffness", 0.0), "force": values.get("force", 0.0)}
     return [("cable_drag", actuator, drag)]
 
 
@@ -104,15 +105,6 @@ def _position_friction(actuator: str, values: Values, robot: Robot) -> list[Part
     return [("position_friction", actuator, {**values, "periods_per_rev": lead / values["wavelength"]})]
 
 
-def _expansion(actuator: str, values: Values, robot: Robot) -> list[Part]:
-    """Return growth of everything, or of every slide; the plant cannot grow links or arm alone."""
-    part = int(values.get("part", 0))
-    growth = {"coefficient": values["coefficient"]}
-    if part == 0:
-        return [("thermal_expansion", actuator, growth)]
-    return [("thermal_expansion", a, growth) for a in (*SLIDERS, "tilt")] if part == 3 else []
-
-
 _CONVERTERS: dict[str, Callable[[str, Values, Robot], list[Part]]] = {
     "gravity_load": _gravity_load,
     "force_crosstalk": _crosstalk,
@@ -123,5 +115,4 @@ _CONVERTERS: dict[str, Callable[[str, Values, Robot], list[Part]]] = {
     "cable_drag": _cable,
     "friction_drift": _friction_drift,
     "position_friction": _position_friction,
-    "thermal_expansion": _expansion,
 }

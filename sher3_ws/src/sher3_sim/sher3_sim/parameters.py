@@ -63,8 +63,10 @@ BODY = np.dtype(
         ("mode_frequency", "f8"),
         ("mode_damping", "f8"),
         ("mode_gain", "f8"),
-        # mechanism, beyond the geometry: uniform growth [1/K]
+        # mechanism, beyond the geometry: growth [1/K] of everything, of the links, of the arm
         ("expansion", "f8"),
+        ("link_expansion", "f8"),
+        ("arm_expansion", "f8"),
         # force sensor in {f}: matrix on the wrench, bias, drift per K, tool, cable
         ("wrench_matrix", "f8", (6, 6)),
         ("wrench_bias", "f8", 6),

@@ -41,6 +41,16 @@ def add_clearance(p: KernelParameters, axis: Any, q: Array, load: Array, jacobia
 
 
 @njit(cache=True)
+def add_growth(p: KernelParameters, growth: float, q: Array, jacobian: Array, shift: Array) -> None:
+    """Add the platform's shift [m] when all links are longer by the share `growth`; the legs keep their slant."""
+    _, n1, n2, n3 = leg_vectors(p, q[0], q[1], q[2])
+    longer = (p.link_1 * p.link_1 / n1[2], p.link_2 * p.link_2 / n2[2], p.link_3 * p.link_3 / n3[2])
+    for i in range(3):
+        for k in range(3):
+            shift[i] += jacobian[i, k] * longer[k] * growth
+
+
+@njit(cache=True)
 def add_links(p: KernelParameters, b: Any, q: Array, arm: Array, wrench: Array, twist: Array) -> None:
     """Add the platform twist of six single links: unequal in a pair, and elastic under a wrench at the tip.
 
@@ -153,6 +163,12 @@ def true_tip(
         bending_shift(b.bending, rotation, wrench, shift)
     if b.mode_gain != 0.0:
         vibrate(b, s, (tip_rate - s.tip_rate) / b.period, shift)
+    if b.link_expansion != 0.0:
+        add_growth(p, b.link_expansion * warmth, q, jacobian, shift)
+    if b.arm_expansion != 0.0:
+        centre, _, _, _ = leg_vectors(p, q[0], q[1], q[2])
+        for i in range(3):
+            shift[i] += b.arm_expansion * warmth * (position[i] - centre[i])
     growth = b.expansion * warmth
     for i in range(3):
         s.tip_rate[i] = tip_rate[i]

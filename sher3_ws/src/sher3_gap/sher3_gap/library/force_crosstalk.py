@@ -16,8 +16,9 @@ class ForceCrosstalk(LibraryEffect):
     id, family, stage = "force_crosstalk", "wrench", "sensing"
     explanation = "A force along one axis of the sensor shows up on another axis, in proportion."
     siblings = {"force_scale": "on the same axis", "tool_gravity": "there without a load on the tip"}
-    units = {"coefficient": "1", "source": "1", "target": "1"}
     FORCES = tuple((j, i) for j in range(3) for i in range(3) if i != j)
+    PAIRS = tuple("xyz"[i] + "xyz"[j] for j, i in FORCES)
+    units = {"coefficient": "1", "source": "1", "target": "1", **dict.fromkeys(PAIRS, "1")}
 
     def sites(self) -> tuple[str, ...]:
         """The force sensor."""
@@ -40,7 +41,10 @@ class ForceCrosstalk(LibraryEffect):
         return Signature({Channel("sensing", site): columns})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Largest coefficient and its pair."""
+        """Largest coefficient and its pair; where all were free, each: the axis that reads, then the loaded one."""
         k = int(np.argmax(np.abs(coefficients)))
         j, i = self.FORCES[k] if len(coefficients) > 1 else (shape["source"], shape["target"])
-        return {"coefficient": float(coefficients[k]), "source": float(j), "target": float(i)}
+        out = {"coefficient": float(coefficients[k]), "source": float(j), "target": float(i)}
+        if len(coefficients) > 1:
+            out |= {pair: float(c) for pair, c in zip(self.PAIRS, coefficients, strict=True)}
+        return out

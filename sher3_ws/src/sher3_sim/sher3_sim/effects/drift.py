@@ -15,16 +15,19 @@ from sher3_sim.parameters import PlantParameters
 class ThermalExpansion(
     Effect, id="thermal_expansion", family="drift", stage="mechanism", places=(*ACTUATORS[:3], "tilt", "tip", "all")
 ):
-    """The structure grows with its temperature: one slide, or the whole robot from its base."""
+    """The structure grows with its temperature: one slide, the whole robot from its base, or a part of it."""
 
     coefficient: float = parameter("1/K", 12e-6, -1e-3, 1e-3, "relative growth per kelvin")
+    part: float = parameter("1", 0.0, 0.0, 3.0, "what grows: 0 everything, 1 the links, 2 the arm, 3 all slides")
 
     def apply(self, p: PlantParameters) -> None:
-        """Grow one slide or everything."""
+        """Grow one slide, or a part of the robot."""
         if self.actuator in ACTUATORS:
             p.axis["expansion"][self.rows] += self.coefficient
+        elif round(self.part) == 3:
+            p.axis["expansion"][[0, 1, 2, 4]] += self.coefficient
         else:
-            p.body["expansion"] += self.coefficient
+            p.body[("expansion", "link_expansion", "arm_expansion")[round(self.part)]] += self.coefficient
 
 
 def _drift(axis: str, default: float) -> Any:

@@ -54,10 +54,13 @@ class EncoderScale(Effect, id="encoder_scale", family="scale", stage="sensing"):
 
 @dataclass(frozen=True)
 class ForceScale(Effect, id="force_scale", family="scale", stage="sensing", places=("force_sensor",)):
-    """The force sensor's gain is wrong in all its channels."""
+    """The force sensor's gain is wrong, in all its channels or in some."""
 
     relative: float = parameter("1", 0.05, -0.5, 1.0, "reading over wrench, less one")
+    axis: float = parameter("1", -1.0, -2.0, 5.0, "component of (force, torque) it is of; -1 all, -2 the forces")
 
     def apply(self, p: PlantParameters) -> None:
-        """Scale the sensor's matrix."""
-        p.body["wrench_matrix"] *= 1.0 + self.relative
+        """Scale the sensor's matrix, or rows of it."""
+        chosen = round(self.axis)
+        rows = slice(None) if chosen == -1 else slice(0, 3) if chosen == -2 else slice(chosen, chosen + 1)
+        p.body["wrench_matrix"][0, rows] *= 1.0 + self.relative
