@@ -32,27 +32,26 @@ BACKLASH = EFFECTS["backlash"]("tilt", width=6e-5)
 
 def play(case: Path, effects, labels, repeats: int, duration: float) -> Path:
     """Play excitations on every node of the robot in stepped time and write the recordings as a case."""
-    from sher3_gap.excite_node import ExciteNode, trimmed
+    from sher3_gap.excite_node import RECORDED, ExciteNode, trimmed
     from sher3_gap.player import Phase, Player
 
-    runs = []
+    wanted = [(excite(label, ROBOT, duration=duration), repeat) for label in labels for repeat in range(repeats)]
+    players = [Player(excitation, ROBOT) for excitation, _ in wanted]
     with Graph(period=ROBOT.control_period) as graph:
         SteppedRobot(graph, effects, robot=ROBOT)
-        for label in labels:
-            for repeat in range(repeats):
-                excitation = excite(label, ROBOT, duration=duration)
-                player = Player(excitation, ROBOT)
+        with recorded(graph, f"gap_live_{case.name}", topics=RECORDED, robot=ROBOT) as recorder:
+            for player in players:
                 node = graph.add(ExciteNode, player)
-                name = f"{case.name}_{label}_{repeat}"
-                with recorded(
-                    graph, name, robot=ROBOT, metadata=excitation.metadata(repeat, origin="robot")
-                ) as recorder:
-                    for _ in range(400):
-                        graph.step(25)
-                        if node.finished:
-                            break
+                for _ in range(400):
+                    graph.step(25)
+                    if node.finished:
+                        break
                 assert node.failure is None and player.phase is Phase.DONE
-                runs.append(trimmed(read_run(recorder.recorder.folder), player.first, player.last))
+    whole = read_run(recorder.recorder.folder)
+    runs = [
+        replace(trimmed(whole, p.first, p.last), metadata=excitation.metadata(repeat, origin="robot"))
+        for p, (excitation, repeat) in zip(players, wanted, strict=True)
+    ]
     return write_case(case, runs, ROBOT)
 
 
