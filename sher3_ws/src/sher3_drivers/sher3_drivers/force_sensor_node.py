@@ -67,6 +67,7 @@ class ForceSensorNode(Node):
         level = 2 if fault.severe else 0 if fault is WrenchFault.NONE else 1
         values = [(f.name.lower(), str(count)) for f, count in self._faults.items()]
         values.append(("lost_records", str(self._watch.lost)))
+        values.append(("misfit_records", str(getattr(self._device, "misfits", 0))))
         self._publish_report(DiagnosticSample(stamp, "force_sensor: readings", level, fault.value, tuple(values)))
 
     def close(self) -> None:

@@ -55,6 +55,9 @@ class NetFtSensor:
         scale: counts per unit.
         answer_limit: longest wait for the first record, s.
 
+    Attributes:
+        misfits: datagrams that were no record, never taken.
+
     Raises:
         DeviceMissing: nothing answers at that address.
     """
@@ -70,6 +73,7 @@ class NetFtSensor:
         self._clock = clock
         self._scale = scale or NetFtScale()
         self._drained = 0
+        self.misfits = 0
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self._socket.setsockopt(socket.SOL_SOCKET, _SO_TIMESTAMPNS, 1)
         try:
@@ -112,6 +116,7 @@ class NetFtSensor:
             while True:
                 data, ancillary, _, _ = self._socket.recvmsg(64, 64)
                 if len(data) != RECORD.size:
+                    self.misfits += 1
                     continue
                 sequence, _, status, *counts = RECORD.unpack(data)
                 self._drained += 1

@@ -1,15 +1,24 @@
-"""Any bytes on the bus: neither side crashes and nothing moves that was not enabled."""
+"""Any bytes on the bus and from the devices: no side crashes, nothing moves that was not enabled, all is counted."""
 
 import itertools
+import math
+import socket
+import time
 
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from sher3_description import load_robot
 from sher3_drivers.bus import open_link
+from sher3_drivers.feedback import TPDO_BASES
+from sher3_drivers.force_sensor import WrenchRecord
 from sher3_drivers.frame import ERROR_FLAG, Frame, pack_frames
 from sher3_drivers.lockstep_rig import LockstepRig
+from sher3_drivers.netft import RECORD, NetFtSensor
+from sher3_drivers.netft_server import NetFtServer
+from sher3_drivers.pedal import LocalPedal, PedalSender
 from sher3_drivers.settings import default_settings
+from sher3_drivers.wrench_checks import WrenchFault, WrenchLimits, WrenchWatch, check_wrench
 
 ROBOT = load_robot()
 SLOW = [0.001, -0.002, 0.003, 0.1, -0.004]
@@ -22,7 +31,7 @@ ids = st.one_of(
     st.integers(ERROR_FLAG, ERROR_FLAG + 0x1FF),
 )
 bursts = st.lists(st.builds(Frame, ids, st.binary(max_size=8)), max_size=30).map(pack_frames)
-relaxed = settings(max_examples=150, deadline=None, suppress_health_check=list(HealthCheck))
+relaxed = settings(max_examples=150, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
 
 
 def make_rig():
@@ -85,3 +94,103 @@ def test_an_enabled_robot_under_garbage_stays_within_its_limits(seed):
     if rig.driver.stop.reason is not None:
         assert not rig.driver.enabled
     rig.close()
+
+
+@relaxed
+@given(bursts, st.integers(0, 1))
+def test_what_has_another_length_or_address_is_counted_or_foreign(disabled, frames, channel):
+    """A TPDO cut short is a misfit; the collector takes nothing of it into the feedback."""
+    rig, intruders = disabled
+    rig.tick()
+    before = rig.driver.collector.misfits
+    tpdos = {base + node for base in TPDO_BASES for node in range(1, 6)}
+    heads = [frames[k : k + 5] for k in range(0, len(frames), 16)]
+    cut = sum(head[4] != 8 and int.from_bytes(head[:4], "little") in tpdos for head in heads)
+    intruders[channel].send_frames(frames)
+    rig.tick()
+    rig.tick()
+    assert rig.driver.collector.misfits - before == cut
+
+
+def drained(sensor, server):
+    """Read until the record that the server now sends has come."""
+    server.publish((1.0, 2.0, 3.0, 0.01, 0.02, 0.03))
+    deadline = time.monotonic() + 5.0
+    while time.monotonic() < deadline:
+        if (record := sensor.read(0, 0.05)) is not None:
+            return record
+    raise AssertionError("no record")
+
+
+@pytest.fixture(scope="module")
+def netft():
+    server = NetFtServer(("127.0.0.1", 0))
+    import threading
+
+    serving = threading.Event()
+
+    def serve():
+        while not serving.is_set():
+            server.poll()
+            time.sleep(0.001)
+
+    thread = threading.Thread(target=serve)
+    thread.start()
+    sensor = NetFtSensor(server.address)
+    serving.set()
+    thread.join()
+    yield sensor, server
+    sensor.close()
+    server.close()
+
+
+@relaxed
+@given(st.lists(st.binary(max_size=70), max_size=8))
+def test_any_datagram_of_the_force_sensor_is_a_record_or_counted(netft, datagrams):
+    """What has the length of a record is one, and the checks judge its numbers; all else is a misfit."""
+    sensor, server = netft
+    before = sensor.misfits
+    for data in datagrams:
+        server._socket.sendto(data, server._client)
+    record = drained(sensor, server)
+    assert isinstance(record, WrenchRecord) and all(map(math.isfinite, record.wrench))
+    assert sensor.misfits - before == sum(len(data) != RECORD.size for data in datagrams)
+
+
+@relaxed
+@given(st.lists(st.tuples(*[st.integers(-(2**31), 2**31 - 1)] * 6), min_size=1, max_size=3), st.integers(0, 2**32 - 1))
+def test_any_record_is_judged_without_a_crash(readings, status):
+    """The counts of a record decode to a wrench whose fault is told whenever a component is not below its range."""
+    limits, watch = WrenchLimits.of(ROBOT.force_sensor), WrenchWatch()
+    for k, counts in enumerate(readings):
+        wrench = tuple(c / (1e6 if i < 3 else 1e9) for i, c in enumerate(counts))
+        watch, fault = check_wrench(watch, WrenchRecord(wrench, k, status), limits)
+        beyond = any(abs(w) >= r for w, r in zip(wrench, limits.rated, strict=True))
+        assert fault is (WrenchFault.DEVICE if status else fault) and (not beyond or fault.severe)
+
+
+@relaxed
+@given(st.lists(st.binary(max_size=40), max_size=8))
+def test_any_request_leaves_the_mock_sensor_serving(netft, requests):
+    sensor, server = netft
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as stranger:
+        for data in requests:
+            stranger.sendto(data, server.address)
+    client = server._client
+    server.poll()
+    server._client = client  # a stranger that happened to ask for the stream
+    assert drained(sensor, server).wrench == pytest.approx((1.0, 2.0, 3.0, 0.01, 0.02, 0.03))
+
+
+@relaxed
+@given(st.lists(st.binary(max_size=70), max_size=8))
+def test_any_datagram_of_the_pedal_is_a_state_or_none(datagrams):
+    pedal, sender = LocalPedal(f"fuzz-{next(_numbers)}"), PedalSender("nobody")
+    try:
+        for data in datagrams:
+            sender._socket.sendto(data, str(pedal._path))
+        state = pedal.read()
+        assert state is None or isinstance(state.emergency_stop, bool)
+    finally:
+        pedal.close()
+        sender.close()
