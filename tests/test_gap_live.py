@@ -33,15 +33,17 @@ BACKLASH = EFFECTS["backlash"]("tilt", width=6e-5)
 def play(case: Path, effects, labels, repeats: int, duration: float) -> Path:
     """Play excitations on every node of the robot in stepped time and write the recordings as a case."""
     from sher3_gap.excite_node import RECORDED, ExciteNode, trimmed
-    from sher3_gap.player import Phase, Player
+    from sher3_gap.player import Heard, Phase, Player
 
     wanted = [(excite(label, ROBOT, duration=duration), repeat) for label in labels for repeat in range(repeats)]
-    players = [Player(excitation, ROBOT) for excitation, _ in wanted]
+    heard = Heard()
+    players = [Player(excitation, ROBOT, heard) for excitation, _ in wanted]
     with Graph(period=ROBOT.control_period) as graph:
         SteppedRobot(graph, effects, robot=ROBOT)
         with recorded(graph, f"gap_live_{case.name}", topics=RECORDED, robot=ROBOT) as recorder:
+            node = graph.add(ExciteNode, players[0])
             for player in players:
-                node = graph.add(ExciteNode, player)
+                node.player, node.finished = player, False
                 for _ in range(400):
                     graph.step(25)
                     if node.finished:
