@@ -18,7 +18,7 @@ CONTROL: dict[str, Any] = {
     "pedal": {"age_limit": 0.4},
     "admittance": {"joints_age_limit": 0.4, "lead_limit": 0.4},
     "motion": {"servo_timeout": 0.4, "joints_age_limit": 0.4, "lead_limit": 0.4},
-    "supervisor": {"stream_age_limit": 0.6},
+    "supervisor": {"stream_age_limit": 0.6, "heartbeat_limit": 0.6, "overrun_share": 1.0},
 }
 """Overrides of `ControlSettings` [s]; strict: 0.010 to 0.020, lead 0, and 0.1 for the supervisor."""
 
@@ -28,9 +28,11 @@ DRIVES: dict[str, Any] = {
     "missing_limit": 200,
     "stop_age": 300,
     "transition_limit": 2.0,
+    "supervisor_limit": 0.6,
+    "stall_limit": 0.5,
 }
 """Overrides of `MotorDriverSettings` [s; ticks]; strict: 0.050, 0.200, 10, 50, 0.5. Zero velocity is still sent to the
 drives once a command is `zero_age` ticks old, and motion goes on with the next command."""
 
-PEDAL_AGE = {"strict": 0.1, "patient": 0.6}
+PEDAL_AGE = {"strict": 0.02, "patient": 0.6}
 """Longest silence of the mock pedal [s]."""

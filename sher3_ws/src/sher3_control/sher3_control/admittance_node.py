@@ -46,7 +46,7 @@ class AdmittanceNode(Node):
         self._wrench: tuple[int, Wrench] = (-1, NO_WRENCH)
         self._pedal: tuple[int, float, bool] = (-1, 0.0, False)
         self._joints: tuple[int, tuple[float, ...], float, float] = (-1, (), 0.0, 0.0)
-        self._state_heard = HeardState(self.settings.supervisor.publish_period)
+        self._state_heard = HeardState(self.settings.supervisor.heartbeat_limit)
         self._owner = False
         self._tick_count, self._last, self._since = 0, -1, -1
         self._reason: Reason | None = None
@@ -70,6 +70,7 @@ class AdmittanceNode(Node):
         subscribe(self, "pedal/measured", self._on_pedal)
         subscribe(self, "force/measured_cf", self._on_wrench)
         subscribe(self, "operating_state", self._on_state)
+        self._take_heartbeat = latest(self, "supervisor/heartbeat")
         subscribe(self, "motion/status", self._on_motion)
         subscribe(self, "command/admittance", self._on_command)
         self.create_service(Trigger, "admittance/tare", self._on_tare)
@@ -108,6 +109,8 @@ class AdmittanceNode(Node):
         self._last = stamp
         self._late.done(stamp)
         self._look_at_joints()
+        if (beat := self._take_heartbeat()) is not None:
+            self._on_state(beat)
         law_input = self._input(stamp)
         self._state, output = step(self._state, law_input, self._p)
         if law_input.owner:

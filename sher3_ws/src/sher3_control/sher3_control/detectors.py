@@ -6,28 +6,46 @@ None`.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Protocol
+from dataclasses import dataclass, field
+from typing import NamedTuple, Protocol
+
+from .reasons import ACTION, Action, Reason
 
 
-@dataclass(frozen=True)
-class Finding:
+class Finding(NamedTuple):
     """What a detector objects to.
 
     Attributes:
-        code: reason code such as `FORCE_SILENT`, stable across versions.
+        reason: the cause, stable across versions.
         value, limit: the number and its limit in `unit`.
         source: stream or component.
+        harder: an action beyond what the reason asks for, as the motor driver may report one.
     """
 
-    code: str
+    reason: Reason
     value: float
     limit: float
     unit: str
     source: str
+    harder: Action = Action.NONE
+
+    @property
+    def code(self) -> str:
+        """The reason's name."""
+        return self.reason.name
+
+    @property
+    def action(self) -> Action:
+        """How hard the robot is stopped for it."""
+        return max(ACTION[self.reason], self.harder)
 
     def __str__(self) -> str:
         return f"{self.code}: {self.source} {self.value:.6g} {self.unit}, limit {self.limit:.6g} {self.unit}"
+
+    def to_dict(self) -> dict[str, object]:
+        """Return it as plain data."""
+        numbers = {"value": self.value, "limit": self.limit, "unit": self.unit, "source": self.source}
+        return {"code": self.code, **numbers, "action": self.action.name}
 
 
 class Detector(Protocol):
@@ -47,6 +65,9 @@ class Detector(Protocol):
     def check(self, now: int) -> Finding | None:
         """Return the objection at time `now` [ns], or None."""
 
+    def look(self, now: int) -> Finding:
+        """Return the number it looks at, objectionable or not, for the diagnostics."""
+
 
 class _Plain:
     """Defaults of a detector whose cause comes and goes by itself."""
@@ -57,6 +78,14 @@ class _Plain:
     def recover(self, now: int) -> None:
         """Nothing to forget."""
 
+    def look(self, now: int) -> Finding:
+        raise NotImplementedError
+
+    def check(self, now: int) -> Finding | None:
+        """Object while the number is beyond its limit; a NaN is."""
+        found = self.look(now)
+        return None if found.value <= found.limit else found
+
 
 @dataclass
 class SilenceDetector(_Plain):
@@ -64,18 +93,19 @@ class SilenceDetector(_Plain):
 
     source: str
     limit: float
+    missing: Reason
+    stale: Reason
     last: int = -1
 
     def feed(self, stamp: int) -> None:
         """Take note of a sample [ns]."""
         self.last = stamp
 
-    def check(self, now: int) -> Finding | None:
-        """Object when no sample came within the limit, or none at all."""
-        age = (now - self.last) * 1e-9 if self.last >= 0 else float("inf")
-        if age <= self.limit:
-            return None
-        return Finding(code_of(self.source) + "_SILENT", age, self.limit, "s", self.source)
+    def look(self, now: int) -> Finding:
+        """Return the age; infinite before the first sample."""
+        if self.last < 0:
+            return Finding(self.missing, float("inf"), self.limit, "s", self.source)
+        return Finding(self.stale, (now - self.last) * 1e-9, self.limit, "s", self.source)
 
 
 @dataclass
@@ -90,14 +120,14 @@ class EmergencyStopDetector(_Plain):
         """Take note of the button."""
         self.pressed = pressed
 
-    def check(self, now: int) -> Finding | None:
-        """Object while the button is pressed."""
-        return Finding("EMERGENCY_STOP", 1.0, 0.0, "pressed", self.source) if self.pressed else None
+    def look(self, now: int) -> Finding:
+        """Return the button."""
+        return Finding(Reason.EMERGENCY_STOP, float(self.pressed), 0.0, "pressed", self.source)
 
 
 @dataclass
 class ReportedFault(_Plain):
-    """A fault that the motor driver reports; it stays until the driver reports it gone.
+    """A stop that the motor driver reports; it stays until the driver reports it gone.
 
     Driver and drives reset only on the way from FAULT to DISABLED. Reports made before they have done so are not
     taken up again: for `grace` [s] after the recovery a report counts as an old one.
@@ -110,13 +140,16 @@ class ReportedFault(_Plain):
     active_when_disabled = True
     cleared_by_recovery = True
 
-    def feed(self, faulty: bool, message: str, now: int) -> None:
-        """Take note of a report at `now` [ns]; `message` says what is wrong."""
-        if not faulty:
+    def feed(self, report: Finding | None, now: int) -> None:
+        """Take note of a report at `now` [ns], None when nothing is wrong."""
+        if report is None:
             self.finding, self.deaf_until = None, -1
         elif now > self.deaf_until:
-            source = f"{self.source}: {message}"
-            self.finding = Finding(f"{code_of(self.source)}_STOPPED", 1.0, 0.0, "reported", source)
+            self.finding = report
+
+    def look(self, now: int) -> Finding:
+        """Return the report that stands, or that there is none."""
+        return self.finding or Finding(Reason.MOVING, 0.0, 0.0, "reported", self.source)
 
     def check(self, now: int) -> Finding | None:
         """Object while the report stands."""
@@ -127,6 +160,28 @@ class ReportedFault(_Plain):
         self.finding, self.deaf_until = None, now + round(self.grace * 1e9)
 
 
-def code_of(source: str) -> str:
-    """Return the reason-code form of a topic name: `force/measured_cf` is `FORCE_MEASURED_CF`."""
-    return source.replace("/", "_").upper()
+@dataclass
+class OverrunDetector(_Plain):
+    """Nodes that lose cycles or overrun them: the worst node's share of bad cycles between its last two reports.
+
+    A report counts for `lifetime` [s]; the first one of a node holds its start and does not count.
+    """
+
+    limit: float
+    lifetime: float = 2.5
+    _before: dict[str, tuple[int, int]] = field(default_factory=dict)
+    _share: dict[str, tuple[float, int]] = field(default_factory=dict)
+
+    def feed(self, node: str, ticks: int, bad: int, now: int) -> None:
+        """Take note of a node's counters at `now` [ns]: cycles run, and cycles lost or too long."""
+        before = self._before.get(node)
+        self._before[node] = ticks, bad
+        if before is not None and ticks > before[0]:
+            self._share[node] = (bad - before[1]) / (ticks - before[0]), now
+
+    def look(self, now: int) -> Finding:
+        """Return the worst node."""
+        oldest = now - round(self.lifetime * 1e9)
+        fresh = [(share, node) for node, (share, at) in self._share.items() if at >= oldest]
+        share, node = max(fresh, default=(0.0, "control loop"))
+        return Finding(Reason.OVERRUN, share, self.limit, "of the cycles", node)

@@ -1,4 +1,4 @@
-"""What a node has heard of the others on latched text topics; silence and damage count as the safe answer."""
+"""What a node has heard of the others on text topics; silence and damage count as the safe answer."""
 
 from __future__ import annotations
 
@@ -6,20 +6,21 @@ from typing import Any
 
 from sher3_description import FileError, parse_json
 
-PERIODS = 2.5
-"""The operating state is repeated; after this many silent periods the robot counts as not enabled."""
-
 
 class HeardState:
-    """The operating state as a node knows it."""
+    """The operating state as a node knows it, from `operating_state` and from the supervisor's heartbeats.
 
-    def __init__(self, publish_period: float) -> None:
-        self._patience = round(PERIODS * publish_period * 1e9)
+    Args:
+        limit: silence [s] after which the robot counts as not enabled.
+    """
+
+    def __init__(self, limit: float) -> None:
+        self._patience = round(limit * 1e9)
         self._until = -1
 
     def feed(self, text: str, now: int) -> None:
-        """Take note of an `operating_state` sample at time `now` [ns]."""
-        self._until = now + self._patience if text == "ENABLED" else -1
+        """Take note of an operating state, or of a heartbeat `STATE ACTION`, at time `now` [ns]."""
+        self._until = now + self._patience if text.partition(" ")[0] == "ENABLED" else -1
 
     def enabled(self, now: int) -> bool:
         """Return whether the robot is ENABLED, heard of recently."""

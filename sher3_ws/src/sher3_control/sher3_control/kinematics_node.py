@@ -15,7 +15,7 @@ from rclpy.node import Node
 from sher3_description import Robot, Sher3Error
 from sher3_kinematics import kernel_parameters
 from sher3_runtime import JointSample, PoseSample, TextSample, TwistSample, WrenchSample
-from sher3_runtime.ports import NODE_OPTIONS, advertise, clock_of, on_tick, subscribe
+from sher3_runtime.ports import NODE_OPTIONS, advertise, clock_of, latest, on_tick, subscribe
 
 from .cooperative import RESTING
 from .deflection_compensation import DeflectionCompensation
@@ -47,7 +47,7 @@ class KinematicsNode(Node):
         self._kernel = np.array(kernel_parameters(robot))
         self._joints = JointSample(-1, RESTING)
         self._twist = TwistSample(-1, (0.0,) * 6)
-        self._state_heard = HeardState(self.settings.supervisor.publish_period)
+        self._state_heard = HeardState(self.settings.supervisor.heartbeat_limit)
         self._tick_count, self._last, self._version = 0, -1, 0
         self._shown: tuple[Any, ...] = ()
         self._refused: dict[str, Any] | None = None
@@ -69,6 +69,7 @@ class KinematicsNode(Node):
         subscribe(self, "measured_js", self._on_joints)
         subscribe(self, "servo_cv", self._on_twist)
         subscribe(self, "operating_state", self._on_state)
+        self._take_heartbeat = latest(self, "supervisor/heartbeat")
         subscribe(self, "admittance/status", self._on_admittance)
         subscribe(self, "command/admittance", self._on_rcm)
         if self._compensation is not None:
@@ -114,6 +115,8 @@ class KinematicsNode(Node):
 
     def _input(self, stamp: int) -> MotionInput:
         joints, twist = self._joints, self._twist
+        if (beat := self._take_heartbeat()) is not None:
+            self._on_state(beat)
         enabled = self._state_heard.enabled(stamp)
         return MotionInput(stamp, enabled, joints.stamp, joints.position or (), twist.stamp, twist.twist)
 

@@ -153,12 +153,26 @@ class SupervisorSettings(Settings):
     """What the supervisor watches.
 
     Attributes:
-        stream_age_limit: a watched stream silent for longer is a fault while ENABLED or PAUSED [s].
+        stream_age_limit: a watched stream silent for longer is a fault while ENABLED or PAUSED [s]; the law itself has
+            stopped long before.
         publish_period: period of the repeated operating state [s].
+        heartbeat_period: period of the supervisor's heartbeat and of its checks [s].
+        heartbeat_limit: silence after which law and modes take the robot as not enabled [s].
+        overrun_share: share of lost or overrun cycles of a node in a second from which the robot pauses [1].
+        leg_distance: motion of one leg's slider that the tracked tip may show beyond the load encoders [m]; a push of
+            1 N bends the paper's structure by up to 0.35 mm.
+        leg_latency: how long it must last [s].
+        leg_memory: time constant with which the slow part of it is followed [s].
     """
 
     stream_age_limit: Seconds = 0.1
     publish_period: Seconds = 1.0
+    heartbeat_period: Seconds = 0.010
+    heartbeat_limit: Seconds = 0.030
+    overrun_share: Fraction = 0.1
+    leg_distance: Annotated[Number, Field(gt=0.0, le=0.01)] = 1e-3
+    leg_latency: Seconds = 0.1
+    leg_memory: Seconds = 1.0
 
 
 class ControlSettings(Settings):
@@ -199,6 +213,13 @@ class ControlSettings(Settings):
                 value=self.pedal.press,
                 limit=self.pedal.release,
                 remedy="leave a hysteresis between the two",
+            )
+        if self.supervisor.heartbeat_limit < 2.0 * self.supervisor.heartbeat_period:
+            raise SettingsError(
+                "supervisor.heartbeat_limit [s] trips on one lost heartbeat",
+                value=self.supervisor.heartbeat_limit,
+                limit=f"at least {2.0 * self.supervisor.heartbeat_period:g}",
+                remedy="shorten supervisor.heartbeat_period or widen the limit",
             )
         nyquist = 0.5 / robot.control_period
         if self.admittance.filter_cutoff >= 0.8 * nyquist:

@@ -1,8 +1,8 @@
 """The core of the supervisor: who may move, decided from commands and detectors, with time as an argument.
 
-The first fault is kept with its time, later ones are counted. Nothing leaves FAULT by itself: one `disable`, accepted
-only in FAULT and only once its causes are gone, leads to DISABLED; `enable` needs every detector silent. Release-
-then-press of the pedal is the law's own part, since every stop disarms it.
+The first fault is kept with its time, later ones are counted; of all of them the most severe action is in force.
+Nothing leaves FAULT by itself: one `disable`, accepted only once its causes are gone, leads to DISABLED; `enable`
+needs every detector silent. Release-then-press of the pedal is the law's own part, since every stop disarms it.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 from .detectors import Detector, Finding
 from .errors import StateCommandRefused
 from .operating_state import OperatingState, StateCommand, next_state
+from .reasons import Action
 
 
 @dataclass(frozen=True)
@@ -23,8 +24,9 @@ class Status:
     Attributes:
         since: time of the last change of state [ns].
         reason: what led here: the command, or the code of the first fault.
-        first_fault: the fault that led into FAULT, kept until recovery.
+        first_fault: the fault that led into FAULT, kept until recovery; what paused the robot in PAUSED.
         later_faults: how many other objections followed it.
+        action: how hard the robot is stopped.
         homed: the absolute encoders make the robot homed; `unhome` revokes it until `home`.
     """
 
@@ -33,13 +35,20 @@ class Status:
     reason: str
     first_fault: Finding | None = None
     later_faults: int = 0
+    action: Action = Action.NONE
     homed: bool = True
 
     def to_json(self) -> str:
         """Return the status as one line of JSON, times in ns."""
-        fault = None if self.first_fault is None else vars(self.first_fault)
+        fault = None if self.first_fault is None else self.first_fault.to_dict()
         data = {"state": self.state.value, "since": self.since, "reason": self.reason, "first_fault": fault}
-        return json.dumps({**data, "later_faults": self.later_faults, "is_homed": self.homed})
+        action = self.action.name
+        return json.dumps({**data, "later_faults": self.later_faults, "action": action, "is_homed": self.homed})
+
+    @property
+    def heartbeat(self) -> str:
+        """What `supervisor/heartbeat` carries: `STATE ACTION`."""
+        return f"{self.state.value} {self.action.name}"
 
 
 @dataclass
@@ -67,8 +76,7 @@ class Supervisor:
             return self._count(found)
         if not found:
             return False
-        self._fault(now, found)
-        return True
+        return self._stop(now, found)
 
     def command(self, text: str, now: int) -> Status:
         """Carry out one CRTK state command.
@@ -114,17 +122,27 @@ class Supervisor:
         asked = [d for d in self.detectors if not recovery or (d.active_when_disabled and not d.cleared_by_recovery)]
         return [finding for d in asked if (finding := d.check(now)) is not None]
 
-    def _fault(self, now: int, found: list[Finding]) -> None:
+    def _stop(self, now: int, found: list[Finding]) -> bool:
+        """Go to FAULT, or to PAUSED for what only asks for that; return whether anything changed."""
+        first = max(found, key=lambda finding: finding.action)
+        target = OperatingState.PAUSED if first.action <= Action.PAUSE else OperatingState.FAULT
+        if target is self.state:
+            return self._count(found)
         self._seen = {f.code for f in found}
-        first = found[0]
-        self.status = Status(OperatingState.FAULT, now, first.code, first, len(self._seen) - 1, self.status.homed)
+        later = len(self._seen) - 1
+        self.status = Status(target, now, first.code, first, later, first.action, self.status.homed)
+        return True
 
     def _count(self, found: list[Finding]) -> bool:
+        """Count what is new, and take its action over when it is more severe."""
         new = {f.code for f in found} - self._seen
         self._seen |= new
-        if new:
-            self.status = _replace(self.status, later_faults=self.status.later_faults + len(new))
-        return bool(new)
+        action = max((self.status.action, *(f.action for f in found)))
+        changed = bool(new) or action > self.status.action
+        if changed:
+            later = self.status.later_faults + len(new)
+            self.status = _replace(self.status, later_faults=later, action=action)
+        return changed
 
 
 _REMEDY = {

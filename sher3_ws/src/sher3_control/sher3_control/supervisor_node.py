@@ -1,4 +1,8 @@
-"""The supervisor node: streams and state commands in, `operating_state` out, latched and repeated; see `supervisor`."""
+"""The supervisor node: streams and state commands in, `operating_state` out, latched and repeated; see `supervisor`.
+
+Its heartbeat is sent by the very tick that asks the detectors: a supervisor that hangs falls silent, and everybody
+stops.
+"""
 
 from __future__ import annotations
 
@@ -6,21 +10,31 @@ import json
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
 from rclpy.node import Node
 from sher3_description import Robot, Sher3Error
-from sher3_runtime import DiagnosticSample, JoySample, TextSample
+from sher3_description.reasons import reading
+from sher3_kinematics import RobotKinematics
+from sher3_runtime import DiagnosticSample, JointSample, JoySample, PoseSample, TextSample
 from sher3_runtime.ports import NODE_OPTIONS, advertise, clock_of, latest, on_tick, subscribe
 
-from .detectors import Detector, EmergencyStopDetector, ReportedFault, SilenceDetector
-from .settings import ControlSettings
+from .detectors import Detector, EmergencyStopDetector, OverrunDetector, ReportedFault, SilenceDetector
+from .driver_reports import DRIVES, LOOP, cycle_counts, driver_stop
+from .leg_residual import LegDetector, leg_residual
+from .operating_state import OperatingState
+from .reasons import Reason
+from .settings import ControlSettings, SupervisorSettings
 from .supervisor import Supervisor
 
-WATCHED = ("force/measured_cf", "measured_js", "servo_jv")
-DRIVES = "motor_driver: drives"
-"""The diagnostic whose error level says that the driver has stopped by itself."""
-ERROR = 2
-CHECK_PERIOD = 0.01
-"""Period at which silence is looked for [s]; the emergency stop is judged when its sample arrives."""
+PEDAL = "pedal/measured"
+STREAMS = {
+    "force/measured_cf": (Reason.WRENCH_MISSING, Reason.WRENCH_STALE),
+    "measured_js": (Reason.JOINTS_MISSING, Reason.JOINTS_STALE),
+    "servo_jv": (Reason.COMMAND_MISSING, Reason.COMMAND_STALE),
+    PEDAL: (Reason.PEDAL_MISSING, Reason.PEDAL_STALE),
+}
+"""Watched streams, and what it is called when one never came or fell silent."""
+LEVELS = {OperatingState.FAULT: 2, OperatingState.PAUSED: 1}
 
 
 class SupervisorNode(Node):
@@ -36,45 +50,70 @@ class SupervisorNode(Node):
         """Take the robot, settings (default: those of the robot) and further detectors beside the built-in ones."""
         super().__init__("supervisor", **{**NODE_OPTIONS, **options})
         self.settings = (ControlSettings.from_robot(robot) if settings is None else settings).supervisor
-        self._silence = {s: SilenceDetector(s, self.settings.stream_age_limit) for s in (*WATCHED, "pedal/measured")}
+        limit = self.settings.stream_age_limit
+        self._silence = {name: SilenceDetector(name, limit, *reasons) for name, reasons in STREAMS.items()}
         self._button = EmergencyStopDetector()
         self._drives = ReportedFault("motor_driver")
-        self.supervisor = Supervisor([self._button, self._drives, *self._silence.values(), *detectors])
+        self._overruns = OverrunDetector(self.settings.overrun_share)
+        self._leg = _leg_detector(robot, self.settings)
+        built_in = [self._button, self._drives, *self._silence.values(), self._overruns, self._leg]
+        self.supervisor = Supervisor([*built_in, *detectors])
         self._refused: dict[str, Any] | None = None
+        self._beat = TextSample(self.supervisor.status.heartbeat)
+        self._joints = JointSample(-1)
+        self._connect(robot.control_period)
+
+    def _connect(self, period: float) -> None:
         self._publish_state = advertise(self, "operating_state")
         self._publish_status = advertise(self, "supervisor/status")
-        self._watched = [(self._silence[name], latest(self, name)) for name in WATCHED]
-        subscribe(self, "pedal/measured", self._on_pedal)
+        self._publish_heartbeat = advertise(self, "supervisor/heartbeat")
+        self._publish_report = advertise(self, "diagnostics")
+        self._watched = [(name, self._silence[name], latest(self, name)) for name in STREAMS if name != PEDAL]
+        self._take_tip = latest(self, "tracker/measured_cp")
+        subscribe(self, PEDAL, self._on_pedal)
         subscribe(self, "diagnostics", self._on_diagnostics)
         subscribe(self, "command/state_command", self._on_command)
         self._now = clock_of(self).now
-        period = robot.control_period
-        on_tick(self, self._check, phase=0.5 * period, every=max(1, round(CHECK_PERIOD / period)))
+        on_tick(self, self._check, phase=0.5 * period, every=max(1, round(self.settings.heartbeat_period / period)))
         on_tick(self, self._repeat, phase=0.5 * period, every=max(1, round(self.settings.publish_period / period)))
         self._publish()
 
     def _look(self) -> None:
         """Note the newest sample of each watched stream; waking up for all of them would cost more than the rest."""
-        for detector, take in self._watched:
+        for name, detector, take in self._watched:
             if (sample := take()) is not None:
                 detector.last = sample.stamp
+                if name == "measured_js":
+                    self._joints = sample
+        tip: PoseSample | None = self._take_tip()
+        if tip is not None and tip.stamp == self._joints.stamp and self._joints.position is not None:
+            self._leg.feed(tip.stamp, tip.position, self._joints.position)
 
     def _on_pedal(self, sample: JoySample) -> None:
-        self._silence["pedal/measured"].last = sample.stamp
+        self._silence[PEDAL].last = sample.stamp
         pressed = bool(sample.buttons[0]) if sample.buttons else True
         if pressed != self._button.pressed:
             self._button.feed(pressed)
-            self._check(self._now())
+            self._judge()
 
     def _on_diagnostics(self, sample: DiagnosticSample) -> None:
         if sample.name == DRIVES:
-            self._drives.feed(sample.level >= ERROR, sample.message, self._now())
-            self._check(self._now())
+            self._drives.feed(driver_stop(sample.level, sample.message, sample.values), self._now())
+            self._judge()
+        elif sample.name in LOOP and (counts := cycle_counts(sample.values)) is not None:
+            self._overruns.feed(sample.name, *counts, self._now())
 
-    def _check(self, _now: int) -> None:
+    def _judge(self) -> None:
         self._look()
         if self.supervisor.check(self._now()):
             self._publish()
+            self._publish_heartbeat(self._beat)
+
+    def _check(self, _stamp: int) -> None:
+        self._look()
+        if self.supervisor.check(self._now()):
+            self._publish()
+        self._publish_heartbeat(self._beat)
 
     def _on_command(self, sample: TextSample) -> None:
         self._look()
@@ -84,11 +123,27 @@ class SupervisorNode(Node):
         except Sher3Error as error:
             self._refused = {"command": sample.text, "error": type(error).__name__, "text": str(error)}
         self._publish()
+        self._publish_heartbeat(self._beat)
 
-    def _repeat(self, _stamp: int) -> None:
+    def _repeat(self, stamp: int) -> None:
         self._publish()
+        status, now = self.supervisor.status, self._now()
+        looks = [detector.look(now) for detector in self.supervisor.detectors]
+        values = [reading(f.reason, f.source, f.value, f.limit, f.unit) for f in looks]
+        values += [("reason", status.reason), ("action", status.action.name)]
+        values.append(("later_faults", str(status.later_faults)))
+        level = LEVELS.get(status.state, 0)
+        self._publish_report(DiagnosticSample(stamp, "supervisor: state", level, status.state.value, tuple(values)))
 
     def _publish(self) -> None:
         status = self.supervisor.status
+        self._beat = TextSample(status.heartbeat)
         self._publish_state(TextSample(status.state.value))
         self._publish_status(TextSample(json.dumps({**json.loads(status.to_json()), "refused": self._refused})))
+
+
+def _leg_detector(robot: Robot, settings: SupervisorSettings) -> LegDetector:
+    kinematics = RobotKinematics(robot)
+    leg_residual(kinematics, (0.0,) * 5, np.zeros(3))  # compiled now, not in the first check
+    kinematics.transform_tip_to_base(np.zeros(5))
+    return LegDetector(kinematics, settings.leg_distance, settings.leg_latency, settings.leg_memory)

@@ -49,7 +49,7 @@ def test_silence_stops_within_the_age_limit_and_faults(silence):
         g.step(60)
         g.until_state("FAULT")
         status = g.status("supervisor/status")
-        assert status["first_fault"]["code"].endswith("_SILENT")
+        assert status["first_fault"]["code"].endswith("_STALE")
         setattr(g.robot, silence, (1.0, 0.0, 0.0) if silence == "force" else 1.0)
         g.step(10)
         g.text("state_command", "enable")

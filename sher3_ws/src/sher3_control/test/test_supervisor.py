@@ -10,9 +10,11 @@ from hypothesis.stateful import RuleBasedStateMachine, invariant, rule
 from sher3_control.detectors import EmergencyStopDetector, Finding, ReportedFault, SilenceDetector
 from sher3_control.errors import StateCommandRefused
 from sher3_control.operating_state import OperatingState, StateCommand, next_state
+from sher3_control.reasons import Reason
 from sher3_control.supervisor import Supervisor
 
 S, C = OperatingState, StateCommand
+FELL = Finding(Reason.DRIVE_FELL, 1.0, 0.0, "1", "roll in FAULT")
 CRTK = {
     "DISABLED": {"enable": "ENABLED", "disable": "DISABLED"},
     "ENABLED": {"enable": "ENABLED", "disable": "DISABLED", "pause": "PAUSED"},
@@ -35,9 +37,12 @@ def test_no_command_leads_into_fault_and_home_changes_no_state():
 
 
 def test_enable_names_every_failed_item():
-    watched = [SilenceDetector("force/measured_cf", 0.1), SilenceDetector("measured_js", 0.1)]
+    watched = [
+        SilenceDetector("force/measured_cf", 0.1, Reason.WRENCH_MISSING, Reason.WRENCH_STALE),
+        SilenceDetector("measured_js", 0.1, Reason.JOINTS_MISSING, Reason.JOINTS_STALE),
+    ]
     supervisor = Supervisor(watched)
-    with pytest.raises(StateCommandRefused, match=r"FORCE_MEASURED_CF_SILENT.*MEASURED_JS_SILENT"):
+    with pytest.raises(StateCommandRefused, match=r"WRENCH_MISSING.*JOINTS_MISSING"):
         supervisor.command("enable", 0)
     for detector in watched:
         detector.feed(0)
@@ -48,13 +53,13 @@ def test_first_fault_is_kept_and_later_ones_are_counted():
     one, two = ReportedFault("drive 1"), ReportedFault("drive 2")
     supervisor = Supervisor([one, two])
     supervisor.command("enable", 0)
-    one.finding = Finding("A", 2.0, 1.0, "m", "drive 1")
+    one.finding = Finding(Reason.FOLLOWING_ERROR, 2.0, 1.0, "m", "drive 1")
     assert supervisor.check(5)
-    two.finding = Finding("B", 3.0, 1.0, "m", "drive 2")
+    two.finding = Finding(Reason.BUS_OFF, 3.0, 1.0, "m", "drive 2")
     assert supervisor.check(6)
     assert not supervisor.check(7)
     status = supervisor.status
-    assert (status.state, status.since, status.reason, status.later_faults) == (S.FAULT, 5, "A", 1)
+    assert (status.state, status.since, status.reason, status.later_faults) == (S.FAULT, 5, "FOLLOWING_ERROR", 1)
     assert json.loads(status.to_json())["first_fault"]["unit"] == "m"
 
 
@@ -95,14 +100,14 @@ def test_unknown_commands_are_refused_by_name():
 def test_a_drive_fault_faults_in_every_state_and_recovery_waits_for_the_reset():
     drive = ReportedFault("motor_driver")
     supervisor = Supervisor([drive])
-    drive.feed(True, "roll in FAULT", 0)
+    drive.feed(FELL, 0)
     assert supervisor.check(1)
     assert supervisor.state is S.FAULT
     assert supervisor.command("disable", 10**9).state is S.DISABLED
-    drive.feed(True, "roll in FAULT", 10**9 + 10**8)
+    drive.feed(FELL, 10**9 + 10**8)
     assert not supervisor.check(10**9 + 10**8)
-    drive.feed(False, "DISABLED", 10**9 + 2 * 10**8)
-    drive.feed(True, "roll in FAULT", 10**9 + 3 * 10**8)
+    drive.feed(None, 10**9 + 2 * 10**8)
+    drive.feed(FELL, 10**9 + 3 * 10**8)
     assert supervisor.check(10**9 + 3 * 10**8)
     assert supervisor.state is S.FAULT
 
@@ -113,7 +118,11 @@ class Histories(RuleBasedStateMachine):
     def __init__(self):
         super().__init__()
         self.now, self.accepted = 0, ""
-        self.stream, self.button, self.drive = SilenceDetector("s", 1.0), EmergencyStopDetector(), ReportedFault("d")
+        self.stream, self.button, self.drive = (
+            SilenceDetector("s", 1.0, Reason.WRENCH_MISSING, Reason.WRENCH_STALE),
+            EmergencyStopDetector(),
+            ReportedFault("d"),
+        )
         self.supervisor = Supervisor([self.button, self.stream, self.drive])
         self.before = self.supervisor.state
 
@@ -148,7 +157,7 @@ class Histories(RuleBasedStateMachine):
     @rule(faulty=st.booleans())
     def drive_fault(self, faulty):
         self._advance()
-        self.drive.feed(faulty, "following error", self.now)
+        self.drive.feed(FELL if faulty else None, self.now)
         self.supervisor.check(self.now)
 
     @invariant()

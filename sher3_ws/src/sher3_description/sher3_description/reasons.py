@@ -133,3 +133,8 @@ ACTION: dict[Reason, Action] = {
     **dict.fromkeys((_R.ENCODERS_DISAGREE, _R.ENCODER_FROZEN, _R.FOLLOWING_ERROR), Action.POWER_OFF),
 }
 """What the supervisor or the motor driver does about it; the control law itself answers every cause with ZERO."""
+
+
+def reading(reason: Reason, source: str, value: float, limit: float, unit: str) -> tuple[str, str]:
+    """Return what a detector looks at as a key-value pair of `/diagnostics`."""
+    return f"{reason.name} {source} [{unit}]", f"{value:.6g} limit {limit:.6g}"

@@ -100,6 +100,13 @@ _TABLE = (
     Topic("motion/settings", _TEXT, "", LATCHED, "settings and remote centre of the kinematics node, by version"),
     Topic("motion/status", _TEXT, "", LATCHED, "owner, reason, is_busy and the last refused command"),
     Topic("supervisor/status", _TEXT, "", LATCHED, "operating state with reason, since when, first and later faults"),
+    Topic(
+        "supervisor/heartbeat",
+        _TEXT,
+        "",
+        STREAM,
+        "`STATE ACTION` at 100 Hz: how hard to stop, and that somebody is there",
+    ),
     Topic("diagnostics", "diagnostic_msgs/msg/DiagnosticArray", "", STREAM, "health of every node, with numbers"),
     Topic("gap/diagnostics", "diagnostic_msgs/msg/DiagnosticArray", "", AHEAD, "gap over floor per stage and actuator"),
     # Between a scripted surgeon, the plant process and the device ends of sensor and pedal; mocks only.

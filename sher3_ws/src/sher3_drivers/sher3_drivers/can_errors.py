@@ -9,7 +9,10 @@ import struct
 from enum import IntEnum
 from typing import NamedTuple
 
+from sher3_description.reasons import Reason
+
 from .frame import ERROR_FLAG, Frame
+from .trips import Trip
 
 _CLASS_CONTROLLER = 0x004
 _CLASS_NO_ACKNOWLEDGE = 0x020
@@ -58,6 +61,18 @@ def decode_error(frame: Frame) -> ErrorReport | None:
     if frame.can_id & _CLASS_NO_ACKNOWLEDGE:
         return ErrorReport(None, "no acknowledgement: no other node on the bus")
     return ErrorReport(None, f"error class 0x{frame.can_id & 0x1FF:03x}")
+
+
+def judge_error(conditions: list[BusCondition], channel: int, link: str, frame: Frame) -> Trip | None:
+    """Note what an error frame says of a channel in `conditions`; object to error passive and bus-off."""
+    report = decode_error(frame)
+    if report is None or report.condition is None:
+        return None
+    conditions[channel] = report.condition
+    if report.condition < BusCondition.PASSIVE:
+        return None
+    reason = Reason.BUS_OFF if report.condition is BusCondition.OFF else Reason.BUS_PASSIVE
+    return Trip(reason, f"{link}: {report.text}")
 
 
 def error_frame(condition: BusCondition) -> Frame:

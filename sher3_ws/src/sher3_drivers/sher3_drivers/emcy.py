@@ -5,6 +5,8 @@ from __future__ import annotations
 import struct
 from typing import NamedTuple
 
+from sher3_description.reasons import Reason
+
 from .errors import FrameError
 
 EMCY = struct.Struct("<HB5s")
@@ -92,3 +94,10 @@ def decode_emergency(data: bytes) -> Emergency:
     code, register, extra = EMCY.unpack(data)
     family = _FAMILIES.get(code >> 8, _FAMILIES.get(code >> 8 & 0xF0, "unknown family"))
     return Emergency(code, register, extra, CODES.get(code, f"{family}, code not in the table"))
+
+
+def reason_of(code: int) -> Reason:
+    """Return the reason code of an emergency: temperature (0x4xxx), lost host (0x8130), or any other."""
+    if code >> 12 == 4:
+        return Reason.DRIVE_OVER_TEMPERATURE
+    return Reason.DRIVE_HOST_LOST if code == 0x8130 else Reason.DRIVE_EMERGENCY

@@ -28,6 +28,7 @@ class LockstepRig:
         mock: the drives' side.
         now: the stepped time, ns.
         stamp: stamp of the newest tick, ns.
+        supervised: the supervisor's heartbeat comes at every tick.
     """
 
     def __init__(
@@ -41,6 +42,7 @@ class LockstepRig:
         self.plant = plant or IntegratorPlant(robot, settings.period)
         self.now = 1_000_000_000_000
         self.stamp = 0
+        self.supervised = True
         self.period_ns = round(settings.period * 1e9)
         count = len(settings.channels)
         self.device_links = [open_link(i) for i in range(count)]
@@ -59,6 +61,8 @@ class LockstepRig:
         """Run one tick, with a command when there is one; return its feedback."""
         self.now += self.period_ns
         self.stamp += self.period_ns
+        if self.supervised:
+            self.driver.hear_supervisor()
         self.driver.tick(self.stamp)
         self.driver.collect_positions()
         feedback = self.driver.collect()

@@ -11,25 +11,28 @@ import time
 from collections.abc import Callable, Sequence
 
 from sher3_description import ACTUATORS, Robot
+from sher3_description.reasons import Action, Reason
 
 from . import drive_objects as od
 from .bus import CanLink, LinkGroup
-from .can_errors import BusCondition, decode_error
+from .can_errors import BusCondition, judge_error
 from .cia402 import Command, Goal, State, next_command
-from .drive_health import OPERATIONAL, DriveHealth, StopLog
+from .drive_health import OPERATIONAL, DriveHealth, watch_drives
 from .drive_setup import set_up_drives
 from .errors import CommandRefused, DriverError, LinkError
 from .feedback import Feedback, TpdoCollector, Vector
 from .frame import ERROR_FLAG, HEADER_FORMAT, Frame, pack_frame
+from .loop_watch import LoopWatch
+from .motion_watch import MotionWatch
 from .settings import MotorDriverSettings
+from .trips import StopLog, Trip
 from .units import AxisScale
+from .velocity_gate import velocity_counts
 
 _RPDO = struct.Struct(f"<{HEADER_FORMAT}Hi2x")
 _WATCH_NS = 5_000_000
 _BATCHES = 64
 """Batches of frames taken in before a SYNC at most: a flooded bus must not hold the loop."""
-
-_SETTLED = {Goal.ENABLED: State.OPERATION_ENABLED, Goal.DISABLED: State.SWITCH_ON_DISABLED}
 
 
 class MotorDriver:
@@ -45,8 +48,11 @@ class MotorDriver:
         goal: where the drives are being taken.
         stop: why the driver stopped by itself, if it did.
         health: one record per drive.
+        loop: timing of the loop that calls this, and the age of the supervisor's heartbeat.
+        motion: do both encoders and the demand of every axis agree, and does a stopped robot rest?
         collector: the TPDOs of the present tick, and those that came twice or with a wrong length.
         counters: frames and ticks that were lost or refused, by name.
+        clock: time in ns.
         bus_conditions: health of every channel's controller.
     """
 
@@ -64,7 +70,7 @@ class MotorDriver:
         self.health = [DriveHealth(name) for name in ACTUATORS]
         self.counters = dict.fromkeys(("incomplete", "refused", "ignored", "held", "error_frames"), 0)
         self.bus_conditions = [BusCondition.ACTIVE] * len(links)
-        self._clock = clock
+        self.clock = clock
         self._group = LinkGroup(links)
         self._scales = [AxisScale.from_actuator(actuator) for actuator in robot.actuators]
         self._node_ids = [1 + i for i in range(len(ACTUATORS))]
@@ -73,8 +79,13 @@ class MotorDriver:
         self._period_ns = round(settings.period * 1e9)
         self._feedback_ns = round(settings.feedback_limit * settings.period * 1e9)
         self._braking_time = max(a.limits.velocity / a.limits.acceleration for a in robot.actuators)
-        self._stamp = 0
-        self._ticks = self._command_tick = 0
+        self.loop = LoopWatch(settings)
+        self.motion = MotionWatch(self._scales, settings)
+        self._zero_age_ns = settings.zero_age * self._period_ns
+        self._stop_age_ns = settings.stop_age * self._period_ns
+        self._stamp = self._command_stamp = 0
+        self._ticks = 0
+        self._refused_last = False
         self._synced_at = self._started_at = self._heartbeat_at = self._watch_at = 0
         self._heartbeat = pack_frame(od.HEARTBEAT_BASE + settings.host_id, bytes([OPERATIONAL]))
         self._sync = pack_frame(od.SYNC_ID)
@@ -110,6 +121,7 @@ class MotorDriver:
         if self.goal is not Goal.ENABLED:
             self.goal = Goal.ENABLED
             self._running = False
+            self.motion.joints.begin()
             self._restart_transitions()
 
     def disable(self) -> None:
@@ -118,12 +130,22 @@ class MotorDriver:
             self.goal = Goal.DISABLED
             self._restart_transitions()
 
-    def quick_stop(self, reason: str) -> None:
-        """Brake now, all drives, and stay stopped until `reset`; the first reason is kept."""
-        self.stop.add(reason, self._clock())
+    def hear_supervisor(self) -> None:
+        """Take note of a heartbeat of the supervisor: without them an enabled robot stops."""
+        self.loop.hear_supervisor(self.clock())
+
+    def stop_for(self, trip: Trip, action: Action | None = None) -> None:
+        """Brake now, all drives, and stay stopped until `reset`; the first trip is kept, the hardest action wins.
+
+        Args:
+            trip: what happened.
+            action: how hard to stop, instead of what the trip's reason asks for.
+        """
+        first = self.stop.add(trip, self.clock(), action)
         self._early = None
-        if self.goal is not Goal.STOPPED:
+        if first:
             self.goal = Goal.STOPPED
+            self.motion.rest.begin()
             self._steer()
 
     def reset(self) -> None:
@@ -142,7 +164,7 @@ class MotorDriver:
         self._restart_transitions()
 
     def _restart_transitions(self) -> None:
-        now = self._clock()
+        now = self.clock()
         for health in self.health:
             health.state_since = now
 
@@ -150,6 +172,11 @@ class MotorDriver:
     def needs_reset(self) -> bool:
         """Whether there is a stop to reset, or a drive in FAULT."""
         return self.stop.reason is not None or any(health.state is State.FAULT for health in self.health)
+
+    @property
+    def command_age(self) -> float:
+        """Age of the newest command that went to the drives, s; 0 while they do not follow commands."""
+        return (self._stamp - self._command_stamp) * 1e-9 if self.enabled and self._running else 0.0
 
     @property
     def dropped(self) -> int:
@@ -173,7 +200,10 @@ class MotorDriver:
         self.collector.begin()
         self._stamp = stamp
         self._ticks += 1
-        now = self._clock()
+        now = self.clock()
+        late = self.loop.tick(stamp, now)
+        if late is not None and self.enabled:
+            self.stop_for(late)
         self._started_at = self._started_at or now
         burst = self._sync
         if now >= self._heartbeat_at:
@@ -192,26 +222,31 @@ class MotorDriver:
         A tick with a TPDO missing has no feedback: nothing is invented. After `missing_limit` of them the robot stops.
         """
         complete = self._collect(self.collector.all_mask)
-        now = self._clock()
+        now = self.clock()
         missing = set() if complete else set(self.collector.missing())
         for axis, health in enumerate(self.health):
             if missing or health.missing:
-                health.on_tick(axis in missing)
+                self._stop_if(health.on_tick(axis in missing, self.settings.missing_limit))
             word = self.collector.statuswords[axis]
             if word is not None and word != health.word and axis not in missing:
                 self._stop_if(health.on_statusword(word, now))
         self._all_enabled = all([health.state is State.OPERATION_ENABLED for health in self.health])
         self.counters["incomplete"] += not complete
         self._watch(now)
+        feedback = self.collector.feedback(self._stamp) if complete else None
+        if feedback is not None:
+            self._stop_if(self.motion.check(feedback, self._ticks, self.enabled, self.stop, now))
+            if self.motion.powers_off(self.stop):
+                self.goal = Goal.DISABLED
         if not self.enabled:
             self._steer()
         self._follow_early()
-        return self.collector.feedback(self._stamp) if complete else None
+        return feedback
 
     def _collect(self, mask: int) -> bool:
         deadline = self._synced_at + self._feedback_ns
         while not self.collector.has(mask):
-            left = deadline - self._clock()
+            left = deadline - self.clock()
             came = self._receive(left * 1e-9)
             if left <= 0 or not (came or self._group.waits):
                 return self.collector.has(mask)
@@ -230,6 +265,7 @@ class MotorDriver:
             counts = self._checked(stamp, velocity)
         except DriverError:
             self.counters["refused"] += 1
+            self._refused_last = True
             self._early = None
             self._steer()
             raise
@@ -243,7 +279,7 @@ class MotorDriver:
         return True
 
     def _follow(self, counts: Sequence[int]) -> None:
-        self._command_tick = self._ticks
+        self._command_stamp, self._refused_last = self._stamp, False
         self._send_commands([Command.ENABLE_OPERATION] * len(counts), counts)
 
     def _follow_early(self) -> None:
@@ -259,21 +295,12 @@ class MotorDriver:
             limit = f"less than {self.settings.zero_age * self.settings.period * 1e3:g} ms either way"
             what = "age of the command"
             raise CommandRefused(what, value=f"{age * 1e-6:g} ms", limit=limit, remedy="check its sender")
-        if len(velocity) != len(self._scales):
-            what = "number of velocities"
-            raise CommandRefused(what, value=len(velocity), limit=len(self._scales), remedy="send five")
-        counts = []
-        for scale, value in zip(self._scales, velocity, strict=True):
-            if not abs(value) <= scale.velocity_limit * (1.0 + 1e-9):  # a NaN compares false
-                what, remedy = f"{scale.name}: velocity command", "limit it at its source"
-                raise CommandRefused(what, value=value, limit=scale.velocity_limit, remedy=remedy)
-            counts.append(scale.velocity_counts(value))
-        return counts
+        return velocity_counts(self._scales, velocity)
 
     def close(self) -> None:
         """Brake if the drives are enabled, take the power off and leave the bus; safe at any time, twice too."""
         if self.enabled:
-            self.quick_stop("the driver was closed")
+            self.stop_for(Trip(Reason.DRIVER_CLOSED, "the driver was closed"))
             time.sleep(self._braking_time)
         self._steer(Command.DISABLE_VOLTAGE)
         self._group.close()
@@ -288,83 +315,55 @@ class MotorDriver:
             self._dead_links = len(self._group.failures)
             for channel, error in self._group.failures.items():
                 self.bus_conditions[channel] = BusCondition.OFF
-                self._stop_if(str(error))
+                self._stop_if(Trip(Reason.LINK_LOST, str(error)))
         return bool(received)
 
     def _on_other(self, channel: int, can_id: int, data: bytes) -> None:
         """Take a frame that is no TPDO: error frame, heartbeat or EMCY; the rest belongs to others."""
         if can_id & ERROR_FLAG:
-            self._on_error(channel, Frame(can_id, data))
+            self.counters["error_frames"] += 1
+            link = self.settings.channels[channel].link
+            self._stop_if(judge_error(self.bus_conditions, channel, link, Frame(can_id, data)))
             return
         node, service = can_id & 0x7F, can_id & 0x780
         if node in self._node_ids:
             health = self.health[node - 1]
             if service == od.HEARTBEAT_BASE:
-                self._stop_if(health.on_heartbeat(data, self._clock()))
+                self._stop_if(health.on_heartbeat(data, self.clock()))
             elif service == od.EMCY_BASE:
                 self._stop_if(health.on_emergency(data))
 
-    def _on_error(self, channel: int, frame: Frame) -> None:
-        report = decode_error(frame)
-        self.counters["error_frames"] += 1
-        if report is not None and report.condition is not None:
-            self.bus_conditions[channel] = report.condition
-            if report.condition >= BusCondition.PASSIVE:
-                self._stop_if(f"{self.settings.channels[channel].link}: {report.text}")
-
-    def _stop_if(self, reason: str | None) -> None:
-        if reason is not None:
-            self.quick_stop(reason)
+    def _stop_if(self, trip: Trip | None) -> None:
+        if trip is not None:
+            self.stop_for(trip)
 
     def _watch(self, now: int) -> None:
         """Look for what has gone silent: TPDOs and commands every tick, what has long limits every 5 ms."""
-        settings = self.settings
-        for health in self.health:
-            if health.missing >= settings.missing_limit:
-                self._stop_if(f"{health.name}: no TPDO for {health.missing} ticks (limit {settings.missing_limit})")
         if now >= self._watch_at:
             self._watch_at = now + _WATCH_NS
-            self._watch_drives(now)
-        self._watch_commands()
+            for trip in watch_drives(self.health, self.goal, now, self._started_at, self.settings):
+                self.stop_for(trip)
+        if self.goal is Goal.ENABLED:
+            self._watch_commands(now)
 
-    def _watch_drives(self, now: int) -> None:
-        """Look for drives whose heartbeat stays away or that do not get where they should."""
-        settings = self.settings
-        for health in self.health:
-            silence = (now - (health.heard_at or self._started_at)) * 1e-9
-            if silence > settings.drive_heartbeat_limit:
-                self._stop_if(f"{health.name}: no heartbeat for {silence:.3f} s ({settings.drive_heartbeat_limit:g} s)")
-            wanted = _SETTLED.get(self.goal)
-            # A drive whose first statusword is still on its way has no state yet, and no time of its own.
-            stuck = (now - (health.state_since or self._started_at)) * 1e-9
-            if wanted and health.state is not wanted and stuck > settings.transition_limit:
-                name = health.state.name if health.state else "an unknown state"
-                self._stop_if(f"{health.name}: stays in {name} for {stuck:.3f} s instead of going to {wanted.name}")
-
-    def _watch_commands(self) -> None:
-        """Watch the age of the newest command; it counts from the tick in which the drives became enabled."""
-        if self.goal is not Goal.ENABLED:
-            return
+    def _watch_commands(self, now: int) -> None:
+        """Watch supervisor and commands; the age of a command counts from the tick the drives became enabled in."""
+        self._stop_if(self.loop.supervisor(now))
         if not self.enabled:
-            self._watch_fallen()
+            for health in self.health:
+                self._stop_if(health.fallen(self._running))
             return
         if not self._running:
             self._running = True
-            self._command_tick = self._ticks
-        age = self._ticks - self._command_tick
-        if age >= self.settings.stop_age:
-            self._stop_if(f"no command for {age} ticks (limit {self.settings.stop_age})")
-        elif age >= self.settings.zero_age:
+            self._command_stamp = self._stamp
+        age = self._stamp - self._command_stamp
+        if age >= self._stop_age_ns:
+            reason = Reason.COMMAND_REFUSED if self._refused_last else Reason.COMMAND_STALE
+            ticks, limit = age // self._period_ns, self.settings.stop_age
+            self.stop_for(Trip(reason, f"no command for {ticks} ticks (limit {limit})", ticks, limit, "ticks"))
+        elif age >= self._zero_age_ns:
             self.counters["held"] += 1
             self._steer()
-
-    def _watch_fallen(self) -> None:
-        """Stop all drives when one fell back: it would be enabled again by itself on the way to the goal."""
-        stopped = (State.FAULT, State.FAULT_REACTION_ACTIVE, State.QUICK_STOP_ACTIVE)
-        for health in self.health:
-            fallen = self._running and health.state is not State.OPERATION_ENABLED
-            if health.state is not None and (fallen or health.state in stopped):
-                self._stop_if(f"{health.name}: went to {health.state.name}")
 
     def _steer(self, word: Command | None = None) -> None:
         """Send zero velocity with, per drive, `word` or the next controlword towards the goal."""
@@ -394,5 +393,6 @@ class MotorDriver:
                 link.send_frames(part)
             except LinkError as error:
                 self.bus_conditions[channel] = BusCondition.OFF
-                if self.stop.add(str(error), self._clock()):
+                if self.stop.add(Trip(Reason.LINK_LOST, str(error)), self.clock()):
                     self.goal = Goal.STOPPED
+                    self.motion.rest.begin()

@@ -7,13 +7,14 @@ from typing import Any
 
 from rclpy.node import Node
 from sher3_description import Robot
+from sher3_description.reasons import Action, Reason
 from sher3_runtime import (
     NODE_OPTIONS,
     DiagnosticSample,
     JointSample,
-    TextSample,
     advertise,
     clock_of,
+    latest,
     on_tick,
     subscribe,
 )
@@ -23,8 +24,10 @@ from .driver_report import driver_report
 from .errors import CommandRefused
 from .motor_driver import MotorDriver
 from .settings import MotorDriverSettings, default_settings
+from .trips import Trip
 
 REPORT_PERIOD = 0.1
+STATES = ("DISABLED", "ENABLED", "PAUSED", "FAULT")
 
 
 class MotorDriverNode(Node):
@@ -54,19 +57,23 @@ class MotorDriverNode(Node):
             links = [open_link(channel.link) for channel in settings.channels]
         self.driver = MotorDriver(robot, settings, links, clock_of(self).now)
         self.driver.configure(patience)
-        self._state = "DISABLED"
+        self._state, self._action = "DISABLED", Action.NONE
+        self._told = False
         self._refused: str | None = None
         self._publish_position = advertise(self, "measured_js")
         self._publish_drives = advertise(self, "drives/measured_js")
         self._publish_demand = advertise(self, "drives/setpoint_jv")
         self._publish_report = advertise(self, "diagnostics")
         subscribe(self, "servo_jv", self._on_command)
-        subscribe(self, "operating_state", self._on_state)
+        subscribe(self, "operating_state", lambda sample: self._obey(sample.text, Action.QUICK_STOP))
+        self._take_heartbeat = latest(self, "supervisor/heartbeat")
         on_tick(self, self._tick)
         on_tick(self, self._report, 0.5 * settings.period, max(1, round(REPORT_PERIOD / settings.period)))
 
     def _tick(self, stamp: int) -> None:
         driver = self.driver
+        if (beat := self._take_heartbeat()) is not None:
+            self._on_heartbeat(beat.text)
         driver.tick(stamp)
         position = driver.collect_positions()
         if position is not None:
@@ -76,6 +83,8 @@ class MotorDriverNode(Node):
             sample = JointSample(stamp, feedback.motor_position, feedback.motor_velocity, feedback.effort)
             self._publish_drives(sample)
             self._publish_demand(JointSample(stamp, None, feedback.velocity_demand))
+        if self._told is not (driver.stop.first is not None):
+            self._report(stamp)
 
     def _on_command(self, sample: JointSample) -> None:
         try:
@@ -83,17 +92,25 @@ class MotorDriverNode(Node):
         except CommandRefused as error:
             self._note(f"servo_jv: {error}")
 
-    def _on_state(self, sample: TextSample) -> None:
+    def _on_heartbeat(self, text: str) -> None:
+        """Take a heartbeat of the supervisor, `STATE ACTION`; a damaged one is none."""
+        state, _, action = text.partition(" ")
+        if state in STATES and action in Action.__members__:
+            self.driver.hear_supervisor()
+            self._obey(state, Action[action])
+
+    def _obey(self, state: str, action: Action) -> None:
         """Follow the supervisor; leaving FAULT for DISABLED is its one-shot recovery, which resets the drives."""
-        if sample.text == self._state:
+        harder = state == "FAULT" and action > self._action
+        if state == self._state and not harder:
             return
-        self._state = sample.text
+        self._state, self._action = state, action if state == "FAULT" else Action.NONE
         try:
-            self._follow(sample.text)
+            self._follow(state, action)
         except CommandRefused as error:
             self._note(str(error))
 
-    def _follow(self, state: str) -> None:
+    def _follow(self, state: str, action: Action) -> None:
         driver = self.driver
         if state in ("ENABLED", "PAUSED"):
             driver.enable()
@@ -102,7 +119,7 @@ class MotorDriverNode(Node):
         elif state == "DISABLED":
             driver.disable()
         else:
-            driver.quick_stop(f"operating state {state}")
+            driver.stop_for(Trip(Reason.SUPERVISOR_FAULT, f"operating state {state}"), action)
 
     def _note(self, refusal: str) -> None:
         """Log a refusal once; the driver counts the rest."""
@@ -111,6 +128,7 @@ class MotorDriverNode(Node):
         self._refused = refusal
 
     def _report(self, stamp: int) -> None:
+        self._told = self.driver.stop.first is not None
         level, message, values = driver_report(self.driver, self._refused)
         self._publish_report(DiagnosticSample(stamp, "motor_driver: drives", level, message, values))
 

@@ -11,7 +11,9 @@ from sher3_description import ACTUATORS
 from .bus_load import ChannelBudget, check_budget
 from .errors import ConfigurationError
 
-Seconds = Annotated[float, Field(gt=0.0, le=10.0)]
+Seconds = Annotated[float, Field(gt=0.0, le=10.0, allow_inf_nan=False)]
+Length = Annotated[float, Field(gt=0.0, le=0.01, allow_inf_nan=False)]
+Angle = Annotated[float, Field(gt=0.0, le=0.2, allow_inf_nan=False)]
 
 
 class _Part(BaseModel):
@@ -34,8 +36,8 @@ class MotorDriverSettings(_Part):
         host_id: CANopen node id of this computer, for its heartbeat.
         host_heartbeat: period of the host's heartbeat, s. It is sent by the control loop itself: a loop that hangs
             falls silent.
-        host_heartbeat_limit: silence after which a drive stops by itself, s. At the tip's 5 mm/s, 50 ms are 250 um of
-            travel; an ordinary kernel under load pauses a process for 10 to 20 ms now and then.
+        host_heartbeat_limit: silence after which a drive stops by itself, s; the travel budget bounds it. An ordinary
+            kernel under load pauses a process for 10 to 20 ms now and then.
         drive_heartbeat: period of the drives' heartbeats, s.
         drive_heartbeat_limit: silence after which the host gives a drive up, s.
         feedback_limit: longest wait for the TPDOs of a tick, as a share of the period.
@@ -43,6 +45,20 @@ class MotorDriverSettings(_Part):
             before: such ticks are not published, the controller falls silent, and `zero_age` acts.
         zero_age: age of the newest command after which zero velocity is sent, in periods.
         stop_age: age after which the drives are quick-stopped, in periods; wide, since zero is being sent by then.
+        supervisor_limit: silence of the supervisor's heartbeat (every 10 ms) after which the driver stops, s.
+        stall_limit: longest hold-up of the driver's loop while the drives are enabled, s.
+        encoder_distance, encoder_angle: how far motor and load encoder may part, their slow part aside, m and rad.
+            The nominal encoders part by 1 um and 0.04 mrad.
+        encoder_latency: for how long they may be farther apart, s.
+        encoder_memory: time constant with which the slow part is followed, s.
+        encoder_total_distance, encoder_total_angle: the same with the slow part, since enabling, at once, m and rad.
+        following_distance, following_angle: integrated demand minus motor motion, its slow part aside, at rest, m and
+            rad: what a contact of 8 N may push a drive off.
+        following_lag: what the demanded speed adds to it, s; the nominal drive lags 4 to 5 ms.
+        following_latency: for how long it may be exceeded, s.
+        following_memory: time constant with which its slow part is followed, s.
+        brake_time: time after which a stopped robot must rest, s: three times the longest ramp from full tip speed.
+        rest_distance, rest_angle: how far a resting axis may still be pushed, m and rad.
         transition_limit: longest time for one CiA 402 transition, s.
         sdo_limit: longest wait for an SDO response, s.
     """
@@ -51,13 +67,29 @@ class MotorDriverSettings(_Part):
     period: Annotated[float, Field(ge=0.0005, le=0.1)] = 0.002
     host_id: Annotated[int, Field(ge=1, le=127)] = 127
     host_heartbeat: Seconds = 0.005
-    host_heartbeat_limit: Seconds = 0.050
+    host_heartbeat_limit: Seconds = 0.030
     drive_heartbeat: Seconds = 0.050
     drive_heartbeat_limit: Seconds = 0.200
     feedback_limit: Annotated[float, Field(gt=0.0, lt=1.0)] = 0.8
     missing_limit: Annotated[int, Field(ge=1, le=1000)] = 10
     zero_age: Annotated[int, Field(ge=1, le=1000)] = 4
     stop_age: Annotated[int, Field(ge=1, le=1000)] = 50
+    supervisor_limit: Seconds = 0.030
+    stall_limit: Seconds = 0.020
+    encoder_distance: Length = 8e-6
+    encoder_angle: Angle = 4e-4
+    encoder_latency: Seconds = 0.010
+    encoder_memory: Seconds = 0.3
+    encoder_total_distance: Length = 5e-4
+    encoder_total_angle: Angle = 1e-2
+    following_distance: Length = 6e-5
+    following_angle: Angle = 3e-3
+    following_lag: Seconds = 0.010
+    following_latency: Seconds = 0.004
+    following_memory: Seconds = 0.1
+    brake_time: Seconds = 0.1
+    rest_distance: Length = 2e-4
+    rest_angle: Angle = 1e-2
     transition_limit: Seconds = 0.5
     sdo_limit: Seconds = 0.3
 

@@ -40,6 +40,7 @@ class AxisScale:
         rated_milli: rated force or torque, mN or mN m.
         max_motor_speed: the drive's own speed limit, rpm: the velocity limit rounded up.
         stop_deceleration: deceleration of a quick stop, rpm/s: the acceleration limit.
+        revolute: the axis turns: its unit is rad, not m.
     """
 
     name: str
@@ -53,6 +54,7 @@ class AxisScale:
     rated_milli: int
     max_motor_speed: int
     stop_deceleration: int
+    revolute: bool = False
 
     @classmethod
     def from_actuator(cls, actuator: Actuator) -> AxisScale:
@@ -75,6 +77,7 @@ class AxisScale:
             rated_milli=round(actuator.drive.rated * 1000.0),
             max_motor_speed=math.ceil(actuator.limits.velocity * rpm - 1e-6),
             stop_deceleration=round(actuator.limits.acceleration * rpm),
+            revolute=actuator.kind == "revolute",
         )
         largest = scale.velocity * _INT32
         if scale.velocity_limit > largest:

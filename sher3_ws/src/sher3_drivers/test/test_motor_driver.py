@@ -7,6 +7,7 @@ import time
 
 import pytest
 from sher3_description import ACTUATORS, load_robot
+from sher3_description.reasons import Reason
 from sher3_drivers import drive_objects as od
 from sher3_drivers.bus import open_link
 from sher3_drivers.bus_load import BusLoadError
@@ -18,6 +19,7 @@ from sher3_drivers.mock_bus import MockDriveBus
 from sher3_drivers.mock_plant import IntegratorPlant
 from sher3_drivers.motor_driver import MotorDriver
 from sher3_drivers.settings import MotorDriverSettings, default_settings
+from sher3_drivers.trips import Trip
 
 ROBOT = load_robot()
 SLOW = [0.001, -0.002, 0.003, 0.1, -0.004]
@@ -225,7 +227,7 @@ def test_an_early_command_waits_for_its_tick(rig):
 def test_an_early_command_is_forgotten_at_a_stop(rig):
     rig.tick(SLOW)
     rig.driver.command(rig.stamp + rig.period_ns, SLOW)
-    rig.driver.quick_stop("test")
+    rig.driver.stop_for(Trip(Reason.SUPERVISOR_FAULT, "test"))
     for _ in range(10):
         rig.tick()
     position = list(rig.plant.position)

@@ -4,10 +4,12 @@ import itertools
 
 import pytest
 from sher3_description import load_robot
+from sher3_description.reasons import Reason
 from sher3_drivers import mock_drive
 from sher3_drivers.cia402 import TRANSITIONS, Command, State, transition
 from sher3_drivers.driver_report import driver_report
 from sher3_drivers.errors import CommandRefused
+from sher3_drivers.trips import Trip
 
 ROBOT = load_robot()
 SLOW = [0.001, -0.002, 0.003, 0.1, -0.004]
@@ -17,7 +19,7 @@ _numbers = itertools.count()
 def test_reset_needs_a_stop_and_enabling_needs_a_reset(rig):
     with pytest.raises(CommandRefused, match="nothing is stopped"):
         rig.driver.reset()
-    rig.driver.quick_stop("test")
+    rig.driver.stop_for(Trip(Reason.SUPERVISOR_FAULT, "test"))
     with pytest.raises(CommandRefused, match="after a stop"):
         rig.driver.enable()
     rig.tick()

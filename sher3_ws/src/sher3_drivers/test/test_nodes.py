@@ -14,7 +14,7 @@ from sher3_drivers.motor_driver_node import MotorDriverNode
 from sher3_drivers.pedal import InProcessPedal, PedalState
 from sher3_drivers.pedal_node import PedalNode
 from sher3_drivers.settings import default_settings
-from sher3_runtime import Graph, JointSample, TextSample
+from sher3_runtime import Graph, JointSample, TextSample, on_tick
 
 pytestmark = pytest.mark.graph
 ROBOT = load_robot()
@@ -42,9 +42,12 @@ class Drives:
         links = [LockstepLink(link, [self.mock.poll]) for link in ends[1]]
         self.node = graph.add(MotorDriverNode, ROBOT, settings, links)
         topics = ("measured_js", "drives/measured_js", "drives/setpoint_jv", "diagnostics")
-        self.probe = graph.probe(*topics, sends=("servo_jv", "operating_state"))
+        self.probe = graph.probe(*topics, sends=("servo_jv", "operating_state", "supervisor/heartbeat"))
+        self.beat = "DISABLED NONE"
+        on_tick(self.probe, lambda _stamp: self.probe.send("supervisor/heartbeat", TextSample(self.beat)))
 
-    def state(self, text):
+    def state(self, text, action="NONE"):
+        self.beat = f"{text} {action}"
         self.probe.send("operating_state", TextSample(text))
         self.graph.step(8)
 

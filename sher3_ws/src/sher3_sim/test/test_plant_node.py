@@ -10,7 +10,7 @@ from sher3_drivers.force_sensor import InProcessForceSensor
 from sher3_drivers.motor_driver_node import MotorDriverNode
 from sher3_drivers.pedal import InProcessPedal
 from sher3_drivers.settings import default_settings
-from sher3_runtime import Graph, JointSample, JoySample, TextSample, WrenchSample
+from sher3_runtime import Graph, JointSample, JoySample, TextSample, WrenchSample, on_tick
 from sher3_sim import EFFECTS
 from sher3_sim.plant_node import PlantNode
 
@@ -31,9 +31,13 @@ class Rig:
         links = [LockstepLink(link, [self.plant.drives.poll]) for link in ends[1]]
         graph.add(MotorDriverNode, ROBOT, settings, links)
         topics = ("measured_js", "drives/setpoint_jv", "drives/measured_js", "tracker/measured_cp", "temperature")
-        self.probe = graph.probe(*topics, sends=("servo_jv", "operating_state", "mock/contact_wrench", "mock/pedal"))
+        sends = ("servo_jv", "operating_state", "supervisor/heartbeat", "mock/contact_wrench", "mock/pedal")
+        self.probe = graph.probe(*topics, sends=sends)
+        self.beat = "DISABLED NONE"
+        on_tick(self.probe, lambda _stamp: self.probe.send("supervisor/heartbeat", TextSample(self.beat)))
 
     def enable(self):
+        self.beat = "ENABLED NONE"
         self.probe.send("operating_state", TextSample("ENABLED"))
         self.graph.step(10)
 
