@@ -37,6 +37,8 @@ COMMANDS: dict[str, Entry] = {
     "gap": Entry("sher3_gap.cli", "", "Find and explain the gap between a robot and its simulation."),
     "design": Entry("sher3_paper.cli", "design", "Recompute the design of the robot."),
     "paper": Entry("sher3_paper.cli", "paper", "Recompute the figures and tables of the paper."),
+    "safety": Entry("sher3_bringup.safety_command", "", "Break everything in turn; measure stops and travel."),
+    "fault": Entry("sher3_bringup.fault_command", "fault", "Break one part of the running robot on mocks."),
     "benchtop": Entry(
         "sher3_bringup.benchtop_command", "benchtop", "The bench-top tests of the paper, on the running graph."
     ),

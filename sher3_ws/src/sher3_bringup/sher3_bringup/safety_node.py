@@ -7,6 +7,8 @@ from typing import Any
 from rclpy.node import Node
 from sher3_runtime import JoySample, TextSample, WrenchSample
 from sher3_runtime.ports import NODE_OPTIONS, advertise, on_tick, subscribe
+from sher3_safety.kinds import OK
+from sher3_safety.requests import make_request
 
 
 class OperatorNode(Node):
@@ -42,3 +44,27 @@ class OperatorNode(Node):
     def _tick(self, stamp: int) -> None:
         self._publish_pedal(JoySample(stamp, (self.pedal,), (0,)))
         self._publish_wrench(WrenchSample(stamp, (0.0, 0.0, self.force, 0.0, 0.0, 0.0)))
+
+
+class SurgeonNode(OperatorNode):
+    """Enables the robot, then presses the pedal and pushes, in wall time.
+
+    Args:
+        force: of the hand along z of {b} [N].
+        pedal: travel.
+    """
+
+    def __init__(self, force: float, pedal: float, **options: Any) -> None:
+        super().__init__(**options)
+        self._aims, self._ticks = (force, pedal), 0
+
+    def _tick(self, stamp: int) -> None:
+        self._ticks += 1
+        if self._ticks == 1:
+            # The plant tells the truth from the first request on.
+            self.inject(make_request(component="all", fault=OK).to_json())
+        if self.state != "ENABLED" and 50 <= self._ticks <= 250 and self._ticks % 25 == 0:
+            self.command("enable")
+        if self._ticks == 280:
+            self.force, self.pedal = self._aims
+        super()._tick(stamp)

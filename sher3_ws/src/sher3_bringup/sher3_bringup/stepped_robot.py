@@ -21,6 +21,7 @@ from sher3_runtime import Graph
 from sher3_safety.injector import FaultInjector
 from sher3_sim import Effect
 from sher3_sim.plant_node import PlantNode
+from sher3_sim.scatter import RunScatter
 
 _numbers = itertools.count()
 
@@ -39,6 +40,7 @@ class SteppedRobot:
         seed: int = 1,
         robot: Robot | None = None,
         control: ControlSettings | None = None,
+        scatter: RunScatter | None = None,
     ) -> None:
         robot = robot or load_robot()
         self.graph = graph
@@ -47,7 +49,7 @@ class SteppedRobot:
         count = len(settings.channels)
         device_ends, host_ends = ([open_link(f"virtual:{channel}-{i}") for i in range(count)] for _ in range(2))
         devices = {"force_device": self.force, "pedal_device": self.pedal_device, "faults": FaultInjector}
-        self.plant = graph.add(PlantNode, robot, settings, effects, seed, None, device_ends, **devices)
+        self.plant = graph.add(PlantNode, robot, settings, effects, seed, scatter, device_ends, **devices)
         links = [LockstepLink(link, [self.plant.drives.poll]) for link in host_ends]
         self.motor_driver = graph.add(MotorDriverNode, robot, settings, links)
         self.force_sensor = graph.add(ForceSensorNode, robot, self.force)

@@ -201,12 +201,22 @@ class FaultInjector:
                 if part == "demand" and way == _DOWN:
                     items = [self._demand(unit, item) for item in items]
                 elif way in active.faults and unit in ("bus", f"bus{channel}"):
-                    items = _of_channel(active, way, channel)(items, now)
+                    items = self._of_bus(active, way, channel, items, now)
                 elif way in active.faults and unit in ACTUATORS:
                     items = self._of_drive(unit, channel, active.faults[way], items, now)
             return b"".join(items)
 
         return tamper
+
+    def _of_bus(self, active: Active, way: str, channel: int, items: list[bytes], now: int) -> list[bytes]:
+        """Let the fault act on all frames of a channel; a SYNC twice would be a step of the plant too many."""
+        fault = _of_channel(active, way, channel)
+        if active.request.fault not in ("duplicated", "reordered"):
+            return fault(items, now)
+        passed: list[bytes] = []
+        for item in items:
+            passed += [item] if int.from_bytes(item[:4], "little") == od.SYNC_ID else fault([item], now)
+        return passed
 
     def _of_drive(self, name: str, channel: int, fault: Kind, items: list[bytes], now: int) -> list[bytes]:
         """Let the fault act on the frames of one drive, in their place among the others."""

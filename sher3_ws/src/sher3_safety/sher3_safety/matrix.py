@@ -46,8 +46,8 @@ class Row:
     """One fault of one component, in every state.
 
     Attributes:
-        effect: `stops`: in time, within the budget, and motion needs the operator; `goes on`: no stop, and the tip stays
-            within the budget of its way; `either`: chance decides between the two.
+        effect: `stops`: in time, within the budget, and motion needs the operator; `goes on`: no stop, and the tip
+            stays within the budget of its way; `either`: chance decides between the two.
         duration: of the fault, s; None: until it is taken away.
         reasons: of which the first reported one must be; empty: nobody needs to notice (`goes on`).
         quiet: states in which nothing needs to be noticed, since nothing can move.

@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -116,10 +117,10 @@ class Recording:
         """
         requests = [(stamp, data) for stamp, data in self._texts("mock/fault") if data.get("label")]
         outcomes = []
-        for (onset, request), (end, closing) in zip(requests, requests[1:], strict=False):
+        for (onset, request), (end, closing) in pairwise(requests):
             if request["fault"] != OK and closing["fault"] == OK and closing["label"] == request["label"]:
                 following = next((s for s, data in requests if s > end and data["fault"] != OK), None)
-                outcomes.append(self._outcome(request["label"], onset, end, following, stands(request["label"])))
+                outcomes.append(self.outcome(request["label"], onset, end, following, stands(request["label"])))
         return outcomes
 
     def _row(self, stamp: int, after: int = 0) -> int:
@@ -127,7 +128,15 @@ class Recording:
         found = np.nonzero(self._stamp[after:] >= stamp)[0]
         return after + int(found[0]) if len(found) else len(self._stamp) - 1
 
-    def _outcome(self, label: str, onset: int, end: int, following: int | None, stands: float) -> Outcome:
+    def outcome(self, label: str, onset: int, end: int, following: int | None, stands: float) -> Outcome:
+        """Return what became of a fault that was observed from `onset` to `end` [ns of the graph's clock].
+
+        Args:
+            label: of the outcome.
+            onset, end: see above.
+            following: onset of the next fault, None for the end of the bag.
+            stands: how close to its end the tip must stay to stand, m.
+        """
         first = self._row(onset)
         last = self._row(end, first)
         begin = int(np.searchsorted(self._time, self._time[first] - BEFORE))

@@ -1,0 +1,52 @@
+"""Command `safety`: the matrix of faults, measured."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+app = typer.Typer(rich_markup_mode="markdown", invoke_without_command=True)
+Json = Annotated[bool, typer.Option("--json", help="Print one JSON object instead of text.")]
+
+
+@app.callback(
+    epilog="Examples: `sher3 safety` · `sher3 safety --only pedal` · `sher3 safety --wall` · `sher3 safety --healthy 5`"
+)
+def safety(
+    context: typer.Context,
+    out: Annotated[Path, typer.Option(help="Folder for report.md, report.json and the bags.")] = Path("bags/safety"),
+    only: Annotated[str, typer.Option(help="Only components whose name begins so.")] = "",
+    quick: Annotated[bool, typer.Option("--quick", help="The compact set of the default test run.")] = False,
+    wall: Annotated[bool, typer.Option("--wall", help="Kill and hold processes in wall time instead.")] = False,
+    healthy: Annotated[float, typer.Option(help="Minutes of healthy running to count false trips in.", min=0.0)] = 0.0,
+    seed: Annotated[int, typer.Option(help="Seed of noise and faults.", min=0)] = 1,
+    jobs: Annotated[int, typer.Option(help="Processes at a time (stepped time only).", min=1, max=16)] = 1,
+    as_json: Json = False,
+) -> None:
+    """Break everything in turn and measure, from recordings, how soon the robot stops and how far its tip travels.
+
+    Every component with every fault, at rest, at the speed near tissue, and at the speed limit, in stepped time; with
+    `--wall` processes are killed and held in real time. Exit code 1 when a cell misses.
+    """
+    if context.invoked_subcommand is not None:
+        return
+    from .safety_matrix import run_matrix
+    from .safety_wall import run_wall
+
+    run: Any = run_wall if wall else run_matrix
+    result = run(out, only=only, quick=quick, seed=seed, jobs=jobs, say=_say)
+    if healthy:
+        from .safety_healthy import run_healthy
+
+        result.false_trips = run_healthy(out, healthy, seed, jobs, _say)
+    result.write(out)
+    typer.echo(json.dumps(result.to_dict()) if as_json else result.as_text())
+    if result.missed:
+        raise typer.Exit(1)
+
+
+def _say(text: str) -> None:
+    typer.echo(text, err=True)

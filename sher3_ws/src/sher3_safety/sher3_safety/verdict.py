@@ -1,0 +1,73 @@
+"""Does a cell of the matrix hold? What a fault must come to, held against what was measured."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from .matrix import DETECTION_LIMIT, STOP_LIMIT, Row, State
+from .measure import STANDS, Outcome
+
+MOVES_AGAIN = 20e-6
+"""Least way of the tip after release-then-press that counts as motion, m."""
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """A cell with its outcome and everything it misses."""
+
+    row: Row
+    state: State
+    outcome: Outcome | None
+    misses: tuple[str, ...]
+
+    @property
+    def holds(self) -> bool:
+        """Whether nothing is missed."""
+        return not self.misses
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain data."""
+        outcome = None if self.outcome is None else self.outcome.to_dict()
+        cell = {"component": self.row.component, "fault": self.row.fault, "parameters": dict(self.row.parameters)}
+        expected = {"state": self.state.name, "effect": self.row.effect, "budget": self.state.budget}
+        return {"name": self.row.name, **cell, **expected, "outcome": outcome, "misses": list(self.misses)}
+
+
+def judge(row: Row, state: State, outcome: Outcome | None) -> Verdict:
+    """Return the verdict on one cell."""
+    if outcome is None:
+        return Verdict(row, state, None, ("not in the recording",))
+    return Verdict(row, state, outcome, tuple(_misses(row, state, outcome)))
+
+
+def _misses(row: Row, state: State, o: Outcome) -> Iterator[str]:
+    if o.speed < 0.8 * state.speed:
+        yield f"moved at {o.speed * 1e3:.2f} mm/s before the fault instead of {state.speed * 1e3:g}"
+    if row.effect == "goes on" and o.tripped and not row.release:
+        yield f"tripped: {o.reason}"
+    if row.effect == "stops":
+        yield from _of_a_stop(row, state, o)
+    elif o.excess > state.budget:
+        yield f"{o.excess * 1e6:.0f} um off its way (budget {state.budget * 1e6:.0f} um)"
+    if row.effect == "stops" or (row.effect == "either" and o.tripped):
+        if o.alone > STANDS * state.budget:
+            yield f"moved {o.alone * 1e6:.1f} um before the pedal was released"
+        if o.resumed < MOVES_AGAIN:
+            yield "did not move again after recovery, release and press"
+
+
+def _of_a_stop(row: Row, state: State, o: Outcome) -> Iterator[str]:
+    if o.travel > state.budget:
+        yield f"travelled {o.travel * 1e6:.0f} um (budget {state.budget * 1e6:.0f} um)"
+    if o.stop is None or o.stop > STOP_LIMIT:
+        yield "did not stop" if o.stop is None else f"stood after {o.stop * 1e3:.0f} ms (limit {STOP_LIMIT * 1e3:.0f})"
+    if row.release or state.name in row.quiet:
+        return
+    if not o.tripped:
+        yield "nobody noticed"
+    elif row.reasons and o.reason not in row.reasons:
+        yield f"reason {o.reason} instead of {' or '.join(row.reasons)}"
+    if o.detection is not None and o.detection > DETECTION_LIMIT and state.speed:
+        yield f"noticed after {o.detection * 1e3:.0f} ms (limit {DETECTION_LIMIT * 1e3:.0f})"
