@@ -19,7 +19,7 @@ from sher3_description import ACTUATORS, Robot
 from .bus import CanLink, LinkGroup
 from .drive_objects import SYNC_ID
 from .frame import FRAME_SIZE
-from .mock_drive import Feedback, MockDrive
+from .mock_drive import MockDrive
 from .settings import MotorDriverSettings
 from .units import AxisScale
 
@@ -235,9 +235,7 @@ class MockDriveBus:
         drives = self._in_order
         reading = self._plant.step([drive.demand(self._period) for drive in drives])
         columns = map(_floats, (reading.motor_position, reading.load_position, reading.demand, reading.effort))
-        return [
-            drive.sample(Feedback._make(axis)) for drive, axis in zip(drives, zip(*columns, strict=True), strict=True)
-        ]
+        return [drive.sample(*axis) for drive, *axis in zip(drives, *columns, strict=True)]
 
     def close(self) -> None:
         """Leave every channel."""

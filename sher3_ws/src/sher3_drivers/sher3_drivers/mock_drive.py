@@ -8,9 +8,9 @@ test holds the two against each other.
 from __future__ import annotations
 
 import struct
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from operator import itemgetter
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from . import drive_objects as od
 from .canopen_device import CanopenDevice
@@ -24,6 +24,8 @@ NOT_READY, SWITCH_ON_DISABLED, READY, SWITCHED_ON, ENABLED = 0x00, 0x40, 0x21, 0
 QUICK_STOP, FAULT_REACTION, FAULT = 0x07, 0x0F, 0x08
 _VOLTAGE_REMOTE, _LIMIT_ACTIVE, _FOLLOWS = 0x0210, 0x0800, 0x1000
 _UNIT = Address(0x60A9, 0)
+_GO_ON = 0x0F
+"""Controlword that keeps an enabled drive enabled."""
 _FORMATS = {"u8": "B", "i8": "b", "u16": "H", "i16": "h", "u32": "I", "i32": "i"}
 
 
@@ -64,12 +66,43 @@ class _Pdo:
         layout = "".join(_FORMATS[od.OBJECTS[address].kind] for address in self.addresses if address in od.OBJECTS)
         self.length = struct.calcsize("<" + layout)
         self.exists = not self.can_id & od.INVALID and len(layout) == len(entries) > 0 and self.length <= 8
+        self.layout = layout
+        self.controlword = next((address for address in self.addresses if address == od.CONTROLWORD), None)
         self.data = struct.Struct("<" + layout)
-        self.frame = struct.Struct(f"<{HEADER_FORMAT}{layout}{8 - min(8, self.length)}x")
-        if len(self.addresses) == 1:
-            self.pick: Callable[[dict[Address, int]], tuple[int, ...]] = lambda v: (v[self.addresses[0]],)
-        elif self.addresses:
-            self.pick = itemgetter(*self.addresses)
+
+
+def _picker(keys: Sequence[Any]) -> Callable[[Any], tuple[Any, ...]]:
+    """Return what takes the values of `keys`, at least one, out of a dictionary or a tuple."""
+    return itemgetter(*keys) if len(keys) > 1 else lambda values: (values[keys[0]],)
+
+
+_READINGS = (od.LOAD_POSITION, od.STATUSWORD, od.TORQUE, od.MOTOR_POSITION, od.VELOCITY_DEMAND)
+"""Objects that are new at every SYNC."""
+
+
+class _Tpdos:
+    """The synchronous TPDOs of a drive as frames end to end, packed in one call."""
+
+    def __init__(self, pdos: Sequence[_Pdo]) -> None:
+        headers = [struct.pack(f"<{HEADER_FORMAT}", pdo.can_id, pdo.length) for pdo in pdos]
+        self._pack = struct.Struct("<" + "".join(f"8s{pdo.layout}{8 - pdo.length}x" for pdo in pdos)).pack
+        addresses = [address for pdo in pdos for address in pdo.addresses]
+        self._others = tuple(address for address in addresses if address not in _READINGS)
+        keys: list[int] = []
+        for number, pdo in enumerate(pdos):
+            keys.append(len(_READINGS) + number)
+            for address in pdo.addresses:
+                if address in _READINGS:
+                    keys.append(_READINGS.index(address))
+                else:
+                    keys.append(len(_READINGS) + len(headers) + self._others.index(address))
+        self._headers = tuple(headers)
+        self._pick = _picker(keys) if keys else lambda _: ()
+
+    def frames(self, readings: tuple[int, ...], values: dict[Address, int]) -> bytes:
+        """Return the frames for the `_READINGS` of this SYNC and, for other mapped objects, the dictionary."""
+        others = tuple([values[address] for address in self._others]) if self._others else ()
+        return self._pack(*self._pick((*readings, *self._headers, *others)))
 
 
 class MockDrive:
@@ -96,6 +129,7 @@ class MockDrive:
         self._previous_word = 0
         self._heard_host: int | None = None
         self._limited = False
+        self._readings: tuple[int, ...] = ()
         factory = od.factory_values(node_id, scale)
         self.node = CanopenDevice(node_id, self._send, factory, self._on_write, self._on_reset)
         self._compile()
@@ -109,8 +143,7 @@ class MockDrive:
         rpdos = [_Pdo(values, c, m) for c, m in ((0x1400, 0x1600), (0x1401, 0x1601))]
         tpdos = [_Pdo(values, c, m) for c, m in ((0x1800, 0x1A00), (0x1801, 0x1A01), (0x1802, 0x1A02))]
         self._rpdos = {pdo.can_id: pdo for pdo in rpdos if pdo.exists}
-        synchronous = [pdo for pdo in tpdos if pdo.exists and 1 <= pdo.transmission <= 240]
-        self._tpdos = [(pdo.frame.pack, pdo.can_id, pdo.length, pdo.pick) for pdo in synchronous]
+        self._tpdos = _Tpdos([pdo for pdo in tpdos if pdo.exists and 1 <= pdo.transmission <= 240])
 
     def _on_reset(self) -> None:
         self.state = SWITCH_ON_DISABLED
@@ -131,6 +164,7 @@ class MockDrive:
         if self.node.operational and can_id in self._rpdos:
             self._on_rpdo(self._rpdos[can_id], data)
         elif can_id == od.NMT_ID or can_id == 0x600 + self.node_id:
+            self.node.values.update(zip(_READINGS, self._readings, strict=False))
             self.node.handle(can_id, data)
             if can_id == od.NMT_ID:
                 self._compile()
@@ -141,13 +175,16 @@ class MockDrive:
         if len(data) < pdo.length:
             self.emergency(0x8210)
             return
+        values = self.node.values
         for address, value in zip(pdo.addresses, pdo.data.unpack_from(data), strict=True):
-            self.node.values[address] = value
-            if address == od.CONTROLWORD:
+            values[address] = value
+            if address is pdo.controlword:
                 self._on_controlword(value)
 
     def _on_controlword(self, word: int) -> None:
         before = self.state
+        if before == ENABLED and word == self._previous_word == _GO_ON:
+            return
         self.state = next_state(self.state, word, self._previous_word)
         self._previous_word = word
         if before == FAULT and self.state != FAULT:
@@ -196,20 +233,24 @@ class MockDrive:
             self.state = FAULT
         return self._demand * self.scale.velocity * micro
 
-    def sample(self, feedback: Feedback) -> bytes:
-        """Take the feedback of a SYNC and return the synchronous TPDOs as frames."""
+    def sample(self, motor: float, load: float, demand: float, effort: float) -> bytes:
+        """Take what the plant says at a SYNC, SI units, and return the synchronous TPDOs as frames."""
         if self.tamper is not None:
-            feedback = self.tamper(feedback)
-        motor, load, demand, effort = feedback
-        values, scale = self.node.values, self.scale
-        values[od.MOTOR_POSITION] = round(motor / scale.motor_encoder)
-        values[od.LOAD_POSITION] = round(load / scale.load_encoder)
-        values[od.VELOCITY_DEMAND] = round(demand / scale.velocity)
-        values[od.TORQUE] = max(-32768, min(32767, round(effort / scale.effort)))
-        values[od.STATUSWORD] = self.statusword
+            motor, load, demand, effort = self.tamper(Feedback(motor, load, demand, effort))
+        scale = self.scale
+        torque = round(effort / scale.effort)
+        if not -32768 <= torque <= 32767:
+            torque = max(-32768, min(32767, torque))
+        self._readings = readings = (
+            round(load / scale.load_encoder),
+            self.statusword,
+            torque,
+            round(motor / scale.motor_encoder),
+            round(demand / scale.velocity),
+        )
         if not (self.powered and self.node.operational):
             return b""
-        return b"".join([pack(can_id, length, *pick(values)) for pack, can_id, length, pick in self._tpdos])
+        return self._tpdos.frames(readings, self.node.values)
 
     @property
     def statusword(self) -> int:

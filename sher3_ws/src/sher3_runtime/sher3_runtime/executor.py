@@ -1,9 +1,10 @@
-"""A small rclpy executor: one wait set built once, raw takes until the queue is empty, ticks of the clock grid.
+"""A small rclpy executor: wait sets built once, raw takes until the queue is empty, ticks of the clock grid.
 
 rclpy's own executor builds a new wait set and one task per message at every spin, which costs more than the rest of
-the control loop. This one keeps the wait set until an entity comes or goes (rclpy then triggers the guard condition)
-and hands the raw bytes straight to the codec. Services, timers, clients, guard conditions and event handlers run
-through rclpy's own takers. It is single threaded and raises what a callback raises.
+the control loop. This one keeps its wait sets until an entity comes or goes (rclpy then triggers the guard condition)
+and hands the raw bytes straight to the codec. A control loop waits for its streams alone; topics on which nothing
+came lately, services, timers, clients, guard conditions and event handlers are waited for every `LOOK_NS`, the last
+five through rclpy's own takers. It is single threaded and raises what a callback raises.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ from __future__ import annotations
 import select
 from collections.abc import Callable
 from contextlib import ExitStack
-from time import monotonic_ns
+from time import monotonic_ns, sleep
 from typing import Any
 
 from rclpy.event_handler import EventHandler
@@ -26,10 +27,37 @@ from .tick import Tick
 
 IDLE_NS = 100_000_000
 """Longest wait; bounds the time to notice a shutdown that woke nobody."""
+LOOK_NS = 5_000_000
+"""A process that wakes up at the control rate looks at everything that is no stream this often."""
+QUIET_NS = 100_000_000
+"""A topic that was silent for this long is no stream, until a sample comes again."""
 
 
 Take = Callable[[Any], Any]
 Others = dict[str, list[tuple[Any, Take]]]
+
+
+class _Topic:
+    """A subscription as the hot path needs it; `heard_ns` is the time of its newest sample."""
+
+    __slots__ = ("deliver", "handle", "heard_ns", "raw", "take", "type")
+
+    def __init__(self, subscription: Any, deliver: Callable[[Any], None]) -> None:
+        self.handle = subscription.handle
+        self.take = subscription.handle.take_message
+        self.type, self.raw, self.deliver = subscription.msg_type, subscription.raw, deliver
+        self.heard_ns = monotonic_ns()
+
+    def drain(self) -> bool:
+        """Take and deliver every sample that waits; return whether there was one."""
+        take, kind, raw = self.take, self.type, self.raw
+        if (taken := take(kind, raw)) is None:
+            return False
+        while taken is not None:
+            self.deliver(taken[0])
+            taken = take(kind, raw)
+        self.heard_ns = monotonic_ns()
+        return True
 
 
 class RawExecutor(Executor):
@@ -39,9 +67,11 @@ class RawExecutor(Executor):
         super().__init__(context=context)
         self._held = ExitStack()
         self._wait_set: Any = None
+        self._stream_set: Any = None
         self._stale = True
         self._add: list[tuple[Callable[[Any], object], Any]] = []
-        self._topics: dict[int, tuple[Callable[..., Any], Any, bool, Callable[[Any], None]]] = {}
+        self._topics: dict[int, _Topic] = {}
+        self._streams: list[_Topic] = []
         self._others: list[tuple[str, list[tuple[Any, Take]]]] = []
         self._waitables: list[Any] = []
         self._ticks: list[Tick] = []
@@ -50,7 +80,7 @@ class RawExecutor(Executor):
         self._period_ns = IDLE_NS
         self._events: list[Any] = []
         self._asked: list[Any] = []
-        self._events_due_ns = self._topics_due_ns = 0
+        self._events_due_ns = self._topics_due_ns = self._look_due_ns = 0
 
     def spin_once(self, timeout_sec: float | None = None) -> None:
         """Wait until something is ready or due, at most `timeout_sec`, and run all of it."""
@@ -64,11 +94,35 @@ class RawExecutor(Executor):
             self._wait_on_files(timeout)
             timeout = 0
         if not self._files or self._topics_are_due():
-            self._wait(timeout)
-            self._take_topics()
-            self._run_others()
+            self._wait_and_run(timeout)
         if clock is not None:
             self._run_ticks(clock)
+
+    def _wait_and_run(self, timeout_ns: int) -> None:
+        """Wait for the streams, or every `LOOK_NS` for everything, and run what is ready."""
+        now = monotonic_ns()
+        left = self._look_due_ns - now
+        if left <= 0 or (timeout_ns > left and not self._streams):
+            self._wait(timeout_ns)
+            self._take_topics()
+            self._run_others()
+            self._look_due_ns = now + LOOK_NS
+            self._streams = [topic for topic in self._topics.values() if now - topic.heard_ns < QUIET_NS]
+            return
+        if timeout_ns > 0:
+            self._wait_for_streams(min(timeout_ns, left))
+        for topic in self._streams:
+            topic.drain()
+
+    def _wait_for_streams(self, timeout_ns: int) -> None:
+        if not self._streams:
+            sleep(timeout_ns * 1e-9)
+            return
+        wait_set = self._stream_set
+        wait_set.clear_entities()
+        for topic in self._streams:
+            wait_set.add_subscription(topic.handle)
+        wait_set.wait(timeout_ns)
 
     def settle(self) -> bool:
         """Run what is ready now, without waiting; return whether there was anything (for stepped time)."""
@@ -112,15 +166,13 @@ class RawExecutor(Executor):
         self._held.close()
         nodes = self.get_nodes()
         self._stale = False
-        self._topics, subscriptions = {}, []
+        self._topics, self._streams, self._look_due_ns = {}, [], 0
         others: Others = {"guard_condition": [], "service": [], "timer": [], "client": []}
         for node in nodes:
             deliveries, polled = ports(node).deliveries, ports(node).polled
             for sub in node.subscriptions:
                 if sub.handle.pointer not in polled and self._hold(sub.handle):
-                    deliver = deliveries.get(sub.handle.pointer, sub.callback)
-                    self._topics[sub.handle.pointer] = (sub.handle.take_message, sub.msg_type, sub.raw, deliver)
-                    subscriptions.append(sub.handle)
+                    self._topics[sub.handle.pointer] = _Topic(sub, deliveries.get(sub.handle.pointer, sub.callback))
             self._collect(others["service"], node.services, self._take_service)
             self._collect(others["timer"], node.timers, self._take_ready_timer)
             self._collect(others["client"], node.clients, self._take_client)
@@ -131,7 +183,7 @@ class RawExecutor(Executor):
         guards = [
             guard.handle for guard in (self._guard, self._sigint_gc) if guard is not None and self._hold(guard.handle)
         ]
-        self._size_wait_set(subscriptions, guards, others, waitables)
+        self._size_wait_set(guards, others, waitables)
         self._others = [(kind, entities) for kind, entities in others.items() if entities]
         self._schedule(nodes)
 
@@ -146,7 +198,8 @@ class RawExecutor(Executor):
     def _collect(self, found: list[tuple[Any, Take]], entities: Any, take: Take) -> None:
         found.extend((entity, take) for entity in entities if self._hold(entity.handle))
 
-    def _size_wait_set(self, subscriptions: list[Any], guards: list[Any], others: Others, waitables: list[Any]) -> None:
+    def _size_wait_set(self, guards: list[Any], others: Others, waitables: list[Any]) -> None:
+        subscriptions = [topic.handle for topic in self._topics.values()]
         counts = {kind: len(entities) for kind, entities in others.items()}
         counts["subscription"], counts["event"] = len(subscriptions), 0
         counts["guard_condition"] += len(guards)
@@ -166,6 +219,7 @@ class RawExecutor(Executor):
         self._waitables = [waitable for waitable in waitables if waitable not in self._events]
         self._add += [(waitable.add_to_wait_set, wait_set) for waitable in self._waitables]
         self._wait_set = wait_set
+        self._stream_set = _rclpy.WaitSet(max(1, len(subscriptions)), 0, 0, 0, 0, 0, self._context.handle)
 
     def _schedule(self, nodes: list[Node]) -> None:
         ticks = [tick for node in nodes for tick in ports(node).ticks]
@@ -212,9 +266,7 @@ class RawExecutor(Executor):
     def _take_topics(self) -> bool:
         ready, topics = self._wait_set.get_ready_entities("subscription"), self._topics
         for pointer in ready:
-            take, message_type, raw, deliver = topics[pointer]
-            while (taken := take(message_type, raw)) is not None:
-                deliver(taken[0])
+            topics[pointer].drain()
         return bool(ready)
 
     def _run_ticks(self, clock: Clock) -> None:

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 from numba import njit
+from sher3_kinematics.arrays import unpack
 from sher3_kinematics.kernel import KernelParameters, gravity_load_into, tip_jacobian_into
 
 from sher3_sim.axis import advance, drive_force, send
@@ -212,6 +213,50 @@ def step(
         transmit(a, x, s.load[i])
     s.tick += 1
     read_sensors(axis, b, p, state, s, r)
+
+
+READING_SIZE = 5 * 5 + 6 + 1 + 3 + 4
+"""Numbers of a reading as `step_flat` writes them: five columns of five, wrench, tracked, tracker pose."""
+
+
+@njit(cache=True)
+def flatten(r: Any, flat: Array) -> None:
+    """Write a READING record as numbers (READING_SIZE,)."""
+    for i in range(5):
+        flat[i], flat[5 + i], flat[10 + i] = r.motor[i], r.velocity[i], r.effort[i]
+        flat[15 + i], flat[20 + i] = r.load[i], r.demand[i]
+    for i in range(6):
+        flat[25 + i] = r.wrench[i]
+    flat[31] = 1.0 if r.tracked else 0.0
+    for i in range(3):
+        flat[32 + i] = r.tracker_position[i]
+    for i in range(4):
+        flat[35 + i] = r.tracker_orientation[i]
+
+
+@njit(cache=True)
+def step_flat(
+    axis: Any,
+    body: Any,
+    geometry: Array,
+    maps: Array,
+    substeps: int,
+    state: Any,
+    s: Any,
+    r: Any,
+    command: Array,
+    wrench: Array,
+    temperature: float,
+    flat: Array,
+) -> None:
+    """Do as `step` does and write the reading into `flat` (READING_SIZE,), for a caller in Python.
+
+    Records are slow arguments there: `body`, `s` and `r` are arrays of one record, `geometry` is an array (44,), and
+    `temperature` is that of the structure [degC].
+    """
+    body[0].temperature = temperature
+    step(axis, body[0], unpack(geometry), maps, substeps, state, s[0], r[0], command, wrench)
+    flatten(r[0], flat)
 
 
 @njit(cache=True)

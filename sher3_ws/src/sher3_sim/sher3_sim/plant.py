@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from sher3_description import Robot
+from sher3_kinematics.direct import direct
 
 from sher3_sim import kernel
 from sher3_sim.axis import AXIS_STATE, propagators
@@ -86,6 +88,7 @@ class Plant:
         step = float(self.parameters.body["period"][0]) / self.parameters.substeps
         self._maps = propagators(self.parameters.axis, step)
         self._fixed = (self.parameters.axis, self.parameters.body[0], self.parameters.geometry)
+        self._command, self._wrench, self._flat = np.zeros(5), np.zeros(6), np.zeros(kernel.READING_SIZE)
         self.reset(np.zeros(5))
 
     def reset(self, q_ref: ArrayLike, wrench: ArrayLike | Sequence[float] = (0.0,) * 6) -> Reading:
@@ -101,6 +104,10 @@ class Plant:
         self._out = np.zeros(1, kernel.READING)
         self.parameters.body["temperature"] = self.temperature
         kernel.start(*self._fixed, self._axes, self._body[0], self._out[0], start, load)
+        kernel.flatten(self._out[0], self._flat)
+        constants = (self.parameters.axis, self.parameters.body, np.array(self.parameters.geometry), self._maps)
+        self._arguments = (*constants, self.parameters.substeps, self._axes, self._body, self._out)
+        self._step = direct(kernel.step_flat, *self._arguments, self._command, self._wrench, 22.0, self._flat)
         return self._reading()
 
     def step(self, velocity_command: ArrayLike, contact_wrench: ArrayLike | Sequence[float] = (0.0,) * 6) -> Reading:
@@ -113,11 +120,9 @@ class Plant:
         Raises:
             InputError: wrong shape or not finite; the plant has not moved.
         """
-        command = checked("velocity_command", velocity_command, (5,))
-        wrench = checked("contact_wrench", contact_wrench, (6,))
-        self.parameters.body["temperature"] = self.temperature
-        substeps = self.parameters.substeps
-        kernel.step(*self._fixed, self._maps, substeps, self._axes, self._body[0], self._out[0], command, wrench)
+        _take("velocity_command", velocity_command, self._command)
+        _take("contact_wrench", contact_wrench, self._wrench)
+        self._step(*self._arguments, self._command, self._wrench, self.temperature, self._flat)
         return self._reading()
 
     @property
@@ -131,7 +136,14 @@ class Plant:
         return self._out[0]["tip_rotation"].copy(), self._out[0]["tip_position"].copy()
 
     def _reading(self) -> Reading:
-        r = self._out[0].copy()
-        tracker = np.concatenate([r["tracker_position"], r["tracker_orientation"]]) if r["tracked"] else None
-        axes = (r["motor"], r["velocity"], r["effort"], r["load"], r["demand"])
-        return Reading(*axes, r["wrench"], tracker, self.temperature)
+        v = self._flat.copy()
+        tracker = v[32:39] if v[31] else None
+        return Reading(v[0:5], v[5:10], v[10:15], v[15:20], v[20:25], v[25:31], tracker, self.temperature)
+
+
+def _take(name: str, values: ArrayLike, into: Vector) -> None:
+    """Copy values into an array of their shape; the plain list of the running loop is checked without an array."""
+    if type(values) in (list, tuple) and len(values) == len(into) and math.isfinite(sum(values)):  # type: ignore[arg-type]
+        into[:] = values
+    else:
+        into[:] = checked(name, values, into.shape)
