@@ -107,27 +107,29 @@ def compare(
         typer.echo(json.dumps({"stages": rows}) if as_json else stages_text(stages))
 
 
-@app.command(epilog="Example: sher3 gap experiment gap/case_001/verdict.json -o tell_apart.yaml")
+@app.command(epilog="Example: sher3 gap experiment gap/case_001/verdict.json case_001 -o tell_apart.yaml")
 def experiment(
     verdict: VerdictFile,
+    case: Annotated[
+        Path | None, typer.Argument(help="Its case: actual floors and loads, excitations not again.")
+    ] = None,
     output: Annotated[Path, typer.Option("--output", "-o", help="Excitation file to write.")] = Path("experiment.yaml"),
+    ran: Annotated[
+        Path | None, typer.Option(help="Case the written file was run to: predicted against realised.")
+    ] = None,
     robot: RobotFile = None,
     as_json: Json = False,
 ) -> None:
     """Design the excitation that best tells a verdict's rivals apart; `sher3 gap excite FILE` runs it."""
-    from sher3_description import load_robot
-
-    from sher3_gap.apply import read_verdict
-    from sher3_gap.cli_print import experiment_data, experiment_text, steps
-    from sher3_gap.excitation_file import save_excitation
-    from sher3_gap.experiment import design_experiment
+    from sher3_gap.cli_experiment import design_command, realised_command
 
     with reported(as_json):
-        with steps() as say:
-            made = design_experiment(read_verdict(verdict), load_robot(robot), say)
-        data = experiment_data(made)
-        save_excitation(output, made.excitation, data)
-        typer.echo(json.dumps({"file": str(output), **data}) if as_json else experiment_text(made, output))
+        text = (
+            design_command(verdict, case, output, robot, as_json)
+            if ran is None
+            else realised_command(verdict, output, ran, robot, as_json)
+        )
+        typer.echo(text)
 
 
 @app.command(epilog="Example: sher3 gap library friction")

@@ -14,7 +14,6 @@ from sher3_sim import Effect
 
 from sher3_gap.apply import StageGap
 from sher3_gap.cli_diagnose import Answer, RequestError
-from sher3_gap.experiment import Experiment
 from sher3_gap.library import LIBRARY, LibraryEffect
 
 Done = Callable[[Answer, str], None]
@@ -101,37 +100,6 @@ def steps() -> Iterator[Callable[[str], None]]:
                 console.print(f"  {step}", highlight=False, markup=False)
 
         yield say
-
-
-def experiment_data(made: Experiment) -> dict[str, Any]:
-    """Return an experiment as plain data."""
-    return {
-        "separates": list(made.separates),
-        "predicted_separation": made.predicted.floors,
-        "margin": made.predicted.margin,
-        "closest_rival": made.predicted.closest,
-        "design": made.design,
-        "tried": made.tried,
-    }
-
-
-def experiment_text(made: Experiment, output: Path) -> str:
-    """Return what was designed and what to expect of it."""
-    settings = ", ".join(f"{k} {v}" for k, v in made.design.items())
-    predicted = made.predicted
-    lines = [
-        f"separates  {' / '.join(made.separates)}",
-        f"design     {settings} (best of {made.tried})",
-        f"predicted  {predicted.floors:.2f} floors from {predicted.closest}: {_outlook(predicted.margin)}",
-        f"file       {output}; run it with `sher3 gap excite {output}`",
-    ]
-    return "\n".join(lines)
-
-
-def _outlook(margin: float) -> str:
-    if margin > 1.0:
-        return f"{margin:.1f} times what rules a rival out"
-    return f"only {margin:.2f} of what rules a rival out; no excitation of the family is expected to separate them"
 
 
 def library_data(which: str = "") -> list[dict[str, Any]]:

@@ -80,6 +80,11 @@ def load_excitation(path: Path, robot: Robot) -> Excitation:
     return check_limits(made, robot)
 
 
+def about_excitation(path: Path) -> dict[str, Any]:
+    """Return what an excitation file says of itself; raises FileError."""
+    return _read_header(path).about
+
+
 def _read_header(path: Path) -> _Header:
     try:
         header = _Header.model_validate(read_yaml(path))

@@ -3,32 +3,36 @@
 T-optimal design (Atkinson and Fedorov 1975): of the excitations u within the limits, take the one that maximises
 min over theta of |y_A(u, theta_A) - y_B(u, theta)|^2 over the floor, for the rival B that comes closest. The simulator
 makes the data of A; the diagnosis itself fits every B to them and scores them on held-out repeats, so what is maximised
-is what will decide.
+is what will decide. The best few are judged again over draws of A's parameters, noise and scatter, and the mean counts.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from sher3_description import ACTUATORS, Robot, Sher3Error
 from sher3_sim import Effect
 
-from sher3_gap.attribute import PRICE, RIVAL, Candidates
-from sher3_gap.channels import Channel
 from sher3_gap.design import CHOICES, Choices, Design, build
-from sher3_gap.evidence import Evidence, gather
+from sher3_gap.evidence import gather
 from sher3_gap.excitation import Excitation, catalogue, excite
-from sher3_gap.fitting import Fit, fit
+from sher3_gap.floors import Floors
 from sher3_gap.library import LIBRARY
 from sher3_gap.loading import signals_of
 from sher3_gap.rehearsal import rehearse
+from sher3_gap.separation import Prediction, Separation, floors_of, separation
+from sher3_gap.signals import RunSignals
 from sher3_gap.simulator import to_effects
-from sher3_gap.verdict import Cause, Verdict
+from sher3_gap.verdict import Cause, Parameter, Verdict
 
 REPEATS = 2
 """Repeats a design is scored on: each with coefficients fitted to the other."""
+DRAWS = 4
+"""Draws of parameters, noise and scatter a prediction is the mean of."""
+FINALISTS = 3
+"""Excitations that are judged over all the draws."""
 
 
 class ExperimentError(Sher3Error):
@@ -36,18 +40,29 @@ class ExperimentError(Sher3Error):
 
 
 @dataclass(frozen=True)
-class Separation:
-    """How far an excitation separates the cause from its closest rival, both refitted.
+class Given:
+    """What the case behind the verdict says of the next one.
 
     Attributes:
-        floors: rms difference of the two refitted models in units of the floor.
-        margin: the difference in held-out loss over what the diagnosis asks for; above 1 the rival is ruled out.
-        closest: the rival that remains closest.
+        floor: per channel, which a prediction does not undercut.
+        present: excitations that have left the rivals standing.
+        load: largest known tip load there is, as a share of the standard set's; None when the case has none.
     """
 
-    floors: float
-    margin: float
-    closest: str
+    floor: Floors
+    present: frozenset[str] = frozenset()
+    load: float | None = None
+
+    @classmethod
+    def of(cls, runs: Sequence[RunSignals], robot: Robot) -> Given:
+        """Read it off the runs of a case."""
+        standard = max(max(abs(x) for x in row[2:]) for row in excite("loads", robot).loads)
+        known = [max(abs(x) for x in row[2:]) for run in runs for row in run.payload]
+        return cls(
+            floors_of(gather(runs, robot)),
+            frozenset(run.excitation for run in runs),
+            max(known) / standard if known else None,
+        )
 
 
 @dataclass(frozen=True)
@@ -57,7 +72,7 @@ class Experiment:
     excitation: Excitation
     design: dict[str, float | str]
     separates: tuple[str, ...]
-    predicted: Separation
+    predicted: Prediction
     tried: int
 
 
@@ -75,7 +90,11 @@ def rivals_of(verdict: Verdict) -> tuple[Cause, tuple[str, ...]]:
 
 
 def design_experiment(
-    verdict: Verdict, robot: Robot, say: Callable[[str], None] = lambda _: None, choices: Choices = CHOICES
+    verdict: Verdict,
+    robot: Robot,
+    say: Callable[[str], None] = lambda _: None,
+    choices: Choices = CHOICES,
+    runs: Sequence[RunSignals] = (),
 ) -> Experiment:
     """Choose the excitation that separates the first cause with rivals from the closest of them.
 
@@ -84,20 +103,36 @@ def design_experiment(
         robot: whose limits are kept.
         say: progress.
         choices: values of each parameter of the family that are tried.
+        runs: of the case behind the verdict: its floors count, its excitations are not proposed again, and no larger
+            load than its largest is, where it has any.
 
     Raises:
         ExperimentError: the verdict has no rivals.
     """
     cause, rivals = rivals_of(verdict)
-    truth = to_effects([cause], robot)
-    others = [c for c in verdict.causes if c is not cause and LIBRARY[c.effect].stage != "transport"]
-    truth += [e for e in to_effects(others, robot) if (e.id, e.actuator) not in {(t.id, t.actuator) for t in truth}]
-    search = _Search(_Judge(robot, cause, rivals, truth), robot, say)
-    search.standard()
+    given = Given.of(runs, robot) if runs else Given({})
+    if given.load is not None:
+        choices = {**choices, "load": tuple(x for x in choices.get("load", ()) if x <= given.load + 1e-6)}
+    search = _Search(_Judge(robot, verdict, cause, rivals, given.floor), robot, say)
+    search.standard(given.present, given.load)
     search.family(Design(actuator=cause.actuator if cause.actuator in ACTUATORS else "all"), choices)
-    assert search.best is not None
-    predicted, excitation, about = search.best
+    predicted, excitation, about = search.winner()
     return Experiment(excitation, about, (cause.effect, *rivals), predicted, search.judge.count)
+
+
+def realised(verdict: Verdict, robot: Robot, runs: Sequence[RunSignals]) -> Separation:
+    """Return how far recorded runs of an experiment separate the verdict's cause from its rivals.
+
+    Raises:
+        ExperimentError: the verdict has no rivals, or there are fewer than two runs.
+    """
+    if len(runs) < REPEATS:
+        raise ExperimentError("too few runs to judge", value=len(runs), limit=REPEATS, remedy="record repeats")
+    cause, rivals = rivals_of(verdict)
+    return separation(runs, robot, (cause.effect, cause.actuator), rivals)
+
+
+About = dict[str, float | str]
 
 
 @dataclass
@@ -107,12 +142,14 @@ class _Search:
     judge: _Judge
     robot: Robot
     say: Callable[[str], None]
-    best: tuple[Separation, Excitation, dict[str, float | str]] | None = None
 
-    def standard(self) -> None:
-        """Try the standard set."""
+    def __post_init__(self) -> None:
+        self.tried: list[tuple[Separation, Excitation, About]] = []
+
+    def standard(self, present: Collection[str], load: float | None) -> None:
+        """Try the standard set, less what has been run."""
         for name in catalogue():
-            if name != "task":
+            if name != "task" and name not in present and not (name == "loads" and load is not None and load < 1.0):
                 self._try(excite(name, self.robot), {"standard": name})
 
     def family(self, start: Design, choices: Choices) -> None:
@@ -125,46 +162,54 @@ class _Search:
                 if margin > best:
                     best, kept = margin, design
 
-    def _try(self, excitation: Excitation, about: dict[str, float | str]) -> float:
+    def winner(self) -> tuple[Prediction, Excitation, About]:
+        """Judge the best few over all draws and return the one with the largest mean margin."""
+        first = sorted(self.tried, key=lambda t: -t[0].margin)[:FINALISTS]
+        judged = [(self.judge.prediction(excitation), excitation, about) for _, excitation, about in first]
+        return max(judged, key=lambda j: j[0].margin)
+
+    def _try(self, excitation: Excitation, about: About) -> float:
         found = self.judge.separation(excitation)
         self.say(f"{excitation.label}: {found.floors:.2f} floors from {found.closest}")
-        if self.best is None or found.margin > self.best[0].margin:
-            self.best = (found, excitation, about)
+        self.tried.append((found, excitation, about))
         return found.margin
 
 
 class _Judge:
     """Simulates the cause on an excitation and fits cause and rivals to the result."""
 
-    def __init__(self, robot: Robot, cause: Cause, rivals: Sequence[str], truth: Sequence[Effect]) -> None:
-        self.robot, self.cause, self.rivals, self.truth = robot, cause, rivals, truth
+    def __init__(self, robot: Robot, verdict: Verdict, cause: Cause, rivals: Sequence[str], floor: Floors) -> None:
+        self.robot, self.verdict, self.cause, self.rivals, self.floor = robot, verdict, cause, rivals, floor
         self.count = 0
 
-    def separation(self, excitation: Excitation) -> Separation:
-        """Return how far an excitation separates the cause from its closest rival."""
+    def prediction(self, excitation: Excitation) -> Prediction:
+        """Return the separation over draws of the cause's parameters, noise and scatter."""
+        return Prediction(tuple(self.separation(excitation, draw) for draw in range(DRAWS)))
+
+    def separation(self, excitation: Excitation, draw: int = 0) -> Separation:
+        """Return how far an excitation separates the cause from its closest rival; draw 0 takes the fitted values."""
         self.count += 1
-        runs = rehearse(self.robot, [(excitation, r) for r in range(REPEATS)], self.truth, seed=self.count)
-        evidence = gather([signals_of(run, self.robot, f"repeat {i}") for i, run in enumerate(runs)], self.robot)
-        candidates = Candidates(evidence)
-        own = candidates.best(LIBRARY[self.cause.effect], self.cause.actuator)
-        if own is None:
-            return Separation(0.0, 0.0, self.rivals[0])
-        losses = {rival: self._loss(candidates, rival, own) for rival in self.rivals}
-        closest = min(losses, key=losses.__getitem__)
-        behind = losses[closest] - own.total
-        worth = fit(evidence.data, []).total - own.total
-        samples = _samples(evidence, own.terms[-1].channels)
-        floors = float(np.sqrt(max(behind, 0.0) / max(samples, 1)))
-        return Separation(floors, float(behind / max(3.0 * PRICE, RIVAL * worth)), closest)
+        truth = self._effects(draw)
+        made = rehearse(self.robot, [(excitation, r) for r in range(REPEATS)], truth, seed=100 * draw + self.count)
+        runs = [signals_of(run, self.robot, f"repeat {i}") for i, run in enumerate(made)]
+        return separation(runs, self.robot, (self.cause.effect, self.cause.actuator), self.rivals, self.floor)
 
-    def _loss(self, candidates: Candidates, rival: str, own: Fit) -> float:
-        """Return the least held-out loss of a rival, at any site where it shows in the cause's channels."""
-        effect = LIBRARY[rival]
-        channels = own.terms[-1].channels
-        sites = [s for s in effect.sites() if set(effect.channels(s)) & set(channels)]
-        fits = [f for s in sites if (f := candidates.best(effect, s)) is not None]
-        return min((f.total for f in fits), default=float("inf"))
+    def _effects(self, draw: int) -> list[Effect]:
+        """Return the causes as effects, the one in question with parameters drawn from their intervals."""
+        rng = np.random.default_rng((71, draw))
+        parameters = {n: _drawn(p, rng) if draw else p for n, p in self.cause.parameters.items()}
+        cause = self.cause.model_copy(update={"parameters": parameters})
+        truth = to_effects([cause], self.robot)
+        others = [c for c in self.verdict.causes if c is not self.cause and LIBRARY[c.effect].stage != "transport"]
+        known = {(t.id, t.actuator) for t in truth}
+        return truth + [e for e in to_effects(others, self.robot) if (e.id, e.actuator) not in known]
 
 
-def _samples(evidence: Evidence, channels: Iterable[Channel]) -> int:
-    return sum(n for (_, c), n in evidence.data.samples.items() if c in set(channels))
+def _drawn(parameter: Parameter, rng: np.random.Generator) -> Parameter:
+    """Return a parameter drawn from its interval; whole numbers are names of a variant and stay."""
+    if parameter.low is None or parameter.high is None or (parameter.unit == "1" and parameter.value.is_integer()):
+        return parameter
+    sigma = (parameter.high - parameter.low) / 4.0
+    return parameter.model_copy(
+        update={"value": float(np.clip(rng.normal(parameter.value, sigma), parameter.low, parameter.high))}
+    )

@@ -4,11 +4,13 @@ import numpy as np
 import pytest
 from sher3_description import FileError
 from sher3_gap import Verdict, diagnose_runs
+from sher3_gap.channels import Channel
 from sher3_gap.design import CHOICES, Design, build
 from sher3_gap.excitation import ExcitationError
 from sher3_gap.excitation_file import load_excitation, save_excitation
-from sher3_gap.experiment import ExperimentError, design_experiment
+from sher3_gap.experiment import ExperimentError, Given, design_experiment, realised
 from sher3_gap.rehearsal import rehearse
+from sher3_gap.separation import Prediction, Separation
 from sher3_sim import EFFECTS
 from simulated import ROBOT, SCATTER, runs_of, signals
 
@@ -30,11 +32,31 @@ def test_the_experiment_resolves_what_the_task_left_open(ambiguous, tmp_path):
     again = load_excitation(tmp_path / "tell.yaml", ROBOT)
     more = rehearse(ROBOT, [(again, r) for r in range(3)], [TRUTH], seed=9, scatter=SCATTER)
 
+    found = realised(before, ROBOT, signals(more))
+    predicted = designed.predicted
+    print(f"predicted {predicted.floors:.2f} ± {predicted.spread:.2f} floors, realised {found.floors:.2f}")
+    assert found.margin > 1.0
+    assert found.floors == pytest.approx(predicted.floors, abs=max(3.0 * predicted.spread, 0.3 * predicted.floors))
+
     after = diagnose_runs(signals(more), ROBOT).verdict
     assert after.status == "attributed"
     assert after.causes[0].effect == "presliding_friction"
     assert after.causes[0].actuator == "tilt"
     assert after.causes[0].rivals == []
+
+
+def test_the_case_says_what_floors_loads_and_excitations_there_are(ambiguous):
+    given = Given.of(signals(ambiguous), ROBOT)
+    assert given.present == {"task"} and given.load is None
+    assert given.floor[Channel("motor_mechanics", "tilt")] > 0.0
+    loaded = runs_of(["loads_0.5"], repeats=1, duration=3.0)
+    assert Given.of(signals(loaded), ROBOT).load == pytest.approx(0.5, rel=0.01)
+
+
+def test_a_prediction_is_the_mean_over_draws():
+    made = Prediction((Separation(2.0, 3.0, "a"), Separation(4.0, 0.5, "b"), Separation(3.0, 1.5, "a")))
+    assert (made.floors, made.spread, made.closest) == (3.0, 1.0, "a")
+    assert made.resolved == pytest.approx(2 / 3)
 
 
 def test_nothing_to_tell_apart():
