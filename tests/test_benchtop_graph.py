@@ -43,7 +43,7 @@ def test_compensation_leaves_little_of_the_deflection(compensate):
     run.picture("y0", 0)
     run.push([0.0, 4.0, 0.0])
     run.picture("y0", 0, 4.0)
-    control = ControlSettings.from_robot(ROBOT, {"motion": {"deflection_compensation": compensate}})
+    control = ControlSettings.from_robot(ROBOT, {"motion": {"deflection_compensation": compensate, "regime": "bench"}})
     timeline = run.build(f"test_push_{compensate}", "servo_cp")
     tip = run_timeline(timeline, ROBOT, as_built(), FOLDER, control)["y0"].tip
     moved = np.linalg.norm(tip[1] - tip[0])

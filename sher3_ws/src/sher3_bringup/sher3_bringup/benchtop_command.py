@@ -101,7 +101,7 @@ def _run(
 
     from .benchtop import run_tests
 
-    control = ControlSettings.from_robot(robot, {"motion": {"deflection_compensation": compensate}})
+    control = ControlSettings.from_robot(robot, {"motion": {"deflection_compensation": compensate, "regime": "bench"}})
     with tempfile.TemporaryDirectory() as scratch:
         bags = Path(scratch) if out is None else out / "bags"
         bags.mkdir(parents=True, exist_ok=True)

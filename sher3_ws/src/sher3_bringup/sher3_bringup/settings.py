@@ -53,6 +53,8 @@ class RunSettings(BaseModel):
         pedal_device: joystick device of the pedal on the real robot.
         patience: time limits in force, see `patience`; the real robot has only the strict ones.
         seed: of the plant's noise.
+        regime: speed regime at the start, see `sher3_control.speed_cap`; by default `bench` on mocks, where nobody is
+            near the tool, and `free` on the real robot.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -73,6 +75,7 @@ class RunSettings(BaseModel):
     pedal_device: str = ""
     patience: Patience = "strict"
     seed: Annotated[int, Field(ge=0)] = 0
+    regime: Literal["", "near_tissue", "free", "bench"] = ""
 
     @model_validator(mode="after")
     def _consistent(self) -> RunSettings:
@@ -142,7 +145,10 @@ class RunSettings(BaseModel):
 
     def control(self) -> ControlSettings:
         """Return the settings of the control nodes."""
-        return ControlSettings.from_robot(self.robot(), CONTROL if self.patience == "patient" else None)
+        overrides = CONTROL if self.patience == "patient" else {}
+        regime = self.regime or ("bench" if self.mock else "free")
+        motion = {**overrides.get("motion", {}), "regime": regime}
+        return ControlSettings.from_robot(self.robot(), {**overrides, "motion": motion})
 
 
 def parse_processes(text: str | None, mock: bool, record: bool, monitor: bool = False) -> tuple[tuple[str, ...], ...]:

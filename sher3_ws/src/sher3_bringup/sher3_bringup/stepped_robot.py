@@ -43,6 +43,7 @@ class SteppedRobot:
         scatter: RunScatter | None = None,
     ) -> None:
         robot = robot or load_robot()
+        control = control or ControlSettings.from_robot(robot, {"motion": {"regime": "bench"}})
         self.graph = graph
         self.force, self.pedal_device = InProcessForceSensor(), InProcessPedal(clock=graph.clock.now)
         settings, channel = default_settings(robot.control_period), f"stepped{next(_numbers)}"

@@ -140,7 +140,7 @@ class AdmittanceNode(Node):
         self._tick_count += 1
 
     def _on_command(self, sample: TextSample) -> None:
-        if sample.text.startswith("rcm"):
+        if sample.text.startswith(("rcm", "regime")):
             return
         try:
             self._live = apply_command(self._live, sample.text, self.settings)

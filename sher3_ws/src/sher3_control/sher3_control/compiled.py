@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numba
+import sher3_description.reasons
 import sher3_kinematics.kernel  # noqa: F401  (selects the folder of the kernels)
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -24,9 +25,10 @@ def _folder() -> str:
     if os.environ.get("NUMBA_CACHE_DIR") or not outer:
         return str(outer)
     digest = hashlib.sha256()
-    for path in sorted(Path(__file__).parent.glob("*.py")):
+    reasons = Path(sher3_description.reasons.__file__)
+    for path in [reasons, *sorted(Path(__file__).parent.glob("*.py"))]:
         source = path.read_bytes()
-        if b".compiled import" in source or path.name == "reasons.py":
+        if b".compiled import" in source or path == reasons:
             digest.update(path.name.encode() + b"\0" + source)
     return str(Path(outer).with_name(f"{Path(outer).name}-control-{digest.hexdigest()[:16]}"))
 

@@ -16,6 +16,7 @@ from .limits import ZERO_TWIST
 from .modes import Vector
 from .rcm import rcm_velocity, shaft_deviation
 from .reasons import Reason
+from .speed_cap import SpeedCap, cap_factor
 
 Array = NDArray[np.float64]
 
@@ -41,11 +42,13 @@ class VelocityModes:
 
     Attributes:
         centre: the remote centre (3,) [m] in {b}, or None.
+        cap: speed caps of the tip.
     """
 
     def __init__(self, kinematics: RobotKinematics, gain: float) -> None:
         self.kinematics = kinematics
         self.centre: Array | None = None
+        self.cap = SpeedCap(math.inf, math.inf)
         self._gain = gain
         self._inverse = InverseVelocity(kinematics)
         self._parameters = np.array(kinematics.parameters)
@@ -55,6 +58,7 @@ class VelocityModes:
         shaft_deviation(np.eye(3), np.zeros(3), np.zeros(3))
         rcm_velocity(self._parameters, np.zeros(5), np.zeros(6), np.zeros(3), self._gain, self._inverse.period)
         self._inverse(RESTING, (1e-6, 0.0, 0.0, 0.0, 0.0, 0.0), RESTING)
+        cap_factor(self._parameters, RESTING, RESTING, SpeedCap(1.0, 1.0))
 
     def set_centre(self, centre: Vector | None, q: Vector) -> None:
         """Set the remote centre [m] in {b}, or leave it with None.
@@ -89,8 +93,8 @@ class VelocityModes:
         if not math.isfinite(sum(twist)):
             return Velocity(RESTING, Reason.COMMAND_NOT_FINITE, "", 0.0)
         if self.centre is None:
-            return _velocity(self._inverse(q, twist, previous), 0.0)
-        return self._about_centre(q, twist, previous, self.centre)
+            return self._capped(q, _velocity(self._inverse(q, twist, previous), 0.0))
+        return self._capped(q, self._about_centre(q, twist, previous, self.centre))
 
     def _about_centre(self, q: Vector, twist: Vector, previous: Vector, centre: Array) -> Velocity:
         period = self._inverse.period
@@ -105,7 +109,18 @@ class VelocityModes:
 
     def from_joints(self, q: Vector, wanted: Vector, previous: Vector) -> Velocity:
         """Return the permitted part of an actuator velocity (5,)."""
-        return _velocity(self._inverse.limit(q, wanted, previous), 0.0)
+        return self._capped(q, _velocity(self._inverse.limit(q, wanted, previous), 0.0))
+
+    def cap_factor(self, q: Vector, velocity: Vector) -> float:
+        """Return by how much an actuator velocity (5,) is to be scaled for the speed caps; 1 or less."""
+        return 1.0 if math.isinf(self.cap.linear) else cap_factor(self._parameters, q, velocity, self.cap)
+
+    def _capped(self, q: Vector, wanted: Velocity) -> Velocity:
+        """Scale a velocity as a whole, so that the tip keeps its direction."""
+        factor = self.cap_factor(q, wanted.velocity)
+        if factor >= 1.0:
+            return wanted
+        return wanted._replace(velocity=tuple([factor * v for v in wanted.velocity]), limited_by="tip speed")
 
 
 def _velocity(limited: LimitedVelocity, deviation: float) -> Velocity:

@@ -27,6 +27,7 @@ from .pose import tip_pose_sample
 from .rcm_command import apply_rcm_command
 from .reasons import TEXT, Reason
 from .settings import ControlSettings
+from .speed_cap import parse_regime
 from .tick_records import MotionRecord, record_text
 
 LATE = 0.85
@@ -152,10 +153,14 @@ class KinematicsNode(Node):
         return on_command
 
     def _on_rcm(self, sample: TextSample) -> None:
-        if not sample.text.startswith("rcm"):
-            return
         try:
-            apply_rcm_command(self.motion, sample.text, self._joints.position or ())
+            if sample.text.startswith("rcm"):
+                apply_rcm_command(self.motion, sample.text, self._joints.position or ())
+            elif sample.text.startswith("regime"):
+                busy = self.motion.ownership.owner is not None
+                self.motion.set_regime(parse_regime(sample.text, self.motion.regime, busy))
+            else:
+                return
         except Sher3Error as error:
             self._refuse(error)
             return
@@ -179,7 +184,8 @@ class KinematicsNode(Node):
     def _report_settings(self) -> None:
         centre = self.motion.velocity_modes.centre
         rcm = None if centre is None else centre.tolist()
-        data = {"version": self._version, "rcm": rcm, "settings": self.settings.motion.model_dump()}
+        regime = self.motion.regime.value
+        data = {"version": self._version, "rcm": rcm, "regime": regime, "settings": self.settings.motion.model_dump()}
         self._publish_settings(TextSample(json.dumps(data)))
 
     def _report(self, output: MotionOutput) -> None:

@@ -21,6 +21,7 @@ from .position_controller import position_command
 from .reasons import Reason
 from .servo_modes import ServoJointVelocity, ServoPose, ServoPosition, ServoTwist
 from .settings import MotionSettings
+from .speed_cap import Regime, speed_cap
 from .wrench_check import judge_age
 
 POSE_MODES = (Mode.SERVO_CP, Mode.MOVE_CP)
@@ -69,6 +70,7 @@ class MotionController:
         ownership: who commands the robot.
         velocity_modes: tip twists and actuator velocities, and the remote centre.
         previous: velocity commanded last (5,).
+        regime: speed regime in force.
     """
 
     def __init__(
@@ -85,14 +87,24 @@ class MotionController:
         self._age_limit = nanoseconds(settings.joints_age_limit)
         self._lead_limit = nanoseconds(robot.control_period + settings.lead_limit)
         self._kinematics = kinematics
+        self._settings = settings
+        self._moves = (MoveJoints(robot, kinematics, settings), MoveTip(robot, kinematics, settings))
         self._modes: dict[Mode, MotionMode] = {
             Mode.SERVO_JP: ServoPosition(robot, settings),
             Mode.SERVO_CP: ServoPose(robot, settings, self._inverse),
             Mode.SERVO_JV: ServoJointVelocity(settings),
             Mode.SERVO_CV: ServoTwist(settings),
-            Mode.MOVE_JP: MoveJoints(robot, kinematics, settings),
-            Mode.MOVE_CP: MoveTip(robot, kinematics, settings),
+            Mode.MOVE_JP: self._moves[0],
+            Mode.MOVE_CP: self._moves[1],
         }
+        self.set_regime(Regime(settings.regime))
+
+    def set_regime(self, regime: Regime) -> None:
+        """Change the speed regime; its caps act from the next tick on, and on moves planned after it."""
+        self.regime = regime
+        self.velocity_modes.cap = speed_cap(self._settings, regime)
+        for move in self._moves:
+            move.cap = self.velocity_modes.cap
 
     def _inverse(self, pose: PoseCommand) -> Vector:
         return tuple(self._kinematics.inverse(pose.position, tool_axis(pose.orientation)).tolist())
@@ -184,6 +196,8 @@ class MotionController:
         if step.setpoint is not None:
             q_ref, qd_ref = step.setpoint
             velocity = position_command(q_ref, qd_ref, i.q, self._gain, self._limits)
+            if self.velocity_modes.cap_factor(i.q, velocity) < 1.0:
+                return MotionOutput(RESTING, None, Reason.TIP_SPEED)
             return MotionOutput(velocity, step.setpoint, Reason.MOVING)
         if step.joints is not None:
             result = self.velocity_modes.from_joints(i.q, step.joints, self.previous)

@@ -15,6 +15,7 @@ from .law_parameters import nanoseconds
 from .modes import Step, Vector, require_finite, require_timely
 from .pose import tool_axis
 from .settings import MotionSettings
+from .speed_cap import PLANNED, Regime, planned_share, speed_cap
 from .tip_move import plan_tip_move
 from .trajectory import plan_joint_move
 
@@ -44,6 +45,7 @@ class _Move:
         self._caps = (settings.speed * kinematics.velocity, acceleration, acceleration / settings.ramp_time)
         self._tolerance = settings.settle_factor * np.array([a.load_encoder for a in robot.actuators])
         self._timely = nanoseconds(settings.ahead_limit)
+        self.cap = speed_cap(settings, Regime(settings.regime))
         self._plan: TimedPath | None = None
         self._start = 0
 
@@ -90,7 +92,9 @@ class MoveJoints(_Move):
         self._check(command.stamp, now)
         goal = np.array(require_finite(self.name, command.position, 5, "positions"))
         self._kinematics.require_within_limits(goal)
-        plan = plan_joint_move(np.array(q), goal, *self._caps)
+        velocity, *rest = self._caps
+        share = planned_share(self._kinematics, np.array(q), goal, velocity, self.cap)
+        plan = plan_joint_move(np.array(q), goal, share * velocity, *rest)
         for s in np.linspace(0.0, 1.0, 33):
             self._kinematics.delta.require(self._kinematics.delta.forward(plan.start[:3] + s * (goal - plan.start)[:3]))
         self._begin(plan, now)
@@ -112,5 +116,6 @@ class MoveTip(_Move):
         self._check(command.stamp, now)
         position = np.array(require_finite(self.name, command.position, 3, "coordinates"))
         axis = tool_axis(require_finite(self.name, command.orientation, 4, "quaternion components"), self.name)
-        speeds = (self._settings.linear_speed, self._settings.angular_speed)
+        settings, cap = self._settings, self.cap
+        speeds = (min(settings.linear_speed, PLANNED * cap.linear), min(settings.angular_speed, PLANNED * cap.angular))
         self._begin(plan_tip_move(self._kinematics, np.array(q), position, axis, self._caps, *speeds), now)

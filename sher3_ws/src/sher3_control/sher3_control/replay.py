@@ -22,6 +22,8 @@ from .live_parameters import LiveParameters, from_json
 from .ownership import MODE_CODES, Mode
 from .position_controller import position_commands
 from .reasons import Reason
+from .settings import MotionSettings
+from .speed_cap import Regime, speed_cap
 from .tick_records import AdmittanceRecord, admittance_record, motion_record
 
 Array = NDArray[Any]
@@ -149,6 +151,9 @@ class _Modes:
         for version, data in versions.items():
             mode = VelocityModes(kinematics, data["settings"]["rcm_gain"])
             mode.centre = None if data["rcm"] is None else np.array(data["rcm"])
+            # Recordings from before there were regimes had no cap either.
+            regime = Regime(data.get("regime", Regime.BENCH.value))
+            mode.cap = speed_cap(MotionSettings(**data["settings"]), regime)
             self._by_version[version] = mode
 
     def velocity(self, q: Array, twist: Array, previous: tuple[float, ...], version: int) -> Array:

@@ -127,6 +127,11 @@ class MotionSettings(Settings):
         linear_speed, angular_speed: tip caps of move_cp [m/s], [rad/s].
         rcm_gain: rate at which a deviation from the remote centre decays [1/s]; with the 8 ms of transport and drive it
             leaves 67 degrees of phase margin.
+        regime: speed regime at the start, see `speed_cap`.
+        free_speed, free_turning: caps of the tip in the regime `free` [m/s], [rad/s].
+        near_speed, near_turning: the same in `near_tissue`.
+        free_travel, near_travel: farthest the tip may travel after a fault in each of the two [m]: a retina's
+            thickness, and the error that a needle may have in it.
         deflection_compensation: correct pose commands by the modelled deflection of the measured wrench.
         deflection_cutoff: of the first-order low-pass on that wrench [Hz]; a hand is slower, and 2 Hz leave 0.1 um of
             the sensor's noise.
@@ -145,6 +150,13 @@ class MotionSettings(Settings):
     linear_speed: Annotated[Number, Field(gt=0.0, le=0.05)] = 0.005
     angular_speed: Annotated[Number, Field(gt=0.0, le=3.0)] = 0.3
     rcm_gain: Annotated[Number, Field(ge=0.0, le=100.0)] = 50.0
+    regime: Literal["near_tissue", "free", "bench"] = "free"
+    free_speed: Annotated[Number, Field(gt=0.0, le=0.05)] = 0.005
+    free_turning: Annotated[Number, Field(gt=0.0, le=3.0)] = 0.3
+    near_speed: Annotated[Number, Field(gt=0.0, le=0.05)] = 0.0005
+    near_turning: Annotated[Number, Field(gt=0.0, le=3.0)] = 0.03
+    free_travel: Annotated[Number, Field(gt=0.0, le=0.01)] = 250e-6
+    near_travel: Annotated[Number, Field(gt=0.0, le=0.01)] = 25e-6
     deflection_compensation: bool = False
     deflection_cutoff: Annotated[Number, Field(gt=0.0, le=50.0)] = 2.0
 
@@ -220,6 +232,13 @@ class ControlSettings(Settings):
                 value=self.supervisor.heartbeat_limit,
                 limit=f"at least {2.0 * self.supervisor.heartbeat_period:g}",
                 remedy="shorten supervisor.heartbeat_period or widen the limit",
+            )
+        if self.motion.near_speed > self.motion.free_speed or self.motion.near_turning > self.motion.free_turning:
+            raise SettingsError(
+                "motion.near_speed and near_turning must not exceed those of the regime free",
+                value=(self.motion.near_speed, self.motion.near_turning),
+                limit=(self.motion.free_speed, self.motion.free_turning),
+                remedy="lower them",
             )
         nyquist = 0.5 / robot.control_period
         if self.admittance.filter_cutoff >= 0.8 * nyquist:

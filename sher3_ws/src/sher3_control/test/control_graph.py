@@ -9,6 +9,7 @@ from law_bench import ROBOT
 from rclpy.node import Node
 from sher3_control.admittance_node import AdmittanceNode
 from sher3_control.kinematics_node import KinematicsNode
+from sher3_control.settings import ControlSettings
 from sher3_control.supervisor_node import SupervisorNode
 from sher3_runtime import Graph, JointSample, JoySample, TextSample, WrenchSample
 from sher3_runtime.ports import NODE_OPTIONS, advertise, on_tick, subscribe
@@ -57,7 +58,8 @@ class ControlGraph:
         self.graph = graph
         self.robot = graph.add(IdealRobot)
         self.supervisor = graph.add(SupervisorNode, ROBOT)
-        self.kinematics = graph.add(KinematicsNode, ROBOT)
+        bench = ControlSettings.from_robot(ROBOT, {"motion": {"regime": "bench"}})
+        self.kinematics = graph.add(KinematicsNode, ROBOT, bench)
         self.admittance = graph.add(AdmittanceNode, ROBOT)
         self.probe = graph.probe(*RECORDED, sends=("diagnostics", *(f"command/{name}" for name in COMMANDS)))
         self.step = graph.step

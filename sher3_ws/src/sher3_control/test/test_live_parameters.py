@@ -44,13 +44,14 @@ def test_damaged_records_are_named(text):
 
 
 def test_a_state_is_believed_only_while_it_is_repeated():
-    state = HeardState(1.0)
+    state = HeardState(0.03)
     assert not state.enabled(0)
     state.feed("ENABLED", 10**9)
-    assert state.enabled(3 * 10**9)
-    assert not state.enabled(4 * 10**9)
-    state.feed("ENABLED", 5 * 10**9)
-    state.feed("FAULT", 5 * 10**9)
+    assert state.enabled(10**9 + 30_000_000)
+    assert not state.enabled(10**9 + 30_000_001)
+    state.feed("ENABLED NONE", 5 * 10**9)
+    assert state.enabled(5 * 10**9)
+    state.feed("FAULT QUICK_STOP", 5 * 10**9)
     assert not state.enabled(5 * 10**9)
 
 

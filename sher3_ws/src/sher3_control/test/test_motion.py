@@ -28,8 +28,8 @@ PUSH = (1e-3, 0.0, 0.0, 0.0, 0.0, 0.0)
 class Bench:
     """A motion controller and an ideal robot; `tick(**changes)` starts from healthy inputs."""
 
-    def __init__(self):
-        self.motion = MotionController(ROBOT, SETTINGS.motion)
+    def __init__(self, regime="bench"):
+        self.motion = MotionController(ROBOT, SETTINGS.motion.model_copy(update={"regime": regime}))
         self.k, self.q = 0, REST
         self.motion.cooperative_wants(False, START)
 
