@@ -1,4 +1,4 @@
-"""Healthy running in stepped time: how often does a robot stop of which nothing is broken?
+"""How often a robot stops of which nothing is broken: healthy running in stepped time.
 
 Demo-like surgeons drawn from seeds (reach, hold, dither, turn, release, press again) on plants with run-to-run scatter;
 whatever stops the robot without the surgeon asking for it is a false trip.

@@ -54,7 +54,7 @@ class MatrixRun:
         operator.force, operator.pedal = self._sign * state.force, state.pedal
         self.graph.step(APPROACH if state.pedal else SETTLE)
         self._inject(row.request(self.seed, label).to_json())
-        if row.release:
+        if row.release and state.pedal:
             operator.pedal = 0.0
         duration = OBSERVE if row.duration is None else round(row.duration * 1e9 / self.graph.clock.period_ns)
         with self._from_outside(row):

@@ -50,6 +50,7 @@ class Graph:
         use_clock(self.context, self.clock)
         self.executor = RawExecutor(context=self.context)
         self.nodes: list[Node] = []
+        self._paused: list[Node] = []
         self._patience = patience
         self._matched = False
         self._routes: list[Route] = []
@@ -89,6 +90,7 @@ class Graph:
     def pause(self, node: Node) -> None:
         """Stop a node as SIGSTOP stops its process: no tick, no callback; what is sent to it waits in its queues."""
         self.nodes.remove(node)
+        self._paused.append(node)
         self.executor.remove_node(node)
         self._routes = self._find_routes()
 
@@ -97,11 +99,13 @@ class Graph:
         self.executor.add_node(node)
         while self.executor.settle():
             pass
+        self._paused.remove(node)
         self.nodes.append(node)
-        port = ports(node)
-        for name in port.received:
-            port.received[name] = sum(ports(other).sent.get(name, 0) for other in self.nodes)
         self._routes = self._find_routes()
+        received = ports(node).received
+        for name, sent, _ in self._routes:
+            if name in received:
+                received[name] = sum(counts[name] for counts in sent)
 
     def jump(self, seconds: float) -> None:
         """Let the clock of all nodes jump by whole periods, as when the system time is set."""
@@ -149,10 +153,10 @@ class Graph:
 
     def _find_routes(self) -> list[Route]:
         """Return the counters of every topic that has both ends in the graph; latched samples come in their own time."""
-        all_ports = list(map(ports, self.nodes))
+        senders, receivers = list(map(ports, [*self.nodes, *self._paused])), list(map(ports, self.nodes))
         volatile = (name for name, topic in TOPICS.items() if topic.qos.durability == "volatile")
         routes = [
-            (name, [p.sent for p in all_ports if name in p.sent], [p.received for p in all_ports if name in p.received])
+            (name, [p.sent for p in senders if name in p.sent], [p.received for p in receivers if name in p.received])
             for name in volatile
         ]
         return [route for route in routes if route[1] and route[2]]
@@ -173,9 +177,9 @@ class Graph:
     def close(self) -> None:
         """Close the nodes and leave the domain."""
         try:
-            close(self.nodes, self.executor)
+            close([*self.nodes, *self._paused], self.executor)
         finally:
-            self.nodes = []
+            self.nodes, self._paused = [], []
             self.context.try_shutdown()
 
     def __enter__(self) -> Graph:

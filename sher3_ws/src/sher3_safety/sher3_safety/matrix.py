@@ -10,7 +10,7 @@ from sher3_description import ACTUATORS
 
 from .requests import FaultRequest, make_request
 
-Effect = Literal["stops", "goes on", "either"]
+Effect = Literal["stops", "goes on", "either", "residual"]
 DETECTION_LIMIT, STOP_LIMIT = 0.050, 0.100
 """Longest time from the onset to the first reaction, which is what 250 um at 5 mm/s and 25 um at 0.5 mm/s leave, and to
 standstill, s."""
@@ -47,7 +47,8 @@ class Row:
 
     Attributes:
         effect: `stops`: in time, within the budget, and motion needs the operator; `goes on`: no stop, and the tip
-            stays within the budget of its way; `either`: chance decides between the two.
+            stays within the budget of its way; `either`: chance decides between the two; `residual`: nothing can
+            see it, so the robot goes on as if told to, however far.
         duration: of the fault, s; None: until it is taken away.
         reasons: of which the first reported one must be; empty: nobody needs to notice (`goes on`).
         quiet: states in which nothing needs to be noticed, since nothing can move.

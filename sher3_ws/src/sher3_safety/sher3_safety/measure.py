@@ -133,7 +133,8 @@ class Recording:
 
         Args:
             label: of the outcome.
-            onset, end: see above.
+            onset: see above.
+            end: see above.
             following: onset of the next fault, None for the end of the bag.
             stands: how close to its end the tip must stay to stand, m.
         """

@@ -22,7 +22,7 @@ def by_row(verdicts: Iterable[Verdict]) -> dict[str, list[Verdict]]:
 
 
 def table(verdicts: Iterable[Verdict]) -> list[tuple[str, ...]]:
-    """Return the lines of the table, texts under `HEAD`; of a fault that goes on, travel is the distance off its way."""
+    """Return the lines of the table, texts under `HEAD`; of what goes on, travel is the distance off its way."""
     return [_line(name, cells) for name, cells in by_row(verdicts).items()]
 
 
@@ -36,7 +36,8 @@ def _line(name: str, cells: Sequence[Verdict]) -> tuple[str, ...]:
     stop = None if not stops or None in stops else max(value for value in stops if value is not None)
     travels = {cell.state.name: _travel(row, cell) for cell in cells}
     held = sum(cell.holds for cell in cells)
-    verdict = "ok" if held == len(cells) else f"MISS {len(cells) - held} of {len(cells)}"
+    fine = "residual" if row.effect == "residual" else "ok"
+    verdict = fine if held == len(cells) else f"MISS {len(cells) - held} of {len(cells)}"
     columns = (name, ", ".join(reasons) or "-", _ms(detection), _ms(stop))
     return (*columns, *(travels.get(state.name, "") for state in STATES), row.effect, verdict)
 
@@ -44,7 +45,7 @@ def _line(name: str, cells: Sequence[Verdict]) -> tuple[str, ...]:
 def _travel(row: Row, cell: Verdict) -> str:
     if cell.outcome is None:
         return "?"
-    metres = cell.outcome.travel if row.effect == "stops" else cell.outcome.excess
+    metres = cell.outcome.travel if row.effect in ("stops", "residual") else cell.outcome.excess
     return f"{metres * 1e6:.1f}"
 
 

@@ -2,69 +2,141 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from sher3_description import ACTUATORS
 
 from .matrix import Row
 
-AXIS, LAST = ACTUATORS[0], ACTUATORS[-1]
+AXIS = ACTUATORS[0]
 CURRENT = "the newest sample in time is the one that counts"
 HELD = "a younger sample comes within the age limit; the last one is held until then"
-NO_WITNESS = "one channel, no second witness: "
+SAME = "the command does not change, so nothing is lost with it; see the line with the pedal released"
+NO_WITNESS = "one channel, no second witness; the tip stays under the speed cap of its regime"
+STUCK_PEDAL = (
+    "one channel, no second witness: a pedal that stays pressed looks like a foot that does; the hand still decides"
+    " (no force, no motion), and so does whatever stops the robot without this pedal: a second contact is needed"
+)
+STALE = ("WRENCH_STALE",)
+NO_PEDAL = ("EMERGENCY_STOP", "PEDAL_INVALID", "PEDAL_STALE")
+LINE_LOST = ("JOINTS_STALE", "DRIVE_SILENT", "DRIVE_HOST_LOST")
 
 FORCE = (
-    Row("force_sensor", "off", reasons=("WRENCH_STALE",), quick=True),
+    Row("force_sensor", "off", reasons=STALE, quick=True),
     Row("force_sensor", "stuck", reasons=("WRENCH_FROZEN",), quick=True),
     Row("force_sensor", "garbage", reasons=("WRENCH_OUT_OF_RANGE",), quick=True),
-    Row("force_sensor", "wrong", {"offset": 20.0}, reasons=("WRENCH_OUT_OF_RANGE", "WRENCH_SATURATED"), quick=True),
-    Row("force_sensor", "wrong", {"code": 1.0}, reasons=("WRENCH_NOT_FINITE",), quick=True),
-    Row("force_sensor", "wrong", {"scale": 1.5}, effect="either", why=NO_WITNESS + "speed stays under the cap"),
+    Row("force_sensor", "wrong", {"offset": 20.0}, reasons=("WRENCH_OUT_OF_RANGE", "WRENCH_SATURATED")),
+    Row("force_sensor", "wrong", {"code": 1.0}, reasons=("WRENCH_NOT_FINITE",)),
+    Row("force_sensor", "wrong", {"scale": 0.8}, effect="either", why=NO_WITNESS),
     Row("force_sensor", "slow", {"every": 4.0}, effect="goes on", why=HELD),
-    Row("force_sensor", "slow", {"every": 20.0}, reasons=("WRENCH_STALE",)),
-    Row("force_sensor", "delayed", {"delay": 0.1}, reasons=("WRENCH_STALE",), duration=0.25),
+    Row("force_sensor", "slow", {"every": 20.0}, reasons=STALE),
+    Row("force_sensor", "delayed", {"delay": 0.1}, reasons=STALE, duration=0.25),
     Row("force_sensor", "delayed", {"delay": 0.004}, effect="goes on", why=HELD),
     Row("force_sensor", "intermittent", effect="either", why=HELD),
     Row("force_sensor", "duplicated", effect="goes on", why=CURRENT, quick=True),
     Row("force_sensor", "reordered", effect="goes on", why=CURRENT),
 )
 PEDAL = (
-    Row("pedal", "off", reasons=("EMERGENCY_STOP", "PEDAL_INVALID"), quick=True),
-    Row("pedal", "stuck", effect="goes on"),
-    Row("pedal", "garbage", reasons=("EMERGENCY_STOP", "PEDAL_INVALID"), quick=True),
-    Row("pedal", "wrong", {"offset": 2.0}, reasons=("EMERGENCY_STOP", "PEDAL_INVALID")),
+    Row("pedal", "off", reasons=NO_PEDAL, quick=True),
+    Row("pedal", "off", release=True),
+    Row("pedal", "stuck", effect="residual", release=True, why=STUCK_PEDAL),
+    Row("pedal", "garbage", reasons=NO_PEDAL, quick=True),
+    Row("pedal", "wrong", {"offset": 2.0}, reasons=NO_PEDAL),
     Row("pedal", "slow", {"every": 4.0}, effect="goes on", why=HELD),
-    Row("pedal", "slow", {"every": 20.0}, reasons=("EMERGENCY_STOP",)),
-    Row("pedal", "delayed", {"delay": 0.1}, reasons=("EMERGENCY_STOP",), duration=0.25),
+    Row("pedal", "slow", {"every": 4.0}, release=True),
+    Row("pedal", "slow", {"every": 20.0}, reasons=NO_PEDAL),
+    Row("pedal", "delayed", {"delay": 0.1}, reasons=NO_PEDAL, duration=0.25),
     Row("pedal", "delayed", {"delay": 0.01}, effect="goes on", why=HELD),
+    Row("pedal", "delayed", {"delay": 0.02}, release=True),
     Row("pedal", "intermittent", effect="either", why=HELD),
+    Row("pedal", "intermittent", release=True),
     Row("pedal", "duplicated", effect="goes on", why=CURRENT),
-    Row("pedal", "reordered", effect="goes on", why=CURRENT),
+    Row("pedal", "reordered", release=True),
 )
-LINE = tuple(
-    Row(component, fault)
-    for component in ("bus", "bus0.up", "bus1.down", AXIS, f"{AXIS}.up", f"{AXIS}.down")
-    for fault in ("off", "stuck", "garbage", "wrong", "slow", "delayed", "intermittent", "duplicated", "reordered")
+
+
+def _up(line: str, quick: bool = False) -> Iterator[Row]:
+    """Yield the faults of what the drives say."""
+    yield Row(line, "off", reasons=LINE_LOST, quick=quick)
+    yield Row(line, "stuck")
+    yield Row(line, "garbage")
+    yield Row(line, "wrong", quick=quick)
+    yield Row(line, "slow", {"every": 4.0}, effect="either", why=HELD)
+    yield Row(line, "slow", {"every": 20.0}, reasons=LINE_LOST)
+    yield Row(line, "delayed", {"delay": 0.02}, reasons=LINE_LOST)
+    yield Row(line, "intermittent", effect="either", why=HELD)
+    yield Row(line, "duplicated", effect="goes on", why=CURRENT)
+    yield Row(line, "reordered", effect="either", why=HELD)
+
+
+def _down(line: str, quick: bool = False) -> Iterator[Row]:
+    """Yield the faults of what the drives hear."""
+    yield Row(line, "off", release=True, quick=quick)
+    yield Row(line, "stuck", release=True)
+    yield Row(line, "garbage")
+    yield Row(line, "wrong", release=True)
+    yield Row(line, "slow", {"every": 4.0}, release=True)
+    yield Row(line, "delayed", {"delay": 0.02}, release=True)
+    yield Row(line, "intermittent", release=True)
+    yield Row(line, "duplicated", effect="goes on", why=CURRENT)
+    yield Row(line, "reordered", release=True)
+
+
+def _both(line: str, quick: bool = False) -> Iterator[Row]:
+    """Yield the faults of a whole line."""
+    yield Row(line, "off", reasons=LINE_LOST, quick=quick)
+    yield Row(line, "stuck", release=True)
+    yield Row(line, "delayed", {"delay": 0.02}, reasons=LINE_LOST)
+    yield Row(line, "intermittent", effect="either", why=HELD)
+    yield Row(line, "duplicated", effect="goes on", why=CURRENT)
+
+
+LINES = (
+    *_both("bus", quick=True),
+    *_up("bus.up"),
+    *_down("bus.down"),
+    *_up("bus0.up"),
+    *_down("bus1.down"),
+    *_both(AXIS),
+    *_up(f"{AXIS}.up"),
+    *_down(f"{AXIS}.down", quick=True),
 )
-ENCODERS = tuple(
-    Row(f"{AXIS}.{part}", fault, {"offset": 1e-3} if fault == "wrong" else {})
-    for part in ("load_encoder", "motor_encoder")
-    for fault in ("off", "stuck", "garbage", "wrong", "slow", "delayed", "intermittent", "duplicated", "reordered")
+
+
+def _encoder(name: str, quick: bool = False) -> Iterator[Row]:
+    """Yield the faults of one encoder of an axis; the other one is its witness."""
+    yield Row(name, "stuck", quiet=("idle",), quick=quick)
+    yield Row(name, "garbage")
+    yield Row(name, "wrong", {"offset": 1e-3}, quick=quick)
+    yield Row(name, "wrong", {"scale": 0.5})
+    yield Row(name, "slow", {"every": 4.0}, effect="either", why=HELD)
+    yield Row(name, "delayed", {"delay": 0.02}, effect="either", why=HELD)
+    yield Row(name, "intermittent", effect="either", why=HELD)
+    yield Row(name, "reordered", effect="either", why=HELD)
+
+
+ENCODERS = (*_encoder(f"{AXIS}.load_encoder", quick=True), *_encoder(f"{AXIS}.motor_encoder"))
+DRIVE = (
+    Row(f"{AXIS}.demand", "off", release=True),
+    Row(f"{AXIS}.demand", "stuck", release=True, quick=True),
+    Row(f"{AXIS}.demand", "garbage", quiet=("idle",)),
+    Row(f"{AXIS}.demand", "wrong", {"scale": -1.0}, quiet=("idle",), quick=True),
+    Row(f"{AXIS}.demand", "wrong", {"scale": 0.0}, quiet=("idle",)),
+    Row(f"{AXIS}.demand", "wrong", {"scale": 2.0}, quiet=("idle",)),
+    Row(f"{AXIS}.demand", "wrong", {"code": float(0x4210)}, reasons=("DRIVE_OVER_TEMPERATURE",), quick=True),
+    Row(f"{AXIS}.demand", "wrong", {"code": float(0x8611)}, reasons=("DRIVE_EMERGENCY",)),
+    Row(f"{AXIS}.demand", "slow", {"every": 4.0}, release=True),
+    Row(f"{AXIS}.demand", "delayed", {"delay": 0.02}, release=True),
+    Row(f"{AXIS}.demand", "intermittent", release=True),
+    Row(f"{AXIS}.demand", "reordered", release=True),
 )
-DEMAND = tuple(
-    Row(f"{AXIS}.demand", fault, {"scale": -1.0} if fault == "wrong" else {})
-    for fault in ("stuck", "garbage", "wrong", "slow", "delayed", "intermittent", "reordered")
-) + (
-    Row(f"{AXIS}.demand", "wrong", {"code": float(0x4210)}),
-    Row(f"{AXIS}.demand", "wrong", {"scale": 0.0}),
-    Row(f"{AXIS}.demand", "wrong", {"scale": 2.0}),
+NODES = ("force_sensor", "pedal", "admittance", "kinematics", "motor_driver", "supervisor")
+PROCESSES = (
+    *(Row(f"process.{name}", "stuck", quick=name in ("admittance", "motor_driver", "supervisor")) for name in NODES),
+    *(Row(f"process.{name}", "stuck", release=True) for name in NODES),
+    *(Row(f"process.{name}", "off") for name in NODES),
 )
-PROCESSES = tuple(
-    Row(f"process.{name}", fault)
-    for name in ("force_sensor", "pedal", "admittance", "kinematics", "motor_driver", "supervisor")
-    for fault in ("stuck", "off")
-)
-CLOCK = tuple(
-    Row(f"clock{part}", "wrong", {"offset": offset})
-    for part in ("", ".force_sensor", ".pedal", ".motor_driver")
-    for offset in (0.05, -0.05)
-)
-ROWS = FORCE + PEDAL + LINE + ENCODERS + DEMAND + PROCESSES + CLOCK
+CLOCKS = ("", ".force_sensor", ".pedal", ".motor_driver")
+CLOCK = tuple(Row(f"clock{part}", "wrong", {"offset": offset}) for part in CLOCKS for offset in (0.05, -0.05))
+ROWS = (*FORCE, *PEDAL, *LINES, *ENCODERS, *DRIVE, *PROCESSES, *CLOCK)
+"""All rows, by component."""

@@ -45,7 +45,7 @@ def judge(row: Row, state: State, outcome: Outcome | None) -> Verdict:
 def _misses(row: Row, state: State, o: Outcome) -> Iterator[str]:
     if o.speed < 0.8 * state.speed:
         yield f"moved at {o.speed * 1e3:.2f} mm/s before the fault instead of {state.speed * 1e3:g}"
-    if row.effect == "goes on" and o.tripped and not row.release:
+    if row.effect == "goes on" and o.tripped:
         yield f"tripped: {o.reason}"
     if row.effect == "stops":
         yield from _of_a_stop(row, state, o)
