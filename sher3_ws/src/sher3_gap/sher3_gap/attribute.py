@@ -18,6 +18,11 @@ from sher3_gap.library import LIBRARY, LibraryEffect, Shape
 MAX_CAUSES = 3
 PRICE = 12.0
 """Held-out loss that a coefficient or shape parameter must buy."""
+AS_BUILT_PRICE = 0.015
+"""What a coefficient must buy in addition at the tip and the force sensor, per sample: the robot as built deviates from
+its drawing by a fraction of the floor that no repeat shows, and every coefficient takes its part of that."""
+UNLIKELY = 3.0 * PRICE
+"""What an effect must buy in addition where its sign speaks for another one."""
 PARSIMONY = 0.004
 """The same as a share of what the effect explains."""
 WORTH = 0.35
@@ -109,7 +114,18 @@ def complexity(term: Term) -> int:
 
 def cost(trial: Fit) -> float:
     """Held-out loss plus the price of the last term's complexity."""
-    return trial.total + PRICE * complexity(trial.terms[-1]) if trial.terms else trial.total
+    if not trial.terms:
+        return trial.total
+    last = len(trial.terms) - 1
+    term = trial.terms[last]
+    doubt = UNLIKELY if term.effect.unlikely(term.shape, trial.of(last)) else 0.0
+    return trial.total + price(term) + doubt
+
+
+def price(term: Term) -> float:
+    """Held-out loss that the last term's numbers must buy."""
+    built = sum(len(x) for run in term.columns for c, x in run.items() if c.stage in ("mechanism", "structure"))
+    return PRICE * complexity(term) + AS_BUILT_PRICE * built * term.width
 
 
 @dataclass(frozen=True)

@@ -162,7 +162,7 @@ def _verdict(
         status=status,
         where=where,
         causes=causes,
-        closure=Closure(stage=stage, tip=tip_closure(evidence, causes)),
+        closure=Closure(stage=stage, tip=tip_closure(evidence, causes, attribution.fit)),
         residual=residual,
         unexplained=unexplained,
         next_experiment=experiment,

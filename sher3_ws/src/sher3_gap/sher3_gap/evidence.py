@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from sher3_description import ACTUATORS, Robot
 
-from sher3_gap.channels import Channel, Residual
+from sher3_gap.channels import Array, Channel, Residual
 from sher3_gap.fitting import Whitened
 from sher3_gap.floors import Floors, floors
 from sher3_gap.geometry import Geometry
@@ -59,21 +59,38 @@ def gather(runs: Sequence[RunSignals], robot: Robot) -> Evidence:
     simulated = [[own_residuals(run, robot, shift) for shift in SHIFTS] for run in runs]
     own = floors(runs, residuals, simulated, robot)
     views = [View(run, robot, geometry) for run in runs]
+    largest = largest_force(runs)
     residuals = [
-        _follow_the_drive(run, robot, geometry, r, f, d)
+        _follow_the_drive(run, robot, geometry, r, f, d, largest)
         for run, r, f, d in zip(runs, residuals, own, demands, strict=True)
     ]
     return Evidence(list(runs), robot, geometry, views, Whitened(views, residuals, own), timing)
 
 
+def largest_force(runs: Sequence[RunSignals]) -> Array | None:
+    """Largest force each drive reports but for a thousandth of the ticks, (axes,); None where none is recorded."""
+    efforts = [np.abs(run.effort) for run in runs if run.effort is not None]
+    return np.quantile(np.concatenate(efforts), 0.999, axis=0) if efforts else None
+
+
 def _follow_the_drive(
-    run: RunSignals, robot: Robot, geometry: Geometry, residuals: Residuals, floor: Floors, demand: Demand | None
+    run: RunSignals,
+    robot: Robot,
+    geometry: Geometry,
+    residuals: Residuals,
+    floor: Floors,
+    demand: Demand | None,
+    largest: Array | None,
 ) -> Residuals:
-    """Where a drive does not follow its law its force need not step with the demand: take the share that fits best."""
+    """Where a drive does not follow its law its force need not step with the demand.
+
+    It may end at a limit, or follow continuously: of the two, and of shares of the second, what fits best is taken.
+    """
     odd = [a for a in ACTUATORS if _ratio(residuals, floor, Channel("drive", a)) > 1.3]
     if not odd:
         return residuals
     smooth = motor_residual(run, robot, geometry, demand, steps=False)
+    ended = motor_residual(run, robot, geometry, demand, limit=largest)
     out = dict(residuals)
     for channel in (Channel("motor_mechanics", a) for a in odd):
         if channel not in out:
@@ -82,7 +99,8 @@ def _follow_the_drive(
         step = full - smooth[channel].values
         energy = float(np.sum(step[ok] ** 2))
         share = float(np.clip(np.sum(step[ok] * full[ok]) / energy, 0.0, 1.0)) if energy > 0.0 else 0.0
-        out[channel] = Residual(full - share * step, ok)
+        tried = (full - share * step, ended[channel].values)
+        out[channel] = Residual(min(tried, key=lambda x: float(np.sum(x[ok] ** 2))), ok)
     return out
 
 

@@ -26,8 +26,9 @@ GROUPED_ENCODERS = 3.0
 """The same for the difference of two encoders, of which a slow run has few independent roundings."""
 AS_BUILT = {"sensing": np.array([1.0e-3] * 3 + [1.2e-5] * 3)}
 """What a healthy force sensor may deviate from its drawing, which no repeat shows: N and N m."""
-ZERO_COUNTS = 1.5
-"""Mean difference of two encoders, in counts of the motor's, from which it is a gap."""
+ZERO_COUNTS = 0.75
+"""Mean difference of two encoders, in counts of the motor's, from which it is a gap: rounding alone moves a run's mean
+by up to half a count."""
 PARTS = {6: (slice(0, 3), slice(3, 6)), 1: (slice(0, 1),)}
 """Components that are judged together: position and rotation, force and torque."""
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import combinations
+
 import numpy as np
 
 from sher3_gap.channels import Array, Channel, restored
@@ -19,6 +21,8 @@ SHAPE_UNCERTAINTY = 0.25
 """Relative uncertainty of a nonlinear parameter: the step of its search and the meaning it has in another form of
 the law.
 """
+REACH_UNCERTAINTY = 0.4
+"""The same of a displacement over which a force or a lag builds up: laws differ most in the form of that."""
 AS_BUILT_SHARE = 0.5
 """Systematic residual of a healthy robot at tip and force sensor, over the floor."""
 LAW_UNCERTAINTY = 0.06
@@ -53,13 +57,31 @@ def closure(evidence: Evidence, channel: Channel, before: Fit, after: Fit) -> In
     At the tip the position counts, as the contract's closure does.
     """
     old, new = residual_after(evidence, before, channel), residual_after(evidence, after, channel)
-    rows = []
+    rows, repeats = [], zeros_floor(evidence, channel)
     for r in old:
         part = PARTS[len(evidence.floors[r][channel])][0]
         floor = evidence.floors[r][channel][part]
         left = (restored(channel, x[r])[:, part] for x in (old, new))
-        rows.append([np.mean((x / floor) ** 2) for x in left] + [1.0])
+        base = max(1.0, repeats / float(np.mean(floor**2)))
+        rows.append([np.mean((x / floor) ** 2) for x in left] + [base])
     return interval_of(np.array(rows))
+
+
+def zeros_floor(evidence: Evidence, channel: Channel) -> float:
+    """Half the mean square difference of repeats of a residual whose mean is partly free, the means included; else 0.
+
+    What a lost motion rests at differs from run to run: no model of the command tells it.
+    """
+    if restored(channel, np.ones((2, 1)))[0, 0] == 1.0:
+        return 0.0
+    squares = []
+    found = [(run.excitation, r.get(channel)) for run, r in zip(evidence.runs, evidence.data.residuals, strict=True)]
+    for (name, x), (other, y) in combinations(found, 2):
+        if name == other and x is not None and y is not None:
+            n = min(len(x.values), len(y.values))
+            ok = x.ok[:n] & y.ok[:n]
+            squares.append(0.5 * float(np.mean((x.values[:n] - y.values[:n])[ok] ** 2)))
+    return float(np.mean(squares)) if squares else 0.0
 
 
 def interval_of(rows: Array) -> Interval:
@@ -102,7 +124,8 @@ def parameters(evidence: Evidence, fit: Fit, index: int) -> dict[str, Parameter]
         built = float(np.sqrt(sum((m[name] - x) ** 2 for m in moved)))
         half = 2.3 * jackknife + built + LAW_UNCERTAINTY * abs(x)
         if name in term.shape or term.width == 0:
-            half = max(half, SHAPE_UNCERTAINTY * abs(x))
+            share = REACH_UNCERTAINTY if name == "displacement" else SHAPE_UNCERTAINTY
+            half = max(half, share * abs(x))
         unit = term.effect.unit(name, term.site)
         bounded = runs >= MIN_RUNS
         out[name] = Parameter(value=x, low=x - half if bounded else None, high=x + half if bounded else None, unit=unit)

@@ -71,12 +71,14 @@ def centred(x: Array, ok: np.ndarray, pieces: np.ndarray) -> Residual:
     return Residual(out[:, None], ok)
 
 
-def mean_force(run: RunSignals, robot: Robot, demand: Demand | None = None, steps: bool = True) -> Array:
+def mean_force(
+    run: RunSignals, robot: Robot, demand: Demand | None = None, steps: bool = True, limit: Array | None = None
+) -> Array:
     """Mean motor force around each tick, weighted as the second difference of the position weighs it, (n, axes).
 
     The reported effort is F just before the demand changes; F then steps by kp * (change of demand), at once
     or a share `late` of the
-    period later. `steps` is False for a drive whose force follows continuously.
+    period later. `steps` is False for a drive whose force follows continuously; `limit` (axes,) is the force at which it ends.
     """
     assert run.effort is not None
     force = run.effort.copy()
@@ -85,13 +87,29 @@ def mean_force(run: RunSignals, robot: Robot, demand: Demand | None = None, step
         held = run.echo if demand is None else demand.velocity
         late = np.zeros(run.axes) if demand is None else demand.late
         step = kp * np.diff(held, axis=0)
-        force[:-1] += 0.5 * (1.0 - late) ** 2 * step
-        force[1:] -= 0.5 * late**2 * step
+        if limit is not None:
+            step = np.clip(force[:-1] + step, -limit, limit) - np.clip(force[:-1], -limit, limit)
+        share = step_share(kp / np.array([a.mass for a in robot.actuators]) * run.period)
+        force[:-1] += share * (1.0 - late) ** 2 * step
+        force[1:] -= (1.0 - share) * late**2 * step
     return force
 
 
+def step_share(decay: Array) -> Array:
+    """Mean share of a force step that is left over the period in which it relaxes, from 1 to 0.
+
+    The velocity loop relaxes it as exp(-decay u), u in 0..1; one half where it relaxes evenly.
+    """
+    return 1.0 / decay - 1.0 / np.expm1(decay)
+
+
 def motor_residual(
-    run: RunSignals, robot: Robot, geometry: Geometry, demand: Demand | None = None, steps: bool = True
+    run: RunSignals,
+    robot: Robot,
+    geometry: Geometry,
+    demand: Demand | None = None,
+    steps: bool = True,
+    limit: Array | None = None,
 ) -> Residuals:
     """Force that the nominal rigid axis does not explain: F - m a - viscous v - G(q) + tau_ext (positive: resists
     forward).
@@ -102,7 +120,7 @@ def motor_residual(
     viscous = np.array([a.viscous for a in robot.actuators])
     path = geometry.path(run)
     inertial = mass * run.acceleration + viscous * run.velocity
-    values = run.to_grid(mean_force(run, robot, demand, steps) - inertial) - path.gravity + path.contact_force
+    values = run.to_grid(mean_force(run, robot, demand, steps, limit) - inertial) - path.gravity + path.contact_force
     ok = run.inner & settled(run.loaded_ok)
     return {Channel("motor_mechanics", a): Residual(values[:, [i]], ok) for i, a in enumerate(ACTUATORS)}
 
@@ -153,11 +171,12 @@ def wrench_residual(run: RunSignals, geometry: Geometry) -> Residuals:
 
 
 def all_residuals(run: RunSignals, robot: Robot, geometry: Geometry, demand: Demand | None = None) -> Residuals:
-    """Residuals of every continuous stage the run has streams for."""
-    return {
+    """Residuals of every continuous stage the run has streams for, and samples that count."""
+    found = {
         **drive_residual(run, robot, demand),
         **motor_residual(run, robot, geometry, demand),
         **transmission_residual(run),
         **tip_residual(run, geometry),
         **wrench_residual(run, geometry),
     }
+    return {channel: residual for channel, residual in found.items() if residual.ok.any()}

@@ -37,7 +37,7 @@ def cause(effect, actuator, **values):
             {"force": 0.1, "amplitude": 0.04, "wavelength": 0.0314},
             {"periods_per_rev": 2.0},
         ),
-        ("cable_drag", "roll", {"force": 0.3, "stiffness": 0.02, "hysteresis": 0.004}, {"force": 0.004}),
+        ("cable_drag", "roll", {"preload": 0.3, "stiffness": 0.02, "force": 0.004}, {"force": 0.004}),
     ],
 )
 def test_parameters_are_translated(effect, actuator, values, expected):

@@ -180,6 +180,10 @@ class LibraryEffect:
         """Whether a fit is physically possible."""
         return True
 
+    def unlikely(self, shape: Shape, coefficients: Array) -> bool:
+        """Whether a fit, though possible, is what another effect would rather be called."""
+        return False
+
     def unit(self, name: str, site: str) -> str:
         """Unit of a parameter; roll is rotary where a linear axis counts in m or N."""
         unit = self.units.get(name, "1")

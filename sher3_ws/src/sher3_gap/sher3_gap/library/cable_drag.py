@@ -12,8 +12,8 @@ from sher3_gap.library.base import LibraryEffect, Shape, Signature, View, axis_o
 
 
 class CableDrag(LibraryEffect):
-    """On an axis: k q + k0 + hysteresis over a long stroke; on the force sensor: the same of roll and tilt, per
-    component.
+    """On an axis: k q + k0 + hysteresis over a long stroke; on the force sensor: the same of roll and tilt (as
+    angles), per component.
     """
 
     id, family, stage = "cable_drag", "wrench", "motor_mechanics"
@@ -27,7 +27,7 @@ class CableDrag(LibraryEffect):
         "presliding_friction": "saturates within a short stroke",
         "tool_gravity": "turns with the tool exactly as weight does",
     }
-    units = {"stiffness": "N/m", "force": "N", "hysteresis": "N"}
+    units = {"stiffness": "N/m", "force": "N", "preload": "N"}
 
     def sites(self) -> tuple[str, ...]:
         """Any axis, or the force sensor."""
@@ -53,7 +53,8 @@ class CableDrag(LibraryEffect):
         return Signature({Channel(self.stage, site): column(*parts)})
 
     def _sensor(self, view: View, shape: Shape) -> Signature:
-        drives = [view.position[:, axis] for axis in (3, 4)]
+        radius = view.robot.tilt_linkage.crank
+        drives = [view.position[:, 3], view.position[:, 4] / radius]
         if shape["stroke"]:
             drives += [
                 view.run.to_grid(view.sliding(axis, shape["stroke"] * view.robot.actuators[axis].lead))
@@ -65,9 +66,13 @@ class CableDrag(LibraryEffect):
         return Signature({Channel("sensing", "force_sensor"): columns})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Stiffness and hysteresis (largest component on the force sensor)."""
+        """Stiffness and force of the hysteresis; the largest component, in N per rad, on the force sensor."""
         if len(coefficients) > 3:
-            out = {"stiffness": float(np.linalg.norm(coefficients[3:6]))}
-            return out if len(coefficients) == 6 else {**out, "hysteresis": float(np.abs(coefficients[6:]).max())}
-        out = {"force": float(coefficients[0]), "stiffness": float(coefficients[1])}
-        return out if len(coefficients) == 2 else {**out, "hysteresis": float(coefficients[2])}
+            out = {"stiffness": float(np.abs(coefficients[:6]).max())}
+            return out if len(coefficients) == 6 else {**out, "force": float(np.abs(coefficients[6:]).max())}
+        out = {"preload": float(coefficients[0]), "stiffness": float(coefficients[1])}
+        return out if len(coefficients) == 2 else {**out, "force": float(coefficients[2])}
+
+    def unit(self, name: str, site: str) -> str:
+        """A stiffness is per angle on the force sensor."""
+        return "N/rad" if site == "force_sensor" and name == "stiffness" else super().unit(name, site)

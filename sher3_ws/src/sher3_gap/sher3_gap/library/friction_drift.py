@@ -28,6 +28,11 @@ class FrictionDrift(LibraryEffect):
         fine = 2.5e-3 * lead(views[0], site)
         return [{"time_constant": t, "displacement": fine} for t in (0.0, *self.TIMES)]
 
+    def refine(self, shape: Shape) -> list[Shape]:
+        """Time constants between the neighbours."""
+        time = shape["time_constant"]
+        return [{**shape, "time_constant": time * f} for f in (0.7, 0.85, 1.2, 1.4)] if time else []
+
     def signature(self, view: View, site: str, shape: Shape) -> Signature:
         """Two columns: the constant part and the changing one."""
         z = view.sliding(axis_of(site), shape["displacement"])

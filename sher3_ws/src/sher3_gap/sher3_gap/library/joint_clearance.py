@@ -8,6 +8,7 @@ import numpy as np
 
 from sher3_gap.channels import Array, Channel
 from sher3_gap.library.base import LibraryEffect, Shape, Signature, View, axis_of, lead
+from sher3_gap.library.operators import play
 
 
 class JointClearance(LibraryEffect):
@@ -25,6 +26,8 @@ class JointClearance(LibraryEffect):
         "structural_compliance": "in proportion to the load",
     }
     units = {"clearance": "m"}
+    REACHES = (2.5e-3, 5e-3, 1e-2)
+    """Stroke over which the side changes with the direction, in motor revolutions."""
 
     def sites(self) -> tuple[str, ...]:
         """The legs."""
@@ -38,7 +41,7 @@ class JointClearance(LibraryEffect):
         """What decides the side: 0 the direction of the slider, 1 the force along the leg; a side that never changes is
         none.
         """
-        shapes: list[Shape] = [{"by_load": 0.0}, {"by_load": 1.0}]
+        shapes: list[Shape] = [*({"by_load": 0.0, "reach": r} for r in self.REACHES), {"by_load": 1.0, "reach": 0.0}]
         return [s for s in shapes if np.ptp(np.concatenate([self._side(v, site, s) for v in views])) > 1.0]
 
     def _side(self, view: View, site: str, shape: Shape) -> Array:
@@ -46,7 +49,8 @@ class JointClearance(LibraryEffect):
         if shape["by_load"]:
             force = view.path.contact_force[:, axis] - view.path.gravity[:, axis]
             return np.tanh(force / 0.05)
-        return view.sliding(axis, 2.5e-3 * lead(view, site))[view.run.grid]
+        x, width = view.run.smooth[:, axis], shape["reach"] * lead(view, site)
+        return -2.0 / width * play(x, np.zeros(len(x)), width, np.inf, view.run.period, 0.0)[view.run.grid]
 
     def signature(self, view: View, site: str, shape: Shape) -> Signature:
         """Two columns: half the change of the pose per metre of either link, with the sign of the side."""

@@ -52,6 +52,10 @@ class PayloadMass(LibraryEffect):
         """Extra mass (inertia on roll)."""
         return {"mass": float(coefficients[0])}
 
+    def unlikely(self, shape: Shape, coefficients: Array) -> bool:
+        """A payload adds mass; where some is missing it is the weight that is off."""
+        return bool(coefficients[0] < 0.0)
+
     def unit(self, name: str, site: str) -> str:
         """Inertia on the rotary axis."""
         return "kg*m^2" if site == "roll" else "kg"

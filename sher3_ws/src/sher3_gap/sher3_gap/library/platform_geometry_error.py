@@ -19,7 +19,7 @@ class PlatformGeometryError(LibraryEffect):
         "the position of the platform, not with roll or tilt."
     )
     siblings = {"link_length_error": "along the leg", "rail_tilt": "grows with the height of the slider"}
-    units = {"x": "m", "y": "m", "radius": "m"}
+    units = {"x": "m", "y": "m", "difference": "m", "radius": "m"}
 
     def sites(self) -> tuple[str, ...]:
         """A leg, or the platform as a whole."""
@@ -30,11 +30,11 @@ class PlatformGeometryError(LibraryEffect):
         return (Channel("mechanism", "tip"), Channel("structure", "tip"))
 
     def shapes(self, views: Sequence[View], site: str) -> list[Shape]:
-        """Which of the leg's two balls: both (0), the first (1), the second (2)."""
-        return [{"ball": 0.0}] if site == "tip" else [{"ball": float(b)} for b in range(3)]
+        """Which of the leg's two balls: both (0), the first (1), the second (2), both but not quite alike (3)."""
+        return [{"ball": 0.0}] if site == "tip" else [{"ball": float(b)} for b in range(4)]
 
     def signature(self, view: View, site: str, shape: Shape) -> Signature:
-        """Two columns (x, y of the balls) per leg, or one: the radius of all.
+        """Two columns (x, y of the balls) per leg, a third for how the two differ along it, or one: the radius of all.
 
         A ball displaced by d changes what its link spans by u . d, u the link's direction.
         """
@@ -45,14 +45,17 @@ class PlatformGeometryError(LibraryEffect):
             change = np.einsum("gij,gkj,jk->gi", view.link_changes, span, outward)[:, :, None]
         else:
             first = 2 * axis_of(site)
-            links = {0: (first, first + 1), 1: (first,), 2: (first + 1,)}[int(shape["ball"])]
+            links = {1: (first,), 2: (first + 1,)}.get(int(shape["ball"]), (first, first + 1))
             change = sum(view.link_changes[:, :, [j]] * span[:, None, :2, j] for j in links)
+            if shape["ball"] == 3.0:
+                apart = view.link_changes[:, :, [first]] - view.link_changes[:, :, [first + 1]]
+                change = np.concatenate([change, apart], axis=2)
         return Signature(view.at_tip(-change))
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Offsets of the platform's joint."""
-        names = ("x", "y") if len(coefficients) == 2 else ("radius",)
-        return {n: float(c) for n, c in zip(names, coefficients, strict=True)}
+        names = ("radius",) if len(coefficients) == 1 else ("x", "y", "difference")
+        return {n: float(c) for n, c in zip(names, coefficients, strict=False)}
 
     def unit(self, name: str, site: str) -> str:
         """Length."""
