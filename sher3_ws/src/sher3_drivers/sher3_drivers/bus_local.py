@@ -131,7 +131,7 @@ class LocalLink:
             check_frames(frames)
         if self._socket.fileno() < 0:
             raise LinkError("is closed", link=self.name, remedy="open it again")
-        for peer in list(self._peers.values()):
+        for peer in tuple(self._peers.values()):
             if peer.backlog:
                 self._postpone(peer, frames)
                 self._flush(peer)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Sequence
+from operator import mul, sub
 from typing import NamedTuple
 
 from .drive_objects import TPDO_BASES
@@ -55,7 +56,10 @@ class TpdoCollector:
         self.statuswords: list[int | None] = [None] * count
         self.duplicates = 0
         self.misfits = 0
-        self._scales = tuple(scales)
+        self._load_unit = tuple([scale.load_encoder for scale in scales])
+        self._motor_unit = tuple([scale.motor_encoder for scale in scales])
+        self._effort_unit = tuple([scale.effort for scale in scales])
+        self._velocity_unit = tuple([scale.velocity for scale in scales])
         self._period = period
         self._slots = {
             base + n: (i, 1 << i + pdo * count, pdo)
@@ -111,19 +115,18 @@ class TpdoCollector:
 
     def load_position(self) -> Vector:
         """Return the load encoder positions."""
-        return tuple([n * scale.load_encoder for n, scale in zip(self._load, self._scales, strict=True)])
+        return tuple(map(mul, self._load, self._load_unit))
 
     def feedback(self, stamp: int) -> Feedback:
         """Return the whole feedback; call it once a tick and only when every TPDO is in."""
-        scales = self._scales
-        motor = tuple([n * scale.motor_encoder for n, scale in zip(self._motor, scales, strict=True)])
+        motor = tuple(map(mul, self._motor, self._motor_unit))
         if self._previous is None:
             velocity: Vector = (0.0,) * self._count
         else:
             tick, before = self._previous
             span = (self._tick - tick) * self._period
-            velocity = tuple([(now - then) / span for now, then in zip(motor, before, strict=True)])
+            velocity = tuple([step / span for step in map(sub, motor, before)])
         self._previous = self._tick, motor
-        effort = tuple([n * scale.effort for n, scale in zip(self._torque, scales, strict=True)])
-        demand = tuple([n * scale.velocity for n, scale in zip(self._demand, scales, strict=True)])
+        effort = tuple(map(mul, self._torque, self._effort_unit))
+        demand = tuple(map(mul, self._demand, self._velocity_unit))
         return Feedback(stamp, self.load_position(), motor, velocity, effort, demand)

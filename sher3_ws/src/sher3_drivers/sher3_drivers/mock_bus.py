@@ -156,8 +156,8 @@ class MockDriveBus:
         SYNCs are answered, heartbeats and watchdogs kept going.
         """
         received = self._group.receive(timeout)
-        for error in self._group.failures.values():
-            raise error
+        if self._group.failures:
+            raise next(iter(self._group.failures.values()))
         now = self._clock()
         if self.tamper_received is not None:
             by_channel = dict(received)
@@ -168,6 +168,11 @@ class MockDriveBus:
                 self._channels[index].queue.extend(_FRAME.iter_unpack(frames))
         while self._advance(now):
             self._step(now)
+        self._keep_going(now)
+        return any([frames for _, frames in received])
+
+    def _keep_going(self, now: int) -> None:
+        """Let the plant go on without SYNC, and heartbeats and watchdogs when they are due."""
         silent = now - self._stepped_at
         if self.ticks and silent >= _FREE_RUN_PERIODS * self._period_ns:
             for _ in range(min(silent // self._period_ns, 1000)):
@@ -175,10 +180,9 @@ class MockDriveBus:
             self._stepped_at = now
         if now >= self._watch_at:
             self._watch_at = now + _WATCH_NS
-            for drive in self.drives.values():
+            for drive in self._in_order:
                 drive.check_host(now)
                 drive.node.poll(now)
-        return any(frames for _, frames in received)
 
     def poll(self) -> None:
         """Handle every frame that waits, as `serve` does."""
@@ -198,9 +202,10 @@ class MockDriveBus:
                 if can_id == SYNC_ID:
                     channel.synced = channel.live = True
                     channel.synced_at = now
-                    continue
+                    break
+                data = data[:length]
                 for drive in channel.receivers(can_id):
-                    drive.receive(can_id, data[:length], now)
+                    drive.receive(can_id, data, now)
         synced = [channel for channel in self._channels if channel.synced]
         if not synced:
             return False

@@ -6,7 +6,6 @@ not pass to the drives is refused here, what goes silent is stopped here: this i
 
 from __future__ import annotations
 
-import struct
 import time
 from collections.abc import Callable, Sequence
 
@@ -21,15 +20,15 @@ from .drive_health import OPERATIONAL, DriveHealth, watch_drives
 from .drive_setup import set_up_drives
 from .errors import CommandRefused, DriverError, LinkError
 from .feedback import Feedback, TpdoCollector, Vector
-from .frame import ERROR_FLAG, HEADER_FORMAT, Frame, pack_frame
+from .frame import ERROR_FLAG, Frame, pack_frame
 from .loop_watch import LoopWatch
 from .motion_watch import MotionWatch
+from .rpdo import RpdoPacker
 from .settings import MotorDriverSettings
 from .trips import StopLog, Trip
 from .units import AxisScale
 from .velocity_gate import velocity_counts
 
-_RPDO = struct.Struct(f"<{HEADER_FORMAT}Hi2x")
 _WATCH_NS = 5_000_000
 _BATCHES = 64
 """Batches of frames taken in before a SYNC at most: a flooded bus must not hold the loop."""
@@ -75,6 +74,8 @@ class MotorDriver:
         self._scales = [AxisScale.from_actuator(actuator) for actuator in robot.actuators]
         self._node_ids = [1 + i for i in range(len(ACTUATORS))]
         self._axes = [[ACTUATORS.index(name) for name in channel.drives] for channel in settings.channels]
+        self._rpdos = RpdoPacker(self._axes, self._node_ids)
+        self._settled_words: list[int | None] = []
         self.collector = TpdoCollector(self._scales, self._node_ids, settings.period)
         self._period_ns = round(settings.period * 1e9)
         self._feedback_ns = round(settings.feedback_limit * settings.period * 1e9)
@@ -223,15 +224,8 @@ class MotorDriver:
         """
         complete = self._collect(self.collector.all_mask)
         now = self.clock()
-        missing = set() if complete else set(self.collector.missing())
-        for axis, health in enumerate(self.health):
-            if missing or health.missing:
-                self._stop_if(health.on_tick(axis in missing, self.settings.missing_limit))
-            word = self.collector.statuswords[axis]
-            if word is not None and word != health.word and axis not in missing:
-                self._stop_if(health.on_statusword(word, now))
-        self._all_enabled = all([health.state is State.OPERATION_ENABLED for health in self.health])
-        self.counters["incomplete"] += not complete
+        if not complete or self.collector.statuswords != self._settled_words:
+            self._judge_drives(complete, now)
         self._watch(now)
         feedback = self.collector.feedback(self._stamp) if complete else None
         if feedback is not None:
@@ -242,6 +236,19 @@ class MotorDriver:
             self._steer()
         self._follow_early()
         return feedback
+
+    def _judge_drives(self, complete: bool, now: int) -> None:
+        """Look at each drive: TPDOs that stay away, statuswords that are new."""
+        missing = set() if complete else set(self.collector.missing())
+        for axis, health in enumerate(self.health):
+            if missing or health.missing:
+                self._stop_if(health.on_tick(axis in missing, self.settings.missing_limit))
+            word = self.collector.statuswords[axis]
+            if word is not None and word != health.word and axis not in missing:
+                self._stop_if(health.on_statusword(word, now))
+        self._all_enabled = all([health.state is State.OPERATION_ENABLED for health in self.health])
+        self.counters["incomplete"] += not complete
+        self._settled_words = list(self.collector.statuswords) if complete else []
 
     def _collect(self, mask: int) -> bool:
         deadline = self._synced_at + self._feedback_ns
@@ -379,12 +386,7 @@ class MotorDriver:
         self._send_commands(commands, [0] * len(commands))
 
     def _send_commands(self, commands: Sequence[Command], velocity_counts: Sequence[int]) -> None:
-        pack, base = _RPDO.pack, od.RPDO_BASE
-        parts = []
-        for axes in self._axes:
-            frames = [pack(base + self._node_ids[i], 6, commands[i].value, velocity_counts[i]) for i in axes]
-            parts.append(b"".join(frames))
-        self._send(parts)
+        self._send(self._rpdos.frames(commands, velocity_counts))
 
     def _send(self, parts: Sequence[bytes]) -> None:
         """Send on every channel; one that cannot take it stops the robot on the others too."""

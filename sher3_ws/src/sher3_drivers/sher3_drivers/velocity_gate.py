@@ -22,5 +22,6 @@ def velocity_counts(scales: Sequence[AxisScale], velocity: Sequence[float]) -> l
         if not abs(value) <= scale.velocity_limit * (1.0 + 1e-9):  # a NaN compares false
             what, remedy = f"{scale.name}: velocity command", "limit it at its source"
             raise CommandRefused(what, value=value, limit=scale.velocity_limit, remedy=remedy)
-        counts.append(scale.velocity_counts(value))
+        # Within the limit, which `AxisScale` has made sure fits the object.
+        counts.append(round(value / scale.velocity))
     return counts
