@@ -46,6 +46,7 @@ class Reason(IntEnum):
     DRIVE_STUCK = 75
     DRIVE_STATUSWORD = 76
     DRIVE_HOST_LOST = 77
+    DRIVE_DISOBEYS = 78
     BUS_OFF = 80
     BUS_PASSIVE = 81
     LINK_LOST = 82
@@ -113,6 +114,7 @@ TEXT: dict[Reason, str] = {
     _R.DRIVE_STUCK: "a drive does not change its state",
     _R.DRIVE_STATUSWORD: "a drive's statusword has no meaning",
     _R.DRIVE_HOST_LOST: "a drive lost the host's heartbeat",
+    _R.DRIVE_DISOBEYS: "a drive does not execute the velocity it was sent",
     _R.BUS_OFF: "a CAN controller is off the bus",
     _R.BUS_PASSIVE: "a CAN controller is error passive",
     _R.LINK_LOST: "a CAN link cannot be used",
@@ -130,7 +132,7 @@ ACTION: dict[Reason, Action] = {
     _R.MOVING: Action.NONE,
     _R.OVERRUN: Action.PAUSE,
     **dict.fromkeys((_R.EMERGENCY_STOP, _R.DRIVE_OVER_TEMPERATURE, _R.STOP_NOT_OBEYED), Action.POWER_OFF),
-    **dict.fromkeys((_R.ENCODERS_DISAGREE, _R.ENCODER_FROZEN, _R.FOLLOWING_ERROR), Action.POWER_OFF),
+    **dict.fromkeys((_R.ENCODERS_DISAGREE, _R.ENCODER_FROZEN, _R.FOLLOWING_ERROR, _R.DRIVE_DISOBEYS), Action.POWER_OFF),
 }
 """What the supervisor or the motor driver does about it; the control law itself answers every cause with ZERO."""
 

@@ -1,11 +1,12 @@
-"""The driver's eye on the axes: encoders and demand while they follow, rest while they are stopped."""
+"""The driver's eye on the axes: echo, encoders and demand while they follow, rest while they are stopped."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
-from sher3_description.reasons import Action
+from sher3_description.reasons import Action, Reason
 
+from .demand_check import DemandCheck
 from .feedback import Feedback
 from .joint_checks import JointWatch
 from .rest_check import RestCheck
@@ -18,20 +19,33 @@ class MotionWatch:
     """Both checks.
 
     Attributes:
+        demand: what was sent, and what the drives say they execute.
         joints: encoders and demand.
         rest: a stopped robot.
     """
 
     def __init__(self, scales: Sequence[AxisScale], settings: MotorDriverSettings) -> None:
+        self.demand = DemandCheck(scales, settings)
         self.joints = JointWatch(scales, settings)
         self.rest = RestCheck(scales, settings)
+
+    def begin(self) -> None:
+        """Start afresh with axes that are about to follow."""
+        self.demand.begin()
+        self.joints.begin()
 
     def check(self, feedback: Feedback, tick: int, following: bool, stop: StopLog, now: int) -> Trip | None:
         """Judge the feedback of tick number `tick` of a robot whose drives are `following`, or that is stopped."""
         if stop.first is None:
-            return self.joints.check(feedback, tick) if following else None
+            if not following:
+                return None
+            return self.demand.check(feedback.velocity_demand) or self.joints.check(feedback, tick)
         moved = self.rest.check(feedback.motor_position, stop.since, now)
         return moved if stop.action < Action.POWER_OFF else None
+
+    def deaf(self, stop: StopLog) -> bool:
+        """Return whether a drive does not listen: then only silence of the host stops it."""
+        return stop.first is not None and (stop.code is Reason.DRIVE_DISOBEYS or self.rest.disobeyed)
 
     def powers_off(self, stop: StopLog) -> bool:
         """Return whether the robot has braked and is to lose its power."""

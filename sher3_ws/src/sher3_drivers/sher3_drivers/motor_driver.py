@@ -122,7 +122,7 @@ class MotorDriver:
         if self.goal is not Goal.ENABLED:
             self.goal = Goal.ENABLED
             self._running = False
-            self.motion.joints.begin()
+            self.motion.begin()
             self._restart_transitions()
 
     def disable(self) -> None:
@@ -207,7 +207,7 @@ class MotorDriver:
             self.stop_for(late)
         self._started_at = self._started_at or now
         burst = self._sync
-        if now >= self._heartbeat_at:
+        if now >= self._heartbeat_at and not self.motion.deaf(self.stop):
             self._heartbeat_at = now + round(self.settings.host_heartbeat * 1e9)
             burst = self._heartbeat + burst
         self._synced_at = now
@@ -272,8 +272,7 @@ class MotorDriver:
             counts = self._checked(stamp, velocity)
         except DriverError:
             self.counters["refused"] += 1
-            self._refused_last = True
-            self._early = None
+            self._refused_last, self._early = True, None
             self._steer()
             raise
         if not self.enabled:
@@ -386,6 +385,7 @@ class MotorDriver:
         self._send_commands(commands, [0] * len(commands))
 
     def _send_commands(self, commands: Sequence[Command], velocity_counts: Sequence[int]) -> None:
+        self.motion.demand.sent(velocity_counts)
         self._send(self._rpdos.frames(commands, velocity_counts))
 
     def _send(self, parts: Sequence[bytes]) -> None:

@@ -17,6 +17,7 @@ class RestCheck:
 
     Attributes:
         resting: the braking time is over.
+        disobeyed: an axis moved all the same.
     """
 
     def __init__(self, scales: Sequence[AxisScale], settings: MotorDriverSettings) -> None:
@@ -25,11 +26,11 @@ class RestCheck:
         self._limits = [settings.rest_angle if scale.revolute else settings.rest_distance for scale in scales]
         self._brake = round(settings.brake_time * 1e9)
         self._place: Vector | None = None
-        self.resting = False
+        self.resting = self.disobeyed = False
 
     def begin(self) -> None:
         """Forget the last stop: another one begins."""
-        self._place, self.resting = None, False
+        self._place, self.resting, self.disobeyed = None, False, False
 
     def check(self, motor: Vector, since: int, now: int) -> Trip | None:
         """Judge the motor positions of a robot stopped at `since`; call it in every tick of the stop."""
@@ -42,7 +43,7 @@ class RestCheck:
             self._names, self._units, self._limits, self._place, motor, strict=True
         ):
             if abs(here - place) > limit:
-                moved = abs(here - place)
+                moved, self.disobeyed = abs(here - place), True
                 text = f"{name}: moved {moved:.3g} {unit} after the quick stop (limit {limit:.3g})"
                 return Trip(Reason.STOP_NOT_OBEYED, text, moved, limit, unit)
         return None

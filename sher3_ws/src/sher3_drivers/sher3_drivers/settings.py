@@ -57,6 +57,8 @@ class MotorDriverSettings(_Part):
         following_lag: what the demanded speed adds to it, s; the nominal drive lags 4 to 5 ms.
         following_latency: for how long it may be exceeded, s.
         following_memory: time constant with which its slow part is followed, s.
+        obey_distance, obey_angle: how far an axis may go that was not told to, by its echo of the demand, m and rad.
+        obey_latency: how long a command may take to show in the echo, s; the nominal drive shows it in the next one.
         brake_time: time after which a stopped robot must rest, s: three times the longest ramp from full tip speed.
         rest_distance, rest_angle: how far a resting axis may still be pushed, m and rad.
         transition_limit: longest time for one CiA 402 transition, s.
@@ -76,7 +78,7 @@ class MotorDriverSettings(_Part):
     stop_age: Annotated[int, Field(ge=1, le=1000)] = 50
     supervisor_limit: Seconds = 0.030
     stall_limit: Seconds = 0.020
-    encoder_distance: Length = 8e-6
+    encoder_distance: Length = 7e-6
     encoder_angle: Angle = 4e-4
     encoder_latency: Seconds = 0.010
     encoder_memory: Seconds = 0.3
@@ -87,6 +89,9 @@ class MotorDriverSettings(_Part):
     following_lag: Seconds = 0.010
     following_latency: Seconds = 0.004
     following_memory: Seconds = 0.1
+    obey_distance: Length = 3e-6
+    obey_angle: Angle = 1e-4
+    obey_latency: Seconds = 0.008
     brake_time: Seconds = 0.1
     rest_distance: Length = 2e-4
     rest_angle: Angle = 1e-2
