@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from sher3_gap.attribute import PRICE, RIVAL, Attribution
 from sher3_gap.diagnose import Diagnosis
 from sher3_gap.library import LIBRARY
+from sher3_gap.pattern import Pattern, pattern_of
 from sher3_gap.report.style import STAGE_NAMES, place, quantity, range_text, share, words
 from sher3_gap.structure import Structure
 from sher3_gap.verdict import Cause
@@ -38,14 +39,16 @@ class CauseCard:
     rivals: list[RivalRow]
     margin: str
     alike: list[str]
+    pattern: str = ""
 
 
 def cause_cards(diagnosis: Diagnosis, structure: Structure) -> list[CauseCard]:
     """Return one card per cause of the verdict."""
-    return [_card(c, diagnosis.attribution, structure) for c in diagnosis.verdict.causes]
+    return [_card(c, diagnosis, structure) for c in diagnosis.verdict.causes]
 
 
-def _card(cause: Cause, attribution: Attribution, structure: Structure) -> CauseCard:
+def _card(cause: Cause, diagnosis: Diagnosis, structure: Structure) -> CauseCard:
+    attribution = diagnosis.attribution
     index = next((i for i, t in enumerate(attribution.fit.terms) if t.key == (cause.effect, cause.actuator)), None)
     rows, margin = ([], 0.0) if index is None else _rivals(cause, attribution, index)
     parameters = [
@@ -64,7 +67,20 @@ def _card(cause: Cause, attribution: Attribution, structure: Structure) -> Cause
         rows,
         f"{margin:.0f}",
         sorted(words(e) for e in group - {cause.effect}),
+        "" if index is None else pattern_text(pattern_of(diagnosis.evidence, attribution.fit, index)),
     )
+
+
+def pattern_text(found: Pattern) -> str:
+    """Return whether the gap lives where the cause says it does, in a sentence; empty when no regimes can tell."""
+    worst = found.worst
+    if worst is None:
+        return ""
+    text = (
+        f"What it takes off lies where it predicts to {share(found.agreement)} over speed, direction, position, load "
+    )
+    text += f"and runs. It differs most {worst.regime}: {share(worst.predicted)} predicted, {share(worst.realised)} "
+    return text + "of the reduction on held-out runs."
 
 
 def _interval(cause: Cause) -> str:

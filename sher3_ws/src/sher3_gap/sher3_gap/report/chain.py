@@ -26,12 +26,13 @@ ORDER = ("controller", "transport", *STAGES[2:])
 
 @dataclass(frozen=True)
 class Cell:
-    """One actuator in one stage: text, how bad (0 none recorded, 1 at floor, 2 near, 3 gap), tooltip."""
+    """One actuator in one stage: text, how bad (0 none recorded, 1 at floor, 2 near, 3 gap), tooltip, numbers below."""
 
     label: str
     text: str
     level: int
     tip: str
+    below: str = ""
 
 
 @dataclass(frozen=True)
@@ -80,5 +81,6 @@ def _measured(diagnosis: Diagnosis, stage: str) -> list[Cell]:
         unit = unit_of(gap.channel)
         level = 3 if gap.significant else (2 if gap.power > 0.75 else 1)
         tip = f"gap {quantity(gap.gap, unit)}, floor {quantity(gap.floor, unit)} rms"
-        cells.append(Cell(place(name), ratio_text(gap.ratio), level, tip))
+        below = f"{quantity(gap.gap, unit)} over {quantity(gap.floor, unit)}" if level == 3 else ""
+        cells.append(Cell(place(name), ratio_text(gap.ratio), level, tip, below))
     return cells

@@ -6,7 +6,7 @@ import numpy as np
 
 from sher3_gap.diagnose import Diagnosis
 from sher3_gap.report.style import CORRECTED, NOMINAL, figure, to_svg
-from sher3_gap.report.traces import Trace
+from sher3_gap.report.traces import ABOVE, Trace
 from sher3_gap.selffloor import driven_as
 from sher3_gap.simulator import to_effects
 from sher3_gap.tip import tip_error
@@ -33,8 +33,8 @@ def free_run_trace(diagnosis: Diagnosis) -> Trace | None:
         ax.plot(clock, distance, color=color, lw=1.1, label=f"{label}, {np.sqrt(np.mean(distance**2)):.1f} µm rms")
     ax.set_xlabel("time [s]")
     ax.set_ylabel("distance from the real tip [µm]")
-    ax.legend(loc="upper right", ncols=2, fontsize=8)
-    ax.margins(x=0.005, y=0.15)
+    ax.legend(**ABOVE)
+    ax.margins(x=0.005, y=0.06)
     ax.set_ylim(bottom=0.0)
     caption = f"Run {run.name} ({run.excitation}): both models run freely from the recorded set-points."
     return Trace("Tip position, end to end", caption, to_svg(made, "tip, free run"))

@@ -9,7 +9,8 @@ from sher3_gap.regimes import regime_powers
 from sher3_gap.report.style import STAGE_NAMES, place
 
 SHOWN = 4
-FULL_BAR = 1.0
+ROWS = 10
+"""Regimes shown of a channel, those with the largest gap."""
 
 
 @dataclass(frozen=True)
@@ -35,7 +36,7 @@ def regimes(diagnosis: Diagnosis) -> list[Regimes]:
     out = []
     for gap in [g for g in diagnosis.gaps if g.significant][:SHOWN]:
         powers = regime_powers(diagnosis.evidence, gap.channel)
-        ratios = sorted(((n, p**0.5) for n, p in powers.items()), key=lambda x: -x[1])
+        ratios = sorted(((n, p**0.5) for n, p in powers.items()), key=lambda x: -x[1])[:ROWS]
         top = max((r for _, r in ratios), default=1.0)
         rows = [Row(n, r, 100.0 * r / max(top, 1.5), r > 1.16) for n, r in ratios]
         out.append(Regimes(f"{STAGE_NAMES[gap.channel.stage]}, {place(gap.channel.actuator)}", rows))

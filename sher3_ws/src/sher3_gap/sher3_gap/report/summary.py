@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from sher3_gap.apply import PLACES
 from sher3_gap.report.style import STAGE_NAMES, place, quantity, range_text, ratio_text, share, words
 from sher3_gap.verdict import Cause, Interval, Verdict
 
@@ -76,8 +77,14 @@ def closure_text(value: Interval) -> str:
 
 
 def _next(verdict: Verdict) -> str:
-    if verdict.next_experiment is None:
-        return "`sher3 gap apply verdict.json` puts the causes into the simulator" if verdict.causes else "none"
-    e = verdict.next_experiment
-    rivals = " / ".join(words(i).lower() for i in e.separates)
-    return f"`sher3 gap experiment verdict.json`: {e.excitation} tells {rivals} apart"
+    if verdict.next_experiment is not None:
+        e = verdict.next_experiment
+        rivals = " / ".join(words(i).lower() for i in e.separates)
+        return f"`sher3 gap experiment verdict.json`: {e.excitation} tells {rivals} apart"
+    if any(c.actuator not in PLACES for c in verdict.causes):
+        return "put the parameters into this machine's own simulator"
+    if verdict.causes:
+        return "`sher3 gap apply verdict.json` puts the causes into the simulator"
+    if verdict.unexplained is not None:
+        return "a sensor nearer to that place, or an effect of your own: the signature says what it must do"
+    return "none"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -20,6 +21,14 @@ from sher3_gap.timing import demand_in_force
 
 WORST = 3
 """Channels shown."""
+ABOVE: dict[str, Any] = {
+    "loc": "lower right",
+    "bbox_to_anchor": (1.0, 0.99),
+    "ncols": 3,
+    "fontsize": 8,
+    "borderpad": 0.1,
+}
+"""A legend above its axes, where it hides no line."""
 COMPONENTS = ("x", "y", "z", "about x", "about y", "about z")
 SCALES = ((1.0, ""), (1e3, "m"), (1e6, "µ"), (1e9, "n"))
 
@@ -43,6 +52,11 @@ class _Lines:
     corrected: Array
     floor: float
     what: str
+
+    @property
+    def changed(self) -> bool:
+        """Whether a cause acts on what is drawn."""
+        return not np.array_equal(self.nominal, self.corrected)
 
 
 def traces(diagnosis: Diagnosis) -> list[Trace]:
@@ -73,8 +87,8 @@ def _channel(diagnosis: Diagnosis, gap: Gap) -> Trace | None:
     if len(floor) > 1:
         title += f", {COMPONENTS[best]}"
     unit = unit_of(channel) if best < 3 else {"m": "rad", "N": "N*m"}[unit_of(channel)]
-    caption = f"Run {signals.name} ({signals.excitation}, repeat {signals.repeat}), held out: "
-    caption += "the correction was fitted to the other runs."
+    caption = f"Run {signals.name} ({signals.excitation}, repeat {signals.repeat})"
+    caption += ", held out: the correction was fitted to the other runs." if lines.changed else "; no cause acts here."
     return Trace(title, caption, _draw(lines, unit, title))
 
 
@@ -111,19 +125,21 @@ def _draw(lines: _Lines, unit: str, title: str) -> str:
         (lines.nominal, NOMINAL, "nominal model", 1.1),
         (lines.corrected, CORRECTED, "with the causes", 1.1),
     ):
-        _line(top, lines.time, scale * y, color, label, width)
+        if lines.changed or color != CORRECTED:
+            _line(top, lines.time, scale * y, color, label, width)
     top.set_ylabel(f"{lines.what} [{prefix}{unit.replace('*', '·')}]")
-    top.legend(loc="upper right", ncols=3, fontsize=8)
+    top.legend(**ABOVE)
     before, left = lines.real - lines.nominal, lines.real - lines.corrected
     scale, prefix = _scale(before)
     bottom.axhspan(-2 * scale * lines.floor, 2 * scale * lines.floor, color=FLOOR, alpha=0.25, lw=0, label="± 2 floor")
     _line(bottom, lines.time, scale * before, NOMINAL, "nominal residual", 0.9)
-    _line(bottom, lines.time, scale * left, CORRECTED, "residual left", 0.9)
+    if lines.changed:
+        _line(bottom, lines.time, scale * left, CORRECTED, "residual left", 0.9)
     bottom.set_ylabel(f"residual [{prefix}{unit.replace('*', '·')}]")
     bottom.set_xlabel("time [s]")
-    bottom.legend(loc="upper right", ncols=3, fontsize=8)
-    top.margins(x=0.005, y=0.16)
-    bottom.margins(x=0.005, y=0.22)
+    bottom.legend(**ABOVE)
+    top.margins(x=0.005, y=0.06)
+    bottom.margins(x=0.005, y=0.06)
     return to_svg(made, title)
 
 
