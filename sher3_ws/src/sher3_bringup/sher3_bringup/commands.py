@@ -54,6 +54,11 @@ def up(
         int, typer.Option(help="SCHED_FIFO priority, 0 for none; -1: 40 where permitted.", min=-1, max=90)
     ] = -1,
     seed: Annotated[int, typer.Option(help="Seed of the plant's noise.")] = 0,
+    regime: Annotated[
+        str, typer.Option(help="Speed regime: near_tissue, free or bench; bench on mocks, free on the robot.")
+    ] = "",
+    near_speed: Annotated[Optional[float], typer.Option(help="Speed cap near tissue [m/s].")] = None,  # noqa: UP045
+    free_speed: Annotated[Optional[float], typer.Option(help="Speed cap elsewhere [m/s].")] = None,  # noqa: UP045
     domain: Domain = 0,
     other_hosts: Annotated[
         bool, typer.Option("--other-hosts", help="Also talk to other machines; loopback by default.")
@@ -86,6 +91,9 @@ def up(
         realtime=realtime,
         seed=seed,
         patience="patient" if patient else "strict",
+        regime=regime,
+        near_speed=near_speed,
+        free_speed=free_speed,
         domain=domain,
         other_hosts=other_hosts,
     )

@@ -8,8 +8,12 @@ from typing import Annotated, Any
 
 import typer
 
+from .budget_command import budget
+
 app = typer.Typer(rich_markup_mode="markdown", invoke_without_command=True)
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object instead of text.")]
+
+app.command(epilog="Examples: `sher3 safety budget` · `sher3 safety budget --rate 200 --json`")(budget)
 
 
 @app.callback(

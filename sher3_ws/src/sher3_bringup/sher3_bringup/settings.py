@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
-from sher3_control.settings import ControlSettings
+from sher3_control.settings import ControlSettings, MotionSettings
 from sher3_description import Robot, load_robot
 from sher3_drivers.settings import MotorDriverSettings, default_settings
 
 from .errors import ConfigurationError
 from .patience import CONTROL, DRIVES, Patience
+
+if TYPE_CHECKING:
+    from sher3_safety.budget import TravelBudget
 
 NODES = (
     "plant",
@@ -53,6 +56,8 @@ class RunSettings(BaseModel):
         pedal_device: joystick device of the pedal on the real robot.
         patience: time limits in force, see `patience`; the real robot has only the strict ones.
         seed: of the plant's noise.
+        near_speed, free_speed: speed caps of the two regimes [m/s], or None for those of the control settings; the
+            caps of turning go with them.
         regime: speed regime at the start, see `sher3_control.speed_cap`; by default `bench` on mocks, where nobody is
             near the tool, and `free` on the real robot.
     """
@@ -75,6 +80,8 @@ class RunSettings(BaseModel):
     pedal_device: str = ""
     patience: Patience = "strict"
     seed: Annotated[int, Field(ge=0)] = 0
+    near_speed: Annotated[float, Field(gt=0.0, le=0.05)] | None = None
+    free_speed: Annotated[float, Field(gt=0.0, le=0.05)] | None = None
     regime: Literal["", "near_tissue", "free", "bench"] = ""
 
     @model_validator(mode="after")
@@ -147,8 +154,24 @@ class RunSettings(BaseModel):
         """Return the settings of the control nodes."""
         overrides = CONTROL if self.patience == "patient" else {}
         regime = self.regime or ("bench" if self.mock else "free")
-        motion = {**overrides.get("motion", {}), "regime": regime}
+        motion = {**overrides.get("motion", {}), "regime": regime, **self._caps()}
         return ControlSettings.from_robot(self.robot(), {**overrides, "motion": motion})
+
+    def _caps(self) -> dict[str, float]:
+        """Return the overrides of the speed caps; a turn is capped as the speed is."""
+        defaults, caps = MotionSettings(), {}
+        for name, speed in (("near", self.near_speed), ("free", self.free_speed)):
+            if speed is not None:
+                usual: float = getattr(defaults, f"{name}_speed")
+                caps[f"{name}_speed"] = speed
+                caps[f"{name}_turning"] = getattr(defaults, f"{name}_turning") * speed / usual
+        return caps
+
+    def budget(self) -> TravelBudget:
+        """Return how far the tip may travel after each fault with these settings."""
+        from sher3_safety.budget import TravelBudget
+
+        return TravelBudget(self.robot(), self.control(), self.drives())
 
 
 def parse_processes(text: str | None, mock: bool, record: bool, monitor: bool = False) -> tuple[tuple[str, ...], ...]:
@@ -168,6 +191,7 @@ def checked(**options: object) -> RunSettings:
 
     Raises:
         ConfigurationError: an option is out of range, unknown, or contradicts another.
+        BudgetExceeded: after some fault the tip would travel farther than its regime allows; not asked on the bench.
         Sher3Error: the robot file or the CAN layout is invalid.
     """
     try:
@@ -179,4 +203,6 @@ def checked(**options: object) -> RunSettings:
     settings.robot()
     settings.drives().budgets()
     settings.load_effects()
+    if settings.control().motion.regime != "bench":
+        settings.budget().require()
     return settings

@@ -46,12 +46,12 @@ class WrenchSettings(Settings):
     Attributes:
         age_limit: oldest wrench sample that still counts [s].
         frozen_samples: this many bit-identical new samples in a row are a frozen sensor [1]. With the nominal noise
-            two neighbours agree in all six axes with probability 3e-4, ten in a row with 1e-32.
+            two neighbours agree in all six axes with probability 3e-4, six in a row with 2e-18.
         saturation: fraction of the sensor's range from which it is saturated [1].
     """
 
     age_limit: Seconds = 0.010
-    frozen_samples: Annotated[int, Field(ge=2, le=1000)] = 10
+    frozen_samples: Annotated[int, Field(ge=2, le=1000)] = 6
     saturation: Annotated[Number, Field(gt=0.5, le=1.0)] = 0.98
 
 
