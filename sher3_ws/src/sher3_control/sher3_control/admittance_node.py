@@ -13,6 +13,7 @@ import numpy as np
 from rclpy.node import Node
 from sher3_description import Robot, Sher3Error
 from sher3_kinematics import kernel_parameters
+from sher3_kinematics.direct import direct
 from sher3_runtime import JointSample, JoySample, TextSample, TwistSample, WrenchSample
 from sher3_runtime.ports import NODE_OPTIONS, advertise, clock_of, latest, on_tick, subscribe
 from std_srvs.srv import Trigger
@@ -57,9 +58,9 @@ class AdmittanceNode(Node):
         self._connect(robot.control_period)
 
     def _warm_up(self) -> None:
-        """Compile before the first tick instead of in it."""
-        roll_and_tilt(self._kernel, 0.0, 0.0)
-        step(initial_state(), self._input(0), self._p)
+        """Compile before the first tick instead of in it, for the types that every tick has."""
+        self._roll_and_tilt = direct(roll_and_tilt, self._kernel, 0.0, 0.0)
+        self._step = direct(step, self._state, self._input(0), self._p)
 
     def _connect(self, period: float) -> None:
         self._publish_twist = advertise(self, "servo_cv")
@@ -83,7 +84,7 @@ class AdmittanceNode(Node):
     def _look_at_joints(self) -> None:
         sample: JointSample | None = self._take_joints()
         if sample is not None and (q := sample.position) is not None and len(q) == 5:
-            self._joints = (sample.stamp, q, *roll_and_tilt(self._kernel, q[3], q[4]))
+            self._joints = (sample.stamp, q, *self._roll_and_tilt(self._kernel, q[3], q[4]))
 
     def _on_pedal(self, sample: JoySample) -> None:
         travel = sample.axes[0] if sample.axes else -1.0
@@ -112,7 +113,7 @@ class AdmittanceNode(Node):
         if (beat := self._take_heartbeat()) is not None:
             self._on_state(beat)
         law_input = self._input(stamp)
-        self._state, output = step(self._state, law_input, self._p)
+        self._state, output = self._step(self._state, law_input, self._p)
         if law_input.owner:
             self._publish_twist(TwistSample(stamp, output.twist))
         self._record(law_input)

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 from sher3_kinematics import InverseVelocity, LimitedVelocity, RobotKinematics
+from sher3_kinematics.direct import direct
 from sher3_kinematics.inverse_velocity import describe
 from sher3_kinematics.kernel_velocity import NOT_FINITE
 
@@ -52,13 +53,13 @@ class VelocityModes:
         self._gain = gain
         self._inverse = InverseVelocity(kinematics)
         self._parameters = np.array(kinematics.parameters)
+        self._cap_factor = direct(cap_factor, self._parameters, RESTING, RESTING, self.cap)
 
     def warm_up(self) -> None:
         """Run every compiled part once."""
         shaft_deviation(np.eye(3), np.zeros(3), np.zeros(3))
         rcm_velocity(self._parameters, np.zeros(5), np.zeros(6), np.zeros(3), self._gain, self._inverse.period)
         self._inverse(RESTING, (1e-6, 0.0, 0.0, 0.0, 0.0, 0.0), RESTING)
-        cap_factor(self._parameters, RESTING, RESTING, SpeedCap(1.0, 1.0))
 
     def set_centre(self, centre: Vector | None, q: Vector) -> None:
         """Set the remote centre [m] in {b}, or leave it with None.
@@ -87,13 +88,19 @@ class VelocityModes:
         return tuple((transform[:3, 3] + depth * transform[:3, 2]).tolist())
 
     def from_twist(self, q: Vector, twist: Vector, previous: Vector) -> Velocity:
-        """Return the actuator velocity for a tip twist (6,) in {b}; a zero twist is zero velocity at once."""
+        """Return the actuator velocity for a tip twist (6,) in {b}; a zero twist is zero velocity at once.
+
+        `q` and `previous` are finite (5,): the motion controller has judged them.
+        """
         if twist == ZERO_TWIST:
             return Velocity(RESTING, Reason.MOVING, "", 0.0)
         if not math.isfinite(sum(twist)):
             return Velocity(RESTING, Reason.COMMAND_NOT_FINITE, "", 0.0)
         if self.centre is None:
-            return self._capped(q, _velocity(self._inverse(q, twist, previous), 0.0))
+            q_dot, _, code = self._inverse.of_finite(q, twist, previous)
+            if code == NOT_FINITE:
+                return Velocity(RESTING, Reason.SINGULAR, "", 0.0)
+            return self._capped(q, Velocity(q_dot, Reason.MOVING, describe(code), 0.0))
         return self._capped(q, self._about_centre(q, twist, previous, self.centre))
 
     def _about_centre(self, q: Vector, twist: Vector, previous: Vector, centre: Array) -> Velocity:
@@ -113,7 +120,7 @@ class VelocityModes:
 
     def cap_factor(self, q: Vector, velocity: Vector) -> float:
         """Return by how much an actuator velocity (5,) is to be scaled for the speed caps; 1 or less."""
-        return 1.0 if math.isinf(self.cap.linear) else cap_factor(self._parameters, q, velocity, self.cap)
+        return 1.0 if math.isinf(self.cap.linear) else self._cap_factor(self._parameters, q, velocity, self.cap)
 
     def _capped(self, q: Vector, wanted: Velocity) -> Velocity:
         """Scale a velocity as a whole, so that the tip keeps its direction."""

@@ -10,6 +10,7 @@ from sher3_description import ACTUATORS
 
 from . import kernel_velocity as codes
 from .arrays import Floats, compiled, unpack, vector
+from .direct import direct
 from .errors import BadInput
 from .robot_kinematics import RobotKinematics
 
@@ -65,6 +66,18 @@ class InverseVelocity:
         self.limits = np.array([lower, upper, kinematics.velocity, kinematics.acceleration])
         self._elevation = REACH_MARGIN * kinematics.delta.least_elevation
         self._values = np.array(kinematics.parameters)
+        self._constants = (self.limits, self._elevation, self.period, self.reaction)
+        rest, still = (0.0,) * 5, (0.0,) * 6
+        self._finite = direct(_limited_inverse, self._values, rest, still, rest, *self._constants)
+
+    def of_finite(
+        self, q: tuple[float, ...], twist: tuple[float, ...], previous: tuple[float, ...]
+    ) -> tuple[tuple[float, ...], float, int]:
+        """Return as the call does q_dot, scale and limit code (see `describe`), for tuples of finite numbers.
+
+        This is the control loop's way, which has judged its inputs: 2 us in place of 12.
+        """
+        return self._finite(self._values, q, twist, previous, *self._constants)
 
     def __call__(
         self, q: Sequence[float] | Floats, twist: Sequence[float] | Floats, previous: Sequence[float] | Floats
@@ -124,3 +137,23 @@ def _limit(
     p = unpack(parameters)
     scale, code = codes.limit_velocity_into(p, q, wanted, previous, limits, elevation, period, reaction, q_dot)
     return q_dot, scale, code
+
+
+@compiled
+def _limited_inverse(
+    parameters: Floats,
+    q: tuple[float, ...],
+    twist: tuple[float, ...],
+    previous: tuple[float, ...],
+    limits: Floats,
+    elevation: float,
+    period: float,
+    reaction: float,
+) -> tuple[tuple[float, ...], float, int]:
+    state, wanted, q_dot = np.array(q), np.empty(5), np.empty(5)
+    p = unpack(parameters)
+    codes.twist_inverse_into(p, state, np.array(twist), wanted)
+    scale, code = codes.limit_velocity_into(
+        p, state, wanted, np.array(previous), limits, elevation, period, reaction, q_dot
+    )
+    return (q_dot[0], q_dot[1], q_dot[2], q_dot[3], q_dot[4]), scale, code
