@@ -126,11 +126,12 @@ class Supervisor:
         """Go to FAULT, or to PAUSED for what only asks for that; return whether anything changed."""
         first = max(found, key=lambda finding: finding.action)
         target = OperatingState.PAUSED if first.action <= Action.PAUSE else OperatingState.FAULT
-        if target is self.state:
+        if target is self.state and self.status.first_fault is not None:
             return self._count(found)
+        since = self.status.since if target is self.state else now
         self._seen = {f.code for f in found}
         later = len(self._seen) - 1
-        self.status = Status(target, now, first.code, first, later, first.action, self.status.homed)
+        self.status = Status(target, since, first.code, first, later, first.action, self.status.homed)
         return True
 
     def _count(self, found: list[Finding]) -> bool:
