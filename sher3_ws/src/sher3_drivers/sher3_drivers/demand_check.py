@@ -45,6 +45,11 @@ class DemandCheck:
         """Take note of a velocity command on its way to the drives, in their counts."""
         self._sent.append(tuple([n * scale.velocity for n, scale in zip(counts, self._scales, strict=True)]))
 
+    @property
+    def newest(self) -> Vector:
+        """The newest command on the wire (5,) [m/s, rad/s]; zero before the first."""
+        return self._sent[-1] if self._sent else (0.0,) * len(self._scales)
+
     def check(self, echo: Vector) -> Trip | None:
         """Judge the echoes (5,) [m/s, rad/s] of a tick."""
         if not self._sent:

@@ -8,6 +8,7 @@ from sher3_description.reasons import Action, Reason
 
 from .demand_check import DemandCheck
 from .feedback import Feedback
+from .frozen_check import FrozenCheck
 from .joint_checks import JointWatch
 from .rest_check import RestCheck
 from .settings import MotorDriverSettings
@@ -20,18 +21,21 @@ class MotionWatch:
 
     Attributes:
         demand: what was sent, and what the drives say they execute.
+        frozen: reports that stand while the axis was told to go.
         joints: encoders and demand.
         rest: a stopped robot.
     """
 
     def __init__(self, scales: Sequence[AxisScale], settings: MotorDriverSettings) -> None:
         self.demand = DemandCheck(scales, settings)
+        self.frozen = FrozenCheck(scales, settings)
         self.joints = JointWatch(scales, settings)
         self.rest = RestCheck(scales, settings)
 
     def begin(self) -> None:
         """Start afresh with axes that are about to follow."""
         self.demand.begin()
+        self.frozen.begin()
         self.joints.begin()
 
     def check(self, feedback: Feedback, tick: int, following: bool, stop: StopLog, now: int) -> Trip | None:
@@ -39,7 +43,11 @@ class MotionWatch:
         if stop.first is None:
             if not following:
                 return None
-            return self.demand.check(feedback.velocity_demand) or self.joints.check(feedback, tick)
+            return (
+                self.demand.check(feedback.velocity_demand)
+                or self.frozen.check(feedback, self.demand.newest)
+                or self.joints.check(feedback, tick)
+            )
         moved = self.rest.check(feedback.motor_position, stop.since, now)
         return moved if stop.action < Action.POWER_OFF else None
 

@@ -67,9 +67,9 @@ def test_the_local_pedal_follows_its_sender_and_notices_its_silence(tmp_path, mo
     assert pedal.read() is None
     assert sender.send(PedalState(0.25, False)) and sender.send(PedalState(0.75, True))
     assert pedal.read() == PedalState(0.75, True)
-    now[0] += 90_000_000
+    now[0] += 18_000_000
     assert pedal.read() == PedalState(0.75, True)
-    now[0] += 20_000_000
+    now[0] += 4_000_000
     with pytest.raises(DeviceMissing, match="silent"):
         pedal.read()
     sender.send(PedalState(0.0, False))

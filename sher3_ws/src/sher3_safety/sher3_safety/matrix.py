@@ -54,6 +54,7 @@ class Row:
         quiet: states in which nothing needs to be noticed, since nothing can move.
         quick: belongs to the compact set of the default test run.
         release: the operator releases the pedal as the fault sets in; whatever the fault, the tip has to stop.
+        budget: where not that of the state, m; `why` says why.
         why: what is behind a `goes on`, for the report.
     """
 
@@ -66,6 +67,7 @@ class Row:
     quiet: tuple[str, ...] = ()
     quick: bool = False
     release: bool = False
+    budget: float | None = None
     why: str = ""
 
     @property

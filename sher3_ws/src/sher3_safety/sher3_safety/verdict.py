@@ -43,14 +43,15 @@ def judge(row: Row, state: State, outcome: Outcome | None) -> Verdict:
 
 
 def _misses(row: Row, state: State, o: Outcome) -> Iterator[str]:
+    budget = state.budget if row.budget is None else row.budget
     if o.speed < 0.8 * state.speed:
         yield f"moved at {o.speed * 1e3:.2f} mm/s before the fault instead of {state.speed * 1e3:g}"
     if row.effect == "goes on" and o.tripped:
         yield f"tripped: {o.reason}"
     if row.effect == "stops":
-        yield from _of_a_stop(row, state, o)
-    elif o.excess > state.budget:
-        yield f"{o.excess * 1e6:.0f} um off its way (budget {state.budget * 1e6:.0f} um)"
+        yield from _of_a_stop(row, state, o, budget)
+    elif o.excess > budget and row.effect != "residual":
+        yield f"{o.excess * 1e6:.0f} um off its way (budget {budget * 1e6:.0f} um)"
     if row.effect == "stops" or (row.effect == "either" and o.tripped):
         if o.alone > STANDS * state.budget:
             yield f"moved {o.alone * 1e6:.1f} um before the pedal was released"
@@ -58,9 +59,9 @@ def _misses(row: Row, state: State, o: Outcome) -> Iterator[str]:
             yield "did not move again after recovery, release and press"
 
 
-def _of_a_stop(row: Row, state: State, o: Outcome) -> Iterator[str]:
-    if o.travel > state.budget:
-        yield f"travelled {o.travel * 1e6:.0f} um (budget {state.budget * 1e6:.0f} um)"
+def _of_a_stop(row: Row, state: State, o: Outcome, budget: float) -> Iterator[str]:
+    if o.travel > budget:
+        yield f"travelled {o.travel * 1e6:.0f} um (budget {budget * 1e6:.0f} um)"
     if o.stop is None or o.stop > STOP_LIMIT:
         yield "did not stop" if o.stop is None else f"stood after {o.stop * 1e3:.0f} ms (limit {STOP_LIMIT * 1e3:.0f})"
     if row.release or state.name in row.quiet:
