@@ -196,6 +196,12 @@ def _few_repeats(runs: Sequence[RunSignals]) -> list[str]:
 
 def _missing(runs: Sequence[RunSignals]) -> list[str]:
     notes = []
+    guided = sum(run.reference is None and not run.loaded_ok.any() for run in runs)
+    if guided:
+        notes.append(
+            f"{guided} of {len(runs)} runs have no set-points: somebody guided the tool by a force that is not known: "
+            "only transport, drive and transmission are judged in them"
+        )
     for signal, (topic, stages) in STAGES_OF.items():
         without = sum(getattr(run, signal) is None for run in runs)
         if without == len(runs):

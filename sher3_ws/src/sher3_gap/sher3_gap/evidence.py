@@ -14,7 +14,7 @@ from sher3_gap.floors import Floors, floors
 from sher3_gap.geometry import Geometry
 from sher3_gap.library import View
 from sher3_gap.residuals import Demand, Residuals, all_residuals, motor_residual
-from sher3_gap.selffloor import driven_as
+from sher3_gap.selffloor import driven_as, followed
 from sher3_gap.signals import RunSignals
 from sher3_gap.timing import Timing, demand_in_force, timing_of
 
@@ -45,8 +45,8 @@ SHIFTS = (0.0, 0.5)
 
 
 def own_residuals(run: RunSignals, robot: Robot, shift: float) -> Residuals:
-    """Residuals of the nominal plant driven as a run was; empty when the run has no set-points."""
-    twin = driven_as(run, robot, shift=shift)
+    """Residuals of the nominal plant driven as a run was; a run without set-points is followed."""
+    twin = driven_as(followed(run), robot, shift=shift)
     return {} if twin is None else all_residuals(twin, robot, Geometry(robot))
 
 
@@ -54,7 +54,7 @@ def gather(runs: Sequence[RunSignals], robot: Robot) -> Evidence:
     """Compute residuals, floors and whitened targets of a case."""
     geometry = Geometry(robot)
     timing = timing_of(runs, robot)
-    demands = [demand_in_force(run, timing) for run in runs]
+    demands = [demand_in_force(run, robot, timing) for run in runs]
     residuals = [all_residuals(run, robot, geometry, d) for run, d in zip(runs, demands, strict=True)]
     simulated = [[own_residuals(run, robot, shift) for shift in SHIFTS] for run in runs]
     own = floors(runs, residuals, simulated, robot)

@@ -43,7 +43,7 @@ class GapMonitorNode(Node):
         for status in found:
             self._publish(diagnostic(stamp, status))
         if not found:
-            self._publish(DiagnosticSample(stamp, "gap", STALE, "waiting for an unbroken window of samples"))
+            self._publish(DiagnosticSample(stamp, "gap", STALE, "waiting for a window without long holes"))
 
 
 def diagnostic(stamp: int, status: StageStatus) -> DiagnosticSample:

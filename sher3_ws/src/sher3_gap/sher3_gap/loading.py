@@ -16,8 +16,10 @@ from sher3_gap.channels import Array
 from sher3_gap.errors import CaseError as CaseError
 from sher3_gap.exact import with_lateness
 from sher3_gap.signals import RunSignals, low_pass
-from sher3_gap.ticks import Gap, on_grid, tick_grid
+from sher3_gap.ticks import Gap, in_order, is_live, on_grid, tick_grid
 
+LOADED = 0.15
+"""Force beside the tool's weight [N] from which a tip is not free."""
 RAMP_LIMIT = 0.25
 """Longest time from an unloaded tip to a stated plateau over which the load is taken as unknown, s."""
 
@@ -41,6 +43,7 @@ def signals_of(run: Run, robot: Robot, label: str = "run") -> RunSignals:
     if "drives/measured_js" not in run:
         raise CaseError(f"{label}: topic drives/measured_js is missing", remedy="record the drives' streams")
     name = run.path.name if run.path else label
+    run = in_order(run)
     stamps, lost = tick_grid(run["drives/measured_js"].stamp, robot.control_period, name)
     period = robot.control_period
 
@@ -85,15 +88,24 @@ def signals_of(run: Run, robot: Robot, label: str = "run") -> RunSignals:
         lost=lost if lost.any() else None,
         **tracker,  # type: ignore[arg-type]
     )
-    return with_lateness(signals, robot) if run.metadata.origin == "robot" else signals
+    return with_lateness(signals, robot) if is_live(run) else signals
+
+
+def free(wrench: Array, robot: Robot) -> np.ndarray:
+    """Ticks at which no more than the tool's weight, in any orientation, acts on the force sensor, (n,)."""
+    weight = robot.force_sensor.tool_mass * 9.81
+    return np.linalg.norm(wrench[:, :3], axis=1) < weight + LOADED
 
 
 def _contact(run: Run, wrench: Array | None, ticks: np.ndarray, period: float) -> tuple[Array, np.ndarray]:
-    """Known tip load per tick and where it is known: not on the ramps to and from the stated plateaus."""
+    """Known tip load per tick and where it is known: not on the ramps to and from the stated plateaus.
+
+    Without set-points somebody guides the tool, and his force is not known at any time.
+    """
     clock = (ticks - ticks[0]) * 1e-9
     contact, known = np.zeros((len(ticks), 3)), np.ones(len(ticks), dtype=bool)
     if not run.metadata.payload:
-        return contact, known
+        return contact, known if "setpoint_js" in run else ~known
     ramps = np.zeros(len(ticks), dtype=bool)
     plateau = np.zeros(len(ticks), dtype=bool)
     for start, stop, *force in run.metadata.payload:

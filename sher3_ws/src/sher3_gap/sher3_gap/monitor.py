@@ -8,19 +8,22 @@ subtracted, so that a known effect no longer counts as a gap.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
-from sher3_bags import RunMetadata
+from sher3_bags import Run, RunMetadata, Stream
+from sher3_bags.run import stream
 from sher3_description import ACTUATORS, Robot
 from sher3_runtime.samples import JointSample, WrenchSample
 from sher3_sim import Effect
 
 from sher3_gap.channels import Channel, unit_of
+from sher3_gap.errors import CaseError
 from sher3_gap.exact import EXACT, controller_error, transport_error
 from sher3_gap.floors import Floors, chatter_floors, resolution_floors
 from sher3_gap.geometry import Geometry
+from sher3_gap.loading import free, signals_of
 from sher3_gap.residuals import (
     Residual,
     Residuals,
@@ -31,14 +34,13 @@ from sher3_gap.residuals import (
 )
 from sher3_gap.selffloor import driven_as
 from sher3_gap.signals import RunSignals
+from sher3_gap.ticks import LONGEST_HOLE
 
 TOPICS = ("setpoint_js", "servo_jv", "drives/setpoint_jv", "drives/measured_js", "measured_js", "force/measured_cf")
 NEEDED = ("drives/measured_js", "drives/setpoint_jv", "measured_js")
-"""Without one of these at a tick, the tick is a hole."""
+"""Without one of these a tick is not complete."""
 WINDOW = 4.0
 """Seconds a gap is taken over."""
-LOADED = 0.15
-"""Force beside the tool's weight [N] from which the tip is not free: the axes' mechanics are then not judged."""
 WARNING, ERROR = 1.5, 3.0
 """Gap over floor from which a stage is reported as a warning and as an error."""
 
@@ -89,7 +91,7 @@ class Monitor:
             del self._ticks[next(iter(self._ticks))]
 
     def judge(self) -> list[StageStatus]:
-        """Return gap and floor per stage over the newest unbroken window; empty while it is not full."""
+        """Return gap and floor per stage over the newest window; empty while it is not full or badly broken."""
         run = self._window()
         if run is None:
             return []
@@ -110,54 +112,36 @@ class Monitor:
         return {c: Residual(r.values - known[c].values, r.ok) for c, r in real.items() if c in known}
 
     def _window(self) -> RunSignals | None:
-        """Return the newest window as a run, or None while a tick of it is missing."""
+        """Return the newest window as a run; None while it is not full or a hole in it is too long to bridge."""
         period = round(self.robot.control_period * 1e9)
-        count = round(self.window / self.robot.control_period)
         last = self._last_complete()
-        stamps = [last - k * period for k in range(count - 1, -1, -1)]
-        rows = [self._ticks.get(s, {}) for s in stamps]
-        if not all(all(t in row for t in NEEDED) for row in rows):
+        first = last - (round(self.window / self.robot.control_period) - 1) * period
+        stamps = sorted(s for s in self._ticks if first <= s <= last)
+        if not stamps or stamps[0] > first + LONGEST_HOLE * 1e9:
             return None
-        return _as_run(rows, stamps, self.robot)
+        run = Run({t: s for t in TOPICS if (s := self._stream(t, stamps)) is not None}, RunMetadata(origin="robot"))
+        try:
+            signals = signals_of(run, self.robot, f"window at {last}")
+        except CaseError:
+            return None
+        return signals if signals.wrench is None else replace(signals, contact_known=free(signals.wrench, self.robot))
+
+    def _stream(self, topic: str, stamps: list[int]) -> Stream | None:
+        """Return what was heard of a topic at the stamps."""
+        heard = [(s, self._ticks[s][topic]) for s in stamps if topic in self._ticks[s]]
+        if not heard:
+            return None
+        sample = heard[0][1]
+        if isinstance(sample, WrenchSample):
+            wrench = np.array([x.wrench for _, x in heard])
+            return stream(topic, [s for s, _ in heard], force=wrench[:, :3], torque=wrench[:, 3:])
+        names = [n for n in ("position", "velocity", "effort") if getattr(sample, n) is not None]
+        columns: dict[str, Any] = {n: np.array([getattr(x, n) for _, x in heard], dtype=float) for n in names}
+        return stream(topic, [s for s, _ in heard], **columns)
 
     def _last_complete(self) -> int:
         """Return the newest stamp at which every needed stream has arrived."""
         return next((s for s in reversed(self._ticks) if all(t in self._ticks[s] for t in NEEDED)), self._newest)
-
-
-def _as_run(rows: list[dict[str, Any]], stamps: list[int], robot: Robot) -> RunSignals:
-    def column(topic: str, name: str) -> np.ndarray | None:
-        if not all(topic in row and getattr(row[topic], name) is not None for row in rows):
-            return None
-        return np.array([getattr(row[topic], name) for row in rows], dtype=float)
-
-    motor = column("drives/measured_js", "position")
-    assert motor is not None, "needed"
-    wrench = column("force/measured_cf", "wrench")
-    return RunSignals(
-        name=f"window at {stamps[-1]}",
-        excitation=RunMetadata().excitation,
-        repeat=0,
-        period=robot.control_period,
-        stage_clock=np.arange(len(rows), dtype=np.float64) * robot.control_period,
-        motor=motor,
-        effort=column("drives/measured_js", "effort"),
-        reference=column("setpoint_js", "position"),
-        reference_velocity=column("setpoint_js", "velocity"),
-        command=column("servo_jv", "velocity"),
-        echo=column("drives/setpoint_jv", "velocity"),
-        load=column("measured_js", "position"),
-        wrench=wrench,
-        contact=np.zeros((len(rows), 3)),
-        contact_known=np.ones(len(rows), dtype=bool) if wrench is None else _free(wrench, robot),
-        start=stamps[0],
-    )
-
-
-def _free(wrench: np.ndarray, robot: Robot) -> np.ndarray:
-    """Ticks at which no more than the tool's weight, in any orientation, acts on the sensor."""
-    weight = robot.force_sensor.tool_mass * 9.81
-    return np.linalg.norm(wrench[:, :3], axis=1) < weight + LOADED
 
 
 def _residuals(run: RunSignals, robot: Robot, geometry: Geometry) -> Residuals:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from sher3_bags import RunMetadata
 from sher3_description import Robot
@@ -33,6 +35,14 @@ def driven_as(run: RunSignals, robot: Robot, seed: int = 0, shift: float = 0.0, 
         **plant,  # type: ignore[arg-type]
     )
     return signals_of(simulated, robot, run.name)
+
+
+def followed(run: RunSignals) -> RunSignals:
+    """Return a run without set-points with its own motion as set-points: a twin then moves as the run did."""
+    if run.reference is not None:
+        return run
+    path = run.smooth
+    return replace(run, reference=path, reference_velocity=np.gradient(path, run.period, axis=0))
 
 
 def bridged(run: RunSignals) -> Array:

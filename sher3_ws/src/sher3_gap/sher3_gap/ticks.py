@@ -2,23 +2,53 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
+from sher3_bags import Run, Stream
 
 from sher3_gap.channels import Array
 from sher3_gap.errors import CaseError as CaseError
 
 LOST_SHARE = 0.05
 """Share of the ticks that may be missing."""
-LONGEST_HOLE = 0.05
+LONGEST_HOLE = 0.08
 """Seconds without a tick up to which a hole is bridged."""
 LEAST_TICKS = 101
+LIVELY = 2e4
+"""Spread of the time from stamp to arrival [ns] from which a recording is a live one."""
 Gap = Literal["line", "hold", "next"]
 """What stands in a hole: a straight line, the sample before (commands), or the one after (demand executed since)."""
 Stamps = NDArray[np.int64]
 Mask = NDArray[np.bool_]
+
+
+def in_order(run: Run) -> Run:
+    """Return a run whose streams follow their stamps: samples that arrived late are put in place, second ones dropped.
+
+    A stamp further back than `LONGEST_HOLE` is a clock that jumps, and stays for `tick_grid` to refuse.
+    """
+    return replace(run, streams={topic: _in_order(s) for topic, s in run.streams.items()})
+
+
+def _in_order(stream: Stream) -> Stream:
+    steps = np.diff(stream.stamp)
+    if "data" in stream.columns or not len(steps) or steps.min() > 0 or steps.min() < -1e9 * LONGEST_HOLE:
+        return stream
+    stamps, first = np.unique(stream.stamp, return_index=True)
+    columns = {name: np.asarray(values)[first] for name, values in stream.columns.items()}
+    logged = None if stream.log_time is None else stream.log_time[first]
+    return Stream(stream.type, stamps, stream.frame_id, columns, logged)
+
+
+def is_live(run: Run) -> bool:
+    """Whether a run was recorded as it happened: samples arrive after their stamps, not all by the same time."""
+    if run.metadata.origin == "robot":
+        return True
+    stream = run.streams.get("servo_jv")
+    return stream is not None and stream.log_time is not None and float(np.std(stream.log_time - stream.stamp)) > LIVELY
 
 
 def tick_grid(stamps: Stamps, expected: float, name: str) -> tuple[Stamps, Mask]:

@@ -57,10 +57,17 @@ def test_late_commands_show_in_transport():
     assert not found["controller", "delta_1"].level
 
 
-def test_a_hole_in_the_window_gives_no_answer():
-    run_start = 1_700_000_000_000_000_000
-    hole = run_start + 1500 * 2_000_000
-    assert judged(skip=lambda topic, sample: topic == "measured_js" and sample.stamp == hole) == {}
+HOLE = 1_700_000_000_000_000_000 + 1500 * 2_000_000
+
+
+def test_a_lost_sample_is_bridged():
+    found = judged(skip=lambda topic, sample: topic == "measured_js" and sample.stamp == HOLE)
+    assert len(found) == 26
+    assert {k: s.ratio for k, s in found.items() if s.level} == {}
+
+
+def test_a_long_hole_in_the_window_gives_no_answer():
+    assert judged(skip=lambda topic, sample: topic != "setpoint_js" and 0 <= sample.stamp - HOLE < 10**8) == {}
 
 
 def test_memory_is_bounded():
