@@ -62,7 +62,7 @@ BODY = np.dtype(
         ("bending", "f8"),
         ("mode_frequency", "f8"),
         ("mode_damping", "f8"),
-        ("mode_gain", "f8"),
+        ("mode_gain", "f8", 3),  # along x, y, z of {b}
         # mechanism, beyond the geometry: growth [1/K] of everything, of the links, of the arm
         ("expansion", "f8"),
         ("link_expansion", "f8"),

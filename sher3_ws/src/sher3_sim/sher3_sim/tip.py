@@ -107,7 +107,7 @@ def vibrate(b: Any, s: Any, acceleration: Array, shift: Array) -> None:
     damped = w * math.sqrt(1.0 - zeta * zeta)
     decay, c, sn = math.exp(-zeta * w * h), math.cos(damped * h), math.sin(damped * h)
     for i in range(3):
-        rest = -b.mode_gain * acceleration[i] / (w * w)
+        rest = -b.mode_gain[i] * acceleration[i] / (w * w)
         x, v = s.mode_shift[i] - rest, s.mode_rate[i]
         side = (v + zeta * w * x) / damped
         s.mode_shift[i] = rest + decay * (x * c + side * sn)
@@ -161,7 +161,7 @@ def true_tip(
         for k in range(3):
             rotation[:, k] += cross(twist[3:], rotation[:, k])
         bending_shift(b.bending, rotation, wrench, shift)
-    if b.mode_gain != 0.0:
+    if np.any(b.mode_gain != 0.0):
         vibrate(b, s, (tip_rate - s.tip_rate) / b.period, shift)
     if b.link_expansion != 0.0:
         add_growth(p, b.link_expansion * warmth, q, jacobian, shift)

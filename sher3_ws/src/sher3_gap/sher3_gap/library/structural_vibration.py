@@ -17,7 +17,7 @@ class StructuralVibration(LibraryEffect):
     id, family, stage = "structural_vibration", "compliance", "structure"
     explanation = "After each acceleration the tip rings at one frequency while the encoders are still."
     siblings = {"structural_compliance": "follows a static load without ringing"}
-    units = {"frequency": "Hz", "damping": "1", "amplitude": "1"}
+    units = {"frequency": "Hz", "damping": "1", "amplitude": "1", "x": "1", "y": "1", "z": "1"}
     FREQUENCIES = (4.0, 5.0, 6.3, 8.0, 10.0, 12.5, 15.0, 17.5, 20.0, 22.5, 25.0, 28.0, 31.0, 34.0, 38.0, 42.0, 46.0)
 
     def sites(self) -> tuple[str, ...]:
@@ -53,5 +53,7 @@ class StructuralVibration(LibraryEffect):
         return Signature(view.at_tip(columns))
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Frequency, damping and participation."""
-        return {**shape, "amplitude": float(np.linalg.norm(coefficients))}
+        """Frequency, damping, and participation with its direction."""
+        amplitude = float(np.linalg.norm(coefficients))
+        direction = coefficients / amplitude if amplitude > 0.0 else np.zeros(3)
+        return {**shape, "amplitude": amplitude, **dict(zip("xyz", direction.tolist(), strict=True))}

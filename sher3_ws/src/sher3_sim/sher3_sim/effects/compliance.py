@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from sher3_sim.effects.base import SLIDERS, Effect, parameter
 from sher3_sim.parameters import PlantParameters
 
@@ -68,9 +70,12 @@ class StructuralVibration(Effect, id="structural_vibration", family="compliance"
     frequency: float = parameter("Hz", 25.0, 1.0, 200.0, "of the undamped mode")
     damping: float = parameter("1", 0.03, 1e-3, 0.9, "damping ratio")
     amplitude: float = parameter("1", 1.0, 0.0, 20.0, "deflection per static deflection under the tip's acceleration")
+    x: float = parameter("1", 1.0, -1.0, 1.0, "share of the amplitude along x of {b}")
+    y: float = parameter("1", 1.0, -1.0, 1.0, "share of the amplitude along y of {b}")
+    z: float = parameter("1", 1.0, -1.0, 1.0, "share of the amplitude along z of {b}")
 
     def apply(self, p: PlantParameters) -> None:
         """Add the mode."""
         p.body["mode_frequency"] = self.frequency
         p.body["mode_damping"] = self.damping
-        p.body["mode_gain"] = self.amplitude
+        p.body["mode_gain"] = self.amplitude * np.array([self.x, self.y, self.z])
