@@ -9,7 +9,8 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numba.np.unsafe.ndarray import to_fixed_tuple
+from numba import config
+from numba.np.unsafe.ndarray import to_fixed_tuple as _to_fixed_tuple
 from numpy.typing import NDArray
 
 from . import kernel, kernel_reach
@@ -57,6 +58,11 @@ def rows(values: Sequence[Sequence[float]] | Floats, size: int, name: str) -> Fl
     if result.ndim != 2 or result.shape[1] != size:
         raise BadInput(f"{name} has the wrong shape", value=result.shape, limit=("n", size), remedy="give one row each")
     return result
+
+
+_OFF = config.DISABLE_JIT  # type: ignore[attr-defined]
+to_fixed_tuple = (lambda array, _: tuple(array)) if _OFF else _to_fixed_tuple
+"""Numba's own is for compiled code alone; with numba switched off, as mutation checks do, Python's does."""
 
 
 @compiled
