@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Optional
 
 import typer
 
@@ -25,7 +25,10 @@ def safety(
     only: Annotated[str, typer.Option(help="Only components whose name begins so.")] = "",
     quick: Annotated[bool, typer.Option("--quick", help="The compact set of the default test run.")] = False,
     wall: Annotated[bool, typer.Option("--wall", help="Kill and hold processes in wall time instead.")] = False,
-    healthy: Annotated[float, typer.Option(help="Minutes of healthy running to count false trips in.", min=0.0)] = 0.0,
+    healthy: Annotated[
+        Optional[float],  # noqa: UP045
+        typer.Option(help="Minutes of healthy running to count false trips in; 5 with the whole matrix.", min=0.0),
+    ] = None,
     seed: Annotated[int, typer.Option(help="Seed of noise and faults.", min=0)] = 1,
     jobs: Annotated[int, typer.Option(help="Processes at a time (stepped time only).", min=1, max=16)] = 1,
     as_json: Json = False,
@@ -42,10 +45,11 @@ def safety(
 
     run: Any = run_wall if wall else run_matrix
     result = run(out, only=only, quick=quick, seed=seed, jobs=jobs, say=_say)
-    if healthy:
+    minutes = healthy if healthy is not None else 0.0 if only or quick or wall else 5.0
+    if minutes:
         from .safety_healthy import run_healthy
 
-        result.false_trips = run_healthy(out, healthy, seed, jobs, _say)
+        result.false_trips = run_healthy(out, minutes, seed, jobs, _say)
     result.write(out)
     typer.echo(json.dumps(result.to_dict()) if as_json else result.as_text())
     if result.missed:

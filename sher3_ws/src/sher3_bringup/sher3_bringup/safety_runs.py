@@ -61,6 +61,9 @@ class MatrixRun:
             self.graph.step(duration)
         self.graph.step(OBSERVE)
         self._inject(make_request(component=row.component, fault=OK, label=label).to_json())
+        if row.final:
+            self.graph.step(5)
+            return False
         if row.effect == "goes on" and operator.state == "ENABLED":
             self.graph.step(5)
             operator.pedal = 0.0

@@ -66,7 +66,7 @@ def run_case(row: Row, state: State, folder: Path, seed: int = 1, domain: int = 
         outcome = _run(row, state, folder / name, seed, domain)
         if outcome is not None and outcome.speed >= 0.8 * state.speed:
             break
-    return judge(row, state, outcome)
+    return judge(row, state, outcome, recovered=False)
 
 
 def _run(row: Row, state: State, bag: Path, seed: int, domain: int) -> Outcome | None:

@@ -77,6 +77,11 @@ class Row:
         name = f"{self.component} {self.fault}" + (f" ({', '.join(parts)})" if parts else "")
         return name + ", pedal released" * self.release
 
+    @property
+    def final(self) -> bool:
+        """Whether there is no way back: a process that was killed."""
+        return self.component.startswith("process.") and self.fault == "off"
+
     def request(self, seed: int, label: str) -> FaultRequest:
         """Return what is sent on `mock/fault`."""
         return make_request(

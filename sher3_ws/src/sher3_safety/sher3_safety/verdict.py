@@ -35,14 +35,14 @@ class Verdict:
         return {"name": self.row.name, **cell, **expected, "outcome": outcome, "misses": list(self.misses)}
 
 
-def judge(row: Row, state: State, outcome: Outcome | None) -> Verdict:
-    """Return the verdict on one cell."""
+def judge(row: Row, state: State, outcome: Outcome | None, recovered: bool = True) -> Verdict:
+    """Return the verdict on one cell; `recovered`: the operator tried to go on afterwards."""
     if outcome is None:
         return Verdict(row, state, None, ("not in the recording",))
-    return Verdict(row, state, outcome, tuple(_misses(row, state, outcome)))
+    return Verdict(row, state, outcome, tuple(_misses(row, state, outcome, recovered)))
 
 
-def _misses(row: Row, state: State, o: Outcome) -> Iterator[str]:
+def _misses(row: Row, state: State, o: Outcome, recovered: bool) -> Iterator[str]:
     budget = state.budget if row.budget is None else row.budget
     if o.speed < 0.8 * state.speed:
         yield f"moved at {o.speed * 1e3:.2f} mm/s before the fault instead of {state.speed * 1e3:g}"
@@ -55,7 +55,7 @@ def _misses(row: Row, state: State, o: Outcome) -> Iterator[str]:
     if row.effect == "stops" or (row.effect == "either" and o.tripped):
         if o.alone > STANDS * state.budget:
             yield f"moved {o.alone * 1e6:.1f} um before the pedal was released"
-        if o.resumed < MOVES_AGAIN:
+        if o.resumed < MOVES_AGAIN and recovered and not row.final:
             yield "did not move again after recovery, release and press"
 
 

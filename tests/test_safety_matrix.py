@@ -1,0 +1,76 @@
+"""The compact matrix of faults in stepped time: every verdict is read from the bags it leaves in bags/tests/safety."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from sher3_bags.reading import read_run
+from sher3_bringup.safety_matrix import run_matrix
+from sher3_bringup.safety_runs import run_cells
+from sher3_description import load_robot
+from sher3_safety.matrix import IDLE, LIMIT, STATES, Row
+from sher3_safety.report import misses
+from sher3_safety.verdict import judge
+from sources import ROOT
+
+pytestmark = pytest.mark.graph
+FOLDER = ROOT / "bags" / "tests" / "safety"
+
+
+@pytest.fixture(scope="module")
+def compact():
+    return run_matrix(FOLDER, quick=True)
+
+
+def test_every_cell_of_the_compact_matrix_holds(compact):
+    """It stops in time, within the budget, for the stated reason, and moves again only after release-then-press."""
+    assert len(compact.verdicts) >= 45
+    assert not misses(compact.verdicts)
+
+
+def test_every_state_and_every_kind_of_component_is_in_it(compact):
+    components = {verdict.row.component.partition(".")[0] for verdict in compact.verdicts}
+    assert components >= {"force_sensor", "pedal", "bus", "delta_1", "process", "clock"}
+    assert {verdict.state.name for verdict in compact.verdicts} == {state.name for state in STATES}
+
+
+def test_the_robot_was_at_speed_before_and_moved_again_after(compact):
+    """Without this a robot that never moves would pass."""
+    for verdict in compact.verdicts:
+        assert verdict.outcome.speed == pytest.approx(verdict.state.speed, rel=0.2, abs=2e-5)
+        if verdict.row.effect == "stops":
+            assert verdict.outcome.resumed > 20e-6
+
+
+def test_the_report_has_every_row(compact, tmp_path):
+    compact.write(tmp_path)
+    text = (tmp_path / "report.md").read_text()
+    assert all(f"| {verdict.row.name} |" in text for verdict in compact.verdicts)
+    cells = json.loads((tmp_path / "report.json").read_text())["cells"]
+    assert len(cells) == len(compact.verdicts)
+
+
+def test_the_bag_says_what_was_injected(compact):
+    run = read_run(FOLDER / "compact", check=False)
+    labels = {json.loads(text).get("label") for text in run["mock/fault"].data}
+    assert {f"{v.row.name} | {v.state.name}" for v in compact.verdicts} & labels
+
+
+def test_a_fault_that_nobody_sees_misses():
+    """The verdict must be able to fail: a force scaled by 1.2 is no fault anybody could notice."""
+    row = Row("force_sensor", "wrong", {"scale": 1.2})
+    found = run_cells("unseen", [(row, LIMIT)], load_robot(), FOLDER)
+    verdict = judge(row, LIMIT, found[f"{row.name} | {LIMIT.name}"])
+    assert "nobody noticed" in verdict.misses and "did not stop" in verdict.misses
+
+
+def test_a_fault_is_the_same_again_for_its_seed():
+    row = Row("force_sensor", "intermittent", {"probability": 0.8}, effect="either")
+    runs = [run_cells("seeded", [(row, IDLE), (row, LIMIT)], load_robot(), FOLDER, seed=5) for _ in range(2)]
+    assert runs[0] == runs[1]
+
+
+@pytest.mark.slow
+def test_the_whole_matrix_holds():
+    assert not misses(run_matrix(FOLDER / "whole").verdicts)
