@@ -12,7 +12,7 @@ from sher3_control.errors import StateCommandRefused
 from sher3_control.heard import HeardState, status_of
 from sher3_control.operating_state import OperatingState, StateCommand
 from sher3_control.reasons import ACTION, Action, Reason
-from sher3_control.supervisor import Supervisor
+from sher3_control.supervisor import Status, Supervisor
 
 S, C = OperatingState, StateCommand
 STEP = 10_000_000
@@ -200,6 +200,22 @@ class History(RuleBasedStateMachine):
 
 History.TestCase.settings = settings(max_examples=50, stateful_step_count=30, deadline=None, derandomize=True)
 TestHistory = History.TestCase
+
+
+def test_of_two_findings_in_one_check_the_harder_one_leads():
+    """Whatever their order: no pause, and no quick stop, in place of a stop with power off."""
+    now = 10**9
+    loop = OverrunDetector(0.1)
+    loop.feed("n", 100, 0, now)
+    loop.feed("n", 200, 50, now)
+    drives, button = ReportedFault("d"), EmergencyStopDetector(pressed=True)
+    drives.feed(Finding(Reason.DRIVE_FELL, 1.0, 0.0, "1", "d"), now)
+    for detectors in ([loop, drives, button], [button, drives, loop], [drives, loop, button]):
+        status = Status(S.ENABLED, 0, "enable")
+        supervisor = Supervisor(detectors, status)
+        assert supervisor.check(now)
+        assert supervisor.state is S.FAULT and supervisor.status.action is Action.POWER_OFF
+        assert supervisor.status.reason == "EMERGENCY_STOP" and supervisor.status.later_faults == 2
 
 
 def test_a_law_that_has_seen_nothing_is_not_armed():

@@ -1,0 +1,75 @@
+"""The mutation check of `tools/mutate_guards.py`: that it finds, replaces and judges; all guards under `slow`."""
+
+import importlib.util
+import json
+import subprocess
+import sys
+
+import pytest
+from processes import child_environment
+from sher3_control.heard import HeardState, status_of
+from sources import ROOT, SOURCES
+
+TOOL = ROOT / "tools" / "mutate_guards.py"
+
+
+@pytest.fixture(scope="module")
+def tool():
+    spec = importlib.util.spec_from_file_location("mutate_guards", TOOL)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_every_declared_guard_still_stands(tool):
+    """A guard that was removed, moved or rewritten is noticed here in milliseconds."""
+    guards = tool.load_guards()
+    assert len(guards) >= 90 and len({(guard.file, guard.scope, guard.source) for guard in guards}) >= 90
+    for guard in guards:
+        text = (SOURCES / guard.file).read_text()
+        changed = tool.mutated(text, guard)
+        assert changed != text and len(changed.splitlines()) <= len(text.splitlines())
+        assert all((SOURCES / test if not test.startswith("tests/") else ROOT / test).is_file() for test in guard.tests)
+
+
+def test_a_vanished_or_ambiguous_guard_is_an_error(tool):
+    text = "def f(x):\n    if x > 1:\n        return 2\n    return x > 2 or x > 2\n"
+    guard = tool.Guard("n", "f.py", "f", "x > 1", "False", ())
+    assert "if (False):" in tool.mutated(text, guard)
+    assert "if (False):" in tool.mutated(text, guard._replace(source="if x > 1:"))
+    for change in ({"source": "x > 3"}, {"source": "x > 2"}, {"scope": "g"}, {"source": "if x > 2:"}):
+        with pytest.raises(tool.Vanished):
+            tool.mutated(text, guard._replace(**change))
+
+
+def test_five_guards_are_missed_when_they_are_gone():
+    """The fastest of each room, run as the whole list is; a survivor would be exit code 1."""
+    run = mutate("--only", "ownership")
+    assert run["guards"] == run["killed"] == 2
+    assert all(result["killed_by"] for result in run["results"])
+
+
+@pytest.mark.slow
+def test_every_guard_is_missed_when_it_is_gone():
+    run = mutate(timeout=1800)
+    assert run["guards"] == run["killed"] >= 90
+
+
+def mutate(*arguments: str, timeout: float = 120.0) -> dict:
+    command = [sys.executable, str(TOOL), "--json", *arguments]
+    options = {"env": child_environment(), "capture_output": True, "text": True, "timeout": timeout}
+    done = subprocess.run(command, check=False, **options)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return json.loads(done.stdout)
+
+
+def test_what_was_heard_of_the_supervisor_wears_off_and_damage_is_nothing():
+    heard = HeardState(0.03)
+    assert not heard.enabled(0)
+    heard.feed("ENABLED NONE", 1000)
+    assert heard.enabled(1000 + 30_000_000) and not heard.enabled(1001 + 30_000_000)
+    heard.feed("ENABLED NONE", 10**9)
+    heard.feed("PAUSED PAUSE", 10**9 + 1)
+    assert not heard.enabled(10**9 + 2)
+    for text in ("", "{", "[1]", "3", "null", "[" * 60_000):
+        assert status_of(text) == {}
