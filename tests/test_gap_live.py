@@ -17,7 +17,7 @@ from sher3_bags import Stream, read_case, write_case
 from sher3_bags.live import recorded
 from sher3_bags.reading import read_run
 from sher3_bags.run import Run
-from sher3_bringup.stepped_robot import SteppedRobot
+from sher3_bringup.stepped_robot import SteppedRobot, bench_drives
 from sher3_gap import diagnose
 from sher3_gap.apply import apply_verdict, compare_cases
 from sher3_gap.excitation import excite
@@ -39,7 +39,7 @@ def play(case: Path, effects, labels, repeats: int, duration: float) -> Path:
     heard = Heard()
     players = [Player(excitation, ROBOT, heard) for excitation, _ in wanted]
     with Graph(period=ROBOT.control_period) as graph:
-        SteppedRobot(graph, effects, robot=ROBOT)
+        SteppedRobot(graph, effects, robot=ROBOT, drives=bench_drives(ROBOT))
         with recorded(graph, f"gap_live_{case.name}", topics=RECORDED, robot=ROBOT) as recorder:
             node = graph.add(ExciteNode, players[0])
             for player in players:

@@ -20,7 +20,7 @@ CONTROL: dict[str, Any] = {
     "motion": {"servo_timeout": 0.4, "joints_age_limit": 0.4, "lead_limit": 0.4},
     "supervisor": {"stream_age_limit": 0.6, "heartbeat_limit": 0.6, "overrun_share": 1.0},
 }
-"""Overrides of `ControlSettings` [s]; strict: 0.010 to 0.020, lead 0, and 0.1 for the supervisor."""
+"""Overrides of `ControlSettings` [s]; strict: 0.010 to 0.020, lead 0, 0.1 and 0.03 for the supervisor, overruns 0.1."""
 
 DRIVES: dict[str, Any] = {
     "host_heartbeat_limit": 0.6,
@@ -31,8 +31,23 @@ DRIVES: dict[str, Any] = {
     "supervisor_limit": 0.6,
     "stall_limit": 0.5,
 }
-"""Overrides of `MotorDriverSettings` [s; ticks]; strict: 0.050, 0.200, 10, 50, 0.5. Zero velocity is still sent to the
-drives once a command is `zero_age` ticks old, and motion goes on with the next command."""
+"""Overrides of `MotorDriverSettings` [s; ticks]; strict: 0.03, 0.2, 10, 50, 0.5, 0.03, 0.02. Zero velocity is still
+sent to the drives once a command is `zero_age` ticks old, and motion goes on with the next command."""
+
+BENCH: dict[str, Any] = {
+    "encoder_distance": 5e-4,
+    "encoder_angle": 2e-2,
+    "encoder_total_distance": 5e-3,
+    "encoder_total_angle": 0.1,
+    "following_distance": 1e-3,
+    "following_angle": 5e-2,
+    "obey_distance": 1e-3,
+    "obey_angle": 5e-2,
+    "obey_latency": 0.1,
+}
+"""Overrides of `MotorDriverSettings` on the bench [m, rad, s]: a robot whose gap is to be measured there has backlash,
+lag and wrong scales, and must not be stopped for them; strict: 7 um, 0.4 mrad, 60 um. They are no time limits, and near
+a patient there is no bench."""
 
 PEDAL_AGE = {"strict": 0.02, "patient": 0.6}
 """Longest silence of the mock pedal [s]."""

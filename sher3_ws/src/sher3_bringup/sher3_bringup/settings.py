@@ -11,7 +11,7 @@ from sher3_description import Robot, load_robot
 from sher3_drivers.settings import MotorDriverSettings, default_settings
 
 from .errors import ConfigurationError
-from .patience import CONTROL, DRIVES, Patience
+from .patience import BENCH, CONTROL, DRIVES, Patience
 
 if TYPE_CHECKING:
     from sher3_safety.budget import TravelBudget
@@ -146,16 +146,19 @@ class RunSettings(BaseModel):
         if not self.links:
             links = tuple(f"local:{self.mock_name()}-{i}" for i in range(len(settings.channels)))
             settings = default_settings(1.0 / self.rate, links)
-        if self.patience == "strict":
-            return settings
-        return MotorDriverSettings.checked(**{**settings.model_dump(), **DRIVES})
+        overrides = {**(BENCH if self.start_regime == "bench" else {}), **(DRIVES if self.patience != "strict" else {})}
+        return MotorDriverSettings.checked(**{**settings.model_dump(), **overrides})
 
     def control(self) -> ControlSettings:
         """Return the settings of the control nodes."""
         overrides = CONTROL if self.patience == "patient" else {}
-        regime = self.regime or ("bench" if self.mock else "free")
-        motion = {**overrides.get("motion", {}), "regime": regime, **self._caps()}
+        motion = {**overrides.get("motion", {}), "regime": self.start_regime, **self._caps()}
         return ControlSettings.from_robot(self.robot(), {**overrides, "motion": motion})
+
+    @property
+    def start_regime(self) -> str:
+        """The speed regime at the start."""
+        return self.regime or ("bench" if self.mock else "free")
 
     def _caps(self) -> dict[str, float]:
         """Return the overrides of the speed caps; a turn is capped as the speed is."""
@@ -203,6 +206,6 @@ def checked(**options: object) -> RunSettings:
     settings.robot()
     settings.drives().budgets()
     settings.load_effects()
-    if settings.control().motion.regime != "bench":
+    if settings.start_regime != "bench":
         settings.budget().require()
     return settings

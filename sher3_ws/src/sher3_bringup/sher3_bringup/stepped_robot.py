@@ -16,18 +16,28 @@ from sher3_drivers.force_sensor_node import ForceSensorNode
 from sher3_drivers.motor_driver_node import MotorDriverNode
 from sher3_drivers.pedal import InProcessPedal
 from sher3_drivers.pedal_node import PedalNode
-from sher3_drivers.settings import default_settings
+from sher3_drivers.settings import MotorDriverSettings, default_settings
 from sher3_runtime import Graph
 from sher3_safety.injector import FaultInjector
 from sher3_sim import Effect
 from sher3_sim.plant_node import PlantNode
 from sher3_sim.scatter import RunScatter
 
+from .patience import BENCH
+
 _numbers = itertools.count()
+
+
+def bench_drives(robot: Robot) -> MotorDriverSettings:
+    """Return the motor driver's settings on the bench, see `patience.BENCH`."""
+    return MotorDriverSettings.checked(**{**default_settings(robot.control_period).model_dump(), **BENCH})
 
 
 class SteppedRobot:
     """Every node of `sher3 up` but the recorder, in one `Graph`.
+
+    The motor driver's limits are the strict ones unless `drives` are given (`bench_drives` for robots with large gaps);
+    the speed regime is the bench unless `control` says another.
 
     Attributes:
         graph: the graph; `force` and `pedal_device`: the device ends; the nodes by their names.
@@ -41,12 +51,13 @@ class SteppedRobot:
         robot: Robot | None = None,
         control: ControlSettings | None = None,
         scatter: RunScatter | None = None,
+        drives: MotorDriverSettings | None = None,
     ) -> None:
         robot = robot or load_robot()
         control = control or ControlSettings.from_robot(robot, {"motion": {"regime": "bench"}})
         self.graph = graph
         self.force, self.pedal_device = InProcessForceSensor(), InProcessPedal(clock=graph.clock.now)
-        settings, channel = default_settings(robot.control_period), f"stepped{next(_numbers)}"
+        settings, channel = drives or default_settings(robot.control_period), f"stepped{next(_numbers)}"
         count = len(settings.channels)
         device_ends, host_ends = ([open_link(f"virtual:{channel}-{i}") for i in range(count)] for _ in range(2))
         devices = {"force_device": self.force, "pedal_device": self.pedal_device, "faults": FaultInjector}

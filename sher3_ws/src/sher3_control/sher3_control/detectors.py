@@ -173,7 +173,7 @@ class OverrunDetector(_Plain):
     _share: dict[str, tuple[float, int]] = field(default_factory=dict)
 
     def feed(self, node: str, ticks: int, bad: int, now: int) -> None:
-        """Take note of a node's counters at `now` [ns]: cycles run, and cycles lost or too long."""
+        """Take note of a node's counters at `now` [ns]: cycles due, and cycles lost or too long."""
         before = self._before.get(node)
         self._before[node] = ticks, bad
         if before is not None and ticks > before[0]:

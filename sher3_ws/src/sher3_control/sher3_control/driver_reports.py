@@ -33,9 +33,10 @@ def driver_stop(level: int, message: str, values: Pairs) -> Finding | None:
 
 
 def cycle_counts(values: Pairs) -> tuple[int, int] | None:
-    """Return (cycles run, cycles lost or too long) of a timing report; None when it does not tell."""
+    """Return (cycles that were due, cycles lost or too long) of a timing report; None when it does not tell."""
     told = dict(values)
     try:
-        return int(told["ticks"]), int(told["lost_cycles"]) + int(told["overruns"])
+        lost = int(told["lost_cycles"])
+        return int(told["ticks"]) + lost, lost + int(told["overruns"])
     except (KeyError, ValueError):
         return None

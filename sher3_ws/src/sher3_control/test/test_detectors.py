@@ -114,7 +114,7 @@ def test_a_report_of_the_driver_keeps_its_reason_number_and_action():
 def test_a_damaged_report_of_a_stop_still_is_a_stop(values):
     assert driver_stop(2, "?", values).action >= Action.QUICK_STOP
     assert cycle_counts(values) is None
-    assert cycle_counts((("ticks", "5"), ("lost_cycles", "1"), ("overruns", "2"))) == (5, 3)
+    assert cycle_counts((("ticks", "5"), ("lost_cycles", "1"), ("overruns", "2"))) == (6, 3)
 
 
 @pytest.mark.parametrize("leg", range(3))

@@ -39,6 +39,7 @@ def robot_node():
 def test_every_set_point_reaches_the_host_at_its_tick():
     from sher3_control.admittance_node import AdmittanceNode
     from sher3_control.kinematics_node import KinematicsNode
+    from sher3_control.settings import ControlSettings
     from sher3_control.supervisor_node import SupervisorNode
     from sher3_gap.excite_node import ExciteNode
     from sher3_gap.player import Phase, Player
@@ -47,8 +48,9 @@ def test_every_set_point_reaches_the_host_at_its_tick():
     excitation = excite("sweep", ROBOT, posture="p1", duration=2.0)
     with Graph() as graph:
         graph.add(robot_node())
+        bench = ControlSettings.from_robot(ROBOT, {"motion": {"regime": "bench"}})
         for node in (SupervisorNode, KinematicsNode, AdmittanceNode):
-            graph.add(node, ROBOT)
+            graph.add(node, ROBOT, bench)
         player = Player(excitation, ROBOT)
         node = graph.add(ExciteNode, player)
         probe = graph.probe("setpoint_js")
