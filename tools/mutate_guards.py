@@ -178,10 +178,14 @@ def check(guards: Sequence[Guard], folder: Path) -> Iterator[dict[str, Any]]:
 def main() -> None:
     """Check and print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--only", default="", help="guards whose name or place contains this")
+    parser.add_argument("--only", nargs="+", default=[""], help="guards whose name or place contains one of these")
     parser.add_argument("--json", action="store_true")
     options = parser.parse_args()
-    guards = [guard for guard in load_guards() if options.only in f"{guard.name} {guard.file} {guard.scope}"]
+    guards = [
+        guard
+        for guard in load_guards()
+        if any(part in f"{guard.name} {guard.file} {guard.scope}" for part in options.only)
+    ]
     results = []
     try:
         with tempfile.TemporaryDirectory() as folder:

@@ -220,3 +220,15 @@ def test_of_two_findings_in_one_check_the_harder_one_leads():
 
 def test_a_law_that_has_seen_nothing_is_not_armed():
     assert not initial_state().armed and PARAMETERS.release > 0.0
+
+
+def test_what_was_heard_of_the_supervisor_wears_off_and_damage_is_nothing():
+    heard = HeardState(0.03)
+    assert not heard.enabled(0)
+    heard.feed("ENABLED NONE", 1000)
+    assert heard.enabled(1000 + 30_000_000) and not heard.enabled(1001 + 30_000_000)
+    heard.feed("ENABLED NONE", 10**9)
+    heard.feed("PAUSED PAUSE", 10**9 + 1)
+    assert not heard.enabled(10**9 + 2)
+    for text in ("", "{", "[1]", "3", "null", "[" * 60_000):
+        assert status_of(text) == {}, text
