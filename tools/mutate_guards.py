@@ -181,11 +181,8 @@ def main() -> None:
     parser.add_argument("--only", nargs="+", default=[""], help="guards whose name or place contains one of these")
     parser.add_argument("--json", action="store_true")
     options = parser.parse_args()
-    guards = [
-        guard
-        for guard in load_guards()
-        if any(part in f"{guard.name} {guard.file} {guard.scope}" for part in options.only)
-    ]
+    places = {guard: f"{guard.name} {guard.file} {guard.scope}" for guard in load_guards()}
+    guards = [guard for guard, place in places.items() if any(part in place for part in options.only)]
     results = []
     try:
         with tempfile.TemporaryDirectory() as folder:

@@ -222,6 +222,17 @@ def test_a_law_that_has_seen_nothing_is_not_armed():
     assert not initial_state().armed and PARAMETERS.release > 0.0
 
 
+class NotANumber(SilenceDetector):
+    def look(self, now):
+        return Finding(self.stale, float("nan"), 1.0, "s", self.source)
+
+
+def test_a_number_that_is_none_is_an_objection():
+    detector = NotANumber("s", 1.0, Reason.WRENCH_MISSING, Reason.WRENCH_STALE)
+    supervisor = Supervisor([detector], Status(S.ENABLED, 0, "enable"))
+    assert supervisor.check(1) and supervisor.state is S.FAULT
+
+
 def test_what_was_heard_of_the_supervisor_wears_off_and_damage_is_nothing():
     heard = HeardState(0.03)
     assert not heard.enabled(0)
