@@ -45,6 +45,8 @@ class MatrixRun:
     def start(self) -> bool:
         """Enable the robot; return whether it is."""
         self.graph.step(SETTLE)
+        # The plant tells the truth from the first request on.
+        self._inject(make_request(component="all", fault=OK).to_json())
         return self._enable()
 
     def play(self, row: Row, state: State) -> bool:

@@ -27,6 +27,8 @@ STANDS = 0.02
 BEFORE = 0.020
 """The speed before a fault is the mean over so many seconds."""
 INTENDED = frozenset({"MOVING", "PEDAL_RELEASED", "NOT_REARMED", "NOT_ENABLED", "NOT_OWNER"})
+SILENT = "NOT_ENABLED"
+"""What the law says when it no longer hears that the robot is enabled."""
 REPORTS = ("admittance/status", "motion/status")
 
 
@@ -89,14 +91,15 @@ class Recording:
         self._demand = np.abs(truth.velocity)
         rows = np.arange(len(self._stamp))
         self._time = rows * period if period is not None else (self._stamp - self._stamp[0]) * 1e-9
-        self._events = sorted(self._reported())
+        # Not being enabled is a reason of its own only where no other one comes with it.
+        self._events = sorted(self._reported(), key=lambda event: (event[0], event[1] == SILENT))
 
     def _reported(self) -> list[tuple[int, str, bool]]:
         """Return (log time, reason, is FAULT) of every report of a reason to stop."""
         found = []
         for topic in REPORTS:
             for stamp, data in self._texts(topic):
-                if data.get("reason") not in INTENDED:
+                if data.get("reason") not in INTENDED - {SILENT}:
                     found.append((stamp, str(data.get("reason")), False))
         for stamp, data in self._texts("supervisor/status"):
             if data.get("state") in ("FAULT", "PAUSED") and (first := data.get("first_fault") or data):

@@ -64,7 +64,7 @@ PEDAL = (
 def _up(line: str, quick: bool = False) -> Iterator[Row]:
     """Yield the faults of what the drives say."""
     yield Row(line, "off", reasons=LINE_LOST, quick=quick)
-    yield Row(line, "stuck")
+    yield Row(line, "stuck", quiet=("idle",))
     yield Row(line, "garbage")
     yield Row(line, "wrong", quick=quick)
     yield Row(line, "slow", {"every": 4.0}, effect="either", why=HELD)
@@ -137,10 +137,22 @@ DRIVE = (
     Row(f"{AXIS}.demand", "reordered", release=True),
 )
 NODES = ("force_sensor", "pedal", "admittance", "kinematics", "motor_driver", "supervisor")
+LOST = {
+    "force_sensor": STALE,
+    "pedal": ("PEDAL_STALE",),
+    "admittance": ("COMMAND_STALE",),
+    "kinematics": ("COMMAND_STALE",),
+    "motor_driver": ("JOINTS_STALE",),
+    "supervisor": ("SUPERVISOR_SILENT", "NOT_ENABLED"),
+}
+"""What is reported first when a process is gone."""
 PROCESSES = (
-    *(Row(f"process.{name}", "stuck", quick=name in ("admittance", "motor_driver", "supervisor")) for name in NODES),
+    *(
+        Row(f"process.{name}", "stuck", reasons=LOST[name], quick=name in ("admittance", "motor_driver", "supervisor"))
+        for name in NODES
+    ),
     *(Row(f"process.{name}", "stuck", release=True) for name in NODES),
-    *(Row(f"process.{name}", "off") for name in NODES),
+    *(Row(f"process.{name}", "off", reasons=LOST[name]) for name in NODES),
 )
 CLOCKS = ("force_sensor", "pedal", "motor_driver", "admittance", "kinematics")
 CLOCK = (
