@@ -9,6 +9,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
+from sher3_control.speed_cap import Regime
 from sher3_description import Sher3Error, read_json
 from sher3_runtime.ports import STATISTICS_VARIABLE
 
@@ -52,6 +53,9 @@ def run_demo(
         realtime=-1,
         patience=patience,
     )
+    if patience == "patient":
+        farthest = max(row.travel for row in settings.budget().of(Regime.FREE))
+        say(f"patient time limits, for mocks alone: no travel guarantee (up to {farthest * 1e3:.1f} mm after a fault)")
     statistics = bag.parent / f".{bag.name}.statistics"
     os.environ[STATISTICS_VARIABLE] = str(statistics)
     try:

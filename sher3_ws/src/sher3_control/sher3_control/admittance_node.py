@@ -14,13 +14,14 @@ from rclpy.node import Node
 from sher3_description import Robot, Sher3Error
 from sher3_kinematics import kernel_parameters
 from sher3_kinematics.direct import direct
-from sher3_runtime import JointSample, JoySample, TextSample, TwistSample, WrenchSample
+from sher3_runtime import DiagnosticSample, JointSample, JoySample, TextSample, TwistSample, WrenchSample
 from sher3_runtime.ports import NODE_OPTIONS, advertise, clock_of, latest, on_tick, subscribe
 from std_srvs.srv import Trigger
 
 from .admittance import NO_WRENCH, LawInput, initial_state, step
 from .angles import roll_and_tilt
 from .heard import HeardState, status_of
+from .input_report import law_readings
 from .law_parameters import law_parameters, nanoseconds
 from .live_parameters import apply_command, live_parameters, to_json, with_bias
 from .ownership import Mode
@@ -78,7 +79,8 @@ class AdmittanceNode(Node):
         self._now = clock_of(self).now
         self._late = on_tick(self, self._tick, phase=LATE * period)
         every = max(1, round(self.settings.supervisor.publish_period / period))
-        on_tick(self, lambda _stamp: self._report(), phase=LATE * period, every=every)
+        on_tick(self, self._tell, phase=LATE * period, every=every)
+        self._publish_diagnostics = advertise(self, "diagnostics")
         self._publish_settings(TextSample(to_json(self._live, self.settings)))
 
     def _look_at_joints(self) -> None:
@@ -166,6 +168,13 @@ class AdmittanceNode(Node):
         self._report(tare=vars(result))
         response.success, response.message = True, json.dumps(vars(result))
         return response
+
+    def _tell(self, stamp: int) -> None:
+        """Publish status and the numbers behind it, once a second."""
+        self._report()
+        reason = Reason.NOT_ENABLED if self._reason is None else self._reason
+        values = tuple(law_readings(self._input(stamp), self._state, self._p))
+        self._publish_diagnostics(DiagnosticSample(stamp, "admittance: inputs", 0, reason.name, values))
 
     def _report(self, **event: Any) -> None:
         """Publish the status; an event stays in it until the next one of its kind."""

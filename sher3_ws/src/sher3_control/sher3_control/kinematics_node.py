@@ -15,12 +15,13 @@ from rclpy.node import Node
 from sher3_description import Robot, Sher3Error
 from sher3_kinematics import kernel_parameters
 from sher3_kinematics.direct import direct
-from sher3_runtime import JointSample, PoseSample, TextSample, TwistSample, WrenchSample
+from sher3_runtime import DiagnosticSample, JointSample, PoseSample, TextSample, TwistSample, WrenchSample
 from sher3_runtime.ports import NODE_OPTIONS, advertise, clock_of, latest, on_tick, subscribe
 
 from .cooperative import RESTING
 from .deflection_compensation import DeflectionCompensation
 from .heard import HeardState, status_of
+from .input_report import motion_readings
 from .live_parameters import from_json
 from .motion import MotionController, MotionInput, MotionOutput
 from .ownership import MODE_CODES, Mode
@@ -81,6 +82,9 @@ class KinematicsNode(Node):
             subscribe(self, f"command/{mode.value}", self._command(mode))
         self._now = clock_of(self).now
         self._late = on_tick(self, self._tick, phase=LATE * period)
+        self._publish_diagnostics = advertise(self, "diagnostics")
+        every = max(1, round(self.settings.supervisor.publish_period / period))
+        on_tick(self, self._tell, phase=LATE * period, every=every)
         self._report_settings()
         self._report(MotionOutput(RESTING, None, Reason.NOT_ENABLED))
 
@@ -181,6 +185,18 @@ class KinematicsNode(Node):
         if reason is not Reason.SINGULAR or q is None:
             return None
         return self.motion.velocity_modes.kinematics.singularity_distance(q)._asdict()
+
+    def _tell(self, stamp: int) -> None:
+        """Publish the numbers behind the status, once a second."""
+        motion, q = self.motion, self._joints.position
+        modes, speed = motion.velocity_modes, 0.0
+        if q is not None and len(q) == 5:
+            speed = float(np.linalg.norm((modes.kinematics.jacobian(q) @ np.array(motion.previous))[:3]))
+        values = motion_readings(self._input(stamp), self.settings.motion, speed, modes.cap.linear)
+        values.append(("regime", motion.regime.value))
+        owner = motion.ownership.owner
+        message = "free" if owner is None else owner.value
+        self._publish_diagnostics(DiagnosticSample(stamp, "kinematics: inputs", 0, message, tuple(values)))
 
     def _report_settings(self) -> None:
         centre = self.motion.velocity_modes.centre

@@ -187,3 +187,25 @@ def test_a_second_publisher_of_a_command_is_refused():
         g.graph.until(lambda: g.status("motion/status")["refused"], "refusal")
         assert "several publishers" in g.status("motion/status")["refused"]["text"]
         assert g.last("servo_jv").velocity == REST
+
+
+def test_diagnostics_show_what_the_law_and_the_modes_look_at_with_their_limits():
+    with control_graph() as g:
+        told = g.graph.probe("diagnostics")
+        g.enable()
+        g.press(force=(1.0, 0.0, 0.0))
+        g.step(510)
+        values = {sample.name: dict(sample.values) for sample in told.samples["diagnostics"]}
+        law, modes = values["admittance: inputs"], values["kinematics: inputs"]
+        for key in (
+            "PEDAL_STALE pedal/measured [s]",
+            "WRENCH_STALE force/measured_cf [s]",
+            "JOINTS_STALE measured_js [s]",
+        ):
+            value, limit = map(float, law[key].split(" limit "))
+            assert 0.0 <= value <= limit
+        assert law["WRENCH_FROZEN force/measured_cf [samples]"].endswith("limit 6")
+        assert float(modes["TIP_SPEED tip [m/s]"].split()[0]) > 1e-4 and modes["regime"] == "bench"
+        state = values["supervisor: state"]
+        assert state["EMERGENCY_STOP pedal/measured [pressed]"] == "0 limit 0" and state["reason"] == "enable"
+        assert float(state["JOINTS_STALE measured_js [s]"].split()[0]) < 0.02

@@ -132,6 +132,11 @@ class AxisCheck:
             return Trip(Reason.FOLLOWING_ERROR, text, abs(self.error), self.error_limit, unit)
         return None
 
+    @property
+    def limit(self) -> float:
+        """Limit of `gap`, m or rad."""
+        return self._l.apart
+
     def readings(self) -> list[tuple[str, str]]:
         """Return what is looked at now, with its limits, for the diagnostics."""
         name, unit = self._name, self._unit

@@ -1,0 +1,107 @@
+"""How near healthy robots come to the limits of the motor driver's watches, and which imperfect ones they stop.
+
+    python bench/false_trips.py [--seeds N] [--json]
+
+Simulates every standard excitation with run-to-run scatter and noise, several seeds each, and hands every tick's
+feedback to the checks of encoders, following, obedience and frozen reports with their strict limits. Then once with
+each effect of the library in its default size.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections import Counter
+from typing import Any
+
+import numpy as np
+from sher3_description import load_robot
+from sher3_drivers.feedback import Feedback
+from sher3_drivers.motion_watch import MotionWatch
+from sher3_drivers.settings import default_settings
+from sher3_drivers.trips import StopLog, Trip
+from sher3_drivers.units import AxisScale
+from sher3_gap.excitation import catalogue, excite
+from sher3_sim import EFFECTS, simulate
+from sher3_sim.scatter import RunScatter
+
+ROBOT = load_robot()
+SETTINGS = default_settings(ROBOT.control_period)
+SCALES = [AxisScale.from_actuator(actuator) for actuator in ROBOT.actuators]
+LABELS = list(catalogue())
+
+
+def watch(run: Any) -> tuple[Trip | None, dict[str, float]]:
+    """Hand a run to the watches; return the first trip and the largest share of each limit."""
+    columns = [run[topic] for topic in ("measured_js", "drives/measured_js", "drives/setpoint_jv", "servo_jv")]
+    load, motor, velocity = columns[0].position, columns[1].position, columns[1].velocity
+    effort, echo, command = columns[1].effort, columns[2].velocity, columns[3].velocity
+    checks, log, shares = MotionWatch(SCALES, SETTINGS), StopLog(), {"encoders": 0.0, "following": 0.0}
+    checks.begin()
+    for k in range(len(load)):
+        rows = (tuple(column[k].tolist()) for column in (load, motor, velocity, effort, echo))
+        trip = checks.check(Feedback(k, *rows), k, True, log, k)
+        if trip is not None:
+            return trip, shares
+        for axis in checks.joints.axes:
+            shares["encoders"] = max(shares["encoders"], abs(axis.gap) / axis.limit)
+            shares["following"] = max(shares["following"], abs(axis.error) / axis.error_limit)
+        checks.demand.sent([round(v / s.velocity) for v, s in zip(command[k].tolist(), SCALES, strict=True)])
+    return None, shares
+
+
+def play(label: str, seed: int, effects: tuple[Any, ...] = ()) -> Any:
+    """Return a simulated run of a standard excitation."""
+    made = excite(label, ROBOT)
+    wrench = made.contact_wrench()
+    return simulate(ROBOT, made.position, wrench, effects, seed, setpoint_velocity=made.velocity, scatter=RunScatter())
+
+
+def healthy(seeds: int) -> dict[str, Any]:
+    """Return trips and margins of healthy robots."""
+    ticks, trips, shares = 0, Counter[str](), {"encoders": 0.0, "following": 0.0}
+    for label in LABELS:
+        for seed in range(seeds):
+            run = play(label, seed)
+            ticks += len(run["measured_js"].stamp)
+            trip, found = watch(run)
+            if trip is not None:
+                trips[f"{trip.reason.name} in {label}: {trip.text}"] += 1
+            shares = {name: max(shares[name], found[name]) for name in shares}
+    return {"minutes": ticks * ROBOT.control_period / 60.0, "trips": dict(trips), "largest_share_of_limit": shares}
+
+
+def imperfect() -> dict[str, str]:
+    """Return per effect that stops the robot in its default size, on the axis with the first place, why."""
+    found = {}
+    for name, kind in EFFECTS.items():
+        trip, _ = watch(play("sweep", 1, (kind(kind.places[0]),)))
+        if trip is not None:
+            found[name] = f"{trip.reason.name}: {trip.text}"
+    return found
+
+
+def main() -> None:
+    """Print the figures."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--seeds", type=int, default=3)
+    parser.add_argument("--json", action="store_true")
+    options = parser.parse_args()
+    result = {"healthy": healthy(options.seeds), "stopped_effects": imperfect(), "effects": len(EFFECTS)}
+    if options.json:
+        print(json.dumps(result))
+        return
+    good = result["healthy"]
+    print(f"healthy: {good['minutes']:.1f} min of {len(LABELS)} excitations, {sum(good['trips'].values())} trips")
+    for name, share in good["largest_share_of_limit"].items():
+        print(f"  largest share of the limit of {name}: {100.0 * share:.0f} %")
+    for text, count in good["trips"].items():
+        print(f"  {count} x {text}")
+    print(f"effects of default size that stop the robot: {len(result['stopped_effects'])} of {result['effects']}")
+    for name, text in result["stopped_effects"].items():
+        print(f"  {name}: {text}")
+
+
+if __name__ == "__main__":
+    np.seterr(all="raise", under="ignore")
+    main()
