@@ -18,7 +18,7 @@ from sher3_gap.library import LIBRARY, LibraryEffect, Shape
 MAX_CAUSES = 3
 PRICE = 12.0
 """Held-out loss that a coefficient or shape parameter must buy."""
-AS_BUILT_PRICE = 0.015
+AS_BUILT_PRICE = 0.05
 """What a coefficient must buy in addition at the tip and the force sensor, per sample: the robot as built deviates from
 its drawing by a fraction of the floor that no repeat shows, and every coefficient takes its part of that."""
 UNLIKELY = 3.0 * PRICE
@@ -124,8 +124,12 @@ def cost(trial: Fit) -> float:
 
 def price(term: Term) -> float:
     """Held-out loss that the last term's numbers must buy."""
-    built = sum(len(x) for run in term.columns for c, x in run.items() if c.stage in ("mechanism", "structure"))
-    return PRICE * complexity(term) + AS_BUILT_PRICE * built * term.width
+    return PRICE * complexity(term) + AS_BUILT_PRICE * samples_at_tip(term) * term.width
+
+
+def samples_at_tip(term: Term) -> int:
+    """Samples of the tip on which a term shows."""
+    return sum(len(x) for run in term.columns for c, x in run.items() if c.stage in ("mechanism", "structure"))
 
 
 @dataclass(frozen=True)
@@ -224,10 +228,18 @@ def _with_rivals(evidence: Evidence, current: Fit, candidates: Candidates) -> At
         others = [t for j, t in enumerate(current.terms) if j != i]
         without = fit(evidence.data, others).total
         worth = without - current.total
-        margin = max(3.0 * PRICE, RIVAL * worth)
         ranked = candidates.search(term.channels, others)
         ranking.append(tuple(ranked[:RANKED]))
-        alike = [f for f in ranked if f.total - current.total < margin]
+        alike = [f for f in ranked if _alike(f, current, worth)]
         rivals.append(tuple(f for f in alike if f.terms[-1].effect.id != term.effect.id))
         explained.append(worth)
     return Attribution(current, tuple(rivals), tuple(explained), tuple(ranking))
+
+
+def _alike(rival: Fit, chosen: Fit, worth: float) -> bool:
+    """Whether a rival explains as much: all but a share, and at the tip but for what the robot as built deviates by."""
+    margin = max(3.0 * PRICE, RIVAL * worth)
+    built = AS_BUILT_PRICE * max(samples_at_tip(rival.terms[-1]), *(samples_at_tip(t) for t in chosen.terms), 0)
+    apart = {k: rival.loss[k] - x for k, x in chosen.loss.items()}
+    tip = sum(x for (_, c), x in apart.items() if c.actuator == "tip")
+    return tip < max(margin, built) and sum(apart.values()) - tip < margin

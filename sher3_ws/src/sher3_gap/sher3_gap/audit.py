@@ -23,7 +23,7 @@ SLIPS = {"mm for m": 1e3, "um for m": 1e6, "deg for rad": 180.0 / np.pi, "mN for
 FEW_RUNS = 5
 STAGES_OF = {
     "command": ("servo_jv", "transport and controller"),
-    "echo": ("drives/setpoint_jv", "transport and drive"),
+    "echo": ("drives/setpoint_jv", "transport, drive and motor mechanics"),
     "effort": ("drives/measured_js effort", "drive and motor mechanics"),
     "load": ("measured_js", "controller and transmission"),
     "reference": ("setpoint_js", "controller and the end-to-end tip"),

@@ -16,7 +16,7 @@ from sher3_gap.audit import audit
 from sher3_gap.channels import Channel, unit_of
 from sher3_gap.constancy import constancy_of
 from sher3_gap.evidence import Evidence, gather
-from sher3_gap.exact_causes import ExactFinding, controller_finding, transport_finding
+from sher3_gap.exact_causes import ExactFinding, controller_finding, exact_interval, transport_finding
 from sher3_gap.fitting import Fit, fit
 from sher3_gap.library import LIBRARY
 from sher3_gap.loading import load_case
@@ -144,7 +144,7 @@ def _verdict(
     where = [f.where for f in exact] + where
     unexplained = _unexplained(evidence, open_, attribution, exact)
     experiment = next_experiment(evidence, attribution)
-    crossed = any({LIBRARY[r].family for r in c.rivals} - {c.family} for c in causes)
+    crossed = any(_crossing(c) for c in causes)
     status: Status
     if unexplained is not None:
         status = "outside_library"
@@ -153,7 +153,7 @@ def _verdict(
     else:
         status = "attributed"
     first = _first_channel(evidence, initial, where[0])
-    stage = Interval(value=exact[0].closure, low=exact[0].closure, high=exact[0].closure) if exact else None
+    stage = exact_interval(exact[0].closure) if exact else None
     residual = Residual(gap=exact[0].where.floor, floor=exact[0].where.floor, unit="m/s") if exact else None
     if first is not None and not exact:
         stage = closure(evidence, first, null, attribution.fit)
@@ -167,6 +167,12 @@ def _verdict(
         unexplained=unexplained,
         next_experiment=experiment,
     )
+
+
+def _crossing(cause: Cause) -> bool:
+    """Whether a rival is of another family; an effect that the cause contains was found to explain markedly less."""
+    others = set(cause.rivals) - set(LIBRARY[cause.effect].extends) if cause.effect in LIBRARY else set()
+    return any(LIBRARY[r].family != cause.family for r in others)
 
 
 def _cause(evidence: Evidence, attribution: Attribution, index: int, null: Fit) -> Cause:

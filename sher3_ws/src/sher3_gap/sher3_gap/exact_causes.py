@@ -13,6 +13,8 @@ from sher3_gap.signals import RunSignals
 from sher3_gap.timing import Timing
 from sher3_gap.verdict import Cause, Interval, Parameter, Where
 
+UNTOLD = 0.005
+"""Share of an exact stage's energy in ticks whose timing cannot be told."""
 CLOSED = 0.9
 """Closure an exact stage must reach to be explained."""
 
@@ -31,6 +33,11 @@ def _where(stage: str, actuator: str, gap: float, floor: float, regime: str) -> 
     return Where(stage=stage, actuator=actuator, gap=gap, floor=floor, unit="m/s", regime=regime, confidence=1.0)
 
 
+def exact_interval(value: float) -> Interval:
+    """Interval of a closure in an exact stage: there is no floor to be unsure of, only rare ticks that are not told."""
+    return Interval(value=value, low=value - UNTOLD, high=min(1.0, value + UNTOLD))
+
+
 def _cause(effect: str, family: str, stage: str, actuator: str, closure: float, **parameters: Parameter) -> Cause:
     value = float(np.clip(closure, 0.0, 1.0))
     return Cause(
@@ -39,7 +46,7 @@ def _cause(effect: str, family: str, stage: str, actuator: str, closure: float, 
         stage=stage,
         actuator=actuator,
         parameters=parameters,
-        closure=Interval(value=value, low=value, high=value),
+        closure=exact_interval(value),
     )
 
 

@@ -18,6 +18,10 @@ from sher3_gap.evidence import Evidence
 from sher3_gap.fitting import Fit
 from sher3_gap.regimes import regime_masks
 
+AGREEMENT = 0.9
+"""Agreement below which a cause stands in for another: of 51 true causes of the development cases 50 have more, of 37
+stand-ins and causes given to effects outside the library 20 have; constancy finds 13 of the other 17 too."""
+
 
 @dataclass(frozen=True)
 class Share:
@@ -45,6 +49,11 @@ class Pattern:
     def agreement(self) -> float:
         """One less the largest mismatch; 1 where there is nothing to compare."""
         return 1.0 - max(self.mismatch.values(), default=0.0)
+
+    @property
+    def credible(self) -> bool:
+        """Whether the gap lives where the cause says it does."""
+        return self.agreement >= AGREEMENT
 
     @property
     def worst(self) -> Share | None:

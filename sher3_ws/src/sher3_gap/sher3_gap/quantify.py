@@ -25,6 +25,10 @@ REACH_UNCERTAINTY = 0.4
 """The same of a displacement over which a force or a lag builds up: laws differ most in the form of that."""
 AS_BUILT_SHARE = 0.5
 """Systematic residual of a healthy robot at tip and force sensor, over the floor."""
+AS_BUILT_CLOSURE = 0.02
+"""Closure that a healthy robot's own deviations may take or give."""
+IDEALISED = 0.1
+"""Share of the gap that an idealised law may leave of an effect it stands for: the effect itself may close so much more."""
 LAW_UNCERTAINTY = 0.06
 """Relative uncertainty of a parameter that comes from the effect's law being an idealisation."""
 
@@ -94,7 +98,8 @@ def interval_of(rows: Array) -> Interval:
     floors = rng.normal(1.0, FLOOR_UNCERTAINTY, RESAMPLES)
     draws = np.array([_kappa(rows[p].mean(axis=0) * [1.0, 1.0, f]) for p, f in zip(picks, floors, strict=True)])
     low, high = np.percentile(draws, [2.5, 97.5])
-    return Interval(value=value, low=float(min(low, value - 0.01)), high=float(min(1.0, max(high, value + 0.01))))
+    low, high = min(low, value - AS_BUILT_CLOSURE), max(high, value + IDEALISED)
+    return Interval(value=value, low=float(low), high=float(min(1.0, high)))
 
 
 def _kappa(row: Array) -> float:

@@ -22,8 +22,9 @@ def rehearse(
     *,
     seed: int = 0,
     scatter: RunScatter | None = RunScatter(),  # noqa: B008 - frozen
+    temperature: float = 22.0,
 ) -> list[Run]:
-    """Simulate each (excitation, repeat) in turn, with run-to-run scatter and noise of its own.
+    """Simulate each (excitation, repeat) in turn, with scatter and noise of its own, at a temperature [deg C].
 
     Raises:
         EffectError: an effect does not fit the robot.
@@ -41,6 +42,7 @@ def rehearse(
             start_stamp=stamp,
             metadata=excitation.metadata(repeat, seed=number),
             scatter=scatter,
+            temperature=temperature,
         )
         runs.append(run)
         stamp += round((len(excitation.position) * robot.control_period + PAUSE) * 1e9)

@@ -27,7 +27,7 @@ class Demand:
 
     Attributes:
         velocity: (n, axes) demand in force just before each tick.
-        late: (axes,) share of the period after the tick at which it changes.
+        late: (n, axes) share of the period that ends at each tick, after which it changed in it.
     """
 
     velocity: Array
@@ -85,7 +85,7 @@ def mean_force(
     if run.echo is not None and steps:
         kp = np.array([a.drive.kp for a in robot.actuators])
         held = run.echo if demand is None else demand.velocity
-        late = np.zeros(run.axes) if demand is None else demand.late
+        late = np.zeros(run.axes) if demand is None else demand.late[1:]
         step = kp * np.diff(held, axis=0)
         if limit is not None:
             step = np.clip(force[:-1] + step, -limit, limit) - np.clip(force[:-1], -limit, limit)
@@ -113,8 +113,10 @@ def motor_residual(
 ) -> Residuals:
     """Force that the nominal rigid axis does not explain: F - m a - viscous v - G(q) + tau_ext (positive: resists
     forward).
+
+    Not without the echo: by how much the force stepped at each tick is what the demand tells.
     """
-    if run.effort is None:
+    if run.effort is None or run.echo is None:
         return {}
     mass = np.array([a.mass for a in robot.actuators])
     viscous = np.array([a.viscous for a in robot.actuators])

@@ -140,12 +140,15 @@ def timing_of(runs: Sequence[RunSignals], robot: Robot) -> Timing | None:
     )
 
 
-def demand_in_force(run: RunSignals, timing: Timing | None) -> Demand | None:
+def demand_in_force(run: RunSignals, robot: Robot, timing: Timing | None) -> Demand | None:
     """What the drives held just before each tick, told from the echo; None where commands arrive on time."""
     if timing is None or run.command is None or run.echo is None or timing.energy < QUIET:
         return None
     whole = np.floor(timing.latency + 1e-6).astype(int)
     newest = np.column_stack([delayed(run.command[:, [i]], 1 + n)[:, 0] for i, n in enumerate(whole)])
     older = np.column_stack([delayed(run.command[:, [i]], 2 + n)[:, 0] for i, n in enumerate(whole)])
-    between = np.abs(run.echo - newest) <= np.abs(newest - older) * (1.0 - 1e-6) + 1e-12
-    return Demand(np.where(between, newest, run.echo), timing.latency - whole)
+    step = newest - older
+    told = np.abs(step) > TELLING_STEP * np.array([a.limits.velocity for a in robot.actuators])
+    part = np.where(told, (newest - run.echo) / np.where(told, step, 1.0), timing.latency - whole)
+    between = np.abs(run.echo - newest) <= np.abs(step) * (1.0 - 1e-6) + 1e-12
+    return Demand(np.where(between, newest, run.echo), np.clip(part, 0.0, 1.0))

@@ -43,7 +43,8 @@ def tip_closure(evidence: Evidence, causes: Sequence[Cause], fit: Fit) -> Interv
         nominal = tip_error(run, twin)
         corrected = tip_error(run, driven_as(run, quiet, effects=effects)) if effects else nominal
         corrected = corrected - tip_shift(evidence, fit, r, shared_ticks(run, twin))
-        rows.append([np.mean(np.sum(e**2, axis=1)) / power for e in (nominal, corrected)] + [1.0])
+        known = known_at(run, shared_ticks(run, twin))
+        rows.append([np.mean(np.sum(e[known] ** 2, axis=1)) / power for e in (nominal, corrected)] + [1.0])
     if not rows:
         return None
     table = np.array(rows)
@@ -63,6 +64,13 @@ def shared_ticks(run: RunSignals, twin: RunSignals | None) -> np.ndarray:
     assert twin is not None and run.tracker_index is not None and twin.tracker_index is not None
     ticks = run.tracker_index
     return ticks[(ticks >= twin.tracker_index[0]) & (ticks <= twin.tracker_index[-1])]
+
+
+def known_at(run: RunSignals, ticks: np.ndarray) -> np.ndarray:
+    """Whether the load on the tip is known at each of the ticks, (m,); all of them where it never is."""
+    if run.contact_known is None or not run.contact_known[ticks].any():
+        return np.ones(len(ticks), dtype=bool)
+    return run.contact_known[ticks]
 
 
 def tip_error(run: RunSignals, twin: RunSignals | None) -> Array:

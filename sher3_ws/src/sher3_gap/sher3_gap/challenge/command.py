@@ -41,23 +41,29 @@ def challenge(
     without: Annotated[str | None, typer.Option(help="Leave this effect out; every case has it.")] = None,
     out: Annotated[Path | None, typer.Option(help="New folder that keeps cases, labels, verdicts and scores.")] = None,
     baselines: Annotated[bool, typer.Option(help="Score four baselines on the same residuals.")] = True,
+    merge: Annotated[
+        list[Path] | None, typer.Option(help="Build nothing: tables over finished folders; repeat for each.")
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the scores as JSON.")] = False,
 ) -> None:
     """Build sealed cases from the truth plant, diagnose them blind and score the verdicts."""
     from rich.console import Console
 
     from ..cli import reported
-    from .run import requests, run_challenge
+    from .run import merged, requests, run_challenge
     from .tables import print_outcome
 
     console = Console(stderr=True)
     with reported(as_json), tempfile.TemporaryDirectory() as scratch:
-        wanted = requests(parse_seeds(seeds), [k for k in kinds.split(",") if k], without, parse_gap(gap))
-        folder = out or Path(scratch) / "challenge"
-        outcome = run_challenge(folder, wanted, jobs=jobs, baselines=baselines, say=console.log)
+        if merge:
+            outcome = merged(merge)
+        else:
+            wanted = requests(parse_seeds(seeds), [k for k in kinds.split(",") if k], without, parse_gap(gap))
+            folder = out or Path(scratch) / "challenge"
+            outcome = run_challenge(folder, wanted, jobs=jobs, baselines=baselines, say=console.log)
     if as_json:
         typer.echo(json.dumps(outcome.as_dict()))
         return
     print_outcome(outcome, Console())
-    if out is not None:
+    if out is not None and not merge:
         console.log(f"kept in {out}")

@@ -26,6 +26,7 @@ from .truth.catalogue import EFFECTS, LIBRARY
 VERDICTS = "verdicts"
 MAXIMUM_CASES = 2000
 WITHHELD = "withheld"
+SCORES = "scores.json"
 
 
 @dataclass(frozen=True)
@@ -51,6 +52,30 @@ class Outcome:
             "from_3": {who: self.summary(who, least=3.0).as_dict() for who in self.scores},
             "cases": {who: [s.__dict__ for s in rows] for who, rows in self.scores.items()},
         }
+
+
+def merged(folders: Sequence[Path]) -> Outcome:
+    """Return the outcome over finished challenges, whose seeds must not overlap.
+
+    Raises:
+        ChallengeError: a folder without scores, or a case in two of them.
+    """
+    scores: dict[str, list[CaseScore]] = {}
+    seconds, errors, seeds = 0.0, {}, []
+    for folder in folders:
+        try:
+            kept = json.loads((folder / SCORES).read_text(encoding="utf-8"))
+        except (OSError, ValueError) as error:
+            raise ChallengeError("no scores", value=str(folder), remedy="a folder that --out wrote") from error
+        for who, rows in kept["cases"].items():
+            scores.setdefault(who, []).extend(CaseScore(**row) for row in rows)
+        seconds, errors = seconds + kept["seconds"], errors | kept["errors"]
+        seeds += kept["seeds"]
+    names = [s.case for s in scores.get("diagnosis", [])]
+    if len(set(names)) < len(names):
+        twice = max(names, key=names.count)
+        raise ChallengeError("a case is in two folders", value=twice, remedy="give each folder seeds of its own")
+    return Outcome(scores, seconds, (min(seeds), max(seeds)), errors)
 
 
 def requests(
@@ -126,7 +151,7 @@ def run_challenge(
         (out / LABELS / f"{name}.yaml").write_text(text, encoding="utf-8")
     errors = {name: given.error for name, given in answers.items() if given.error is not None}
     outcome = Outcome(score_all(labels, answers), time.perf_counter() - started, _range(todo), errors)
-    (out / "scores.json").write_text(json.dumps(outcome.as_dict(), indent=1), encoding="utf-8")
+    (out / SCORES).write_text(json.dumps(outcome.as_dict(), indent=1), encoding="utf-8")
     return outcome
 
 

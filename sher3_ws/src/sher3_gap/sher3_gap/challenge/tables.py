@@ -33,9 +33,24 @@ def print_outcome(outcome: Outcome, console: Console) -> None:
     console.print(confusion_table("status (truth down, verdict across)", whole.status_confusion))
     console.print(confusion_table("family of single faults (truth down, verdict across)", whole.family_confusion))
     console.print(detectability_table(whole))
+    missed = misses_table(outcome)
+    if missed.row_count:
+        console.print(missed)
     for name, error in outcome.errors.items():
         console.print(f"{name}: no verdict, {error}")
     console.print(f"{len(outcome.scores['diagnosis'])} cases in {outcome.seconds:.0f} s")
+
+
+def misses_table(outcome: Outcome) -> Table:
+    """Return the cases with a gap of at least three floors, or none, whose verdict is wrong, and what they were."""
+    table = Table("case", "truth", "verdict", "gap/floor", "fault", "said", title="misses")
+    for s in outcome.scores["diagnosis"]:
+        right = (s.said == s.truth, s.stage, s.actuator, s.in_set if s.truth == "attributed" else None)
+        if all(x is None or x for x in right) or (s.gap_over_floor or 3.0) < 3.0:
+            continue
+        ratio = "-" if s.gap_over_floor is None else f"{s.gap_over_floor:.1f}"
+        table.add_row(s.case, s.truth, s.said, ratio, s.fault, s.answer)
+    return table
 
 
 def rates_table(title: str, summaries: dict[str, Summary]) -> Table:

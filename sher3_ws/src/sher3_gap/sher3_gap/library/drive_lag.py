@@ -38,7 +38,9 @@ class DriveLag(LibraryEffect):
         drive, demand = view.robot.actuators[axis].drive, run.echo[:, axis]
         if shape["of_demand"]:
             change = first_order(demand, demand, time, run.period) - demand
-            lagged = drive.kp * change + drive.ki * np.cumsum(change) * run.period
+            behind = np.diff(demand, prepend=demand[0]) - np.concatenate([[0.0], change[:-1]])
+            missed = np.cumsum(behind) * time * -np.expm1(-run.period / time)
+            lagged = drive.kp * change - drive.ki * missed
         else:
             law = view.law[:, axis]
             after_step = law.copy()

@@ -11,6 +11,10 @@ from sher3_gap.library.base import LibraryEffect, Shape, Signature, View, axis_o
 from sher3_gap.library.operators import play
 
 
+REST_FORCE = 0.2
+"""Force at which a ball joint rests on one side of its clearance, N."""
+
+
 class JointClearance(LibraryEffect):
     """A leg's length jumps by +-clearance / 2 with the direction of its slider, or with the sign of the load on the
     tip.
@@ -38,26 +42,39 @@ class JointClearance(LibraryEffect):
         return (Channel("mechanism", "tip"), Channel("structure", "tip"))
 
     def shapes(self, views: Sequence[View], site: str) -> list[Shape]:
-        """What decides the side: 0 the direction of the slider, 1 the force along the leg; a side that never changes is
-        none.
+        """What decides the side: 0 the direction of the slider, 1 the force along the leg, 2 that on each link.
+
+        A side that never changes is none.
         """
-        shapes: list[Shape] = [*({"by_load": 0.0, "reach": r} for r in self.REACHES), {"by_load": 1.0, "reach": 0.0}]
-        return [s for s in shapes if np.ptp(np.concatenate([self._side(v, site, s) for v in views])) > 1.0]
+        shapes: list[Shape] = [*({"by_load": 0.0, "reach": r} for r in self.REACHES)]
+        shapes += [{"by_load": 1.0, "reach": 0.0}, {"by_load": 2.0, "reach": 0.0}]
+        return [s for s in shapes if np.ptp(np.concatenate([self._side(v, site, s) for v in views]), axis=0).max() > 1.0]
 
     def _side(self, view: View, site: str, shape: Shape) -> Array:
+        """Side on which each link of the leg rests, (g, 2) in -1..1."""
         axis = axis_of(site)
+        if shape["by_load"] == 2.0:
+            return np.tanh(link_forces(view)[:, 2 * axis : 2 * axis + 2] / REST_FORCE)
         if shape["by_load"]:
             force = view.path.contact_force[:, axis] - view.path.gravity[:, axis]
-            return np.tanh(force / 0.05)
+            return np.repeat(np.tanh(force / 0.05)[:, None], 2, axis=1)
         x, width = view.run.smooth[:, axis], shape["reach"] * lead(view, site)
-        return -2.0 / width * play(x, np.zeros(len(x)), width, np.inf, view.run.period, 0.0)[view.run.grid]
+        side = -2.0 / width * play(x, np.zeros(len(x)), width, np.inf, view.run.period, 0.0)[view.run.grid]
+        return np.repeat(side[:, None], 2, axis=1)
 
     def signature(self, view: View, site: str, shape: Shape) -> Signature:
         """Two columns: half the change of the pose per metre of either link, with the sign of the side."""
         first = 2 * axis_of(site)
-        change = view.link_changes[:, :, first : first + 2] * self._side(view, site, shape)[:, None, None]
+        change = view.link_changes[:, :, first : first + 2] * self._side(view, site, shape)[:, None, :]
         return Signature(view.at_tip(0.5 * change))
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Clearance along the leg."""
         return {"clearance": float(np.abs(coefficients).mean())}
+
+
+def link_forces(view: View) -> Array:
+    """Forces of the six links under the platform's weight and the known contact, (g, 6): Gamma f = w."""
+    weight = np.array([0.0, 0.0, -9.81 * view.robot.delta.moving_mass])
+    wrench = np.hstack([view.path.contact + weight, np.cross(view.lever, view.path.contact)])
+    return np.linalg.solve(view.links, wrench[:, :, None])[:, :, 0]

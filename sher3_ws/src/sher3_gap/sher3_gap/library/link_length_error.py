@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from sher3_gap.channels import Array, Channel
@@ -31,16 +33,20 @@ class LinkLengthError(LibraryEffect):
         """Seen at the tip."""
         return (Channel("mechanism", "tip"), Channel("structure", "tip"))
 
+    def shapes(self, views: Sequence[View], site: str) -> list[Shape]:
+        """Both links alike (0), or one longer than the other as well (1), which turns the platform."""
+        return [{"apart": 0.0}, {"apart": 1.0}]
+
     def signature(self, view: View, site: str, shape: Shape) -> Signature:
-        """Two columns: both links of the leg alike, and one against the other (which turns the platform)."""
+        """Both links of the leg alike, and, apart, one against the other."""
         a, b = 2 * axis_of(site), 2 * axis_of(site) + 1
         both = view.link_changes[:, :, a] + view.link_changes[:, :, b]
         apart = view.link_changes[:, :, a] - view.link_changes[:, :, b]
-        return Signature(view.at_tip(np.stack([both, apart], axis=-1)))
+        return Signature(view.at_tip(np.stack([both, apart] if shape["apart"] else [both], axis=-1)))
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Mean length error of the two links and half their difference."""
-        return {"length": float(coefficients[0]), "difference": float(coefficients[1])}
+        return {n: float(c) for n, c in zip(("length", "difference"), coefficients, strict=False)}
 
     def unit(self, name: str, site: str) -> str:
         """Length."""

@@ -109,7 +109,7 @@ def _output(diagnosis: Diagnosis, run: RunSignals, channel: Channel) -> tuple[Ar
     """Measured output of a stage on the residual grid; None where the deviation itself is the picture."""
     axis = ACTUATORS.index(channel.actuator) if channel.actuator in ACTUATORS else 0
     if channel.stage == "motor_mechanics" and run.effort is not None:
-        demand = demand_in_force(run, diagnosis.evidence.timing)
+        demand = demand_in_force(run, diagnosis.evidence.robot, diagnosis.evidence.timing)
         return run.to_grid(mean_force(run, diagnosis.evidence.robot, demand)[:, [axis]]), "motor force"
     if channel.stage == "drive" and run.effort is not None:
         return run.to_grid(run.effort[:, [axis]]), "reported effort"
