@@ -46,8 +46,12 @@ class OperatorNode(Node):
         self._publish_wrench(WrenchSample(stamp, (0.0, 0.0, self.force, 0.0, 0.0, 0.0)))
 
 
+FIRST, PRESS = 100, 500
+"""Ticks of the first `enable` and of the press: what the start of eight processes stirs up has settled by then."""
+
+
 class SurgeonNode(OperatorNode):
-    """Enables the robot, then presses the pedal and pushes, in wall time.
+    """Enables the robot until it is, then presses the pedal and pushes, in wall time.
 
     Args:
         force: of the hand along z of {b} [N].
@@ -63,8 +67,8 @@ class SurgeonNode(OperatorNode):
         if self._ticks == 1:
             # The plant tells the truth from the first request on.
             self.inject(make_request(component="all", fault=OK).to_json())
-        if self.state != "ENABLED" and 50 <= self._ticks <= 250 and self._ticks % 25 == 0:
-            self.command("enable")
-        if self._ticks == 280:
+        if FIRST <= self._ticks < PRESS and self.state != "ENABLED" and self._ticks % 20 == 0:
+            self.command("disable" if self.state == "FAULT" else "enable")
+        if self._ticks == PRESS:
             self.force, self.pedal = self._aims
         super()._tick(stamp)
