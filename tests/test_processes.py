@@ -97,7 +97,7 @@ def test_the_death_of_a_process_stops_the_robot(robot):
     assert not [child for child in children if child.is_running() and child.status() != psutil.STATUS_ZOMBIE]
 
 
-@pytest.mark.parametrize("required", [True, False])
+@pytest.mark.parametrize("required", [pytest.param(True, marks=pytest.mark.slow), False])
 def test_the_death_of_the_recorder_stops_the_robot_unless_recording_is_optional(robot, bag_folder, required):
     """In both cases what it had written can be recovered."""
     running = robot("--record", bag_folder, "--duration", "4", *([] if required else ["--record-optional"]))

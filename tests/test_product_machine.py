@@ -112,7 +112,11 @@ def test_every_operating_state_and_drive_state_was_reached(default):
     assert {mock_drive.SWITCH_ON_DISABLED, mock_drive.ENABLED, mock_drive.QUICK_STOP, mock_drive.FAULT} <= drives
 
 
-@pytest.mark.parametrize("drive", range(5), ids=ACTUATORS)
+ALIKE = [pytest.param(k, id=name, marks=[pytest.mark.slow] * (k in (1, 2))) for k, name in enumerate(ACTUATORS)]
+"""Drives 1 and 2 share the channel and the kind of drive 0."""
+
+
+@pytest.mark.parametrize("drive", ALIKE)
 def test_whichever_drive_differs_the_machine_is_the_same(drive):
     """One drive at a time faults; states, transitions and invariants do not depend on which, or on its channel."""
     checked = run(drive, FEW)
