@@ -32,8 +32,14 @@ def bag_folder(request: pytest.FixtureRequest) -> Path:
 
 
 @pytest.fixture
-def sher3():
+def sher3(run_sher3):
     """Return `run(*arguments, timeout=...)`, which runs the command line in a process of its own."""
+    return run_sher3
+
+
+@pytest.fixture(scope="session")
+def run_sher3():
+    """Return what `sher3` returns, for fixtures that live longer than a test."""
 
     def run(*arguments: str, timeout: float = 60.0, **changes: str) -> subprocess.CompletedProcess:
         return subprocess.run(

@@ -1,33 +1,42 @@
-"""Processes killed in wall time while the robot moves at its speed limit: measured from the bag of each run."""
+"""`sher3 safety --wall`: processes killed while the robot moves at its speed limit, measured from their bags."""
 
 from __future__ import annotations
 
+import json
+
 import pytest
-from sher3_bringup.safety_wall import run_case
-from sher3_safety.matrix import LIMIT
 from sher3_safety.processes import WALL
 from sources import ROOT
 
 pytestmark = pytest.mark.graph
 FOLDER = ROOT / "bags" / "tests" / "safety"
+QUICK = [row for row in WALL if row.quick]
 
 
-def at_speed(verdict):
-    """Skip, visibly, where the strict time limits have stopped the robot before anything was broken."""
-    if verdict.outcome is None or verdict.outcome.speed < 0.8 * LIMIT.speed:
-        pytest.skip("the machine is too busy for the strict time limits: the robot had stopped before")
+@pytest.fixture(scope="module")
+def killed(run_sher3):
+    result = run_sher3("safety", "--wall", "--quick", "--json", "--out", str(FOLDER), timeout=240.0)
+    assert result.returncode in (0, 1), result.stderr
+    return {cell["component"]: cell for cell in json.loads(result.stdout)["cells"]}
 
 
-@pytest.mark.parametrize("row", [row for row in WALL if row.quick], ids=lambda row: row.component)
-def test_a_killed_process_stops_the_robot_within_the_budget(row, domain):
-    verdict = run_case(row, LIMIT, FOLDER, domain=domain)
-    at_speed(verdict)
-    assert verdict.holds, verdict.misses
+@pytest.mark.parametrize("row", QUICK, ids=lambda row: row.component)
+def test_a_killed_process_stops_the_robot_within_the_budget(killed, row):
+    judge(killed[row.component])
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("row", [row for row in WALL if not row.quick], ids=lambda row: f"{row.component}-{row.fault}")
-def test_every_process_killed_or_held(row, domain):
-    verdict = run_case(row, LIMIT, FOLDER, domain=domain)
-    at_speed(verdict)
-    assert verdict.holds, verdict.misses
+def test_every_process_killed_or_held(run_sher3):
+    result = run_sher3("safety", "--wall", "--json", "--out", str(FOLDER / "wall"), timeout=600.0)
+    cells = json.loads(result.stdout)["cells"]
+    assert {cell["name"] for cell in cells} == {row.name for row in WALL}
+    for cell in cells:
+        judge(cell)
+
+
+def judge(cell):
+    """Hold a cell against its budget; skip, visibly, where the strict limits stopped the robot before the fault."""
+    if cell["outcome"]["speed"] < 0.8 * 0.5e-3:
+        pytest.skip("the machine is too busy for the strict time limits: the robot had stopped before")
+    assert not cell["misses"]
+    assert cell["outcome"]["travel"] <= cell["budget"] or cell["effect"] != "stops"
