@@ -26,7 +26,14 @@ def budget(
     """
     patience = "patient" if patient else "strict"
     settings = RunSettings.model_validate(
-        {"rate": rate, "robot_path": robot, "patience": patience, "near_speed": near_speed, "free_speed": free_speed}
+        {
+            "rate": rate,
+            "robot_path": robot,
+            "patience": patience,
+            "near_speed": near_speed,
+            "free_speed": free_speed,
+            "regime": "free",
+        }
     )
     found = settings.budget()
     typer.echo(json.dumps(found.to_dict()) if as_json else found.as_text())

@@ -1,11 +1,16 @@
 """Every wrong option is refused before anything starts, with value, limit and remedy."""
 
+import json
+
 import pytest
+from sher3_bringup.cli import make_app
 from sher3_bringup.errors import ConfigurationError
-from sher3_bringup.patience import CONTROL, DRIVES
+from sher3_bringup.patience import BENCH, CONTROL, DRIVES
 from sher3_bringup.settings import NODES, checked, parse_processes
 from sher3_control.settings import ControlSettings
 from sher3_description import Sher3Error
+from sher3_safety.budget import BudgetExceeded
+from typer.testing import CliRunner
 
 
 def test_the_default_run_is_every_node_in_its_own_process():
@@ -78,3 +83,33 @@ def test_a_channel_too_few_for_the_rate():
 def test_a_robot_file_that_is_not_there(tmp_path):
     with pytest.raises(Sher3Error, match="no such file"):
         checked(robot_path=tmp_path / "robot.yaml")
+
+
+REAL = {"mock": False, "links": ("socketcan:can0", "socketcan:can1"), "processes": (("motor_driver",), ("supervisor",))}
+
+
+def test_settings_beyond_the_travel_budget_are_refused_before_anything_starts():
+    with pytest.raises(BudgetExceeded, match="--near-speed"):
+        checked(**REAL, rate=200.0)
+    slow = checked(**REAL, rate=200.0, near_speed=4e-4, free_speed=4e-3)
+    assert slow.control().motion.near_turning == pytest.approx(0.024)
+    with pytest.raises(BudgetExceeded, match="travel budget"):
+        checked(patience="patient", regime="near_tissue")
+
+
+def test_the_bench_is_the_default_of_mocks_alone_and_has_limits_of_its_own():
+    assert checked().control().motion.regime == "bench"
+    assert checked(**REAL).control().motion.regime == "free"
+    strict, bench = (checked(**REAL, regime=regime).drives().model_dump() for regime in ("free", "bench"))
+    changed = {name for name in strict if bench[name] != strict[name]}
+    assert changed == set(BENCH) and all(bench[name] > strict[name] for name in changed)
+    assert checked(regime="free").drives().encoder_distance == strict["encoder_distance"]
+
+
+def test_the_budget_is_printed_and_its_exit_code_says_whether_it_is_kept():
+    kept = CliRunner().invoke(make_app("safety"), ["safety", "budget", "--json"])
+    assert kept.exit_code == 0
+    rows = json.loads(kept.output)["rows"]
+    assert max(row["travel"] for row in rows if row["regime"] == "near_tissue") <= 25e-6
+    assert {row["regime"] for row in rows} == {"near_tissue", "free", "bench"}
+    assert CliRunner().invoke(make_app("safety"), ["safety", "budget", "--patient"]).exit_code == 1
