@@ -9,9 +9,11 @@ import numpy as np
 from numba import njit
 from sher3_kinematics.kernel import KernelParameters, tip_pose_into
 from sher3_kinematics.kernel_delta import leg_vectors
+from sher3_kinematics.tip_deflection import ArmCompliance
 
 Array = np.ndarray
-YAW_STIFFNESS, PITCH_STIFFNESS, AXIAL_COMPLIANCE = 213.0, 244.0, 15e-6
+_ARM = ArmCompliance()
+YAW_STIFFNESS, PITCH_STIFFNESS, AXIAL_COMPLIANCE = _ARM.yaw, _ARM.pitch, _ARM.along_x
 """Lumped structure behind the delta stage [N m/rad, N m/rad, m/N] that reproduces the paper's deflection table."""
 CONTACT_FORCE = 0.1
 """Load [N] at which a ball joint rests on one side of its clearance; smooths the switch."""

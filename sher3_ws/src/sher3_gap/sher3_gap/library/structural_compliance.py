@@ -5,9 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from sher3_kinematics.tip_deflection import ArmCompliance
 
 from sher3_gap.channels import Array, Channel
 from sher3_gap.library.base import LibraryEffect, Shape, Signature, View
+
+
+_ARM = ArmCompliance()
 
 
 class StructuralCompliance(LibraryEffect):
@@ -24,11 +28,8 @@ class StructuralCompliance(LibraryEffect):
         "transmission_compliance": "the load encoders see it",
     }
     units = {"x": "m/N", "y": "rad/(N*m)", "z": "rad/(N*m)"}
-    LUMPED = (15.0e-6, 1.0 / 244.0, 1.0 / 213.0)
-    """Along x, about y, about z: the deflection table's means less the delta's own share (m/N, rad/(N m).
-
-    Rad/(N m)).
-    """
+    LUMPED = (_ARM.along_x, 1.0 / _ARM.pitch, 1.0 / _ARM.yaw)
+    """Along x, about y, about z: the deflection table's means less the delta's own share [m/N, rad/(N m), rad/(N m)]."""
 
     def sites(self) -> tuple[str, ...]:
         """The tip."""

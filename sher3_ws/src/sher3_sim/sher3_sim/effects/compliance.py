@@ -25,7 +25,7 @@ class TransmissionCompliance(Effect, id="transmission_compliance", family="compl
 class StructuralCompliance(Effect, id="structural_compliance", family="compliance", stage="structure", places=("tip",)):
     """Rails, roll and arm bend under a wrench at the tip: a fraction of the lumped model of the paper's deflections.
 
-    Lumped at the platform centre P: yaw 213 N m/rad, pitch 244 N m/rad, 15 um/N along x.
+    Lumped at the platform centre P: two springs in yaw and pitch, one along x (`sher3_kinematics.ArmCompliance`).
     """
 
     fraction: float = parameter("1", 0.2, 0.0, 3.0, "of the paper's structure")
