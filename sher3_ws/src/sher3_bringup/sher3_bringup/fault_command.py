@@ -36,7 +36,7 @@ def fault(
     request = make_request(
         component=component, fault=kind, start=start, duration=seconds, seed=seed, parameters=_numbers(parameter or [])
     )
-    from .safety_inject import inject
+    from .fault_node import inject
 
     answer = inject(request, domain)
     typer.echo(json.dumps({"request": request.model_dump(), "answer": answer}) if as_json else answer)
