@@ -10,7 +10,6 @@ from sher3_kinematics.tip_deflection import ArmCompliance
 from sher3_gap.channels import Array, Channel
 from sher3_gap.library.base import LibraryEffect, Shape, Signature, View
 
-
 _ARM = ArmCompliance()
 
 
@@ -29,7 +28,7 @@ class StructuralCompliance(LibraryEffect):
     }
     units = {"x": "m/N", "y": "rad/(N*m)", "z": "rad/(N*m)"}
     LUMPED = (_ARM.along_x, 1.0 / _ARM.pitch, 1.0 / _ARM.yaw)
-    """Along x, about y, about z: the deflection table's means less the delta's own share [m/N, rad/(N m), rad/(N m)]."""
+    """Along x, about y, about z, of the deflection table less the delta's own share [m/N, rad/(N m), rad/(N m)]."""
 
     def sites(self) -> tuple[str, ...]:
         """The tip."""
