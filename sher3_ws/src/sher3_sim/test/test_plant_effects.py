@@ -190,7 +190,7 @@ def test_effects_file_round_trip(tmp_path):
     [
         ("schema: sher3.effects/2\neffects: []", FileError, "schema"),
         ("schema: sher3.effects/1\neffects: {}", FileError, "list"),
-        ("[", FileError, "read"),
+        ("[", FileError, "not valid YAML"),
         ("schema: sher3.effects/1\neffects: [{effect: gremlins, actuator: roll}]", EffectError, "gremlins"),
         ("schema: sher3.effects/1\neffects: [{effect: backlash, actuator: elbow}]", EffectError, "elbow"),
         ("schema: sher3.effects/1\neffects: [{effect: backlash}]", EffectError, "actuator"),
