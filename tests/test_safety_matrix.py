@@ -8,8 +8,10 @@ import pytest
 from sher3_bags.reading import read_run
 from sher3_bringup.safety_matrix import run_matrix
 from sher3_bringup.safety_runs import run_cells
+from sher3_bringup.settings import RunSettings
+from sher3_control.speed_cap import Regime
 from sher3_description import load_robot
-from sher3_safety.matrix import IDLE, LIMIT, STATES, Row
+from sher3_safety.matrix import IDLE, LIMIT, MOVING, STATES, Row
 from sher3_safety.report import misses
 from sher3_safety.verdict import judge
 from sources import ROOT
@@ -74,3 +76,24 @@ def test_a_fault_is_the_same_again_for_its_seed():
 @pytest.mark.slow
 def test_the_whole_matrix_holds():
     assert not misses(run_matrix(FOLDER / "whole").verdicts)
+
+
+CLASSES = {
+    "force_sensor off": "force sensor silent, dead",
+    "force_sensor stuck": "force sensor frozen",
+    "force_sensor garbage": "force not finite, out of range",
+    "bus off": "CAN bus off or cut",
+    "process.admittance stuck": "admittance node dead",
+    "process.motor_driver stuck": "motor driver held up",
+    "process.supervisor stuck": "supervisor dead",
+}
+"""Rows of the matrix and the class of the travel budget that each belongs to."""
+
+
+@pytest.mark.parametrize(("state", "regime"), [(MOVING, Regime.NEAR_TISSUE), (LIMIT, Regime.FREE)])
+def test_what_was_measured_is_within_what_the_budget_predicts(compact, state, regime):
+    """Two independent ways to the same number: settings alone, and the recorded tip. Neither is far above the other."""
+    predicted = {row.fault: row.travel for row in RunSettings().budget().of(regime)}
+    measured = {v.row.name: v.outcome.travel for v in compact.verdicts if v.state is state}
+    for name, fault in CLASSES.items():
+        assert 0.2 * predicted[fault] < measured[name] <= predicted[fault], name

@@ -1,0 +1,73 @@
+"""The verdict on a cell names everything that it misses, and the table shows the worst of it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from sher3_safety.matrix import IDLE, LIMIT, MOVING, STATES, Row
+from sher3_safety.measure import Outcome
+from sher3_safety.report import as_markdown, as_text, false_trips, misses
+from sher3_safety.verdict import judge
+
+ROW = Row("force_sensor", "off", reasons=("WRENCH_STALE",))
+GOOD = Outcome("x", 5e-3, "WRENCH_STALE", 0.012, 0.040, 65e-6, 0.0, True, 0.0, 300e-6)
+
+
+def test_a_good_cell_misses_nothing():
+    assert judge(ROW, LIMIT, GOOD).holds
+    assert judge(ROW, IDLE, replace(GOOD, speed=0.0, travel=0.0)).holds
+
+
+@pytest.mark.parametrize(
+    ("change", "part"),
+    [
+        ({"speed": 1e-3}, "moved at 1.00 mm/s before the fault instead of 5"),
+        ({"travel": 251e-6}, "travelled 251 um (budget 250 um)"),
+        ({"stop": None}, "did not stop"),
+        ({"stop": 0.101}, "stood after 101 ms (limit 100)"),
+        ({"detection": 0.051}, "noticed after 51 ms (limit 50)"),
+        ({"reason": ""}, "nobody noticed"),
+        ({"reason": "CLOCK"}, "reason CLOCK instead of WRENCH_STALE"),
+        ({"alone": 6e-6}, "moved 6.0 um before the pedal was released"),
+        ({"resumed": 0.0}, "did not move again"),
+    ],
+)
+def test_each_shortfall_is_named(change, part):
+    (miss,) = judge(ROW, LIMIT, replace(GOOD, **change)).misses
+    assert part in miss
+
+
+def test_near_tissue_the_budget_is_ten_times_tighter():
+    outcome = replace(GOOD, speed=0.5e-3, travel=26e-6)
+    assert judge(ROW, MOVING, outcome).misses == ("travelled 26 um (budget 25 um)",)
+
+
+def test_what_must_go_on_may_neither_trip_nor_leave_its_way():
+    row = Row("force_sensor", "duplicated", effect="goes on")
+    going = replace(GOOD, reason="", detection=None, stop=None, travel=1e-3)
+    assert judge(row, LIMIT, going).holds
+    assert judge(row, LIMIT, replace(going, reason="CLOCK")).misses == ("tripped: CLOCK",)
+    assert judge(row, LIMIT, replace(going, excess=260e-6)).misses == ("260 um off its way (budget 250 um)",)
+
+
+def test_a_cell_that_is_not_in_the_recording_misses():
+    assert judge(ROW, LIMIT, None).misses == ("not in the recording",)
+
+
+def test_the_table_shows_every_state_and_counts_what_misses():
+    travels = {"idle": 0.0, "moving": 6.5e-6, "at limit": 300e-6}
+    cells = [judge(ROW, state, replace(GOOD, speed=state.speed, travel=travels[state.name])) for state in STATES]
+    text = as_text(cells)
+    assert "MISS 1 of 3" in text and "300.0" in text and "6.5" in text
+    assert misses(cells) == ["force_sensor off, at limit: travelled 300 um (budget 250 um)"]
+    assert "| force_sensor off | WRENCH_STALE | 12 | 40 | 0.0 | 6.5 | 300.0 | stops | MISS 1 of 3 |" in as_markdown(
+        "title", cells
+    )
+
+
+def test_no_trip_still_has_a_bound():
+    """Zero events in T hours: at most -ln 0.05 / T per hour with 95 % confidence."""
+    rate = false_trips(0, 0.5)
+    assert rate["per_hour"] == 0.0 and rate["upper_95"] == pytest.approx(5.99, abs=0.01)
+    assert false_trips(3, 0.5)["upper_95"] == pytest.approx(15.51, abs=0.02)
