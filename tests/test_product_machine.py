@@ -89,6 +89,10 @@ def judge(checked: Checked) -> None:
     stuck = everything - checked.result.can_reach(checked.resting, HARMLESS)
     assert not stuck, f"no way to rest by {sorted(HARMLESS)} from {checked.result.keys[min(stuck)]}"
     assert checked.result.can_reach(checked.moving) == everything, "a state from which the robot never moves again"
+    rests = {source for source, event, target in checked.result.edges if event == "tick" and source == target}
+    for key in (checked.result.keys[index] for index in rests):
+        enabled = mock_drive.ENABLED in {key[6][0], *(drive for drive, *_ in key[7])}
+        assert not (enabled and key[0][0] in (S.FAULT, S.DISABLED)), f"drives stay enabled: {key}"
 
 
 @pytest.fixture(scope="module")

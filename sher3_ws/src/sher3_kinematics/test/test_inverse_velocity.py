@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from sher3_kinematics import BadInput, InverseVelocity, RobotKinematics
+from sher3_kinematics import BadInput, InverseVelocity, RobotKinematics, kernel_velocity
 
 PERIOD = 0.002
 
@@ -104,3 +104,28 @@ def test_impossible_configuration_gives_zero(kinematics: RobotKinematics) -> Non
     result = InverseVelocity(kinematics)([0, 0, 0.3, 0, 0], [0.001] * 6, [0.001] * 5)
     assert not result.q_dot.any()
     assert result.limited_by == "a value that is not finite"
+
+
+def test_an_actuator_on_its_way_to_an_end_is_held_to_its_own_braking(kinematics: RobotKinematics) -> None:
+    """Braking to rest at the acceleration limit would overrun an end 10 um away: then the end counts more."""
+    inverse = InverseVelocity(kinematics, reaction_periods=1.0)
+    for sign, ends in ((1.0, inverse.limits[1]), (-1.0, inverse.limits[0])):
+        for k in range(5):
+            q, previous = np.zeros(5), np.zeros(5)
+            room, fast = (1e-5, 0.01) if k != 3 else (1e-3, 1.0)
+            q[k], previous[k] = ends[k] - sign * room, sign * fast
+            q_dot = inverse.limit(q, np.zeros(5), previous).q_dot
+            assert 0.0 <= sign * q_dot[k] * inverse.period <= room
+
+
+def test_the_kernel_answers_a_number_that_is_none_with_rest(kinematics: RobotKinematics) -> None:
+    """The arguments of the control loop have been judged; should one slip through, nothing moves."""
+    inverse, p = InverseVelocity(kinematics), kinematics.parameters
+    for position in range(3):
+        for bad in (np.nan, np.inf):
+            vectors = [np.zeros(5), np.full(5, 1e-3), np.zeros(5)]
+            vectors[position][2] = bad
+            q_dot = np.full(5, 7.0)
+            arguments = (inverse.limits, 0.1, inverse.period, inverse.reaction, q_dot)
+            assert kernel_velocity.limit_velocity_into(p, *vectors, *arguments) == (0.0, kernel_velocity.NOT_FINITE)
+            assert not q_dot.any()
