@@ -10,6 +10,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from random import Random
+from typing import Any
 
 from sher3_bags.live import recorded
 from sher3_bags.reading import read_run
@@ -17,7 +19,8 @@ from sher3_bags.run import RunMetadata
 from sher3_description import Robot
 from sher3_runtime import Graph
 from sher3_runtime.ports import ports
-from sher3_safety.kinds import OK
+from sher3_safety.items import Numbers
+from sher3_safety.kinds import KINDS, OK
 from sher3_safety.matrix import STATES, Row, State
 from sher3_safety.measure import STANDS, Outcome, Recording
 from sher3_safety.requests import make_request
@@ -59,8 +62,7 @@ class MatrixRun:
         if row.release and state.pedal:
             operator.pedal = 0.0
         duration = OBSERVE if row.duration is None else round(row.duration * 1e9 / self.graph.clock.period_ns)
-        with self._from_outside(row):
-            self.graph.step(duration)
+        self._go_through(row, duration)
         self.graph.step(OBSERVE)
         self._inject(make_request(component=row.component, fault=OK, label=label).to_json())
         if row.final:
@@ -102,23 +104,32 @@ class MatrixRun:
             self.graph.step(2)
         return False
 
-    @contextmanager
-    def _from_outside(self, row: Row) -> Iterator[None]:
-        """Carry out what the plant process cannot: hang a node, let clocks jump."""
+    def _go_through(self, row: Row, ticks: int) -> None:
+        """Let the time of the fault pass; carry out what the plant process cannot: hold a node, let clocks jump."""
         what, _, name = row.component.partition(".")
         if what == "process":
-            node = getattr(self.rig, name)
-            self.graph.pause(node)
-            yield
-            if row.fault != "off":
-                self.graph.resume(node)
+            self._hold(getattr(self.rig, name), row, ticks)
         elif what == "clock" and name:
             with self._other_clock(name, row.parameters["offset"]):
-                yield
+                self.graph.step(ticks)
         else:
             if what == "clock":
                 self.graph.jump(row.parameters["offset"])
-            yield
+            self.graph.step(ticks)
+
+    def _hold(self, node: Any, row: Row, ticks: int) -> None:
+        """Let a process run only in those ticks that the fault lets pass; one that is killed never runs again."""
+        name = "off" if row.fault == "stuck" else row.fault
+        fault = KINDS[name](Numbers(0.0), row.parameters, Random(f"{self.seed}"))
+        held = False
+        for tick in range(ticks):
+            holds = not fault([float(tick)], tick * self.graph.clock.period_ns)
+            if holds != held:
+                (self.graph.pause if holds else self.graph.resume)(node)
+                held = holds
+            self.graph.step()
+        if held and row.fault != "off":
+            self.graph.resume(node)
 
     @contextmanager
     def _other_clock(self, name: str, offset: float) -> Iterator[None]:

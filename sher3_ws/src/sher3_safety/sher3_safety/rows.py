@@ -137,6 +137,7 @@ DRIVE = (
     Row(f"{AXIS}.demand", "reordered", release=True),
 )
 NODES = ("force_sensor", "pedal", "admittance", "kinematics", "motor_driver", "supervisor")
+BRIEF = "held for a few ms at a time; whoever waits for it judges the age of what it said"
 LOST = {
     "force_sensor": STALE,
     "pedal": ("PEDAL_STALE",),
@@ -152,6 +153,9 @@ PROCESSES = (
         for name in NODES
     ),
     *(Row(f"process.{name}", "stuck", release=True) for name in NODES),
+    *(Row(f"process.{name}", "slow", {"every": 4.0}, effect="either", why=BRIEF) for name in NODES),
+    *(Row(f"process.{name}", "delayed", {"delay": 0.006}, effect="either", why=BRIEF) for name in NODES),
+    *(Row(f"process.{name}", "intermittent", effect="either", why=BRIEF) for name in NODES),
     *(Row(f"process.{name}", "off", reasons=LOST[name]) for name in NODES),
 )
 CLOCKS = ("force_sensor", "pedal", "motor_driver", "admittance", "kinematics")
