@@ -3,7 +3,8 @@
 from dataclasses import dataclass, field
 
 import pytest
-from product_machine import COMMANDS, EVENTS, HARMLESS, Exploration, World, explore
+from product_machine import Exploration, explore
+from product_world import COMMANDS, EVENTS, HARMLESS, World
 from sher3_control.operating_state import OperatingState as S
 from sher3_control.reasons import Action
 from sher3_description import ACTUATORS

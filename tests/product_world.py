@@ -1,0 +1,326 @@
+"""What the product machine is made of: the real parts wired as the nodes wire them, moved one period at a time."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import pickle
+from dataclasses import dataclass, field
+from struct import Struct
+from typing import Any
+
+from sher3_control.admittance import LawInput, initial_state, step
+from sher3_control.detectors import EmergencyStopDetector, Finding, ReportedFault
+from sher3_control.driver_reports import driver_stop
+from sher3_control.errors import StateCommandRefused
+from sher3_control.heard import HeardState
+from sher3_control.law_parameters import law_parameters
+from sher3_control.operating_state import OperatingState
+from sher3_control.reasons import Action, Reason
+from sher3_control.settings import ControlSettings
+from sher3_control.supervisor import Supervisor
+from sher3_description import ACTUATORS, load_robot
+from sher3_drivers import drive_objects as od
+from sher3_drivers import feedback, mock_drive
+from sher3_drivers.driver_report import driver_report
+from sher3_drivers.emcy import EMCY
+from sher3_drivers.errors import CommandRefused
+from sher3_drivers.frame import FRAME_SIZE, pack_frame
+from sher3_drivers.motor_driver import MotorDriver
+from sher3_drivers.motor_driver_node import MotorDriverNode
+from sher3_drivers.settings import default_settings
+from sher3_drivers.units import AxisScale
+
+ROBOT = load_robot().replace({"admittance.force_deadband": 0.0})
+T = 2_000_000
+SETTINGS = default_settings().model_copy(update={"brake_time": 0.003})
+CONTROL = ControlSettings.from_robot(ROBOT)
+LAW = law_parameters(ROBOT, CONTROL)
+SCALES = [AxisScale.from_actuator(actuator) for actuator in ROBOT.actuators]
+GRACE = 0.003
+SPEED = 0.001
+COMMANDS = ("enable", "disable", "pause", "resume")
+EVENTS = (
+    "tick",
+    *COMMANDS,
+    "press",
+    "release",
+    "emergency on",
+    "emergency off",
+    "stream silent",
+    "stream back",
+    "overruns",
+    "in time",
+    "drive faults",
+    "drive loses power stage",
+    "bus passive",
+)
+HARMLESS = frozenset({"tick", "disable", "release", "emergency off", "stream back", "in time"})
+"""What an operator and the passing of time do to get out of anything."""
+
+
+@dataclass
+class Flag:
+    """A detector whose finding is switched on and off."""
+
+    reason: Reason
+    on: bool = False
+    active_when_disabled: bool = False
+    cleared_by_recovery: bool = False
+
+    def recover(self, now: int) -> None:
+        """Nothing to forget."""
+
+    def look(self, now: int) -> Finding:
+        """Return the flag as a number."""
+        return Finding(self.reason, float(self.on), 0.0, "1", "product machine")
+
+    def check(self, now: int) -> Finding | None:
+        """Object while it is on."""
+        return self.look(now) if self.on else None
+
+
+class DriveEnd:
+    """The drives' end of a CAN channel: the state machine of the mock drives, ideal motion, no dictionary."""
+
+    def __init__(self, axes: list[int]) -> None:
+        self.axes, self.name, self.received_at, self.dropped = axes, f"product:{axes}", 0, 0
+        self.states = dict.fromkeys(axes, mock_drive.SWITCH_ON_DISABLED)
+        self.words = dict.fromkeys(axes, 0)
+        self.targets = dict.fromkeys(axes, 0)
+        self.position = dict.fromkeys(axes, 0.0)
+        self.resets = 0
+        self.extra = b""
+        self._out = b""
+
+    def fileno(self) -> int:
+        """Nothing to wait on."""
+        return -1
+
+    def close(self) -> None:
+        """Nothing to close."""
+
+    def recv_frames(self) -> bytes:
+        """Return what the drives have sent."""
+        out, self._out = self._out, b""
+        return out
+
+    def send_frames(self, frames: bytes) -> None:
+        """Take what the host sends: SYNC and RPDOs; its heartbeat needs no answer."""
+        for at in range(0, len(frames), FRAME_SIZE):
+            can_id = int.from_bytes(frames[at : at + 4], "little")
+            if can_id == od.SYNC_ID:
+                self._sync()
+            elif can_id & 0x780 == od.RPDO_BASE:
+                word, target = int.from_bytes(frames[at + 8 : at + 10], "little"), frames[at + 10 : at + 14]
+                self._obey((can_id & 0x7F) - 1, word, int.from_bytes(target, "little", signed=True))
+
+    def demand(self, axis: int) -> int:
+        """Return the velocity a drive is commanded to [counts]: none unless it is enabled."""
+        return self.targets[axis] if self.states[axis] == mock_drive.ENABLED else 0
+
+    def _obey(self, axis: int, word: int, target: int) -> None:
+        self.resets += bool(word & 0x80 and not self.words[axis] & 0x80)
+        self.states[axis] = mock_drive.next_state(self.states[axis], word, self.words[axis])
+        self.words[axis], self.targets[axis] = word, target
+
+    def _sync(self) -> None:
+        for axis in self.axes:
+            scale = SCALES[axis]
+            velocity = self.demand(axis) * scale.velocity
+            self.position[axis] += velocity * T * 1e-9
+            load, motor = (round(self.position[axis] / s) for s in (scale.load_encoder, scale.motor_encoder))
+            one = feedback._TPDO1.pack(load, self.states[axis] | 0x0210, 0)
+            two = feedback._TPDO2.pack(motor, round(velocity / scale.velocity))
+            node = axis + 1
+            for base, data in zip(od.TPDO_BASES, (one, two), strict=True):
+                self._out += pack_frame(base + node, data)
+            self._out += pack_frame(od.HEARTBEAT_BASE + node, bytes([5]))
+            if self.states[axis] == mock_drive.FAULT_REACTION:
+                self.states[axis] = mock_drive.FAULT
+        self._out, self.extra = self._out + self.extra, b""
+
+
+class Glue:
+    """The driver node's way from what the supervisor says to the driver, without the node."""
+
+    _on_heartbeat, _obey, _follow = (getattr(MotorDriverNode, n) for n in ("_on_heartbeat", "_obey", "_follow"))
+
+    def __init__(self, driver: MotorDriver) -> None:
+        self.driver, self._state, self._action = driver, "DISABLED", Action.NONE
+
+    def _note(self, refusal: str) -> None:
+        """The node logs it."""
+
+
+SHARED = [ROBOT, SETTINGS, LAW, CONTROL, *SCALES]
+_NUMBERS = {id(constant): number for number, constant in enumerate(SHARED)}
+
+
+class _Freezer(pickle.Pickler):
+    def persistent_id(self, thing: Any) -> int | str | None:
+        return thing.format if isinstance(thing, Struct) else _NUMBERS.get(id(thing))
+
+
+class _Thawer(pickle.Unpickler):
+    def persistent_load(self, number: int | str) -> Any:
+        return Struct(number) if isinstance(number, str) else SHARED[number]
+
+
+@dataclass
+class World:
+    """Everything that decides about motion, and what the test knows of its history.
+
+    Attributes:
+        released: the pedal was up, with nothing in the way, since the last stop: the test's own idea of armed.
+    """
+
+    drive: int = 0
+    now: int = 1_000_000_000_000
+    pressed: bool = False
+    released: bool = False
+    button: EmergencyStopDetector = field(default_factory=EmergencyStopDetector)
+    report: ReportedFault = field(default_factory=lambda: ReportedFault("motor_driver", GRACE))
+    stream: Flag = field(default_factory=lambda: Flag(Reason.WRENCH_STALE))
+    loop: Flag = field(default_factory=lambda: Flag(Reason.OVERRUN))
+
+    def __post_init__(self) -> None:
+        self.supervisor = Supervisor([self.button, self.report, self.stream, self.loop])
+        self.ends = [DriveEnd([ACTUATORS.index(n) for n in c.drives]) for c in SETTINGS.channels]
+        self.driver = MotorDriver(ROBOT, SETTINGS, self.ends, self.clock)
+        self.glue, self.heard, self.law = Glue(self.driver), HeardState(0.03), initial_state()
+        self.said: tuple[Any, Any] | None = None
+        self.told: Finding | None = None
+
+    def clock(self) -> int:
+        """Return the stepped time."""
+        return self.now
+
+    def freeze(self) -> bytes:
+        """Return the world as bytes, three times as fast to copy as objects; what never changes is shared."""
+        buffer = io.BytesIO()
+        _Freezer(buffer, pickle.HIGHEST_PROTOCOL).dump(self)
+        return buffer.getvalue()
+
+    @staticmethod
+    def thaw(frozen: bytes) -> World:
+        """Return a new world."""
+        return _Thawer(io.BytesIO(frozen)).load()
+
+    # One event, one period.
+
+    def step(self, event: str) -> bool:
+        """Apply an event and let one control period pass; return whether a state command was accepted."""
+        accepted = self._apply(event)
+        self._tick()
+        return accepted
+
+    def _apply(self, event: str) -> bool:
+        if event in COMMANDS:
+            try:
+                self.supervisor.command(event, self.now)
+            except StateCommandRefused:
+                return False
+        elif event in ("press", "release"):
+            self.pressed = event == "press"
+        elif event.startswith("emergency"):
+            self.button.feed(event.endswith("on"))
+        elif event.startswith("stream"):
+            self.stream.on = event.endswith("silent")
+        elif event in ("overruns", "in time"):
+            self.loop.on = event == "overruns"
+        elif event != "tick":
+            self._break(event)
+        return True
+
+    def _break(self, event: str) -> None:
+        end = next(end for end in self.ends if self.drive in end.axes)
+        if event == "bus passive":
+            from sher3_drivers.can_errors import BusCondition, error_frame
+
+            end.extra += pack_frame(*error_frame(BusCondition.PASSIVE))
+        elif event == "drive loses power stage":
+            end.states[self.drive] = mock_drive.SWITCH_ON_DISABLED
+        elif end.states[self.drive] not in (mock_drive.FAULT, mock_drive.FAULT_REACTION):
+            end.states[self.drive] = mock_drive.FAULT_REACTION
+            end.extra += pack_frame(od.EMCY_BASE + self.drive + 1, EMCY.pack(0x2310, 1, bytes(5)))
+
+    def _tick(self) -> None:
+        self.now += T
+        self.glue._on_heartbeat(self.supervisor.status.heartbeat)
+        self.driver.tick(self.now)
+        self.driver.collect_positions()
+        self.driver.collect()
+        said = self.driver.stop.first, self.driver.stop.action
+        if said != self.said:  # a report says the same until something else happens
+            self.said, self.told = said, driver_stop(*driver_report(self.driver))
+        self.report.feed(self.told, self.now)
+        self.supervisor.check(self.now)
+        beat = self.supervisor.status.heartbeat
+        self.heard.feed(beat, self.now)
+        self.glue._on_heartbeat(beat)
+        self._command()
+
+    def _command(self) -> None:
+        """One tick of the law on a steady push, and its command to the driver."""
+        wiggle = 1e-6 * (self.now // T % 7)
+        wrench = (1.0 + wiggle, wiggle, -LAW.tool_mass * 9.81, 0.0, 0.0, 0.0)
+        stamp = self.now - (10**9 if self.stream.on else 0)
+        flags = (self.heard.enabled(self.now), True, stamp, wrench, self.now, float(self.pressed), self.button.pressed)
+        gains = (1.0, CONTROL.admittance.linear_gain, CONTROL.admittance.angular_gain, 0, (0.0,) * 6)
+        self.law, out = step(self.law, LawInput(self.now, *flags, self.now, 0.0, 0.0, *gains), LAW)
+        objection = not flags[0] or self.stream.on or self.button.pressed
+        self.released = not objection and (self.released or not self.pressed)
+        velocity = SPEED if any(out.twist) else 0.0
+        with contextlib.suppress(CommandRefused):
+            self.driver.command(self.now, (velocity,) * 5)
+
+    # What is seen from outside.
+
+    @property
+    def state(self) -> OperatingState:
+        """The operating state."""
+        return self.supervisor.state
+
+    @property
+    def drives(self) -> tuple[int, ...]:
+        """The true CiA 402 states."""
+        return tuple(end.states[axis] for end in self.ends for axis in end.axes)
+
+    @property
+    def demands(self) -> tuple[int, ...]:
+        """The velocities the drives are commanded to [counts]."""
+        return tuple(end.demand(axis) for end in self.ends for axis in end.axes)
+
+    @property
+    def resets(self) -> int:
+        """Rising edges of fault reset that the drives have seen."""
+        return sum(end.resets for end in self.ends)
+
+    @property
+    def faulty(self) -> bool:
+        """Whether something is wrong right now that must keep the robot still."""
+        well = {mock_drive.SWITCH_ON_DISABLED, mock_drive.READY, mock_drive.SWITCHED_ON, mock_drive.ENABLED}
+        return self.button.pressed or self.stream.on or self.loop.on or not set(self.drives) <= well
+
+    def key(self) -> tuple[Any, ...]:
+        """Return all that the future depends on, without absolute times, positions and counters."""
+        driver, status, stop = self.driver, self.supervisor.status, self.driver.stop
+        alone = self.drive
+        others = frozenset(i for i in range(len(ACTUATORS)) if i != alone)
+        drives, seen = self.drives, [health.state for health in driver.health]
+        words = [end.words[axis] >> 7 for end in self.ends for axis in end.axes]
+        since = min(3, (self.now - stop.since) // T) if stop.first else 0
+        deaf = min(3, max(0, (self.report.deaf_until - self.now + T) // T))
+        told = self.report.finding
+        return (
+            (status.state, status.action, status.first_fault is None),
+            (self.pressed, self.button.pressed, self.stream.on, self.loop.on),
+            (told and told.action, deaf),
+            (self.law.armed, self.law.pressed, any(self.law.velocity), self.released, self.heard.enabled(self.now)),
+            (driver.goal, stop.first is None, stop.action, since, driver._reset_words),
+            (driver._running, driver._all_enabled, driver.motion.rest.resting, self.glue._state, self.glue._action),
+            (drives[alone], seen[alone], words[alone], any(self.demands)),
+            frozenset((drives[i], seen[i], words[i]) for i in others),
+            tuple(len(end.extra) for end in self.ends),
+        )
