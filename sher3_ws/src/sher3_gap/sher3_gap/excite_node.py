@@ -42,7 +42,7 @@ RECORDED = (
 """Topics of a recorded run (contract, section 4)."""
 LINGER = 100_000_000
 """Nanoseconds the recorder listens on after the last tick."""
-TRIES = 3
+TRIES = 5
 """Times a run is played until few ticks are lost."""
 FEW_LOST = 0.005
 """Share of lost ticks with which a run is kept at once."""
