@@ -15,7 +15,7 @@ from sher3_description import Robot
 from sher3_runtime import NODE_OPTIONS, DiagnosticSample, WrenchSample, advertise, on_tick
 
 from .force_sensor import ForceSensorDevice
-from .wrench_checks import WrenchFault, WrenchLimits, WrenchWatch, check_wrench
+from .wrench_checks import WrenchFault, WrenchLimits, WrenchWatch, check_wrench, wrench_readings
 
 NOT_A_WRENCH = (math.nan,) * 6
 REPORT_PERIOD = 0.1
@@ -68,6 +68,7 @@ class ForceSensorNode(Node):
         values = [(f.name.lower(), str(count)) for f, count in self._faults.items()]
         values.append(("lost_records", str(self._watch.lost)))
         values.append(("misfit_records", str(getattr(self._device, "misfits", 0))))
+        values += wrench_readings(self._watch, self._limits)
         self._publish_report(DiagnosticSample(stamp, "force_sensor: readings", level, fault.value, tuple(values)))
 
     def close(self) -> None:

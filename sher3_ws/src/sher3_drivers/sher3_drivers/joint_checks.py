@@ -19,6 +19,8 @@ from .settings import MotorDriverSettings
 from .trips import Trip
 from .units import AxisScale
 
+_HOLE = 10
+
 
 class AxisLimits(NamedTuple):
     """Limits of one axis in its own unit (m or rad), and their times in ticks.
@@ -166,14 +168,18 @@ class JointWatch:
         self._tick = -1
 
     def check(self, feedback: Feedback, tick: int) -> Trip | None:
-        """Judge the feedback of the driver's tick number `tick`; after a hole in them the axes start afresh."""
-        fresh, self._tick = tick != self._tick + 1, tick
-        period, found = self._period, None
+        """Judge the feedback of the driver's tick number `tick`.
+
+        Over ticks whose feedback was lost the newest demand is taken to have held; after more than `_HOLE` of them the
+        axes start afresh, since the robot has stopped on their account.
+        """
+        since, self._tick = tick - self._tick if self._tick >= 0 else 0, tick
+        span, found = since * self._period, None
         for axis, motor, load, demand in zip(
             self.axes, feedback.motor_position, feedback.load_position, feedback.velocity_demand, strict=True
         ):
-            if fresh:
-                axis.begin(motor, load)
+            if 0 < since <= _HOLE:
+                found = axis.check(motor, load, demand * span, demand) or found
             else:
-                found = axis.check(motor, load, demand * period, demand) or found
+                axis.begin(motor, load)
         return found

@@ -7,6 +7,7 @@ from enum import Enum
 from typing import NamedTuple
 
 from sher3_description import ForceSensor
+from sher3_description.reasons import Reason, reading
 
 from .force_sensor import WrenchRecord
 
@@ -88,6 +89,16 @@ def _magnitude_fault(wrench: tuple[float, ...], limits: WrenchLimits) -> WrenchF
     if share > limits.overload:
         return WrenchFault.OUT_OF_RANGE
     return WrenchFault.SATURATED if share >= 1.0 else WrenchFault.NONE
+
+
+def wrench_readings(watch: WrenchWatch, limits: WrenchLimits) -> list[tuple[str, str]]:
+    """Return what is looked at now, with its limits, for the diagnostics."""
+    wrench = (0.0,) * 6 if watch.last is None else watch.last.wrench
+    share = max(abs(value) / rated for value, rated in zip(wrench, limits.rated, strict=True))
+    return [
+        reading(Reason.WRENCH_OUT_OF_RANGE, "sensor", share, limits.overload, "of the range"),
+        reading(Reason.WRENCH_FROZEN, "sensor", watch.repeats + 1, limits.frozen, "samples"),
+    ]
 
 
 def _follows(sequence: int, last: int) -> bool:

@@ -164,3 +164,37 @@ def test_the_pedal_is_a_stream_and_its_loss_is_nan_and_stop(graph):
         graph.step()
         sample = probe.samples["pedal/measured"][-1]
         assert math.isnan(sample.axes[0]) and sample.buttons == (1,)
+
+
+@pytest.mark.parametrize(
+    ("action", "states"), [("QUICK_STOP", {"QUICK_STOP_ACTIVE"}), ("POWER_OFF", {"SWITCH_ON_DISABLED"})]
+)
+def test_the_action_of_the_heartbeat_decides_how_hard_the_robot_is_stopped(drives, action, states):
+    drives.state("ENABLED")
+    drives.move(SLOW, 5)
+    drives.state("FAULT", action)
+    drives.graph.step(80)
+    assert {health.state.name for health in drives.node.driver.health} == states
+    drives.beat = "DISABLED NONE"
+    drives.graph.step(20)
+    assert drives.node.driver.stop.first is None and drives.node.driver.goal.name == "DISABLED"
+
+
+@pytest.mark.parametrize("text", ["", "ENABLED", "ENABLED FASTER", "RUN NONE", "ENABLED NONE NONE", "x" * 1000])
+def test_a_damaged_heartbeat_is_none(drives, text):
+    drives.state("ENABLED")
+    drives.move(SLOW, 5)
+    drives.beat = text
+    drives.move(SLOW, 20)
+    assert drives.node.driver.stop.code.name == "SUPERVISOR_SILENT"
+
+
+def test_a_dead_supervisor_stops_the_robot_and_its_return_enables_nothing(drives):
+    drives.state("ENABLED")
+    drives.move(SLOW, 5)
+    drives.beat = ""
+    drives.move(SLOW, 20)
+    drives.beat = "ENABLED NONE"
+    drives.move(SLOW, 20)
+    assert not drives.node.driver.enabled
+    assert drives.probe.samples["drives/setpoint_jv"][-1].velocity == (0.0,) * 5

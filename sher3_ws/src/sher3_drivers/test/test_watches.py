@@ -101,6 +101,24 @@ def test_encoders_that_part_stop_the_robot_and_take_its_power(rig, name, field):
         rig.driver.enable()
 
 
+def test_lost_ticks_hide_no_slip(rig):
+    """Every other tick lacks a TPDO, and the slip happens in one of them."""
+    lose = itertools.cycle([True, False])
+    for k in range(60):
+        rig.mock.tamper_frames = (lambda c, frames, now: frames[16:] if c else frames) if next(lose) else None
+        if k == 30:
+            slip(rig, "delta_2", "load_position", 2e-5)
+        rig.tick(SLOW)
+    assert rig.driver.stop.code is Reason.ENCODERS_DISAGREE
+
+
+def test_single_lost_ticks_at_speed_are_no_trip(rig):
+    for k in range(200):
+        rig.mock.tamper_frames = (lambda c, frames, now: frames[16:]) if k % 7 == 0 else None
+        rig.tick([0.01, -0.01, 0.01, 0.8, 0.01])
+    assert rig.driver.stop.first is None and rig.driver.counters["incomplete"] > 20
+
+
 @pytest.mark.parametrize(("by", "steps"), [(4e-6, 1), (1e-4, 400)])
 def test_small_or_slow_differences_are_no_trip(rig, by, steps):
     """Backlash of 4 um at once; a lead error or warmth of 0.1 mm over 0.8 s."""
