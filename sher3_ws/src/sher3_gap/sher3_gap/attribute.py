@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from itertools import combinations
 
 from sher3_gap.channels import Channel
+from sher3_gap.constancy import constancy_of
 from sher3_gap.evidence import Evidence
 from sher3_gap.fitting import Fit, Term, fit, make_term
 from sher3_gap.library import LIBRARY, LibraryEffect, Shape
@@ -164,7 +165,9 @@ def attribute(
         current = step
         chosen = list(current.terms)
     current = _prune(evidence, current, significant)
-    return _with_rivals(evidence, current, candidates)
+    found = _with_rivals(evidence, current, candidates)
+    steady = _steadier(evidence, found)
+    return found if steady is None else _with_rivals(evidence, steady, candidates)
 
 
 def _gain(before: Fit, after: Fit, left: dict[Channel, float]) -> float:
@@ -220,6 +223,19 @@ def _prune(evidence: Evidence, current: Fit, significant: Callable[[Fit | None],
     return current
 
 
+def _steadier(evidence: Evidence, found: Attribution) -> Fit | None:
+    """Where a cause changes size between excitations and a rival does not, the fit with that rival in its place."""
+    for i in range(len(found.fit.terms)):
+        if constancy_of(evidence, found.fit, i).constant:
+            continue
+        for rival in found.rivals[i]:
+            terms = [*found.fit.terms[:i], rival.terms[-1], *found.fit.terms[i + 1 :]]
+            trial = fit(evidence.data, terms)
+            if trial.admissible and constancy_of(evidence, trial, i).constant:
+                return trial
+    return None
+
+
 def _with_rivals(evidence: Evidence, current: Fit, candidates: Candidates) -> Attribution:
     rivals: list[tuple[Fit, ...]] = []
     explained: list[float] = []
@@ -237,8 +253,12 @@ def _with_rivals(evidence: Evidence, current: Fit, candidates: Candidates) -> At
 
 
 def _alike(rival: Fit, chosen: Fit, worth: float) -> bool:
-    """Whether a rival explains as much: all but a share, and at the tip but for what the robot as built deviates by."""
-    margin = max(3.0 * PRICE, RIVAL * worth)
+    """Whether a rival explains as much: all but a share, and at the tip but for what the robot as built deviates by.
+
+    The share is of the gap with its floor: rounding repeats, so that a small part of the floor is no evidence.
+    """
+    floor = sum(len(x) for run in rival.terms[-1].columns for c, x in run.items() if c.actuator != "tip")
+    margin = max(3.0 * PRICE, RIVAL * (worth + floor))
     built = AS_BUILT_PRICE * max(samples_at_tip(rival.terms[-1]), *(samples_at_tip(t) for t in chosen.terms), 0)
     apart = {k: rival.loss[k] - x for k, x in chosen.loss.items()}
     tip = sum(x for (_, c), x in apart.items() if c.actuator == "tip")

@@ -48,7 +48,9 @@ class JointClearance(LibraryEffect):
         """
         shapes: list[Shape] = [*({"by_load": 0.0, "reach": r} for r in self.REACHES)]
         shapes += [{"by_load": 1.0, "reach": 0.0}, {"by_load": 2.0, "reach": 0.0}]
-        return [s for s in shapes if np.ptp(np.concatenate([self._side(v, site, s) for v in views]), axis=0).max() > 1.0]
+        return [
+            s for s in shapes if np.ptp(np.concatenate([self._side(v, site, s) for v in views]), axis=0).max() > 1.0
+        ]
 
     def _side(self, view: View, site: str, shape: Shape) -> Array:
         """Side on which each link of the leg rests, (g, 2) in -1..1."""
