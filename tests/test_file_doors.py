@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import scipy.io
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from sher3_bags import read_case, read_run
@@ -213,6 +214,15 @@ def test_an_array_that_declares_more_than_it_holds_is_refused(tmp_path):
         archive.writestr("a.npy", out.getvalue() + bytes(80))
     with pytest.raises(FileError, match="declares what it does not hold"):
         read_arrays(path)
+
+
+def test_a_mat_file_that_unpacks_to_too_much_is_refused(tmp_path, monkeypatch):
+    path = tmp_path / "bomb.mat"
+    scipy.io.savemat(path, {"a": np.zeros(1_000_000)}, do_compression=True)
+    assert path.stat().st_size < 20_000 and len(read_tables(path)["a"]) == 1_000_000
+    monkeypatch.setattr("sher3_gap.machines.tables.MAX_BYTES", 1_000_000)
+    with pytest.raises(Sher3Error, match="unpacks to too much"):
+        read_tables(path)
 
 
 def test_objects_are_never_unpickled(tmp_path):

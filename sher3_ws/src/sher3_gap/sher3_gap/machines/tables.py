@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import math
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
@@ -77,6 +78,9 @@ def _numbers(cells: list[str]) -> Array | None:
 
 
 def _mat(path: Path) -> Tables:
+    declared = sum(8 * math.prod(shape) for _, shape, _ in scipy.io.whosmat(path))
+    if declared > MAX_BYTES:
+        raise MachineError(f"{path}: unpacks to too much [bytes]", value=declared, limit=MAX_BYTES, remedy="cut it")
     return _numeric({k: v for k, v in scipy.io.loadmat(path).items() if not k.startswith("__")})
 
 
