@@ -27,7 +27,7 @@ from sher3_gap.separate import next_experiment
 from sher3_gap.signals import RunSignals
 from sher3_gap.signature import signature
 from sher3_gap.tip import tip_closure
-from sher3_gap.verdict import Cause, Closure, Interval, Residual, Status, Unexplained, Verdict, Where
+from sher3_gap.verdict import Cause, Closure, Residual, Status, Unexplained, Verdict, Where
 
 Say = Callable[[str], None]
 REMAINDER = (0.10, 0.25)

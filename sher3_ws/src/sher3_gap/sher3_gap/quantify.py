@@ -28,7 +28,7 @@ AS_BUILT_SHARE = 0.5
 AS_BUILT_CLOSURE = 0.02
 """Closure that a healthy robot's own deviations may take or give."""
 IDEALISED = 0.1
-"""Share of the gap that an idealised law may leave of an effect it stands for: the effect itself may close so much more."""
+"""Share of the gap that an idealised law may leave of an effect it stands for, which would close that much more."""
 LAW_UNCERTAINTY = 0.06
 """Relative uncertainty of a parameter that comes from the effect's law being an idealisation."""
 

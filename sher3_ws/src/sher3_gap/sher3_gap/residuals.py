@@ -78,7 +78,8 @@ def mean_force(
 
     The reported effort is F just before the demand changes; F then steps by kp * (change of demand), at once
     or a share `late` of the
-    period later. `steps` is False for a drive whose force follows continuously; `limit` (axes,) is the force at which it ends.
+    period later. `steps` is False for a drive whose force follows continuously; `limit` (axes,) is the force at which
+    it ends.
     """
     assert run.effort is not None
     force = run.effort.copy()

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 
 import numpy as np
 from scipy.interpolate import CubicSpline
+from sher3_description import Robot
 
 from sher3_gap.channels import Array, Channel
 from sher3_gap.evidence import Evidence

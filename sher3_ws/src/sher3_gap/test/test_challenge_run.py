@@ -10,7 +10,7 @@ from sher3_gap.challenge.builder import CASES, LABELS, Request, check_seal
 from sher3_gap.challenge.command import challenge
 from sher3_gap.challenge.diagnosing import Answers, ask
 from sher3_gap.challenge.plan import ChallengeError
-from sher3_gap.challenge.run import Outcome, run_challenge, score_all
+from sher3_gap.challenge.run import Outcome, merged, run_challenge, score_all
 from sher3_gap.challenge.score import summarise
 from sher3_gap.challenge.tables import TARGETS, print_outcome
 from typer import Typer
@@ -40,6 +40,35 @@ def test_command_names_bad_ranges():
     app.command()(challenge)
     result = CliRunner().invoke(app, ["--seeds", "three"])
     assert result.exit_code == 2 and "seeds are not a range" in result.output
+
+
+def kept(folder, *names, first=0):
+    """A finished challenge's folder with a right verdict on each named healthy robot."""
+    truth = [{"case": n, "status": "no_gap", "effects": [], "oracle": {}, "tip": None, "rivals": []} for n in names]
+    scores = score_all(truth, {n: Answers({"status": "no_gap"}, {}) for n in names})
+    folder.mkdir()
+    outcome = Outcome(scores, 1.0, (first, first + len(names)), {})
+    (folder / "scores.json").write_text(json.dumps(outcome.as_dict()), encoding="utf-8")
+    return folder
+
+
+def test_folders_are_scored_together(tmp_path):
+    folders = [kept(tmp_path / "a", "x", "y"), kept(tmp_path / "b", "z", first=2)]
+    both = merged(folders)
+    assert both.seeds == (0, 3) and both.seconds == 2.0
+    assert both.summary().rates["false_alarm"].n == 3
+    app = Typer()
+    app.command()(challenge)
+    result = CliRunner().invoke(app, [x for f in folders for x in ("--merge", str(f))])
+    assert result.exit_code == 0 and "3 cases in 2 s" in result.output
+
+
+def test_a_case_counts_once(tmp_path):
+    folder = kept(tmp_path / "a", "x")
+    with pytest.raises(ChallengeError, match="two folders"):
+        merged([folder, folder])
+    with pytest.raises(ChallengeError, match="no scores"):
+        merged([tmp_path / "nothing"])
 
 
 @pytest.mark.slow

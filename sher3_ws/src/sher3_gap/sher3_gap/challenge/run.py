@@ -61,7 +61,8 @@ def merged(folders: Sequence[Path]) -> Outcome:
         ChallengeError: a folder without scores, or a case in two of them.
     """
     scores: dict[str, list[CaseScore]] = {}
-    seconds, errors, seeds = 0.0, {}, []
+    seconds, seeds = 0.0, []
+    errors: dict[str, str] = {}
     for folder in folders:
         try:
             kept = json.loads((folder / SCORES).read_text(encoding="utf-8"))

@@ -10,7 +10,6 @@ from sher3_gap.channels import Array, Channel
 from sher3_gap.library.base import LibraryEffect, Shape, Signature, View, axis_of, lead
 from sher3_gap.library.operators import play
 
-
 REST_FORCE = 0.2
 """Force at which a ball joint rests on one side of its clearance, N."""
 
