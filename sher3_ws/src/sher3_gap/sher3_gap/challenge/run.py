@@ -16,6 +16,7 @@ from typing import Any
 import yaml
 from joblib import Parallel, delayed
 from joblib.externals.loky import get_reusable_executor
+from sher3_description import FileError, read_json
 
 from .builder import CASES, LABELS, MANIFEST, Request, build_case, hashes
 from .diagnosing import Answers, ask
@@ -25,6 +26,7 @@ from .truth.catalogue import EFFECTS, LIBRARY
 
 VERDICTS = "verdicts"
 MAXIMUM_CASES = 2000
+MAX_SCORES_BYTES = 64 << 20
 WITHHELD = "withheld"
 SCORES = "scores.json"
 
@@ -65,8 +67,8 @@ def merged(folders: Sequence[Path]) -> Outcome:
     errors: dict[str, str] = {}
     for folder in folders:
         try:
-            kept = json.loads((folder / SCORES).read_text(encoding="utf-8"))
-        except (OSError, ValueError) as error:
+            kept = read_json(folder / SCORES, MAX_SCORES_BYTES)
+        except FileError as error:
             raise ChallengeError("no scores", value=str(folder), remedy="a folder that --out wrote") from error
         for who, rows in kept["cases"].items():
             scores.setdefault(who, []).extend(CaseScore(**row) for row in rows)
