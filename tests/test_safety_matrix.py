@@ -56,14 +56,14 @@ def test_the_report_has_every_row(compact, tmp_path):
 def test_the_bag_says_what_was_injected(compact):
     run = read_run(FOLDER / "compact", check=False)
     labels = {json.loads(text).get("label") for text in run["mock/fault"].data}
-    assert {f"{v.row.name} | {v.state.name}" for v in compact.verdicts} & labels
+    assert {v.row.label(v.state) for v in compact.verdicts} & labels
 
 
 def test_a_fault_that_nobody_sees_misses():
     """The verdict must be able to fail: a force scaled by 1.2 is no fault anybody could notice."""
     row = Row("force_sensor", "wrong", {"scale": 1.2})
     found = run_cells("unseen", [(row, LIMIT)], load_robot(), FOLDER)
-    verdict = judge(row, LIMIT, found[f"{row.name} | {LIMIT.name}"])
+    verdict = judge(row, LIMIT, found[row.label(LIMIT)])
     assert "nobody noticed" in verdict.misses and "did not stop" in verdict.misses
 
 

@@ -107,14 +107,9 @@ def run_matrix(
     for name, outcomes in _run_groups(groups, robot, folder, seed, jobs):
         found.update(outcomes)
         say(f"{name}: {len(outcomes)} cells measured")
-    verdicts = [judge(row, state, found.get(label_of(row, state))) for row in rows for state in STATES]
+    verdicts = [judge(row, state, found.get(row.label(state))) for row in rows for state in STATES]
     options = (f" --only {only}" if only else "") + " --quick" * quick
     return MatrixResult(verdicts, COMMAND + options, seed)
-
-
-def label_of(row: Row, state: Any) -> str:
-    """Return how a cell is called in its bag."""
-    return f"{row.name} | {state.name}"
 
 
 def _by_component(rows: Iterable[Row]) -> dict[str, list[Row]]:

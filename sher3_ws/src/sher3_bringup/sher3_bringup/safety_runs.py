@@ -7,7 +7,7 @@ presses it again. What that shows is read from the bag (`sher3_safety.measure`).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from random import Random
@@ -54,7 +54,7 @@ class MatrixRun:
 
     def play(self, row: Row, state: State) -> bool:
         """Play one cell; return whether the robot is ready for the next one."""
-        operator, label = self.operator, f"{row.name} | {state.name}"
+        operator, label = self.operator, row.label(state)
         self._sign = -self._sign
         operator.force, operator.pedal = self._sign * state.force, state.pedal
         self.graph.step(APPROACH if state.pedal else SETTLE)
@@ -173,6 +173,3 @@ def _run_some(bag: str, cells: Sequence[Cell], robot: Robot, folder: Path, seed:
                 if not run.play(row, state):
                     return count
     return len(cells)
-
-
-Say = Callable[[str], None]

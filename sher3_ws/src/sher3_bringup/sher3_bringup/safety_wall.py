@@ -25,7 +25,7 @@ from sher3_safety.verdict import Verdict, judge
 
 from .fleet import Fleet, Member
 from .nodes import make_nodes
-from .safety_matrix import MatrixResult, label_of
+from .safety_matrix import MatrixResult
 from .settings import RunSettings, checked, parse_processes
 from .up import UNHURRIED, prepare
 
@@ -94,7 +94,7 @@ def _run(row: Row, state: State, bag: Path, seed: int, domain: int) -> Outcome |
         end = _now()
     robot = settings.robot()
     return Recording(read_run(bag, check=False), robot).outcome(
-        label_of(row, state), onset, end, None, STANDS * state.budget
+        row.label(state), onset, end, None, STANDS * state.budget
     )
 
 

@@ -82,6 +82,10 @@ class Row:
         """Whether there is no way back: a process that was killed."""
         return self.component.startswith("process.") and self.fault == "off"
 
+    def label(self, state: State) -> str:
+        """Return what this row in a state is called in its bag."""
+        return f"{self.name} | {state.name}"
+
     def request(self, seed: int, label: str) -> FaultRequest:
         """Return what is sent on `mock/fault`."""
         return make_request(
