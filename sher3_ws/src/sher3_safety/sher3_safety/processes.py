@@ -11,7 +11,7 @@ WORLD = "with the plant the devices of the mock end: the last recorded travel"
 
 WALL = (
     Row("process.motor_driver", "off", quick=True),
-    Row("process.admittance", "off", quick=True),
+    Row("process.admittance", "off"),
     Row("process.supervisor", "off", quick=True),
     Row("process.kinematics", "off"),
     Row("process.force_sensor", "off"),

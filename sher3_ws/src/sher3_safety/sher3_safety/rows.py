@@ -30,7 +30,7 @@ LINE_LOST = ("JOINTS_STALE", "DRIVE_SILENT", "DRIVE_HOST_LOST")
 FORCE = (
     Row("force_sensor", "off", reasons=STALE, quick=True),
     Row("force_sensor", "stuck", reasons=("WRENCH_FROZEN",), quick=True),
-    Row("force_sensor", "garbage", reasons=("WRENCH_OUT_OF_RANGE",), quick=True),
+    Row("force_sensor", "garbage", reasons=("WRENCH_OUT_OF_RANGE",)),
     Row("force_sensor", "wrong", {"offset": 20.0}, reasons=("WRENCH_OUT_OF_RANGE", "WRENCH_SATURATED")),
     Row("force_sensor", "wrong", {"code": 1.0}, reasons=("WRENCH_NOT_FINITE",)),
     Row("force_sensor", "wrong", {"scale": 0.8}, effect="either", why=NO_WITNESS),
@@ -113,7 +113,7 @@ def _encoder(name: str, quick: bool = False) -> Iterator[Row]:
     """Yield the faults of one encoder of an axis; the other one is its witness."""
     yield Row(name, "stuck", quiet=("idle",), quick=quick)
     yield Row(name, "garbage")
-    yield Row(name, "wrong", {"offset": 1e-3}, quick=quick)
+    yield Row(name, "wrong", {"offset": 1e-3})
     yield Row(name, "wrong", {"scale": 0.5})
     yield Row(name, "slow", {"every": 4.0}, effect="either", why=HELD)
     yield Row(name, "delayed", {"delay": 0.02}, effect="either", why=HELD)
@@ -129,7 +129,7 @@ DRIVE = (
     Row(f"{AXIS}.demand", "wrong", {"scale": -1.0}, quiet=("idle",), quick=True),
     Row(f"{AXIS}.demand", "wrong", {"scale": 0.0}, quiet=("idle",)),
     Row(f"{AXIS}.demand", "wrong", {"scale": 2.0}, quiet=("idle",)),
-    Row(f"{AXIS}.demand", "wrong", {"code": float(0x4210)}, reasons=("DRIVE_OVER_TEMPERATURE",), quick=True),
+    Row(f"{AXIS}.demand", "wrong", {"code": float(0x4210)}, reasons=("DRIVE_OVER_TEMPERATURE",)),
     Row(f"{AXIS}.demand", "wrong", {"code": float(0x8611)}, reasons=("DRIVE_EMERGENCY",)),
     Row(f"{AXIS}.demand", "slow", {"every": 4.0}, release=True),
     Row(f"{AXIS}.demand", "delayed", {"delay": 0.02}, release=True),
@@ -149,7 +149,7 @@ LOST = {
 """What is reported first when a process is gone."""
 PROCESSES = (
     *(
-        Row(f"process.{name}", "stuck", reasons=LOST[name], quick=name in ("admittance", "motor_driver", "supervisor"))
+        Row(f"process.{name}", "stuck", reasons=LOST[name], quick=name in ("admittance", "supervisor"))
         for name in NODES
     ),
     *(Row(f"process.{name}", "stuck", release=True) for name in NODES),
