@@ -22,7 +22,9 @@ EXACT = 1e-9
 ROUNDING = 1e-7
 """The same for demands that went through the integers of a drive's protocol."""
 SPORADIC = 0.005
-"""Share of ticks at which the demand of a live robot may be held once, beyond twice the share of lost ticks."""
+"""Share of ticks at which the demand of a live robot may be held for once, away from ticks that show a late host."""
+AROUND = 15
+"""Ticks before and behind one that shows a late host."""
 LATE_SHARE = 0.1
 """Share of ticks at which the host of a live robot may work with an earlier reading."""
 OLDEST = 8
@@ -74,12 +76,10 @@ def host_law(run: RunSignals, robot: Robot, gain: float | Array) -> Array:
 def with_lateness(run: RunSignals, robot: Robot) -> RunSignals:
     """Mark the ticks of a live recording at which the computer, not the robot, was late.
 
-    A host that is late computes with the reading of an earlier tick; one whose command is late leaves the drives with
-    an earlier demand. Both can be told to rounding. They are set aside only while they are few: a busy machine also
-    loses ticks, and what it does to more than that is a gap.
+    A host that is late computes with the reading of an earlier tick, or loses the tick; around such ticks, and now and
+    then elsewhere, a command is late too and the drives hold the demand before. Both can be told to rounding. What
+    happens more often than that is a gap.
     """
-    lost = 0.0 if run.lost is None else float(run.lost.mean())
-    limit = SPORADIC + 2.0 * lost
     stale = held = None
     top = np.array([a.limits.velocity for a in robot.actuators])
     error = controller_error(run, robot)
@@ -90,9 +90,22 @@ def with_lateness(run: RunSignals, robot: Robot) -> RunSignals:
     if echo is not None:
         assert run.command is not None and run.echo is not None
         odd = np.abs(echo / top).max(axis=1) > ROUNDING
+        near = _around(run, stale)
         earlier = [np.abs((run.echo - delayed(run.command, n)) / top).max(axis=1) < ROUNDING for n in (2, 3)]
-        held = _told(odd, np.logical_or(*earlier)) if 0.0 < odd.mean() <= limit else None
+        rest = odd & ~near
+        told = _told(rest, np.logical_or(*earlier)) if rest.mean() <= SPORADIC else np.zeros_like(odd)
+        held = (odd & near) | told
+        held = held if held.any() else None
     return replace(run, stale=stale, held=held)
+
+
+def _around(run: RunSignals, stale: NDArray[np.bool_] | None) -> NDArray[np.bool_]:
+    """Ticks within `AROUND` of one that was lost or stale, (n,)."""
+    late = np.zeros(run.ticks, dtype=bool)
+    for mask in (run.lost, stale):
+        if mask is not None:
+            late |= mask
+    return np.convolve(late, np.ones(2 * AROUND + 1), "same") > 0.5
 
 
 def _told(odd: NDArray[np.bool_], explained: NDArray[np.bool_]) -> NDArray[np.bool_]:

@@ -8,6 +8,7 @@ from sher3_gap.errors import CaseError
 from sher3_gap.exact import controller_error, transport_error, with_lateness
 from sher3_gap.loading import signals_of
 from sher3_gap.ticks import in_order, on_grid, tick_grid
+from sher3_sim import EFFECTS
 from simulated import ROBOT, runs_of
 
 T = 2_000_000
@@ -88,6 +89,14 @@ def test_what_happens_all_the_time_is_the_robots():
     run = live(lambda r: {"echo": np.vstack([np.zeros((2, 5)), r.command[:-2]])})
     assert run.held is None
     assert np.abs(transport_error(run)).max() > 0.0
+
+
+def test_commands_that_are_dropped_often_are_the_robots():
+    effects = [EFFECTS["dropped_commands"]("all", probability=0.05)]
+    (run,) = runs_of(("sweep",), effects, repeats=1, duration=2.5)
+    signals = signals_of(replace(run, metadata=replace(run.metadata, origin="robot")), ROBOT)
+    assert signals.held is None
+    assert np.abs(transport_error(signals)).max() > 0.0
 
 
 def test_a_recording_that_is_not_live_is_taken_as_it_is():
