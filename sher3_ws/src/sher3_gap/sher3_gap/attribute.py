@@ -262,4 +262,4 @@ def _alike(rival: Fit, chosen: Fit, worth: float) -> bool:
     built = AS_BUILT_PRICE * max(samples_at_tip(rival.terms[-1]), *(samples_at_tip(t) for t in chosen.terms), 0)
     apart = {k: rival.loss[k] - x for k, x in chosen.loss.items()}
     tip = sum(x for (_, c), x in apart.items() if c.actuator == "tip")
-    return tip < max(margin, built) and sum(apart.values()) - tip < margin
+    return tip < max(3.0 * PRICE, min(margin, 2.0 * built), built) and sum(apart.values()) - tip < margin

@@ -62,6 +62,8 @@ def transport_finding(
     causes, closure = _timing_causes(timing, runs, without)
     late = np.flatnonzero(np.abs(timing.latency - np.median(timing.latency)) > SKEW)
     actuator = ACTUATORS[late[0]] if len(late) == 1 and abs(np.median(timing.latency)) < SKEW else "all"
+    if timing.alone is not None:
+        actuator = ACTUATORS[timing.alone]
     return ExactFinding(
         _where("transport", actuator, gap, EXACT * top, "whenever the command changes"), causes, closure
     )
@@ -85,15 +87,19 @@ def _timing_causes(t: Timing, runs: Sequence[RunSignals], without: Collection[st
     odd = [i for i in range(len(t.latency)) if apart and abs(t.latency[i] - usual) > SKEW]
     per_tick = 1.0 - t.per_tick / t.energy
     random_share = per_tick - constant
-    jittery = t.scatter > 0.35 * max(usual, 1e-9) and random_share > SMALL and t.drops < 0.5
+    typical = usual if t.alone is None else float(t.latency[t.alone])
+    site = "all" if t.alone is None else ACTUATORS[t.alone]
+    jittery = t.scatter > 0.35 * max(typical, 1e-9) and random_share > SMALL and t.drops < 0.5
     dropped = t.drops > 2e-4 and random_share > SMALL
     held = float(np.median(t.samples)) if len(t.samples) else usual
+    if t.alone is not None:
+        odd = [t.alone] if held > SKEW and not jittery else []
 
     def seconds(x: float, spread: float) -> Parameter:
         return Parameter(value=x * period, low=(x - spread) * period, high=(x + spread) * period, unit="s")
 
     spread = max(0.01, t.scatter)
-    if held > SKEW and not jittery and "command_delay" not in without and len(odd) < len(t.latency):
+    if held > SKEW and not jittery and "command_delay" not in without and t.alone is None and len(odd) < len(t.latency):
         closure = constant
         causes.append(_cause("command_delay", "timing", "transport", "all", constant, delay=seconds(held, spread)))
     if odd and "axis_skew" not in without:
@@ -114,13 +120,13 @@ def _timing_causes(t: Timing, runs: Sequence[RunSignals], without: Collection[st
         n = max(1, len(t.samples))
         error = 2.0 * float(np.sqrt(t.drops * (1.0 - t.drops) / n)) + 0.1 * t.drops
         share = Parameter(value=t.drops, low=max(0.0, t.drops - error), high=t.drops + error, unit="1")
-        causes.append(_cause("dropped_commands", "timing", "transport", "all", per_tick, probability=share))
+        causes.append(_cause("dropped_commands", "timing", "transport", site, per_tick, probability=share))
     elif jittery and "command_jitter" not in without:
         closure = per_tick
-        causes.append(_cause("command_jitter", "timing", "transport", "all", per_tick, sigma=_sigma(t, period)))
+        causes.append(_cause("command_jitter", "timing", "transport", site, per_tick, sigma=_sigma(t, period)))
     elif random_share > 0.1 and "command_jitter" not in without:
         closure = per_tick
-        causes.append(_cause("command_jitter", "timing", "transport", "all", random_share, sigma=_sigma(t, period)))
+        causes.append(_cause("command_jitter", "timing", "transport", site, random_share, sigma=_sigma(t, period)))
     return sorted(causes, key=lambda c: -c.closure.value), closure
 
 

@@ -41,6 +41,7 @@ class Timing:
         samples: per-tick latencies shared by the axes, periods (telling ticks only).
         drops: share of telling ticks whose command was held one period or more too long.
         scatter: standard deviation of the latencies that are not drops, periods.
+        alone: index of the axis whose commands alone come late, of which the ticks then tell; None where several do.
     """
 
     energy: float
@@ -52,6 +53,7 @@ class Timing:
     samples: Array
     drops: float
     scatter: float
+    alone: int | None = None
 
 
 Pair = tuple[Array, Array, NDArray[np.bool_]]
@@ -102,8 +104,8 @@ def tick_latency(command: Array, echo: Array, around: Array) -> tuple[Array, Arr
         trial = echo - (new - part[:, None] * step)
         square = np.sum(trial**2, axis=1)
         tells = energy > TELLING_STEP**2
-        better = tells & (square <= left) if whole == base else tells & (square < 0.01 * left) & (left > UNEXPLAINED)
-        ticks[better], left[better] = whole + part[better], square[better]
+        better = square <= left if whole == base else tells & (square < 0.01 * left) & (left > UNEXPLAINED)
+        ticks[better & tells], left[better] = (whole + part)[better & tells], square[better]
         error[better] = trial[better]
     return ticks, error
 
@@ -113,13 +115,16 @@ def timing_of(runs: Sequence[RunSignals], robot: Robot) -> Timing | None:
     pairs = [scaled(run, robot) for run in runs if run.command is not None and run.echo is not None]
     if not pairs:
         return None
-    energy = sum(float(np.sum((e - delayed(c, 1))[ok] ** 2)) for c, e, ok in pairs)
+    each = np.sum([np.sum((e - delayed(c, 1))[ok] ** 2, axis=0) for c, e, ok in pairs], axis=0)
     axes = [constant_latency(pairs, i) for i in range(pairs[0][0].shape[1])]
     latency = np.array([a[0] for a in axes])
     common, together = constant_latency(pairs)
+    odd = np.flatnonzero(each > QUIET)
+    alone = int(odd[0]) if len(odd) == 1 else None
+    judged = slice(None) if alone is None else slice(alone, alone + 1)
     told, left = [], 0.0
     for command, echo, ok in pairs:
-        ticks, error = tick_latency(command, echo, latency)
+        ticks, error = tick_latency(command[:, judged], echo[:, judged], latency[judged])
         told.append(ticks[np.isfinite(ticks) & ok])
         left += float(np.sum(error[ok] ** 2))
     samples = np.concatenate(told)
@@ -128,7 +133,7 @@ def timing_of(runs: Sequence[RunSignals], robot: Robot) -> Timing | None:
     rest = samples[~late]
     scatter = float(np.std(rest)) if len(rest) else 0.0
     return Timing(
-        energy,
+        float(each.sum()),
         together,
         sum(a[1] for a in axes),
         left,
@@ -137,6 +142,7 @@ def timing_of(runs: Sequence[RunSignals], robot: Robot) -> Timing | None:
         samples,
         float(late.mean()) if len(samples) else 0.0,
         scatter,
+        alone,
     )
 
 
