@@ -1,11 +1,14 @@
 """Speed of the whole graph: force sample to CAN frame, jitter, lost cycles and processor time, at 200, 500 and 1000 Hz.
 
 Starts the real graph on mocks in its own processes with a surgeon who pushes, traces every sample at both ends of the
-chain, and joins the ends by stamp. `--baseline` runs the same nodes on rclpy's own executor with message objects; by
-default both are run. Figures in microseconds; processor time in percent of one core.
+chain, and joins the ends by stamp. The default executor is rclpy's own with message objects and the same nodes; by
+default both are run. Figures in microseconds; processor time in percent of one core: the control loop (force sensor,
+pedal, admittance, kinematics, motor driver, plant), the supervisor beside it, and the load of the bench (the surgeon).
+Time limits are those of `--patience patient`, so that a pause of the machine shows as lost cycles and not as a stop.
 
     python bench/graph.py                      # 200, 500, 1000 Hz, ours beside the default, 10 s each
     python bench/graph.py --rate 1000 --seconds 60 --only ours --json
+    python bench/graph.py --only ours --nodes plant,force_sensor+pedal+admittance+kinematics+motor_driver,supervisor
 """
 
 from __future__ import annotations
@@ -35,12 +38,15 @@ def main() -> None:
     parser.add_argument("--seconds", type=float, default=10.0)
     parser.add_argument("--only", choices=EXECUTORS)
     parser.add_argument("--realtime", type=int, default=-1, help="SCHED_FIFO priority, -1 where permitted, 0 never")
+    parser.add_argument("--nodes", help="nodes of each process as in `sher3 up --nodes`; default one process each")
+    parser.add_argument("--baseline-seconds", type=float, help="length of the runs on the default executor")
     parser.add_argument("--json", action="store_true")
     options = parser.parse_args()
     results = []
     for rate in options.rate:
         for executor in [options.only] if options.only else EXECUTORS:
-            result = measure(rate, options.seconds, executor, options.realtime)
+            seconds = options.baseline_seconds if executor == "default" else None
+            result = measure(rate, seconds or options.seconds, executor, options.realtime, options.nodes)
             results.append(result)
             if not options.json:
                 print(text(result), flush=True)
@@ -52,11 +58,18 @@ def main() -> None:
             print(f"{ours['rate']:6.0f} Hz: {ratio:.1f} times the default executor in p50")
 
 
-def measure(rate: float, seconds: float, executor: str, realtime: int) -> dict[str, Any]:
+def measure(rate: float, seconds: float, executor: str, realtime: int, nodes: str | None) -> dict[str, Any]:
     """Run the graph in a process of its own, which reports the processor time of each node, and read the traces."""
     with tempfile.TemporaryDirectory() as folder:
         command = [sys.executable, __file__.replace("graph.py", "graph_run.py")]
-        arguments = [str(rate), str(seconds + SETTLE), str(SETTLE), str(realtime), str(DOMAIN)]
+        arguments = [
+            str(rate),
+            str(seconds + SETTLE),
+            str(SETTLE),
+            str(realtime),
+            str(DOMAIN),
+            *([nodes] if nodes else []),
+        ]
         from sher3_runtime.environment import child_environment
 
         environment = child_environment(SHER3_TRACE=folder, SHER3_EXECUTOR=EXECUTORS[executor])
@@ -71,7 +84,7 @@ def evaluate(folder: Path, rate: float, seconds: float) -> dict[str, Any]:
     """Return latencies, jitter and losses from the traces."""
     nodes = {path.stem: json.loads(path.read_text()) for path in folder.glob("*.json")}
     sent = trace(nodes["force_sensor"], "publish force/measured_cf")
-    done = trace(nodes["motor_driver"], "handled servo_jv")
+    done = trace(nodes["motor_driver"], "sent servo_jv")
     first = min(sent) + round(SETTLE * 1e9)
     window = [stamp for stamp in sent if first <= stamp < first + round(seconds * 1e9)]
     latency = np.array([done[stamp] - sent[stamp] for stamp in window if stamp in done]) / 1e3
@@ -84,13 +97,14 @@ def evaluate(folder: Path, rate: float, seconds: float) -> dict[str, Any]:
         "cycles": grid,
         "lost_samples": grid - len(window),
         "lost_frames": grid - len(latency),
+        "enabled": bool(len(latency)) and window[-1] - max(done) < 1e9,
         "nodes": {name: node["statistics"] for name, node in sorted(nodes.items())},
     }
 
 
 def trace(node: dict[str, Any], point: str) -> dict[int, int]:
     """Return time by stamp at a point of the chain; the first passage counts."""
-    data = node["traces"][point]
+    data = node["traces"].get(point) or {"stamps": [], "times": []}
     return dict(zip(reversed(data["stamps"]), reversed(data["times"]), strict=True))
 
 
@@ -109,7 +123,9 @@ def text(result: dict[str, Any]) -> str:
     return (
         f"{result['rate']:6.0f} Hz {result['executor']:8} force -> CAN frame p50 {latency['p50']:.0f} p99 "
         f"{latency['p99']:.0f} max {latency['max']:.0f} us; jitter p50 {jitter['p50']:.0f} p99 {jitter['p99']:.0f} us; "
-        f"lost {result['lost_frames']} of {result['cycles']} cycles; CPU {result['cpu_sum']:.0f} % of a core ({cpu})"
+        f"{'' if result['enabled'] else 'STOPPED BY A FAULT, '}lost {result['lost_frames']} of {result['cycles']} "
+        f"cycles; CPU of the loop {result['cpu_loop']:.0f}, "
+        f"supervisor {result['cpu_supervisor']:.0f}, bench {result['cpu_bench']:.0f} % of a core ({cpu})"
     )
 
 

@@ -11,12 +11,13 @@ from tempfile import NamedTemporaryFile
 import psutil
 from sher3_bringup.settings import checked, parse_processes
 from sher3_bringup.surgeon import load_script
-from sher3_bringup.up import run_graph
+from sher3_bringup.up import launch_order, run_graph
 
 PUSH = """
 schema: sher3.teleop/1
 steps:
-  - {name: settle, duration: 1.0}
+  - {name: settle, duration: 0.7}
+  - {name: recover, duration: 0.3, command: disable}
   - {name: enable, duration: 0.5, command: enable}
   - {name: push, duration: 3600, pedal: 1.0, dither: [1.0, 0.8, 0.5, 0, 0, 0], frequency: 0.5}
 """
@@ -51,16 +52,18 @@ def main() -> None:
     """Run the graph with a surgeon who pushes all the time."""
     rate, seconds, settle = map(float, sys.argv[1:4])
     realtime, domain = map(int, sys.argv[4:6])
+    nodes = sys.argv[6] or None
     with NamedTemporaryFile("w", suffix=".yaml") as file:
         file.write(PUSH)
         file.flush()
         script = load_script(Path(file.name))
     settings = checked(
         rate=rate,
-        processes=parse_processes(None, True, False),
+        processes=parse_processes(nodes, True, False),
         duration=seconds + 0.5,
         realtime=realtime,
         domain=domain,
+        patience="patient",
     )
 
     def surgeon() -> list:
@@ -71,10 +74,11 @@ def main() -> None:
     cpu = CpuTimes(settle)
     begin = time.monotonic()
     run_graph(settings, lambda text: print(text, file=sys.stderr), {"surgeon": surgeon}, cpu)
-    names = ["+".join(process) for process in settings.processes] + ["surgeon"]
+    names = ["+".join(process) for process in launch_order(settings.processes)] + ["surgeon"]
     share = dict(zip(names, cpu.percent(), strict=True))
-    robot = {name: percent for name, percent in share.items() if name != "surgeon"}
-    print(json.dumps({"cpu": share, "cpu_sum": sum(robot.values()), "wall": time.monotonic() - begin}))
+    watching, load = share.get("supervisor", 0.0), share["surgeon"]
+    sums = {"cpu_loop": sum(share.values()) - watching - load, "cpu_supervisor": watching, "cpu_bench": load}
+    print(json.dumps({"cpu": share, **sums, "wall": time.monotonic() - begin}))
 
 
 if __name__ == "__main__":

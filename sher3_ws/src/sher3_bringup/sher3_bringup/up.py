@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import signal
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import partial
 
@@ -43,11 +43,10 @@ def run_graph(
     realtime = prepare(settings)
     imported = time.monotonic()
     with _signals() as caught, Fleet() as fleet:
-        for process in settings.processes:
+        for process in launch_order(settings.processes):
             priority = -realtime if set(process) <= UNHURRIED else realtime
             fleet.launch("+".join(process), partial(make_nodes, settings, process), priority)
             if "plant" in process:
-                # The devices are there before their drivers look for them.
                 fleet.gather("publishes")
         for name, make in (extra or {}).items():
             fleet.launch(name, make, realtime)
@@ -67,6 +66,11 @@ def run_graph(
 
         fleet.watch(finished, spare=("recorder",) if settings.recording == "optional" else ())
     say("stopped" + (f"; recorded {settings.record}" if settings.record else ""))
+
+
+def launch_order(processes: Sequence[tuple[str, ...]]) -> list[tuple[str, ...]]:
+    """Return the processes with the plant's first: devices are there before their drivers look for them."""
+    return sorted(processes, key=lambda process: "plant" not in process)
 
 
 def prepare(settings: RunSettings) -> int:

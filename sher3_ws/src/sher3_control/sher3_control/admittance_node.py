@@ -69,7 +69,7 @@ class AdmittanceNode(Node):
         self._publish_settings = advertise(self, "admittance/settings")
         self._publish_status = advertise(self, "admittance/status")
         self._take_joints = latest(self, "measured_js")
-        subscribe(self, "pedal/measured", self._on_pedal)
+        self._pedal_topic = subscribe(self, "pedal/measured", self._on_pedal)
         subscribe(self, "force/measured_cf", self._on_wrench)
         subscribe(self, "operating_state", self._on_state)
         self._take_heartbeat = latest(self, "supervisor/heartbeat")
@@ -99,6 +99,8 @@ class AdmittanceNode(Node):
         self._wrench = (sample.stamp, cast(Wrench, sample.wrench))
         if self._pedal[0] != sample.stamp - self._p.period:
             self._tick(sample.stamp)
+        else:
+            self._pedal_topic.wakes = True
 
     def _on_state(self, sample: TextSample) -> None:
         self._state_heard.feed(sample.text, self._now())
@@ -111,6 +113,7 @@ class AdmittanceNode(Node):
             return
         self._last = stamp
         self._late.done(stamp)
+        self._pedal_topic.wakes = False  # it has come before the wrench most of the time
         self._look_at_joints()
         if (beat := self._take_heartbeat()) is not None:
             self._on_state(beat)

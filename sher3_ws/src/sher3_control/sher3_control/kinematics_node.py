@@ -69,7 +69,7 @@ class KinematicsNode(Node):
         self._publish_inputs = advertise(self, "motion/inputs")
         self._publish_settings = advertise(self, "motion/settings")
         self._publish_status = advertise(self, "motion/status")
-        subscribe(self, "measured_js", self._on_joints)
+        self._joints_topic = subscribe(self, "measured_js", self._on_joints)
         subscribe(self, "servo_cv", self._on_twist)
         subscribe(self, "operating_state", self._on_state)
         self._take_heartbeat = latest(self, "supervisor/heartbeat")
@@ -101,6 +101,8 @@ class KinematicsNode(Node):
         self._twist = sample
         if sample.stamp == self._joints.stamp:
             self._tick(sample.stamp)
+        else:
+            self._joints_topic.wakes = True
 
     def _on_wrench(self, sample: WrenchSample) -> None:
         if self._compensation is not None:
@@ -131,6 +133,8 @@ class KinematicsNode(Node):
             return
         self._last = stamp
         self._late.done(stamp)
+        # In the cooperative mode the twist comes last, and nothing can be done before.
+        self._joints_topic.wakes = self.motion.ownership.owner not in (None, Mode.COOPERATIVE)
         state = self._input(stamp)
         output = self.motion.tick(state)
         self._publish_velocity(JointSample(stamp, velocity=output.velocity))

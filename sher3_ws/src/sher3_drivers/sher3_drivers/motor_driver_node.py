@@ -16,6 +16,7 @@ from sher3_runtime import (
     clock_of,
     latest,
     on_tick,
+    statistics_of,
     subscribe,
 )
 
@@ -64,6 +65,7 @@ class MotorDriverNode(Node):
         self._publish_drives = advertise(self, "drives/measured_js")
         self._publish_demand = advertise(self, "drives/setpoint_jv")
         self._publish_report = advertise(self, "diagnostics")
+        self._sent = statistics_of(self).trace("sent servo_jv")
         subscribe(self, "servo_jv", self._on_command)
         subscribe(self, "operating_state", lambda sample: self._obey(sample.text, Action.QUICK_STOP))
         self._take_heartbeat = latest(self, "supervisor/heartbeat")
@@ -88,7 +90,9 @@ class MotorDriverNode(Node):
 
     def _on_command(self, sample: JointSample) -> None:
         try:
-            self.driver.command(sample.stamp, sample.velocity or ())
+            sent = self.driver.command(sample.stamp, sample.velocity or ())
+            if sent and self._sent is not None:
+                self._sent.mark(sample.stamp, self.driver.clock())
         except CommandRefused as error:
             self._note(f"servo_jv: {error}")
 

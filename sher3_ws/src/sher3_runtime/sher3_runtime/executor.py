@@ -22,7 +22,7 @@ from rclpy.node import Node
 from rclpy.task import Task
 
 from .clock import Clock
-from .ports import clock_of, ports
+from .ports import Subscribed, clock_of, ports
 from .tick import Tick
 
 IDLE_NS = 100_000_000
@@ -40,9 +40,10 @@ Others = dict[str, list[tuple[Any, Take]]]
 class _Topic:
     """A subscription as the hot path needs it; `heard_ns` is the time of its newest sample."""
 
-    __slots__ = ("deliver", "handle", "heard_ns", "raw", "take", "type")
+    __slots__ = ("deliver", "handle", "heard_ns", "raw", "subscribed", "take", "type")
 
-    def __init__(self, subscription: Any, deliver: Callable[[Any], None]) -> None:
+    def __init__(self, subscription: Any, deliver: Callable[[Any], None], subscribed: Subscribed) -> None:
+        self.subscribed = subscribed
         self.handle = subscription.handle
         self.take = subscription.handle.take_message
         self.type, self.raw, self.deliver = subscription.msg_type, subscription.raw, deliver
@@ -115,13 +116,14 @@ class RawExecutor(Executor):
             topic.drain()
 
     def _wait_for_streams(self, timeout_ns: int) -> None:
-        if not self._streams:
+        waking = [topic.handle for topic in self._streams if topic.subscribed.wakes]
+        if not waking:
             sleep(timeout_ns * 1e-9)
             return
         wait_set = self._stream_set
         wait_set.clear_entities()
-        for topic in self._streams:
-            wait_set.add_subscription(topic.handle)
+        for handle in waking:
+            wait_set.add_subscription(handle)
         wait_set.wait(timeout_ns)
 
     def settle(self) -> bool:
@@ -169,10 +171,12 @@ class RawExecutor(Executor):
         self._topics, self._streams, self._look_due_ns = {}, [], 0
         others: Others = {"guard_condition": [], "service": [], "timer": [], "client": []}
         for node in nodes:
-            deliveries, polled = ports(node).deliveries, ports(node).polled
+            port = ports(node)
             for sub in node.subscriptions:
-                if sub.handle.pointer not in polled and self._hold(sub.handle):
-                    self._topics[sub.handle.pointer] = _Topic(sub, deliveries.get(sub.handle.pointer, sub.callback))
+                pointer = sub.handle.pointer
+                if pointer not in port.polled and self._hold(sub.handle):
+                    subscribed = port.subscribed.get(pointer) or Subscribed()
+                    self._topics[pointer] = _Topic(sub, port.deliveries.get(pointer, sub.callback), subscribed)
             self._collect(others["service"], node.services, self._take_service)
             self._collect(others["timer"], node.timers, self._take_ready_timer)
             self._collect(others["client"], node.clients, self._take_client)

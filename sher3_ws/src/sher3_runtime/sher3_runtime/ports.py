@@ -47,6 +47,22 @@ GAPLESS = frozenset(
 """Streams with a sample at every tick: a stamp that skips a tick is a lost sample."""
 
 Publish = Callable[[Any], None]
+
+
+class Subscribed:
+    """A subscription of a node.
+
+    Attributes:
+        wakes: a sample wakes the process. A node that has nothing to do before another sample comes says False, and
+            gets the sample, in the order of its subscriptions, once something else has woken it.
+    """
+
+    __slots__ = ("wakes",)
+
+    def __init__(self) -> None:
+        self.wakes = True
+
+
 _clocks: WeakKeyDictionary[Context, Clock] = WeakKeyDictionary()
 
 
@@ -82,6 +98,7 @@ class Ports:
         self.statistics.traces = {} if os.environ.get(TRACE_VARIABLE) else None
         self.polled: set[int] = set()
         self.deliveries: dict[int, Callable[[bytes], None]] = {}
+        self.subscribed: dict[int, Subscribed] = {}
         self.ticks: list[Tick] = []
         self.readables: list[tuple[Any, Callable[[], None]]] = []
         self.publishers: dict[str, Any] = {}
@@ -130,7 +147,7 @@ def raw_mode() -> bool:
     return os.environ.get(EXECUTOR_VARIABLE, "") != "default"
 
 
-def subscribe(node: Node, name: str, callback: Callable[[Any], None], depth: int | None = None) -> None:
+def subscribe(node: Node, name: str, callback: Callable[[Any], None], depth: int | None = None) -> Subscribed:
     """Subscribe `node` to a topic of the table; `callback` gets one sample at a time, in order of arrival.
 
     Args:
@@ -138,6 +155,9 @@ def subscribe(node: Node, name: str, callback: Callable[[Any], None], depth: int
         name: topic relative to `/sher3`.
         callback: called with a sample; its exceptions end the spinning.
         depth: queue length instead of the table's (a recorder wants a deep one).
+
+    Returns:
+        The subscription; rclpy's own executor takes no notice of its `wakes`.
 
     Raises:
         UnknownTopic: the name is not in the table.
@@ -176,6 +196,7 @@ def subscribe(node: Node, name: str, callback: Callable[[Any], None], depth: int
     )
     port.subscriptions[name] = subscription
     port.deliveries[subscription.handle.pointer] = deliver
+    return port.subscribed.setdefault(subscription.handle.pointer, Subscribed())
 
 
 def _receiver(port: Ports, topic: Topic, callback: Callable[[Any], None]) -> Callable[[Any], None]:

@@ -125,7 +125,7 @@ class PlantNode(Node):
         subscribe(self, "mock/fault", self._on_fault)
         for link in links:
             if link.fileno() >= 0:
-                on_readable(self, link, self.drives.poll)
+                on_readable(self, link, self._serve)
         if isinstance(self._force, NetFtServer):
             on_readable(self, self._force, self._force.poll)
         on_tick(self, self._tick, 0.5 * self._period)
@@ -144,6 +144,9 @@ class PlantNode(Node):
             self._tip_stamp, pose = stamp, reading.tracker.tolist()
             self._publish_tip(PoseSample(stamp, tuple(pose[:3]), tuple(pose[3:])))
         return reading
+
+    def _serve(self) -> None:
+        self.drives.serve(0.0)  # the executor calls again at once when more has come
 
     def _tell_truth(self) -> None:
         """Publish where the axes truly are; steps that are made up for bear the same stamp."""
