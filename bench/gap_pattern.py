@@ -1,7 +1,7 @@
 """Does a gap live where its cause says? Agreement of true causes and of stand-ins, beside constancy.
 
-`python bench/gap_pattern.py [--seeds 1000:1101] [--json]`. Robots of the challenge with faults, drawn from the seeds; of those
-with a single one, a second diagnosis does without the true effect. About four seconds a diagnosis.
+`python bench/gap_pattern.py [--seeds 1000:1101] [--json]`. Robots of the challenge with faults, drawn from the
+seeds; of those with a single one, a second diagnosis does without the true effect.
 """
 
 from __future__ import annotations
