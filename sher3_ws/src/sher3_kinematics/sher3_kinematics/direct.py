@@ -12,7 +12,7 @@ from typing import Any
 import numba
 
 
-def direct(function: Callable[..., Any], *example: Any) -> Callable[..., Any]:
+def direct(function: Any, *example: Any) -> Callable[..., Any]:
     """Return the machine code of a compiled function for arguments of the types of `example`, called by position.
 
     The caller answers for the types: the dtype and shape of arrays and the length of tuples must be those of the

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
-from scipy.signal import savgol_filter
 from sher3_bags.run import Run
 from sher3_description import Robot
 from sher3_kinematics.kernel import (
@@ -36,6 +35,8 @@ def contact_wrench(run: Run, robot: Robot, smoothing: int = SMOOTHING) -> Array:
     Raises:
         MissingTopicError: `measured_js` or `force/measured_cf` was not recorded.
     """
+    from scipy.signal import savgol_filter  # a second to import, and the running robot never needs it
+
     sensed = run["force/measured_cf"]
     readings = np.column_stack([sensed.force, sensed.torque])
     q, sensor = run["measured_js"].position, robot.force_sensor
