@@ -8,7 +8,7 @@ is what will decide. The best few are judged again over draws of A's parameters,
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -46,22 +46,20 @@ class Given:
     Attributes:
         floor: per channel, which a prediction does not undercut.
         present: excitations that have left the rivals standing.
-        load: largest known tip load there is, as a share of the standard set's; None when the case has none.
+        loads: whether known loads can be put on its tip: it has some.
     """
 
     floor: Floors
     present: frozenset[str] = frozenset()
-    load: float | None = None
+    loads: bool = True
 
     @classmethod
     def of(cls, runs: Sequence[RunSignals], robot: Robot) -> Given:
         """Read it off the runs of a case."""
-        standard = max(max(abs(x) for x in row[2:]) for row in excite("loads", robot).loads)
-        known = [max(abs(x) for x in row[2:]) for run in runs for row in run.payload]
         return cls(
             floors_of(gather(runs, robot)),
             frozenset(run.excitation for run in runs),
-            max(known) / standard if known else None,
+            any(run.payload for run in runs),
         )
 
 
@@ -103,18 +101,18 @@ def design_experiment(
         robot: whose limits are kept.
         say: progress.
         choices: values of each parameter of the family that are tried.
-        runs: of the case behind the verdict: its floors count, its excitations are not proposed again, and no larger
-            load than its largest is, where it has any.
+        runs: of the case behind the verdict: its floors count, its excitations are not proposed again, and loads only
+            where it has some.
 
     Raises:
         ExperimentError: the verdict has no rivals.
     """
     cause, rivals = rivals_of(verdict)
     given = Given.of(runs, robot) if runs else Given({})
-    if given.load is not None:
-        choices = {**choices, "load": tuple(x for x in choices.get("load", ()) if x <= given.load + 1e-6)}
+    if not given.loads:
+        choices = {**choices, "load": ()}
     search = _Search(_Judge(robot, verdict, cause, rivals, given.floor), robot, say)
-    search.standard(given.present, given.load)
+    search.standard(given)
     search.family(Design(actuator=cause.actuator if cause.actuator in ACTUATORS else "all"), choices)
     predicted, excitation, about = search.winner()
     return Experiment(excitation, about, (cause.effect, *rivals), predicted, search.judge.count)
@@ -146,10 +144,10 @@ class _Search:
     def __post_init__(self) -> None:
         self.tried: list[tuple[Separation, Excitation, About]] = []
 
-    def standard(self, present: Collection[str], load: float | None) -> None:
-        """Try the standard set, less what has been run."""
+    def standard(self, given: Given) -> None:
+        """Try the standard set, less what has been run and what cannot be."""
         for name in catalogue():
-            if name != "task" and name not in present and not (name == "loads" and load is not None and load < 1.0):
+            if name != "task" and name not in given.present and (given.loads or name != "loads"):
                 self._try(excite(name, self.robot), {"standard": name})
 
     def family(self, start: Design, choices: Choices) -> None:

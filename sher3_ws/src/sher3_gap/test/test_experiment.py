@@ -1,5 +1,7 @@
 """The designed experiment: within limits, readable by player and simulator, and it resolves the ambiguity."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from sher3_description import FileError
@@ -47,10 +49,10 @@ def test_the_experiment_resolves_what_the_task_left_open(ambiguous, tmp_path):
 
 def test_the_case_says_what_floors_loads_and_excitations_there_are(ambiguous):
     given = Given.of(signals(ambiguous), ROBOT)
-    assert given.present == {"task"} and given.load is None
+    assert given.present == {"task"} and given.loads
     assert given.floor[Channel("motor_mechanics", "tilt")] > 0.0
-    loaded = runs_of(["loads_0.5"], repeats=1, duration=3.0)
-    assert Given.of(signals(loaded), ROBOT).load == pytest.approx(0.5, rel=0.01)
+    free = [replace(run, metadata=replace(run.metadata, payload=())) for run in ambiguous[:2]]
+    assert not Given.of(signals(free), ROBOT).loads
 
 
 def test_a_prediction_is_the_mean_over_draws():
