@@ -13,6 +13,9 @@ from sher3_bags.run import CONTRACT_TOPICS
 PAUSE_NS = 250_000_000
 """A longer silence is a source that was switched off (`servo_cv` outside cooperative mode), not a loss of samples."""
 
+MANY_SENDERS = frozenset({"diagnostics"})
+"""Topics that every node publishes: stamps of several senders repeat and overtake each other, which is no disorder."""
+
 
 def grid_periods(robot: Robot) -> dict[str, int]:
     """Return the period [ns] of every topic that the contract puts on a grid (section 4)."""

@@ -19,7 +19,7 @@ from sher3_description import TOPICS, Robot, Topic
 
 from sher3_bags.cdr import STAMP
 from sher3_bags.errors import BagError, TopicError
-from sher3_bags.gaps import GapCounter, grid_periods
+from sher3_bags.gaps import MANY_SENDERS, GapCounter, grid_periods
 from sher3_bags.kernels import MESSAGE, MESSAGE_HEAD, RECORD_HEAD
 from sher3_bags.mcap_writer import CHUNK_LIMIT, McapWriter
 from sher3_bags.messages import TEXT
@@ -178,7 +178,8 @@ class Recorder:
         topic = TOPICS[name]
         channel = self._writer.channel(topic.full_name, topic.type, topic.qos)
         gaps = GapCounter(self._periods.get(name))
-        self._sources[name] = _Source(topic, channel, gaps, topic.type not in _NO_HEADER)
+        stamped = topic.type not in _NO_HEADER and name not in MANY_SENDERS
+        self._sources[name] = _Source(topic, channel, gaps, stamped)
         return self._sources[name]
 
     def __enter__(self) -> Recorder:

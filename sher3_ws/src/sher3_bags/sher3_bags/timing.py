@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from sher3_description import Robot
 
-from sher3_bags.gaps import count_gaps, grid_periods
+from sher3_bags.gaps import MANY_SENDERS, count_gaps, grid_periods
 from sher3_bags.run import Run, Stream
 from sher3_bags.statistics import Spread, common
 
@@ -83,7 +83,7 @@ def _timing(topic: str, table: Stream, period: int | None, force: Stream | None)
         from_force=_from_force(table, force),
         dropped=gaps.dropped,
         pauses=gaps.pauses,
-        disordered=gaps.disordered,
+        disordered=0 if topic in MANY_SENDERS else gaps.disordered,
         not_finite=_not_finite(table),
     )
 

@@ -13,6 +13,8 @@ from sher3_bags import BagError, Recorder, RunMetadata, TopicError, read_run, re
 from sher3_bags.cdr_encode import encode
 from sher3_bags.gaps import GapCounter
 from sher3_description import TOPICS, load_robot
+from sher3_runtime import DiagnosticSample
+from sher3_runtime.cdr import codec
 
 ROBOT = load_robot()
 
@@ -86,6 +88,14 @@ def test_gap_counter():
     for stamp in (0, 2, 4, 10, 10, 8, 12, 400, 402):
         gaps.see(stamp * 1_000_000)
     assert gaps.counts() == {"messages": 9, "dropped": 2, "pauses": 1, "disordered": 2, "longest": 388_000_000}
+
+
+def test_reports_of_many_nodes_are_not_out_of_order(tmp_path):
+    pack = codec("diagnostic_msgs/msg/DiagnosticArray").encode
+    with Recorder(tmp_path / "bag", ROBOT) as recorder:
+        for count, (stamp, name) in enumerate(((20, "pedal"), (20, "plant"), (10, "supervisor"))):
+            recorder.write("diagnostics", pack(DiagnosticSample(stamp, name, 0, "ok")), 100 + count)
+        assert recorder.counts()["diagnostics"]["disordered"] == 0
 
 
 def test_bad_input(tmp_path, run):
