@@ -21,6 +21,7 @@ class FrozenCheck:
 
     Attributes:
         way: what each axis was told to go since its report last changed, m or rad.
+        blind: a report stands, so nobody can tell whether that drive obeys.
     """
 
     def __init__(self, scales: Sequence[AxisScale], settings: MotorDriverSettings) -> None:
@@ -30,7 +31,7 @@ class FrozenCheck:
 
     def begin(self) -> None:
         """Start afresh."""
-        self.way = [0.0] * len(self._scales)
+        self.way, self.blind = [0.0] * len(self._scales), False
         self._last: list[tuple[float, float, float]] = []
 
     def check(self, feedback: Feedback, commanded: Sequence[float]) -> Trip | None:
@@ -43,7 +44,7 @@ class FrozenCheck:
                 continue
             way = self.way[axis] = self.way[axis] + abs(commanded[axis]) * self._period
             if way > self._limits[axis]:
-                scale, limit = self._scales[axis], self._limits[axis]
+                scale, limit, self.blind = self._scales[axis], self._limits[axis], True
                 unit = "rad" if scale.revolute else "m"
                 text = f"{scale.name}: encoders and torque repeat bit for bit, told to go {way:.3g} {unit} meanwhile"
                 return Trip(Reason.ENCODER_FROZEN, text, way, limit, unit)

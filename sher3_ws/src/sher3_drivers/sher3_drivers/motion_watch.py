@@ -52,8 +52,9 @@ class MotionWatch:
         return moved if stop.action < Action.POWER_OFF else None
 
     def deaf(self, stop: StopLog) -> bool:
-        """Return whether a drive does not listen: then only silence of the host stops it."""
-        return stop.first is not None and (stop.code is Reason.DRIVE_DISOBEYS or self.rest.disobeyed)
+        """Return whether a drive does not listen, or perhaps not: then only silence of the host stops it."""
+        deaf = stop.code is Reason.DRIVE_DISOBEYS or self.frozen.blind or self.rest.disobeyed
+        return deaf and stop.first is not None
 
     def powers_off(self, stop: StopLog) -> bool:
         """Return whether the robot has braked and is to lose its power."""

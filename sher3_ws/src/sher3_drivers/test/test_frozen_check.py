@@ -36,3 +36,13 @@ def test_an_axis_held_by_friction_pushes():
 
 def test_at_rest_nothing_has_to_change():
     assert run(0.0, 5000)[0] is None
+
+
+def test_a_standing_report_makes_the_driver_blind_until_it_starts_afresh():
+    check, still = FrozenCheck(SCALES, SETTINGS), (0.0,) * 5
+    feedback = Feedback(0, still, still, still, still, still)
+    for _ in range(20):
+        check.check(feedback, (5e-3,) * 5)
+    assert check.blind
+    check.begin()
+    assert not check.blind

@@ -158,11 +158,17 @@ PROCESSES = (
     *(Row(f"process.{name}", "intermittent", effect="either", why=BRIEF) for name in NODES),
     *(Row(f"process.{name}", "off", reasons=LOST[name]) for name in NODES),
 )
-CLOCKS = ("force_sensor", "pedal", "motor_driver", "admittance", "kinematics")
+CLOCKS = ("force_sensor", "pedal", "motor_driver")
+SAMPLES = "it takes the time of a tick from its samples; its own clock only fills in for those that stay away"
 CLOCK = (
     # Backwards together cannot be recorded in order, and cannot happen: the offset to the monotonic clock is frozen.
     Row("clock", "wrong", {"offset": 0.05}, quick=True),
     *(Row(f"clock.{name}", "wrong", {"offset": offset}) for name in CLOCKS for offset in (0.05, -0.05)),
+    *(Row(f"clock.{name}", "wrong", {"offset": 0.05}) for name in ("admittance", "kinematics")),
+    *(
+        Row(f"clock.{name}", "wrong", {"offset": -0.05}, effect="goes on", why=SAMPLES)
+        for name in ("admittance", "kinematics")
+    ),
 )
 ROWS = (*FORCE, *PEDAL, *LINES, *ENCODERS, *DRIVE, *PROCESSES, *CLOCK)
 """All rows, by component."""
