@@ -62,14 +62,7 @@ def measure(rate: float, seconds: float, executor: str, realtime: int, nodes: st
     """Run the graph in a process of its own, which reports the processor time of each node, and read the traces."""
     with tempfile.TemporaryDirectory() as folder:
         command = [sys.executable, __file__.replace("graph.py", "graph_run.py")]
-        arguments = [
-            str(rate),
-            str(seconds + SETTLE),
-            str(SETTLE),
-            str(realtime),
-            str(DOMAIN),
-            *([nodes] if nodes else []),
-        ]
+        arguments = [str(rate), str(seconds + SETTLE), str(SETTLE), str(realtime), str(DOMAIN), nodes or ""]
         from sher3_runtime.environment import child_environment
 
         environment = child_environment(SHER3_TRACE=folder, SHER3_EXECUTOR=EXECUTORS[executor])
