@@ -59,12 +59,13 @@ def host_driver(settings: MotorDriverSettings) -> tuple[Cycle, Callable[[], obje
 
     def cycle(stamp: int) -> float:
         begin = time.perf_counter_ns()
+        driver.hear_supervisor()
         driver.tick(stamp)
         driver.collect_positions()  # a channel's TPDOs come in one datagram: with the positions everything is in
         end = time.perf_counter_ns()
         complete = driver.collect()
         driver.command(stamp, velocity)
-        return (end - begin) / 1e3 if complete else float("nan")
+        return (end - begin) / 1e3 if complete and driver.stop.first is None else float("nan")
 
     return cycle, driver.close
 

@@ -1,0 +1,86 @@
+"""The executor in real time: what it waits for, what it looks at now and then, and in which order it delivers."""
+
+import os
+import time
+
+import pytest
+from rclpy.context import Context
+from rclpy.node import Node
+from sher3_runtime import NODE_OPTIONS, JoySample, TextSample, TwistSample, WrenchSample, advertise, subscribe
+from sher3_runtime.executor import QUIET_NS, RawExecutor
+from std_srvs.srv import Trigger
+
+pytestmark = pytest.mark.graph
+NAMES = ("pedal/measured", "force/measured_cf", "servo_cv")
+ZERO = (0.0,) * 6
+
+
+@pytest.fixture
+def node():
+    context = Context()
+    context.init(domain_id=101 + os.getpid() % 100)
+    made = Node("probe", context=context, **NODE_OPTIONS)
+    yield made
+    made.destroy_node()
+    context.shutdown()
+
+
+@pytest.fixture
+def spin(node):
+    """Return what runs the node until a condition holds."""
+    executor = RawExecutor(context=node.context)
+    executor.add_node(node)
+
+    def until(condition, patience=5.0):
+        end = time.monotonic() + patience
+        while not condition() and time.monotonic() < end:
+            executor.spin_once(0.01)
+        return condition()
+
+    yield until
+    executor.shutdown()
+
+
+def test_a_topic_that_wakes_nobody_is_delivered_in_its_order(node, spin):
+    heard = []
+    quiet = subscribe(node, "pedal/measured", lambda sample: heard.append(("pedal", sample.stamp)))
+    subscribe(node, "force/measured_cf", lambda sample: heard.append(("force", sample.stamp)))
+    press, push = advertise(node, "pedal/measured"), advertise(node, "force/measured_cf")
+    press(JoySample(1, (0.0,), (0,)))
+    push(WrenchSample(1, ZERO))
+    assert spin(lambda: len(heard) == 2)
+    quiet.wakes = False
+    for stamp in range(2, 50):
+        press(JoySample(stamp, (0.0,), (0,)))
+        push(WrenchSample(stamp, ZERO))
+        assert spin(lambda: len(heard) == 2 * stamp)
+    assert heard == [(name, stamp) for stamp in range(1, 50) for name in ("pedal", "force")]
+
+
+def test_a_topic_without_others_is_heard_though_it_wakes_nobody(node, spin):
+    heard = []
+    subscribe(node, "pedal/measured", heard.append).wakes = False
+    press = advertise(node, "pedal/measured")
+    for stamp in range(1, 20):
+        press(JoySample(stamp, (0.0,), (0,)))
+        assert spin(lambda: len(heard) == stamp)
+
+
+def test_rare_topics_and_services_are_served_beside_a_stream(node, spin):
+    streamed, states, calls = [], [], []
+    subscribe(node, "servo_cv", streamed.append)
+    subscribe(node, "operating_state", lambda sample: states.append(sample.text))
+    node.create_service(Trigger, "tare", lambda _, response: calls.append(1) or response)
+    client = node.create_client(Trigger, "tare")
+    twist, state = advertise(node, "servo_cv"), advertise(node, "operating_state")
+
+    def stream():
+        twist(TwistSample(len(streamed) + 1, ZERO))
+        return False
+
+    spin(stream, 2.0 * QUIET_NS * 1e-9)
+    state(TextSample("ENABLED"))
+    assert spin(lambda: stream() or states == ["ENABLED"])
+    future = client.call_async(Trigger.Request())
+    assert spin(lambda: stream() or future.done())
+    assert calls == [1] and len(streamed) > 10
