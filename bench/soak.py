@@ -8,9 +8,10 @@ and /dev/shm, sockets and processes are looked through for leftovers.
     python bench/soak.py --seconds 30 --json
 
 Exit code 1 when memory, descriptors or threads grow, a message was invalid, something is left behind, or the robot did
-not stay ENABLED and moving (`--any-state` leaves the last out, for machines busy with other things). Memory grows when
-the slope's 95 % interval lies above `GROWTH_LIMIT` and the run's last fifth above its first by more than `RISE_LIMIT`:
-over half a minute a single page allocated is megabytes an hour.
+not stay ENABLED and moving (`--any-state` leaves the last out, for machines busy with other things). Memory grows when,
+in the second half of the run, the slope's 95 % interval lies above `GROWTH_LIMIT` and memory rises by more than
+`RISE_LIMIT`: queues fill to their depth at the first hold-up and stay there, a leak goes on; and over seconds a single
+page allocated is megabytes an hour.
 """
 
 from __future__ import annotations
@@ -70,14 +71,18 @@ class Samples:
 
     def verdict(self) -> dict[str, Any]:
         """Return slope [MB/h] with its 95 % interval, rise [MB], first and last counts, and whether anything grew."""
-        slope, low, high = growth(np.array(self.time), np.array(self.rss))
-        fifth = max(1, len(self.rss) // 5)
-        rise = float(np.mean(self.rss[-fifth:]) - np.mean(self.rss[:fifth]))
+        half, fifth = len(self.rss) // 2, max(1, len(self.rss) // 5)
+        late = np.array(self.rss[half:])
+        slope, low, high = growth(np.array(self.time[half:]), late)
+        rise = float(late[-fifth:].mean() - late[:fifth].mean())
         files, threads = self.files[-1] - max(self.files[:fifth]), self.threads[-1] - max(self.threads[:fifth])
         return {
             "rss_mb": self.rss[-1],
             "slope_mb_per_hour": [slope, low, high],
             "rise_mb": rise,
+            "rss_mb_by_tenth": [
+                round(float(part.mean()), 2) for part in np.array_split(np.array(self.rss), 10) if len(part)
+            ],
             "files": [self.files[0], self.files[-1]],
             "threads": [self.threads[0], self.threads[-1]],
             "grew": (low > GROWTH_LIMIT and rise > RISE_LIMIT) or files > 0 or threads > 0,

@@ -94,6 +94,8 @@ def judge(checked: Checked) -> None:
     for key in (checked.result.keys[index] for index in rests):
         enabled = mock_drive.ENABLED in {key[6][0], *(drive for drive, *_ in key[7])}
         assert not (enabled and key[0][0] in (S.FAULT, S.DISABLED)), f"drives stay enabled: {key}"
+        (state, action, _), stopped = key[0], key[4][2]
+        assert state is not S.FAULT or stopped >= action, f"the driver stops less hard than it was told to: {key}"
 
 
 @pytest.fixture(scope="module")
