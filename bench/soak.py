@@ -37,7 +37,7 @@ SETTLE = 4.0
 """Seconds after the start whose memory does not count: first histograms, first chunks, lazy imports."""
 GROWTH_LIMIT = 20.0
 """MB per hour."""
-RISE_LIMIT = 4.0
+RISE_LIMIT = 2.0
 """MB."""
 BLOCKS = 20
 """The slope is that of so many means, whose errors are nearly independent; those of samples a second apart are not."""
@@ -74,7 +74,8 @@ class Samples:
         half, fifth = len(self.rss) // 2, max(1, len(self.rss) // 5)
         late = np.array(self.rss[half:])
         slope, low, high = growth(np.array(self.time[half:]), late)
-        rise = float(late[-fifth:].mean() - late[:fifth].mean())
+        end = max(1, len(late) // 5)
+        rise = float(late[-end:].mean() - late[:end].mean())
         files, threads = self.files[-1] - max(self.files[:fifth]), self.threads[-1] - max(self.threads[:fifth])
         return {
             "rss_mb": self.rss[-1],
