@@ -151,6 +151,14 @@ def test_limits_name_size_and_limit(tmp_path):
         parse_yaml("a: " + "[" * MAX_DEPTH + "]" * MAX_DEPTH)
 
 
+def test_pipes_devices_and_folders_are_told_by_their_kind(tmp_path):
+    """By their kind, not by being empty: a device is never opened, since opening one can do something."""
+    os.mkfifo(tmp_path / "pipe")
+    for path, kind in ((tmp_path / "pipe", "pipe"), (Path("/dev/zero"), "device"), (tmp_path, "folder")):
+        with pytest.raises(FileError, match=f"is not a regular file; value {kind}"):
+            read_bytes(path)
+
+
 def test_a_socket_is_refused(tmp_path):
     with socket.socket(socket.AF_UNIX) as server:
         server.bind(str(tmp_path / "s"))
