@@ -58,9 +58,10 @@ class MatrixRun:
         self._sign = -self._sign
         operator.force, operator.pedal = self._sign * state.force, state.pedal
         self.graph.step(APPROACH if state.pedal else SETTLE)
-        self._inject(row.request(self.seed, label).to_json())
-        if row.release and state.pedal:
-            operator.pedal = 0.0
+        if row.release:
+            self._release_under(row, label)
+        else:
+            self._inject(row.request(self.seed, label).to_json())
         duration = OBSERVE if row.duration is None else round(row.duration * 1e9 / self.graph.clock.period_ns)
         self._go_through(row, duration)
         self.graph.step(OBSERVE)
@@ -74,6 +75,15 @@ class MatrixRun:
             self.graph.step(RELEASED)
             return True
         return self._recover()
+
+    def _release_under(self, row: Row, label: str) -> None:
+        """Let the fault set in first, so that what is stuck is stuck pressed; release, and measure from there."""
+        self._inject(row.request(self.seed, "").to_json())
+        if not row.component.startswith("process."):
+            self.graph.step(2)
+        note = make_request(component="process.plant", fault=row.fault, label=label)
+        self._inject(note.to_json())
+        self.operator.pedal = 0.0
 
     def _inject(self, request: str) -> None:
         self.operator.inject(request)

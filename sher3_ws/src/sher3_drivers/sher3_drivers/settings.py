@@ -89,8 +89,8 @@ class MotorDriverSettings(_Part):
     following_lag: Seconds = 0.010
     following_latency: Seconds = 0.004
     following_memory: Seconds = 0.1
-    obey_distance: Length = 2e-6
-    obey_angle: Angle = 7e-5
+    obey_distance: Length = 1e-6
+    obey_angle: Angle = 3.5e-5
     obey_latency: Seconds = 0.006
     brake_time: Seconds = 0.1
     rest_distance: Length = 2e-4

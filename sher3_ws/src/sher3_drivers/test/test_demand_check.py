@@ -57,6 +57,6 @@ def test_a_drive_that_runs_the_other_way_is_found_at_once():
 
 
 def test_what_strayed_little_is_forgotten():
-    """A single echo that is 0.5 mm/s off is half the limit; ten of them a second apart never add up."""
-    executed = [0.0005 if k % 500 == 10 else 0.0 for k in range(5000)]
+    """A single echo that is 0.25 mm/s off is half the limit; ten of them a second apart never add up."""
+    executed = [0.00025 if k % 500 == 10 else 0.0 for k in range(5000)]
     assert run([0.0] * 5000, executed)[0] is None
