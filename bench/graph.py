@@ -119,7 +119,8 @@ def text(result: dict[str, Any]) -> str:
         f"{result['rate']:6.0f} Hz {result['executor']:8} force -> CAN frame p50 {latency['p50']:.0f} p99 "
         f"{latency['p99']:.0f} max {latency['max']:.0f} us; jitter p50 {jitter['p50']:.0f} p99 {jitter['p99']:.0f} us; "
         f"{'' if result['enabled'] else 'ROBOT NOT ENABLED, commands refused; '}lost {result['lost_frames']} of "
-        f"{result['cycles']} cycles; CPU of the loop {result['cpu_loop']:.0f}, supervisor {result['cpu_supervisor']:.0f}, bench {result['cpu_bench']:.0f} % of a core ({cpu})"
+        f"{result['cycles']} cycles; CPU of the loop {result['cpu_loop']:.0f}, "
+        f"supervisor {result['cpu_supervisor']:.0f}, bench {result['cpu_bench']:.0f} % of a core ({cpu})"
     )
 
 
