@@ -255,11 +255,14 @@ def _with_rivals(evidence: Evidence, current: Fit, candidates: Candidates) -> At
 def _alike(rival: Fit, chosen: Fit, worth: float) -> bool:
     """Whether a rival explains as much: all but a share, and at the tip but for what the robot as built deviates by.
 
-    The share is of the gap with its floor: rounding repeats, so that a small part of the floor is no evidence.
+    The share is of the gap with its floor: rounding repeats, so that a small part of the floor is no evidence. Each
+    coefficient takes its part of the deviations as built, so that a rival with fewer of them may leave more.
     """
     floor = sum(len(x) for run in rival.terms[-1].columns for c, x in run.items() if c.actuator != "tip")
     margin = max(3.0 * PRICE, RIVAL * (worth + floor))
     built = AS_BUILT_PRICE * max(samples_at_tip(rival.terms[-1]), *(samples_at_tip(t) for t in chosen.terms), 0)
     apart = {k: rival.loss[k] - x for k, x in chosen.loss.items()}
     tip = sum(x for (_, c), x in apart.items() if c.actuator == "tip")
-    return tip < max(3.0 * PRICE, min(margin, 2.0 * built), built) and sum(apart.values()) - tip < margin
+    missing = max(0, max(t.width for t in chosen.terms) - rival.terms[-1].width)
+    widest = 2.0 * built * (2 + missing)
+    return tip < max(3.0 * PRICE, min(margin, widest), built) and sum(apart.values()) - tip < margin
