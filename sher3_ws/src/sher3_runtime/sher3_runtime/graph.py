@@ -152,7 +152,7 @@ class Graph:
         return missing
 
     def _find_routes(self) -> list[Route]:
-        """Return the counters of every topic that has both ends in the graph; latched samples come in their own time."""
+        """Return the counters of each topic with both ends in the graph; latched samples come in their own time."""
         senders, receivers = list(map(ports, [*self.nodes, *self._paused])), list(map(ports, self.nodes))
         volatile = (name for name, topic in TOPICS.items() if topic.qos.durability == "volatile")
         routes = [
