@@ -98,7 +98,7 @@ def test_the_death_of_a_process_stops_the_robot(robot):
 
 
 @pytest.mark.parametrize("required", [pytest.param(True, marks=pytest.mark.slow), False])
-def test_the_death_of_the_recorder_stops_the_robot_unless_recording_is_optional(robot, bag_folder, required):
+def test_the_death_of_the_recorder_stops_the_robot_unless_recording_is_optional(robot, bag_folder, tmp_path, required):
     """In both cases what it had written can be recovered."""
     running = robot("--record", bag_folder, "--duration", "4", *([] if required else ["--record-optional"]))
     running.ready()
@@ -111,7 +111,7 @@ def test_the_death_of_the_recorder_stops_the_robot_unless_recording_is_optional(
         assert status == 4 and line.endswith("the robot has been stopped")
     else:
         assert status == 0 and line.endswith("the robot goes on without it")
-    assert len(read_run(recover(bag_folder).target, check=False)["measured_js"]) > 100
+    assert len(read_run(recover(bag_folder, tmp_path / "recovered").target, check=False)["measured_js"]) > 100
 
 
 @pytest.mark.parametrize(
