@@ -19,6 +19,8 @@ from sher3_bags.replay import DueMessage, Replay
 
 _DISCOVERY_TICKS = 250
 _DELIVERY_TICKS = 50
+_SETTLE_TICKS = 50
+"""A subscriber may learn of its publisher later than that one of it, and until then gets nothing."""
 
 
 class ReplayNode(Node):
@@ -37,7 +39,7 @@ class ReplayNode(Node):
         super().__init__("replay", **{**NODE_OPTIONS, **options})
         self.replay, self.sent, self.done = replay, 0, False
         self._wait_for = wait_for
-        self._ticks = self._ticks_after = 0
+        self._ticks = self._ticks_found = self._ticks_after = 0
         self._messages: Iterator[DueMessage] | None = None
         self._next: DueMessage | None = None
         self._publish = {name: advertise_raw(self, name) for name in replay.topics}
@@ -69,7 +71,8 @@ class ReplayNode(Node):
         self._ticks += 1
         if self._wait_for:
             counts = (publisher.get_subscription_count() for publisher in ports(self).publishers.values())
-            if min(counts) < self._wait_for:
+            self._ticks_found = self._ticks_found + 1 if min(counts) >= self._wait_for else 0
+            if self._ticks_found <= _SETTLE_TICKS:
                 return False
         elif self._ticks <= _DISCOVERY_TICKS:
             return False
