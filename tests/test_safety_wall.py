@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import warnings
 
 import pytest
 from sher3_safety.processes import WALL
@@ -15,13 +16,19 @@ QUICK = [row for row in WALL if row.quick]
 
 @pytest.fixture(scope="module")
 def killed(run_sher3):
-    """Return the cells; measured once more when one misses, since another process may hold up the mock in wall time."""
+    """Return the cells. Where one misses, all are measured once more and a warning keeps the first misses.
+
+    One failure was seen, on a machine with other busy processes (9.5 um moved before the pedal was released after the
+    motor driver had been killed); that the load was its cause is not proven.
+    """
     for attempt in ("first", "second"):
         out = str(FOLDER / f"wall_{attempt}")
         result = run_sher3("safety", "--wall", "--quick", "--json", "--out", out, timeout=240.0)
         assert result.returncode in (0, 1), result.stderr
         if result.returncode == 0:
             break
+        missed = {c["name"]: c["misses"] for c in json.loads(result.stdout)["cells"] if c["misses"]}
+        warnings.warn(f"{attempt} measurement in wall time missed: {missed}", stacklevel=1)
     return {cell["component"]: cell for cell in json.loads(result.stdout)["cells"]}
 
 
