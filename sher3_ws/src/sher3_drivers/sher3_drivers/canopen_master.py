@@ -21,6 +21,9 @@ from .errors import DriveMismatch, DriveSilent
 from .frame import ERROR_FLAG, REMOTE_FLAG, iter_frames, pack_frame
 
 _SIGNED = {"i8", "i16", "i32"}
+REPEAT = 0.1
+"""Seconds after which an NMT command is repeated that has not shown: CANopen confirms none, and either it or the one
+heartbeat that answers it may have been kept back."""
 
 
 class _LinkNetwork(canopen.Network):
@@ -29,6 +32,7 @@ class _LinkNetwork(canopen.Network):
     def __init__(self, link: CanLink) -> None:
         super().__init__()
         self._link = link
+        self.waits = link.fileno() >= 0
 
     def send_message(self, can_id: int, data: bytes, remote: bool = False) -> None:
         self._link.send_frames(pack_frame(can_id | REMOTE_FLAG * remote, bytes(data)))
@@ -117,7 +121,7 @@ class CanopenMaster:
         Raises:
             DriveSilent: a drive does not boot.
         """
-        self._command_all("RESET", BOOT_UP, limit, "does not boot after a reset")
+        self._command_all("RESET", BOOT_UP, limit, "does not boot after a reset", repeat=limit)
 
     def start(self, limit: float) -> None:
         """Bring every drive to OPERATIONAL and wait, at most `limit` s, until its heartbeat says so.
@@ -127,13 +131,17 @@ class CanopenMaster:
         """
         self._command_all("OPERATIONAL", OPERATIONAL, limit, "does not become OPERATIONAL")
 
-    def _command_all(self, command: str, wanted: int, limit: float, failure: str) -> None:
+    def _command_all(self, command: str, wanted: int, limit: float, failure: str, repeat: float = REPEAT) -> None:
         self._heard.clear()
-        for name in self.drives:
-            self.command(name, command)
         deadline = time.monotonic() + limit
-        while any(self._heard.get(name) != wanted for name in self.drives):
-            if not self._network.pump(deadline - time.monotonic()):
+        while missing := [name for name in self.drives if self._heard.get(name) != wanted]:
+            for name in missing:
+                self.command(name, command)
+            until = min(deadline, time.monotonic() + repeat)
+            while any(self._heard.get(name) != wanted for name in missing):
+                if not self._network.pump(until - time.monotonic()):
+                    break
+            if time.monotonic() >= deadline or not self._network.waits:
                 break
         for name in self.drives:
             if self._heard.get(name) != wanted:
