@@ -26,10 +26,10 @@ from multiprocessing.connection import Connection
 
 import can
 from sher3_description import ACTUATORS, load_robot
-from sher3_drivers.bus import LinkGroup, open_link
+from sher3_drivers.bus import LinkGroup, open_links
 from sher3_drivers.bus_load import channel_budget, fd_frame_seconds, frame_bits
 from sher3_drivers.bus_python_can import LinkBus
-from sher3_drivers.frame import pack_frame
+from sher3_drivers.frame import FRAME_SIZE, bundle, pack_frame
 from sher3_drivers.mock_bus import MockDriveBus
 from sher3_drivers.mock_plant import IntegratorPlant
 from sher3_drivers.motor_driver import MotorDriver
@@ -43,7 +43,7 @@ Cycle = Callable[[int], float]
 
 def device_driver(settings: MotorDriverSettings, stopped: Callable[[], bool]) -> None:
     """Serve the product's device side."""
-    links = [open_link(channel.link) for channel in settings.channels]
+    links = open_links([channel.link for channel in settings.channels])
     mock = MockDriveBus(links, IntegratorPlant(ROBOT, settings.period), ROBOT, settings)
     while not stopped():
         mock.serve(0.005)
@@ -52,7 +52,7 @@ def device_driver(settings: MotorDriverSettings, stopped: Callable[[], bool]) ->
 
 def host_driver(settings: MotorDriverSettings) -> tuple[Cycle, Callable[[], object]]:
     """Return the product's host side: enabled and moving."""
-    driver = MotorDriver(ROBOT, settings, [open_link(channel.link) for channel in settings.channels])
+    driver = MotorDriver(ROBOT, settings, open_links([channel.link for channel in settings.channels]))
     driver.configure(2.0)
     driver.enable()
     velocity = [0.001, -0.001, 0.001, 0.01, -0.001]
@@ -72,30 +72,28 @@ def host_driver(settings: MotorDriverSettings) -> tuple[Cycle, Callable[[], obje
 
 def device_frames(settings: MotorDriverSettings, stopped: Callable[[], bool]) -> None:
     """Send ten precomputed TPDOs for each SYNC, raw."""
-    group = LinkGroup([open_link(channel.link) for channel in settings.channels])
-    answers = [b"".join(tpdos(channel.drives)) for channel in settings.channels]
+    group = LinkGroup(open_links([channel.link for channel in settings.channels]))
+    answers = bundle([b"".join(tpdos(channel.drives)) for channel in settings.channels])
     while not stopped():
-        for index, frames in group.receive(0.005):
-            for can_id, _, _ in _FRAME.iter_unpack(frames):
-                if can_id == 0x80:
-                    group.links[index].send_frames(answers[index])
+        if 0x80 in {can_id for can_id, _, _ in _FRAME.iter_unpack(group.receive(0.005))}:
+            group.send(answers)
     group.close()
 
 
 def host_frames(settings: MotorDriverSettings) -> tuple[Cycle, Callable[[], object]]:
     """Return SYNC, ten TPDOs in, five RPDOs out, raw."""
-    group = LinkGroup([open_link(channel.link) for channel in settings.channels])
-    sync = [pack_frame(0x80)] * len(group.links)
-    commands = [b"".join(rpdos(channel.drives)) for channel in settings.channels]
+    group = LinkGroup(open_links([channel.link for channel in settings.channels]))
+    sync = bundle([pack_frame(0x80)] * len(group.links))
+    commands = bundle([b"".join(rpdos(channel.drives)) for channel in settings.channels])
 
     def cycle(stamp: int) -> float:
         begin = time.perf_counter_ns()
-        group.send_each(sync)
+        group.send(sync)
         count, deadline = 0, time.monotonic() + settings.period
         while count < 10 and (left := deadline - time.monotonic()) > 0:
-            count += sum(1 for _, frames in group.receive(left) for _ in _FRAME.iter_unpack(frames))
+            count += len(group.receive(left)) // FRAME_SIZE
         end = time.perf_counter_ns()
-        group.send_each(commands)
+        group.send(commands)
         return (end - begin) / 1e3 if count == 10 else float("nan")
 
     return cycle, group.close
@@ -103,7 +101,7 @@ def host_frames(settings: MotorDriverSettings) -> tuple[Cycle, Callable[[], obje
 
 def device_messages(settings: MotorDriverSettings, stopped: Callable[[], bool]) -> None:
     """Send ten TPDOs for each SYNC as python-can messages."""
-    buses = [LinkBus(channel.link) for channel in settings.channels]
+    buses = [LinkBus(alone(channel.link)) for channel in settings.channels]
     while not stopped():
         select.select(buses, (), (), 0.005)
         for bus, channel in zip(buses, settings.channels, strict=True):
@@ -117,7 +115,7 @@ def device_messages(settings: MotorDriverSettings, stopped: Callable[[], bool]) 
 
 def host_messages(settings: MotorDriverSettings) -> tuple[Cycle, Callable[[], object]]:
     """Return the cycle with python-can messages."""
-    buses = [LinkBus(channel.link) for channel in settings.channels]
+    buses = [LinkBus(alone(channel.link)) for channel in settings.channels]
 
     def cycle(stamp: int) -> float:
         begin = time.perf_counter_ns()
@@ -136,6 +134,11 @@ def host_messages(settings: MotorDriverSettings) -> tuple[Cycle, Callable[[], ob
         return (end - begin) / 1e3 if count == 10 else float("nan")
 
     return cycle, lambda: [bus.shutdown() for bus in buses]
+
+
+def alone(link: str) -> str:
+    """Return the name of a channel with a cable of its own: python-can knows no bundles."""
+    return link.replace("/", "-")
 
 
 def tpdos(drives: tuple[str, ...]) -> list[bytes]:
@@ -278,7 +281,7 @@ def main() -> None:
             for name in SIDES:
                 settings = default_settings(1.0 / rate, names, arguments.kind)
                 if names is None:
-                    links = [f"{arguments.kind}:bench{os.getpid()}-{i}" for i in range(len(settings.channels))]
+                    links = [f"{arguments.kind}:bench{os.getpid()}/{i}" for i in range(len(settings.channels))]
                     settings = default_settings(1.0 / rate, links)
                 rows.append(measure(name, settings, arguments.seconds))
     print(json.dumps(rows)) if arguments.json else show(rows)

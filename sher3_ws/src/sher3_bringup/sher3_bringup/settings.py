@@ -144,7 +144,7 @@ class RunSettings(BaseModel):
         """Return the motor driver's settings: CAN channels that can carry the rate."""
         settings = default_settings(1.0 / self.rate, self.links or None)
         if not self.links:
-            links = tuple(f"local:{self.mock_name()}-{i}" for i in range(len(settings.channels)))
+            links = tuple(f"local:{self.mock_name()}/{i}" for i in range(len(settings.channels)))
             settings = default_settings(1.0 / self.rate, links)
         overrides = {**(BENCH if self.start_regime == "bench" else {}), **(DRIVES if self.patience != "strict" else {})}
         return MotorDriverSettings.checked(**{**settings.model_dump(), **overrides})

@@ -17,7 +17,7 @@ def test_the_default_run_is_every_node_in_its_own_process():
     settings = checked(processes=parse_processes(None, mock=True, record=False))
     assert settings.processes == tuple((name,) for name in NODES if name not in ("recorder", "gap_monitor"))
     assert settings.robot().control_period == 0.002
-    assert all(channel.link.startswith("local:sher3-0-") for channel in settings.drives().channels)
+    assert all(channel.link.startswith("local:sher3-0/") for channel in settings.drives().channels)
 
 
 def test_processes_can_be_joined():

@@ -1,6 +1,6 @@
 """The CAN link: send and receive many raw frames per call, over whatever carries them.
 
-Back-ends are named by a specification `kind:channel`: `socketcan:can0` (hardware or vcan), `local:drives0` (between
+Back-ends are named by a specification `kind:channel`: `socketcan:can0` (hardware or vcan), `local:drives/0` (between
 processes of one user on one machine, no kernel module, never leaves it), `virtual:drives0` (within one process,
 deterministic). The same driver runs on each.
 """
@@ -12,10 +12,11 @@ import time
 from collections.abc import Callable, Sequence
 from typing import Protocol
 
-from .bus_local import LocalLink
+from .bus_local import LocalCable, LocalLink
 from .bus_socketcan import SocketCanLink
 from .bus_virtual import VirtualLink
 from .errors import LinkError
+from .frame import bundle, unbundle
 
 
 class CanLink(Protocol):
@@ -23,15 +24,10 @@ class CanLink(Protocol):
 
     Attributes:
         name: the specification it was opened with.
-        received_at: CLOCK_MONOTONIC [ns] when the newest frame of the last non-empty `recv_frames` came in.
         dropped: frames that could not be delivered since the link was opened.
     """
 
     name: str
-
-    @property
-    def received_at(self) -> int:
-        """When the newest frame came in, CLOCK_MONOTONIC [ns]."""
 
     @property
     def dropped(self) -> int:
@@ -69,8 +65,35 @@ def open_link(specification: str) -> CanLink:
     return KINDS[kind](channel)  # type: ignore[call-arg]
 
 
+def open_links(specifications: Sequence[str]) -> list[CanLink]:
+    """Open one link per channel; those of one local cable share it, so that a tick on all of them is one datagram.
+
+    Raises:
+        LinkError: as `open_link`, or a channel is named twice; none is left open.
+    """
+    cables: dict[str, LocalCable] = {}
+    links: list[CanLink] = []
+    try:
+        for specification in specifications:
+            kind, _, channel = specification.partition(":")
+            name = channel.partition("/")[0]
+            if kind == "local" and name in cables:
+                links.append(LocalLink(channel, cables[name]))
+            else:
+                links.append(open_link(specification))
+                if isinstance(links[-1], LocalLink):
+                    cables[name] = links[-1].cable
+    except LinkError:
+        for link in links:
+            link.close()
+        raise
+    return links
+
+
 class LinkGroup:
-    """Several links waited on together, one per CAN channel.
+    """Several links used together, one per CAN channel: bundles of frames in and out (`frame.bundle`).
+
+    Links that share a local cable are one socket; any others are written, read and waited on one by one.
 
     Attributes:
         links: the links.
@@ -82,39 +105,61 @@ class LinkGroup:
         self.links = tuple(links)
         self.failures: dict[int, LinkError] = {}
         self._by_descriptor = {link.fileno(): (i, link) for i, link in enumerate(self.links) if link.fileno() >= 0}
-        self.waits = len(self._by_descriptor) == len(self.links)
+        self._cable = _shared_cable(self.links)
+        self.waits = all(link.fileno() >= 0 for link in self.links)
 
-    def receive(self, timeout: float = 0.0) -> list[tuple[int, bytes]]:
-        """Return (index of the link, next frames) of every link that has some, waiting at most `timeout` s.
+    def receive(self, timeout: float = 0.0) -> bytes:
+        """Return the next frames of every channel that has some, waiting at most `timeout` s for the first.
 
         Links within the process are never waited on. `select` and not `poll`: its timeout resolves microseconds, not
-        milliseconds, and one call in place of a failing read per link is what the hot path can afford.
+        milliseconds.
         """
+        cable = self._cable
+        if cable is None:
+            return self._receive_each(timeout)
+        if timeout > 0.0 and self.waits and not select.select(self._by_descriptor, (), (), timeout)[0]:
+            return b""
+        try:
+            return cable.receive()
+        except LinkError as error:
+            self._cable, self._by_descriptor = None, {}
+            self.failures = dict.fromkeys(range(len(self.links)), error)
+            return b""
+
+    def _receive_each(self, timeout: float) -> bytes:
         if self.waits:
             ready, _, _ = select.select(self._by_descriptor, (), (), timeout if timeout > 0.0 else 0.0)
             candidates = [self._by_descriptor[descriptor] for descriptor in ready]
         else:
             candidates = [(index, link) for index, link in enumerate(self.links) if index not in self.failures]
-        received = []
+        parts = [b""] * len(self.links)
         for index, link in candidates:
             try:
-                frames = link.recv_frames()
+                parts[index] = link.recv_frames()
             except LinkError as error:
                 self._leave_alone(index, error)
-                continue
-            if frames:
-                received.append((index, frames))
-        return received
+        return bundle(parts)
 
     def _leave_alone(self, index: int, error: LinkError) -> None:
         self.failures[index] = error
         self._by_descriptor = {fd: entry for fd, entry in self._by_descriptor.items() if entry[0] != index}
 
-    def send_each(self, frames: Sequence[bytes]) -> None:
-        """Send `frames[i]` on link i; empty ones are skipped."""
-        for link, part in zip(self.links, frames, strict=True):
-            if part:
-                link.send_frames(part)
+    def send(self, frames: bytes) -> Sequence[tuple[int, LinkError]]:
+        """Send a bundle; return (channel, error) of those that cannot take their frames; the others get theirs."""
+        if self._cable is not None:
+            try:
+                self._cable.send(frames)
+            except LinkError as error:
+                return [(index, error) for index in range(len(self.links))]
+            return ()
+        failures = []
+        for index, part in enumerate(unbundle(frames, len(self.links))):
+            try:
+                if part:
+                    self.links[index].send_frames(part)
+            except LinkError as error:
+                failures.append((index, error))
+        return failures
 
     def close(self) -> None:
         """Close every link."""
@@ -122,22 +167,19 @@ class LinkGroup:
             link.close()
 
 
+def _shared_cable(links: Sequence[CanLink]) -> LocalCable | None:
+    """Return the cable of which these links are the channels 0, 1, ...; None when there is no such cable."""
+    cables = [link.cable if isinstance(link, LocalLink) and link.number == i else None for i, link in enumerate(links)]
+    return cables[0] if len(set(cables)) == 1 else None
+
+
 class LockstepLink:
-    """A link whose `recv_frames` first lets the other side run: one thread drives both ends, on any back-end."""
+    """A link whose `recv_frames` first calls the functions of `other_side`: one thread drives both ends."""
 
     def __init__(self, link: CanLink, other_side: Sequence[Callable[[], object]] = ()) -> None:
         self._link = link
-        self._other_side = list(other_side)
+        self._other_side = other_side
         self.name = link.name
-
-    def attach(self, poll: Callable[[], object]) -> None:
-        """Call `poll()` whenever this link looks for frames."""
-        self._other_side.append(poll)
-
-    @property
-    def received_at(self) -> int:
-        """When the newest frame came in, CLOCK_MONOTONIC [ns]."""
-        return self._link.received_at
 
     @property
     def dropped(self) -> int:

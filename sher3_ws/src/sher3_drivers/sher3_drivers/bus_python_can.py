@@ -1,6 +1,6 @@
 """Any CanLink as a python-can bus, so that `canopen`, `can_viewer` and every other python-can tool works on it.
 
-can_viewer -i sher3 -c local:drives0
+can_viewer -i sher3 -c local:drives/0
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from .frame import ERROR_FLAG, EXTENDED_FLAG, ID_MASK, REMOTE_FLAG, Frame, iter_
 
 
 class LinkBus(can.BusABC):
-    """python-can bus over a CanLink: `can.Bus(interface="sher3", channel="local:drives0")`."""
+    """python-can bus over a CanLink: `can.Bus(interface="sher3", channel="local:drives/0")`."""
 
     def __init__(self, channel: str | CanLink, can_filters: Any = None, **kwargs: Any) -> None:
         self._link = open_link(channel) if isinstance(channel, str) else channel

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import errno
 import socket
-import time
 
 import can
 
@@ -17,7 +16,6 @@ class SocketCanLink:
 
     def __init__(self, channel: str) -> None:
         self.name = f"socketcan:{channel}"
-        self.received_at = 0
         self.dropped = 0
         try:
             self._bus = can.Bus(interface="socketcan", channel=channel)
@@ -64,8 +62,6 @@ class SocketCanLink:
             raise LinkError(
                 f"cannot receive: {error}", link=self.name, remedy="bring the interface up and open it again"
             ) from error
-        if parts:
-            self.received_at = time.monotonic_ns()
         return b"".join(parts)
 
     def fileno(self) -> int:

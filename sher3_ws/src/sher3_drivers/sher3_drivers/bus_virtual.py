@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 import weakref
 
 from .errors import LinkError
@@ -19,7 +18,6 @@ class VirtualLink:
 
     def __init__(self, channel: str) -> None:
         self.name = f"virtual:{channel}"
-        self.received_at = 0
         self.dropped = 0
         self._queue = bytearray()
         self._open = True
@@ -43,7 +41,6 @@ class VirtualLink:
             return b""
         frames = bytes(self._queue)
         self._queue.clear()
-        self.received_at = time.monotonic_ns()
         return frames
 
     def fileno(self) -> int:

@@ -119,9 +119,10 @@ class CanopenDevice:
             for task in self._network.tasks:  # say so at once, not a heartbeat later
                 self._network.send_message(task.can_id, task.data)
 
-    def poll(self, now: int) -> None:
-        """Send the heartbeat when it is due; `now` in ns."""
+    def poll(self, now: int) -> int:
+        """Send the heartbeat when it is due; return when the next one is, by default in a second. Times in ns."""
         for task in self._network.tasks:
             if task.due is None or now >= task.due:
                 self._network.send_message(task.can_id, task.data)
                 task.due = now + task.period_ns
+        return min([task.due for task in self._network.tasks if task.due is not None], default=now + 1_000_000_000)

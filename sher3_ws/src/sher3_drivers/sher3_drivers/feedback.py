@@ -8,10 +8,9 @@ from operator import mul, sub
 from typing import NamedTuple
 
 from .drive_objects import TPDO_BASES
-from .frame import FRAME_SIZE, check_frames
+from .frame import BUNDLED, FRAME_SIZE, check_frames
 from .units import AxisScale
 
-_FRAME = struct.Struct("<IB3x8s")
 _TPDO1 = struct.Struct("<iHh")
 _TPDO2 = struct.Struct("<ii")
 Vector = tuple[float, ...]
@@ -80,16 +79,16 @@ class TpdoCollector:
         self._mask = 0
         self._tick += 1
 
-    def take(self, frames: bytes) -> list[tuple[int, bytes]]:
-        """Sort frames in; return (can_id, data) of those that are no TPDO."""
+    def take(self, frames: bytes) -> list[tuple[int, int, bytes]]:
+        """Sort the frames of a bundle in; return (channel, can_id, data) of those that are no TPDO."""
         if len(frames) % FRAME_SIZE:
             check_frames(frames)
         others = []
         slots = self._slots
-        for can_id, length, data in _FRAME.iter_unpack(frames):
+        for can_id, length, channel, data in BUNDLED.iter_unpack(frames):
             slot = slots.get(can_id)
             if slot is None:
-                others.append((can_id, data[:length]))
+                others.append((channel, can_id, data[:length]))
                 continue
             axis, bit, second = slot
             if length != 8:

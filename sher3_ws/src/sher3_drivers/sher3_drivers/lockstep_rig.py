@@ -6,12 +6,30 @@ from collections.abc import Callable, Sequence
 
 from sher3_description import Robot
 
-from .bus import CanLink, LockstepLink
+from .bus import CanLink, LockstepLink, open_links
+from .bus_local import LocalCable, LocalLink
 from .feedback import Feedback
 from .mock_bus import DrivePlant, MockDriveBus
 from .mock_plant import IntegratorPlant
 from .motor_driver import MotorDriver
 from .settings import MotorDriverSettings
+
+
+class LockstepCable(LocalCable):
+    """A cable whose other end runs whenever this one looks for frames; there is nothing to wait on."""
+
+    def __init__(self, name: str) -> None:
+        self.other_side: list[Callable[[], object]] = []
+        super().__init__(name)
+
+    def _next(self) -> bytes:
+        for poll in self.other_side:
+            poll()
+        return super()._next()
+
+    def fileno(self) -> int:
+        """Nothing to wait on."""
+        return -1
 
 
 class LockstepRig:
@@ -20,7 +38,7 @@ class LockstepRig:
     Args:
         robot: the robot.
         settings: channels and limits; their link specifications are not used.
-        open_link: opens one more participant of channel i.
+        open_link: opens one more participant of channel i, or the name of a local cable for all channels.
         plant: what the drives drive; ideal integrators by default.
 
     Attributes:
@@ -35,7 +53,7 @@ class LockstepRig:
         self,
         robot: Robot,
         settings: MotorDriverSettings,
-        open_link: Callable[[int], CanLink],
+        open_link: Callable[[int], CanLink] | str,
         plant: DrivePlant | None = None,
     ) -> None:
         self.settings = settings
@@ -45,11 +63,19 @@ class LockstepRig:
         self.supervised = True
         self.period_ns = round(settings.period * 1e9)
         count = len(settings.channels)
-        self.device_links = [open_link(i) for i in range(count)]
-        self.host_links = [LockstepLink(open_link(i)) for i in range(count)]
+        other_side: list[Callable[[], object]] = []
+        self.device_links: list[CanLink]
+        self.host_links: list[CanLink]
+        if isinstance(open_link, str):
+            self.device_links = open_links([f"local:{open_link}/{i}" for i in range(count)])
+            cable = LockstepCable(open_link)
+            cable.other_side = other_side
+            self.host_links = [LocalLink(f"{open_link}/{i}", cable) for i in range(count)]
+        else:
+            self.device_links = [open_link(i) for i in range(count)]
+            self.host_links = [LockstepLink(open_link(i), other_side) for i in range(count)]
         self.mock = MockDriveBus(self.device_links, self.plant, robot, settings, self.clock)
-        for link in self.host_links:
-            link.attach(self.mock.poll)
+        other_side.append(self.mock.poll)
         self.driver = MotorDriver(robot, settings, self.host_links, self.clock)
         self._configured = False
 

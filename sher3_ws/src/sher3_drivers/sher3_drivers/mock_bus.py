@@ -8,24 +8,21 @@ real one would.
 
 from __future__ import annotations
 
-import struct
 import time
-from collections import deque
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Protocol
 
 from sher3_description import ACTUATORS, Robot
 
 from .bus import CanLink, LinkGroup
 from .drive_objects import SYNC_ID
-from .frame import FRAME_SIZE
+from .frame import BUNDLED, FRAME_SIZE, bundle, mark, unbundle
 from .mock_drive import MockDrive
 from .settings import MotorDriverSettings
 from .units import AxisScale
 
-_FRAME = struct.Struct("<IB3x8s")
 _FREE_RUN_PERIODS = 5
-_WATCH_NS = 1_000_000
 _BATCHES = 64
 
 FrameTamper = Callable[[int, bytes, int], bytes]
@@ -59,23 +56,44 @@ class DrivePlant(Protocol):
 
 
 class _Channel:
-    def __init__(self, link: CanLink) -> None:
-        self.link = link
-        self.queue: deque[tuple[int, int, bytes]] = deque()
-        self.drives: list[MockDrive] = []
-        self.axes: list[int] = []
-        self.by_node: dict[int, list[MockDrive]] = {}
+    """The drives of a channel and how far they are.
+
+    Attributes:
+        synced: it has had the SYNC of this tick; what comes behind it waits until the plant has made its step.
+        synced_at: when, ns.
+        live: it did not miss a SYNC of the others.
+    """
+
+    def __init__(self, drives: Sequence[MockDrive]) -> None:
+        self.drives = drives
         self.synced = False
         self.synced_at = 0
         self.live = True
+        self._by_node = {drive.node_id: (drive,) for drive in drives}
+        self._waiting: list[tuple[int, bytes]] = []
 
-    def receivers(self, can_id: int) -> list[MockDrive]:
-        """Return the drives a frame may concern: the one whose node id it carries, or all for NMT and other nodes."""
-        return self.by_node.get(can_id & 0x7F, self.drives)
+    def take(self, can_id: int, data: bytes, now: int) -> None:
+        """Take a frame: it is for the drive whose node id it carries, or for all: NMT and other nodes."""
+        if self.synced:
+            self._waiting.append((can_id, data))
+        elif can_id == SYNC_ID:
+            self.synced = self.live = True
+            self.synced_at = now
+        else:
+            for drive in self._by_node.get(can_id & 0x7F, self.drives):
+                drive.receive(can_id, data, now)
+
+    def go_on(self, now: int) -> None:
+        """Take what waits behind the SYNC that has been answered."""
+        self.synced = False
+        if self._waiting:
+            waiting, self._waiting = self._waiting, []
+            for can_id, data in waiting:
+                self.take(can_id, data, now)
 
     def sync_waits(self) -> bool:
         """Whether a further SYNC waits behind the one that is being answered."""
-        return any(frame[0] == SYNC_ID for frame in self.queue)
+        return any(can_id == SYNC_ID for can_id, _ in self._waiting)
 
 
 class MockDriveBus:
@@ -93,6 +111,7 @@ class MockDriveBus:
         drives: the drives by actuator name.
         ticks: SYNCs the plant was stepped with.
         free_steps: steps it made without SYNC.
+        step_end: time at which the step ends that the plant takes; of steps made up for, each has its own [ns].
         tamper_frames: called with (channel, frames, now) on what the drives send; returns what goes on the wire.
         tamper_received: the same on what they are sent; called with b"" too, so that it can deliver later.
     """
@@ -107,30 +126,25 @@ class MockDriveBus:
     ) -> None:
         self.ticks = 0
         self.free_steps = 0
+        self.step_end = 0
         self.tamper_frames: FrameTamper | None = None
         self.tamper_received: FrameTamper | None = None
         self._plant, self._clock, self._period = plant, clock, settings.period
         self._period_ns = round(settings.period * 1e9)
         self._stepped_at = clock()
-        self._watch_at = 0
         self.links = tuple(links)
         self._group = LinkGroup(links)
-        self._channels = [_Channel(link) for link in links]
         scales: dict[str, AxisScale] = {
             actuator.name: AxisScale.from_actuator(actuator) for actuator in robot.actuators
         }
-        self._senders: list[Callable[[bytes], None]] = []
         by_name: dict[str, MockDrive] = {}
-        for index, (channel, part) in enumerate(zip(self._channels, settings.channels, strict=True)):
-            channel.axes = [ACTUATORS.index(name) for name in part.drives]
-            self._senders.append(self._sender(index))
+        for number, part in enumerate(settings.channels):
             for name in part.drives:
-                drive = MockDrive(scales[name], 1 + ACTUATORS.index(name), self._senders[index])
-                channel.drives.append(drive)
-                channel.by_node[drive.node_id] = [drive]
-                by_name[name] = drive
+                node_id = 1 + ACTUATORS.index(name)
+                by_name[name] = MockDrive(scales[name], node_id, partial(self._send_on, number), number)
         self.drives = {name: by_name[name] for name in ACTUATORS}
         self._in_order = tuple(self.drives.values())
+        self._channels = [_Channel([by_name[name] for name in part.drives]) for part in settings.channels]
 
     @property
     def clock(self) -> Callable[[], int]:
@@ -141,48 +155,53 @@ class MockDriveBus:
         """Return the drives of a channel."""
         return self._channels[channel].drives
 
-    def _sender(self, index: int) -> Callable[[bytes], None]:
-        def send(frames: bytes) -> None:
-            if self.tamper_frames is not None:
-                frames = self.tamper_frames(index, frames, self._clock())
-            if frames:
-                self._channels[index].link.send_frames(frames)
+    def _send_on(self, channel: int, frames: bytes) -> None:
+        self._send(mark(frames, channel))
 
-        return send
+    def _send(self, frames: bytes) -> None:
+        """Send a bundle; raise LinkError when a channel cannot take its frames."""
+        if self.tamper_frames is not None:
+            frames = self._tampered(self.tamper_frames, frames, False)
+        if frames:
+            for _, error in self._group.send(frames):
+                raise error
+
+    def _tampered(self, tamper: FrameTamper, frames: bytes, silence: bool) -> bytes:
+        """Return a bundle as `tamper` leaves it channel by channel, also those that are silent if it is to see them."""
+        now, parts = self._clock(), unbundle(frames, len(self._channels))
+        parts = [tamper(i, part, now) if part or silence else b"" for i, part in enumerate(parts)]
+        return bundle([part if len(part) % FRAME_SIZE == 0 else b"" for part in parts])
 
     def serve(self, timeout: float) -> bool:
-        """Wait at most `timeout` s for frames and handle the next batch of every channel; False when none came.
+        """Wait at most `timeout` s for frames and handle the next bundle; False when none came.
 
         SYNCs are answered, heartbeats and watchdogs kept going.
         """
-        received = self._group.receive(timeout)
+        frames = self._group.receive(timeout)
         if self._group.failures:
             raise next(iter(self._group.failures.values()))
-        now = self._clock()
         if self.tamper_received is not None:
-            by_channel = dict(received)
-            channels = range(len(self._channels))
-            received = [(i, self.tamper_received(i, by_channel.get(i, b""), now)) for i in channels]
-        for index, frames in received:
-            if len(frames) % FRAME_SIZE == 0:
-                self._channels[index].queue.extend(_FRAME.iter_unpack(frames))
-        while self._advance(now):
+            frames = self._tampered(self.tamper_received, frames, True)
+        now, channels = self._clock(), self._channels
+        for can_id, length, number, data in BUNDLED.iter_unpack(frames):
+            if number < len(channels):
+                channels[number].take(can_id, data[:length], now)
+        while self._synced(now):
             self._step(now)
         self._keep_going(now)
-        return any([frames for _, frames in received])
+        return bool(frames)
 
     def _keep_going(self, now: int) -> None:
         """Let the plant go on without SYNC, and heartbeats and watchdogs when they are due."""
         silent = now - self._stepped_at
         if self.ticks and silent >= _FREE_RUN_PERIODS * self._period_ns:
-            for _ in range(min(silent // self._period_ns, 1000)):
+            for left in reversed(range(min(silent // self._period_ns, 1000))):
+                self.step_end = now - left * self._period_ns
                 self._free_step(now)
             self._stepped_at = now
-        if now >= self._watch_at:
-            self._watch_at = now + _WATCH_NS
-            for drive in self._in_order:
-                drive.check_host(now)
-                drive.node.poll(now)
+        for drive in self._in_order:
+            if now >= drive.due:
+                drive.watch(now)
 
     def poll(self) -> None:
         """Handle every frame that waits, as `serve` does."""
@@ -190,25 +209,14 @@ class MockDriveBus:
             if not self.serve(0.0):
                 return
 
-    def _advance(self, now: int) -> bool:
-        """Hand out frames up to the next SYNC of every channel; True when the plant is to step.
+    def _synced(self, now: int) -> bool:
+        """Whether the plant is to make a step.
 
         A channel that misses a SYNC of the others holds them up for half a period once, then they go on without it.
         """
-        for channel in self._channels:
-            queue = channel.queue
-            while queue and not channel.synced:
-                can_id, length, data = queue.popleft()
-                if can_id == SYNC_ID:
-                    channel.synced = channel.live = True
-                    channel.synced_at = now
-                    break
-                data = data[:length]
-                for drive in channel.receivers(can_id):
-                    drive.receive(can_id, data, now)
         synced = [channel for channel in self._channels if channel.synced]
-        if not synced:
-            return False
+        if len(synced) == len(self._channels) or not synced:
+            return bool(synced)
         missing = [channel for channel in self._channels if channel.live and not channel.synced]
         overdue = any(channel.sync_waits() or now - channel.synced_at > self._period_ns // 2 for channel in synced)
         if missing and not overdue:
@@ -218,16 +226,14 @@ class MockDriveBus:
         return True
 
     def _step(self, now: int) -> None:
-        """Step the plant and answer the SYNC on the channels that had it."""
+        """Step the plant, answer the SYNC on the channels that had it, and take what waited behind it."""
+        self.step_end = now
         frames = self._plant_step()
-        for index, channel in enumerate(self._channels):
-            if channel.synced:
-                channel.synced = False
-                part = b"".join([frames[axis] for axis in channel.axes])
-                if part:
-                    self._senders[index](part)
+        self._send(b"".join([frames[drive.node_id - 1] for c in self._channels if c.synced for drive in c.drives]))
         self.ticks += 1
         self._stepped_at = now
+        for channel in self._channels:
+            channel.go_on(now)
 
     def _free_step(self, now: int) -> None:
         for drive in self.drives.values():

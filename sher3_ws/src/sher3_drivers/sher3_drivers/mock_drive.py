@@ -83,8 +83,8 @@ _READINGS = (od.LOAD_POSITION, od.STATUSWORD, od.TORQUE, od.MOTOR_POSITION, od.V
 class _Tpdos:
     """The synchronous TPDOs of a drive as frames end to end, packed in one call."""
 
-    def __init__(self, pdos: Sequence[_Pdo]) -> None:
-        headers = [struct.pack(f"<{HEADER_FORMAT}", pdo.can_id, pdo.length) for pdo in pdos]
+    def __init__(self, pdos: Sequence[_Pdo], channel: int) -> None:
+        headers = [struct.pack(f"<{HEADER_FORMAT}", pdo.can_id, pdo.length, channel) for pdo in pdos]
         self._pack = struct.Struct("<" + "".join(f"8s{pdo.layout}{8 - pdo.length}x" for pdo in pdos)).pack
         addresses = [address for pdo in pdos for address in pdo.addresses]
         self._others = tuple(address for address in addresses if address not in _READINGS)
@@ -112,15 +112,19 @@ class MockDrive:
         scale: scales of its axis.
         node_id: its CANopen node id.
         send: takes whole frames for the bus.
+        channel: number of its channel, which its TPDOs are marked with (`frame.bundle`).
 
     Attributes:
         state: CiA 402 state, one of this module's constants.
+        due: when `watch` is to be called next, ns.
         powered: False makes it fall silent and deaf.
         tamper: replaces the feedback before it is reported; the seam for stuck, wrong, delayed and garbage values.
     """
 
-    def __init__(self, scale: AxisScale, node_id: int, send: Callable[[bytes], None]) -> None:
+    def __init__(self, scale: AxisScale, node_id: int, send: Callable[[bytes], None], channel: int = 0) -> None:
         self.scale, self.node_id = scale, node_id
+        self.due = 0
+        self._channel = channel
         self.state = SWITCH_ON_DISABLED
         self.powered = True
         self.tamper: Callable[[Feedback], Feedback] | None = None
@@ -143,7 +147,7 @@ class MockDrive:
         rpdos = [_Pdo(values, c, m) for c, m in ((0x1400, 0x1600), (0x1401, 0x1601))]
         tpdos = [_Pdo(values, c, m) for c, m in ((0x1800, 0x1A00), (0x1801, 0x1A01), (0x1802, 0x1A02))]
         self._rpdos = {pdo.can_id: pdo for pdo in rpdos if pdo.exists}
-        self._tpdos = _Tpdos([pdo for pdo in tpdos if pdo.exists and 1 <= pdo.transmission <= 240])
+        self._tpdos = _Tpdos([pdo for pdo in tpdos if pdo.exists and 1 <= pdo.transmission <= 240], self._channel)
 
     def _on_reset(self) -> None:
         self.state = SWITCH_ON_DISABLED
@@ -163,7 +167,9 @@ class MockDrive:
             return
         if self.node.operational and can_id in self._rpdos:
             self._on_rpdo(self._rpdos[can_id], data)
-        elif can_id == od.NMT_ID or can_id == 0x600 + self.node_id:
+            return
+        self.due = 0
+        if can_id == od.NMT_ID or can_id == 0x600 + self.node_id:
             self.node.values.update(zip(_READINGS, self._readings, strict=False))
             self.node.handle(can_id, data)
             if can_id == od.NMT_ID:
@@ -205,6 +211,12 @@ class MockDrive:
             self.node.values[od.ERROR_REGISTER] = 1
             self.state = FAULT_REACTION
             self.emergency(code)
+
+    def watch(self, now: int) -> None:
+        """Look after both heartbeats, the host's and its own."""
+        self.check_host(now)
+        due, limit = self.node.poll(now), (self.node.values[od.HOST_HEARTBEAT] & 0xFFFF) * 1_000_000
+        self.due = min(due, self._heard_host + limit + 1) if limit and self._heard_host is not None else due
 
     def check_host(self, now: int) -> None:
         """Watch the host's heartbeat, once it has been heard and while the dictionary asks for it."""

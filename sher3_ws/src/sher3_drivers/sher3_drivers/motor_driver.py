@@ -18,9 +18,9 @@ from .can_errors import BusCondition, judge_error
 from .cia402 import Command, Goal, State, next_command
 from .drive_health import OPERATIONAL, DriveHealth, watch_drives
 from .drive_setup import set_up_drives
-from .errors import CommandRefused, DriverError, LinkError
+from .errors import CommandRefused, DriverError
 from .feedback import Feedback, TpdoCollector, Vector
-from .frame import ERROR_FLAG, Frame, pack_frame
+from .frame import ERROR_FLAG, Frame, bundle, pack_frame
 from .loop_watch import LoopWatch
 from .motion_watch import MotionWatch
 from .rpdo import RpdoPacker
@@ -73,8 +73,8 @@ class MotorDriver:
         self._group = LinkGroup(links)
         self._scales = [AxisScale.from_actuator(actuator) for actuator in robot.actuators]
         self._node_ids = [1 + i for i in range(len(ACTUATORS))]
-        self._axes = [[ACTUATORS.index(name) for name in channel.drives] for channel in settings.channels]
-        self._rpdos = RpdoPacker(self._axes, self._node_ids)
+        axes = [[ACTUATORS.index(name) for name in channel.drives] for channel in settings.channels]
+        self._rpdos = RpdoPacker(axes, self._node_ids)
         self._settled_words: list[int | None] = []
         self.collector = TpdoCollector(self._scales, self._node_ids, settings.period)
         self._period_ns = round(settings.period * 1e9)
@@ -88,8 +88,8 @@ class MotorDriver:
         self._ticks = 0
         self._refused_last = False
         self._synced_at = self._started_at = self._heartbeat_at = self._watch_at = 0
-        self._heartbeat = pack_frame(od.HEARTBEAT_BASE + settings.host_id, bytes([OPERATIONAL]))
-        self._sync = pack_frame(od.SYNC_ID)
+        heartbeat = pack_frame(od.HEARTBEAT_BASE + settings.host_id, bytes([OPERATIONAL]))
+        self._heartbeat, self._sync = [bundle([frame] * len(links)) for frame in (heartbeat, pack_frame(od.SYNC_ID))]
         self._reset_words = 0
         self._early: tuple[int, list[int]] | None = None
         self._running = False
@@ -206,12 +206,12 @@ class MotorDriver:
         if late is not None and self.enabled:
             self.stop_for(late)
         self._started_at = self._started_at or now
-        burst = self._sync
+        frames = self._sync
         if now >= self._heartbeat_at and not self.motion.deaf(self.stop):
             self._heartbeat_at = now + round(self.settings.host_heartbeat * 1e9)
-            burst = self._heartbeat + burst
+            frames = self._heartbeat + frames
         self._synced_at = now
-        self._send([burst] * len(self._axes))
+        self._send(frames)
 
     def collect_positions(self) -> Vector | None:
         """Return the load encoder positions (5,) of this tick as soon as they are in; None when one stays away."""
@@ -313,19 +313,21 @@ class MotorDriver:
 
     def _receive(self, timeout: float = 0.0) -> bool:
         """Take in what waits, waiting at most `timeout` s for it; False when nothing came."""
-        received = self._group.receive(timeout)
-        for channel, frames in received:
-            for can_id, data in self.collector.take(frames):
+        frames = self._group.receive(timeout)
+        if frames:
+            for channel, can_id, data in self.collector.take(frames):
                 self._on_other(channel, can_id, data)
         if len(self._group.failures) > self._dead_links:
             self._dead_links = len(self._group.failures)
             for channel, error in self._group.failures.items():
                 self.bus_conditions[channel] = BusCondition.OFF
                 self._stop_if(Trip(Reason.LINK_LOST, str(error)))
-        return bool(received)
+        return bool(frames)
 
     def _on_other(self, channel: int, can_id: int, data: bytes) -> None:
         """Take a frame that is no TPDO: error frame, heartbeat or EMCY; the rest belongs to others."""
+        if channel >= len(self.bus_conditions):
+            return
         if can_id & ERROR_FLAG:
             self.counters["error_frames"] += 1
             link = self.settings.channels[channel].link
@@ -388,13 +390,10 @@ class MotorDriver:
         self.motion.demand.sent(velocity_counts)
         self._send(self._rpdos.frames(commands, velocity_counts))
 
-    def _send(self, parts: Sequence[bytes]) -> None:
-        """Send on every channel; one that cannot take it stops the robot on the others too."""
-        for channel, (link, part) in enumerate(zip(self._group.links, parts, strict=True)):
-            try:
-                link.send_frames(part)
-            except LinkError as error:
-                self.bus_conditions[channel] = BusCondition.OFF
-                if self.stop.add(Trip(Reason.LINK_LOST, str(error)), self.clock()):
-                    self.goal = Goal.STOPPED
-                    self.motion.rest.begin()
+    def _send(self, frames: bytes) -> None:
+        """Send a bundle; a channel that cannot take its frames stops the robot on the others too."""
+        for channel, error in self._group.send(frames):
+            self.bus_conditions[channel] = BusCondition.OFF
+            if self.stop.add(Trip(Reason.LINK_LOST, str(error)), self.clock()):
+                self.goal = Goal.STOPPED
+                self.motion.rest.begin()

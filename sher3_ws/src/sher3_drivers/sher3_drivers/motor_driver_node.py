@@ -20,7 +20,7 @@ from sher3_runtime import (
     subscribe,
 )
 
-from .bus import CanLink, open_link
+from .bus import CanLink, open_links
 from .driver_report import driver_report
 from .errors import CommandRefused
 from .motor_driver import MotorDriver
@@ -55,7 +55,7 @@ class MotorDriverNode(Node):
         super().__init__("motor_driver", **{**NODE_OPTIONS, **options})
         settings = settings or default_settings(robot.control_period)
         if links is None:
-            links = [open_link(channel.link) for channel in settings.channels]
+            links = open_links([channel.link for channel in settings.channels])
         self.driver = MotorDriver(robot, settings, links, clock_of(self).now)
         self.driver.configure(patience)
         self._state, self._action = "DISABLED", Action.NONE

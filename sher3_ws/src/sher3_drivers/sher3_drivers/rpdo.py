@@ -1,15 +1,15 @@
-"""The RPDOs of a tick: controlword and target velocity of every drive, packed per channel in one call."""
+"""The RPDOs of a tick: controlword and target velocity of every drive, packed in one call."""
 
 from __future__ import annotations
 
 import struct
 from collections.abc import Sequence
+from operator import itemgetter
 
 from .cia402 import Command
 from .drive_objects import RPDO_BASE
 from .frame import HEADER_FORMAT
 
-_RPDO = f"{HEADER_FORMAT}Hi2x"
 _LENGTH = 6
 
 
@@ -17,22 +17,21 @@ class RpdoPacker:
     """Frames of RPDO1, see docs/can.md.
 
     Args:
-        channels: per channel the indices of its drives.
+        channels: per channel the indices of its drives; every drive once.
         node_ids: CANopen node ids of all drives.
     """
 
     def __init__(self, channels: Sequence[Sequence[int]], node_ids: Sequence[int]) -> None:
-        self._channels = [
-            ([(axis, RPDO_BASE + node_ids[axis]) for axis in axes], struct.Struct("<" + _RPDO * len(axes)).pack)
-            for axes in channels
-        ]
+        placed = [(channel, axis) for channel, axes in enumerate(channels) for axis in axes]
+        header = struct.Struct(f"<{HEADER_FORMAT}")
+        self._headers = [header.pack(RPDO_BASE + node_ids[axis], _LENGTH, channel) for channel, axis in placed]
+        self._in_order = itemgetter(*[axis for _, axis in placed])
+        self._pack = struct.Struct("<" + "8sHi2x" * len(placed)).pack
 
-    def frames(self, commands: Sequence[Command], velocity_counts: Sequence[int]) -> list[bytes]:
-        """Return the frames of every channel, end to end."""
-        parts = []
-        for axes, pack in self._channels:
-            fields: list[int] = []
-            for axis, can_id in axes:
-                fields += (can_id, _LENGTH, commands[axis].value, velocity_counts[axis])
-            parts.append(pack(*fields))
-        return parts
+    def frames(self, commands: Sequence[Command], velocity_counts: Sequence[int]) -> bytes:
+        """Return the frames of all channels as one bundle."""
+        fields: list[bytes | int] = [b""] * (3 * len(self._headers))
+        fields[0::3] = self._headers
+        fields[1::3] = [command.value for command in self._in_order(commands)]
+        fields[2::3] = self._in_order(velocity_counts)
+        return self._pack(*fields)

@@ -139,11 +139,11 @@ def default_settings(
 
     Args:
         period: control period, s.
-        links: one link specification per channel; by default `<kind>:drives0`, `<kind>:drives1`, ...
+        links: one link specification per channel; by default `<kind>:drives/0`, `<kind>:drives/1`, ...
         kind: kind of the default links.
     """
     layout = (ACTUATORS[:3], ACTUATORS[3:]) if period >= 1.0 / 600.0 else (ACTUATORS[:2], ACTUATORS[2:4], ACTUATORS[4:])
-    names = tuple(links) if links is not None else tuple(f"{kind}:drives{i}" for i in range(len(layout)))
+    names = tuple(links) if links is not None else tuple(f"{kind}:drives/{i}" for i in range(len(layout)))
     if len(names) != len(layout):
         remedy = "name one link per channel or configure the channels"
         raise ConfigurationError("number of links", value=len(names), limit=len(layout), remedy=remedy)

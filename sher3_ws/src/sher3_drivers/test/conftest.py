@@ -36,17 +36,17 @@ def open_pair(request, tmp_path, monkeypatch):
         link.close()
 
 
-@pytest.fixture(params=["virtual", "local"])
+@pytest.fixture(params=["virtual", "local", "cable"])
 def make_rig(request, tmp_path, monkeypatch):
-    """A function that builds a rig; the whole suite runs on both links that need no hardware."""
+    """A function that builds a rig; the whole suite runs on links that need no hardware: channels one by one in the
+    process or on sockets of their own, and together on one."""
     monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
     rigs = []
 
     def make(**changes):
-        prefix = f"{request.param}:d{next(_numbers)}"
-        rigs.append(
-            LockstepRig(ROBOT, default_settings().model_copy(update=changes), lambda i: open_link(f"{prefix}-{i}"))
-        )
+        name = f"d{next(_numbers)}"
+        links = name if request.param == "cable" else lambda i: open_link(f"{request.param}:{name}-{i}")
+        rigs.append(LockstepRig(ROBOT, default_settings().model_copy(update=changes), links))
         return rigs[-1]
 
     yield make

@@ -10,9 +10,10 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from sher3_description import load_robot
 from sher3_drivers.bus import open_link
+from sher3_drivers.bus_local import LocalCable
 from sher3_drivers.feedback import TPDO_BASES
 from sher3_drivers.force_sensor import WrenchRecord
-from sher3_drivers.frame import ERROR_FLAG, Frame, pack_frames
+from sher3_drivers.frame import ERROR_FLAG, Frame, mark, pack_frames
 from sher3_drivers.lockstep_rig import LockstepRig
 from sher3_drivers.netft import RECORD, NetFtSensor
 from sher3_drivers.netft_server import NetFtServer
@@ -71,6 +72,26 @@ def test_no_frame_crashes_a_side(disabled, frames, channel):
     intruders[channel].send_frames(frames)
     for _ in range(2):
         rig.tick()
+
+
+def test_frames_of_channels_that_do_not_exist_crash_no_side(tmp_path, monkeypatch):
+    """Bytes of an intruder on a cable, whatever channel they say they are of."""
+    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
+    rig = LockstepRig(ROBOT, default_settings(), "intruded")
+    rig.driver.configure()
+    intruder = LocalCable("intruded")
+
+    @relaxed
+    @given(bursts.filter(harmless), st.integers(0, 255))
+    def intrude(frames, channel):
+        intruder.send(mark(frames, channel))
+        for _ in range(2):
+            rig.tick(SLOW)
+        assert rig.plant.position == [0.0] * 5
+
+    intrude()
+    intruder.close()
+    rig.close()
 
 
 @pytest.mark.parametrize("seed", range(20))

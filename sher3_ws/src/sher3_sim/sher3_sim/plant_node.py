@@ -14,7 +14,7 @@ from typing import Any, Protocol, cast
 import numpy as np
 from rclpy.node import Node
 from sher3_description import Robot, Sher3Error
-from sher3_drivers.bus import CanLink, open_link
+from sher3_drivers.bus import CanLink, open_links
 from sher3_drivers.force_sensor import InProcessForceSensor
 from sher3_drivers.mock_bus import DrivePlant, MockDriveBus
 from sher3_drivers.netft_server import NetFtServer
@@ -112,7 +112,7 @@ class PlantNode(Node):
             self._pedal.send if isinstance(self._pedal, PedalSender) else self._pedal.put
         )
         if links is None:
-            links = [open_link(channel.link) for channel in settings.channels]
+            links = open_links([channel.link for channel in settings.channels])
         self.drives = MockDriveBus(links, cast(DrivePlant, self), robot, settings, self._now)
         self._faults = None if faults is None else faults(self.drives, self._force, self._pedal)
         self._truth_told = False
@@ -149,9 +149,9 @@ class PlantNode(Node):
         self.drives.serve(0.0)  # the executor calls again at once when more has come
 
     def _tell_truth(self) -> None:
-        """Publish where the axes truly are; steps that are made up for bear the same stamp."""
+        """Publish where the axes truly are at the end of the step."""
         position, demand = self._plant.true_position.tolist(), self._reading.demand.tolist()
-        self._publish_truth(JointSample(self._now(), tuple(position), tuple(demand)))
+        self._publish_truth(JointSample(self.drives.step_end, tuple(position), tuple(demand)))
 
     def _stamp(self) -> int:
         """Return the stamp of the present tick; SYNCs come at the ticks or a little later."""
