@@ -22,12 +22,14 @@ def preload(settings: RunSettings) -> None:
     """Import and compile what the nodes of the run need, once, before the processes are forked."""
     from sher3_description import TOPICS
     from sher3_runtime.messages import message_class
+    from sher3_runtime.process import make_logging_prompt
 
     for topic in TOPICS.values():
         message_class(topic.type)
     for name in settings.names:
         import_module(_MODULES[name])
     warm_up(settings.robot(), settings.names)
+    make_logging_prompt()
 
 
 _MODULES = {

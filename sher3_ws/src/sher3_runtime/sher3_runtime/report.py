@@ -32,15 +32,19 @@ def report_statistics(node: Node) -> None:
 
 
 def _reports(name: str, statistics: Statistics) -> Iterator[DiagnosticSample | None]:
-    """Do one piece of work at a time: yield None, and every `STEPS` times or more a finished report."""
+    """Do one piece of work at a time: yield None, and every `STEPS` times or more a finished report.
+
+    The counters are those of its end: the supervisor stops the robot for lost cycles.
+    """
     before = 0
     while True:
-        pairs = []
-        for pair in statistics.pairs():
-            pairs.append(pair)
+        percentiles = []
+        for pair in statistics.percentiles():
+            percentiles.append(pair)
             yield None
-        for _ in range(STEPS - len(pairs) - 1):
+        for _ in range(STEPS - len(percentiles) - 1):
             yield None
+        pairs = [*statistics.counters(), *percentiles]
         losses = statistics.losses()
         new, before = losses - before, losses
         message = f"{new} losses since the last report" if new else "ok"

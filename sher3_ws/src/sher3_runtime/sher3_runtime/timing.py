@@ -143,13 +143,16 @@ class Statistics:
             "age": {name: histogram.summary() for name, histogram in self.age.items()},
         }
 
-    def pairs(self) -> Iterator[tuple[str, str]]:
-        """Yield the key-value pairs of the diagnostics message, durations in microseconds."""
+    def counters(self) -> Iterator[tuple[str, str]]:
+        """Yield the counters as key-value pairs of the diagnostics message."""
         yield "ticks", str(self.ticks)
         yield "lost_cycles", str(self.lost_cycles)
         yield "overruns", str(self.overruns)
         yield "dropped", str(sum(self.dropped.values()))
         yield "garbage", str(sum(self.garbage.values()))
+
+    def percentiles(self) -> Iterator[tuple[str, str]]:
+        """Yield the durations as key-value pairs of the diagnostics message in microseconds, one piece of work each."""
         histograms = {"wakeup": self.wakeup, "period": self.period}
         histograms.update({f"callback {name}": histogram for name, histogram in self.callback.items()})
         histograms.update({f"age {name}": histogram for name, histogram in self.age.items()})
