@@ -3,15 +3,17 @@
 Three implementations over the same local links, in one run: `driver` is the product (MotorDriver and the mock
 drives with an ideal plant), `frames` its floor (raw frames, nothing else), `messages` the same cycle with
 python-can Message objects. Round trip: from SYNC handed to the link until the last TPDO is taken in. CPU in per
-cent of one core, each process alone.
+cent of one core, each process alone. As in the product, both run under SCHED_FIFO where the user may, a tick that is a
+whole period late is skipped, and a stop of the driver is counted, named and recovered from.
 
-    python bench/can_bus.py [--rate 1000] [--seconds 10] [--kind local] [--json]
+    python bench/can_bus.py [--rate 1000] [--seconds 10] [--priority 40] [--kind local] [--json]
     python bench/can_bus.py --budget [--json]
 """
 
 from __future__ import annotations
 
 import argparse
+import contextlib
 import ctypes
 import gc
 import json
@@ -21,7 +23,7 @@ import select
 import statistics
 import struct
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from multiprocessing.connection import Connection
 
 import can
@@ -29,6 +31,7 @@ from sher3_description import ACTUATORS, load_robot
 from sher3_drivers.bus import LinkGroup, open_links
 from sher3_drivers.bus_load import channel_budget, fd_frame_seconds, frame_bits
 from sher3_drivers.bus_python_can import LinkBus
+from sher3_drivers.cia402 import Goal
 from sher3_drivers.frame import FRAME_SIZE, bundle, pack_frame
 from sher3_drivers.mock_bus import MockDriveBus
 from sher3_drivers.mock_plant import IntegratorPlant
@@ -39,6 +42,16 @@ ROBOT = load_robot()
 _FRAME = struct.Struct("<IB3x8s")
 Serve = Callable[[MotorDriverSettings, Callable[[], bool]], None]
 Cycle = Callable[[int], float]
+
+
+STOPS: list[str] = []
+"""Why the driver stopped during a measurement."""
+
+
+def realtime(priority: int) -> None:
+    """Run under SCHED_FIFO with this priority, 0 for none, where the user may."""
+    with contextlib.suppress(PermissionError):
+        os.sched_setscheduler(0, os.SCHED_FIFO if priority else os.SCHED_OTHER, os.sched_param(priority))
 
 
 def device_driver(settings: MotorDriverSettings, stopped: Callable[[], bool]) -> None:
@@ -61,13 +74,26 @@ def host_driver(settings: MotorDriverSettings) -> tuple[Cycle, Callable[[], obje
         begin = time.perf_counter_ns()
         driver.hear_supervisor()
         driver.tick(stamp)
-        driver.collect_positions()  # a channel's TPDOs come in one datagram: with the positions everything is in
+        driver.collect_positions()  # TPDOs come in one datagram: with the positions everything is in
         end = time.perf_counter_ns()
         complete = driver.collect()
+        if not driver.enabled:
+            recover(driver)
+            return float("nan")
         driver.command(stamp, velocity)
-        return (end - begin) / 1e3 if complete and driver.stop.first is None else float("nan")
+        return (end - begin) / 1e3 if complete else float("nan")
 
     return cycle, driver.close
+
+
+def recover(driver: MotorDriver) -> None:
+    """Note why the driver stopped, and go on: reset, then enable."""
+    if driver.stop.first is not None:
+        STOPS.append(f"{driver.stop.code.name}: {driver.stop.reason}")
+    if driver.needs_reset:
+        driver.reset()
+    elif driver.goal is not Goal.ENABLED:
+        driver.enable()
 
 
 def device_frames(settings: MotorDriverSettings, stopped: Callable[[], bool]) -> None:
@@ -161,9 +187,10 @@ SIDES: dict[str, tuple[Serve, Callable[..., tuple[Cycle, Callable[[], object]]]]
 }
 
 
-def device_process(serve: Serve, settings: MotorDriverSettings, pipe: Connection) -> None:
+def device_process(serve: Serve, settings: MotorDriverSettings, priority: int, pipe: Connection) -> None:
     """Serve until told to stop; report the CPU time used between `start` and `stop`."""
     begun = time.process_time()
+    realtime(priority)
 
     def stopped() -> bool:
         nonlocal begun
@@ -178,44 +205,49 @@ def device_process(serve: Serve, settings: MotorDriverSettings, pipe: Connection
     serve(settings, stopped)
 
 
-def measure(name: str, settings: MotorDriverSettings, seconds: float) -> dict[str, object]:
+def measure(name: str, settings: MotorDriverSettings, seconds: float, priority: int) -> dict[str, object]:
     """Run one implementation; return its figures."""
     serve, make_host = SIDES[name]
     ours, theirs = multiprocessing.Pipe()
-    device = multiprocessing.get_context("fork").Process(target=device_process, args=(serve, settings, theirs))
+    device = multiprocessing.get_context("fork").Process(
+        target=device_process, args=(serve, settings, priority, theirs)
+    )
     device.start()
     time.sleep(0.3)
+    realtime(priority)
     cycle, close = make_host(settings)
     period = round(settings.period * 1e9)
     ticks = round(seconds / settings.period)
-    for k in range(100):  # enables the drives, warms up
-        paced(cycle, k, period)
+    for stamp in paced(period, 200):  # enables the drives, warms up
+        cycle(stamp)
+    STOPS.clear()
     ours.send("start")
-    cpu, wall, late = time.process_time(), time.perf_counter(), 0
-    trips = []
-    due = time.monotonic_ns() + period
-    for k in range(100, 100 + ticks):
-        time.sleep(max(0.0, (due - time.monotonic_ns()) * 1e-9))
-        late += time.monotonic_ns() - due > period
-        due += period
-        trips.append(cycle(k * period))
+    cpu, wall = time.process_time(), time.perf_counter()
+    trips = [cycle(stamp) for stamp in paced(period, ticks)]
     cpu, wall = time.process_time() - cpu, time.perf_counter() - wall
     ours.send("stop")
     device_cpu = ours.recv()
     close()
     device.join(2.0)
+    realtime(0)
     good = sorted(t for t in trips if t == t)
     return {
         "implementation": name, "rate": 1.0 / settings.period, "channels": len(settings.channels), "cycles": ticks,
-        "incomplete": len(trips) - len(good), "late": late,
+        "lost": ticks - len(trips), "incomplete": len(trips) - len(good), "stops": len(STOPS),
         "p50_us": statistics.median(good), "p99_us": good[int(0.99 * len(good))], "max_us": good[-1],
         "host_cpu_percent": 100 * cpu / wall, "device_cpu_percent": 100 * device_cpu / wall,
+        "reason": STOPS[0] if STOPS else "",
     }  # fmt: skip
 
 
-def paced(cycle: Cycle, k: int, period: int) -> None:
-    time.sleep(period * 1e-9)
-    cycle(k * period)
+def paced(period: int, ticks: int) -> Iterator[int]:
+    """Yield `ticks` times of a grid [ns] as they come, without those that are a whole period over."""
+    start = time.monotonic_ns() + period
+    for due in range(start, start + ticks * period, period):
+        left = due - time.monotonic_ns()
+        if left > -period:
+            time.sleep(max(0.0, left * 1e-9))
+            yield due
 
 
 def budget_rows() -> list[dict[str, float]]:
@@ -259,6 +291,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--rate", type=float, nargs="*", default=[500.0, 1000.0])
     parser.add_argument("--seconds", type=float, default=10.0)
+    parser.add_argument("--priority", type=int, default=40, help="SCHED_FIFO priority as in the product; 0 for none")
     parser.add_argument("--kind", default="local", help="link kind of the channels; socketcan needs can0, can1, can2")
     parser.add_argument("--links", help="comma-separated link specifications instead of --kind")
     parser.add_argument("--budget", action="store_true", help="print the bus-load budget and exit")
@@ -283,7 +316,7 @@ def main() -> None:
                 if names is None:
                     links = [f"{arguments.kind}:bench{os.getpid()}/{i}" for i in range(len(settings.channels))]
                     settings = default_settings(1.0 / rate, links)
-                rows.append(measure(name, settings, arguments.seconds))
+                rows.append(measure(name, settings, arguments.seconds, arguments.priority))
     print(json.dumps(rows)) if arguments.json else show(rows)
 
 
