@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from sher3_control import ControlSettings, initial_state, law_parameters, step
 from sher3_control.admittance import LawInput
+from sher3_control.angles import roll_and_tilt
 from sher3_control.pose import tip_pose_sample
 from sher3_control.position_controller import position_command
 from sher3_control.settings import MotionSettings
@@ -26,13 +27,14 @@ from sher3_drivers.netft import NetFtScale
 from sher3_drivers.pedal import JS_EVENT, JoystickPedal
 from sher3_drivers.settings import default_settings
 from sher3_drivers.units import AxisScale
-from sher3_kinematics import InverseVelocity, RobotKinematics
+from sher3_kinematics import InverseVelocity, RobotKinematics, kernel_parameters
 from sher3_runtime import JointSample
 from sher3_runtime.cdr import codec
 from sher3_sim import Plant
 
 ROBOT = load_robot()
 KINEMATICS = RobotKinematics(ROBOT)
+PARAMETERS = np.array(kernel_parameters(ROBOT))
 CONTROL = ControlSettings.from_robot(ROBOT)
 LAW = law_parameters(ROBOT, CONTROL)
 POSTURES = [(0.0, 0.0, 0.0, 0.0, 0.0), (0.003, -0.002, 0.001, 0.5, 0.012), (-0.004, 0.0, 0.002, -0.6, -0.011)]
@@ -70,10 +72,17 @@ def test_pose_is_that_of_the_contract(q):
     assert transform[:3, :3] == pytest.approx(rotation, abs=1e-9)
 
 
-def run_law(q, wrench, ticks=200, travel=1.0):
-    """Twist after `ticks` of a steady wrench in {f}, the pedal released first."""
+@pytest.mark.parametrize("q", POSTURES)
+def test_the_law_sees_the_angles_of_the_tool(q):
+    """Kills: roll or tilt of the other sign or in degrees, where the law turns the wrench into {b}."""
     _, rotation = transform_by_hand(q)
-    roll, tilt = q[3], math.atan2(rotation[0, 2], rotation[0, 0])
+    by_hand = math.atan2(rotation[2, 1], rotation[1, 1]), math.atan2(rotation[0, 2], rotation[0, 0])
+    assert roll_and_tilt(PARAMETERS, q[3], q[4]) == pytest.approx(by_hand, abs=1e-9)
+
+
+def run_law(q, wrench, ticks=200, travel=1.0):
+    """Twist after `ticks` of a steady wrench in {f}, the pedal released first; the law finds roll and tilt itself."""
+    roll, tilt = roll_and_tilt(PARAMETERS, q[3], q[4])
     state, out = initial_state(), None
     for k in range(ticks):
         stamp = 10**18 + k * 2_000_000
@@ -332,9 +341,7 @@ def test_quaternions_are_x_y_z_w():
 
 
 def tip_pose_sample_of(q):
-    from sher3_kinematics import kernel_parameters
-
-    return tip_pose_sample(np.array(kernel_parameters(ROBOT)), q)[1]
+    return tip_pose_sample(PARAMETERS, q)[1]
 
 
 def test_speed_caps_are_metres_per_second():

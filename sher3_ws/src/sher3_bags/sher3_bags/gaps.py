@@ -6,8 +6,9 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from sher3_description import Robot
+from sher3_description import TOPICS, Robot
 
+from sher3_bags.messages import TEXT
 from sher3_bags.run import CONTRACT_TOPICS
 
 PAUSE_NS = 250_000_000
@@ -15,6 +16,11 @@ PAUSE_NS = 250_000_000
 
 MANY_SENDERS = frozenset({"diagnostics"})
 """Topics that every node publishes: stamps of several senders repeat and overtake each other, which is no disorder."""
+
+
+def is_stamped(topic: str) -> bool:
+    """Whether the order of the stamps in its messages says something; else only times of arrival can be judged."""
+    return topic not in MANY_SENDERS and TOPICS[topic].type != TEXT
 
 
 def grid_periods(robot: Robot) -> dict[str, int]:
@@ -30,6 +36,7 @@ class GapCounter:
 
     Attributes:
         period: of the grid in ns; None for a source without one.
+        stamped: what it sees are stamps of the source; else they are times of arrival, which may be the same.
         messages: samples seen.
         dropped: grid points without a sample inside gaps of at most `PAUSE_NS`.
         pauses: gaps longer than that.
@@ -38,6 +45,7 @@ class GapCounter:
     """
 
     period: int | None = None
+    stamped: bool = True
     messages: int = 0
     dropped: int = 0
     pauses: int = 0
@@ -46,12 +54,12 @@ class GapCounter:
     last: int | None = None
 
     def see(self, stamp: int) -> None:
-        """Count the sample with this stamp [ns]."""
+        """Count the sample with this stamp, or time of arrival [ns]."""
         self.messages += 1
         if self.last is not None:
             step = stamp - self.last
             if step <= 0:
-                self.disordered += 1
+                self.disordered += self.stamped or step < 0
                 return
             self.longest = max(self.longest, step)
             if self.period is not None:
@@ -63,16 +71,16 @@ class GapCounter:
 
     def counts(self) -> dict[str, int]:
         """Return the counts as plain data."""
-        return {key: value for key, value in asdict(self).items() if key not in ("period", "last")}
+        return {key: value for key, value in asdict(self).items() if key not in ("period", "stamped", "last")}
 
 
-def count_gaps(stamp: NDArray[np.int64], period: int | None) -> GapCounter:
+def count_gaps(stamp: NDArray[np.int64], period: int | None, stamped: bool = True) -> GapCounter:
     """Return what a `GapCounter` that sees these stamps counts, for a recorded stream at once."""
-    counter = GapCounter(period, messages=len(stamp))
+    counter = GapCounter(period, stamped, messages=len(stamp))
     highest = np.maximum.accumulate(stamp) if len(stamp) else stamp
-    disordered = np.r_[False, stamp[1:] <= highest[:-1]] if len(stamp) else np.zeros(0, bool)
-    counter.disordered = int(disordered.sum())
-    step = np.diff(stamp[~disordered])
+    ahead = stamp[1:] - highest[:-1]
+    counter.disordered = int((ahead <= 0 if stamped else ahead < 0).sum())
+    step = np.diff(stamp[np.r_[True, ahead > 0]]) if len(stamp) else ahead
     counter.longest = int(step.max(initial=0))
     counter.last = int(highest[-1]) if len(stamp) else None
     if period is not None:

@@ -19,10 +19,9 @@ from sher3_description import TOPICS, Robot, Topic
 
 from sher3_bags.cdr import STAMP
 from sher3_bags.errors import BagError, TopicError
-from sher3_bags.gaps import MANY_SENDERS, GapCounter, grid_periods
+from sher3_bags.gaps import GapCounter, grid_periods, is_stamped
 from sher3_bags.kernels import MESSAGE, MESSAGE_HEAD, RECORD_HEAD
 from sher3_bags.mcap_writer import CHUNK_LIMIT, McapWriter
-from sher3_bags.messages import TEXT
 from sher3_bags.provenance import PROVENANCE_RECORD, provenance
 from sher3_bags.reading import ROBOT_FILE, RUN_RECORD
 from sher3_bags.rosbag2 import TopicCount, write_metadata
@@ -33,7 +32,6 @@ MAX_AGE_NS = 500_000_000
 
 _HEAD = struct.Struct("<BQHIQQ")
 _STAMP = struct.Struct("<iI")
-_NO_HEADER = frozenset({TEXT})
 
 
 @dataclass
@@ -41,7 +39,6 @@ class _Source:
     topic: Topic
     channel: int
     gaps: GapCounter
-    stamped: bool
     sequence: int = 0
 
 
@@ -104,7 +101,7 @@ class Recorder:
         if self.closed:
             raise BagError("the recording is complete", path=self.folder, remedy="start another one")
         source = self._sources.get(topic) or self._add(topic)
-        if source.stamped and len(data) >= STAMP + _STAMP.size:
+        if source.gaps.stamped and len(data) >= STAMP + _STAMP.size:
             seconds, nanoseconds = _STAMP.unpack_from(data, STAMP)
             source.gaps.see(seconds * 1_000_000_000 + nanoseconds)
         else:
@@ -177,9 +174,7 @@ class Recorder:
             raise TopicError("no such topic in the table", topic=name, remedy="use a name relative to /sher3")
         topic = TOPICS[name]
         channel = self._writer.channel(topic.full_name, topic.type, topic.qos)
-        gaps = GapCounter(self._periods.get(name))
-        stamped = topic.type not in _NO_HEADER and name not in MANY_SENDERS
-        self._sources[name] = _Source(topic, channel, gaps, stamped)
+        self._sources[name] = _Source(topic, channel, GapCounter(self._periods.get(name), is_stamped(name)))
         return self._sources[name]
 
     def __enter__(self) -> Recorder:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from sher3_description import Robot
 
-from sher3_bags.gaps import MANY_SENDERS, count_gaps, grid_periods
+from sher3_bags.gaps import count_gaps, grid_periods, is_stamped
 from sher3_bags.run import Run, Stream
 from sher3_bags.statistics import Spread, common
 
@@ -70,7 +70,7 @@ def topic_timing(run: Run, robot: Robot) -> dict[str, TopicTiming]:
 
 
 def _timing(topic: str, table: Stream, period: int | None, force: Stream | None) -> TopicTiming:
-    gaps = count_gaps(table.stamp, period)
+    gaps = count_gaps(table.stamp, period, is_stamped(topic))
     arrivals = _arrivals(table)
     span = (table.stamp[-1] - table.stamp[0]) * 1e-9 if len(table) > 1 else 0.0
     return TopicTiming(
@@ -83,7 +83,7 @@ def _timing(topic: str, table: Stream, period: int | None, force: Stream | None)
         from_force=_from_force(table, force),
         dropped=gaps.dropped,
         pauses=gaps.pauses,
-        disordered=0 if topic in MANY_SENDERS else gaps.disordered,
+        disordered=gaps.disordered,
         not_finite=_not_finite(table),
     )
 

@@ -110,10 +110,11 @@ def test_gaps_at_once_and_one_by_one_agree():
     rng = np.random.default_rng(3)
     for _ in range(30):
         stamp = np.cumsum(rng.choice([-3, 0, 1, 1, 1, 1, 1, 2, 5, 200], 300)) * T + rng.integers(-9, 9, 300)
-        counter = GapCounter(T)
-        for value in stamp.tolist():
-            counter.see(value)
-        assert counter == count_gaps(stamp, T)
+        for stamped in (True, False):
+            counter = GapCounter(T, stamped)
+            for value in stamp.tolist():
+                counter.see(value)
+            assert counter == count_gaps(stamp, T, stamped)
 
 
 def test_damage_is_reported_not_refused(build):

@@ -13,7 +13,7 @@ from sher3_bags import BagError, Recorder, RunMetadata, TopicError, read_run, re
 from sher3_bags.cdr_encode import encode
 from sher3_bags.gaps import GapCounter
 from sher3_description import TOPICS, load_robot
-from sher3_runtime import DiagnosticSample
+from sher3_runtime import DiagnosticSample, TextSample
 from sher3_runtime.cdr import codec
 
 ROBOT = load_robot()
@@ -159,3 +159,12 @@ def test_kill_9_loses_at_most_the_last_chunk(tmp_path):
     assert table.temperature.tolist() == list(range(len(table)))
     # One chunk holds 0.5 s of this source, which is 250 samples.
     assert written - 251 <= len(table) <= written + 1
+
+
+def test_texts_that_arrive_together_are_not_out_of_order(tmp_path):
+    """They bear no stamp, and in stepped time several arrive at one instant; a clock that goes back is disorder."""
+    pack = codec("std_msgs/msg/String").encode
+    with Recorder(tmp_path / "bag", ROBOT) as recorder:
+        for arrived in (100, 100, 200, 150):
+            recorder.write("mock/fault", pack(TextSample("{}")), arrived)
+        assert recorder.counts()["mock/fault"]["disordered"] == 1

@@ -195,10 +195,10 @@ class MockDriveBus:
         """Let the plant go on without SYNC, and heartbeats and watchdogs when they are due."""
         silent = now - self._stepped_at
         if self.ticks and silent >= _FREE_RUN_PERIODS * self._period_ns:
-            for left in reversed(range(min(silent // self._period_ns, 1000))):
-                self.step_end = now - left * self._period_ns
+            # The last period stays for the SYNC that may come at this very time.
+            for left in range(min(silent // self._period_ns, 1000) - 1, 0, -1):
+                self.step_end = self._stepped_at = now - left * self._period_ns
                 self._free_step(now)
-            self._stepped_at = now
         for drive in self._in_order:
             if now >= drive.due:
                 drive.watch(now)
@@ -227,7 +227,7 @@ class MockDriveBus:
 
     def _step(self, now: int) -> None:
         """Step the plant, answer the SYNC on the channels that had it, and take what waited behind it."""
-        self.step_end = now
+        self.step_end = min([channel.synced_at for channel in self._channels if channel.synced])
         frames = self._plant_step()
         self._send(b"".join([frames[drive.node_id - 1] for c in self._channels if c.synced for drive in c.drives]))
         self.ticks += 1
