@@ -244,9 +244,8 @@ def paced(period: int, ticks: int) -> Iterator[int]:
     """Yield `ticks` times of a grid [ns] as they come, without those that are a whole period over."""
     start = time.monotonic_ns() + period
     for due in range(start, start + ticks * period, period):
-        left = due - time.monotonic_ns()
-        if left > -period:
-            time.sleep(max(0.0, left * 1e-9))
+        time.sleep(max(0.0, (due - time.monotonic_ns()) * 1e-9))
+        if time.monotonic_ns() - due < period:
             yield due
 
 
