@@ -7,6 +7,8 @@ the wrench acts ON the tool.
 import math
 from typing import TypeAlias
 
+from sher3_kinematics.kernel import GRAVITY
+
 from .compiled import compiled
 from .limits import Twist
 from .wrench_check import Wrench
@@ -14,8 +16,6 @@ from .wrench_check import Wrench
 Vector3: TypeAlias = tuple[float, float, float]
 Rotation: TypeAlias = tuple[float, float, float, float, float, float, float, float, float]
 """A rotation matrix, row by row."""
-
-GRAVITY = 9.81
 
 
 @compiled

@@ -146,7 +146,7 @@ class Attribution:
 
 
 def attribute(
-    evidence: Evidence, significant: Callable[[Fit | None], dict[Channel, float]], candidates: Candidates, say: Progress
+    evidence: Evidence, significant: Callable[[Fit], dict[Channel, float]], candidates: Candidates, say: Progress
 ) -> Attribution:
     """Select causes until no gap is left that an effect explains.
 
@@ -208,7 +208,7 @@ def _pair(
     return best
 
 
-def _prune(evidence: Evidence, current: Fit, significant: Callable[[Fit | None], dict[Channel, float]]) -> Fit:
+def _prune(evidence: Evidence, current: Fit, significant: Callable[[Fit], dict[Channel, float]]) -> Fit:
     """Backward pass: drop a cause whose loss nobody misses."""
     base = fit(evidence.data, []).total
     while len(current.terms) > 1:

@@ -63,10 +63,15 @@ def relieved(channel: Channel, values: Array) -> Array:
     return values - share * values.mean(axis=0) if share else values
 
 
+def partly_free(channel: Channel) -> bool:
+    """Whether a run's mean is relieved of a share and not of all of it."""
+    return 0.0 < FREE_MEAN.get(channel.stage, 0.0) < 1.0
+
+
 def restored(channel: Channel, values: Array) -> Array:
     """Put back what `relieved` took off, where anything remains to tell it."""
     share = FREE_MEAN.get(channel.stage, 0.0)
-    return values + share / (1.0 - share) * values.mean(axis=0) if 0.0 < share < 1.0 else values
+    return values + share / (1.0 - share) * values.mean(axis=0) if partly_free(channel) else values
 
 
 UNITS = {

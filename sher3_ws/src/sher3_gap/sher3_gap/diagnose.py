@@ -21,7 +21,7 @@ from sher3_gap.fitting import Fit, fit
 from sher3_gap.library import LIBRARY
 from sher3_gap.loading import load_case
 from sher3_gap.localise import Gap, gap_of, localise
-from sher3_gap.quantify import closure, excess, parameters, residual_after
+from sher3_gap.quantify import closure, excess, parameters, residual_after, samples_of
 from sher3_gap.regimes import regime
 from sher3_gap.separate import next_experiment
 from sher3_gap.signals import RunSignals
@@ -111,17 +111,16 @@ def diagnose_runs(
     return Diagnosis(verdict, evidence, gaps, attribution, exact)
 
 
-def left_over(evidence: Evidence, initial: dict[Channel, Gap], current: Fit | None) -> dict[Channel, float]:
+def left_over(evidence: Evidence, initial: dict[Channel, Gap], current: Fit) -> dict[Channel, float]:
     """Gaps that remain under a fit: channel -> excess loss. What is left of a gap may be `REMAINDER` of it."""
     out: dict[Channel, float] = {}
     for channel in initial:
-        residual = None if current is None else residual_after(evidence, current, channel)
-        gap = gap_of(evidence, channel, residual)
-        if gap is None or not gap.significant or current is None:
+        gap = gap_of(evidence, channel, residual_after(evidence, current, channel))
+        if gap is None or not gap.significant:
             continue
-        now, null = excess(evidence, channel, current)
-        count = sum(n for (_, c), n in evidence.data.samples.items() if c == channel)
-        allowed = REMAINDER[1] if now < SMALL_REMAINDER * count else REMAINDER[0]
+        now, null = excess(evidence, channel, current), excess(evidence, channel)
+        small = now < SMALL_REMAINDER * samples_of(evidence, channel)
+        allowed = REMAINDER[1] if small else REMAINDER[0]
         if null <= 0.0 or now > allowed * null:
             out[channel] = max(now, 1.0)
     return out
@@ -130,8 +129,7 @@ def left_over(evidence: Evidence, initial: dict[Channel, Gap], current: Fit | No
 def _verdict(
     evidence: Evidence, initial: dict[Channel, Gap], attribution: Attribution, exact: list[ExactFinding]
 ) -> Verdict:
-    null = fit(evidence.data, [])
-    causes = [_cause(evidence, attribution, i, null) for i in range(len(attribution.fit.terms))]
+    causes = [_cause(evidence, attribution, i) for i in range(len(attribution.fit.terms))]
     where = _where(evidence, initial, attribution)
     open_ = left_over(evidence, initial, attribution.fit)
     if causes or exact:
@@ -156,7 +154,7 @@ def _verdict(
     stage = exact_interval(exact[0].closure) if exact else None
     residual = Residual(gap=exact[0].where.floor, floor=exact[0].where.floor, unit="m/s") if exact else None
     if first is not None and not exact:
-        stage = closure(evidence, first, null, attribution.fit)
+        stage = closure(evidence, first, fit(evidence.data, []), attribution.fit)
         residual = _residual(evidence, first, attribution.fit)
     return Verdict(
         status=status,
@@ -175,11 +173,11 @@ def _crossing(cause: Cause) -> bool:
     return any(LIBRARY[r].family != cause.family for r in others)
 
 
-def _cause(evidence: Evidence, attribution: Attribution, index: int, null: Fit) -> Cause:
+def _cause(evidence: Evidence, attribution: Attribution, index: int) -> Cause:
     term = attribution.fit.terms[index]
     without = fit(evidence.data, [t for j, t in enumerate(attribution.fit.terms) if j != index])
-    shows = [c for c in term.channels if excess(evidence, c, null)[1] > 0.0] or list(term.channels)
-    channel = max(shows, key=lambda c: excess(evidence, c, without)[0] - excess(evidence, c, attribution.fit)[0])
+    shows = [c for c in term.channels if excess(evidence, c) > 0.0] or list(term.channels)
+    channel = max(shows, key=lambda c: excess(evidence, c, without) - excess(evidence, c, attribution.fit))
     rivals = [f.terms[-1].effect.id for f in attribution.rivals[index]]
     return Cause(
         effect=term.effect.id,
@@ -280,7 +278,7 @@ def _inconstant(evidence: Evidence, attribution: Attribution) -> Unexplained | N
     for i, term in enumerate(attribution.fit.terms):
         found = constancy_of(evidence, attribution.fit, i)
         if not found.constant:
-            channel = max(term.channels, key=lambda c: excess(evidence, c, fit(evidence.data, []))[0])
+            channel = max(term.channels, key=lambda c: excess(evidence, c))
             return Unexplained(
                 stage=channel.stage,
                 actuator=channel.actuator,

@@ -10,10 +10,11 @@ from pathlib import Path
 import numpy as np
 from sher3_bags import Case, Run, read_case
 from sher3_description import Robot, load_robot
+from sher3_kinematics.kernel import GRAVITY
 
 from sher3_gap.audit import check_parameters
 from sher3_gap.channels import Array
-from sher3_gap.errors import CaseError as CaseError
+from sher3_gap.errors import CaseError
 from sher3_gap.exact import with_lateness
 from sher3_gap.signals import RunSignals, low_pass
 from sher3_gap.ticks import Gap, in_order, is_live, on_grid, tick_grid
@@ -93,7 +94,7 @@ def signals_of(run: Run, robot: Robot, label: str = "run") -> RunSignals:
 
 def free(wrench: Array, robot: Robot) -> np.ndarray:
     """Ticks at which no more than the tool's weight, in any orientation, acts on the force sensor, (n,)."""
-    weight = robot.force_sensor.tool_mass * 9.81
+    weight = robot.force_sensor.tool_mass * GRAVITY
     return np.linalg.norm(wrench[:, :3], axis=1) < weight + LOADED
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sher3_gap.channels import FREE_MEAN, Array, Channel, relieved
+from sher3_gap.channels import Array, Channel, partly_free, relieved, restored
 from sher3_gap.evidence import Evidence
 from sher3_gap.signals import RunSignals
 
@@ -69,6 +69,7 @@ class Gap:
 def gap_of(evidence: Evidence, channel: Channel, residual: Mapping[int, Array] | None = None) -> Gap | None:
     """Gap of a channel, of its nominal residual or of another one {run: (N_ok, d)}; None where it was not recorded."""
     tolerance = AS_BUILT.get(channel.stage)
+    left: list[Array] = []
     square: dict[str, list[Array]] = defaultdict(list)
     allowed: dict[str, list[Array]] = defaultdict(list)
     floor: dict[str, list[Array]] = defaultdict(list)
@@ -77,6 +78,7 @@ def gap_of(evidence: Evidence, channel: Channel, residual: Mapping[int, Array] |
         if found is None or not found.ok.any():
             continue
         values = relieved(channel, found.values[found.ok]) if residual is None else residual[r]
+        left.append(values)
         base = evidence.floors[r][channel] ** 2
         square[run.excitation].append(np.mean(values**2, axis=0))
         floor[run.excitation].append(base)
@@ -86,21 +88,13 @@ def gap_of(evidence: Evidence, channel: Channel, residual: Mapping[int, Array] |
     parts = PARTS[len(base)]
     rise = 1.0 + FLOOR_SCATTER / max(repeats(evidence.runs), 1)
     best = max((_part(channel, p, square, floor, allowed, rise) for p in parts), key=lambda g: g.power)
-    if channel.stage != "transmission":
-        return best
-    return _with_zeros(evidence, channel, residual, best)
+    return _with_zeros(evidence, channel, left, best) if partly_free(channel) else best
 
 
-def _with_zeros(evidence: Evidence, channel: Channel, residual: Mapping[int, Array] | None, best: Gap) -> Gap:
-    """Judge the runs' mean encoder difference as well, against what their zeros may differ by."""
-    count = evidence.count(channel)
-    means = []
-    for r, found in ((r, f) for r, res in enumerate(evidence.data.residuals) if (f := res.get(channel)) is not None):
-        if residual is None:
-            means.append(float(found.values[found.ok].mean()))
-        else:
-            means.append(float(residual[r].mean()) / (1.0 - FREE_MEAN["transmission"]))
-    mean, limit = float(np.sqrt(np.mean(np.square(means)))), ZERO_COUNTS * count
+def _with_zeros(evidence: Evidence, channel: Channel, left: Sequence[Array], best: Gap) -> Gap:
+    """Judge the runs' mean encoder difference as well, against what their zeros may differ by; `left` is relieved."""
+    means = [float(restored(channel, values).mean()) for values in left]
+    mean, limit = float(np.sqrt(np.mean(np.square(means)))), ZERO_COUNTS * evidence.count(channel)
     if (mean / limit) ** 2 <= best.power:
         return best
     return replace(best, power=(mean / limit) ** 2, gap=mean, floor=limit / 3.0, ratio=3.0 * mean / limit)

@@ -6,7 +6,7 @@ from itertools import combinations
 
 import numpy as np
 
-from sher3_gap.channels import Array, Channel, restored
+from sher3_gap.channels import Array, Channel, partly_free, restored
 from sher3_gap.evidence import Evidence
 from sher3_gap.fitting import Fit, Term
 from sher3_gap.localise import PARTS
@@ -76,7 +76,7 @@ def zeros_floor(evidence: Evidence, channel: Channel) -> float:
 
     What a lost motion rests at differs from run to run: no model of the command tells it.
     """
-    if restored(channel, np.ones((2, 1)))[0, 0] == 1.0:
+    if not partly_free(channel):
         return 0.0
     squares = []
     found = [(run.excitation, r.get(channel)) for run, r in zip(evidence.runs, evidence.data.residuals, strict=True)]
@@ -152,9 +152,12 @@ def _as_built_steps(term: Term) -> Array:
     return np.where(rms > 0.0, AS_BUILT_SHARE / np.where(rms > 0.0, rms, 1.0), 0.0)
 
 
-def excess(evidence: Evidence, channel: Channel, fit: Fit) -> tuple[float, float]:
-    """Loss above the floor of a channel under a fit, and without any effect."""
-    n = sum(k for (_, c), k in evidence.data.samples.items() if c == channel)
-    now = sum(v for (_, c), v in fit.loss.items() if c == channel)
-    null = sum(v for (_, c), v in evidence.data.null_loss.items() if c == channel)
-    return now - n, null - n
+def excess(evidence: Evidence, channel: Channel, fit: Fit | None = None) -> float:
+    """Loss above the floor of a channel under a fit; without one, of the nominal model."""
+    loss = evidence.data.null_loss if fit is None else fit.loss
+    return sum(v for (_, c), v in loss.items() if c == channel) - samples_of(evidence, channel)
+
+
+def samples_of(evidence: Evidence, channel: Channel) -> int:
+    """Whitened samples of a channel over all runs: its loss at the floor."""
+    return sum(n for (_, c), n in evidence.data.samples.items() if c == channel)

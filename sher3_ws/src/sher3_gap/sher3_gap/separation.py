@@ -14,7 +14,7 @@ from sher3_description import Robot
 from sher3_gap.attribute import PRICE, RIVAL, Candidates
 from sher3_gap.channels import Channel
 from sher3_gap.evidence import Evidence, gather
-from sher3_gap.fitting import Fit, Whitened, fit
+from sher3_gap.fitting import Fit, Whitened
 from sher3_gap.floors import Floors
 from sher3_gap.library import LIBRARY
 from sher3_gap.signals import RunSignals
@@ -94,7 +94,7 @@ def separation(
     losses = {rival: _loss(candidates, rival, own) for rival in rivals}
     closest = min(losses, key=losses.__getitem__)
     behind = losses[closest] - own.total
-    worth = fit(evidence.data, []).total - own.total
+    worth = sum(evidence.data.null_loss.values()) - own.total
     samples = _samples(evidence, own.terms[-1].channels)
     return Separation(
         float(np.sqrt(max(behind, 0.0) / max(samples, 1))), float(behind / max(3.0 * PRICE, RIVAL * worth)), closest

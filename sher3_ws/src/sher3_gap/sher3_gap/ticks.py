@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from sher3_bags import Run, Stream
 
 from sher3_gap.channels import Array
-from sher3_gap.errors import CaseError as CaseError
+from sher3_gap.errors import CaseError
 
 LOST_SHARE = 0.05
 """Share of the ticks that may be missing."""

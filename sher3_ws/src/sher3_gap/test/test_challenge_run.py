@@ -69,6 +69,10 @@ def test_a_case_counts_once(tmp_path):
         merged([folder, folder])
     with pytest.raises(ChallengeError, match="no scores"):
         merged([tmp_path / "nothing"])
+    for other in ({}, {"cases": {"diagnosis": [{"case": "x"}]}}, []):
+        (folder / "scores.json").write_text(json.dumps(other), encoding="utf-8")
+        with pytest.raises(ChallengeError, match="no scores"):
+            merged([folder])
 
 
 @pytest.mark.slow

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numba import njit
 from sher3_kinematics.arrays import unpack
-from sher3_kinematics.kernel import KernelParameters, gravity_load_into, tip_jacobian_into
+from sher3_kinematics.kernel import GRAVITY, KernelParameters, gravity_load_into, tip_jacobian_into
 
 from sher3_sim.axis import advance, drive_force, send
 from sher3_sim.noise import DISTURBANCE, DROP, EFFORT, FORCE, JITTER, TRACKER, normal, uniform
@@ -16,7 +16,6 @@ from sher3_sim.tip import cross, quaternion, true_tip
 from sher3_sim.transmission import encode_load, place, to_count, transmit
 
 Array = np.ndarray
-GRAVITY = 9.81
 
 BODY_STATE = np.dtype(
     [

@@ -68,12 +68,11 @@ def merged(folders: Sequence[Path]) -> Outcome:
     for folder in folders:
         try:
             kept = read_json(folder / SCORES, MAX_SCORES_BYTES)
-        except FileError as error:
+            for who, rows in kept["cases"].items():
+                scores.setdefault(who, []).extend(CaseScore(**row) for row in rows)
+            seconds, errors, seeds = seconds + kept["seconds"], errors | kept["errors"], seeds + kept["seeds"]
+        except (FileError, KeyError, TypeError, AttributeError) as error:
             raise ChallengeError("no scores", value=str(folder), remedy="a folder that --out wrote") from error
-        for who, rows in kept["cases"].items():
-            scores.setdefault(who, []).extend(CaseScore(**row) for row in rows)
-        seconds, errors = seconds + kept["seconds"], errors | kept["errors"]
-        seeds += kept["seeds"]
     names = [s.case for s in scores.get("diagnosis", [])]
     if len(set(names)) < len(names):
         twice = max(names, key=names.count)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from sher3_kinematics.kernel import GRAVITY
 
 from sher3_gap.channels import Array, Channel
 from sher3_gap.library.base import LibraryEffect, Shape, Signature, View, axis_of, lead
@@ -76,6 +77,6 @@ class JointClearance(LibraryEffect):
 
 def link_forces(view: View) -> Array:
     """Forces of the six links under the platform's weight and the known contact, (g, 6): Gamma f = w."""
-    weight = np.array([0.0, 0.0, -9.81 * view.robot.delta.moving_mass])
+    weight = np.array([0.0, 0.0, -GRAVITY * view.robot.delta.moving_mass])
     wrench = np.hstack([view.path.contact + weight, np.cross(view.lever, view.path.contact)])
     return np.linalg.solve(view.links, wrench[:, :, None])[:, :, 0]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from sher3_kinematics.kernel import GRAVITY
 
 from sher3_gap.channels import Array, Channel
 from sher3_gap.library.base import LibraryEffect, Shape, Signature, View, axis_of, column
@@ -37,7 +38,7 @@ class PayloadMass(LibraryEffect):
     def signature(self, view: View, site: str, shape: Shape) -> Signature:
         """One column: acceleration plus the weight, per kilogram."""
         if site == "tip":
-            weight = 9.81 * view.path.jacobian[:, 2, :]
+            weight = GRAVITY * view.path.jacobian[:, 2, :]
             acceleration = view.run.to_grid(view.run.acceleration)
             inertia = np.einsum("gji,gjk,gk->gi", view.path.jacobian[:, :3], view.path.jacobian[:, :3], acceleration)
             return Signature({c: column(weight[:, i] + inertia[:, i]) for i, c in enumerate(self.channels(site))})

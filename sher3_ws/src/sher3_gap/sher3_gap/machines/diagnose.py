@@ -113,13 +113,13 @@ def _axis(runs: list[AxesRun], axis: Axis, repeats: bool, without: Collection[st
     evidence = cast(Evidence, found)
     gaps = {g.channel: g for g in localise(evidence) if g.significant}
 
-    def significant(current: Fit | None) -> dict[Channel, float]:
+    def significant(current: Fit) -> dict[Channel, float]:
         """A short description leaves several plain causes out: the search goes on down to the floor."""
         out = {}
         for channel in gaps:
-            gap = gap_of(evidence, channel, None if current is None else residual_after(evidence, current, channel))
+            gap = gap_of(evidence, channel, residual_after(evidence, current, channel))
             if gap is not None and gap.significant:
-                out[channel] = max(1.0, excess(evidence, channel, current or fit(found.data, []))[0])
+                out[channel] = max(1.0, excess(evidence, channel, current))
         return out
 
     candidates = MachineCandidates(evidence, without, listed=effects_on(axis, without))
@@ -157,9 +157,7 @@ def _structure(axis: Axis) -> list[str]:
 def _cause(evidence: Evidence, attribution: Attribution, index: int) -> Cause:
     term = attribution.fit.terms[index]
     without = fit(evidence.data, [t for j, t in enumerate(attribution.fit.terms) if j != index])
-    channel = max(
-        term.channels, key=lambda c: excess(evidence, c, without)[0] - excess(evidence, c, attribution.fit)[0]
-    )
+    channel = max(term.channels, key=lambda c: excess(evidence, c, without) - excess(evidence, c, attribution.fit))
     return Cause(
         effect=term.effect.id,
         family=term.effect.family,
