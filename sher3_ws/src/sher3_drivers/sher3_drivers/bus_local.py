@@ -140,20 +140,16 @@ class LocalCable:
         if self._socket.fileno() < 0:
             raise LinkError("is closed", link=self.name, remedy="open it again")
         for peer in tuple(self._peers.values()):
+            datagram = frames
             if peer.backlog:
                 self._postpone(peer, frames)
-                frames_due, peer.backlog = peer.backlog, b""
-                self._deliver(peer, frames_due)
-            else:
-                self._deliver(peer, frames)
-
-    def _deliver(self, peer: _Peer, datagram: bytes) -> None:
-        try:
-            peer.socket.send(datagram)
-        except BlockingIOError:
-            self._postpone(peer, datagram)
-        except (ConnectionError, FileNotFoundError):
-            self._forget(peer)
+                datagram, peer.backlog = peer.backlog, b""
+            try:
+                peer.socket.send(datagram)
+            except BlockingIOError:
+                self._postpone(peer, datagram)
+            except (ConnectionError, FileNotFoundError):
+                self._forget(peer)
 
     def _postpone(self, peer: _Peer, datagram: bytes) -> None:
         room = max(0, self.BACKLOG * FRAME_SIZE - len(peer.backlog))

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Sequence
+from operator import mul
 
 from sher3_description.reasons import Reason
 
@@ -31,6 +32,7 @@ class DemandCheck:
 
     def __init__(self, scales: Sequence[AxisScale], settings: MotorDriverSettings) -> None:
         self._scales, self._period = tuple(scales), settings.period
+        self._units = tuple([scale.velocity for scale in scales])
         self._limits = [settings.obey_angle if s.revolute else settings.obey_distance for s in scales]
         self._keep = 1.0 - min(1.0, settings.period / settings.following_memory)
         self._sent: deque[Vector] = deque(maxlen=max(2, math.ceil(settings.obey_latency / settings.period - 1e-9)))
@@ -43,7 +45,7 @@ class DemandCheck:
 
     def sent(self, counts: Sequence[int]) -> None:
         """Take note of a velocity command on its way to the drives, in their counts."""
-        self._sent.append(tuple([n * scale.velocity for n, scale in zip(counts, self._scales, strict=True)]))
+        self._sent.append(tuple(map(mul, counts, self._units)))
 
     @property
     def newest(self) -> Vector:

@@ -67,7 +67,7 @@ class _Pdo:
         self.length = struct.calcsize("<" + layout)
         self.exists = not self.can_id & od.INVALID and len(layout) == len(entries) > 0 and self.length <= 8
         self.layout = layout
-        self.controlword = next((address for address in self.addresses if address == od.CONTROLWORD), None)
+        self.controlword = self.addresses.index(od.CONTROLWORD) if od.CONTROLWORD in self.addresses else None
         self.data = struct.Struct("<" + layout)
 
 
@@ -137,6 +137,7 @@ class MockDrive:
         factory = od.factory_values(node_id, scale)
         self.node = CanopenDevice(node_id, self._send, factory, self._on_write, self._on_reset)
         self._compile()
+        self._read_settings()
 
     def _send(self, frames: bytes) -> None:
         if self.powered:
@@ -148,6 +149,13 @@ class MockDrive:
         tpdos = [_Pdo(values, c, m) for c, m in ((0x1800, 0x1A00), (0x1801, 0x1A01), (0x1802, 0x1A02))]
         self._rpdos = {pdo.can_id: pdo for pdo in rpdos if pdo.exists}
         self._tpdos = _Tpdos([pdo for pdo in tpdos if pdo.exists and 1 <= pdo.transmission <= 240], self._channel)
+
+    def _read_settings(self) -> None:
+        """Take over what the dictionary says of velocities; done after every access to it."""
+        values = self.node.values
+        self._follows = values[od.MODE_DISPLAY] == CYCLIC_SYNCHRONOUS_VELOCITY
+        self._micro = 1 if values[_UNIT] == SI_UNIT_VELOCITY else 1_000_000
+        self._limit = values[od.MAX_MOTOR_SPEED] * 1_000_000 // self._micro
 
     def _on_reset(self) -> None:
         self.state = SWITCH_ON_DISABLED
@@ -172,6 +180,7 @@ class MockDrive:
         if can_id == od.NMT_ID or can_id == 0x600 + self.node_id:
             self.node.values.update(zip(_READINGS, self._readings, strict=False))
             self.node.handle(can_id, data)
+            self._read_settings()
             if can_id == od.NMT_ID:
                 self._compile()
         elif can_id == od.HEARTBEAT_BASE + (self.node.values[od.HOST_HEARTBEAT] >> 16 & 0x7F):
@@ -181,11 +190,10 @@ class MockDrive:
         if len(data) < pdo.length:
             self.emergency(0x8210)
             return
-        values = self.node.values
-        for address, value in zip(pdo.addresses, pdo.data.unpack_from(data), strict=True):
-            values[address] = value
-            if address is pdo.controlword:
-                self._on_controlword(value)
+        received = pdo.data.unpack_from(data)
+        self.node.values.update(zip(pdo.addresses, received, strict=True))
+        if pdo.controlword is not None:
+            self._on_controlword(received[pdo.controlword])
 
     def _on_controlword(self, word: int) -> None:
         before = self.state
@@ -230,20 +238,17 @@ class MockDrive:
 
     def demand(self, period: float) -> float:
         """Return the velocity demand of the next interval, m/s or rad/s: the target if enabled, else a ramp to zero."""
-        values = self.node.values
-        micro = 1 if values[_UNIT] == SI_UNIT_VELOCITY else 1_000_000
-        self._limited = False
-        if self.state == ENABLED and values[od.MODE_DISPLAY] == CYCLIC_SYNCHRONOUS_VELOCITY:
-            limit = values[od.MAX_MOTOR_SPEED] * 1_000_000 // micro
-            target = values[od.TARGET_VELOCITY]
+        self._limited, values = False, self.node.values
+        if self.state == ENABLED and self._follows:
+            limit, target = self._limit, values[od.TARGET_VELOCITY]
             self._limited = not -limit <= target <= limit
             self._demand = max(-limit, min(limit, target)) if self._limited else target
         elif self._demand:
-            step = int(values[od.QUICK_STOP_DECELERATION] * period * 1e6 / micro)
+            step = int(values[od.QUICK_STOP_DECELERATION] * period * 1e6 / self._micro)
             self._demand = max(0, self._demand - step) if self._demand > 0 else min(0, self._demand + step)
         if self.state == FAULT_REACTION and self._demand == 0:
             self.state = FAULT
-        return self._demand * self.scale.velocity * micro
+        return self._demand * self.scale.velocity * self._micro
 
     def sample(self, motor: float, load: float, demand: float, effort: float) -> bytes:
         """Take what the plant says at a SYNC, SI units, and return the synchronous TPDOs as frames."""
