@@ -46,8 +46,10 @@ class OperatorNode(Node):
         self._publish_wrench(WrenchSample(stamp, (0.0, 0.0, self.force, 0.0, 0.0, 0.0)))
 
 
-FIRST, PRESS = 100, 500
-"""Ticks of the first `enable` and of the press: what the start of eight processes stirs up has settled by then."""
+FIRST, PRESS = 100, 1000
+"""Ticks of the first `enable` and of the press: what the start of eight processes stirs up has settled by then, and the
+supervisor has heard of the cycles lost in it."""
+RECOVERY = {"FAULT": "disable", "PAUSED": "resume"}
 
 
 class SurgeonNode(OperatorNode):
@@ -68,7 +70,7 @@ class SurgeonNode(OperatorNode):
             # The plant tells the truth from the first request on.
             self.inject(make_request(component="all", fault=OK).to_json())
         if FIRST <= self._ticks < PRESS and self.state != "ENABLED" and self._ticks % 20 == 0:
-            self.command("disable" if self.state == "FAULT" else "enable")
+            self.command(RECOVERY.get(self.state, "enable"))
         if self._ticks == PRESS:
             self.force, self.pedal = self._aims
         super()._tick(stamp)

@@ -1,28 +1,34 @@
 """Faults of whole processes in wall time: killed, held for a while, starved by others; measured from recordings.
 
 Each case starts the robot as `sher3 up` does, one process per node, with the strict time limits, lets the surgeon
-drive it to speed, and breaks one process. Nobody helps: what `sher3 up` would do when a process ends is left out.
+drive it to speed, and breaks one process. Nobody helps: what `sher3 up` would do when a process ends is left out, and
+hand and foot stay where they are until all is measured.
 """
 
 from __future__ import annotations
 
 import multiprocessing
 import os
+import re
 import signal
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import partial
+from itertools import product
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
 from sher3_bags.reading import read_run
 from sher3_runtime.clock import OFFSET_VARIABLE
-from sher3_safety.matrix import LIMIT, MOVING, Row, State
+from sher3_safety.matrix import LIMIT, Row, State, select
 from sher3_safety.measure import STANDS, Outcome, Recording
-from sher3_safety.processes import HOG, WALL
-from sher3_safety.verdict import Verdict, judge
+from sher3_safety.processes import HOG, WALL, WALL_STATES
+from sher3_safety.verdict import UNMEASURED, Verdict, judge
 
+from .errors import ConfigurationError, StartError
 from .fleet import Fleet, Member
 from .nodes import make_nodes
 from .safety_matrix import MatrixResult
@@ -31,10 +37,16 @@ from .up import UNHURRIED, prepare
 
 DOMAIN = 230
 """Beyond those of tests and users."""
-SPEED_UP, WATCHED, HELD = 1.6, 0.5, 0.3
-"""Seconds: from the start to the fault; observed from then on; of a process that is held."""
+SPEED_UP, WATCHED, HELD, STILL = 2.6, 0.5, 0.3, 0.3
+"""Seconds: from the start to the fault; observed from then on; of a process that is held; and further ones in which
+hand and foot stay and a robot that has stopped must not move."""
 TRIES = 4
 """A robot that has stopped before the fault, since the machine is busy, is started again so many times."""
+PATIENCE, RUN_LIMIT = 20.0, 900.0
+"""Seconds: longest start of a robot; and of all cases together, after which further ones are not begun."""
+HAND_GAP = 100_000_000
+"""Longest silence of the surgeon, ns. After 0.2 s the plant lets hand and foot go, and the tip gives way a little, see
+`docs/safety.md`: that is no motion of the robot's own."""
 
 
 def run_wall(
@@ -46,31 +58,53 @@ def run_wall(
     jobs: int = 1,
     say: Callable[[str], None] = lambda _: None,
     domain: int = DOMAIN,
+    limit: float = RUN_LIMIT,
 ) -> MatrixResult:
-    """Run the cases in wall time, one after another; bags go to `folder/wall`. See `run_matrix`."""
+    """Run the cases in wall time, one after another; bags go to `folder/wall`. See `run_matrix`.
+
+    Raises:
+        ConfigurationError: no component's name begins so.
+    """
     del jobs
-    verdicts = []
-    for row in (row for row in WALL if row.component.startswith(only) and (row.quick or not quick)):
-        for state in (LIMIT,) if quick else (MOVING, LIMIT):
+    verdicts, end = [], time.monotonic() + limit
+    rows = list(select(WALL, only, quick))
+    if not rows:
+        known = ", ".join(dict.fromkeys(row.component for row in WALL))
+        raise ConfigurationError("no such component in wall time", value=only, limit=known, remedy="choose one")
+    for row, state in product(rows, (LIMIT,) if quick else WALL_STATES):
+        if time.monotonic() < end:
             verdict = run_case(row, state, folder / "wall", seed, domain)
-            say(f"{row.name}, {state.name}: {'ok' if verdict.holds else '; '.join(verdict.misses)}")
-            verdicts.append(verdict)
+        else:
+            verdict = Verdict(row, state, None, (f"not begun: the run takes longer than {limit:g} s",))
+        say(f"{row.name}, {state.name}: {'ok' if verdict.holds else '; '.join(verdict.misses)}")
+        verdicts.append(verdict)
     options = (f" --only {only}" if only else "") + " --quick" * quick
     return MatrixResult(verdicts, "sher3 safety --wall" + options, seed)
 
 
 def run_case(row: Row, state: State, folder: Path, seed: int = 1, domain: int = DOMAIN) -> Verdict:
-    """Run one case until the robot was at speed when the fault set in; return its verdict."""
+    """Run one case until the robot was enabled and at speed when the fault set in; return its verdict."""
     outcome = None
     for attempt in range(TRIES):
-        name = f"{row.component}-{row.fault}-{state.name}".replace(" ", "_") + (f"-{attempt}" if attempt else "")
-        outcome = _run(row, state, folder / name, seed, domain)
-        if outcome is not None and outcome.speed >= 0.8 * state.speed:
+        name = re.sub(r"[^\w.]+", "_", f"{row.name} {state.name}") + (f"-{attempt}" if attempt else "")
+        try:
+            outcome = _run(row, state, folder / name, seed, domain)
+        except StartError as error:
+            return Verdict(row, state, None, (f"did not start: {error}",))
+        if outcome is not None and outcome.enabled and outcome.speed >= 0.8 * state.speed:
             break
+    else:
+        return _unmeasured(row, state, outcome)
     return judge(row, state, outcome, recovered=False)
 
 
+def _unmeasured(row: Row, state: State, outcome: Outcome | None) -> Verdict:
+    why = "the robot had stopped before" if outcome is not None else "the surgeon was held up"
+    return Verdict(row, state, outcome, (f"{UNMEASURED}: {why}, {TRIES} times; the machine is too busy",))
+
+
 def _run(row: Row, state: State, bag: Path, seed: int, domain: int) -> Outcome | None:
+    """Run one case and return its outcome, None when the surgeon did not hold on all the time."""
     import shutil
 
     shutil.rmtree(bag, ignore_errors=True)
@@ -80,32 +114,42 @@ def _run(row: Row, state: State, bag: Path, seed: int, domain: int) -> Outcome |
         processes=parse_processes(None, mock=True, record=True),
         seed=seed,
         domain=domain,
-        # Against other processes real-time priority would win; the point is what happens without it.
-        realtime=0 if row.component == HOG else -1,
+        realtime=int(row.parameters.get("realtime", -1)),
+        regime="free",
     )
     realtime = prepare(settings)
     with Fleet() as fleet:
-        _launch(fleet, settings, realtime, state, bag)
-        fleet.start()
+        _launch(fleet, settings, realtime, state, row)
+        fleet.start(PATIENCE)
         time.sleep(SPEED_UP)
         onset = _now()
         with _broken(fleet, row):
             time.sleep(WATCHED)
-        end = _now()
-    robot = settings.robot()
-    return Recording(read_run(bag, check=False), robot).outcome(
-        row.label(state), onset, end, None, STANDS * state.budget
-    )
+            end = _now()
+            time.sleep(STILL)
+            still = _now()
+    run = read_run(bag, check=False)
+    if _longest_silence(run["mock/contact_wrench"].stamp, onset, still) > HAND_GAP:
+        return None
+    return Recording(run, settings.robot()).outcome(row.label(state), onset, end, still, STANDS * state.budget)
 
 
-def _launch(fleet: Fleet, settings: RunSettings, realtime: int, state: State, bag: Path) -> None:
+def _longest_silence(stamps: NDArray[np.int64], begin: int, end: int) -> int:
+    """Return the longest time without a sample between two times, ns."""
+    inside = stamps[(stamps > begin) & (stamps < end)]
+    return int(np.diff(np.concatenate([[begin], np.sort(inside), [end]])).max())
+
+
+def _launch(fleet: Fleet, settings: RunSettings, realtime: int, state: State, row: Row) -> None:
     for process in settings.processes:
         priority = -realtime if set(process) <= UNHURRIED else realtime
         fleet.launch("+".join(process), partial(make_nodes, settings, process), priority)
         if "plant" in process:
-            fleet.gather("publishes")
-    second = settings.model_copy(update={"record": bag.with_name(bag.name + "-second")})
-    fleet.launch("second_recorder", partial(_second_recorder, second), -realtime)
+            fleet.gather("publishes", PATIENCE)
+    if row.component == "process.recorder":
+        assert settings.record is not None
+        second = settings.model_copy(update={"record": settings.record.with_name(settings.record.name + "-second")})
+        fleet.launch("second_recorder", partial(_second_recorder, second), -realtime)
     fleet.launch("surgeon", partial(_surgeon, state.force, state.pedal), realtime)
 
 
@@ -144,10 +188,9 @@ def _broken(fleet: Fleet, row: Row) -> Iterator[None]:
     os.kill(member.pid, signal.SIGSTOP)
     try:
         time.sleep(HELD)
-        os.kill(member.pid, signal.SIGCONT)
-        yield
     finally:
         os.kill(member.pid, signal.SIGCONT)
+    yield
 
 
 def _member(fleet: Fleet, name: str) -> Member:

@@ -10,7 +10,7 @@ from sher3_description import ACTUATORS
 
 from .requests import FaultRequest, make_request
 
-Effect = Literal["stops", "goes on", "either", "residual"]
+Effect = Literal["stops", "goes on", "either", "residual", "ends"]
 DETECTION_LIMIT, STOP_LIMIT = 0.050, 0.100
 """Longest time from the onset to the first reaction, which is what 250 um at 5 mm/s and 25 um at 0.5 mm/s leave, and to
 standstill, s."""
@@ -48,9 +48,11 @@ class Row:
     Attributes:
         effect: `stops`: in time, within the budget, and motion needs the operator; `goes on`: no stop, and the tip
             stays within the budget of its way; `either`: chance decides between the two; `residual`: nothing can
-            see it, so the robot goes on as if told to, however far.
+            see it, so the robot goes on as if told to, however far; `ends`: the emulated robot itself is gone, so no
+            tip can be measured: it must be reported, and FAULT entered, in time.
         duration: of the fault, s; None: until it is taken away.
-        reasons: of which the first reported one must be; empty: nobody needs to notice (`goes on`).
+        reasons: of which the first reported one must be, or that of the FAULT (`ends`); empty: nobody needs to notice
+            (`goes on`).
         quiet: states in which nothing needs to be noticed, since nothing can move.
         quick: belongs to the compact set of the default test run.
         release: the operator releases the pedal as the fault sets in; whatever the fault, the tip has to stop.

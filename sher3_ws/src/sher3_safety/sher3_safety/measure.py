@@ -47,6 +47,10 @@ class Outcome:
         fault: the operating state became FAULT.
         alone: motion after the end of the observation before the pedal was released, m.
         resumed: motion after release-then-press, m.
+        enabled: the robot was ENABLED when the fault set in, as far as the bag tells.
+        braking: way of the tip after the first report, m.
+        faulted: from the onset to FAULT, s; None: never.
+        fault_reason: of the FAULT.
     """
 
     label: str
@@ -59,6 +63,10 @@ class Outcome:
     fault: bool
     alone: float
     resumed: float
+    enabled: bool = True
+    braking: float = 0.0
+    faulted: float | None = None
+    fault_reason: str = ""
 
     @property
     def tripped(self) -> bool:
@@ -90,6 +98,7 @@ class Recording:
         self._tip = tip_pose_batch(kernel_parameters(robot), np.ascontiguousarray(truth.position))[1]
         self._demand = np.abs(truth.velocity)
         rows = np.arange(len(self._stamp))
+        self._stepped = period is not None
         self._time = rows * period if period is not None else (self._stamp - self._stamp[0]) * 1e-9
         # Not being enabled is a reason of its own only where no other one comes with it.
         self._events = sorted(self._reported(), key=lambda event: (event[0], event[1] == SILENT))
@@ -131,6 +140,12 @@ class Recording:
         found = np.nonzero(self._stamp[after:] >= stamp)[0]
         return after + int(found[0]) if len(found) else len(self._stamp) - 1
 
+    def _onset(self, stamp: int) -> int:
+        """Return the row a fault sets in at: in wall time the last one before, for the next may be held up."""
+        if self._stepped:
+            return self._row(stamp)
+        return max(0, int(np.searchsorted(self._stamp, stamp, side="right")) - 1)
+
     def outcome(self, label: str, onset: int, end: int, following: int | None, stands: float) -> Outcome:
         """Return what became of a fault that was observed from `onset` to `end` [ns of the graph's clock].
 
@@ -141,39 +156,56 @@ class Recording:
             following: onset of the next fault, None for the end of the bag.
             stands: how close to its end the tip must stay to stand, m.
         """
-        first = self._row(onset)
+        first = self._onset(onset)
         last = self._row(end, first)
         begin = int(np.searchsorted(self._time, self._time[first] - BEFORE))
         span = max(self._time[first] - self._time[begin], 1e-9)
         velocity = (self._tip[first] - self._tip[begin]) / span
         speed = float(np.linalg.norm(velocity))
         window, time = self._tip[first : last + 1], self._time[first : last + 1] - self._time[first]
-        reason, detection, fault = self._detection(onset, end, first, last)
+        events = [event for event in self._events if onset <= event[0] <= end]
+        fault = next((event for event in events if event[2]), None)
+        reported = self._row(events[0][0], first) if events else last
         released, pressed, until = self._operator(last, following)
         return Outcome(
             label=label,
             speed=speed,
-            reason=reason,
-            detection=detection,
+            reason=events[0][1] if events else "",
+            detection=self._detection(events[0][0], first, last) if events else None,
             stop=_standstill(window, time, stands),
             travel=_reach(window, window[0]),
             excess=_off_way(window - window[0], time, velocity),
-            fault=fault,
+            fault=fault is not None,
             alone=_reach(self._tip[last : released + 1], self._tip[last]),
             resumed=_reach(self._tip[pressed : until + 1], self._tip[pressed]),
+            enabled=self._state(onset) in ("", "ENABLED"),
+            braking=_reach(self._tip[reported : last + 1], self._tip[reported]),
+            faulted=None if fault is None else self._elapsed(fault[0], first),
+            fault_reason="" if fault is None else fault[1],
         )
 
-    def _detection(self, onset: int, end: int, first: int, last: int) -> tuple[str, float | None, bool]:
-        """Return first reason, time of the first reaction, and whether FAULT was entered."""
-        events = [event for event in self._events if onset <= event[0] <= end]
-        if not events:
-            return "", None, False
-        at = self._time[self._row(events[0][0], first)] - self._time[first]
+    def _state(self, stamp: int) -> str:
+        """Return the operating state at a time, nothing where it was not recorded."""
+        if "operating_state" not in self._run:
+            return ""
+        stream = self._run["operating_state"]
+        before = int(np.searchsorted(stream.stamp, stamp, side="right"))
+        return str(stream.data[before - 1]) if before else ""
+
+    def _elapsed(self, stamp: int, first: int) -> float:
+        """Return the time from row `first` to a stamp; in wall time without rows, which end with a plant."""
+        if self._stepped:
+            return float(self._time[self._row(stamp, first)] - self._time[first])
+        return float(stamp - self._stamp[first]) * 1e-9
+
+    def _detection(self, report: int, first: int, last: int) -> float:
+        """Return the time of the first reaction: the first report, or an earlier fall of the executed demand."""
+        at = self._elapsed(report, first)
         demand = self._demand[first : last + 1].sum(axis=1)
         fallen = np.nonzero(demand < 0.8 * demand[0])[0] if demand[0] > 0.0 else []
         if len(fallen):
-            at = min(at, self._time[first + int(fallen[0])] - self._time[first])
-        return events[0][1], float(at), any(event[2] for event in events)
+            at = min(at, float(self._time[first + int(fallen[0])] - self._time[first]))
+        return at
 
     def _operator(self, last: int, following: int | None) -> tuple[int, int, int]:
         """Return the rows at which the pedal is released, pressed again, and the next fault sets in."""

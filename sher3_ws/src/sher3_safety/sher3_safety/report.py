@@ -45,6 +45,8 @@ def _line(name: str, cells: Sequence[Verdict]) -> tuple[str, ...]:
 def _travel(row: Row, cell: Verdict) -> str:
     if cell.outcome is None:
         return "?"
+    if row.effect == "ends":
+        return "-"
     metres = cell.outcome.travel if row.effect in ("stops", "residual") else cell.outcome.excess
     return f"{metres * 1e6:.1f}"
 

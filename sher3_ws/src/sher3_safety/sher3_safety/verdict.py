@@ -11,6 +11,8 @@ from .measure import STANDS, Outcome
 
 MOVES_AGAIN = 20e-6
 """Least way of the tip after release-then-press that counts as motion, m."""
+UNMEASURED = "not measured"
+"""How the miss of a cell begins in which the fault did not find the robot in the state it is meant for."""
 
 
 @dataclass(frozen=True)
@@ -44,14 +46,20 @@ def judge(row: Row, state: State, outcome: Outcome | None, recovered: bool = Tru
 
 def _misses(row: Row, state: State, o: Outcome, recovered: bool) -> Iterator[str]:
     budget = state.budget if row.budget is None else row.budget
+    if not o.enabled:
+        yield "was not enabled when the fault set in"
     if o.speed < 0.8 * state.speed:
         yield f"moved at {o.speed * 1e3:.2f} mm/s before the fault instead of {state.speed * 1e3:g}"
     if row.effect == "goes on" and o.tripped:
         yield f"tripped: {o.reason}"
-    if row.effect == "stops":
+    if row.effect == "ends":
+        yield from _of_an_end(row, o)
+    elif row.effect == "stops":
         yield from _of_a_stop(row, state, o, budget)
     elif o.excess > budget and row.effect != "residual":
         yield f"{o.excess * 1e6:.0f} um off its way (budget {budget * 1e6:.0f} um)"
+    if row.effect == "either" and o.tripped and o.braking > budget:
+        yield f"travelled {o.braking * 1e6:.0f} um after the report (budget {budget * 1e6:.0f} um)"
     if row.effect == "stops" or (row.effect == "either" and o.tripped):
         if o.alone > STANDS * state.budget:
             yield f"moved {o.alone * 1e6:.1f} um before the pedal was released"
@@ -72,3 +80,12 @@ def _of_a_stop(row: Row, state: State, o: Outcome, budget: float) -> Iterator[st
         yield f"reason {o.reason} instead of {' or '.join(row.reasons)}"
     if o.detection is not None and o.detection > DETECTION_LIMIT and state.speed:
         yield f"noticed after {o.detection * 1e3:.0f} ms (limit {DETECTION_LIMIT * 1e3:.0f})"
+
+
+def _of_an_end(row: Row, o: Outcome) -> Iterator[str]:
+    if o.detection is None or o.detection > DETECTION_LIMIT:
+        yield "nobody noticed" if o.detection is None else f"noticed after {o.detection * 1e3:.0f} ms"
+    if o.faulted is None or o.faulted > STOP_LIMIT:
+        yield "no FAULT" if o.faulted is None else f"FAULT after {o.faulted * 1e3:.0f} ms"
+    elif row.reasons and o.fault_reason not in row.reasons:
+        yield f"FAULT for {o.fault_reason} instead of {' or '.join(row.reasons)}"

@@ -23,26 +23,27 @@ def texts(topic_type="std_msgs/msg/String", *entries):
     return Stream(topic_type, stamp, columns={"data": tuple(json.dumps(data) for _, data in entries)})
 
 
-def recording(moving, *, reason="WRENCH_STALE", seen=110, state="ENABLED"):
-    """Return a bag in which the tip moves at SPEED in the rows where `moving` is true."""
+def recording(moving, *, reason="WRENCH_STALE", seen=110, state="ENABLED", before="ENABLED", wall=False, kept=ROWS):
+    """Return a bag in which the tip moves at SPEED in the rows where `moving` is true; only some rows are `kept`."""
     velocity = np.where(moving, SPEED, 0.0)
     z = np.concatenate([[0.0], np.cumsum(velocity[:-1]) * PERIOD * 1e-9])
     stamp = START + PERIOD * np.arange(ROWS, dtype=np.int64)
     axes = np.array([1.0, 1.0, 1.0, 0.0, 0.0])
-    columns = {"position": z[:, None] * axes, "velocity": velocity[:, None] * axes, "effort": None}
+    columns = {"position": z[:kept, None] * axes, "velocity": velocity[:kept, None] * axes, "effort": None}
     rows = np.arange(ROWS)
     foot = np.where((rows < RELEASE) | (rows >= PRESS), 1.0, 0.0)
     label = {"label": "cell", "component": "force_sensor"}
     status = [(0, {"reason": "MOVING"}), (seen, {"reason": reason})] if reason else [(0, {"reason": "MOVING"})]
     fault = {"state": state, "first_fault": {"code": "X"} if state == "FAULT" else None}
     streams = {
-        "mock/true_js": Stream("sensor_msgs/msg/JointState", stamp, columns=columns),
+        "mock/true_js": Stream("sensor_msgs/msg/JointState", stamp[:kept], columns=columns),
         "mock/pedal": Stream("sensor_msgs/msg/Joy", stamp, columns={"axes": foot[:, None], "buttons": None}),
         "mock/fault": texts("std_msgs/msg/String", (ONSET, {**label, "fault": "off"}), (END, {**label, "fault": "ok"})),
         "admittance/status": texts("std_msgs/msg/String", *status),
         "supervisor/status": texts("std_msgs/msg/String", (seen + 5, fault)),
+        "operating_state": Stream("std_msgs/msg/String", stamp[:1], columns={"data": (before,)}),
     }
-    return Recording(Run(streams), ROBOT, PERIOD * 1e-9)
+    return Recording(Run(streams), ROBOT, None if wall else PERIOD * 1e-9)
 
 
 def outcome(moving, **settings):
@@ -104,3 +105,19 @@ def test_fault_and_its_code_are_read():
 def test_without_the_truth_nothing_is_measured():
     with pytest.raises(MeasurementError, match="true_js"):
         Recording(Run({}), ROBOT)
+
+
+def test_the_state_at_the_onset_the_fault_and_the_way_after_the_report_are_told():
+    found = outcome(rows((0, 120)), state="FAULT")
+    assert found.enabled and found.fault_reason == "X"
+    assert found.faulted == pytest.approx(0.030)
+    assert found.braking == pytest.approx(10 * 2e-3 * SPEED, rel=1e-6)
+    assert not outcome(rows((0, 120)), before="PAUSED").enabled
+
+
+def test_in_wall_time_a_fault_that_ends_the_plant_is_timed_without_it():
+    """The last row is the one before the onset: speed and place are those of before, times are those of the reports."""
+    found = outcome(rows((0, ROWS)), wall=True, kept=ONSET, state="FAULT")
+    assert found.speed == pytest.approx(SPEED, rel=1e-6)
+    assert found.detection == pytest.approx(0.022) and found.faulted == pytest.approx(0.032)
+    assert found.travel == 0.0 and found.stop is None

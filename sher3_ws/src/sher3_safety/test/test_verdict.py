@@ -31,6 +31,7 @@ def test_a_good_cell_misses_nothing():
         ({"reason": "CLOCK"}, "reason CLOCK instead of WRENCH_STALE"),
         ({"alone": 6e-6}, "moved 6.0 um before the pedal was released"),
         ({"resumed": 0.0}, "did not move again"),
+        ({"enabled": False}, "was not enabled when the fault set in"),
     ],
 )
 def test_each_shortfall_is_named(change, part):
@@ -49,6 +50,33 @@ def test_what_must_go_on_may_neither_trip_nor_leave_its_way():
     assert judge(row, LIMIT, going).holds
     assert judge(row, LIMIT, replace(going, reason="CLOCK")).misses == ("tripped: CLOCK",)
     assert judge(row, LIMIT, replace(going, excess=260e-6)).misses == ("260 um off its way (budget 250 um)",)
+
+
+def test_what_chance_decides_may_trip_but_then_stops_within_the_budget():
+    row = Row("cpu", "slow", {"processes": 2.0}, effect="either")
+    tripped = replace(GOOD, travel=1e-3, stop=0.4, detection=0.3, braking=100e-6)
+    assert judge(row, LIMIT, tripped).holds
+    (miss,) = judge(row, LIMIT, replace(tripped, braking=251e-6)).misses
+    assert miss == "travelled 251 um after the report (budget 250 um)"
+
+
+ENDED = Row("process.plant", "off", effect="ends", reasons=("DRIVE_SILENT",))
+END = replace(GOOD, stop=None, travel=0.0, faulted=0.023, fault_reason="DRIVE_SILENT")
+
+
+@pytest.mark.parametrize(
+    ("change", "miss"),
+    [
+        ({"detection": None, "reason": ""}, "nobody noticed"),
+        ({"detection": 0.051}, "noticed after 51 ms"),
+        ({"faulted": None}, "no FAULT"),
+        ({"faulted": 0.101}, "FAULT after 101 ms"),
+        ({"fault_reason": "CPU_STARVED"}, "FAULT for CPU_STARVED instead of DRIVE_SILENT"),
+    ],
+)
+def test_a_plant_that_ends_has_no_tip_but_must_be_reported_in_time(change, miss):
+    assert judge(ENDED, LIMIT, END, recovered=False).holds
+    assert judge(ENDED, LIMIT, replace(END, **change), recovered=False).misses == (miss,)
 
 
 def test_a_cell_that_is_not_in_the_recording_misses():
