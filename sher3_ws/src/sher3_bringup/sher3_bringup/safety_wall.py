@@ -11,6 +11,7 @@ import multiprocessing
 import os
 import re
 import signal
+import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -28,7 +29,7 @@ from sher3_safety.measure import STANDS, Outcome, Recording
 from sher3_safety.processes import HOG, WALL, WALL_STATES
 from sher3_safety.verdict import UNMEASURED, Verdict, judge
 
-from .errors import ConfigurationError, StartError
+from .errors import ConfigurationError, NotStopped, StartError
 from .fleet import Fleet, Member
 from .nodes import make_nodes
 from .safety_matrix import MatrixResult
@@ -117,21 +118,29 @@ def _run(row: Row, state: State, bag: Path, seed: int, domain: int) -> Outcome |
         realtime=int(row.parameters.get("realtime", -1)),
         regime="free",
     )
-    realtime = prepare(settings)
-    with Fleet() as fleet:
-        _launch(fleet, settings, realtime, state, row)
-        fleet.start(PATIENCE)
-        time.sleep(SPEED_UP)
-        onset = _now()
-        with _broken(fleet, row):
-            time.sleep(WATCHED)
-            end = _now()
-            time.sleep(STILL)
-            still = _now()
+    onset, end, still = _play(settings, prepare(settings), row, state)
     run = read_run(bag, check=False)
     if _longest_silence(run["mock/contact_wrench"].stamp, onset, still) > HAND_GAP:
         return None
     return Recording(run, settings.robot()).outcome(row.label(state), onset, end, still, STANDS * state.budget)
+
+
+def _play(settings: RunSettings, realtime: int, row: Row, state: State) -> tuple[int, int, int]:
+    """Let the case happen; return its onset, the end of its observation and of the rest after it, ns."""
+    try:
+        with Fleet() as fleet:
+            _launch(fleet, settings, realtime, state, row)
+            fleet.start(PATIENCE)
+            time.sleep(SPEED_UP)
+            onset = _now()
+            with _broken(fleet, row):
+                time.sleep(WATCHED)
+                end = _now()
+                time.sleep(STILL)
+                still = _now()
+    except NotStopped as error:  # all is measured by then, and nothing is left running
+        print(f"sher3: {row.name}, {state.name}: {error}", file=sys.stderr)
+    return onset, end, still
 
 
 def _longest_silence(stamps: NDArray[np.int64], begin: int, end: int) -> int:
