@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 from collections.abc import Callable, Sequence
 from importlib import import_module
 from typing import Any
@@ -9,6 +10,9 @@ from typing import Any
 from .patience import PEDAL_AGE
 from .settings import RunSettings
 from .warm import warm_up
+
+PARAMETER_EVENT = "rcl_interfaces/msg/ParameterEvent"
+"""What every rclpy node publishes besides its own topics."""
 
 Factory = Callable[[RunSettings], Any]
 
@@ -24,12 +28,15 @@ def preload(settings: RunSettings) -> None:
     from sher3_runtime.messages import message_class
     from sher3_runtime.process import make_logging_prompt
 
-    for topic in TOPICS.values():
-        message_class(topic.type)
+    for kind in {PARAMETER_EVENT, *(topic.type for topic in TOPICS.values())}:
+        type(message_class(kind)).__import_type_support__()  # rclpy would do it in each process, with all of its parser
     for name in settings.names:
         import_module(_MODULES[name])
     warm_up(settings.robot(), settings.names)
     make_logging_prompt()
+    # The processes share these pages until somebody writes into them, and a collection writes into every object.
+    gc.collect()
+    gc.freeze()
 
 
 _MODULES = {
