@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from rclpy.node import Node
-from sher3_runtime import JoySample, TextSample, WrenchSample
+from sher3_runtime import JoySample, PoseSample, TextSample, WrenchSample
 from sher3_runtime.ports import NODE_OPTIONS, advertise, on_tick, subscribe
 from sher3_safety.kinds import OK
 from sher3_safety.requests import make_request
@@ -18,16 +18,18 @@ class OperatorNode(Node):
         pedal: travel.
         force: of the hand along z of {b} [N].
         state: newest operating state heard.
+        height: newest z of the tip heard [m].
     """
 
     def __init__(self, **options: Any) -> None:
         super().__init__("operator", **{**NODE_OPTIONS, **options})
-        self.pedal, self.force, self.state = 0.0, 0.0, ""
+        self.pedal, self.force, self.state, self.height = 0.0, 0.0, "", 0.0
         self._publish_wrench = advertise(self, "mock/contact_wrench")
         self._publish_pedal = advertise(self, "mock/pedal")
         self._publish_command = advertise(self, "command/state_command")
         self._publish_fault = advertise(self, "mock/fault")
         subscribe(self, "operating_state", self._on_state)
+        subscribe(self, "measured_cp", self._on_tip)
         on_tick(self, self._tick)
 
     def command(self, text: str) -> None:
@@ -40,6 +42,9 @@ class OperatorNode(Node):
 
     def _on_state(self, sample: TextSample) -> None:
         self.state = sample.text
+
+    def _on_tip(self, sample: PoseSample) -> None:
+        self.height = sample.position[2]
 
     def _tick(self, stamp: int) -> None:
         self._publish_pedal(JoySample(stamp, (self.pedal,), (0,)))

@@ -16,7 +16,7 @@ from typing import Any
 from sher3_bags.live import recorded
 from sher3_bags.reading import read_run
 from sher3_bags.run import RunMetadata
-from sher3_description import Robot
+from sher3_description import Robot, Sher3Error
 from sher3_runtime import Graph
 from sher3_runtime.ports import ports
 from sher3_safety.items import Numbers
@@ -32,6 +32,10 @@ SETTLE, APPROACH, OBSERVE, HELD, RELEASED, AGAIN = 60, 90, 40, 25, 15, 40
 """Ticks: before enable; up to the speed of the state; behind the end of a fault; enabled with the pedal still pressed;
 released; pressed again."""
 ENABLE_TRIES, ENABLE_TICKS = 16, 30
+TRAVEL = 4e-3
+"""Sliders of a robot that is to be at the end of its travel have so much of it either way: the real end is 8 s away."""
+WAY, ARRIVED, PULL = 1200, 5e-6, 1.0
+"""Most ticks to the end; the tip is there when it moves by less in `SETTLE` ticks, m; force of the way back, N."""
 
 Cell = tuple[Row, State]
 
@@ -55,7 +59,9 @@ class MatrixRun:
     def play(self, row: Row, state: State) -> bool:
         """Play one cell; return whether the robot is ready for the next one."""
         operator, label = self.operator, row.label(state)
-        self._sign = -self._sign
+        self._sign = 1.0 if state.end else -self._sign
+        if state.end:
+            self._go_to_end(self._sign * state.force)
         operator.force, operator.pedal = self._sign * state.force, state.pedal
         self.graph.step(APPROACH if state.pedal else SETTLE)
         if row.release:
@@ -74,7 +80,16 @@ class MatrixRun:
             operator.pedal = 0.0
             self.graph.step(RELEASED)
             return True
-        return self._recover()
+        return self._recover(-self._sign * PULL if state.end else operator.force)
+
+    def _go_to_end(self, force: float) -> None:
+        """Push the sliders to the end of their travel."""
+        self.operator.force, self.operator.pedal = force, 1.0
+        for _ in range(0, WAY, SETTLE):
+            before = self.operator.height
+            self.graph.step(SETTLE)
+            if abs(self.operator.height - before) < ARRIVED:
+                return
 
     def _release_under(self, row: Row, label: str) -> None:
         """Let the fault set in first, so that what is stuck is stuck pressed; release, and measure from there."""
@@ -89,8 +104,8 @@ class MatrixRun:
         self.operator.inject(request)
         self.graph.settle()
 
-    def _recover(self) -> bool:
-        """Leave FAULT, enable with the pedal still pressed, release it, press it again."""
+    def _recover(self, force: float) -> bool:
+        """Leave FAULT, enable with the pedal still pressed, release it, press it again under this `force` [N]."""
         self.operator.command("disable")
         self.graph.step(5)
         if not self._enable():
@@ -98,7 +113,7 @@ class MatrixRun:
         self.graph.step(HELD)
         self.operator.pedal = 0.0
         self.graph.step(RELEASED)
-        self.operator.pedal = 1.0
+        self.operator.pedal, self.operator.force = 1.0, force
         self.graph.step(AGAIN)
         self.operator.pedal = 0.0
         self.graph.step(RELEASED)
@@ -117,7 +132,9 @@ class MatrixRun:
     def _go_through(self, row: Row, ticks: int) -> None:
         """Let the time of the fault pass; carry out what the plant process cannot: hold a node, let clocks jump."""
         what, _, name = row.component.partition(".")
-        if what == "process":
+        if row.fault == "duplicated" and what == "process":
+            self._start_again(name, ticks)
+        elif what == "process":
             self._hold(getattr(self.rig, name), row, ticks)
         elif what == "clock" and name:
             with self._other_clock(name, row.parameters["offset"]):
@@ -126,6 +143,14 @@ class MatrixRun:
             if what == "clock":
                 self.graph.jump(row.parameters["offset"])
             self.graph.step(ticks)
+
+    def _start_again(self, name: str, ticks: int) -> None:
+        """Start a process that runs already; one that refuses to start has done no harm by trying."""
+        try:
+            self.rig.start_again(name)
+        except Sher3Error as error:
+            self.operator.get_logger().info(f"{name} did not start twice: {error}")
+        self.graph.step(ticks)
 
     def _hold(self, node: Any, row: Row, ticks: int) -> None:
         """Let a process run only in those ticks that the fault lets pass; one that is killed never runs again."""
@@ -160,9 +185,24 @@ def _stands(label: str) -> float:
 def run_cells(name: str, cells: Sequence[Cell], robot: Robot, folder: Path, seed: int = 1) -> dict[str, Outcome]:
     """Run cells one after another and return their outcomes by label; bags are `folder/<name>`, `<name>-1`, ...
 
-    A robot that a fault has left beyond recovery is replaced by a new one, with a bag of its own.
+    A robot that a fault has left beyond recovery is replaced by a new one, with a bag of its own; so is the robot for
+    the end of the travel (`<name>-end`), whose sliders have a shorter one.
     """
-    left, found, number = list(cells), {}, 0
+    inside, at_end = ([cell for cell in cells if cell[1].end is end] for end in (False, True))
+    found = _run_all(name, inside, robot, folder, seed)
+    return found | _run_all(f"{name}-end", at_end, with_travel(robot, TRAVEL), folder, seed)
+
+
+def with_travel(robot: Robot, travel: float) -> Robot:
+    """Return the robot with sliders of the delta that go no further than `travel` [m] either way."""
+    sliders = [a.model_copy(update={"limits": a.limits.model_copy(update={"lower": -travel, "upper": travel})})
+               for a in robot.actuators[:3]]  # fmt: skip
+    return robot.model_copy(update={"actuators": (*sliders, *robot.actuators[3:])})
+
+
+def _run_all(name: str, cells: Sequence[Cell], robot: Robot, folder: Path, seed: int) -> dict[str, Outcome]:
+    """Run cells one after another, with new robots where one is beyond recovery."""
+    left, found, number = list(cells), dict[str, Outcome](), 0
     while left:
         bag = f"{name}-{number}" if number else name
         count = _run_some(bag, left, robot, folder, seed)

@@ -5,12 +5,13 @@ from __future__ import annotations
 import itertools
 from collections.abc import Sequence
 
+from rclpy.node import Node
 from sher3_control.admittance_node import AdmittanceNode
 from sher3_control.kinematics_node import KinematicsNode
 from sher3_control.settings import ControlSettings
 from sher3_control.supervisor_node import SupervisorNode
 from sher3_description import Robot, load_robot
-from sher3_drivers.bus import LockstepLink, open_link
+from sher3_drivers.bus import CanLink, LockstepLink, open_link
 from sher3_drivers.force_sensor import InProcessForceSensor
 from sher3_drivers.force_sensor_node import ForceSensorNode
 from sher3_drivers.motor_driver_node import MotorDriverNode
@@ -55,17 +56,36 @@ class SteppedRobot:
     ) -> None:
         robot = robot or load_robot()
         control = control or ControlSettings.from_robot(robot, {"motion": {"regime": "bench"}})
-        self.graph = graph
+        self.graph, self.robot, self.control = graph, robot, control
         self.force, self.pedal_device = InProcessForceSensor(), InProcessPedal(clock=graph.clock.now)
         settings, channel = drives or default_settings(robot.control_period), f"stepped{next(_numbers)}"
         count = len(settings.channels)
         device_ends, host_ends = ([open_link(f"virtual:{channel}-{i}") for i in range(count)] for _ in range(2))
         devices = {"force_device": self.force, "pedal_device": self.pedal_device, "faults": FaultInjector}
         self.plant = graph.add(PlantNode, robot, settings, effects, seed, scatter, device_ends, **devices)
-        links = [LockstepLink(link, [self.plant.drives.poll]) for link in host_ends]
-        self.motor_driver = graph.add(MotorDriverNode, robot, settings, links)
+        self._settings, self._channel = settings, channel
+        self.motor_driver = graph.add(MotorDriverNode, robot, settings, self._lockstep(host_ends))
         self.force_sensor = graph.add(ForceSensorNode, robot, self.force)
         self.pedal = graph.add(PedalNode, robot, self.pedal_device)
         self.supervisor = graph.add(SupervisorNode, robot, control)
         self.kinematics = graph.add(KinematicsNode, robot, control)
         self.admittance = graph.add(AdmittanceNode, robot, control)
+
+    def _lockstep(self, links: Sequence[CanLink]) -> list[LockstepLink]:
+        return [LockstepLink(link, [self.plant.drives.poll]) for link in links]
+
+    def start_again(self, name: str) -> Node:
+        """Start the process of a node a second time, at the same devices and on the same buses; return the new node.
+
+        Raises:
+            Sher3Error: it refuses to start.
+        """
+        if name == "motor_driver":
+            links = [open_link(f"virtual:{self._channel}-{i}") for i in range(len(self._settings.channels))]
+            return self.graph.add(MotorDriverNode, self.robot, self._settings, self._lockstep(links))
+        devices = {"force_sensor": (ForceSensorNode, self.force), "pedal": (PedalNode, self.pedal_device)}
+        if name in devices:
+            kind, device = devices[name]
+            return self.graph.add(kind, self.robot, device)
+        law = {"supervisor": SupervisorNode, "kinematics": KinematicsNode, "admittance": AdmittanceNode}
+        return self.graph.add(law[name], self.robot, self.control)

@@ -6,6 +6,7 @@ None`.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple, Protocol
 
@@ -185,3 +186,23 @@ class OverrunDetector(_Plain):
         fresh = [(share, node) for node, (share, at) in self._share.items() if at >= oldest]
         share, node = max(fresh, default=(0.0, "control loop"))
         return Finding(Reason.OVERRUN, share, self.limit, "of the cycles", node)
+
+
+@dataclass
+class TwinDetector(_Plain):
+    """A second publisher of a stream that is the robot's own: one of its processes runs twice, or somebody imitates it.
+
+    The samples of both would be taken in turn, each with its right to be believed.
+    """
+
+    limit: int = 1
+    counts: Mapping[str, int] = field(default_factory=dict)
+
+    def feed(self, counts: Mapping[str, int]) -> None:
+        """Take note of how many publishers each stream has."""
+        self.counts = counts
+
+    def look(self, now: int) -> Finding:
+        """Return the stream with the most publishers."""
+        source = max(self.counts, key=lambda name: self.counts[name], default="robot's own streams")
+        return Finding(Reason.PUBLISHED_TWICE, self.counts.get(source, 0), self.limit, "publishers", source)

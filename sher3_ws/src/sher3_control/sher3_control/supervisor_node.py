@@ -12,13 +12,13 @@ from typing import Any
 
 import numpy as np
 from rclpy.node import Node
-from sher3_description import Robot, Sher3Error
+from sher3_description import TOPICS, Robot, Sher3Error
 from sher3_description.reasons import reading
 from sher3_kinematics import RobotKinematics
 from sher3_runtime import DiagnosticSample, JointSample, JoySample, PoseSample, TextSample
 from sher3_runtime.ports import NODE_OPTIONS, advertise, clock_of, latest, on_tick, subscribe
 
-from .detectors import Detector, EmergencyStopDetector, OverrunDetector, ReportedFault, SilenceDetector
+from .detectors import Detector, EmergencyStopDetector, OverrunDetector, ReportedFault, SilenceDetector, TwinDetector
 from .driver_reports import DRIVES, LOOP, cycle_counts, driver_stop
 from .leg_residual import LegDetector, leg_residual
 from .operating_state import OperatingState
@@ -34,6 +34,15 @@ STREAMS = {
     PEDAL: (Reason.PEDAL_MISSING, Reason.PEDAL_STALE),
 }
 """Watched streams, and what it is called when one never came or fell silent."""
+OWN = (
+    *STREAMS,
+    "drives/measured_js",
+    "drives/setpoint_jv",
+    "servo_cv",
+    "operating_state",
+    "supervisor/heartbeat",
+)
+"""Streams of which the robot itself is the only publisher."""
 LEVELS = {OperatingState.FAULT: 2, OperatingState.PAUSED: 1}
 
 
@@ -55,8 +64,8 @@ class SupervisorNode(Node):
         self._button = EmergencyStopDetector()
         self._drives = ReportedFault("motor_driver")
         self._overruns = OverrunDetector(self.settings.overrun_share)
-        self._leg = _leg_detector(robot, self.settings)
-        built_in = [self._button, self._drives, *self._silence.values(), self._overruns, self._leg]
+        self._leg, self._twins = _leg_detector(robot, self.settings), TwinDetector()
+        built_in = [self._button, self._drives, *self._silence.values(), self._overruns, self._leg, self._twins]
         self.supervisor = Supervisor([*built_in, *detectors])
         self._refused: dict[str, Any] | None = None
         self._beat = TextSample(self.supervisor.status.heartbeat)
@@ -69,6 +78,7 @@ class SupervisorNode(Node):
         self._publish_heartbeat = advertise(self, "supervisor/heartbeat")
         self._publish_report = advertise(self, "diagnostics")
         self._watched = [(name, self._silence[name], latest(self, name)) for name in STREAMS if name != PEDAL]
+        self._own = [(name, TOPICS[name].full_name) for name in OWN]
         self._take_tip = latest(self, "tracker/measured_cp")
         subscribe(self, PEDAL, self._on_pedal)
         subscribe(self, "diagnostics", self._on_diagnostics)
@@ -80,6 +90,7 @@ class SupervisorNode(Node):
 
     def _look(self) -> None:
         """Note the newest sample of each watched stream; waking up for all of them would cost more than the rest."""
+        self._twins.feed({name: self.count_publishers(full_name) for name, full_name in self._own})
         for name, detector, take in self._watched:
             if (sample := take()) is not None:
                 detector.last = sample.stamp

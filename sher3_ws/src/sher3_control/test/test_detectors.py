@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 from law_bench import ROBOT
-from sher3_control.detectors import Finding, OverrunDetector, ReportedFault, SilenceDetector
+from sher3_control.detectors import Finding, OverrunDetector, ReportedFault, SilenceDetector, TwinDetector
 from sher3_control.driver_reports import cycle_counts, driver_stop
 from sher3_control.errors import StateCommandRefused
 from sher3_control.leg_residual import LegDetector, leg_residual
@@ -28,6 +28,25 @@ def enabled(*detectors):
     supervisor = Supervisor(detectors)
     supervisor.command("enable", 0)
     return supervisor
+
+
+def test_a_second_publisher_of_a_stream_of_its_own_stops_the_robot():
+    """And it is not enabled again until the twin has gone; nobody at all is the business of the silence detectors."""
+    twins = TwinDetector()
+    supervisor = enabled(twins)
+    for counts in ({}, {"servo_jv": 1, "pedal/measured": 0}):
+        twins.feed(counts)
+        assert not supervisor.check(1) and supervisor.state is S.ENABLED
+    twins.feed({"servo_jv": 1, "pedal/measured": 2})
+    assert supervisor.check(2) and supervisor.state is S.FAULT
+    first = supervisor.status.first_fault
+    assert (first.code, first.value, first.source, first.unit) == ("PUBLISHED_TWICE", 2, "pedal/measured", "publishers")
+    assert supervisor.status.action is Action.QUICK_STOP
+    supervisor.command("disable", 3)
+    with pytest.raises(StateCommandRefused, match="PUBLISHED_TWICE: pedal/measured 2 publishers, limit 1"):
+        supervisor.command("enable", 4)
+    twins.feed({"pedal/measured": 1})
+    supervisor.command("enable", 5)
 
 
 def test_the_most_severe_of_several_objections_comes_first():

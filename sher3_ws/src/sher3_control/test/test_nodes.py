@@ -3,6 +3,7 @@
 import pytest
 from control_graph import control_graph
 from law_bench import ROBOT
+from sher3_control.supervisor_node import OWN
 from sher3_runtime import DiagnosticSample, JointSample, TwistSample
 from std_srvs.srv import Trigger
 
@@ -187,6 +188,24 @@ def test_a_second_publisher_of_a_command_is_refused():
         g.graph.until(lambda: g.status("motion/status")["refused"], "refusal")
         assert "several publishers" in g.status("motion/status")["refused"]["text"]
         assert g.last("servo_jv").velocity == REST
+
+
+def test_a_second_publisher_of_a_stream_of_the_robots_own_is_a_fault():
+    """Every stream of its own that has a publisher here; whether the twin ever says a word makes no difference."""
+    for name in OWN:
+        if name.startswith("drives/"):
+            continue
+        with control_graph() as g:
+            g.enable()
+            g.press(force=(1.0, 0.0, 0.0))
+            g.step(20)
+            assert g.last("servo_jv").velocity != REST
+            g.graph.probe(sends=(name,))
+            g.step(20)
+            status = g.status("supervisor/status")
+            assert (status["state"], status["reason"]) == ("FAULT", "PUBLISHED_TWICE"), name
+            assert status["first_fault"]["source"] == name
+            assert g.last("servo_jv").velocity == REST
 
 
 def test_diagnostics_show_what_the_law_and_the_modes_look_at_with_their_limits():

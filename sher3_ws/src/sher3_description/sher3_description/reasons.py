@@ -54,6 +54,7 @@ class Reason(IntEnum):
     SUPERVISOR_FAULT = 91
     STOP_NOT_OBEYED = 92
     DRIVER_CLOSED = 93
+    PUBLISHED_TWICE = 94
 
 
 class Action(IntEnum):
@@ -122,6 +123,7 @@ TEXT: dict[Reason, str] = {
     _R.SUPERVISOR_FAULT: "the supervisor asked for the stop",
     _R.STOP_NOT_OBEYED: "an axis still moves after a quick stop",
     _R.DRIVER_CLOSED: "the motor driver was closed",
+    _R.PUBLISHED_TWICE: "a stream of the robot's own has a second publisher",
 }
 """The sentence of each code."""
 

@@ -62,6 +62,7 @@ class Graph:
         self.nodes.append(node)
         self.executor.add_node(node)
         self._matched, self._routes = False, self._find_routes()
+        self._expect_nothing(node)
         return node
 
     def probe(self, *topics: str, sends: tuple[str, ...] = ()) -> Probe:
@@ -102,6 +103,10 @@ class Graph:
         self._paused.remove(node)
         self.nodes.append(node)
         self._routes = self._find_routes()
+        self._expect_nothing(node)
+
+    def _expect_nothing(self, node: Node) -> None:
+        """Take what was sent until now as received by a node that was not there."""
         received = ports(node).received
         for name, sent, _ in self._routes:
             if name in received:

@@ -25,6 +25,7 @@ class State:
         force: of the hand along +-z, N; along x or y the moment at the sensor would saturate it first.
         pedal: travel.
         budget: largest allowed travel [m].
+        end: the hand has pushed the sliders against the end of their travel, and still pushes.
     """
 
     name: str
@@ -32,13 +33,20 @@ class State:
     force: float
     pedal: float
     budget: float
+    end: bool = False
 
 
 IDLE = State("idle", 0.0, 0.6, 0.0, 25e-6)
 MOVING = State("moving", 0.5e-3, 0.6, 1.0, 25e-6)
 LIMIT = State("at limit", 5e-3, 6.0, 1.0, 250e-6)
-STATES = (IDLE, MOVING, LIMIT)
-"""Enabled and at rest under a hand; at the speed near tissue; at the speed limit."""
+END = State("at end", 0.0, 6.0, 1.0, 250e-6, end=True)
+STATES = (IDLE, MOVING, LIMIT, END)
+"""Enabled and at rest under a hand; at the speed near tissue; at the speed limit; pushed against the end of the travel,
+as fast as at the speed limit were there no end."""
+STILL = (IDLE.name, END.name)
+"""Nothing moves in them."""
+AT_END = 1e-3
+"""Largest distance from the end of its travel at which an axis counts as at it, as a share of the travel."""
 
 
 @dataclass(frozen=True)
@@ -81,8 +89,8 @@ class Row:
 
     @property
     def final(self) -> bool:
-        """Whether there is no way back: a process that was killed."""
-        return self.component.startswith("process.") and self.fault == "off"
+        """Whether the robot is given up afterwards: a process was killed, or runs twice."""
+        return self.component.startswith("process.") and self.fault in ("off", "duplicated")
 
     def label(self, state: State) -> str:
         """Return what this row in a state is called in its bag."""

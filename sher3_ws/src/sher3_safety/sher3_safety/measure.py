@@ -47,6 +47,7 @@ class Outcome:
         fault: the operating state became FAULT.
         alone: motion after the end of the observation before the pedal was released, m.
         resumed: motion after release-then-press, m.
+        to_end: at the onset, of the axis that is nearest to an end of its travel, as a share of the travel.
         enabled: the robot was ENABLED when the fault set in, as far as the bag tells.
         braking: way of the tip after the first report, m.
         faulted: from the onset to FAULT, s; None: never.
@@ -63,6 +64,7 @@ class Outcome:
     fault: bool
     alone: float
     resumed: float
+    to_end: float = 0.5
     enabled: bool = True
     braking: float = 0.0
     faulted: float | None = None
@@ -96,6 +98,9 @@ class Recording:
         truth = run["mock/true_js"]
         self._run, self._stamp = run, truth.stamp
         self._tip = tip_pose_batch(kernel_parameters(robot), np.ascontiguousarray(truth.position))[1]
+        ends = np.array([(a.limits.lower, a.limits.upper) for a in robot.actuators])
+        room = np.minimum(truth.position - ends[:, 0], ends[:, 1] - truth.position)
+        self._to_end = (room / (ends[:, 1] - ends[:, 0])).min(axis=1)
         self._demand = np.abs(truth.velocity)
         rows = np.arange(len(self._stamp))
         self._stepped = period is not None
@@ -178,6 +183,7 @@ class Recording:
             fault=fault is not None,
             alone=_reach(self._tip[last : released + 1], self._tip[last]),
             resumed=_reach(self._tip[pressed : until + 1], self._tip[pressed]),
+            to_end=float(self._to_end[first]),
             enabled=self._state(onset) in ("", "ENABLED"),
             braking=_reach(self._tip[reported : last + 1], self._tip[reported]),
             faulted=None if fault is None else self._elapsed(fault[0], first),
@@ -200,11 +206,11 @@ class Recording:
 
     def _detection(self, report: int, first: int, last: int) -> float:
         """Return the time of the first reaction: the first report, or an earlier fall of the executed demand."""
-        at = self._elapsed(report, first)
-        demand = self._demand[first : last + 1].sum(axis=1)
+        at, before = self._elapsed(report, first), max(first - 1, 0)
+        demand = self._demand[before : last + 1].sum(axis=1)
         fallen = np.nonzero(demand < 0.8 * demand[0])[0] if demand[0] > 0.0 else []
         if len(fallen):
-            at = min(at, float(self._time[first + int(fallen[0])] - self._time[first]))
+            at = min(at, float(self._time[before + int(fallen[0])] - self._time[first]))
         return at
 
     def _operator(self, last: int, following: int | None) -> tuple[int, int, int]:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from sher3_description import ACTUATORS
 
-from .matrix import Row
+from .matrix import STILL, Row
 
 AXIS = ACTUATORS[0]
 CURRENT = "the newest sample in time is the one that counts"
@@ -64,7 +64,7 @@ PEDAL = (
 def _up(line: str, quick: bool = False) -> Iterator[Row]:
     """Yield the faults of what the drives say."""
     yield Row(line, "off", reasons=LINE_LOST, quick=quick)
-    yield Row(line, "stuck", quiet=("idle",))
+    yield Row(line, "stuck", quiet=STILL)
     yield Row(line, "garbage")
     yield Row(line, "wrong", quick=quick)
     yield Row(line, "slow", {"every": 4.0}, effect="either", why=HELD)
@@ -111,7 +111,7 @@ LINES = (
 
 def _encoder(name: str, quick: bool = False) -> Iterator[Row]:
     """Yield the faults of one encoder of an axis; the other one is its witness."""
-    yield Row(name, "stuck", quiet=("idle",), quick=quick)
+    yield Row(name, "stuck", quiet=STILL, quick=quick)
     yield Row(name, "garbage")
     yield Row(name, "wrong", {"offset": 1e-3})
     yield Row(name, "wrong", {"scale": 0.5})
@@ -125,10 +125,10 @@ ENCODERS = (*_encoder(f"{AXIS}.load_encoder", quick=True), *_encoder(f"{AXIS}.mo
 DRIVE = (
     Row(f"{AXIS}.demand", "off", release=True),
     Row(f"{AXIS}.demand", "stuck", release=True, quick=True),
-    Row(f"{AXIS}.demand", "garbage", quiet=("idle",), budget=GARBLED, why=AT_ONCE),
-    Row(f"{AXIS}.demand", "wrong", {"scale": -1.0}, quiet=("idle",), quick=True),
-    Row(f"{AXIS}.demand", "wrong", {"scale": 0.0}, quiet=("idle",)),
-    Row(f"{AXIS}.demand", "wrong", {"scale": 2.0}, quiet=("idle",)),
+    Row(f"{AXIS}.demand", "garbage", quiet=STILL, budget=GARBLED, why=AT_ONCE),
+    Row(f"{AXIS}.demand", "wrong", {"scale": -1.0}, quiet=STILL, quick=True),
+    Row(f"{AXIS}.demand", "wrong", {"scale": 0.0}, quiet=STILL),
+    Row(f"{AXIS}.demand", "wrong", {"scale": 2.0}, quiet=STILL),
     Row(f"{AXIS}.demand", "wrong", {"code": float(0x4210)}, reasons=("DRIVE_OVER_TEMPERATURE",)),
     Row(f"{AXIS}.demand", "wrong", {"code": float(0x8611)}, reasons=("DRIVE_EMERGENCY",)),
     Row(f"{AXIS}.demand", "slow", {"every": 4.0}, release=True),
@@ -147,6 +147,8 @@ LOST = {
     "supervisor": ("SUPERVISOR_SILENT", "NOT_ENABLED"),
 }
 """What is reported first when a process is gone."""
+TWICE = ("PUBLISHED_TWICE", "NOT_ENABLED", "DRIVE_RESTARTED")
+"""The supervisor counts publishers; a second supervisor says DISABLED, a second motor driver restarts the drives."""
 PROCESSES = (
     *(
         Row(f"process.{name}", "stuck", reasons=LOST[name], quick=name in ("admittance", "supervisor"))
@@ -157,6 +159,7 @@ PROCESSES = (
     *(Row(f"process.{name}", "delayed", {"delay": 0.006}, effect="either", why=BRIEF) for name in NODES),
     *(Row(f"process.{name}", "intermittent", effect="either", why=BRIEF) for name in NODES),
     *(Row(f"process.{name}", "off", reasons=LOST[name]) for name in NODES),
+    *(Row(f"process.{name}", "duplicated", reasons=TWICE, quick=name == "supervisor") for name in NODES),
 )
 CLOCKS = ("force_sensor", "pedal", "motor_driver")
 SAMPLES = "it takes the time of a tick from its samples; its own clock only fills in for those that stay away"

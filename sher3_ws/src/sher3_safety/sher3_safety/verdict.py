@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from .matrix import DETECTION_LIMIT, STOP_LIMIT, Row, State
+from .matrix import AT_END, DETECTION_LIMIT, STOP_LIMIT, Row, State
 from .measure import STANDS, Outcome
 
 MOVES_AGAIN = 20e-6
@@ -50,6 +50,8 @@ def _misses(row: Row, state: State, o: Outcome, recovered: bool) -> Iterator[str
         yield "was not enabled when the fault set in"
     if o.speed < 0.8 * state.speed:
         yield f"moved at {o.speed * 1e3:.2f} mm/s before the fault instead of {state.speed * 1e3:g}"
+    if state.end and o.to_end > AT_END:
+        yield f"{o.to_end * 100:.1f} % of its travel from its end before the fault (limit {AT_END * 100:g} %)"
     if row.effect == "goes on" and o.tripped:
         yield f"tripped: {o.reason}"
     if row.effect == "ends":

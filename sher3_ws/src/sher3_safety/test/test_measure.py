@@ -59,6 +59,8 @@ def rows(*spans):
 def test_a_stop_is_measured_in_time_and_way():
     found = outcome(rows((0, 112), (PRESS, ROWS)))
     assert found.speed == pytest.approx(SPEED, rel=1e-6)
+    # 1 mm from the middle of 76 mm; the tilt's travel lies 1.4 mm off its own.
+    assert found.to_end == pytest.approx(0.0228 / 0.0484, rel=1e-6)
     assert found.reason == "WRENCH_STALE" and not found.fault
     assert found.detection == pytest.approx(0.020)
     assert found.stop == pytest.approx(0.024)

@@ -19,6 +19,13 @@ def test_a_good_cell_misses_nothing():
     assert judge(ROW, IDLE, replace(GOOD, speed=0.0, travel=0.0)).holds
 
 
+def test_a_robot_that_was_not_at_the_end_of_its_travel_misses():
+    (state,) = [state for state in STATES if state.end]
+    assert judge(ROW, state, replace(GOOD, to_end=0.5e-3)).holds
+    (miss,) = judge(ROW, state, replace(GOOD, to_end=0.02)).misses
+    assert miss == "2.0 % of its travel from its end before the fault (limit 0.1 %)"
+
+
 @pytest.mark.parametrize(
     ("change", "part"),
     [
@@ -84,14 +91,14 @@ def test_a_cell_that_is_not_in_the_recording_misses():
 
 
 def test_the_table_shows_every_state_and_counts_what_misses():
-    travels = {"idle": 0.0, "moving": 6.5e-6, "at limit": 300e-6}
-    cells = [judge(ROW, state, replace(GOOD, speed=state.speed, travel=travels[state.name])) for state in STATES]
+    travels = {"idle": 0.0, "moving": 6.5e-6, "at limit": 300e-6, "at end": 1e-6}
+    good = replace(GOOD, to_end=0.0)
+    cells = [judge(ROW, state, replace(good, speed=state.speed, travel=travels[state.name])) for state in STATES]
     text = as_text(cells)
-    assert "MISS 1 of 3" in text and "300.0" in text and "6.5" in text
+    assert "MISS 1 of 4" in text and "300.0" in text and "6.5" in text
     assert misses(cells) == ["force_sensor off, at limit: travelled 300 um (budget 250 um)"]
-    assert "| force_sensor off | WRENCH_STALE | 12 | 40 | 0.0 | 6.5 | 300.0 | stops | MISS 1 of 3 |" in as_markdown(
-        "title", cells
-    )
+    line = "| force_sensor off | WRENCH_STALE | 12 | 40 | 0.0 | 6.5 | 300.0 | 1.0 | stops | MISS 1 of 4 |"
+    assert line in as_markdown("title", cells)
 
 
 def test_no_trip_still_has_a_bound():
