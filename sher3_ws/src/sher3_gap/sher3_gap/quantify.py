@@ -84,6 +84,8 @@ def zeros_floor(evidence: Evidence, channel: Channel) -> float:
         if name == other and x is not None and y is not None:
             n = min(len(x.values), len(y.values))
             ok = x.ok[:n] & y.ok[:n]
+            if not ok.any():
+                continue
             squares.append(0.5 * float(np.mean((x.values[:n] - y.values[:n])[ok] ** 2)))
     return float(np.mean(squares)) if squares else 0.0
 

@@ -63,7 +63,8 @@ def merged(folders: Sequence[Path]) -> Outcome:
         ChallengeError: a folder without scores, or a case in two of them.
     """
     scores: dict[str, list[CaseScore]] = {}
-    seconds, seeds = 0.0, []
+    seconds = 0.0
+    seeds: list[int] = []
     errors: dict[str, str] = {}
     for folder in folders:
         try:
