@@ -28,6 +28,7 @@ def preload(settings: RunSettings) -> None:
     from sher3_runtime.messages import message_class
     from sher3_runtime.process import make_logging_prompt
 
+    gc.disable()
     for kind in {PARAMETER_EVENT, *(topic.type for topic in TOPICS.values())}:
         type(message_class(kind)).__import_type_support__()  # rclpy would do it in each process, with all of its parser
     for name in settings.names:
@@ -35,8 +36,8 @@ def preload(settings: RunSettings) -> None:
     warm_up(settings.robot(), settings.names)
     make_logging_prompt()
     # The processes share these pages until somebody writes into them, and a collection writes into every object.
-    gc.collect()
     gc.freeze()
+    gc.enable()
 
 
 _MODULES = {
