@@ -7,8 +7,9 @@ presses it again. What that shows is read from the bag (`sher3_safety.measure`).
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from random import Random
 from typing import Any
@@ -19,8 +20,8 @@ from sher3_bags.run import RunMetadata
 from sher3_description import Robot, Sher3Error
 from sher3_runtime import Graph
 from sher3_runtime.ports import ports
-from sher3_safety.items import Numbers
-from sher3_safety.kinds import KINDS, OK
+from sher3_safety.items import Numbers, Stamps
+from sher3_safety.kinds import KINDS, OK, Kind
 from sher3_safety.matrix import STATES, Row, State
 from sher3_safety.measure import STANDS, Outcome, Recording
 from sher3_safety.requests import make_request
@@ -137,7 +138,7 @@ class MatrixRun:
         elif what == "process":
             self._hold(getattr(self.rig, name), row, ticks)
         elif what == "clock" and name:
-            with self._other_clock(name, row.parameters["offset"]):
+            with self._other_clock(name, row):
                 self.graph.step(ticks)
         else:
             if what == "clock":
@@ -167,15 +168,21 @@ class MatrixRun:
             self.graph.resume(node)
 
     @contextmanager
-    def _other_clock(self, name: str, offset: float) -> Iterator[None]:
-        """Let one node believe in another time: its stamps are off."""
-        shift, before = round(offset * 1e9), {}
+    def _other_clock(self, name: str, row: Row) -> Iterator[None]:
+        """Let one node believe in another time: its ticks get the stamps that the fault leaves."""
+        before = {}
         for tick in ports(getattr(self.rig, name)).ticks:
             before[tick] = tick.callback
-            tick.callback = lambda stamp, call=tick.callback: call(stamp + shift)  # type: ignore[misc]
+            fault = KINDS[row.fault](Stamps(), row.parameters, Random(f"{self.seed}"))
+            tick.callback = partial(_tick_through, fault, tick.callback)  # type: ignore[method-assign]
         yield
         for tick, call in before.items():
             tick.callback = call
+
+
+def _tick_through(fault: Kind, call: Callable[[int], None], stamp: int) -> None:
+    for told in fault([stamp], stamp):
+        call(told)
 
 
 def _stands(label: str) -> float:

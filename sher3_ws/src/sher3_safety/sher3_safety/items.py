@@ -79,6 +79,22 @@ class PedalStates:
         return item._replace(travel=parameters["scale"] * item.travel + parameters["offset"])
 
 
+class Stamps:
+    """Stamps of the ticks of one node [ns]: its clock. Wrong: offset [s]; garbage: up to a tenth of a second off."""
+
+    def key(self, item: int) -> Hashable:
+        """One source."""
+        return None
+
+    def garbage(self, item: int, random: Random) -> int:
+        """Draw evenly around it."""
+        return item + random.randint(-100_000_000, 100_000_000)
+
+    def wrong(self, item: int, parameters: Parameters) -> int:
+        """Shift."""
+        return item + round(parameters["offset"] * 1e9)
+
+
 class Numbers:
     """One number per tick: an encoder [m, rad] or a velocity demand [counts].
 

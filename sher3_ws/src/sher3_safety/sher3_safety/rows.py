@@ -163,10 +163,25 @@ PROCESSES = (
 )
 CLOCKS = ("force_sensor", "pedal", "motor_driver")
 SAMPLES = "it takes the time of a tick from its samples; its own clock only fills in for those that stay away"
+
+
+def _clock(name: str) -> Iterator[Row]:
+    """Yield the faults of the clock of a node that stamps what it publishes; without a tick it does nothing."""
+    yield Row(name, "off")
+    yield Row(name, "stuck")
+    yield Row(name, "garbage")
+    yield Row(name, "slow", {"every": 4.0}, effect="either", why=HELD)
+    yield Row(name, "delayed", {"delay": 0.006}, effect="either", why=HELD)
+    yield Row(name, "intermittent", effect="either", why=HELD)
+    yield Row(name, "duplicated", effect="either", why=CURRENT)
+    yield Row(name, "reordered", effect="either", why=HELD)
+
+
 CLOCK = (
     # Backwards together cannot be recorded in order, and cannot happen: the offset to the monotonic clock is frozen.
     Row("clock", "wrong", {"offset": 0.05}, quick=True),
     *(Row(f"clock.{name}", "wrong", {"offset": offset}) for name in CLOCKS for offset in (0.05, -0.05)),
+    *(row for name in CLOCKS for row in _clock(f"clock.{name}")),
     *(Row(f"clock.{name}", "wrong", {"offset": 0.05}) for name in ("admittance", "kinematics")),
     *(
         Row(f"clock.{name}", "wrong", {"offset": -0.05}, effect="goes on", why=SAMPLES)
