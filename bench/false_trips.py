@@ -23,6 +23,7 @@ from sher3_drivers.settings import default_settings
 from sher3_drivers.trips import StopLog, Trip
 from sher3_drivers.units import AxisScale
 from sher3_gap.excitation import catalogue, excite
+from sher3_safety.report import false_trips
 from sher3_sim import EFFECTS, simulate
 from sher3_sim.scatter import RunScatter
 
@@ -69,7 +70,9 @@ def healthy(seeds: int) -> dict[str, Any]:
             if trip is not None:
                 trips[f"{trip.reason.name} in {label}: {trip.text}"] += 1
             shares = {name: max(shares[name], found[name]) for name in shares}
-    return {"minutes": ticks * ROBOT.control_period / 60.0, "trips": dict(trips), "largest_share_of_limit": shares}
+    minutes = ticks * ROBOT.control_period / 60.0
+    bound = false_trips(sum(trips.values()), minutes / 60.0)["upper_95"]
+    return {"minutes": minutes, "trips": dict(trips), "per_hour_upper_95": bound, "largest_share_of_limit": shares}
 
 
 def cost() -> float:
@@ -103,7 +106,8 @@ def main() -> None:
         print(json.dumps(result))
         return
     good = result["healthy"]
-    print(f"healthy: {good['minutes']:.1f} min of {len(LABELS)} excitations, {sum(good['trips'].values())} trips")
+    rate = f"{sum(good['trips'].values())} trips, at most {good['per_hour_upper_95']:.1f} per hour (95 %)"
+    print(f"healthy: {good['minutes']:.1f} min of {len(LABELS)} excitations, {rate}")
     for name, share in good["largest_share_of_limit"].items():
         print(f"  largest share of the limit of {name}: {100.0 * share:.0f} %")
     for text, count in good["trips"].items():

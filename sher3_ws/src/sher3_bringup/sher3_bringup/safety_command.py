@@ -22,7 +22,7 @@ app.command(epilog="Examples: `sher3 safety budget` · `sher3 safety budget --ra
 def safety(
     context: typer.Context,
     out: Annotated[Path, typer.Option(help="Folder for report.md, report.json and the bags.")] = Path("bags/safety"),
-    only: Annotated[str, typer.Option(help="Only components whose name begins so.")] = "",
+    only: Annotated[str, typer.Option(help="Only components whose name begins so; `healthy`: none.")] = "",
     quick: Annotated[bool, typer.Option("--quick", help="The compact set of the default test run.")] = False,
     wall: Annotated[bool, typer.Option("--wall", help="Kill and hold processes in wall time instead.")] = False,
     healthy: Annotated[
@@ -40,12 +40,16 @@ def safety(
     """
     if context.invoked_subcommand is not None:
         return
-    from .safety_matrix import run_matrix
+    from .safety_matrix import COMMAND, MatrixResult, run_matrix
     from .safety_wall import run_wall
 
     run: Any = run_wall if wall else run_matrix
-    result = run(out, only=only, quick=quick, seed=seed, jobs=jobs, say=_say)
-    minutes = healthy if healthy is not None else 0.0 if only or quick or wall else 5.0
+    none = only == "healthy"
+    command = f"{COMMAND} --only healthy"
+    result = (
+        MatrixResult((), command, seed) if none else run(out, only=only, quick=quick, seed=seed, jobs=jobs, say=_say)
+    )
+    minutes = healthy if healthy is not None else 0.0 if (only and not none) or quick or wall else 5.0
     if minutes:
         from .safety_healthy import run_healthy
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
+from typing import Any
 
-from rclpy.node import Node
 from sher3_control.admittance_node import AdmittanceNode
 from sher3_control.kinematics_node import KinematicsNode
 from sher3_control.settings import ControlSettings
@@ -74,7 +74,7 @@ class SteppedRobot:
     def _lockstep(self, links: Sequence[CanLink]) -> list[LockstepLink]:
         return [LockstepLink(link, [self.plant.drives.poll]) for link in links]
 
-    def start_again(self, name: str) -> Node:
+    def start_again(self, name: str) -> Any:
         """Start the process of a node a second time, at the same devices and on the same buses; return the new node.
 
         Raises:
