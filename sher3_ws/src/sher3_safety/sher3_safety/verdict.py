@@ -46,7 +46,8 @@ def judge(row: Row, state: State, outcome: Outcome | None, recovered: bool = Tru
 
 def _misses(row: Row, state: State, o: Outcome, recovered: bool) -> Iterator[str]:
     budget = state.budget if row.budget is None else row.budget
-    if not o.enabled:
+    # Where the pedal is released, that is the onset, and the fault may have been noticed before.
+    if not o.enabled and not row.release:
         yield "was not enabled when the fault set in"
     if o.speed < 0.8 * state.speed:
         yield f"moved at {o.speed * 1e3:.2f} mm/s before the fault instead of {state.speed * 1e3:g}"

@@ -19,6 +19,10 @@ def test_a_good_cell_misses_nothing():
     assert judge(ROW, IDLE, replace(GOOD, speed=0.0, travel=0.0)).holds
 
 
+def test_a_fault_may_be_noticed_before_the_pedal_is_released():
+    assert judge(replace(ROW, release=True), LIMIT, replace(GOOD, enabled=False)).holds
+
+
 def test_a_robot_that_was_not_at_the_end_of_its_travel_misses():
     (state,) = [state for state in STATES if state.end]
     assert judge(ROW, state, replace(GOOD, to_end=0.5e-3)).holds
