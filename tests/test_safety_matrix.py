@@ -74,6 +74,7 @@ def test_a_fault_is_the_same_again_for_its_seed():
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(1200)
 def test_the_whole_matrix_holds():
     assert not misses(run_matrix(FOLDER / "whole").verdicts)
 
