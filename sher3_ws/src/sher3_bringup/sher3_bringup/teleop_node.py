@@ -10,7 +10,7 @@ import rclpy
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 from sher3_runtime import JoySample, TextSample, WrenchSample, environment
-from sher3_runtime.ports import NODE_OPTIONS, PERIOD_VARIABLE, advertise, on_tick, subscribe
+from sher3_runtime.ports import NODE_OPTIONS, PERIOD_VARIABLE, advertise, clock_of, on_tick, subscribe
 from sher3_runtime.process import stop_on_signals
 from sher3_runtime.spinning import spin
 
@@ -19,9 +19,12 @@ from .surgeon import Script, Six
 Hands = Callable[[float], tuple[float, Six]]
 """Pedal travel and wrench on the tip in {b} at a time [s] since the first tick."""
 
+HAND_PERIOD_NS = 4_000_000
+"""What hand and foot do is told this often: ten times what a hand can follow."""
+
 
 class TeleopNode(Node):
-    """Publishes what the surgeon does at every tick.
+    """Publishes what the surgeon does, at every tick or every 4 ms, whichever is longer.
 
     Attributes:
         elapsed: seconds since the first tick.
@@ -36,7 +39,7 @@ class TeleopNode(Node):
         self._publish_command = advertise(self, "command/state_command")
         self._start = 0
         self.elapsed = 0.0
-        on_tick(self, self._tick)
+        on_tick(self, self._tick, every=max(1, HAND_PERIOD_NS // clock_of(self).period_ns))
 
     def _tick(self, stamp: int) -> None:
         self._start = self._start or stamp

@@ -15,7 +15,7 @@ from sher3_description import Robot, Sher3Error
 from sher3_kinematics import kernel_parameters
 from sher3_kinematics.direct import direct
 from sher3_runtime import DiagnosticSample, JointSample, JoySample, TextSample, TwistSample, WrenchSample
-from sher3_runtime.ports import NODE_OPTIONS, advertise, clock_of, latest, on_tick, subscribe
+from sher3_runtime.ports import NODE_OPTIONS, advertise, advertise_on_demand, clock_of, latest, on_tick, subscribe
 from std_srvs.srv import Trigger
 
 from .admittance import NO_WRENCH, LawInput, initial_state, step
@@ -65,7 +65,7 @@ class AdmittanceNode(Node):
 
     def _connect(self, period: float) -> None:
         self._publish_twist = advertise(self, "servo_cv")
-        self._publish_inputs = advertise(self, "admittance/inputs")
+        self._publish_inputs = advertise_on_demand(self, "admittance/inputs")
         self._publish_settings = advertise(self, "admittance/settings")
         self._publish_status = advertise(self, "admittance/status")
         self._take_joints = latest(self, "measured_js")
@@ -140,9 +140,10 @@ class AdmittanceNode(Node):
         )  # fmt: skip
 
     def _record(self, i: LawInput) -> None:
-        stamps = (i.stamp, i.wrench_stamp, i.pedal_stamp, i.joints_stamp)
-        record = AdmittanceRecord(self._tick_count, *stamps, int(i.enabled), int(i.owner), self._live.version)
-        self._publish_inputs(TextSample(record_text(record)))
+        if self._publish_inputs.wanted():
+            stamps = (i.stamp, i.wrench_stamp, i.pedal_stamp, i.joints_stamp)
+            record = AdmittanceRecord(self._tick_count, *stamps, int(i.enabled), int(i.owner), self._live.version)
+            self._publish_inputs(TextSample(record_text(record)))
         self._tick_count += 1
 
     def _on_command(self, sample: TextSample) -> None:

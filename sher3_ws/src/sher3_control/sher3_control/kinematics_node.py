@@ -16,7 +16,7 @@ from sher3_description import Robot, Sher3Error
 from sher3_kinematics import kernel_parameters
 from sher3_kinematics.direct import direct
 from sher3_runtime import DiagnosticSample, JointSample, PoseSample, TextSample, TwistSample, WrenchSample
-from sher3_runtime.ports import NODE_OPTIONS, advertise, clock_of, latest, on_tick, subscribe
+from sher3_runtime.ports import NODE_OPTIONS, advertise, advertise_on_demand, clock_of, latest, on_tick, subscribe
 
 from .cooperative import RESTING
 from .deflection_compensation import DeflectionCompensation
@@ -65,8 +65,8 @@ class KinematicsNode(Node):
     def _connect(self, period: float) -> None:
         self._publish_velocity = advertise(self, "servo_jv")
         self._publish_setpoint = advertise(self, "setpoint_js")
-        self._publish_pose = advertise(self, "measured_cp")
-        self._publish_inputs = advertise(self, "motion/inputs")
+        self._publish_pose = advertise_on_demand(self, "measured_cp")
+        self._publish_inputs = advertise_on_demand(self, "motion/inputs")
         self._publish_settings = advertise(self, "motion/settings")
         self._publish_status = advertise(self, "motion/status")
         self._joints_topic = subscribe(self, "measured_js", self._on_joints)
@@ -95,7 +95,8 @@ class KinematicsNode(Node):
         cooperative = self.motion.ownership.owner in (None, Mode.COOPERATIVE)
         if not cooperative or self._twist.stamp == sample.stamp:
             self._tick(sample.stamp)
-        self._publish_pose(PoseSample(sample.stamp, *self._tip_pose(self._kernel, sample.position)))
+        if self._publish_pose.wanted():
+            self._publish_pose(PoseSample(sample.stamp, *self._tip_pose(self._kernel, sample.position)))
 
     def _on_twist(self, sample: TwistSample) -> None:
         self._twist = sample
@@ -144,10 +145,11 @@ class KinematicsNode(Node):
         self._report(output)
 
     def _record(self, i: MotionInput, output: MotionOutput) -> None:
-        mode = MODE_CODES[self.motion.ownership.owner]
-        stamps = (i.stamp, i.joints_stamp, i.twist_stamp)
-        record = MotionRecord(self._tick_count, *stamps, int(i.enabled), mode, int(output.reason), self._version)
-        self._publish_inputs(TextSample(record_text(record)))
+        if self._publish_inputs.wanted():
+            mode = MODE_CODES[self.motion.ownership.owner]
+            stamps = (i.stamp, i.joints_stamp, i.twist_stamp)
+            record = MotionRecord(self._tick_count, *stamps, int(i.enabled), mode, int(output.reason), self._version)
+            self._publish_inputs(TextSample(record_text(record)))
         self._tick_count += 1
 
     def _command(self, mode: Mode) -> Callable[[Any], None]:

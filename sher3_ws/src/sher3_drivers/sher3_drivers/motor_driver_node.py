@@ -13,6 +13,7 @@ from sher3_runtime import (
     DiagnosticSample,
     JointSample,
     advertise,
+    advertise_on_demand,
     clock_of,
     latest,
     on_tick,
@@ -23,6 +24,7 @@ from sher3_runtime import (
 from .bus import CanLink, open_links
 from .driver_report import driver_report
 from .errors import CommandRefused
+from .feedback import Feedback
 from .motor_driver import MotorDriver
 from .settings import MotorDriverSettings, default_settings
 from .trips import Trip
@@ -62,8 +64,8 @@ class MotorDriverNode(Node):
         self._told = False
         self._refused: str | None = None
         self._publish_position = advertise(self, "measured_js")
-        self._publish_drives = advertise(self, "drives/measured_js")
-        self._publish_demand = advertise(self, "drives/setpoint_jv")
+        self._publish_drives = advertise_on_demand(self, "drives/measured_js")
+        self._publish_demand = advertise_on_demand(self, "drives/setpoint_jv")
         self._publish_report = advertise(self, "diagnostics")
         self._sent = statistics_of(self).trace("sent servo_jv")
         subscribe(self, "servo_jv", self._on_command)
@@ -82,11 +84,16 @@ class MotorDriverNode(Node):
             self._publish_position(JointSample(stamp, position))
         feedback = driver.collect()
         if feedback is not None:
-            sample = JointSample(stamp, feedback.motor_position, feedback.motor_velocity, feedback.effort)
-            self._publish_drives(sample)
-            self._publish_demand(JointSample(stamp, None, feedback.velocity_demand))
+            self._publish_feedback(stamp, feedback)
         if self._told is not (driver.stop.first is not None):
             self._report(stamp)
+
+    def _publish_feedback(self, stamp: int, feedback: Feedback) -> None:
+        if self._publish_drives.wanted():
+            sample = JointSample(stamp, feedback.motor_position, feedback.motor_velocity, feedback.effort)
+            self._publish_drives(sample)
+        if self._publish_demand.wanted():
+            self._publish_demand(JointSample(stamp, None, feedback.velocity_demand))
 
     def _on_command(self, sample: JointSample) -> None:
         try:

@@ -88,20 +88,20 @@ class RawExecutor(Executor):
         if self._stale:
             self._rebuild()
         timeout = IDLE_NS if timeout_sec is None or timeout_sec < 0 else min(int(timeout_sec * 1e9), IDLE_NS)
-        clock = self._clock_of_ticks
+        now, clock = monotonic_ns(), self._clock_of_ticks
         if clock is not None:
-            timeout = max(0, min(timeout, min([tick.due_ns for tick in self._ticks]) - clock.now()))
+            timeout = max(0, min(timeout, min([tick.due_ns for tick in self._ticks]) - clock.offset_ns - now))
         if self._files:
             self._wait_on_files(timeout)
-            timeout = 0
-        if not self._files or self._topics_are_due():
-            self._wait_and_run(timeout)
+            now, timeout = monotonic_ns(), 0
+        if not self._files or now >= self._topics_due_ns:
+            self._topics_due_ns = now + self._period_ns
+            self._wait_and_run(timeout, now)
         if clock is not None:
             self._run_ticks(clock)
 
-    def _wait_and_run(self, timeout_ns: int) -> None:
+    def _wait_and_run(self, timeout_ns: int, now: int) -> None:
         """Wait for the streams, or every `LOOK_NS` for everything, and run what is ready."""
-        now = monotonic_ns()
         left = self._look_due_ns - now
         if left <= 0 or (timeout_ns > left and not self._streams):
             self._wait(timeout_ns)
@@ -251,17 +251,9 @@ class RawExecutor(Executor):
             self._asked = self._waitables
         wait_set.wait(timeout_ns)
 
-    def _topics_are_due(self) -> bool:
-        """Tell whether to look at the topics: who waits on files does it twice a period, not at each wake-up."""
-        now = monotonic_ns()
-        if now < self._topics_due_ns:
-            return False
-        self._topics_due_ns = now + self._period_ns // 2
-        return True
-
     def _wait_on_files(self, timeout_ns: int) -> bool:
-        """Wait on the files instead, no longer than half a period, since the topics are only looked at afterwards."""
-        readable, _, _ = select.select(self._files, (), (), min(timeout_ns, self._period_ns // 2) * 1e-9)
+        """Wait on the files instead, no longer than a period, since the topics are only looked at afterwards."""
+        readable, _, _ = select.select(self._files, (), (), min(timeout_ns, self._period_ns) * 1e-9)
         # Several files may share a callback, which serves them all.
         for callback in dict.fromkeys([self._files[number] for number in readable]):
             callback()

@@ -101,8 +101,7 @@ class PlantNode(Node):
         self._wrench: tuple[float, ...] = NOTHING
         self._wrench_at = 0
         self._foot, self._foot_at = RELEASED, 0
-        self._streamed = False
-        self._tip_stamp = -1
+        self._streamed = self._tip_stamp = -1
         self._force = force_device if force_device is not None else NetFtServer()
         self._pedal = PedalSender(pedal_device) if isinstance(pedal_device, str) else pedal_device
         self._say_wrench: Callable[[Any], object] = (
@@ -128,17 +127,20 @@ class PlantNode(Node):
                 on_readable(self, link, self._serve)
         if isinstance(self._force, NetFtServer):
             on_readable(self, self._force, self._force.poll)
-        on_tick(self, self._tick, 0.5 * self._period)
+        self._alone = on_tick(self, self._tick, 0.5 * self._period)
         on_tick(self, self._second, 0.5 * self._period, max(1, round(1.0 / self._period)))
 
     def step(self, velocity_command: Sequence[float]) -> Reading:
         """Advance the plant by one period, as `MockDriveBus` asks at a SYNC, and let the sensors speak."""
         fresh = self._now() - self._wrench_at < HOLD * 1e9
         self._reading = reading = self._plant.step(velocity_command, self._wrench if fresh else NOTHING)
-        self._stream()
         stamp = self._stamp()
+        self._stream(stamp)
         if self._truth_told:
             self._tell_truth()
+        else:
+            self._press()
+            self._alone.done(stamp)
         # A SYNC that comes a period late would give its sample the stamp of the next one.
         if reading.tracker is not None and stamp > self._tip_stamp:
             self._tip_stamp, pose = stamp, reading.tracker.tolist()
@@ -158,19 +160,21 @@ class PlantNode(Node):
         period = round(self._period * 1e9)
         return self._now() // period * period
 
-    def _stream(self) -> None:
-        self._streamed = True
+    def _stream(self, stamp: int) -> None:
+        self._streamed = stamp
         self._say_wrench(tuple(self._reading.wrench.tolist()))
+
+    def _press(self) -> None:
+        self._say_pedal(self._foot if self._now() - self._foot_at < HOLD * 1e9 else RELEASED)
 
     def _tick(self, stamp: int) -> None:
         """Speak for devices that have a clock of their own: sensor and pedal go on when no SYNC comes."""
         if self._faults is not None:
             self._faults.poll(self._now())
         self.drives.poll()
-        if not self._streamed:
-            self._stream()
-        self._streamed = False
-        self._say_pedal(self._foot if self._now() - self._foot_at < HOLD * 1e9 else RELEASED)
+        if self._streamed != stamp:
+            self._stream(stamp)
+        self._press()
 
     def _second(self, stamp: int) -> None:
         self._publish_temperature(TemperatureSample(stamp, self._reading.temperature))
