@@ -103,11 +103,10 @@ class NetFtSensor:
         """Return the newest record that arrived at or after `since`; see `force_sensor.ForceSensorDevice`."""
         deadline = time.monotonic() + timeout
         while True:
+            select.select((self._socket,), (), (), max(0.0, deadline - time.monotonic()))
             record = self._newest(since)
-            left = deadline - time.monotonic()
-            if record is not None or left <= 0:
+            if record is not None or time.monotonic() >= deadline:
                 return record
-            select.select((self._socket,), (), (), left)
 
     def _newest(self, since: int) -> WrenchRecord | None:
         """Take every waiting record; return the newest if it arrived at or after `since`."""

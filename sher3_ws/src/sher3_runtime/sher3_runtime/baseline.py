@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import select
 import threading
-import time
 from collections.abc import Callable
 from typing import Any
 
@@ -34,15 +33,23 @@ class BaselineExecutor(SingleThreadedExecutor):
 
 
 def _start_timer(node: Node, tick: Tick) -> None:
+    """Wait with one timer for the grid, then go on with a periodic one that stays on it."""
     clock = clock_of(node)
+    # The middleware's steady clock is the raw one, which drifts off the grid by milliseconds within seconds.
+    system = RosClock(clock_type=ClockType.SYSTEM_TIME)
     tick.schedule()
-    time.sleep(max(0, tick.due_ns - clock.now()) * 1e-9)
-    tick.run(clock.now())
 
     def on_timer() -> None:
-        tick.run(clock.now())
+        # A tick that is `done` is due a period later.
+        if (now := clock.now()) > tick.due_ns - tick.period_ns // 2:
+            tick.run(now)
 
-    node.create_timer(tick.period_ns * 1e-9, on_timer, clock=RosClock(clock_type=ClockType.STEADY_TIME))
+    def on_grid() -> None:
+        node.create_timer(tick.period_ns * 1e-9, on_timer, clock=system)
+        node.destroy_timer(first)
+        on_timer()
+
+    first = node.create_timer(max(0, tick.due_ns - clock.now()) * 1e-9, on_grid, clock=system)
 
 
 def _start_watcher(node: Node, file: Any, callback: Callable[[], None]) -> None:
