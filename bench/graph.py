@@ -56,9 +56,7 @@ def main() -> None:
         for ours, default in zip(results[::2], results[1::2], strict=True):
             ratio = default["latency"]["p50"] / ours["latency"]["p50"]
             less = default["cpu_loop"] / ours["cpu_loop"]
-            print(
-                f"{ours['rate']:6.0f} Hz: the default executor takes {ratio:.1f} times as long (p50), {less:.1f} times the CPU"
-            )
+            print(f"{ours['rate']:6.0f} Hz: default {ratio:.1f} times as long in p50, {less:.1f} times the CPU")
 
 
 def measure(rate: float, seconds: float, executor: str, realtime: int, nodes: str | None) -> dict[str, Any]:
