@@ -1,7 +1,8 @@
-"""Where compiled code is kept on disk: one folder per state of the kernel sources.
+"""Where compiled code is kept on disk: one folder per state of the sources of this package.
 
-Numba's cache notices a change of the file a function stands in, not of the files whose functions it inlines. Code
-compiled against old kernels would then go on running after an edit or an update; a folder named by the sources cannot.
+Numba's cache notices a change of the file a function stands in, not of the files whose functions and constants it
+takes. Code compiled against old ones would then go on running after an edit or an update; a folder named by the sources
+cannot. All sources count: `arrays` and `tip_deflection` end up in compiled code of other packages too.
 """
 
 from __future__ import annotations
@@ -19,9 +20,9 @@ KEEP_SECONDS = 7 * 24 * 3600
 
 
 def source_digest(folder: Path) -> str:
-    """Return a short digest of all kernel sources in a folder."""
+    """Return a short digest of all sources in a folder."""
     digest = hashlib.sha256()
-    for path in sorted(folder.glob("kernel*.py")):
+    for path in sorted(folder.glob("*.py")):
         digest.update(path.name.encode() + b"\0" + path.read_bytes())
     return digest.hexdigest()[:16]
 

@@ -1,4 +1,4 @@
-"""Compiled code is kept apart for every state of the kernel sources."""
+"""Compiled code is kept apart for every state of the sources."""
 
 from pathlib import Path
 
@@ -7,13 +7,16 @@ import pytest
 from sher3_kinematics import compile_cache
 
 
-def test_digest_follows_any_kernel_source(tmp_path: Path) -> None:
+def test_digest_follows_any_source(tmp_path: Path) -> None:
+    """A constant that another package compiles in may stand in any of them."""
     (tmp_path / "kernel_a.py").write_text("x = 1\n")
-    before = compile_cache.source_digest(tmp_path)
-    (tmp_path / "other.py").write_text("y = 1\n")
-    assert compile_cache.source_digest(tmp_path) == before
-    (tmp_path / "kernel_a.py").write_text("x = 2\n")
-    assert compile_cache.source_digest(tmp_path) != before
+    found = [compile_cache.source_digest(tmp_path)]
+    (tmp_path / "notes.txt").write_text("nothing\n")
+    assert compile_cache.source_digest(tmp_path) == found[0]
+    for name, text in (("kernel_a.py", "x = 2\n"), ("other.py", "y = 1\n"), ("other.py", "y = 2\n")):
+        (tmp_path / name).write_text(text)
+        found.append(compile_cache.source_digest(tmp_path))
+    assert len(set(found)) == 4
 
 
 def test_folder_is_named_by_the_sources(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
