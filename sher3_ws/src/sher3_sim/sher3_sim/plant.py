@@ -48,9 +48,12 @@ def checked(name: str, values: ArrayLike, shape: tuple[int, ...]) -> Vector:
     """Return values as a contiguous float array of the given shape.
 
     Raises:
-        InputError: wrong shape, or a value that is not finite.
+        InputError: no numbers, wrong shape, or a value that is not finite.
     """
-    array = np.ascontiguousarray(values, dtype=np.float64)
+    try:
+        array = np.ascontiguousarray(values, dtype=np.float64)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise InputError(f"{name} is no array of numbers", value=repr(values)[:80], limit=shape) from error
     if array.shape != shape:
         raise InputError(
             f"{name} has the wrong shape", value=array.shape, limit=shape, remedy="one row per actuator order"
@@ -143,7 +146,11 @@ class Plant:
 
 def _take(name: str, values: ArrayLike, into: Vector) -> None:
     """Copy values into an array of their shape; the plain list of the running loop is checked without an array."""
-    if type(values) in (list, tuple) and len(values) == len(into) and math.isfinite(sum(values)):  # type: ignore[arg-type]
+    try:
+        plain = type(values) in (list, tuple) and len(values) == len(into) and math.isfinite(sum(values))  # type: ignore[arg-type]
+    except (TypeError, OverflowError):
+        plain = False
+    if plain:
         into[:] = values
     else:
         into[:] = checked(name, values, into.shape)

@@ -153,7 +153,10 @@ def test_same_seed_same_run_other_seed_other_noise():
     assert np.array_equal(one, same) and not np.array_equal(one, other)
 
 
-@pytest.mark.parametrize("bad", [np.zeros(4), [0, 0, np.nan, 0, 0], [0, 0, np.inf, 0, 0]])
+@pytest.mark.parametrize(
+    "bad",
+    [np.zeros(4), [0, 0, np.nan, 0, 0], [0, 0, np.inf, 0, 0], [0, 0, None, 0, 0], ["a"] * 5, [10**400] * 5, None],
+)
 def test_bad_command_moves_nothing(bad):
     plant = Plant(ROBOT)
     before = plant.step(np.zeros(5))
