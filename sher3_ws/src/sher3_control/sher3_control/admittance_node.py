@@ -15,7 +15,8 @@ from sher3_description import Robot, Sher3Error
 from sher3_kinematics import kernel_parameters
 from sher3_kinematics.direct import direct
 from sher3_runtime import DiagnosticSample, JointSample, JoySample, TextSample, TwistSample, WrenchSample
-from sher3_runtime.ports import NODE_OPTIONS, advertise, advertise_on_demand, clock_of, latest, on_tick, subscribe
+from sher3_runtime.on_demand import advertise_on_demand
+from sher3_runtime.ports import NODE_OPTIONS, advertise, clock_of, latest, on_tick, subscribe
 from std_srvs.srv import Trigger
 
 from .admittance import NO_WRENCH, LawInput, initial_state, step

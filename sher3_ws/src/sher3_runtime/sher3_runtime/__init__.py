@@ -20,9 +20,9 @@ if TYPE_CHECKING:
     from .clock import Clock as Clock
     from .clock import SteppedClock as SteppedClock
     from .graph import Graph as Graph
+    from .on_demand import advertise_on_demand as advertise_on_demand
     from .ports import NODE_OPTIONS as NODE_OPTIONS
     from .ports import advertise as advertise
-    from .ports import advertise_on_demand as advertise_on_demand
     from .ports import advertise_raw as advertise_raw
     from .ports import clock_of as clock_of
     from .ports import latest as latest
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 _DOORS = {
     "NODE_OPTIONS": "ports",
     "advertise": "ports",
-    "advertise_on_demand": "ports",
+    "advertise_on_demand": "on_demand",
     "advertise_raw": "ports",
     "clock_of": "ports",
     "latest": "ports",

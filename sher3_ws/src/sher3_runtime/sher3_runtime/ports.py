@@ -47,8 +47,6 @@ GAPLESS = frozenset(
 """Streams with a sample at every tick: a stamp that skips a tick is a lost sample."""
 
 Publish = Callable[[Any], None]
-COUNT_EVERY = 50
-"""Samples after which a publisher on demand asks again whether anybody listens."""
 
 
 class Subscribed:
@@ -269,42 +267,6 @@ def advertise(node: Node, name: str) -> Publish:
     if trace is None and raw and not port.clock.stepped:
         return lambda sample: send(encode(sample))
     return publish
-
-
-class OnDemand:
-    """`publish(sample)` of a stream that the loop itself does not need; ask `wanted()` before making the sample.
-
-    A new subscriber is noticed after at most `COUNT_EVERY` samples, in stepped time at once.
-    """
-
-    __slots__ = ("_ask_in", "_count", "_publish", "_stepped", "_wanted")
-
-    def __init__(self, publish: Publish, count: Callable[[], int], stepped: bool) -> None:
-        self._publish, self._count, self._stepped = publish, count, stepped
-        self._ask_in, self._wanted = 0, True
-
-    def wanted(self) -> bool:
-        """Tell, once for each sample, whether anybody listens."""
-        if self._stepped:
-            return True
-        if self._ask_in == 0:
-            self._ask_in, self._wanted = COUNT_EVERY, self._count() > 0
-        self._ask_in -= 1
-        return self._wanted
-
-    def __call__(self, sample: Any) -> None:
-        """Publish a sample."""
-        self._publish(sample)
-
-
-def advertise_on_demand(node: Node, name: str) -> OnDemand:
-    """Return `publish(sample)` of a topic of the table, with `publish.wanted()`.
-
-    Raises:
-        UnknownTopic: the name is not in the table.
-    """
-    publish, port = advertise(node, name), ports(node)
-    return OnDemand(publish, port.publishers[name].get_subscription_count, port.clock.stepped)
 
 
 def latest(node: Node, name: str) -> Callable[[], Any]:
