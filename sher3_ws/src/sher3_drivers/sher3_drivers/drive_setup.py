@@ -9,6 +9,7 @@ from sher3_description import ACTUATORS
 from .bus import CanLink
 from .canopen_master import CanopenMaster
 from .drive_objects import required_values, required_writes
+from .other_host import refuse_other_host
 from .settings import MotorDriverSettings
 from .units import AxisScale
 
@@ -18,6 +19,8 @@ def set_up_drives(
 ) -> None:
     """Restart every drive, write its configuration, verify it by read-back, and bring all of them to OPERATIONAL.
 
+    Before the first command it listens whether somebody else commands these drives.
+
     Args:
         links: one link per channel.
         settings: channels and limits.
@@ -25,9 +28,11 @@ def set_up_drives(
         patience: longest wait for a drive to boot, s.
 
     Raises:
+        OtherHost: somebody does; nothing is sent, so that the robot he moves goes on.
         DriveSilent: a drive does not answer.
         DriveMismatch: a drive does not hold what it must. No drive becomes OPERATIONAL.
     """
+    refuse_other_host(links, settings.host_id)
     masters = [
         CanopenMaster(link, {name: 1 + ACTUATORS.index(name) for name in channel.drives}, settings.sdo_limit)
         for link, channel in zip(links, settings.channels, strict=True)

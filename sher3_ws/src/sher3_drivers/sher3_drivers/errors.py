@@ -67,6 +67,15 @@ class DriveSilent(DriverError):
         self.drive = drive
 
 
+class OtherHost(DriverError):
+    """Somebody else commands the drives of this bus already; carries `link`. Nothing was sent."""
+
+    def __init__(self, link: str, said: str) -> None:
+        remedy = "end the other motor driver, or give this one another bus; nothing was sent"
+        super().__init__(f"CAN link {link}: there is another host", value=said, limit="one host on a bus", remedy=remedy)
+        self.link = link
+
+
 class CommandRefused(DriverError):
     """A velocity command that must not reach the drives; zero velocity was sent instead."""
 

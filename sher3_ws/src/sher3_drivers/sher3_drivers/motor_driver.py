@@ -103,6 +103,7 @@ class MotorDriver:
             patience: longest wait for a drive to boot, s.
 
         Raises:
+            OtherHost: another host is on the bus; nothing is sent.
             DriveSilent: a drive does not answer.
             DriveMismatch: a drive does not hold what it must. Nothing is enabled, no drive becomes OPERATIONAL.
         """

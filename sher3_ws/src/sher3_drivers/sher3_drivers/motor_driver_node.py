@@ -23,7 +23,7 @@ from sher3_runtime import (
 
 from .bus import CanLink, open_links
 from .driver_report import driver_report
-from .errors import CommandRefused
+from .errors import CommandRefused, DriverError
 from .feedback import Feedback
 from .motor_driver import MotorDriver
 from .settings import MotorDriverSettings, default_settings
@@ -43,7 +43,7 @@ class MotorDriverNode(Node):
         patience: longest wait for the drives at the start, s.
 
     Raises:
-        LinkError, DriveSilent, DriveMismatch: the drives cannot be reached or are not what they must be.
+        LinkError, OtherHost, DriveSilent, DriveMismatch: the drives cannot be reached or are not what they must be.
     """
 
     def __init__(
@@ -59,7 +59,12 @@ class MotorDriverNode(Node):
         if links is None:
             links = open_links([channel.link for channel in settings.channels])
         self.driver = MotorDriver(robot, settings, links, clock_of(self).now)
-        self.driver.configure(patience)
+        try:
+            self.driver.configure(patience)
+        except DriverError:
+            for link in links:
+                link.close()
+            raise
         self._state, self._action = "DISABLED", Action.NONE
         self._told = False
         self._refused: str | None = None
