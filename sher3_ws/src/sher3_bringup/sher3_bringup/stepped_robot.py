@@ -15,6 +15,7 @@ from sher3_drivers.bus import CanLink, LockstepLink, open_link
 from sher3_drivers.force_sensor import InProcessForceSensor
 from sher3_drivers.force_sensor_node import ForceSensorNode
 from sher3_drivers.motor_driver_node import MotorDriverNode
+from sher3_drivers.other_host import LISTEN
 from sher3_drivers.pedal import InProcessPedal
 from sher3_drivers.pedal_node import PedalNode
 from sher3_drivers.settings import MotorDriverSettings, default_settings
@@ -82,6 +83,7 @@ class SteppedRobot:
         """
         if name == "motor_driver":
             links = [open_link(f"virtual:{self._channel}-{i}") for i in range(len(self._settings.channels))]
+            self.graph.step(round(LISTEN / self.robot.control_period))  # it listens first, and that takes time
             return self.graph.add(MotorDriverNode, self.robot, self._settings, self._lockstep(links))
         devices = {"force_sensor": (ForceSensorNode, self.force), "pedal": (PedalNode, self.pedal_device)}
         if name in devices:

@@ -72,7 +72,7 @@ class OtherHost(DriverError):
 
     def __init__(self, link: str, said: str) -> None:
         remedy = "end the other motor driver, or give this one another bus; nothing was sent"
-        super().__init__(f"CAN link {link}: there is another host", value=said, limit="one host on a bus", remedy=remedy)
+        super().__init__(f"CAN link {link}: there is another host", value=said, limit="one on a bus", remedy=remedy)
         self.link = link
 
 

@@ -27,7 +27,7 @@ def test_a_second_motor_driver_is_refused_and_the_robot_goes_on(rig):
     links = second_links(rig)
     for _ in range(3):
         rig.tick(SLOW)
-    with pytest.raises(OtherHost, match="there is another host.* limit one host on a bus.*end the other") as caught:
+    with pytest.raises(OtherHost, match=r"there is another host.* limit one on a bus.*end the other") as caught:
         MotorDriver(ROBOT, rig.settings, links).configure()
     assert caught.value.link in [link.name for link in links]
     before = list(rig.plant.position)

@@ -147,8 +147,9 @@ LOST = {
     "supervisor": ("SUPERVISOR_SILENT", "NOT_ENABLED"),
 }
 """What is reported first when a process is gone."""
-TWICE = ("PUBLISHED_TWICE", "NOT_ENABLED", "DRIVE_RESTARTED")
-"""The supervisor counts publishers; a second supervisor says DISABLED, a second motor driver restarts the drives."""
+TWICE = ("PUBLISHED_TWICE", "NOT_ENABLED")
+"""The supervisor counts publishers; a second supervisor says DISABLED."""
+REFUSED = "the second one hears the first on the bus and does not start"
 PROCESSES = (
     *(
         Row(f"process.{name}", "stuck", reasons=LOST[name], quick=name in ("admittance", "supervisor"))
@@ -159,7 +160,12 @@ PROCESSES = (
     *(Row(f"process.{name}", "delayed", {"delay": 0.006}, effect="either", why=BRIEF) for name in NODES),
     *(Row(f"process.{name}", "intermittent", effect="either", why=BRIEF) for name in NODES),
     *(Row(f"process.{name}", "off", reasons=LOST[name]) for name in NODES),
-    *(Row(f"process.{name}", "duplicated", reasons=TWICE, quick=name == "supervisor") for name in NODES),
+    *(
+        Row(f"process.{name}", "duplicated", reasons=TWICE, quick=name == "supervisor")
+        for name in NODES
+        if name != "motor_driver"
+    ),
+    Row("process.motor_driver", "duplicated", effect="goes on", why=REFUSED),
 )
 CLOCKS = ("force_sensor", "pedal", "motor_driver")
 SAMPLES = "it takes the time of a tick from its samples; its own clock only fills in for those that stay away"
