@@ -42,7 +42,8 @@ def watch(run: Any) -> tuple[Trip | None, dict[str, float]]:
     checks.begin()
     for k in range(len(load)):
         rows = (tuple(column[k].tolist()) for column in (load, motor, velocity, effort, echo))
-        trip = checks.check(Feedback(k, *rows), k, True, log, k)
+        stamp = round(k * SETTINGS.period * 1e9)
+        trip = checks.check(Feedback(stamp, *rows), True, log, stamp)
         if trip is not None:
             return trip, shares
         for axis in checks.joints.axes:

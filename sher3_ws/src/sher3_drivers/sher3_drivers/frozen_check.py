@@ -25,7 +25,7 @@ class FrozenCheck:
     """
 
     def __init__(self, scales: Sequence[AxisScale], settings: MotorDriverSettings) -> None:
-        self._scales, self._period = tuple(scales), settings.period
+        self._scales = tuple(scales)
         self._limits = [settings.encoder_angle if s.revolute else settings.encoder_distance for s in scales]
         self.begin()
 
@@ -34,15 +34,15 @@ class FrozenCheck:
         self.way, self.blind = [0.0] * len(self._scales), False
         self._last: list[tuple[float, float, float]] = []
 
-    def check(self, feedback: Feedback, commanded: Sequence[float]) -> Trip | None:
-        """Judge a feedback against the velocities (5,) sent before it [m/s, rad/s]."""
+    def check(self, feedback: Feedback, commanded: Sequence[float], since: float) -> Trip | None:
+        """Judge a feedback against the velocities (5,) sent before it [m/s, rad/s], `since` s after the one before."""
         reports = list(zip(feedback.motor_position, feedback.load_position, feedback.effort, strict=True))
         before, self._last = self._last, reports
         for axis, report in enumerate(reports if before else ()):
             if report != before[axis]:
                 self.way[axis] = 0.0
                 continue
-            way = self.way[axis] = self.way[axis] + abs(commanded[axis]) * self._period
+            way = self.way[axis] = self.way[axis] + abs(commanded[axis]) * since
             if way > self._limits[axis]:
                 scale, limit, self.blind = self._scales[axis], self._limits[axis], True
                 unit = "rad" if scale.revolute else "m"

@@ -156,30 +156,24 @@ class JointWatch:
     """
 
     def __init__(self, scales: Sequence[AxisScale], settings: MotorDriverSettings) -> None:
-        self._period = settings.period
+        self._hole = max(_HOLE * settings.period, settings.stall_limit)
         units = ["rad" if scale.revolute else "m" for scale in scales]
         self.axes = [
             AxisCheck(scale.name, unit, axis_limits(scale, settings)) for scale, unit in zip(scales, units, strict=True)
         ]
-        self._tick = -1
 
-    def begin(self) -> None:
-        """Start afresh: the next feedback is what belongs together."""
-        self._tick = -1
+    def check(self, feedback: Feedback, since: float) -> Trip | None:
+        """Judge a feedback `since` s after the one before.
 
-    def check(self, feedback: Feedback, tick: int) -> Trip | None:
-        """Judge the feedback of the driver's tick number `tick`.
-
-        Over ticks whose feedback was lost the newest demand is taken to have held; after more than `_HOLE` of them the
-        axes start afresh, since the robot has stopped on their account.
+        Over ticks that were lost the newest demand is taken to have held. After more than `_HOLE` of them, or than a
+        loop may hang, and where nothing came before (0), the axes start afresh: the robot has stopped on their account.
         """
-        since, self._tick = tick - self._tick if self._tick >= 0 else 0, tick
-        span, found = since * self._period, None
+        found = None
         for axis, motor, load, demand in zip(
             self.axes, feedback.motor_position, feedback.load_position, feedback.velocity_demand, strict=True
         ):
-            if 0 < since <= _HOLE:
-                found = axis.check(motor, load, demand * span, demand) or found
+            if 0.0 < since <= self._hole:
+                found = axis.check(motor, load, demand * since, demand) or found
             else:
                 axis.begin(motor, load)
         return found

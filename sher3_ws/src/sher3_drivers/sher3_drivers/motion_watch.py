@@ -31,25 +31,32 @@ class MotionWatch:
         self.frozen = FrozenCheck(scales, settings)
         self.joints = JointWatch(scales, settings)
         self.rest = RestCheck(scales, settings)
+        self._stamp: int | None = None
 
     def begin(self) -> None:
         """Start afresh with axes that are about to follow."""
         self.demand.begin()
         self.frozen.begin()
-        self.joints.begin()
+        self._stamp = None
 
-    def check(self, feedback: Feedback, tick: int, following: bool, stop: StopLog, now: int) -> Trip | None:
-        """Judge the feedback of tick number `tick` of a robot whose drives are `following`, or that is stopped."""
+    def check(self, feedback: Feedback, following: bool, stop: StopLog, now: int) -> Trip | None:
+        """Judge the feedback of a robot whose drives are `following`, or that is stopped."""
         if stop.first is None:
             if not following:
                 return None
+            since = self._since(feedback.stamp)
             return (
                 self.demand.check(feedback.velocity_demand)
-                or self.frozen.check(feedback, self.demand.newest)
-                or self.joints.check(feedback, tick)
+                or self.frozen.check(feedback, self.demand.newest, since)
+                or self.joints.check(feedback, since)
             )
         moved = self.rest.check(feedback.motor_position, stop.since, now)
         return moved if stop.action < Action.POWER_OFF else None
+
+    def _since(self, stamp: int) -> float:
+        """Return the time since the last feedback, s, 0 for the first: lost ticks are time in which drives go on."""
+        before, self._stamp = self._stamp, stamp
+        return 0.0 if before is None else max(0, stamp - before) * 1e-9
 
     def deaf(self, stop: StopLog) -> bool:
         """Return whether a drive does not listen, or perhaps not: then only silence of the host stops it."""

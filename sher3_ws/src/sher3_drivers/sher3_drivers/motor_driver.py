@@ -85,7 +85,6 @@ class MotorDriver:
         self._zero_age_ns = settings.zero_age * self._period_ns
         self._stop_age_ns = settings.stop_age * self._period_ns
         self._stamp = self._command_stamp = 0
-        self._ticks = 0
         self._refused_last = False
         self._synced_at = self._started_at = self._heartbeat_at = self._watch_at = 0
         heartbeat = pack_frame(od.HEARTBEAT_BASE + settings.host_id, bytes([OPERATIONAL]))
@@ -201,7 +200,6 @@ class MotorDriver:
                 break
         self.collector.begin()
         self._stamp = stamp
-        self._ticks += 1
         now = self.clock()
         late = self.loop.tick(stamp, now)
         if late is not None and self.enabled:
@@ -230,7 +228,7 @@ class MotorDriver:
         self._watch(now)
         feedback = self.collector.feedback(self._stamp) if complete else None
         if feedback is not None:
-            self._stop_if(self.motion.check(feedback, self._ticks, self.enabled, self.stop, now))
+            self._stop_if(self.motion.check(feedback, self.enabled, self.stop, now))
             if self.motion.powers_off(self.stop):
                 self.goal = Goal.DISABLED
         if not self.enabled:

@@ -19,7 +19,7 @@ def run(speed, ticks, effort=lambda k: 0.0):
     check, still = FrozenCheck(SCALES, SETTINGS), (0.0,) * 5
     for k in range(ticks):
         feedback = Feedback(k, still, still, still, (effort(k),) * 5, still)
-        if trip := check.check(feedback, (speed,) * 5):
+        if trip := check.check(feedback, (speed,) * 5, SETTINGS.period):
             return trip, k
     return None, ticks
 
@@ -42,7 +42,7 @@ def test_a_standing_report_makes_the_driver_blind_until_it_starts_afresh():
     check, still = FrozenCheck(SCALES, SETTINGS), (0.0,) * 5
     feedback = Feedback(0, still, still, still, still, still)
     for _ in range(20):
-        check.check(feedback, (5e-3,) * 5)
+        check.check(feedback, (5e-3,) * 5, SETTINGS.period)
     assert check.blind
     check.begin()
     assert not check.blind
