@@ -33,7 +33,10 @@ def test_every_process_killed_or_held_in_every_state(run_sher3):
     cells = json.loads(result.stdout)["cells"]
     assert [(c["name"], c["state"]) for c in cells] == [(row.name, s.name) for row in WALL for s in WALL_STATES]
     for cell in cells:
-        hold(cell)
+        if not unmeasured(cell):
+            hold(cell)
+    if kept := [f"{cell['name']}, {cell['state']}" for cell in cells if unmeasured(cell)]:
+        pytest.skip(f"all others hold; {UNMEASURED}: {'; '.join(kept)}")
 
 
 def test_a_run_that_takes_too_long_says_what_it_has_not_begun(tmp_path):
@@ -44,6 +47,11 @@ def test_a_run_that_takes_too_long_says_what_it_has_not_begun(tmp_path):
 
 def hold(cell):
     """Demand that nothing is missed; skip, visibly, where the strict limits stopped the robot before the fault."""
-    if any(miss.startswith(UNMEASURED) for miss in cell["misses"]):
+    if unmeasured(cell):
         pytest.skip(f"{cell['name']}, {cell['state']}: {cell['misses'][0]}")
     assert not cell["misses"], f"{cell['name']}, {cell['state']}"
+
+
+def unmeasured(cell):
+    """Whether the fault did not find the robot in the state it is meant for."""
+    return any(miss.startswith(UNMEASURED) for miss in cell["misses"])

@@ -130,7 +130,7 @@ class Overlay:
     def run(self, tests: Sequence[str]) -> tuple[int, str]:
         """Run test files up to the first failure; return pytest's exit code and the failed test or the last lines."""
         files = [test if test.startswith("tests/") else f"sher3_ws/src/{test}" for test in tests]
-        command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", "--no-header", "-rf"]
+        command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", "--no-header", "-rfE"]
         command += ["-m", "not slow and not graph", "-k", NOT_COMPILED, *files]
         run = subprocess.run(
             command, cwd=self.folder, env=self.environment, capture_output=True, text=True, check=False
@@ -148,7 +148,7 @@ class Overlay:
         finally:
             path.write_text(original)
         place = f"{Path(guard.file).stem}.{guard.scope}"
-        killed = status == 1 or (status == 2 and "rror" in said)
+        killed = status == 1  # a mutant that cannot even be collected (2) was noticed by no test
         return {
             "guard": guard.name,
             "place": place,
@@ -189,7 +189,7 @@ def main() -> None:
             for result in check(guards, Path(folder)):
                 results.append(result)
                 if not options.json:
-                    noticed = result["killed_by"] or "SURVIVES"
+                    noticed = result["killed_by"] or f"SURVIVES {result['trouble'] or ''}"
                     print(f"{result['guard']:42} {result['place']:42} {result['seconds']:5} s  {noticed}", flush=True)
     except Vanished as error:
         print(f"mutate_guards: {error}", file=sys.stderr)
