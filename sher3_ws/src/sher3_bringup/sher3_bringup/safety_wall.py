@@ -34,7 +34,7 @@ from .fleet import Fleet, Member
 from .nodes import make_nodes
 from .safety_matrix import MatrixResult
 from .settings import RunSettings, checked, parse_processes
-from .up import UNHURRIED, prepare
+from .up import beside, prepare, priority
 
 DOMAIN = 230
 """Beyond those of tests and users."""
@@ -152,15 +152,14 @@ def _longest_silence(stamps: NDArray[np.int64], begin: int, end: int) -> int:
 
 def _launch(fleet: Fleet, settings: RunSettings, realtime: int, state: State, row: Row) -> None:
     for process in settings.processes:
-        priority = -realtime if set(process) <= UNHURRIED else realtime
-        fleet.launch("+".join(process), partial(make_nodes, settings, process), priority)
+        fleet.launch("+".join(process), partial(make_nodes, settings, process), priority(process, realtime))
         if "plant" in process:
             fleet.gather("publishes", PATIENCE)
     if row.component == "process.recorder":
         assert settings.record is not None
         second = settings.model_copy(update={"record": settings.record.with_name(settings.record.name + "-second")})
         fleet.launch("second_recorder", partial(_second_recorder, second), -realtime)
-    fleet.launch("surgeon", partial(_surgeon, state.force, state.pedal), realtime)
+    fleet.launch("surgeon", partial(_surgeon, state.force, state.pedal), beside(realtime))
 
 
 def _second_recorder(settings: RunSettings) -> list[Any]:

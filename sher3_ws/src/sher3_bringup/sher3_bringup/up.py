@@ -20,6 +20,9 @@ from .settings import RunSettings
 DEFAULT_REALTIME = 40
 UNHURRIED = frozenset({"recorder", "gap_monitor"})
 """Compressing a chunk at the loop's priority would hold it up; of these only the receiving threads hurry."""
+BESIDE = frozenset({"pedal", "supervisor"})
+BESIDE_BY = 10
+"""What runs beside the chain from force sample to CAN frame gives way to it, by so much."""
 
 
 def run_graph(
@@ -44,12 +47,11 @@ def run_graph(
     imported = time.monotonic()
     with _signals() as caught, Fleet() as fleet:
         for process in launch_order(settings.processes):
-            priority = -realtime if set(process) <= UNHURRIED else realtime
-            fleet.launch("+".join(process), partial(make_nodes, settings, process), priority)
+            fleet.launch("+".join(process), partial(make_nodes, settings, process), priority(process, realtime))
             if "plant" in process:
                 fleet.gather("publishes")
         for name, make in (extra or {}).items():
-            fleet.launch(name, make, realtime)
+            fleet.launch(name, make, beside(realtime))
         fleet.start()
         started = time.monotonic()
         count, seconds = len(fleet.members), started - imported
@@ -66,6 +68,18 @@ def run_graph(
 
         fleet.watch(finished, spare=("recorder",) if settings.recording == "optional" else ())
     say("stopped" + (f"; recorded {settings.record}" if settings.record else ""))
+
+
+def priority(process: Sequence[str], realtime: int) -> int:
+    """Return the priority of a process, as `use_realtime` takes it, where the chain has `realtime`."""
+    if set(process) <= UNHURRIED:
+        return -realtime
+    return beside(realtime) if set(process) <= BESIDE else realtime
+
+
+def beside(realtime: int) -> int:
+    """Return the priority of what gives way to a chain of priority `realtime`; 0 stays 0."""
+    return min(realtime, max(1, realtime - BESIDE_BY))
 
 
 def launch_order(processes: Sequence[tuple[str, ...]]) -> list[tuple[str, ...]]:
