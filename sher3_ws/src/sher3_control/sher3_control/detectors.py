@@ -196,11 +196,11 @@ class TwinDetector(_Plain):
     """
 
     limit: int = 1
-    counts: Mapping[str, int] = field(default_factory=dict)
+    counts: dict[str, int] = field(default_factory=dict)
 
     def feed(self, counts: Mapping[str, int]) -> None:
-        """Take note of how many publishers each stream has."""
-        self.counts = counts
+        """Take note of how many publishers these streams have; those of others stay as they were."""
+        self.counts.update(counts)
 
     def look(self, now: int) -> Finding:
         """Return the stream with the most publishers."""

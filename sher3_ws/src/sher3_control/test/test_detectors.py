@@ -37,7 +37,8 @@ def test_a_second_publisher_of_a_stream_of_its_own_stops_the_robot():
     for counts in ({}, {"servo_jv": 1, "pedal/measured": 0}):
         twins.feed(counts)
         assert not supervisor.check(1) and supervisor.state is S.ENABLED
-    twins.feed({"servo_jv": 1, "pedal/measured": 2})
+    twins.feed({"pedal/measured": 2})
+    twins.feed({"servo_jv": 1})  # asked in turn: what was found of the others stays
     assert supervisor.check(2) and supervisor.state is S.FAULT
     first = supervisor.status.first_fault
     assert (first.code, first.value, first.source, first.unit) == ("PUBLISHED_TWICE", 2, "pedal/measured", "publishers")
