@@ -2,24 +2,26 @@
 
 from __future__ import annotations
 
-import itertools
 import os
 import shutil
 import subprocess
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from processes import child_environment, sher3_command
+from sher3_runtime.domains import PROCESSES, claim_domain, release_domain
 from sources import ROOT
 
 os.environ.setdefault("ROS_PYTHON_CHECK_FIELDS", "1")
-_domains = itertools.count(110 + os.getpid() % 50)
 
 
 @pytest.fixture
-def domain() -> int:
-    """A ROS domain of the test's own."""
-    return 101 + next(_domains) % 100
+def domain() -> Iterator[int]:
+    """A ROS domain of the test's own, on the whole machine."""
+    claimed = claim_domain(PROCESSES)
+    yield claimed
+    release_domain(claimed)
 
 
 @pytest.fixture

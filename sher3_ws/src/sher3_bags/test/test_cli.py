@@ -10,6 +10,7 @@ import time
 import pytest
 from sher3_bags import read_run, write_run
 from sher3_bags.cli import app
+from sher3_runtime.domains import PROCESSES, claim_domain
 from typer.testing import CliRunner
 
 runner = CliRunner()
@@ -84,7 +85,7 @@ COMMAND = [sys.executable, "-c", "from sher3_bags.cli import app; app()"]
 @pytest.mark.graph
 def test_record_and_replay_in_two_processes(bag, tmp_path):
     """The recorder sees every message of the replay, stops at SIGINT and leaves a whole bag."""
-    environment = {**os.environ, "ROS_DOMAIN_ID": str(101 + os.getpid() % 100)}
+    environment = {**os.environ, "ROS_DOMAIN_ID": str(claim_domain(PROCESSES))}
     target = tmp_path / "again"
     topics = ["--topic", "measured_js", "--topic", "servo_jv"]
     recorder = subprocess.Popen(

@@ -1,6 +1,5 @@
 """Supervision of processes, with small nodes of its own in processes of their own."""
 
-import os
 import subprocess
 import sys
 import textwrap
@@ -8,6 +7,7 @@ import time
 from pathlib import Path
 
 import pytest
+from sher3_runtime.domains import PROCESSES, claim_domain, release_domain
 from sher3_runtime.environment import child_environment
 
 pytestmark = pytest.mark.graph
@@ -41,10 +41,11 @@ class Sink(Node):
 
 def run(body: str, *arguments: str) -> subprocess.CompletedProcess:
     """Run a script: forking belongs in a process without ROS threads."""
-    domain = str(101 + os.getpid() % 100)
-    script = HEAD + textwrap.dedent(body)
-    command = [sys.executable, "-W", "error:This process:DeprecationWarning", "-c", script, domain]
-    return subprocess.run([*command, *arguments], env=child_environment(), capture_output=True, text=True, timeout=60)
+    domain, script = claim_domain(PROCESSES), HEAD + textwrap.dedent(body)
+    command = [sys.executable, "-W", "error:This process:DeprecationWarning", "-c", script, str(domain), *arguments]
+    result = subprocess.run(command, env=child_environment(), capture_output=True, text=True, timeout=60)
+    release_domain(domain)
+    return result
 
 
 def test_all_start_on_one_tick_and_no_sample_is_lost(tmp_path):

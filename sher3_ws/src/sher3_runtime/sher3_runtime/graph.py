@@ -5,7 +5,6 @@ Use it as a context manager: `with Graph() as graph: graph.add(ForceSensorNode, 
 
 from __future__ import annotations
 
-import os
 import time
 from collections.abc import Callable
 from itertools import groupby
@@ -18,6 +17,7 @@ from sher3_description import TOPICS, Sher3Error
 
 from . import environment
 from .clock import SteppedClock, set_timer_slack
+from .domains import own_domain
 from .executor import RawExecutor
 from .ports import NODE_OPTIONS, advertise, ports, subscribe, use_clock
 from .spinning import close
@@ -45,7 +45,7 @@ class Graph:
         # An empty wait lasts as long as the slack.
         set_timer_slack()
         self.context = Context()
-        self.context.init(domain_id=1 + os.getpid() % 100 if domain is None else domain)
+        self.context.init(domain_id=own_domain() if domain is None else domain)
         self.clock = SteppedClock(round(period * 1e9))
         use_clock(self.context, self.clock)
         self.executor = RawExecutor(context=self.context)

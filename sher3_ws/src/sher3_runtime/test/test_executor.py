@@ -1,12 +1,12 @@
 """The executor in real time: what it waits for, what it looks at now and then, and in which order it delivers."""
 
-import os
 import time
 
 import pytest
 from rclpy.context import Context
 from rclpy.node import Node
 from sher3_runtime import NODE_OPTIONS, JoySample, TextSample, TwistSample, WrenchSample, advertise, subscribe
+from sher3_runtime.domains import own_domain
 from sher3_runtime.executor import QUIET_NS, RawExecutor
 from std_srvs.srv import Trigger
 
@@ -18,7 +18,7 @@ ZERO = (0.0,) * 6
 @pytest.fixture
 def node():
     context = Context()
-    context.init(domain_id=101 + os.getpid() % 100)
+    context.init(domain_id=own_domain())
     made = Node("probe", context=context, **NODE_OPTIONS)
     yield made
     made.destroy_node()

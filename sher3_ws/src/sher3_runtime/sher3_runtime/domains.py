@@ -1,0 +1,73 @@
+"""ROS domains of this process's own, so that two test runs on one machine do not hear each other.
+
+A claim is an abstract AF_UNIX name: it belongs to one network namespace, as the ports of a domain do, and is gone with
+the process, however that ends.
+"""
+
+from __future__ import annotations
+
+import itertools
+import os
+import socket
+from collections.abc import Sequence
+
+from sher3_description import Sher3Error
+
+IN_PROCESS = range(1, 101)
+"""Domains of graphs within a process."""
+PROCESSES = range(101, 201)
+"""Domains of graphs of several processes."""
+
+_claims: dict[int, socket.socket] = {}
+_places = itertools.count()
+
+
+class NoDomainLeft(Sher3Error):
+    """Every domain is claimed."""
+
+
+def own_domain() -> int:
+    """Return the domain of all graphs within this process, claimed at the first call and kept until the process ends.
+
+    Raises:
+        NoDomainLeft: the others have all of `IN_PROCESS`.
+    """
+    mine = [domain for domain in _claims if domain in IN_PROCESS]
+    return mine[0] if mine else claim_domain(IN_PROCESS)
+
+
+def claim_domain(domains: Sequence[int]) -> int:
+    """Claim the first domain that nobody has, from a place on that depends on the process and moves on with each claim.
+
+    A released one is so not taken again at once: its last participants may not have left it yet.
+
+    Raises:
+        NoDomainLeft: there is none.
+    """
+    begin = (os.getpid() + next(_places)) % len(domains)
+    for domain in (*domains[begin:], *domains[:begin]):
+        claim = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+        try:
+            claim.bind(f"\0sher3-domain-{domain}")
+        except OSError:
+            claim.close()
+            continue
+        _claims[domain] = claim
+        return domain
+    limit = f"{domains[0]} to {domains[-1]}"
+    raise NoDomainLeft("no ROS domain is left", limit=limit, remedy="end the other processes or name a domain")
+
+
+def release_domain(domain: int) -> None:
+    """Give a claimed domain back; one that is not claimed is left alone."""
+    if claim := _claims.pop(domain, None):
+        claim.close()
+
+
+def _forget() -> None:
+    """Leave the parent its domains: a forked process has its sockets too."""
+    for domain in tuple(_claims):
+        release_domain(domain)
+
+
+os.register_at_fork(after_in_child=_forget)
