@@ -59,7 +59,12 @@ def record(
 @app.command(epilog="Example: sher3 replay bags/trial --rate 0.5 --topic force/measured_cf --topic pedal/measured")
 def replay(
     bag: Bag,
-    rate: Annotated[float, typer.Option(help="Speed; 2 is twice as fast, inf as fast as the queues allow.")] = 1.0,
+    rate: Annotated[
+        float,
+        typer.Option(
+            help="Speed; 2 is twice as fast (up to 50 messages of a topic per tick), inf as fast as no queue overflows."
+        ),
+    ] = 1.0,
     topic: Topics = None,
     keep_stamps: Annotated[bool, typer.Option("--keep-stamps", help="Leave header stamps as recorded.")] = False,
     wait_for: Annotated[int, typer.Option(help="Subscribers to wait for on every topic.")] = 0,

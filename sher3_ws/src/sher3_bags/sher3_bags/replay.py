@@ -19,6 +19,8 @@ from sher3_bags.rosbag2 import find_mcap
 
 _STAMP = struct.Struct("<iI")
 Stamps = Literal["shift", "keep"]
+LEAST_RATE = 1e-3
+"""Slowest replay; below it a minute's recording takes a day, and header stamps leave the range of their seconds."""
 
 
 class DueMessage(NamedTuple):
@@ -35,12 +37,12 @@ class Replay:
     Args:
         path: of the bag.
         topics: replay these; by default every topic of the table that the bag has.
-        rate: speed; 2 is twice as fast, `inf` is everything at once.
+        rate: speed, `LEAST_RATE` or more; 2 is twice as fast, `inf` is everything at once.
         stamps: `shift` moves and scales header stamps with the replay, `keep` leaves them as recorded.
         namespace: of the robot's topics in the bag.
 
     Raises:
-        BagError: the bag does not read, the rate is not positive, or there is nothing to replay.
+        BagError: the bag does not read, the rate is out of range, or there is nothing to replay.
         MissingTopicError: a named topic is not in the bag.
         WrongTypeError: a topic has another type than in the table.
     """
@@ -54,8 +56,10 @@ class Replay:
         stamps: Stamps = "shift",
         namespace: str = NAMESPACE,
     ) -> None:
-        if not rate > 0:
-            raise BagError("the rate must be positive", path=path, value=rate, limit="> 0")
+        if not rate >= LEAST_RATE:
+            remedy = "choose a greater one; 1 is real time"
+            raise BagError("the rate must be positive and in range", path=path, value=rate, limit=f">= {LEAST_RATE}",
+                           remedy=remedy)  # fmt: skip
         self.rate, self.stamps = rate, stamps
         self._contents = read_contents(find_mcap(Path(path)))
         named = self._named_channels(namespace)
@@ -79,6 +83,15 @@ class Replay:
     def duration(self) -> float:
         """Seconds the replay takes."""
         return float(self._table.log_time[-1] - self._table.log_time[0]) * 1e-9 / self.rate
+
+    def density(self, topic: str) -> float:
+        """Return the messages of a topic per second of the replay, on average; `inf` at infinite rate."""
+        keys = [key for key, name in self._names.items() if name == topic]
+        times = self._table.log_time[np.isin(self._table.channel, keys)]
+        if len(times) < 2:
+            return 0.0
+        span = float(times[-1] - times[0]) * 1e-9 / self.rate
+        return (len(times) - 1) / span if span > 0.0 else math.inf
 
     def messages(self, start: int) -> Iterator[DueMessage]:
         """Yield the messages in order; the first is due at `start` [ns], the earliest stamp becomes `start`."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import Any
 
@@ -10,13 +11,15 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 from sher3_description import TOPICS
 from sher3_runtime import environment
-from sher3_runtime.ports import NODE_OPTIONS, advertise_raw, on_tick, ports
+from sher3_runtime.ports import NODE_OPTIONS, advertise_raw, clock_of, on_tick, ports
 from sher3_runtime.process import stop_on_signals
 from sher3_runtime.spinning import spin
 
 from sher3_bags.errors import TopicError
 from sher3_bags.replay import DueMessage, Replay
 
+MOST_PER_TICK = 50
+"""Messages of one topic that a tick may have to send: fifty times real time for 500 Hz on a grid of 500 Hz."""
 _DISCOVERY_TICKS = 250
 _DELIVERY_TICKS = 50
 _SETTLE_TICKS = 50
@@ -27,12 +30,16 @@ class ReplayNode(Node):
     """Publishes the messages of a replay at the ticks at which they are due, in the order of the recording.
 
     The replay starts once `wait_for` subscribers are there per topic, or after half a second. It never becomes the
-    second publisher of a topic: two sources of a command would fight over the robot. At most half a queue of a topic is
-    sent per tick, so the fastest replay of a 500 Hz recording on a 500 Hz grid is five times real time.
+    second publisher of a topic: two sources of a command would fight over the robot. A tick sends what is due, several
+    messages of a topic where the rate asks for it; what a tick may send is bounded, see `messages_per_tick`, and what
+    is left over goes first in the next one.
 
     Args:
         replay: what to publish.
         wait_for: number of subscribers of every topic to wait for, without limit; 0 waits a fixed time.
+
+    Raises:
+        TopicError: the rate asks for more than `MOST_PER_TICK` messages of a topic per tick.
     """
 
     def __init__(self, replay: Replay, *, wait_for: int = 0, **options: Any) -> None:
@@ -42,9 +49,11 @@ class ReplayNode(Node):
         self._ticks = self._ticks_found = self._ticks_after = 0
         self._messages: Iterator[DueMessage] | None = None
         self._next: DueMessage | None = None
-        self._publish = {name: advertise_raw(self, name) for name in replay.topics}
-        # A burst must fit the queues at both ends with room to spare, whatever the rate, or samples would be lost.
-        self._room = {name: max(1, TOPICS[name].qos.depth // 2) for name in replay.topics}
+        period = clock_of(self).period_ns * 1e-9
+        self._room = {name: messages_per_tick(replay, name, period) for name in replay.topics}
+        self._publish = {
+            name: advertise_raw(self, name, max(TOPICS[name].qos.depth, 2 * room)) for name, room in self._room.items()
+        }
         on_tick(self, self._tick)
 
     def _tick(self, stamp: int) -> None:
@@ -93,11 +102,34 @@ class ReplayNode(Node):
                 raise TopicError("has a publisher already", topic=name, value=", ".join(others), limit=0, remedy=remedy)
 
 
+def messages_per_tick(replay: Replay, topic: str, period: float) -> int:
+    """Return the most messages of a topic that one tick of `period` [s] sends.
+
+    Half a queue of the table, so that a burst fits the queues at both ends with room to spare; a finite rate that needs
+    more gets twice its need, to catch up after a lost tick. Then only readers with queues as deep get every message.
+
+    Raises:
+        TopicError: it needs more than `MOST_PER_TICK`.
+    """
+    half = max(1, TOPICS[topic].qos.depth // 2)
+    if math.isinf(replay.rate):
+        return half
+    need = replay.density(topic) * period
+    if need > MOST_PER_TICK * (1.0 + 1e-9):  # a rate of exactly the limit may round above it
+        fastest = replay.rate * MOST_PER_TICK / need
+        raise TopicError(
+            f"a replay at {replay.rate:g} times real time needs too many messages per tick", topic=topic,
+            value=round(need, 1), limit=MOST_PER_TICK,
+            remedy=f"choose a rate of {fastest:.3g} or less, or inf, which takes the time the queues need",
+        )  # fmt: skip
+    return half if need <= half else 2 * math.ceil(need)
+
+
 def run(replay: Replay, wait_for: int = 0) -> int:
     """Replay in a process of its own until the end or a signal; return the number of messages published.
 
     Raises:
-        TopicError: a topic has a publisher already.
+        TopicError: a topic has a publisher already, or the rate is too fast for it.
     """
     environment.apply()
     rclpy.init(signal_handler_options=SignalHandlerOptions.NO)

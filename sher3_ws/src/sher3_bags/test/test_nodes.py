@@ -21,7 +21,7 @@ def replay_and_record(folder, replay, topics=None):
     with Graph() as graph:
         recorder = graph.add(RecorderNode, folder, load_robot(), topics=topics or replay.topics)
         player = graph.add(ReplayNode, replay, wait_for=1)
-        for _ in range(2000):
+        for _ in range(4000):
             graph.step()
             if player.done:
                 break
@@ -29,7 +29,7 @@ def replay_and_record(folder, replay, topics=None):
     return recorder, player
 
 
-@pytest.mark.parametrize("rate", [1.0, 2.0, float("inf")])
+@pytest.mark.parametrize("rate", [0.3, 1.0, 2.0, 7.5, 20.0, 50.0, float("inf")])
 def test_what_is_replayed_is_recorded(tmp_path, build, rate):
     path = write_run(tmp_path / "bag", build(200))
     recorder, player = replay_and_record(tmp_path / "again", Replay(path, TOPICS, rate=rate, stamps="keep"))
@@ -41,8 +41,17 @@ def test_what_is_replayed_is_recorded(tmp_path, build, rate):
     assert np.array_equal(one["measured_js"].stamp, two["measured_js"].stamp)
     assert recorder.counts["measured_js"]["dropped"] == 0
     span = two["measured_js"].log_time[-1] - two["measured_js"].log_time[0]
-    # However fast, at most half a queue (five samples) goes out per tick: 40 ticks for 200 samples.
+    # At infinite rate half a queue (five samples) goes out per tick: 40 ticks for 200 samples.
     assert span == pytest.approx(78_000_000 if np.isinf(rate) else 398_000_000 / rate, abs=2_000_000)
+
+
+def test_a_rate_beyond_what_a_tick_may_send_is_refused_with_the_fastest_one(tmp_path, build):
+    from sher3_bags.replay_node import ReplayNode
+    from sher3_runtime import Graph
+
+    path = write_run(tmp_path / "bag", build(200))
+    with Graph() as graph, pytest.raises(TopicError, match=r"value 60.*limit 50.*rate of 50 or less, or inf"):
+        graph.add(ReplayNode, Replay(path, ["measured_js"], rate=60.0), wait_for=1)
 
 
 def test_shifted_stamps_stand_on_the_grid(tmp_path, build):
@@ -68,7 +77,7 @@ def test_never_the_second_publisher(tmp_path, build):
 
 def test_replay_of_bad_input(tmp_path, build):
     path = write_run(tmp_path / "bag", build(50))
-    for rate in (0.0, -1.0, float("nan")):
+    for rate in (0.0, -1.0, float("nan"), 1e-4):
         with pytest.raises(BagError, match="rate must be positive"):
             Replay(path, rate=rate)
     with pytest.raises(MissingTopicError):

@@ -323,8 +323,13 @@ def subscribe_raw(node: Node, name: str, callback: Callable[[bytes], None], dept
     port.subscriptions[name] = subscription
 
 
-def advertise_raw(node: Node, name: str) -> Callable[[bytes], None]:
+def advertise_raw(node: Node, name: str, depth: int | None = None) -> Callable[[bytes], None]:
     """Return `publish(data)` of a topic of the table for CDR bytes: what a replay needs.
+
+    Args:
+        node: the node.
+        name: topic of the table.
+        depth: queue length instead of the table's (a replay sends in bursts).
 
     Raises:
         UnknownTopic: the name is not in the table.
@@ -332,6 +337,8 @@ def advertise_raw(node: Node, name: str) -> Callable[[bytes], None]:
     topic, port = find_topic(name), ports(node)
     events = PublisherEventCallbacks(use_default_callbacks=False)
     kind, profile = message_class(topic.type), qos_profile(topic.qos)
+    if depth is not None:
+        profile.depth = depth
     publisher = node.create_publisher(kind, topic.full_name, profile, event_callbacks=events)
     port.publishers[name] = publisher
     port.sent[name] = 0
