@@ -4,6 +4,7 @@ import subprocess
 import sys
 
 import pytest
+import typer
 from sher3_bringup.cli import COMMANDS, main, make_app
 from sher3_runtime.environment import child_environment
 from typer.testing import CliRunner
@@ -15,6 +16,21 @@ def test_every_command_has_help_with_an_example(command):
     assert result.exit_code == 0, result.output
     if COMMANDS[command].command:
         assert "Example" in result.output
+
+
+def commands_below(command, path=()):
+    """Yield (name, command) of everything that can be run; a group that runs by itself counts too."""
+    for name, child in getattr(command, "commands", {}).items():
+        yield from commands_below(child, (*path, name))
+    if not hasattr(command, "commands") or (path and command.invoke_without_command):
+        yield " ".join(path), command
+
+
+def test_every_command_that_prints_figures_also_prints_json():
+    rows = list(commands_below(typer.main.get_command(make_app("*"))))
+    assert {"gap monitor", "safety", "safety budget"} <= {name for name, _ in rows}
+    without = {name for name, command in rows if not any("--json" in option.opts for option in command.params)}
+    assert without == {"teleop", "completion"}
 
 
 def test_help_names_every_command_and_imports_none():

@@ -153,7 +153,7 @@ def _mount() -> None:
 
     example = "Examples: sher3 gap excite · sher3 gap excite all -o case · sher3 gap excite sweep --simulate -o case"
     app.command("excite", epilog=example)(excite_command)
-    app.command("monitor", epilog="Example: sher3 gap monitor --effects effects.yaml")(monitor_command)
+    app.command("monitor", epilog="Example: sher3 gap monitor --effects effects.yaml --json")(monitor_command)
     app.command(epilog="Example: sher3 gap challenge --seeds 0:40 --json")(challenge)
     app.command("import", epilog=f"Example: {IMPORT_EXAMPLE}")(import_data)
 

@@ -101,12 +101,16 @@ def monitor_command(
     window: Annotated[float, typer.Option(min=0.5, max=60.0, help="Seconds a gap is taken over.")] = 4.0,
     robot: Annotated[Path | None, typer.Option(help="robot.yaml; the nominal robot by default.")] = None,
     domain: Annotated[int, typer.Option(min=0, max=232, help="ROS domain id of the graph.")] = 0,
+    as_json: Annotated[bool, typer.Option("--json", help="Also print one JSON object a second.")] = False,
 ) -> None:
     """Run the model beside the running robot; gap over floor per stage on gap/diagnostics at 1 Hz, until Ctrl-C."""
     from sher3_sim import load_effects
 
     from sher3_gap.cli import reported
-    from sher3_gap.gap_monitor_node import run
+    from sher3_gap.gap_monitor_node import StageStatus, judged_json, run
 
-    with reported(False):
-        run(load_robot(robot), load_effects(effects) if effects else [], window, domain)
+    def told(stamp: int, found: list[StageStatus]) -> None:
+        print(judged_json(stamp, found), flush=True)
+
+    with reported(as_json):
+        run(load_robot(robot), load_effects(effects) if effects else [], window, domain, told if as_json else None)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Callable, Sequence
+from dataclasses import asdict
 from typing import Any
 
 import rclpy
@@ -21,15 +23,27 @@ from sher3_gap.monitor import TOPICS, Monitor, StageStatus
 TOPIC = "gap/diagnostics"
 MESSAGES = ("at the floor", "gap above the floor", "gap far above the floor")
 STALE = 3
+Told = Callable[[int, list[StageStatus]], None]
 
 
 class GapMonitorNode(Node):
-    """Listens to the robot's streams and publishes one status per stage and axis at 1 Hz."""
+    """Listens to the robot's streams and publishes one status per stage and axis at 1 Hz.
 
-    def __init__(self, robot: Robot, effects: Sequence[Effect] = (), *, window: float = 4.0, **options: Any) -> None:
+    `told` gets the stamp and what is published, once a second; no statuses while there is no whole window to judge.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        effects: Sequence[Effect] = (),
+        *,
+        window: float = 4.0,
+        told: Told | None = None,
+        **options: Any,
+    ) -> None:
         super().__init__("gap_monitor", **{**NODE_OPTIONS, **options})
         self.monitor = Monitor(robot, effects, window)
-        self._publish = advertise(self, TOPIC)
+        self._publish, self._told = advertise(self, TOPIC), told
         for topic in TOPICS:
             subscribe(self, topic, self._feeder(topic), depth=500)
         on_tick(self, self._tick, every=round(1.0 / robot.control_period))
@@ -42,6 +56,8 @@ class GapMonitorNode(Node):
         found = self.monitor.judge()
         for status in found:
             self._publish(diagnostic(stamp, status))
+        if self._told is not None:
+            self._told(stamp, found)
         if not found:
             self._publish(DiagnosticSample(stamp, "gap", STALE, "waiting for a window without long holes"))
 
@@ -58,13 +74,19 @@ def diagnostic(stamp: int, status: StageStatus) -> DiagnosticSample:
     return DiagnosticSample(stamp, name, status.level, MESSAGES[status.level], values)
 
 
-def run(robot: Robot, effects: Sequence[Effect], window: float, domain: int = 0) -> None:
-    """Run the monitor in a process of its own beside a running graph until a signal."""
+def judged_json(stamp: int, found: Sequence[StageStatus]) -> str:
+    """Return what was judged at `stamp` [ns] as one line of JSON; no stages while there is no whole window."""
+    stages = [{**asdict(s), "ratio": s.ratio, "level": s.level} for s in found]
+    return json.dumps({"stamp": stamp, "stages": stages})
+
+
+def run(robot: Robot, effects: Sequence[Effect], window: float, domain: int = 0, told: Told | None = None) -> None:
+    """Run the monitor in a process of its own beside a running graph until a signal; `told` as in the node."""
     environment.apply(domain)
     os.environ[PERIOD_VARIABLE] = repr(robot.control_period)
     rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
     try:
         stop = stop_on_signals()
-        spin([GapMonitorNode(robot, effects, window=window)], stop=stop, diagnostics=False)
+        spin([GapMonitorNode(robot, effects, window=window, told=told)], stop=stop, diagnostics=False)
     finally:
         rclpy.try_shutdown()

@@ -1,14 +1,18 @@
 """The live monitor: at the floor beside a healthy plant, a warning where the gap is, quiet once the effect is known."""
 
+import json
 import math
 
 import pytest
+from sher3_gap import gap_monitor_node
+from sher3_gap.cli import app
 from sher3_gap.excitation import excite
-from sher3_gap.monitor import TOPICS, Monitor
+from sher3_gap.monitor import TOPICS, Monitor, StageStatus
 from sher3_gap.rehearsal import rehearse
 from sher3_runtime.samples import JointSample, WrenchSample
 from sher3_sim import EFFECTS
 from simulated import ROBOT
+from typer.testing import CliRunner
 
 FRICTION = EFFECTS["coulomb_friction"]("delta_2", force=1.5)
 
@@ -81,7 +85,7 @@ def test_memory_is_bounded():
 @pytest.mark.graph
 def test_the_node_publishes_once_a_second():
     from rclpy.node import Node
-    from sher3_gap.gap_monitor_node import TOPIC, GapMonitorNode
+    from sher3_gap.gap_monitor_node import TOPIC, GapMonitorNode, judged_json
     from sher3_runtime import Graph
     from sher3_runtime.ports import NODE_OPTIONS, advertise, on_tick
 
@@ -106,7 +110,10 @@ def test_the_node_publishes_once_a_second():
 
     with Graph() as graph:
         graph.add(Robot)
-        graph.add(GapMonitorNode, ROBOT, window=1.0)
+        lines = []
+        graph.add(
+            GapMonitorNode, ROBOT, window=1.0, told=lambda *judged: lines.append(json.loads(judged_json(*judged)))
+        )
         probe = graph.probe(TOPIC)
         graph.step(880)
         names = {s.name for s in probe.samples[TOPIC]}
@@ -114,3 +121,21 @@ def test_the_node_publishes_once_a_second():
         worst = max((s for s in probe.samples[TOPIC] if s.values), key=lambda s: float(dict(s.values)["ratio"]))
         assert worst.name == "gap/motor_mechanics/delta_2" and worst.level == 2
         assert math.isfinite(float(dict(worst.values)["gap"]))
+        assert len(lines[-1]["stages"]) == 26 and lines[-1]["stamp"] % 10**9 == 0
+        (row,) = [r for r in lines[-1]["stages"] if (r["stage"], r["actuator"]) == ("motor_mechanics", "delta_2")]
+        assert row["level"] == 2 and row["ratio"] == pytest.approx(row["gap"] / row["floor"])
+
+
+@pytest.mark.parametrize("arguments", [[], ["--json"]])
+def test_the_command_prints_one_object_a_second_when_asked(arguments, monkeypatch):
+    def run(robot, effects, window, domain, told):
+        if told is not None:
+            told(1, [])
+            told(2, [StageStatus("drive", "tilt", 3e-6, 1e-6, "m/s")])
+
+    monkeypatch.setattr(gap_monitor_node, "run", run)
+    result = CliRunner().invoke(app, ["monitor", *arguments])
+    assert result.exit_code == 0, result.output
+    rows = [json.loads(line) for line in result.stdout.splitlines()]
+    stage = {"stage": "drive", "actuator": "tilt", "gap": 3e-6, "floor": 1e-6, "unit": "m/s", "ratio": 3e-6 / 1e-6}
+    assert rows == ([{"stamp": 1, "stages": []}, {"stamp": 2, "stages": [stage | {"level": 2}]}] if arguments else [])
