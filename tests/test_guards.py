@@ -49,6 +49,7 @@ def test_three_guards_are_missed_when_they_are_gone():
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(2000)
 def test_every_guard_is_missed_when_it_is_gone():
     run = mutate(timeout=1800)
     assert run["guards"] == run["killed"] >= 90
