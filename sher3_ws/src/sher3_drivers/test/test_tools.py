@@ -46,5 +46,6 @@ def test_the_canopen_library_configures_a_drive_over_the_local_link(served):
             node.sdo[0x6041].raw = 1
         node.sdo[0x1017].raw = 10
         node.nmt.state = "OPERATIONAL"
-        assert node.nmt.wait_for_heartbeat(5.0) == "OPERATIONAL"
+        # One that was sent before the command may still be on its way to the library's thread.
+        assert "OPERATIONAL" in (node.nmt.wait_for_heartbeat(5.0) for _ in range(100))
         assert network.scanner.nodes == [2]
