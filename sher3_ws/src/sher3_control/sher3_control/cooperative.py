@@ -15,7 +15,7 @@ from sher3_kinematics.kernel_velocity import NOT_FINITE
 from .errors import SettingsError
 from .limits import ZERO_TWIST
 from .modes import Vector
-from .rcm import rcm_velocity, shaft_deviation
+from .rcm import NO_HOLD, Hold, next_hold, rcm_velocity, shaft_deviation
 from .reasons import Reason
 from .speed_cap import SpeedCap, cap_factor
 
@@ -39,18 +39,23 @@ class Velocity(NamedTuple):
 
 
 class VelocityModes:
-    """Tip twists and actuator velocities, limited; pure functions of their arguments and the remote centre.
+    """Tip twists and actuator velocities, limited; pure functions of their arguments, the remote centre and its hold.
+
+    The hold begins at zero whenever the velocity before was zero, so a robot at rest has no memory.
 
     Attributes:
         centre: the remote centre (3,) [m] in {b}, or None.
+        hold: the law's memory while the robot moves about the centre, see `rcm`.
         cap: speed caps of the tip.
     """
 
-    def __init__(self, kinematics: RobotKinematics, gain: float) -> None:
+    def __init__(self, kinematics: RobotKinematics, gain: float, integral: float = 0.0) -> None:
+        """Take the rates [1/s], [1/s^2] at which a deviation from the centre decays and the hold against it grows."""
         self.kinematics = kinematics
         self.centre: Array | None = None
         self.cap = SpeedCap(math.inf, math.inf)
-        self._gain = gain
+        self._gain, self._integral = gain, integral
+        self.hold: Hold = NO_HOLD
         self._inverse = InverseVelocity(kinematics)
         self._parameters = np.array(kinematics.parameters)
         self._cap_factor = direct(cap_factor, self._parameters, RESTING, RESTING, self.cap)
@@ -58,7 +63,7 @@ class VelocityModes:
     def warm_up(self) -> None:
         """Run every compiled part once."""
         shaft_deviation(np.eye(3), np.zeros(3), np.zeros(3))
-        rcm_velocity(self._parameters, np.zeros(5), np.zeros(6), np.zeros(3), self._gain, self._inverse.period)
+        self._keeping(np.zeros(5), np.zeros(6), np.zeros(3), NO_HOLD)
         self._inverse(RESTING, (1e-6, 0.0, 0.0, 0.0, 0.0, 0.0), RESTING)
 
     def set_centre(self, centre: Vector | None, q: Vector) -> None:
@@ -104,15 +109,24 @@ class VelocityModes:
         return self._capped(q, self._about_centre(q, twist, previous, self.centre))
 
     def _about_centre(self, q: Vector, twist: Vector, previous: Vector, centre: Array) -> Velocity:
-        period = self._inverse.period
+        hold = NO_HOLD if previous == RESTING else self.hold
+        joints, request = np.array(q), np.array(twist)
         try:
-            joints, request = np.array(q), np.array(twist)
-            wanted, deviation = rcm_velocity(self._parameters, joints, request, centre, self._gain, period)
+            wanted, x, y = self._keeping(joints, request, centre, hold)
+            limited = self._inverse.limit(joints, wanted, previous)
+            if limited.scale < 1.0:
+                # The request is scaled, not the correction: scaled with it, a correction would come too late.
+                wanted, x, y = self._keeping(joints, limited.scale * request, centre, hold)
+                limited = self._inverse.limit(joints, wanted, previous)._replace(limited_by=limited.limited_by)
         except np.linalg.LinAlgError:
             return Velocity(RESTING, Reason.SINGULAR, "", 0.0)
+        self.hold, deviation = next_hold(hold, x, y, self._integral, self._inverse.period), math.hypot(x, y)
         if not deviation <= DEVIATION_LIMIT:
             return Velocity(RESTING, Reason.OFF_CENTRE, "", deviation)
-        return _velocity(self._inverse.limit(joints, wanted, previous), deviation)
+        return _velocity(limited, deviation)
+
+    def _keeping(self, q: Array, twist: Array, centre: Array, hold: Hold) -> tuple[Array, float, float]:
+        return rcm_velocity(self._parameters, q, twist, centre, hold, self._gain, self._inverse.period)
 
     def from_joints(self, q: Vector, wanted: Vector, previous: Vector) -> Velocity:
         """Return the permitted part of an actuator velocity (5,)."""

@@ -79,7 +79,7 @@ class MotionController:
         kinematics = RobotKinematics(robot)
         self._compensation = compensation
         self.ownership = Ownership()
-        self.velocity_modes = VelocityModes(kinematics, settings.rcm_gain)
+        self.velocity_modes = VelocityModes(kinematics, settings.rcm_gain, settings.rcm_integral)
         self.previous: Vector = RESTING
         self._rearm = True
         self._gain = robot.position_gain

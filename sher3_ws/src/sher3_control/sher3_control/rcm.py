@@ -3,12 +3,16 @@
 With s the shaft point nearest the centre c and B the two unit vectors across the shaft, J_s = J_v - [s - p]x J_w
 moves s, and
 
-    B' J_s qd = -k B' (s - c)
+    B' J_s qd = -k B' (s - c) - h
 
 leaves three of the five directions free: two rotations about c and the insertion. Among them the actuator velocity is
 the one whose tip twist is nearest the request, with `LENGTH` weighing rotation against translation. The linear
 constraint alone lets the shaft drift by the curvature of one step, so the step's end is predicted with the full
 kinematics and the remainder taken out by one Newton correction.
+
+The drives give way to a load that changes: with gravity G on an axis they are slow by G'/ki, and while the robot turns
+that pushes the shaft off at tens of um/s, against which k alone leaves tenths of um. The hold h, the integral of the
+deviation, takes it up.
 """
 
 from __future__ import annotations
@@ -21,9 +25,13 @@ from sher3_kinematics.kernel import tip_jacobian_into, tip_pose_into
 from .compiled import compiled
 
 Array = NDArray[np.float64]
+Hold = tuple[float, float]
+NO_HOLD: Hold = (0.0, 0.0)
 
 PULL_LIMIT = 1e-3
 """Fastest approach [m/s] of a shaft that is off the centre."""
+HOLD_LIMIT = 3e-4
+"""Largest hold [m/s], per axis across the shaft: three times what the nominal loads need at the fastest turn."""
 LENGTH = 0.02
 """Lever [m] that makes rad/s and m/s comparable: about the depth of the tip behind the sclera."""
 
@@ -69,15 +77,16 @@ def _saddle(jacobian: Array, rows: Array) -> Array:
 
 @compiled
 def rcm_velocity(
-    parameters: Array, q: Array, twist: Array, centre: Array, gain: float, period: float
-) -> tuple[Array, float]:
-    """Return actuator velocities (5,) that keep the shaft on the centre, and its present distance from it [m].
+    parameters: Array, q: Array, twist: Array, centre: Array, hold: Hold, gain: float, period: float
+) -> tuple[Array, float, float]:
+    """Return actuator velocities (5,) that keep the shaft on the centre, and how far it is off [m], x and y of {t}.
 
     Args:
         parameters: geometry of the robot, the kernel parameters as an array (44,).
         q: measured actuator positions (5,).
         twist: requested tip twist (6,) in {b}.
         centre: the remote centre (3,) [m] in {b}.
+        hold: velocity [m/s] along x and y of {t} that something else moves the shaft with, to be held against.
         gain: rate at which a deviation decays [1/s].
         period: time for which the velocity will be held [s].
 
@@ -98,11 +107,20 @@ def rcm_velocity(
             right[a] += jacobian[i, a] * twist[i] + LENGTH * LENGTH * jacobian[3 + i, a] * twist[3 + i]
     deviation = np.hypot(x, y)
     pull = min(gain, PULL_LIMIT / deviation) if deviation > 0.0 else gain
-    right[5], right[6] = -pull * x, -pull * y
+    back_x, back_y = -pull * x - hold[0], -pull * y - hold[1]
+    right[5], right[6] = back_x, back_y
     velocity = np.linalg.solve(matrix, right)[:5]
     tip_pose_into(p, q + period * velocity, rotation, position)
     end_x, end_y, _ = shaft_deviation(rotation, position, centre)
-    left = 1.0 - pull * period
     right[:5] = 0.0
-    right[5], right[6] = (left * x - end_x) / period, (left * y - end_y) / period
-    return velocity + np.linalg.solve(matrix, right)[:5], deviation
+    right[5], right[6] = (x - end_x) / period + back_x, (y - end_y) / period + back_y
+    return velocity + np.linalg.solve(matrix, right)[:5], x, y
+
+
+def next_hold(hold: Hold, x: float, y: float, rate: float, period: float) -> Hold:
+    """Return the hold [m/s] after a period with the shaft off by x, y [m]; it grows at `rate` [1/s^2]."""
+    step = rate * period
+    return (
+        min(max(hold[0] + step * x, -HOLD_LIMIT), HOLD_LIMIT),
+        min(max(hold[1] + step * y, -HOLD_LIMIT), HOLD_LIMIT),
+    )

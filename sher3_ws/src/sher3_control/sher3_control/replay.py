@@ -21,6 +21,7 @@ from .law_parameters import law_parameters
 from .live_parameters import LiveParameters, from_json
 from .ownership import MODE_CODES, Mode
 from .position_controller import position_commands
+from .rcm import NO_HOLD
 from .reasons import Reason
 from .settings import MotionSettings
 from .speed_cap import Regime, speed_cap
@@ -109,6 +110,9 @@ def replay_admittance(run: Recording, robot: Robot) -> Replay:
 def replay_motion(run: Recording, robot: Robot) -> Replay:
     """Compute `servo_jv` again: the host law where there is a `setpoint_js`, the twist through J in cooperative mode.
 
+    A recording that starts in a motion about a remote centre is compared from the first rest on, where the law has no
+    memory.
+
     Raises:
         ReplayError: a topic or a sample that was used is not in the run.
         SettingsError: a record is damaged.
@@ -117,13 +121,14 @@ def replay_motion(run: Recording, robot: Robot) -> Replay:
     references = Lookup(run, "setpoint_js") if "setpoint_js" in run.streams else None
     limit = np.array([a.limits.velocity for a in robot.actuators])
     versions = {(data := parse_json(text))["version"]: data for text in run.streams["motion/settings"].data}
-    modes, previous, count = _Modes(robot, versions), RESTING, _Comparison()
+    modes, previous, rested, count = _Modes(robot, versions), RESTING, False, _Comparison()
     for text in run.streams["motion/inputs"].data:
         line = motion_record(text)
         row = recorded.row.get(line.stamp)
         if row is None:
             continue
         actual = recorded.stream.velocity[row]
+        rested, about_centre = rested or not actual.any(), False
         used, reference = joints(line.joints_stamp), references and references.row.get(line.stamp)
         if line.reason != Reason.MOVING or used is None:
             command: Array | None = np.zeros(5)
@@ -135,21 +140,28 @@ def replay_motion(run: Recording, robot: Robot) -> Replay:
             k = twists(line.twist_stamp)
             twist = np.zeros(6) if k is None else np.concatenate([twists.stream.linear[k], twists.stream.angular[k]])
             command = modes.velocity(joints.stream.position[used], twist, previous, line.version)
+            about_centre = modes.at(line.version).centre is not None
         else:
             command = None
-        count.add(line.stamp, actual if command is None else command, actual, command is not None)
+        count.add(
+            line.stamp,
+            actual if command is None else command,
+            actual,
+            command is not None and (rested or not about_centre),
+        )
         previous = tuple(actual.tolist())
     return count.result()
 
 
 class _Modes:
-    """The cooperative velocity with the remote centre of a version."""
+    """The cooperative velocity with the remote centre of a version; the hold passes from one version to the next."""
 
     def __init__(self, robot: Robot, versions: dict[int, dict[str, Any]]) -> None:
         kinematics = RobotKinematics(robot)
-        self._by_version = {}
+        self._by_version, self._hold = {}, NO_HOLD
         for version, data in versions.items():
-            mode = VelocityModes(kinematics, data["settings"]["rcm_gain"])
+            # Recordings from before the hold had none.
+            mode = VelocityModes(kinematics, data["settings"]["rcm_gain"], data["settings"].get("rcm_integral", 0.0))
             mode.centre = None if data["rcm"] is None else np.array(data["rcm"])
             # Recordings from before there were regimes had no cap either.
             regime = Regime(data.get("regime", Regime.BENCH.value))
@@ -158,10 +170,17 @@ class _Modes:
 
     def velocity(self, q: Array, twist: Array, previous: tuple[float, ...], version: int) -> Array:
         """Return the velocity (5,)."""
+        mode = self.at(version)
+        mode.hold = self._hold
+        velocity = mode.from_twist(tuple(q.tolist()), tuple(twist.tolist()), previous).velocity
+        self._hold = mode.hold
+        return np.array(velocity)
+
+    def at(self, version: int) -> VelocityModes:
+        """Return the modes of a version."""
         if version not in self._by_version:
             raise ReplayError("a version of motion/settings is missing", value=version, remedy="record from the start")
-        mode = self._by_version[version]
-        return np.array(mode.from_twist(tuple(q.tolist()), tuple(twist.tolist()), previous).velocity)
+        return self._by_version[version]
 
 
 class _Inputs:

@@ -125,8 +125,9 @@ class MotionSettings(Settings):
         acceleration: fraction of the acceleration limits that move_* uses [1].
         ramp_time: time to build up that acceleration [s]; it sets the jerk.
         linear_speed, angular_speed: tip caps of move_cp [m/s], [rad/s].
-        rcm_gain: rate at which a deviation from the remote centre decays [1/s]; with the 8 ms of transport and drive it
-            leaves 67 degrees of phase margin.
+        rcm_gain: rate at which a deviation from the remote centre decays [1/s].
+        rcm_integral: rate at which the hold against what keeps pushing the shaft off grows [1/s^2]; with `rcm_gain` and
+            the 8 ms of transport and drive it leaves 56 degrees of phase margin.
         regime: speed regime at the start, see `speed_cap`.
         free_speed, free_turning: caps of the tip in the regime `free` [m/s], [rad/s].
         near_speed, near_turning: the same in `near_tissue`.
@@ -150,6 +151,7 @@ class MotionSettings(Settings):
     linear_speed: Annotated[Number, Field(gt=0.0, le=0.05)] = 0.005
     angular_speed: Annotated[Number, Field(gt=0.0, le=3.0)] = 0.3
     rcm_gain: Annotated[Number, Field(ge=0.0, le=100.0)] = 50.0
+    rcm_integral: Annotated[Number, Field(ge=0.0, le=1000.0)] = 500.0
     regime: Literal["near_tissue", "free", "bench"] = "free"
     free_speed: Annotated[Number, Field(gt=0.0, le=0.05)] = 0.005
     free_turning: Annotated[Number, Field(gt=0.0, le=3.0)] = 0.3
