@@ -46,7 +46,7 @@ def check(result: dict) -> None:
 
 @pytest.mark.graph
 def test_a_short_soak_leaves_nothing_behind():
-    check(run(8.0, 150.0))
+    check(run(30.0, 150.0))
 
 
 @pytest.mark.slow
