@@ -1,12 +1,15 @@
 """A recorded session computed again gives the recorded commands bit for bit, and a changed sample is found."""
 
+import json
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from control_graph import RECORDED, control_graph
 from law_bench import ROBOT
+from sher3_control.reasons import Reason
 from sher3_control.replay import ReplayError, replay_admittance, replay_motion
+from sher3_control.tick_records import motion_record
 from sher3_runtime import JointSample
 
 pytestmark = pytest.mark.graph
@@ -106,6 +109,24 @@ def test_a_recording_from_the_middle_is_compared_from_the_first_released_pedal_o
     assert result.different == 0
     assert result.skipped > 0
     assert result.compared > 100
+
+
+def test_a_motion_about_a_centre_is_compared_from_the_first_rest_on(session):
+    """Its hold is part of the law: without it the commands differ, and from the middle of a motion it is not known."""
+    texts = session.streams["motion/settings"].data
+    centred = {data["version"] for data in map(json.loads, texts) if data["rcm"] is not None}
+    lines = session.streams["motion/inputs"].data
+    records = list(map(motion_record, lines))
+    moving = [k for k, r in enumerate(records) if r.version in centred and r.reason == Reason.MOVING]
+    # The pedal is pressed for 80 ticks, so 40 ticks on the robot moves about the centre.
+    middle = next(k for k in moving if k + 40 in moving) + 40
+    cut = SimpleNamespace(data=lines[middle:])
+    result = replay_motion(SimpleNamespace(streams={**session.streams, "motion/inputs": cut}), ROBOT)
+    assert result.different == 0 and result.skipped > 10 and result.compared > 50
+    stiff = [text.replace('"rcm_integral": 500.0', '"rcm_integral": 400.0') for text in texts]
+    assert stiff != texts
+    changed = {**session.streams, "motion/settings": SimpleNamespace(data=stiff)}
+    assert replay_motion(SimpleNamespace(streams=changed), ROBOT).different > 0
 
 
 def test_a_missing_topic_or_sample_is_named(session):
