@@ -19,7 +19,7 @@ def set_up_drives(
 ) -> None:
     """Restart every drive, write its configuration, verify it by read-back, and bring all of them to OPERATIONAL.
 
-    Before the first command it listens whether somebody else commands these drives.
+    Before the first command it listens for anybody else who commands these drives.
 
     Args:
         links: one link per channel.
@@ -28,7 +28,7 @@ def set_up_drives(
         patience: longest wait for a drive to boot, s.
 
     Raises:
-        OtherHost: somebody does; nothing is sent, so that the robot he moves goes on.
+        OtherHost: somebody does; nothing is sent, so that the robot goes on.
         DriveSilent: a drive does not answer.
         DriveMismatch: a drive does not hold what it must. No drive becomes OPERATIONAL.
     """
