@@ -29,6 +29,8 @@ from .spinning import spin
 REALTIME_VARIABLE = "SHER3_REALTIME"
 CONTROL_VARIABLE = "SHER3_CONTROL_FD"
 NEVER_NS = 1 << 62
+LEAVE_LIMIT = 1.0
+"""Seconds that the middleware has for its farewell, which takes milliseconds when it ends at all."""
 _PR_SET_PDEATHSIG = 1
 
 
@@ -37,7 +39,7 @@ class NotStarted(Sher3Error):
 
 
 def run(make_nodes: Callable[[], Sequence[Node]]) -> None:
-    """Make nodes and run them until they are told to stop.
+    """Make nodes and run them until they are told to stop; the process is to end soon after (see `leave_in_time`).
 
     Raises:
         Exception: what making or running a node raises; the other end of the control socket has been told.
@@ -57,7 +59,7 @@ def run(make_nodes: Callable[[], Sequence[Node]]) -> None:
             # Not earlier: what start-up costs would use up the share of the processor that the kernel leaves to FIFO.
             use_realtime(int(os.environ.get(REALTIME_VARIABLE) or 0))
 
-        spin(nodes, stop=stop, meet=meet)
+        spin(nodes, stop=stop, meet=meet, leave=leave_in_time)
     except Exception as error:
         if control is not None:
             with suppress(OSError):
@@ -65,6 +67,15 @@ def run(make_nodes: Callable[[], Sequence[Node]]) -> None:
         raise
     finally:
         rclpy.try_shutdown()
+
+
+def leave_in_time() -> None:
+    """Let the kernel end this process `LEAVE_LIMIT` s from now, when all of ours is closed already.
+
+    Now and then a participant waits for ever for a thread of its own as it is destroyed, and no Python code runs then.
+    """
+    signal.signal(signal.SIGALRM, signal.SIG_DFL)
+    signal.setitimer(signal.ITIMER_REAL, LEAVE_LIMIT)
 
 
 def make_logging_prompt() -> None:

@@ -31,6 +31,7 @@ def spin(
     *,
     stop: Callable[[], object] = bool,
     meet: Callable[[Executor], None] | None = None,
+    leave: Callable[[], None] = lambda: None,
     diagnostics: bool = True,
 ) -> None:
     """Run `nodes` until `stop()` or shutdown; then close them, while they can still publish.
@@ -39,6 +40,7 @@ def spin(
         nodes: of one context. A node's `close()`, where it has one, is called at the end, even after an exception.
         stop: asked at every spin; true ends it.
         meet: called once with the executor before the first tick (the start barrier).
+        leave: called once when the nodes are closed, before they leave the middleware.
         diagnostics: publish each node's statistics at 1 Hz on `/diagnostics`.
 
     Raises:
@@ -68,10 +70,10 @@ def spin(
     except ExternalShutdownException:
         pass
     finally:
-        close(nodes, executor)
+        close(nodes, executor, leave)
 
 
-def close(nodes: Iterable[Node], executor: Executor | None = None) -> None:
+def close(nodes: Iterable[Node], executor: Executor | None = None, leave: Callable[[], None] = lambda: None) -> None:
     """Close and destroy nodes in reverse order; every one is closed even when another's `close()` raises."""
     failure: BaseException | None = None
     for node in reversed(list(nodes)):
@@ -79,11 +81,13 @@ def close(nodes: Iterable[Node], executor: Executor | None = None) -> None:
             getattr(node, "close", lambda: None)()
         except Exception as error:
             failure = failure or error
+    if folder := os.environ.get(TRACE_VARIABLE) or os.environ.get(STATISTICS_VARIABLE):
+        for node in nodes:
+            ports(node).statistics.write(Path(folder), node.get_name())
+    leave()
     if executor is not None:
         executor.shutdown()
     for node in nodes:
-        if folder := os.environ.get(TRACE_VARIABLE) or os.environ.get(STATISTICS_VARIABLE):
-            ports(node).statistics.write(Path(folder), node.get_name())
         node.destroy_node()
     if failure is not None:
         raise failure
