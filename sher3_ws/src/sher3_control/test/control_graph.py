@@ -74,6 +74,9 @@ class ControlGraph:
 
     def enable(self):
         self.step(5)
+        # Latched with a depth of one: the next version would take the place of one that is still on its way.
+        for topic in ("admittance/settings", "motion/settings"):
+            self.graph.until(lambda topic=topic: self.probe.samples[topic], topic)
         self.text("state_command", "enable")
         self.until_state("ENABLED")
         self.until_mode(None)
