@@ -129,6 +129,10 @@ def _ticks(nodes: dict[str, Any], start: int, clock: SteppedClock) -> dict[str, 
     return {"admittance": admittance, "kinematics": kinematics, "supervisor": supervisor}
 
 
+SWINGS = (40.0, 20.0, 10.0, 5.0, 3.0, 2.0)
+"""Seconds of a swing of +-30 degrees about the remote centre on the plant."""
+
+
 def figures() -> dict[str, float]:
     """Return what the laws promise, computed anew."""
     low_pass = law_parameters(ROBOT, SETTINGS).low_pass
@@ -139,12 +143,7 @@ def figures() -> dict[str, float]:
         "low-pass delay [ms]": round(low_pass.delay() * 1e3, 2),
         **lags,
         **remote_centre(),
-        **remote_centre_on_plant(40.0),
-        **remote_centre_on_plant(20.0),
-        **remote_centre_on_plant(10.0),
-        **remote_centre_on_plant(5.0),
-        **remote_centre_on_plant(3.0),
-        **remote_centre_on_plant(2.0),
+        **{key: value for s in SWINGS for key, value in remote_centre_on_plant(s).items()},
     }
 
 

@@ -34,7 +34,7 @@ from .fleet import Fleet, Member
 from .nodes import make_nodes
 from .safety_matrix import MatrixResult
 from .settings import RunSettings, checked, parse_processes
-from .up import beside, prepare, priority
+from .up import beside, launch_nodes, prepare
 
 DOMAIN = 230
 """Beyond those of tests and users."""
@@ -151,10 +151,7 @@ def _longest_silence(stamps: NDArray[np.int64], begin: int, end: int) -> int:
 
 
 def _launch(fleet: Fleet, settings: RunSettings, realtime: int, state: State, row: Row) -> None:
-    for process in settings.processes:
-        fleet.launch("+".join(process), partial(make_nodes, settings, process), priority(process, realtime))
-        if "plant" in process:
-            fleet.gather("publishes", PATIENCE)
+    launch_nodes(fleet, settings, realtime, PATIENCE)
     if row.component == "process.recorder":
         assert settings.record is not None
         second = settings.model_copy(update={"record": settings.record.with_name(settings.record.name + "-second")})

@@ -46,10 +46,7 @@ def run_graph(
     realtime = prepare(settings)
     imported = time.monotonic()
     with _signals() as caught, Fleet() as fleet:
-        for process in launch_order(settings.processes):
-            fleet.launch("+".join(process), partial(make_nodes, settings, process), priority(process, realtime))
-            if "plant" in process:
-                fleet.gather("publishes")
+        launch_nodes(fleet, settings, realtime)
         for name, make in (extra or {}).items():
             fleet.launch(name, make, beside(realtime))
         fleet.start()
@@ -68,6 +65,18 @@ def run_graph(
 
         fleet.watch(finished, spare=("recorder",) if settings.recording == "optional" else ())
     say("stopped" + (f"; recorded {settings.record}" if settings.record else ""))
+
+
+def launch_nodes(fleet: Fleet, settings: RunSettings, realtime: int, patience: float = 60.0) -> None:
+    """Launch the processes of a run, the chain at priority `realtime`; wait at most `patience` s for the plant's nodes.
+
+    Raises:
+        StartError: the plant's process failed, or did not answer in time.
+    """
+    for process in launch_order(settings.processes):
+        fleet.launch("+".join(process), partial(make_nodes, settings, process), priority(process, realtime))
+        if "plant" in process:
+            fleet.gather("publishes", patience)
 
 
 def priority(process: Sequence[str], realtime: int) -> int:
