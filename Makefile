@@ -3,7 +3,7 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 
-.PHONY: demo test test-slow bench lint setup clean
+.PHONY: demo test test-slow docs bench lint setup clean
 
 demo: $(READY)  ## scripted surgeon on mocks: recorded, analysed, shown
 	$(BIN)/sher3 demo
@@ -19,6 +19,10 @@ lint: $(READY)
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy $(wildcard sher3_ws/src/sher3_*/sher3_*)
 
+docs: $(READY)  ## the site in build/docs, readable offline; a warning is an error
+	$(BIN)/python -m sphinx -W --keep-going -q -j auto -d build/doctrees docs build/docs
+	@echo "build/docs/index.html"
+
 bench: $(READY)  ## speed of every part that promises one
 	for script in $(filter-out bench/graph_run.py,$(wildcard bench/*.py)); do echo "== $$script"; $(BIN)/python $$script || exit 1; done
 
@@ -29,7 +33,7 @@ $(READY): requirements.txt pyproject.toml tools/find-python
 	test -x $(BIN)/python || "$$(tools/find-python)" -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements.txt
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation -e .
-	$(BIN)/python -m sher3_bringup.warm
+	$(BIN)/python -m sher3_bringup.processes.warm
 	touch $@
 
 clean:

@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 from sher3_bags import Recorder, Run, RunMetadata, read_run, recover, stream, write_run
-from sher3_bags.cdr_encode import encode
+from sher3_bags.codec.encode import encode
 from sher3_description import load_robot
 
 T = 2_000_000

@@ -28,14 +28,15 @@ from multiprocessing.connection import Connection
 
 import can
 from sher3_description import ACTUATORS, load_robot
-from sher3_drivers.bus import LinkGroup, open_links
-from sher3_drivers.bus_load import channel_budget, fd_frame_seconds, frame_bits
-from sher3_drivers.bus_python_can import LinkBus
-from sher3_drivers.cia402 import Goal
-from sher3_drivers.frame import FRAME_SIZE, bundle, pack_frame
-from sher3_drivers.mock_bus import MockDriveBus
-from sher3_drivers.mock_plant import IntegratorPlant
-from sher3_drivers.motor_driver import MotorDriver
+from sher3_drivers.bus.frame import FRAME_SIZE, bundle, pack_frame
+from sher3_drivers.bus.group import LinkGroup
+from sher3_drivers.bus.link import open_links
+from sher3_drivers.bus.load import channel_budget, fd_frame_seconds, frame_bits
+from sher3_drivers.bus.python_can import LinkBus
+from sher3_drivers.canopen.cia402 import Goal
+from sher3_drivers.drive.motor_driver import MotorDriver
+from sher3_drivers.mock.bus import MockDriveBus
+from sher3_drivers.mock.plant import IntegratorPlant
 from sher3_drivers.settings import MotorDriverSettings, default_settings
 
 ROBOT = load_robot()
@@ -250,7 +251,7 @@ def paced(period: int, ticks: int) -> Iterator[int]:
 
 
 def budget_rows() -> list[dict[str, float]]:
-    """Return the bus-load table of docs/can.md."""
+    """Return the bus-load table of docs/reference/can.md."""
     rows = []
     for rate in (200.0, 500.0, 1000.0):
         for drives in (1, 2, 3, 5):

@@ -12,10 +12,10 @@ import tempfile
 import time
 from pathlib import Path
 
+from sher3_challenge.cases.builder import Request, build_case
+from sher3_challenge.cases.plan import draw_plan
+from sher3_challenge.truth.plant import Plant
 from sher3_description import load_robot
-from sher3_gap.challenge.builder import Request, build_case
-from sher3_gap.challenge.plan import draw_plan
-from sher3_gap.challenge.truth.plant import Plant
 
 
 def main() -> None:

@@ -14,16 +14,21 @@ from typing import Any
 
 import numpy as np
 from rclpy.context import Context
-from sher3_control import ControlSettings, LawInput, initial_state, law_parameters, position_command, step
-from sher3_control.admittance_node import AdmittanceNode
-from sher3_control.cooperative import VelocityModes
-from sher3_control.kinematics_node import KinematicsNode
-from sher3_control.pose import tip_pose_sample
-from sher3_control.rcm import NO_HOLD, rcm_velocity, shaft_deviation
-from sher3_control.supervisor_node import SupervisorNode
+from sher3_common.operating_state import OperatingState
+from sher3_common.samples import JointSample, JoySample, TextSample, TwistSample, WrenchSample
+from sher3_control import ControlSettings, LawInput, initial_state, step
+from sher3_control.law.parameters import law_parameters
+from sher3_control.law.position_controller import position_command
+from sher3_control.motion.cooperative import VelocityModes
+from sher3_control.motion.pose import tip_pose_sample
+from sher3_control.motion.rcm import NO_HOLD, rcm_velocity, shaft_deviation
+from sher3_control.nodes.admittance_node import AdmittanceNode
+from sher3_control.nodes.kinematics_node import KinematicsNode
+from sher3_control.nodes.supervisor_node import SupervisorNode
+from sher3_control.supervision.detectors import SilenceDetector
 from sher3_description import load_robot
 from sher3_kinematics import RobotKinematics
-from sher3_runtime import JointSample, JoySample, TextSample, TwistSample, WrenchSample, environment
+from sher3_runtime import environment
 from sher3_runtime.clock import SteppedClock
 from sher3_runtime.ports import use_clock
 from sher3_sim.plant import Plant
@@ -98,33 +103,34 @@ def node_costs(repeat: int) -> dict[str, dict[str, float]]:
 
 def _ticks(nodes: dict[str, Any], start: int, clock: SteppedClock) -> dict[str, Callable[[int], None]]:
     a, m, s = nodes["admittance"], nodes["kinematics"], nodes["supervisor"]
+    silence = [detector for detector in s.supervisor.detectors if isinstance(detector, SilenceDetector)]
     m.motion.cooperative_wants(False, start)
-    a._on_motion(TextSample('{"mode": null}'))
+    a.on_motion(TextSample('{"mode": null}'))
 
     def hear(node: Any, k: int) -> int:
         clock.time_ns = start + k * T
         if k % 400 == 0:
-            node._on_state(TextSample("ENABLED"))
+            node.on_state(TextSample(OperatingState.ENABLED.value))
         return clock.time_ns
 
     def admittance(k: int) -> None:
         t = hear(a, k)
-        a._take_joints = lambda: JointSample(t, REST)
-        a._on_pedal(JoySample(t, (0.0 if k == 0 else 1.0,), (0,)))
-        a._on_wrench(WrenchSample(t, (0.5 + 1e-9 * k, 0.1, -0.2, 0.001, 0.0, 0.0)))
+        a.on_joints(JointSample(t, REST))
+        a.on_pedal(JoySample(t, (0.0 if k == 0 else 1.0,), (0,)))
+        a.on_wrench(WrenchSample(t, (0.5 + 1e-9 * k, 0.1, -0.2, 0.001, 0.0, 0.0)))
 
     def kinematics(k: int) -> None:
         t = hear(m, k)
-        m._on_joints(JointSample(t, REST))
-        m._on_twist(TwistSample(t, TWIST))
+        m.on_joints(JointSample(t, REST))
+        m.on_twist(TwistSample(t, TWIST))
 
     def supervisor(k: int) -> None:
         t = start + k * T
         clock.time_ns = t
-        for detector in s._silence.values():
+        for detector in silence:
             detector.feed(t)
-        s._on_pedal(JoySample(t, (1.0,), (0,)))
-        s._check(t)
+        s.on_pedal(JoySample(t, (1.0,), (0,)))
+        s.check(t)
 
     return {"admittance": admittance, "kinematics": kinematics, "supervisor": supervisor}
 

@@ -11,8 +11,8 @@ import time
 
 import numpy as np
 from sher3_kinematics.deflection import DeltaDeflection
-from sher3_paper.constraints import Workspace
-from sher3_paper.optimise import PAPER_LAW, fine_grid, paper_grid, search, search_parallel
+from sher3_paper.search.constraints import Workspace
+from sher3_paper.search.optimise import PAPER_LAW, fine_grid, paper_grid, search, search_parallel
 
 
 def numpy_seconds(designs: int = 20) -> float:

@@ -17,20 +17,23 @@ from typing import Any
 
 import numpy as np
 from sher3_description import load_robot
-from sher3_drivers.feedback import Feedback
-from sher3_drivers.motion_watch import MotionWatch
+from sher3_drivers.canopen.cia402 import Goal
+from sher3_drivers.canopen.tpdo import DriveFeedback
 from sher3_drivers.settings import default_settings
-from sher3_drivers.trips import StopLog, Trip
 from sher3_drivers.units import AxisScale
+from sher3_drivers.watches.motion import MotionWatch
+from sher3_drivers.watches.trips import StopLog, Trip
+from sher3_effects import plants
 from sher3_gap.excitation import catalogue, excite
-from sher3_safety.report import false_trips
-from sher3_sim import EFFECTS, simulate
+from sher3_safety.measurement.report import false_trips
+from sher3_sim import simulate
 from sher3_sim.scatter import RunScatter
 
 ROBOT = load_robot()
 SETTINGS = default_settings(ROBOT.control_period)
 SCALES = [AxisScale.from_actuator(actuator) for actuator in ROBOT.actuators]
 LABELS = list(catalogue())
+SHARES = ("encoders", "following", "position")
 
 
 def watch(run: Any) -> tuple[Trip | None, dict[str, float]]:
@@ -38,17 +41,20 @@ def watch(run: Any) -> tuple[Trip | None, dict[str, float]]:
     columns = [run[topic] for topic in ("measured_js", "drives/measured_js", "drives/setpoint_jv", "servo_jv")]
     load, motor, velocity = columns[0].position, columns[1].position, columns[1].velocity
     effort, echo, command = columns[1].effort, columns[2].velocity, columns[3].velocity
-    checks, log, shares = MotionWatch(SCALES, SETTINGS), StopLog(), {"encoders": 0.0, "following": 0.0}
+    checks, log, shares = MotionWatch(SCALES, SETTINGS), StopLog(), dict.fromkeys(SHARES, 0.0)
     checks.begin()
     for k in range(len(load)):
         rows = (tuple(column[k].tolist()) for column in (load, motor, velocity, effort, echo))
         stamp = round(k * SETTINGS.period * 1e9)
-        trip = checks.check(Feedback(stamp, *rows), True, log, stamp)
+        checks.sync()
+        trip = checks.check(DriveFeedback(stamp, *rows), Goal.ENABLED, True, log, stamp)
         if trip is not None:
             return trip, shares
         for axis in checks.joints.axes:
             shares["encoders"] = max(shares["encoders"], abs(axis.gap) / axis.limit)
             shares["following"] = max(shares["following"], abs(axis.error) / axis.error_limit)
+        for place in checks.position.axes:
+            shares["position"] = max(shares["position"], abs(place.departure) / place.limit)
         checks.demand.sent([round(v / s.velocity) for v, s in zip(command[k].tolist(), SCALES, strict=True)])
     return None, shares
 
@@ -62,7 +68,7 @@ def play(label: str, seed: int, effects: tuple[Any, ...] = ()) -> Any:
 
 def healthy(seeds: int) -> dict[str, Any]:
     """Return trips and margins of healthy robots."""
-    ticks, trips, shares = 0, Counter[str](), {"encoders": 0.0, "following": 0.0}
+    ticks, trips, shares = 0, Counter[str](), dict.fromkeys(SHARES, 0.0)
     for label in LABELS:
         for seed in range(seeds):
             run = play(label, seed)
@@ -89,8 +95,8 @@ def cost() -> float:
 def imperfect() -> dict[str, str]:
     """Return per effect that stops the robot in its default size, on the axis with the first place, why."""
     found = {}
-    for name, kind in EFFECTS.items():
-        trip, _ = watch(play("sweep", 1, (kind(kind.places[0]),)))
+    for name, kind in plants().items():
+        trip, _ = watch(play("sweep", 1, (kind(kind.sites[0]),)))
         if trip is not None:
             found[name] = f"{trip.reason.name}: {trip.text}"
     return found
@@ -102,7 +108,7 @@ def main() -> None:
     parser.add_argument("--seeds", type=int, default=3)
     parser.add_argument("--json", action="store_true")
     options = parser.parse_args()
-    result = {"healthy": healthy(options.seeds), "stopped_effects": imperfect(), "effects": len(EFFECTS), "us": cost()}
+    result = {"healthy": healthy(options.seeds), "stopped_effects": imperfect(), "effects": len(plants()), "us": cost()}
     if options.json:
         print(json.dumps(result))
         return

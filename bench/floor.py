@@ -25,7 +25,7 @@ from contextlib import suppress
 from multiprocessing.synchronize import Barrier
 from typing import Any
 
-from sher3_drivers.frame import FRAME_SIZE, pack_frame
+from sher3_drivers.bus.frame import FRAME_SIZE, pack_frame
 from sher3_runtime import environment
 
 PAYLOAD = 200

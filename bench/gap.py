@@ -15,11 +15,11 @@ from tempfile import TemporaryDirectory
 
 from sher3_bags import write_case
 from sher3_description import load_robot
-from sher3_gap import diagnose
+from sher3_effects import library, plants
+from sher3_gap import diagnose_case
 from sher3_gap.excitation import excite
-from sher3_gap.library import LIBRARY
-from sher3_gap.rehearsal import rehearse
-from sher3_sim import EFFECTS, Effect, RunScatter
+from sher3_gap.experiments.rehearsal import rehearse
+from sher3_sim import PlantEffect, RunScatter
 
 ROBOT = load_robot()
 LABELS = ("sweep", "sweep", "reversals", "reversals", "steps", "steps", "postures", "loads", "task", "task")
@@ -28,7 +28,7 @@ RUBBING = ("delta_2", "tilt", "delta_1")
 LEFT_OUT = ("cogging", "position_friction", "stribeck_friction", "cable_drag")
 
 
-def make_case(folder: Path, runs: int, effects: Sequence[Effect]) -> Path:
+def make_case(folder: Path, runs: int, effects: Sequence[PlantEffect]) -> Path:
     """Write a case of `runs` runs of `SECONDS` each."""
     counted: dict[str, int] = {}
     wanted = []
@@ -41,13 +41,13 @@ def make_case(folder: Path, runs: int, effects: Sequence[Effect]) -> Path:
 def seconds(case: Path, without: Sequence[str] = ()) -> float:
     """Return the wall-clock seconds from the folder to the verdict."""
     started = time.perf_counter()
-    diagnose(case, without=without)
+    diagnose_case(case, without=without)
     return time.perf_counter() - started
 
 
 def measure() -> dict[str, float]:
     """Return the figures, seconds each."""
-    friction = [EFFECTS["coulomb_friction"](a, force=1.0) for a in RUBBING]
+    friction = [plants()["coulomb_friction"](a, force=1.0) for a in RUBBING]
     with TemporaryDirectory() as scratch:
         folder = Path(scratch)
         whole = make_case(folder / "ten", 10, friction[:1])
@@ -63,7 +63,7 @@ def measure() -> dict[str, float]:
             "per_effect": (ten - fewer) / len(LEFT_OUT),
             "per_run": (ten - six) / 4,
             "per_faulty_actuator": (seconds(several) - ten) / (len(RUBBING) - 1),
-            "effects": float(len(LIBRARY)),
+            "effects": float(len(library())),
         }
 
 

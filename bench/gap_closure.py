@@ -13,12 +13,12 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
+from sher3_challenge.cases.builder import Request, build_case
+from sher3_challenge.truth.catalogue import LIBRARY
 from sher3_description import load_robot
-from sher3_gap.challenge.builder import Request, build_case
-from sher3_gap.challenge.truth.catalogue import LIBRARY
-from sher3_gap.closing import close_loop
-from sher3_gap.loading import load_case
-from sher3_gap.report.style import quantity, share
+from sher3_diagnosis.report.words import quantity, share
+from sher3_gap.case.loading import load_case
+from sher3_gap.simulate.closing import close_loop
 
 GAP = (6.0, 12.0)
 

@@ -13,12 +13,12 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
+from sher3_challenge.cases.builder import Request, build_case
 from sher3_description import load_robot
-from sher3_gap.challenge.builder import Request, build_case
-from sher3_gap.constancy import constancy_of
+from sher3_diagnosis.attribute.constancy import constancy_of
+from sher3_diagnosis.localise.pattern import AGREEMENT, pattern_of
+from sher3_gap.case.loading import load_case
 from sher3_gap.diagnose import diagnose_runs
-from sher3_gap.loading import load_case
-from sher3_gap.pattern import AGREEMENT, pattern_of
 
 KINDS = ("single", "single", "compound", "outside")
 """Kinds of the cases, in turn."""

@@ -9,9 +9,9 @@ from pathlib import Path
 from tempfile import NamedTemporaryFile
 
 import psutil
-from sher3_bringup.settings import checked, parse_processes
-from sher3_bringup.surgeon import load_script
-from sher3_bringup.up import launch_order, run_graph
+from sher3_bringup.processes.up import launch_order, run_graph
+from sher3_bringup.settings.run_settings import checked, parse_processes
+from sher3_bringup.surgeon.script import load_script
 
 PUSH = """
 schema: sher3.teleop/1
@@ -67,7 +67,7 @@ def main() -> None:
     )
 
     def surgeon() -> list:
-        from sher3_bringup.teleop_node import script_node
+        from sher3_bringup.surgeon.teleop_node import script_node
 
         return [script_node(script)]
 

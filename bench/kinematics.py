@@ -16,8 +16,8 @@ import numpy as np
 import pinocchio as pin
 from sher3_description import load_robot
 from sher3_kinematics import InverseVelocity, RobotKinematics
-from sher3_kinematics import kernel_batch as batch
 from sher3_kinematics.arm import whole_robot_model
+from sher3_kinematics.kernel import batch as batch
 from sher3_kinematics.tip_deflection import TipDeflection
 
 SCALAR_LIMIT_US = 10.0

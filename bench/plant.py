@@ -15,7 +15,8 @@ from collections.abc import Callable
 
 import numpy as np
 from sher3_description import load_robot
-from sher3_sim import EFFECTS, Excitation, Plant, excitation, simulate, simulate_arrays, with_effects
+from sher3_effects import plants
+from sher3_sim import Excitation, Plant, excitation, simulate, simulate_arrays, with_effects
 
 ROBOT = load_robot()
 PERIOD = ROBOT.control_period
@@ -43,7 +44,7 @@ def best(call: Callable[[], object], repeats: int = 7) -> float:
 def speeds(seconds: float) -> list[dict]:
     """Return run time by number of effects."""
     motion = drive(seconds)
-    every = [kind(kind.places[0]) for kind in EFFECTS.values()]
+    every = [kind(kind.sites[0]) for kind in plants().values()]
     rows = []
     for count in (0, 1, 2, 4, 8, 16, len(every)):
         plant = with_effects(ROBOT, every[:count])
@@ -58,8 +59,8 @@ def convergence() -> list[dict]:
     counts = np.array([a.motor_encoder for a in ROBOT.actuators])
     noise = np.array([0.002 * a.drive.rated for a in ROBOT.actuators])
     rows = []
-    for kind in EFFECTS.values():
-        places = [a for a in kind.places if a in ("delta_1", "roll", "tilt")] or [kind.places[0]]
+    for kind in plants().values():
+        places = [a for a in kind.sites if a in ("delta_1", "roll", "tilt")] or [kind.sites[0]]
         plant = with_effects(ROBOT, [kind(place) for place in places]).without_noise()
         coarse = simulate_arrays(plant, motion)[1]
         plant.substeps *= 16

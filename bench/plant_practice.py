@@ -23,7 +23,8 @@ from scipy.ndimage import uniform_filter1d
 from scipy.optimize import minimize
 from sher3_bags import Run, read_case
 from sher3_description import ACTUATORS, Robot
-from sher3_sim import EFFECTS, Effect, PlantParameters, contact_wrench, recorded_excitation, simulate, with_effects
+from sher3_effects import plants
+from sher3_sim import PlantEffect, PlantParameters, contact_wrench, recorded_excitation, simulate, with_effects
 from sher3_sim.axis import AXIS_STATE
 from sher3_sim.replay import axis_loads
 from sher3_sim.transmission import follow
@@ -62,7 +63,7 @@ def square(x: np.ndarray, column: int | None) -> float:
     return float(np.mean(x**2) if column is None else np.mean(x[:, column] ** 2))
 
 
-def gaps(runs: list[Run], robot: Robot, effects: list[Effect]) -> list[dict[str, np.ndarray]]:
+def gaps(runs: list[Run], robot: Robot, effects: list[PlantEffect]) -> list[dict[str, np.ndarray]]:
     """Return recorded less modelled, per run and stage; the model neither scatters nor rounds."""
     plant = with_effects(robot, effects).without_noise()
     out = []
@@ -101,14 +102,14 @@ FREE = {
 """Parameters `--fit` frees, where the label leaves some open or the truth may be shaped otherwise."""
 
 
-def fitted(effect: Effect, runs: list[Run], robot: Robot, signal: str, column: int | None) -> Effect:
+def fitted(effect: PlantEffect, runs: list[Run], robot: Robot, signal: str, column: int | None) -> PlantEffect:
     """Return the effect with its free parameters fitted to the runs' gap of one signal (Nelder-Mead)."""
     names = FREE[effect.id]
     spec = effect.specification(effect.actuator)
     scale = np.array([1.0 if "phase" in n else getattr(effect, n) or effect.parameters[names[0]] for n in names])
     origin = np.array([getattr(effect, n) for n in names]) / scale
 
-    def with_values(x: np.ndarray) -> Effect:
+    def with_values(x: np.ndarray) -> PlantEffect:
         values = {n: float(np.clip(v, spec[n].low, spec[n].high)) for n, v in zip(names, x * scale, strict=True)}
         return dataclasses.replace(effect, **values)
 
@@ -122,12 +123,12 @@ def fitted(effect: Effect, runs: list[Run], robot: Robot, signal: str, column: i
     return with_values(found.x)
 
 
-def truth_effects(truth: dict) -> list[Effect]:
+def truth_effects(truth: dict) -> list[PlantEffect]:
     """Return the labelled effects, with those of their parameters the effect here has."""
     out = []
     for entry in truth["effects"]:
-        if entry["effect"] in EFFECTS:
-            kind = EFFECTS[entry["effect"]]
+        if entry["effect"] in plants():
+            kind = plants()[entry["effect"]]
             known = kind.specification(entry["actuator"])
             out.append(kind(entry["actuator"], **{k: v for k, v in entry["parameters"].items() if k in known}))
     return out

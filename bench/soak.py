@@ -31,6 +31,7 @@ from typing import Any
 import numpy as np
 import psutil
 from scipy import stats
+from sher3_common.operating_state import OperatingState
 
 DOMAIN = 75
 SETTLE = 4.0
@@ -120,9 +121,9 @@ class Watch:
 
 def soak(seconds: float, rate: float, folder: Path) -> dict[str, Any]:
     """Run the graph and return every figure."""
-    from sher3_bringup.settings import checked, parse_processes
-    from sher3_bringup.surgeon import load_script
-    from sher3_bringup.up import run_graph
+    from sher3_bringup.processes.up import run_graph
+    from sher3_bringup.settings.run_settings import checked, parse_processes
+    from sher3_bringup.surgeon.script import load_script
     from sher3_runtime.ports import STATISTICS_VARIABLE
 
     (folder / "script.yaml").write_text(SCRIPT)
@@ -139,7 +140,7 @@ def soak(seconds: float, rate: float, folder: Path) -> dict[str, Any]:
     )
 
     def surgeon() -> list:
-        from sher3_bringup.teleop_node import script_node
+        from sher3_bringup.surgeon.teleop_node import script_node
 
         return [script_node(script)]
 
@@ -172,7 +173,7 @@ def recording(bag: Path) -> dict[str, Any]:
 
 def places() -> set[str]:
     """Return what lies in /dev/shm, the Unix sockets of the mocks, and the UDP ports of the domain that are taken."""
-    from sher3_bringup.settings import MOCK_FORCE_PORT
+    from sher3_bringup.settings.run_settings import MOCK_FORCE_PORT
 
     found = {f"/dev/shm/{name}" for name in os.listdir("/dev/shm")} if os.path.isdir("/dev/shm") else set()
     found = {name for name in found if "fastrtps" in name or "fastdds" in name or "sher3" in name}
@@ -201,7 +202,7 @@ def faults(result: dict[str, Any], any_state: bool = False) -> list[str]:
     if garbage:
         found.append(f"invalid messages: {garbage}")
     run = result["recording"]
-    if not any_state and run["last_state"] != "ENABLED":
+    if not any_state and run["last_state"] != OperatingState.ENABLED:
         found.append(f"the robot did not stay ENABLED: {run['first_fault'] or run['states']}")
     if not any_state and run["tip_path_mm"] < 0.1:
         found.append(f"the tip did not move: {run['tip_path_mm']} mm")

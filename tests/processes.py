@@ -7,7 +7,7 @@ import sys
 
 def sher3_command(*arguments: str) -> list[str]:
     """Return the command line of a `sher3` command in the interpreter of the tests."""
-    return [sys.executable, "-m", "sher3_bringup", *map(str, arguments)]
+    return [sys.executable, "-m", "sher3_cli", *map(str, arguments)]
 
 
 def child_environment(**changes: str) -> dict[str, str]:

@@ -9,31 +9,32 @@ from dataclasses import dataclass, field
 from struct import Struct
 from typing import Any
 
-from sher3_control.admittance import LawInput, initial_state, step
-from sher3_control.detectors import EmergencyStopDetector, Finding, ReportedFault
-from sher3_control.driver_reports import driver_stop
+from sher3_common.operating_state import OperatingState
+from sher3_common.reasons import Reason
 from sher3_control.errors import StateCommandRefused
-from sher3_control.heard import HeardState
-from sher3_control.law_parameters import law_parameters
-from sher3_control.operating_state import OperatingState
-from sher3_control.reasons import Action, Reason
+from sher3_control.law.admittance import LawInput, initial_state, step
+from sher3_control.law.parameters import law_parameters
+from sher3_control.nodes.heard import HeardState
 from sher3_control.settings import ControlSettings
-from sher3_control.supervisor import Supervisor
+from sher3_control.supervision.detectors import EmergencyStopDetector, Finding, ReportedFault
+from sher3_control.supervision.driver_reports import driver_stop
+from sher3_control.supervision.supervisor import Supervisor
 from sher3_description import ACTUATORS, load_robot
-from sher3_drivers import drive_objects as od
-from sher3_drivers import feedback, mock_drive
-from sher3_drivers.driver_report import driver_report
-from sher3_drivers.emcy import EMCY
+from sher3_drivers.bus.frame import FRAME_SIZE, pack_frame
+from sher3_drivers.canopen import objects as od
+from sher3_drivers.canopen import tpdo
+from sher3_drivers.canopen.emcy import EMCY
+from sher3_drivers.drive.motor_driver import MotorDriver
+from sher3_drivers.drive.report import driver_report
+from sher3_drivers.drive.supervisor_link import SupervisorLink
 from sher3_drivers.errors import CommandRefused
-from sher3_drivers.frame import FRAME_SIZE, pack_frame
-from sher3_drivers.motor_driver import MotorDriver
-from sher3_drivers.motor_driver_node import MotorDriverNode
+from sher3_drivers.mock import drive as mock_drive
 from sher3_drivers.settings import default_settings
 from sher3_drivers.units import AxisScale
 
 ROBOT = load_robot().replace({"admittance.force_deadband": 0.0})
 T = 2_000_000
-SETTINGS = default_settings().model_copy(update={"brake_time": 0.003})
+SETTINGS = default_settings().model_copy(update={"brake_time": 0.003, "missing_limit": 2})
 CONTROL = ControlSettings.from_robot(ROBOT)
 LAW = law_parameters(ROBOT, CONTROL)
 SCALES = [AxisScale.from_actuator(actuator) for actuator in ROBOT.actuators]
@@ -55,6 +56,16 @@ EVENTS = (
     "drive loses power stage",
     "bus passive",
 )
+LOSSY = (
+    "commands lost",
+    "reports lost",
+    "supervisor unheard",
+    "driver unheard",
+    "drive faults unsaid",
+    "drive restarts",
+)
+"""What channels that lose frames add, in one period: the drive's RPDO, or its TPDOs with all else it says; the
+supervisor's heartbeat; the driver's report; the emergency message of a fault. And a drive that restarts."""
 HARMLESS = frozenset({"tick", "disable", "release", "emergency off", "stream back", "in time"})
 """What an operator and the passing of time do to get out of anything."""
 
@@ -90,6 +101,9 @@ class DriveEnd:
         self.targets = dict.fromkeys(axes, 0)
         self.position = dict.fromkeys(axes, 0.0)
         self.resets = 0
+        self.down: set[int] = set()
+        self.deaf: int | None = None
+        self.mute: int | None = None
         self.extra = b""
         self._out = b""
 
@@ -119,7 +133,22 @@ class DriveEnd:
         """Return the velocity a drive is commanded to [counts]: none unless it is enabled."""
         return self.targets[axis] if self.states[axis] == mock_drive.ENABLED else 0
 
+    def restart(self, axis: int) -> None:
+        """Restart a drive: it says so, and serves no PDO until it is set up."""
+        self.states[axis], self.words[axis], self.targets[axis] = mock_drive.SWITCH_ON_DISABLED, 0, 0
+        self.down.add(axis)
+        self.extra += pack_frame(od.HEARTBEAT_BASE + axis + 1, bytes([0]))
+
+    def set_up(self) -> None:
+        """Take the configuration: every drive restarts and becomes OPERATIONAL, and what waited is gone."""
+        for axis in self.axes:
+            self.restart(axis)
+        self.down.clear()
+        self.extra = self._out = b""
+
     def _obey(self, axis: int, word: int, target: int) -> None:
+        if axis == self.deaf or axis in self.down:
+            return
         self.resets += bool(word & 0x80 and not self.words[axis] & 0x80)
         self.states[axis] = mock_drive.next_state(self.states[axis], word, self.words[axis])
         self.words[axis], self.targets[axis] = word, target
@@ -129,28 +158,29 @@ class DriveEnd:
             scale = SCALES[axis]
             velocity = self.demand(axis) * scale.velocity
             self.position[axis] += velocity * T * 1e-9
+            state = self.states[axis]
+            following = mock_drive.FAULT if state == mock_drive.FAULT_REACTION else state
+            if axis == self.mute or axis in self.down:
+                self.states[axis] = following
+                continue
             load, motor = (round(self.position[axis] / s) for s in (scale.load_encoder, scale.motor_encoder))
-            one = feedback._TPDO1.pack(load, self.states[axis] | 0x0210, 0)
-            two = feedback._TPDO2.pack(motor, round(velocity / scale.velocity))
+            one = tpdo.TPDO1_DATA.pack(load, state | 0x0210, 0)
+            two = tpdo.TPDO2_DATA.pack(motor, round(velocity / scale.velocity))
             node = axis + 1
             for base, data in zip(od.TPDO_BASES, (one, two), strict=True):
                 self._out += pack_frame(base + node, data)
             self._out += pack_frame(od.HEARTBEAT_BASE + node, bytes([5]))
-            if self.states[axis] == mock_drive.FAULT_REACTION:
-                self.states[axis] = mock_drive.FAULT
+            self.states[axis] = following
         self._out, self.extra = self._out + self.extra, b""
 
 
-class Glue:
-    """The driver node's way from what the supervisor says to the driver, without the node."""
+class Driver(MotorDriver):
+    """The motor driver, whose configuration of the drives is one step: SDO transfers are tested elsewhere."""
 
-    _on_heartbeat, _obey, _follow = (getattr(MotorDriverNode, n) for n in ("_on_heartbeat", "_obey", "_follow"))
-
-    def __init__(self, driver: MotorDriver) -> None:
-        self.driver, self._state, self._action = driver, "DISABLED", Action.NONE
-
-    def _note(self, refusal: str) -> None:
-        """The node logs it."""
+    def configure(self, patience: float = 1.0) -> None:
+        """Set every drive up."""
+        for end in self.wire.links:
+            end.set_up()
 
 
 SHARED = [ROBOT, SETTINGS, LAW, CONTROL, *SCALES]
@@ -187,8 +217,8 @@ class World:
     def __post_init__(self) -> None:
         self.supervisor = Supervisor([self.button, self.report, self.stream, self.loop])
         self.ends = [DriveEnd([ACTUATORS.index(n) for n in c.drives]) for c in SETTINGS.channels]
-        self.driver = MotorDriver(ROBOT, SETTINGS, self.ends, self.clock)
-        self.glue, self.heard, self.law = Glue(self.driver), HeardState(0.03), initial_state()
+        self.driver = Driver(ROBOT, SETTINGS, self.ends, self.clock)
+        self.glue, self.heard, self.law = SupervisorLink(self.driver), HeardState(0.03), initial_state()
         self.said: tuple[Any, Any] | None = None
         self.told: Finding | None = None
 
@@ -212,8 +242,15 @@ class World:
     def step(self, event: str) -> bool:
         """Apply an event and let one control period pass; return whether a state command was accepted."""
         accepted = self._apply(event)
-        self._tick()
+        end = self._end
+        end.deaf = self.drive if event == "commands lost" else None
+        end.mute = self.drive if event == "reports lost" else None
+        self._tick(event)
         return accepted
+
+    @property
+    def _end(self) -> DriveEnd:
+        return next(end for end in self.ends if self.drive in end.axes)
 
     def _apply(self, event: str) -> bool:
         if event in COMMANDS:
@@ -229,36 +266,42 @@ class World:
             self.stream.on = event.endswith("silent")
         elif event in ("overruns", "in time"):
             self.loop.on = event == "overruns"
-        elif event != "tick":
+        elif event not in ("tick", *LOSSY[:4]):
             self._break(event)
         return True
 
     def _break(self, event: str) -> None:
-        end = next(end for end in self.ends if self.drive in end.axes)
-        if event == "bus passive":
-            from sher3_drivers.can_errors import BusCondition, error_frame
+        end = self._end
+        if event == "drive restarts":
+            end.restart(self.drive)
+        elif event == "bus passive":
+            from sher3_drivers.bus.condition import BusCondition, error_frame
 
             end.extra += pack_frame(*error_frame(BusCondition.PASSIVE))
         elif event == "drive loses power stage":
             end.states[self.drive] = mock_drive.SWITCH_ON_DISABLED
         elif end.states[self.drive] not in (mock_drive.FAULT, mock_drive.FAULT_REACTION):
             end.states[self.drive] = mock_drive.FAULT_REACTION
-            end.extra += pack_frame(od.EMCY_BASE + self.drive + 1, EMCY.pack(0x2310, 1, bytes(5)))
+            if event != "drive faults unsaid":
+                end.extra += pack_frame(od.EMCY_BASE + self.drive + 1, EMCY.pack(0x2310, 1, bytes(5)))
 
-    def _tick(self) -> None:
+    def _tick(self, event: str) -> None:
         self.now += T
-        self.glue._on_heartbeat(self.supervisor.status.heartbeat)
+        if event != "supervisor unheard":
+            self.glue.hear(self.supervisor.status.heartbeat)
         self.driver.tick(self.now)
         self.driver.collect_positions()
         self.driver.collect()
         said = self.driver.stop.first, self.driver.stop.action
         if said != self.said:  # a report says the same until something else happens
             self.said, self.told = said, driver_stop(*driver_report(self.driver))
-        self.report.feed(self.told, self.now)
+        if event != "driver unheard":
+            self.report.feed(self.told, self.now)
         self.supervisor.check(self.now)
         beat = self.supervisor.status.heartbeat
         self.heard.feed(beat, self.now)
-        self.glue._on_heartbeat(beat)
+        if event != "supervisor unheard":
+            self.glue.hear(beat)
         self._command()
 
     def _command(self) -> None:
@@ -289,8 +332,8 @@ class World:
 
     @property
     def demands(self) -> tuple[int, ...]:
-        """The velocities the drives are commanded to [counts]."""
-        return tuple(end.demand(axis) for end in self.ends for axis in end.axes)
+        """The velocities the drives are commanded to [counts]; a drive that has just lost its command has none new."""
+        return tuple(end.demand(axis) for end in self.ends for axis in end.axes if axis != end.deaf)
 
     @property
     def resets(self) -> int:
@@ -301,14 +344,26 @@ class World:
     def faulty(self) -> bool:
         """Whether something is wrong right now that must keep the robot still."""
         well = {mock_drive.SWITCH_ON_DISABLED, mock_drive.READY, mock_drive.SWITCHED_ON, mock_drive.ENABLED}
-        return self.button.pressed or self.stream.on or self.loop.on or not set(self.drives) <= well
+        down = any(end.down for end in self.ends)
+        return self.button.pressed or self.stream.on or self.loop.on or down or not set(self.drives) <= well
+
+    @property
+    def recovering(self) -> tuple[frozenset[int], bool]:
+        """Which drives a recovery is resetting, and whether it has still to configure them."""
+        drives = self.driver.session.drives
+        return frozenset(i for i, d in enumerate(drives) if d.resetting), self.driver.session.setup_due
+
+    @property
+    def _known(self) -> tuple[int, bool, bool]:
+        health = self.driver.session.drives[self.drive]
+        return min(health.missing, SETTINGS.missing_limit), health.restarted, health.silent
 
     def key(self) -> tuple[Any, ...]:
         """Return all that the future depends on, without absolute times, positions and counters."""
         driver, status, stop = self.driver, self.supervisor.status, self.driver.stop
         alone = self.drive
         others = frozenset(i for i in range(len(ACTUATORS)) if i != alone)
-        drives, seen = self.drives, [health.state for health in driver.health]
+        drives, seen = self.drives, [health.state for health in driver.session.drives]
         words = [end.words[axis] >> 7 for end in self.ends for axis in end.axes]
         since = min(3, (self.now - stop.since) // T) if stop.first else 0
         deaf = min(3, max(0, (self.report.deaf_until - self.now + T) // T))
@@ -318,9 +373,15 @@ class World:
             (self.pressed, self.button.pressed, self.stream.on, self.loop.on),
             (told and told.action, deaf),
             (self.law.armed, self.law.pressed, any(self.law.velocity), self.released, self.heard.enabled(self.now)),
-            (driver.goal, stop.first is None, stop.action, since, driver._reset_words),
-            (driver._running, driver._all_enabled, driver.motion.rest.resting, self.glue._state, self.glue._action),
-            (drives[alone], seen[alone], words[alone], any(self.demands)),
+            (driver.goal, stop.first is None, stop.action, since, self.recovering),
+            (
+                driver.gate.following,
+                driver.session.all_enabled,
+                driver.watches.motion.rest.resting,
+                self.glue.state,
+                self.glue.action,
+            ),
+            (drives[alone], seen[alone], words[alone], any(self.demands), alone in self._end.down, self._known),
             frozenset((drives[i], seen[i], words[i]) for i in others),
             tuple(len(end.extra) for end in self.ends),
         )

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from sher3_bringup.stepped_robot import SteppedRobot
-from sher3_bringup.surgeon import Script
-from sher3_bringup.teleop_node import script_node
+from sher3_bringup.surgeon.script import Script
+from sher3_bringup.surgeon.teleop_node import script_node
 from sher3_description import load_robot
 
 ROBOT = load_robot()

@@ -4,11 +4,16 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 SOURCES = ROOT / "sher3_ws" / "src"
 FILES = sorted(SOURCES.glob("*/sher3_*/**/*.py"))
+FILE_OF = {
+    ".".join(path.relative_to(SOURCES).with_suffix("").parts[1:]).removesuffix(".__init__"): path for path in FILES
+}
+"""Dotted name of a module -> its file."""
 PACKAGES = sorted(path.parent.name for path in SOURCES.glob("*/package.xml"))
 
 
@@ -17,16 +22,33 @@ def imports(path: Path) -> set[str]:
 
     What only the type checker sees does not count, nor do the samples, which are plain tuples.
     """
+    return {module.split(".")[0] for module in modules(path)}
+
+
+@cache
+def modules(path: Path) -> set[str]:
+    """Return the same as dotted names; of `from a.b import c` both `a.b` and `a.b.c`, which may be a module too."""
     names = set()
     for node in _walk(ast.parse(path.read_text())):
         if isinstance(node, ast.Import):
-            names |= {alias.name.split(".")[0] for alias in node.names}
+            names |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
             samples = all(alias.name.endswith("Sample") for alias in node.names)
-            if samples and node.module in ("sher3_runtime", "sher3_runtime.samples"):
+            if samples and node.module in ("sher3_runtime", "sher3_common.samples"):
                 continue
-            names.add(node.module.split(".")[0])
+            names |= {node.module} | {f"{node.module}.{alias.name}" for alias in node.names}
     return names
+
+
+def reached(path: Path) -> set[str]:
+    """Return the dotted names a file imports, itself or through files of the project that it imports."""
+    seen: set[str] = set()
+    left = [path]
+    while left:
+        new = modules(left.pop()) - seen
+        seen |= new
+        left += [FILE_OF[name] for name in new if name in FILE_OF]
+    return seen
 
 
 def _walk(node: ast.AST) -> Iterator[ast.AST]:

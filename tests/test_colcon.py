@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import os
 import shutil
-import site
 import subprocess
-import sys
-from pathlib import Path
 
 import pytest
+from fresh_environment import fresh_environment, see_libraries
 from sources import PACKAGES, ROOT
 
 pytestmark = [pytest.mark.slow, pytest.mark.timeout(900)]
@@ -22,16 +20,12 @@ def colcon(tmp_path_factory):
     colcon needs a setuptools below 80, which this environment lacks; the new one sees our libraries behind its own.
     """
     folder = tmp_path_factory.mktemp("colcon")
-    python = folder / "venv" / "bin" / "python"
-    subprocess.run([sys.executable, "-m", "venv", folder / "venv"], check=True)
+    python = fresh_environment(folder / "venv")
     pip = [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--require-hashes"]
     install = subprocess.run([*pip, "-r", ROOT / "tests" / "colcon.txt"], capture_output=True, text=True, check=False)
     if install.returncode:
         pytest.skip(f"colcon cannot be installed here: {install.stderr.splitlines()[-1]}")
-    where = [python, "-c", "import site; print(site.getsitepackages()[0])"]
-    packages = Path(subprocess.check_output(where, text=True).strip())
-    # As site directories, so that their own path files count: some libraries live below a prefix.
-    (packages / "libraries.pth").write_text(f"import site; [site.addsitedir(p) for p in {site.getsitepackages()!r}]\n")
+    see_libraries(python)
     ignore = shutil.ignore_patterns("__pycache__", "build", "install", "log", "*.egg-info")
     shutil.copytree(ROOT / "sher3_ws", folder / "project" / "sher3_ws", ignore=ignore)
     for name in ("pyproject.toml", "docs", "bench"):

@@ -5,8 +5,8 @@ import itertools
 import numpy as np
 import pytest
 from sher3_description import load_robot
-from sher3_drivers.bus import open_link
-from sher3_drivers.lockstep_rig import LockstepRig
+from sher3_drivers.bus.link import open_link
+from sher3_drivers.mock.rig import LockstepRig
 from sher3_drivers.settings import default_settings
 from sher3_sim.plant import Plant
 

@@ -14,26 +14,17 @@ import scipy.io
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from sher3_bags import read_case, read_run
-from sher3_bringup.surgeon import load_script
-from sher3_description import (
-    FileError,
-    Sher3Error,
-    load_robot,
-    parse_json,
-    parse_yaml,
-    read_arrays,
-    read_bytes,
-    read_json,
-    read_text,
-    read_yaml,
-)
-from sher3_description.files import MAX_CONFIGURATION_BYTES, MAX_DEPTH
-from sher3_gap.apply import read_verdict
-from sher3_gap.excitation_file import load_excitation
-from sher3_gap.machines.arm_kinematics import _from_urdf
-from sher3_gap.machines.description import load_machine
-from sher3_gap.machines.tables import read_tables
-from sher3_sim import load_effects
+from sher3_bringup.surgeon.script import load_script
+from sher3_common import FileError, Sher3Error, parse_json, parse_yaml, read_bytes, read_json, read_text, read_yaml
+from sher3_common.array_files import read_arrays
+from sher3_common.files import MAX_CONFIGURATION_BYTES, MAX_DEPTH
+from sher3_description import load_robot
+from sher3_effects import load_effects
+from sher3_gap.excitation.file import load_excitation
+from sher3_gap.simulate.apply import read_verdict
+from sher3_machines import load_description
+from sher3_machines.arm.urdf import arm_from_urdf
+from sher3_machines.intake.tables import read_tables
 from sources import FILES, ROOT
 
 ROBOT = load_robot()
@@ -43,7 +34,7 @@ DOORS = {
     "robot.yaml": load_robot,
     "effects.yaml": load_effects,
     "script.yaml": load_script,
-    "machine.yaml": load_machine,
+    "machine.yaml": load_description,
     "excitation.yaml": lambda path: load_excitation(path, ROBOT),
     "verdict.json": read_verdict,
     "case/case.yaml": lambda path: read_case(path.parent),
@@ -51,7 +42,7 @@ DOORS = {
     "table.npz": read_tables,
     "table.csv": read_tables,
     "table.json": read_tables,
-    "arm.urdf": lambda path: _from_urdf(path, "base", "tip"),
+    "arm.urdf": lambda path: arm_from_urdf(path, "base", "tip"),
 }
 YAML_DOORS = [name for name in DOORS if name.endswith(".yaml")]
 
@@ -228,7 +219,7 @@ def test_a_mat_file_that_unpacks_to_too_much_is_refused(tmp_path, monkeypatch):
     path = tmp_path / "bomb.mat"
     scipy.io.savemat(path, {"a": np.zeros(1_000_000)}, do_compression=True)
     assert path.stat().st_size < 20_000 and len(read_tables(path)["a"]) == 1_000_000
-    monkeypatch.setattr("sher3_gap.machines.tables.MAX_BYTES", 1_000_000)
+    monkeypatch.setattr("sher3_machines.intake.tables.MAX_BYTES", 1_000_000)
     with pytest.raises(Sher3Error, match="unpacks to too much"):
         read_tables(path)
 
@@ -297,19 +288,18 @@ READERS = {
     "parse",
 }
 OWN_FILES = {
-    "sher3_description/files.py": "the door itself",
+    "sher3_common/files.py": "the door itself",
+    "sher3_common/source_closure.py": "digest of our own sources",
     "sher3_bags/writing.py": "writes",
-    "sher3_bags/recorder.py": "writes",
+    "sher3_bags/recording/recorder.py": "writes",
     "sher3_bags/recovery.py": "writes",
     "sher3_bags/messages.py": "message definitions of the installation",
-    "sher3_bringup/cli.py": "the null device",
-    "sher3_bringup/commands.py": "prints the demo script of the package",
-    "sher3_control/compiled.py": "digest of our own sources",
-    "sher3_kinematics/compile_cache.py": "digest of our own sources",
-    "sher3_sim/compile_cache.py": "digest of our own sources",
-    "sher3_gap/challenge/truth/compiled.py": "digest of our own sources",
-    "sher3_gap/challenge/builder.py": "digest of the folder it has just written",
-    "sher3_drivers/pedal.py": "the joystick, a device",
+    "sher3_cli/root.py": "the null device",
+    "sher3_bringup/cli.py": "prints the demo script of the package",
+    "sher3_bringup/processes/only_robot.py": "a lock, which has no content",
+    "sher3_view/page.py": "the page's own parts, which come with the package",
+    "sher3_challenge/cases/seal.py": "digest of the folder it has just written",
+    "sher3_drivers/pedal/joystick.py": "the joystick, a device",
 }
 
 
@@ -336,7 +326,7 @@ def test_files_are_read_through_the_door_alone():
                 found.setdefault(short(path), []).append(f"{line}: {owner}.{name}")
     strangers = {path: lines for path, lines in found.items() if path not in OWN_FILES}
     assert not strangers, "read through sher3_description (read_text, read_yaml, read_json, read_arrays)"
-    assert set(OWN_FILES) <= set(found) | {"sher3_description/files.py"}, "an exception that is no longer needed"
+    assert set(OWN_FILES) <= set(found) | {"sher3_common/files.py"}, "an exception that is no longer needed"
 
 
 def _reads(owner: str, name: str) -> bool:

@@ -8,12 +8,13 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 from sher3_bags import Run, RunMetadata, recover, stream, write_case, write_run
-from sher3_description import Sher3Error, load_robot
+from sher3_common import Sher3Error
+from sher3_description import load_robot
+from sher3_effects import plants, save_effects
+from sher3_faults.requests import FaultRequest, make_request, parse_request
 from sher3_gap.excitation import Excitation
-from sher3_gap.excitation_file import save_excitation
-from sher3_gap.machines import description
-from sher3_safety.requests import FaultRequest, make_request, parse_request
-from sher3_sim.effects import EFFECTS, save_effects
+from sher3_gap.excitation.file import save_excitation
+from sher3_machines import described
 from test_file_doors import DOORS
 
 ROBOT = load_robot()
@@ -45,13 +46,12 @@ def write(name, folder):
     if name == "robot.yaml":
         path.write_text(ROBOT.to_yaml())
     elif name == "effects.yaml":
-        bias = EFFECTS["force_bias"](actuator="force_sensor", fx=0.1)
-        save_effects(path, [EFFECTS["backlash"](actuator="tilt"), bias])
+        bias = plants()["force_bias"](actuator="force_sensor", fx=0.1)
+        save_effects(path, [plants()["backlash"](actuator="tilt"), bias])
     elif name == "script.yaml":
         path.write_text("schema: sher3.teleop/1\nsteps:\n  - {name: a, duration: 1.0, pedal: 0.5, command: enable}\n")
     elif name == "machine.yaml":
-        known = Path(description.__file__).parent / "descriptions"
-        path.write_bytes(sorted(known.glob("*.yaml"))[0].read_bytes())
+        path.write_bytes(described(Path("emps")).read_bytes())
     elif name == "excitation.yaml":
         zero = np.zeros((20, 5))
         save_excitation(path, Excitation("rest", 1.0, "p", ROBOT.control_period, zero, zero, ()))
@@ -132,7 +132,7 @@ def test_a_spoilt_fault_request_is_refused_or_valid():
 
 
 def test_a_verdict_is_refused_by_field():
-    from sher3_gap.verdict import Verdict
+    from sher3_diagnosis.verdict import Verdict
 
     with pytest.raises(ValidationError, match="status"):
         Verdict.model_validate({**VERDICT, "status": "fine"})

@@ -5,11 +5,9 @@ import random
 
 import pytest
 from robot_rig import ROBOT, RobotRig
-from sher3_bags.recorder_node import RecorderNode
-from sher3_description import ACTUATORS, TOPICS
-from sher3_runtime import (
+from sher3_bags.recording.recorder_node import RecorderNode
+from sher3_common.samples import (
     DiagnosticSample,
-    Graph,
     JointSample,
     JoySample,
     PoseSample,
@@ -18,7 +16,10 @@ from sher3_runtime import (
     TwistSample,
     WrenchSample,
 )
-from sher3_runtime.cdr import CdrError, codec
+from sher3_control.supervision.detectors import TwinDetector
+from sher3_description import ACTUATORS, TOPICS
+from sher3_runtime import Graph
+from sher3_runtime.codec.cdr import CdrError, codec
 from sher3_runtime.ports import NODE_OPTIONS, advertise_raw, ports, statistics_of
 
 WILD = (math.nan, math.inf, -math.inf, 1e300, -1e300, 5e-324, -0.0, 1e9, 2.0**31, 1.0, 0.0)
@@ -38,13 +39,13 @@ class Attacker:
         self.topics = sorted({name for node in nodes for name in ports(node).subscriptions})
         self.node = rig.graph.add(lambda **options: Node("attacker", **{**NODE_OPTIONS, **options}))
         self._send = {name: advertise_raw(self.node, name) for name in self.topics}
-        self._codec = {n: codec(TOPICS[n].type, TOPICS[n].frame_id, ACTUATORS) for n in self.topics}
+        self.codec = {n: codec(TOPICS[n].type, TOPICS[n].frame_id, ACTUATORS) for n in self.topics}
         self.invalid = 0
 
     def send(self, topic, data):
         """Send; count whether the listeners must have refused it."""
         try:
-            self._codec[topic].decode(data)
+            self.codec[topic].decode(data)
         except CdrError:
             self.invalid += self.listeners(topic)
         self._send[topic](data)
@@ -60,7 +61,7 @@ class Attacker:
         return sum(sum(statistics_of(node).garbage.values()) for node in self.nodes)
 
     def encode(self, topic, sample):
-        return self._codec[topic].encode(sample)
+        return self.codec[topic].encode(sample)
 
 
 def wild_sample(rng, kind, now):
@@ -107,7 +108,7 @@ def robot(bag_folder):
 
 
 def demands(rig):
-    return [drive._demand for drive in rig.plant.drives.drives.values()]
+    return rig.plant.reading.demand.tolist()
 
 
 @pytest.mark.graph
@@ -135,7 +136,8 @@ def test_an_enabled_robot_rests_while_all_that_is_no_message_arrives(robot):
     """With the pedal released nothing moves; every refused message is counted by each of its listeners."""
     rig, attacker = robot
     rng = random.Random(5)
-    rig.supervisor._twins.limit = 2  # the attacker is the second publisher of every stream, and would be seen
+    twins = next(d for d in rig.supervisor.supervisor.detectors if isinstance(d, TwinDetector))
+    twins.limit = 2  # the attacker is the second publisher of every stream, and would be seen
     rig.graph.step(50)
     attacker.send("command/state_command", attacker.encode("command/state_command", TextSample("enable")))
     for _ in range(200):
@@ -150,7 +152,7 @@ def test_an_enabled_robot_rests_while_all_that_is_no_message_arrives(robot):
             while True:
                 data = spoilt(rng, attacker.encode(topic, wild_sample(rng, kind, rig.graph.clock.time_ns)))
                 try:
-                    attacker._codec[topic].decode(data)
+                    attacker.codec[topic].decode(data)
                 except CdrError:
                     break
             attacker.send(topic, data)

@@ -14,32 +14,31 @@ import pytest
 from processes import child_environment, sher3_command
 from robot_rig import ROBOT
 from sher3_bags import Stream, read_case, write_case
-from sher3_bags.live import recorded
 from sher3_bags.reading import read_run
+from sher3_bags.recording.live import recorded
 from sher3_bags.run import Run
-from sher3_bringup.stepped_robot import SteppedRobot, bench_drives
-from sher3_gap import diagnose
-from sher3_gap.apply import apply_verdict, compare_cases
+from sher3_bringup.stepped_robot import SteppedRobot
+from sher3_effects import plants, save_effects
+from sher3_gap import diagnose_case
+from sher3_gap.case.loading import load_case
 from sher3_gap.excitation import excite
-from sher3_gap.loading import load_case
+from sher3_gap.simulate.apply import apply_verdict, compare_cases
 from sher3_runtime import Graph
-from sher3_sim import save_effects
-from sher3_sim.effects import EFFECTS
 
 pytestmark = pytest.mark.graph
-BACKLASH = EFFECTS["backlash"]("tilt", width=6e-5)
+BACKLASH = plants()["backlash"]("tilt", width=6e-5)
 
 
 def play(case: Path, effects, labels, repeats: int, duration: float) -> Path:
     """Play excitations on every node of the robot in stepped time and write the recordings as a case."""
-    from sher3_gap.excite_node import RECORDED, ExciteNode, trimmed
-    from sher3_gap.player import Heard, Phase, Player
+    from sher3_gap.excitation.excite_node import RECORDED, ExciteNode, trimmed
+    from sher3_gap.excitation.player import Heard, Phase, Player
 
     wanted = [(excite(label, ROBOT, duration=duration), repeat) for label in labels for repeat in range(repeats)]
     heard = Heard()
     players = [Player(excitation, ROBOT, heard) for excitation, _ in wanted]
     with Graph(period=ROBOT.control_period) as graph:
-        SteppedRobot(graph, effects, robot=ROBOT, drives=bench_drives(ROBOT))
+        SteppedRobot(graph, effects, robot=ROBOT)
         with recorded(graph, f"gap_live_{case.name}", topics=RECORDED, robot=ROBOT) as recorder:
             node = graph.add(ExciteNode, players[0])
             for player in players:
@@ -64,7 +63,7 @@ def stepped_case(tmp_path_factory) -> Path:
 
 
 def test_a_recorded_robot_is_diagnosed_and_its_corrected_simulator_shows_a_smaller_gap(stepped_case, tmp_path):
-    verdict = diagnose(stepped_case)
+    verdict = diagnose_case(stepped_case).verdict
     assert verdict.status == "attributed", verdict.notes
     (cause,) = verdict.causes
     assert (cause.effect, cause.actuator) == ("backlash", "tilt")
@@ -101,7 +100,7 @@ def disturbed(run: Run, seed: int, share: float = 0.02) -> Run:
 def test_lost_samples_change_no_verdict(stepped_case, tmp_path):
     case = read_case(stepped_case)
     spoiled = [disturbed(run, k) for k, run in enumerate(case.runs)]
-    verdict = diagnose(write_case(tmp_path / "spoiled", spoiled, ROBOT))
+    verdict = diagnose_case(write_case(tmp_path / "spoiled", spoiled, ROBOT)).verdict
     assert verdict.status == "attributed"
     assert [(c.effect, c.actuator) for c in verdict.causes] == [("backlash", "tilt")]
     assert any("ticks were not recorded" in note for note in verdict.notes)

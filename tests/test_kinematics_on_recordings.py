@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from sher3_bags import read_case
 from sher3_kinematics import RobotKinematics
-from sher3_kinematics.kernel_batch import tip_quaternion_batch
+from sher3_kinematics.kernel.batch import tip_quaternion_batch
 from sources import ROOT
 
 SHARED = Path(os.environ.get("SHER3_SHARED", ROOT.parent / "shared"))

@@ -7,7 +7,7 @@ import os
 from pathlib import Path
 
 import pytest
-from sher3_gap import diagnose
+from sher3_gap import diagnose_case
 from sources import ROOT
 
 SHARED = Path(os.environ.get("SHER3_SHARED", ROOT.parent / "shared")) / "contract"
@@ -23,7 +23,7 @@ def totals(tmp_path_factory):
     """Scores of all cases by the contract's own scorer; the diagnosis gets the case folders alone."""
     verdicts = tmp_path_factory.mktemp("verdicts")
     for case in CASES:
-        diagnose(case).write(verdicts / f"{case.name}.json")
+        diagnose_case(case).verdict.write(verdicts / f"{case.name}.json")
     spec = importlib.util.spec_from_file_location("contract_score", SHARED / "score.py")
     scorer = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(scorer)

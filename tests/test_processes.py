@@ -15,7 +15,7 @@ import pytest
 from processes import child_environment, sher3_command
 from sher3_bags import recover
 from sher3_bags.reading import read_run
-from sher3_bringup.settings import MOCK_FORCE_PORT
+from sher3_bringup.settings.run_settings import MOCK_FORCE_PORT
 
 pytestmark = pytest.mark.graph
 PATIENCE = 120.0

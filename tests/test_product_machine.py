@@ -4,11 +4,11 @@ from dataclasses import dataclass, field
 
 import pytest
 from product_machine import Exploration, explore
-from product_world import COMMANDS, EVENTS, HARMLESS, World
-from sher3_control.operating_state import OperatingState as S
-from sher3_control.reasons import Action
+from product_world import COMMANDS, EVENTS, HARMLESS, LOSSY, World
+from sher3_common.operating_state import OperatingState as S
+from sher3_common.reasons import Action
 from sher3_description import ACTUATORS
-from sher3_drivers import mock_drive
+from sher3_drivers.mock import drive as mock_drive
 
 RARE = frozenset({"overruns", "in time", "bus passive", "drive loses power stage"})
 FEW = ("tick", "enable", "disable", "press", "release", "drive faults")
@@ -44,8 +44,8 @@ def check(before: World, event: str, after: World, accepted: bool, seen: dict[st
     holds("FAULT is left by disable alone", leaves, event == "disable" and accepted and after.state is S.DISABLED)
     holds("FAULT refuses all else", before.state is S.FAULT and event in COMMANDS, event == "disable" or not accepted)
     resets = after.resets > before.resets
-    holds("fault reset after a recovery alone", resets, before.driver._reset_words > 0 or leaves)
-    again = resets and before.resets and not leaves and before.driver._reset_words == 0
+    holds("fault reset after a recovery alone", resets, bool(before.recovering[0]) or leaves)
+    again = resets and before.resets and not leaves and not before.recovering[0]
     holds("recovery is one-shot", again, False)
     pressed = after.button.pressed
     stopped = after.state is S.FAULT and after.supervisor.status.action is Action.POWER_OFF
@@ -94,6 +94,8 @@ def judge(checked: Checked) -> None:
     for key in (checked.result.keys[index] for index in rests):
         enabled = mock_drive.ENABLED in {key[6][0], *(drive for drive, *_ in key[7])}
         assert not (enabled and key[0][0] in (S.FAULT, S.DISABLED)), f"drives stay enabled: {key}"
+        if key[0][0] in (S.ENABLED, S.PAUSED):
+            assert {key[6][0], *(drive for drive, *_ in key[7])} == {mock_drive.ENABLED}, f"without its drives: {key}"
         (state, action, _), stopped = key[0], key[4][2]
         assert state is not S.FAULT or stopped >= action, f"the driver stops less hard than it was told to: {key}"
 
@@ -117,6 +119,13 @@ def test_every_operating_state_and_drive_state_was_reached(default):
     drives = {key[6][0] for key in default.result.keys}
     assert operating == set(S)
     assert {mock_drive.SWITCH_ON_DISABLED, mock_drive.ENABLED, mock_drive.QUICK_STOP, mock_drive.FAULT} <= drives
+
+
+def test_lost_frames_change_no_invariant():
+    """A drive's commands, its reports, the supervisor's heartbeat, the driver's report: each lost in any period."""
+    checked = run(0, (*FEW, *LOSSY))
+    judge(checked)
+    assert "recovery is one-shot" not in checked.seen and checked.seen["fault reset after a recovery alone"] > 0
 
 
 def counts(drive: int) -> tuple[int, int, int]:

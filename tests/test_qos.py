@@ -5,11 +5,11 @@ from __future__ import annotations
 import pytest
 from rclpy.qos import QoSCompatibility, qos_check_compatible
 from robot_rig import ROBOT, RobotRig
-from sher3_bags.recorder_node import RecorderNode
-from sher3_bringup.surgeon import demo_script, load_script
-from sher3_bringup.teleop_node import script_node
+from sher3_bags.recording.recorder_node import RecorderNode
+from sher3_bringup.surgeon.script import demo_script, load_script
+from sher3_bringup.surgeon.teleop_node import script_node
 from sher3_description import TOPICS
-from sher3_gap.gap_monitor_node import GapMonitorNode
+from sher3_gap.live.gap_monitor_node import GapMonitorNode
 from sher3_runtime import Graph
 
 pytestmark = pytest.mark.graph

@@ -1,13 +1,14 @@
-"""Rooms and doors: who may import what, read from the sources and checked against docs/architecture.md."""
+"""Rooms and doors: who may import what, read from the sources and checked against docs/reference/architecture.md."""
 
 from __future__ import annotations
 
 import re
+from collections import Counter
 from fnmatch import fnmatch
 from pathlib import Path
 
 import pytest
-from sources import FILES, PACKAGES, ROOT, imports, package_of
+from sources import FILES, PACKAGES, ROOT, SOURCES, imports, modules, package_of, reached
 
 ROS = {
     "rclpy",
@@ -24,7 +25,9 @@ ROS = {
 
 def allowed() -> dict[str, set[str]]:
     """Return the "may import" column of the table of packages."""
-    rows = re.findall(r"^\| `(sher3_\w+)` \|.*\| (.+) \|$", (ROOT / "docs" / "architecture.md").read_text(), re.M)
+    rows = re.findall(
+        r"^\| `(sher3_\w+)` \|.*\| (.+) \|$", (ROOT / "docs" / "reference" / "architecture.md").read_text(), re.M
+    )
     short = set(PACKAGES)
     return {
         package: short if column == "all" else {f"sher3_{word}" for word in column.split(", ")} & short
@@ -54,26 +57,114 @@ def is_door(path: Path) -> bool:
 
 
 @pytest.mark.parametrize(
-    ("modules", "doors"),
+    ("libraries", "doors"),
     [
         (ROS, ("sher3_runtime/*", "*/*_node.py")),
-        ({"can", "canopen"}, ("sher3_drivers/bus*.py", "sher3_drivers/canopen_*.py")),
+        ({"can", "canopen"}, ("sher3_drivers/bus/*", "sher3_drivers/canopen/*")),
         ({"mcap"}, ("sher3_bags/*",)),
     ],
     ids=["ros", "can", "mcap"],
 )
-def test_doors(modules, doors):
+def test_doors(libraries, doors):
     """A library with side effects is imported in the files named for it and nowhere else."""
     for path in FILES:
-        here = f"{package_of(path)}/{path.name}"
-        if used := imports(path) & modules:
+        here = path.relative_to(ROOT / "sher3_ws" / "src" / package_of(path)).as_posix()
+        if used := imports(path) & libraries:
             assert any(fnmatch(here, door) for door in doors), f"{path.relative_to(ROOT)} imports {sorted(used)}"
+
+
+KNOWING = ("truth", "cases", "oracle")
+"""Folders of the challenge that know the truth."""
+ANSWERING = ("answers", "baselines")
+"""Folders of the challenge that answer."""
+SEAL = {
+    KNOWING: ("sher3_diagnosis", "sher3_effects", "sher3_sim", "sher3_machines", *ANSWERING),
+    ANSWERING: (*KNOWING, "score", "run"),
+}
+"""Folders -> packages, and modules of the challenge, that they never reach."""
+
+
+@pytest.mark.parametrize(("folders", "sealed"), SEAL.items(), ids=["knowing", "answering"])
+def test_the_challenge_is_sealed(folders, sealed):
+    """The truth comes from no code of the diagnosis, and whoever answers cannot look it up; also not at second hand."""
+    room = ROOT / "sher3_ws" / "src" / "sher3_challenge" / "sher3_challenge"
+    files = [path for folder in folders for path in sorted((room / folder).glob("*.py"))]
+    assert len(files) > len(folders)
+    for path in files:
+        known = {name.removeprefix("sher3_challenge.").split(".")[0] for name in reached(path)}
+        assert not known & set(sealed), f"{path.relative_to(ROOT)} reaches {sorted(known & set(sealed))}"
 
 
 def test_the_doors_are_looked_for_where_they_are():
     """The test above must be able to fail: the libraries are imported somewhere, also inside functions."""
     for module in ("rclpy", "can", "canopen"):
         assert any(module in imports(path) for path in FILES), module
+
+
+REBUILT = {"sher3_diagnosis", "sher3_effects", "sher3_gap", "sher3_machines", "sher3_challenge"}
+"""Packages that are being rebuilt and still form circles or hold many loose files. This set shrinks to nothing."""
+
+LOOSE_FILES = 15
+"""Python files in one folder that a reader takes in at a glance; `__init__.py` is not counted."""
+
+
+def circles(arrows: dict[str, set[str]]) -> list[list[str]]:
+    """Return the groups of names that reach each other along the arrows, each sorted."""
+    reach = {name: set(targets) for name, targets in arrows.items()}
+    for middle in reach:
+        for name in reach:
+            if middle in reach[name]:
+                reach[name] |= reach[middle]
+    groups = {tuple(sorted(b for b in reach[a] if a in reach.get(b, ()))) for a in reach if a in reach[a]}
+    return [list(group) for group in sorted(groups)]
+
+
+def test_circles_are_found():
+    assert circles({"a": {"b"}, "b": {"c"}, "c": {"b"}, "d": {"a"}}) == [["b", "c"]]
+    assert circles({"a": {"b", "c"}, "b": {"c"}, "c": set()}) == []
+
+
+def test_packages_import_in_no_circle():
+    arrows = {
+        package: {
+            name
+            for path in FILES
+            if package_of(path) == package
+            for name in imports(path)
+            if name.startswith("sher3_") and name != package
+        }
+        for package in PACKAGES
+    }
+    assert not [group for group in circles(arrows) if not set(group) <= REBUILT]
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_the_folders_of_a_package_import_in_no_circle(package):
+    """A folder is one room here, and so is each loose file; the face of the package may name them all."""
+    arrows: dict[str, set[str]] = {}
+    for path in FILES:
+        if package_of(path) == package and room_of(path) != "__init__":
+            arrows.setdefault(room_of(path), set()).update(rooms_imported(path) - {room_of(path)})
+    assert package in REBUILT or not circles(arrows)
+
+
+def room_of(path: Path) -> str:
+    """Return the folder of a package in which a file lies, or the file's own name when it lies in none."""
+    return path.relative_to(SOURCES / package_of(path) / package_of(path)).with_suffix("").parts[0]
+
+
+def rooms_imported(path: Path) -> set[str]:
+    """Return the rooms of its own package that a file imports."""
+    package = package_of(path)
+    home = SOURCES / package / package
+    words = [module.split(".") for module in modules(path)]
+    inside = [word[1] for word in words if word[0] == package and len(word) > 1]
+    return {room for room in inside if (home / room).is_dir() or (home / f"{room}.py").is_file()}
+
+
+def test_no_folder_holds_many_loose_files():
+    counts = Counter(path.parent for path in FILES if path.name != "__init__.py" and package_of(path) not in REBUILT)
+    assert not {str(folder): count for folder, count in counts.items() if count > LOOSE_FILES}
 
 
 def test_files_are_short():

@@ -8,7 +8,7 @@ import subprocess
 
 import pytest
 from processes import child_environment, sher3_command
-from sher3_bringup.cli import main
+from sher3_cli.root import main
 
 pytestmark = pytest.mark.graph
 

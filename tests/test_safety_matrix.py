@@ -7,14 +7,14 @@ import shutil
 
 import pytest
 from sher3_bags.reading import read_run
-from sher3_bringup.safety_matrix import run_matrix
-from sher3_bringup.safety_runs import run_cells
-from sher3_bringup.settings import RunSettings
-from sher3_control.speed_cap import Regime
+from sher3_bringup.settings.run_settings import RunSettings
+from sher3_control.motion.speed_cap import Regime
 from sher3_description import load_robot
-from sher3_safety.matrix import IDLE, LIMIT, MOVING, STATES, Row
-from sher3_safety.report import misses
-from sher3_safety.verdict import judge
+from sher3_safety.measurement.report import misses
+from sher3_safety.measurement.verdict import judge
+from sher3_safety.rows.row import IDLE, LIMIT, MOVING, STATES, Row
+from sher3_safety.runs.matrix import run_matrix
+from sher3_safety.runs.stepped import run_cells
 from sources import ROOT
 
 pytestmark = pytest.mark.graph

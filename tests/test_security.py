@@ -7,11 +7,11 @@ import sys
 
 import pytest
 from processes import child_environment
-from sher3_bringup.settings import RunSettings
+from sher3_bringup.settings.run_settings import RunSettings
 from sher3_runtime.environment import LOOPBACK_PROFILE, graph_environment
 from sources import ROOT, SOURCES
 
-DOCS = ROOT / "docs" / "security.md"
+DOCS = ROOT / "docs" / "reference" / "security.md"
 
 
 def tool(name):

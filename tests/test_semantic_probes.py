@@ -10,26 +10,28 @@ import struct
 
 import numpy as np
 import pytest
-from sher3_control import ControlSettings, initial_state, law_parameters, step
-from sher3_control.admittance import LawInput
-from sher3_control.angles import roll_and_tilt
-from sher3_control.pose import tip_pose_sample
-from sher3_control.position_controller import position_command
+from sher3_common.samples import JointSample
+from sher3_control import ControlSettings, initial_state, step
+from sher3_control.law.admittance import LawInput
+from sher3_control.law.angles import roll_and_tilt
+from sher3_control.law.parameters import law_parameters
+from sher3_control.law.position_controller import position_command
+from sher3_control.law.tool_compensation import contact_wrench, tip_rotation, wrench_at_tip
+from sher3_control.motion.pose import tip_pose_sample
+from sher3_control.motion.speed_cap import Regime, speed_cap
 from sher3_control.settings import MotionSettings
-from sher3_control.speed_cap import Regime, speed_cap
-from sher3_control.tool_compensation import contact_wrench, tip_rotation, wrench_at_tip
 from sher3_description import TOPICS, load_robot
-from sher3_drivers import drive_objects as od
-from sher3_drivers.bus import open_link
-from sher3_drivers.frame import FRAME_SIZE, pack_frame
-from sher3_drivers.lockstep_rig import LockstepRig
-from sher3_drivers.netft import NetFtScale
-from sher3_drivers.pedal import JS_EVENT, JoystickPedal
+from sher3_drivers.bus.frame import FRAME_SIZE, pack_frame
+from sher3_drivers.bus.link import open_link
+from sher3_drivers.canopen import objects as od
+from sher3_drivers.mock.rig import LockstepRig
+from sher3_drivers.pedal.joystick import JS_EVENT, JoystickPedal
+from sher3_drivers.sensor.netft import NetFtScale
 from sher3_drivers.settings import default_settings
 from sher3_drivers.units import AxisScale
-from sher3_kinematics import InverseVelocity, RobotKinematics, kernel_parameters
-from sher3_runtime import JointSample
-from sher3_runtime.cdr import codec
+from sher3_kinematics import InverseVelocity, RobotKinematics
+from sher3_kinematics.kernel import kernel_parameters
+from sher3_runtime.codec.cdr import codec
 from sher3_sim import Plant
 
 ROBOT = load_robot()

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from robot_rig import ROBOT, RobotRig
-from sher3_bags.live import recorded
 from sher3_bags.reading import read_run
-from sher3_bringup.surgeon import Script
+from sher3_bags.recording.live import recorded
+from sher3_bringup.surgeon.script import Script
 from sher3_control.replay import replay_admittance, replay_motion
 from sher3_description import TOPICS
+from sher3_effects import plants
 from sher3_runtime import Graph
-from sher3_sim.effects import EFFECTS
 
 pytestmark = pytest.mark.graph
 PUSH = (1.1, 0.0, 0.0, 0.0, 0.0, 0.0)
@@ -100,7 +100,7 @@ def test_the_bag_gives_the_same_commands_again(request):
 
 def test_effects_reach_the_running_plant(request):
     """A force bias of the sensor moves the tip without a hand: what an effect does shows in the graph."""
-    bias = EFFECTS["force_bias"](actuator="force_sensor", fx=0.6)
+    bias = plants()["force_bias"](actuator="force_sensor", fx=0.6)
     run = play(session({"name": "wait", "duration": 0.8, "pedal": 1.0, "ramp": 0.0}), request, [bias])
     assert np.median(run["force/measured_cf"].force[:, 0]) == pytest.approx(0.6, abs=0.05)
     speed = run["servo_cv"].linear[between(run, "servo_cv", 0.8, 1.1), 0]

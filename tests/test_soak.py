@@ -78,7 +78,7 @@ def test_a_leak_is_seen_and_noise_is_not(soak):
 def test_what_stays_behind_is_found(soak, tmp_path):
     import socket
 
-    from sher3_bringup.settings import MOCK_FORCE_PORT
+    from sher3_bringup.settings.run_settings import MOCK_FORCE_PORT
 
     before = soak.places()
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:

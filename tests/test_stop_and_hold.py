@@ -6,12 +6,13 @@ from collections.abc import Iterator
 
 import numpy as np
 import pytest
-from sher3_bringup.safety_node import OperatorNode
 from sher3_bringup.stepped_robot import SteppedRobot
 from sher3_description import load_robot
+from sher3_drivers.settings import default_settings
 from sher3_kinematics import RobotKinematics
 from sher3_runtime import Graph
-from sher3_safety.matrix import LIMIT
+from sher3_safety.rows.row import LIMIT
+from sher3_safety.runs.operator_node import OperatorNode
 from sher3_sim.plant_node import HOLD
 
 pytestmark = pytest.mark.graph
@@ -26,7 +27,7 @@ class Bench:
     def __init__(self, graph: Graph) -> None:
         self.graph = graph
         self.operator = graph.add(OperatorNode)
-        self.robot = SteppedRobot(graph, robot=ROBOT)
+        self.robot = SteppedRobot(graph, robot=ROBOT, drives=default_settings(ROBOT.control_period))
         self.tip: list[np.ndarray] = []
         self.demand: list[float] = []
         self.run(60)
@@ -39,8 +40,8 @@ class Bench:
         plant = self.robot.plant
         for _ in range(ticks):
             self.graph.step()
-            self.tip.append(plant._plant.true_tip[1])
-            self.demand.append(float(np.abs(plant._reading.demand).max()))
+            self.tip.append(plant.plant.true_tip[1])
+            self.demand.append(float(np.abs(plant.reading.demand).max()))
 
     def moved(self, ticks: int) -> float:
         """Return how far the tip got from where it was before the last ticks, m."""
@@ -81,7 +82,7 @@ def test_a_stopped_tip_gives_way_by_the_drives_compliance_alone_when_the_hand_le
     bench.run(silent)
     assert bench.moved(silent) < 0.01e-6
     bench.run(150)
-    jacobian = RobotKinematics(ROBOT).jacobian(bench.robot.plant._plant.true_position)
+    jacobian = RobotKinematics(ROBOT).jacobian(bench.robot.plant.plant.true_position)
     compliance = jacobian @ np.diag([1.0 / a.drive.ki for a in ROBOT.actuators]) @ jacobian.T
     given = np.linalg.norm((compliance @ [0.0, 0.0, LIMIT.force, 0.0, 0.0, 0.0])[:3])
     assert bench.moved(150) == pytest.approx(given, rel=0.01) and given > 10e-6

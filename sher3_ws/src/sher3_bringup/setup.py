@@ -8,7 +8,7 @@ setup(
     name=NAME,
     version="0.1.0",
     packages=find_packages(exclude=["test"]),
-    package_data={"": ["*.yaml", "*.xml", "*.html", "*.css", "*.json", "*.csv", "py.typed"]},
+    package_data={"": ["**/*.yaml", "**/*.xml", "py.typed"]},
     data_files=[
         ("share/ament_index/resource_index/packages", [f"resource/{NAME}"]),
         (f"share/{NAME}", ["package.xml"]),
@@ -16,7 +16,6 @@ setup(
     install_requires=["setuptools"],
     extras_require={"test": ["pytest"]},
     zip_safe=False,
-    description="Entry script, process supervision and configuration of the SHER 3.0",
+    description="Processes, nodes and settings of a run of the SHER 3.0",
     license="Apache-2.0",
-    entry_points={"console_scripts": ["sher3 = sher3_bringup.cli:main"]},
 )

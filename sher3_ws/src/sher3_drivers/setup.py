@@ -20,6 +20,6 @@ setup(
     license="Apache-2.0",
     entry_points={
         "console_scripts": [],
-        "can.interface": ["sher3 = sher3_drivers.bus_python_can:LinkBus"],
+        "can.interface": ["sher3 = sher3_drivers.bus.python_can:LinkBus"],
     },
 )

@@ -16,7 +16,7 @@ setup(
     install_requires=["setuptools"],
     extras_require={"test": ["pytest"]},
     zip_safe=False,
-    description="Fault injection, measured travel and the travel budget of the SHER 3.0",
+    description="The matrix of faults of the SHER 3.0, measured on the running graph",
     license="Apache-2.0",
     entry_points={"console_scripts": []},
 )

@@ -1,26 +1,39 @@
-"""Record, read, write, replay and analyse bags of the SHER 3.0."""
+"""Record, read, write, replay and analyse bags of the SHER 3.0.
 
-from .case import Case as Case
-from .case import read_case as read_case
-from .case import write_case as write_case
-from .errors import BagError as BagError
-from .errors import CaseError as CaseError
-from .errors import DamagedBagError as DamagedBagError
-from .errors import ForeignBagError as ForeignBagError
-from .errors import LimitError as LimitError
-from .errors import MalformedMessageError as MalformedMessageError
-from .errors import MissingTopicError as MissingTopicError
-from .errors import NotFiniteError as NotFiniteError
-from .errors import StampError as StampError
-from .errors import TopicError as TopicError
-from .errors import WrongTypeError as WrongTypeError
-from .reading import read_run as read_run
-from .recorder import Recorder as Recorder
-from .recovery import Recovery as Recovery
-from .recovery import recover as recover
-from .run import Run as Run
-from .run import RunMetadata as RunMetadata
-from .run import Stream as Stream
-from .run import check_run as check_run
-from .run import stream as stream
-from .writing import write_run as write_run
+The main object is the run: one column of stamps and one of values for each topic, all in seconds and SI units. A bag
+holds a run as an MCAP file; a case is a folder with the runs of one experiment and the robot they were recorded on.
+`recording` and `playback` join runs with the ROS graph, `figures` computes what a run tells, `mcap` and `codec` know
+the bytes.
+"""
+
+from typing import TYPE_CHECKING
+
+from sher3_common.faces import lazy
+
+if TYPE_CHECKING:
+    from sher3_bags.case import Case as Case
+    from sher3_bags.case import read_case as read_case
+    from sher3_bags.case import write_case as write_case
+    from sher3_bags.errors import BagError as BagError
+    from sher3_bags.reading import read_run as read_run
+    from sher3_bags.recording.recorder import Recorder as Recorder
+    from sher3_bags.recovery import recover as recover
+    from sher3_bags.run import Run as Run
+    from sher3_bags.run import RunMetadata as RunMetadata
+    from sher3_bags.run import Stream as Stream
+    from sher3_bags.run import check_run as check_run
+    from sher3_bags.run import stream as stream
+    from sher3_bags.writing import write_run as write_run
+
+__getattr__, __dir__ = lazy(
+    __name__,
+    {
+        "case": ("Case", "read_case", "write_case"),
+        "errors": ("BagError",),
+        "recovery": ("recover",),
+        "reading": ("read_run",),
+        "recording.recorder": ("Recorder",),
+        "run": ("Run", "RunMetadata", "Stream", "check_run", "stream"),
+        "writing": ("write_run",),
+    },
+)

@@ -8,7 +8,8 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 import yaml
-from sher3_description import Robot, load_robot, read_yaml
+from sher3_common import read_yaml
+from sher3_description import Robot, load_robot
 
 from sher3_bags.errors import CaseError
 from sher3_bags.reading import ROBOT_FILE, read_run
@@ -22,7 +23,7 @@ MAX_RUNS = 10_000
 
 @dataclass(eq=False)
 class Case:
-    """The runs of a case in the order of `case.yaml`, and the robot they are of."""
+    """The runs of one case, in the order of `case.yaml`, and the robot they were recorded on."""
 
     runs: list[Run]
     robot: Robot

@@ -11,9 +11,8 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from sher3_description import NAMESPACE, Sher3Error, load_robot
-
-from sher3_bags.errors import BagError
+from sher3_common import Sher3Error
+from sher3_description.topics import NAMESPACE
 
 app = typer.Typer(no_args_is_help=True, help="Record, replay, analyse, compare and recover bags.")
 
@@ -25,7 +24,7 @@ Namespace = Annotated[str, typer.Option(help="Namespace of the robot in the bag.
 
 @contextmanager
 def _reported(as_json: bool) -> Iterator[None]:
-    """Turn an error of ours into one sentence on stderr (an object with --json) and exit code 1."""
+    """Turn an error of this project into one sentence on stderr (an object with --json) and exit code 1."""
     try:
         yield
     except Sher3Error as error:
@@ -46,7 +45,9 @@ def record(
     as_json: Json = False,
 ) -> None:
     """Record the running graph into a new bag."""
-    from sher3_bags.recorder_node import run
+    from sher3_description import load_robot
+
+    from sher3_bags.recording.recorder_node import run
 
     with _reported(as_json):
         target = output or Path("bags", datetime.now().strftime("%Y%m%d_%H%M%S"))
@@ -72,8 +73,8 @@ def replay(
     as_json: Json = False,
 ) -> None:
     """Publish the messages of a bag into the graph, on topics nobody else publishes."""
-    from sher3_bags.replay import Replay
-    from sher3_bags.replay_node import run
+    from sher3_bags.playback.replay import Replay
+    from sher3_bags.playback.replay_node import run
 
     with _reported(as_json):
         player = Replay(bag, topic, rate=rate, stamps="keep" if keep_stamps else "shift", namespace=namespace)
@@ -91,16 +92,16 @@ def analyze(
     as_json: Json = False,
 ) -> None:
     """Figures of a run: tip path, force against velocity, tracking per axis, timing and drops per topic."""
-    from sher3_bags.analysis import analyse
+    from sher3_bags.figures.analysis import analyse
+    from sher3_bags.figures.report import analysis_text
     from sher3_bags.reading import read_run
-    from sher3_bags.report import analysis_text
 
     with _reported(as_json):
         run = read_run(bag, namespace=namespace, check=False)
         analysis = analyse(run)
         data = analysis.to_dict()
         if picture is not None:
-            from sher3_bags.picture import draw
+            from sher3_bags.figures.picture import draw
 
             data["picture"] = str(_drawn(lambda: draw(run, analysis, picture), picture))
         note = f"\n\npicture: {picture}" if picture is not None else ""
@@ -111,6 +112,8 @@ def _drawn(draw: Any, picture: Path) -> Path:
     try:
         return draw()
     except (OSError, ValueError) as error:
+        from sher3_bags.errors import BagError
+
         raise BagError(
             f"cannot be drawn ({error})", path=picture, remedy="name a writable .png, .pdf or .svg"
         ) from error
@@ -125,10 +128,10 @@ def compare(
     as_json: Json = False,
 ) -> None:
     """Difference of two runs on header time: lag and residuals per topic and axis."""
-    from sher3_bags.compare import alignment_from
-    from sher3_bags.compare import compare as compare_runs
+    from sher3_bags.figures.compare import alignment_from
+    from sher3_bags.figures.compare import compare as compare_runs
+    from sher3_bags.figures.report import comparison_text
     from sher3_bags.reading import read_run
-    from sher3_bags.report import comparison_text
 
     with _reported(as_json):
         alignment = alignment_from(align)
@@ -153,7 +156,7 @@ def recover(
 @app.command(epilog="Example: sher3 info bags/trial")
 def info(bag: Bag, namespace: Namespace = NAMESPACE, as_json: Json = False) -> None:
     """Show what a bag holds: topics, metadata, provenance, samples the recorder missed."""
-    from sher3_bags.overview import overview, overview_text
+    from sher3_bags.figures.overview import overview, overview_text
 
     with _reported(as_json):
         data = overview(bag, namespace)

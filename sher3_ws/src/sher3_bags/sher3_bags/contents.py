@@ -1,4 +1,4 @@
-"""A whole MCAP file in memory: all messages in one buffer, with a table of where they lie."""
+"""Read a whole MCAP file into memory."""
 
 from __future__ import annotations
 
@@ -6,79 +6,22 @@ import io
 import struct
 import zlib
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, NamedTuple
 
 import numpy as np
 from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
 from mcap.records import Attachment, Channel, Metadata, Schema
-from numpy.typing import NDArray
 
-from sher3_bags import kernels
 from sher3_bags.errors import BagError, DamagedBagError, LimitError
-from sher3_bags.mcap_file import Body, Record, body_of, check_data, read_bytes, records, unpack
+from sher3_bags.former_topics import translate_commands
+from sher3_bags.mcap import kernels
+from sher3_bags.mcap.contents import Contents, Messages
+from sher3_bags.mcap.file import Body, Record, body_of, check_data, read_bytes, records, unpack
 
 MAX_TOTAL = 4 << 30
 MAX_ATTACHMENT = 16 << 20
-
-
-class Messages(NamedTuple):
-    """The table of all messages in file order, n rows."""
-
-    channel: NDArray[np.uint16]
-    sequence: NDArray[np.uint32]
-    log_time: NDArray[np.int64]  # ns
-    publish_time: NDArray[np.int64]  # ns
-    offset: NDArray[np.int64]  # of the message's data in `Contents.buffer`
-    length: NDArray[np.int64]
-
-    @classmethod
-    def empty(cls, n: int) -> Messages:
-        """Return a table of n rows still to be filled."""
-        return cls(np.empty(n, np.uint16), np.empty(n, np.uint32), *(np.empty(n, np.int64) for _ in range(4)))
-
-    @classmethod
-    def joined(cls, tables: Sequence[Messages]) -> Messages:
-        """Return the rows of several tables, one table behind the other."""
-        return Messages._make(np.concatenate(column) for column in zip(*tables, strict=True))
-
-    def take(self, rows: NDArray[Any]) -> Messages:
-        """Return the given rows (indices or a mask)."""
-        return Messages._make(column[rows] for column in self)
-
-    def rows(self, channel_id: int) -> NDArray[np.int64]:
-        """Return the rows of a channel in order of log time."""
-        rows = np.flatnonzero(self.channel == channel_id)
-        times = self.log_time[rows]
-        return rows if (np.diff(times) >= 0).all() else rows[np.argsort(times, kind="stable")]
-
-
-@dataclass
-class Contents:
-    """An MCAP file in memory.
-
-    Attributes:
-        path: of the file.
-        schemas: by id.
-        channels: by id.
-        metadata: by record name.
-        attachments: by name.
-        buffer: all chunk bodies, uncompressed, one behind the other.
-        messages: where the messages lie in `buffer`.
-        chunks: number of chunks.
-    """
-
-    path: Path
-    schemas: dict[int, Schema] = field(default_factory=dict)
-    channels: dict[int, Channel] = field(default_factory=dict)
-    metadata: dict[str, dict[str, str]] = field(default_factory=dict)
-    attachments: dict[str, bytes] = field(default_factory=dict)
-    buffer: NDArray[np.uint8] = field(default_factory=lambda: np.empty(0, np.uint8))
-    messages: Messages = field(default_factory=lambda: Messages.empty(0))
-    chunks: int = 0
 
 
 def parse(path: Path, record: Record, contents: Contents) -> None:
@@ -114,7 +57,7 @@ def parse(path: Path, record: Record, contents: Contents) -> None:
 
 
 def read_contents(path: Path) -> Contents:
-    """Read a complete MCAP file.
+    """Read a complete MCAP file; commands of older recordings appear on their topics of today (`former_topics`).
 
     Raises:
         ForeignBagError: it is no MCAP file, or compressed in an unknown way.
@@ -138,6 +81,7 @@ def read_contents(path: Path) -> Contents:
     if unknown:
         what = "messages belong to a channel the file does not declare"
         raise DamagedBagError(what, path=path, offset=0, value=min(unknown))
+    translate_commands(contents)
     return contents
 
 

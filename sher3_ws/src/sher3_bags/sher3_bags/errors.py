@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from sher3_description.errors import FileError, Sher3Error
+from sher3_common.errors import FileError, Sher3Error
 
 
 class BagError(FileError):
@@ -55,7 +55,7 @@ class TopicError(Sher3Error):
 
 
 class WrongTypeError(TopicError):
-    """A topic carries another message type, or the type with another definition, than the contract says."""
+    """A topic has another message type than the contract, or the same type with another definition."""
 
 
 class MalformedMessageError(TopicError):

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from sher3_bags.errors import TopicError
 
-_DEFINITIONS = {
+DEFINITIONS: dict[str, str] = {
     "builtin_interfaces/Time": "int32 sec\nuint32 nanosec",
     "std_msgs/Header": "builtin_interfaces/Time stamp\nstring frame_id",
     "std_msgs/String": "string data",
@@ -104,8 +104,8 @@ def schema_text(type_name: str) -> str:
 
 
 def _definition(name: str) -> str:
-    if name in _DEFINITIONS:
-        return _DEFINITIONS[name]
+    if name in DEFINITIONS:
+        return DEFINITIONS[name]
     package, short = name.split("/")
     path = Path(sys.prefix, "share", package, "msg", f"{short}.msg")
     if not path.is_file():
@@ -130,7 +130,10 @@ def field_lines(text: str) -> list[str]:
 
 @lru_cache(maxsize=64)
 def same_definition(schema: str, type_name: str) -> bool:
-    """Whether a schema declares the fields of our definition: same types, names and order; defaults do not matter."""
+    """Return whether a schema declares the fields of our definition: same types, names and order.
+
+    Default values may differ: they do not change the bytes of a message.
+    """
     return _declarations(schema) == _declarations(schema_text(type_name))
 
 

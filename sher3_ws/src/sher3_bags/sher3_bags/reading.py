@@ -7,11 +7,12 @@ from pathlib import Path
 
 from sher3_description import NAMESPACE, TOPICS
 
-from sher3_bags.cdr_decode import Raw, decode
-from sher3_bags.contents import Contents, read_contents
+from sher3_bags.codec.decode import Raw, decode
+from sher3_bags.contents import read_contents
 from sher3_bags.errors import ForeignBagError, TopicError, WrongTypeError
+from sher3_bags.mcap.contents import Contents
+from sher3_bags.mcap.rosbag2 import find_mcap
 from sher3_bags.messages import TYPES, same_definition
-from sher3_bags.rosbag2 import find_mcap
 from sher3_bags.run import Run, RunMetadata, Stream, check_run
 
 RUN_RECORD = "sher3.run"

@@ -1,4 +1,4 @@
-"""Recover a cut or corrupt bag: every whole chunk is kept, the rest is counted."""
+"""Recover a cut or corrupt bag: every whole chunk is kept, and what is lost is counted."""
 
 from __future__ import annotations
 
@@ -9,11 +9,12 @@ import numpy as np
 from mcap.opcode import Opcode
 from sher3_description import NAMESPACE, TOPICS, Qos
 
-from sher3_bags.contents import Contents, load, parse
+from sher3_bags.contents import load, parse
 from sher3_bags.errors import BagError, DamagedBagError
-from sher3_bags.mcap_file import Body, body_of, check_data, read_bytes, records
-from sher3_bags.mcap_writer import McapWriter
-from sher3_bags.rosbag2 import TopicCount, find_mcap, write_metadata
+from sher3_bags.mcap.contents import Contents
+from sher3_bags.mcap.file import Body, body_of, check_data, read_bytes, records
+from sher3_bags.mcap.rosbag2 import TopicCount, find_mcap, write_metadata
+from sher3_bags.mcap.writer import McapWriter
 from sher3_bags.writing import write_chunks
 
 RECOVERY_RECORD = "sher3.recovery"
@@ -21,17 +22,17 @@ RECOVERY_RECORD = "sher3.recovery"
 
 @dataclass(frozen=True)
 class Recovery:
-    """What came of a recovery.
+    """The result of a recovery.
 
     Attributes:
-        source: the damaged file.
-        target: the folder written, None when the file was whole.
-        messages: recovered, per absolute topic name.
-        chunks: recovered.
-        lost_chunks: chunks inside the readable part that failed their checksum or did not decompress.
-        lost_messages: messages whose channel is described nowhere in what is left.
-        lost_bytes: bytes behind the first break.
-        cause: what is wrong, None when nothing is.
+        source: The damaged file.
+        target: The folder written; None when the file was whole.
+        messages: Number of recovered messages by absolute topic name.
+        chunks: Number of recovered chunks.
+        lost_chunks: Chunks inside the readable part that failed their checksum or did not decompress.
+        lost_messages: Messages of a channel whose description is lost.
+        lost_bytes: Bytes behind the first break.
+        cause: What is wrong with the file; None when nothing is.
     """
 
     source: str

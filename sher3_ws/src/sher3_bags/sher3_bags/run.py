@@ -118,14 +118,14 @@ class RunMetadata:
     """The metadata record `sher3.run` of the contract, section 5.
 
     Attributes:
-        excitation: name of the command sequence; empty when the run was not scripted.
-        repeat: counts runs of the same excitation.
-        amplitude: scale of the excitation.
-        payload: known tip loads, rows (from [s], to [s], Fx, Fy, Fz [N in {b}]) on the clock of the first stamp.
-        posture: name of the posture.
+        excitation: Name of the command sequence; empty when the run was not scripted.
+        repeat: Number of the run among those of the same excitation.
+        amplitude: Scale of the excitation.
+        payload: Known loads on the tip, rows (from [s], to [s], Fx, Fy, Fz [N in {b}]), counted from the first stamp.
+        posture: Name of the posture.
         origin: `plant` or `robot`; empty when a bag does not say.
-        seed: of the plant's noise, where there is one.
-        extra: further entries of the record, kept as text.
+        seed: Seed of the plant's noise, where there is one.
+        extra: Further entries of the record, kept as text.
     """
 
     excitation: str = ""
@@ -227,13 +227,13 @@ class Run:
 def check_run(run: Run, topics: Iterable[str] | None = None) -> None:
     """Refuse a run whose numbers cannot be computed with.
 
-    Checks the named topics, by default those of the contract (section 4) that the run has. User commands and the
-    streams between mocks are not held to it: a test may send NaN on purpose.
+    Checks the named topics; by default the topics of the contract (section 4) that the run has. Commands of the user
+    and the streams between mocks are not checked by default: a test may send NaN on purpose.
 
     Raises:
-        MissingTopicError: a named topic is absent.
-        StampError: header stamps repeat or go backwards.
-        NotFiniteError: a column holds NaN or infinity.
+        MissingTopicError: A named topic is absent.
+        StampError: Header stamps repeat or go backwards.
+        NotFiniteError: A column holds NaN or infinity.
     """
     for topic in [t for t in CONTRACT_TOPICS if t in run] if topics is None else topics:
         table = run[topic]

@@ -9,13 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 from sher3_description import NAMESPACE, TOPICS, Qos
 
-from sher3_bags import kernels
-from sher3_bags.cdr_encode import encode
-from sher3_bags.contents import Messages
+from sher3_bags.codec.encode import encode
 from sher3_bags.errors import BagError
-from sher3_bags.mcap_writer import CHUNK_LIMIT, McapWriter
+from sher3_bags.mcap import kernels
+from sher3_bags.mcap.contents import Messages
+from sher3_bags.mcap.rosbag2 import TopicCount, write_metadata
+from sher3_bags.mcap.writer import CHUNK_LIMIT, McapWriter
 from sher3_bags.reading import ROBOT_FILE, RUN_RECORD
-from sher3_bags.rosbag2 import TopicCount, write_metadata
 from sher3_bags.run import Run
 
 

@@ -51,6 +51,19 @@ def assert_same_streams(a: Run, b: Run) -> None:
 
 
 @pytest.fixture
+def fill_disk():
+    """Return what lets the file of a recorder be one on a full disk; what was flushed before stays in the bag."""
+
+    def fill(recorder):
+        recorder.flush()
+        full = os.open("/dev/full", os.O_WRONLY)
+        os.dup2(full, recorder.fileno())
+        os.close(full)
+
+    return fill
+
+
+@pytest.fixture
 def run() -> Run:
     return make_run()
 

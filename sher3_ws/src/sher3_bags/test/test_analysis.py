@@ -6,11 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from sher3_bags import BagError, Run, read_run, stream, write_run
-from sher3_bags.analysis import analyse
-from sher3_bags.compare import compare
-from sher3_bags.gaps import GapCounter, count_gaps
-from sher3_bags.picture import draw
-from sher3_bags.report import analysis_text, comparison_text, quantity
+from sher3_bags.figures.analysis import analyse
+from sher3_bags.figures.compare import compare
+from sher3_bags.figures.gaps import GapCounter, count_gaps
+from sher3_bags.figures.picture import draw
+from sher3_bags.figures.report import analysis_text, comparison_text, quantity
 
 T = 2_000_000
 START = 1_700_000_000_000_000_000

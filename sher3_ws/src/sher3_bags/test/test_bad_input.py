@@ -9,7 +9,9 @@ import numpy as np
 import pytest
 import zstandard
 from mcap.writer import CompressionType, Writer
-from sher3_bags import (
+from sher3_bags import Run, check_run, read_case, read_run, stream, write_case, write_run
+from sher3_bags.codec.encode import encode
+from sher3_bags.errors import (
     CaseError,
     DamagedBagError,
     ForeignBagError,
@@ -17,20 +19,13 @@ from sher3_bags import (
     MalformedMessageError,
     MissingTopicError,
     NotFiniteError,
-    Run,
     StampError,
     TopicError,
     WrongTypeError,
-    check_run,
-    read_case,
-    read_run,
-    stream,
-    write_case,
-    write_run,
 )
-from sher3_bags.cdr_encode import encode
 from sher3_bags.messages import schema_text
-from sher3_description import Sher3Error, load_robot
+from sher3_common import Sher3Error
+from sher3_description import load_robot
 
 
 def messages(table):
@@ -102,7 +97,7 @@ def test_texts(tmp_path):
 
 def test_joints_in_another_order_are_sorted(tmp_path, run, monkeypatch):
     order = ("tilt", "roll", "delta_3", "delta_2", "delta_1")
-    monkeypatch.setattr("sher3_bags.cdr_encode.ACTUATORS", order)
+    monkeypatch.setattr("sher3_bags.codec.encode.ACTUATORS", order)
     data = messages(run["measured_js"])
     monkeypatch.undo()
     path = write_raw(tmp_path / "a.mcap", "/sher3/measured_js", "sensor_msgs/msg/JointState", data)

@@ -6,8 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from rosbags.typesys import Stores, get_typestore
 from sher3_bags import Stream
-from sher3_bags.cdr_decode import Raw, decode
-from sher3_bags.cdr_encode import encode
+from sher3_bags.codec.decode import Raw, decode
+from sher3_bags.codec.encode import encode
 from sher3_bags.messages import TYPES
 from sher3_description import ACTUATORS
 
@@ -81,7 +81,7 @@ def test_bytes_and_back(table):
 @given(st.sampled_from(sorted(TYPES)), st.binary(max_size=200))
 @settings(max_examples=300, deadline=None)
 def test_garbage_is_refused_or_decodes(type_name, data):
-    from sher3_bags import MalformedMessageError
+    from sher3_bags.errors import MalformedMessageError
 
     buffer = np.frombuffer(data, np.uint8)
     one = np.array([0]), np.array([len(data)]), np.array([0])

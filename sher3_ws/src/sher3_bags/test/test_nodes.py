@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from sher3_bags import DamagedBagError, TopicError, read_run, write_run
-from sher3_bags.errors import BagError, MissingTopicError
-from sher3_bags.replay import Replay
+from sher3_bags import read_run, write_run
+from sher3_bags.errors import BagError, DamagedBagError, MissingTopicError, TopicError
+from sher3_bags.playback.replay import Replay
 from sher3_description import load_robot
 
 runtime = pytest.importorskip("sher3_runtime")
@@ -14,8 +14,8 @@ TOPICS = ["setpoint_js", "servo_jv", "measured_js", "force/measured_cf", "operat
 
 
 def replay_and_record(folder, replay, topics=None):
-    from sher3_bags.recorder_node import RecorderNode
-    from sher3_bags.replay_node import ReplayNode
+    from sher3_bags.playback.replay_node import ReplayNode
+    from sher3_bags.recording.recorder_node import RecorderNode
     from sher3_runtime import Graph
 
     with Graph() as graph:
@@ -46,7 +46,7 @@ def test_what_is_replayed_is_recorded(tmp_path, build, rate):
 
 
 def test_a_rate_beyond_what_a_tick_may_send_is_refused_with_the_fastest_one(tmp_path, build):
-    from sher3_bags.replay_node import ReplayNode
+    from sher3_bags.playback.replay_node import ReplayNode
     from sher3_runtime import Graph
 
     path = write_run(tmp_path / "bag", build(200))
@@ -63,7 +63,7 @@ def test_shifted_stamps_stand_on_the_grid(tmp_path, build):
 
 
 def test_never_the_second_publisher(tmp_path, build):
-    from sher3_bags.replay_node import ReplayNode
+    from sher3_bags.playback.replay_node import ReplayNode
     from sher3_runtime import Graph
 
     path = write_run(tmp_path / "bag", build(50))
@@ -102,8 +102,9 @@ def test_messages_are_in_order_and_due_in_time(tmp_path, build):
 
 
 def test_a_test_leaves_its_bag(tmp_path, request):
-    from sher3_bags.live import bag_folder, recorded
-    from sher3_runtime import Graph, JointSample
+    from sher3_bags.recording.live import bag_folder, recorded
+    from sher3_common.samples import JointSample
+    from sher3_runtime import Graph
 
     name = request.node.nodeid
     for _ in range(2):  # an earlier bag of the same test is replaced
@@ -122,19 +123,12 @@ def test_a_test_leaves_its_bag(tmp_path, request):
     assert bag_folder("a/b.py::test_x[1-0.5]").parts[-2:] == ("bags", "a_b.py_test_x_1-0.5")
 
 
-def full_disk(recorder):
-    """Let the recorder's file be one on a full disk."""
-    recorder.flush()
-    recorder._file = open("/dev/full", "wb", buffering=0)  # noqa: SIM115
-    recorder._writer._stream = recorder._file
-
-
 @pytest.mark.parametrize("required", [True, False])
-def test_a_full_disk_is_an_error_in_diagnostics_and_ends_a_required_recording(tmp_path, build, required):
+def test_a_full_disk_is_an_error_in_diagnostics_and_ends_a_required_recording(tmp_path, build, fill_disk, required):
     """Required: the node ends, and with it the run. Optional: it stays and counts; what was written is recovered."""
     from sher3_bags import recover
-    from sher3_bags.recorder_node import RecorderNode
-    from sher3_bags.replay_node import ReplayNode
+    from sher3_bags.playback.replay_node import ReplayNode
+    from sher3_bags.recording.recorder_node import RecorderNode
     from sher3_runtime import Graph
 
     path = write_run(tmp_path / "bag", build(1200))
@@ -146,7 +140,7 @@ def test_a_full_disk_is_an_error_in_diagnostics_and_ends_a_required_recording(tm
         assert {(s.level, s.message) for s in probe.samples["diagnostics"] if "recorder" in s.name} <= {
             (0, "recording")
         }
-        full_disk(recorder.recorder)
+        fill_disk(recorder.recorder)
         if required:
             with pytest.raises(BagError, match="cannot be written: No space left"):
                 graph.step(800)

@@ -9,12 +9,13 @@ import sys
 import pytest
 from mcap.reader import make_reader
 from rosbags.highlevel import AnyReader
-from sher3_bags import BagError, Recorder, RunMetadata, TopicError, read_run, recover
-from sher3_bags.cdr_encode import encode
-from sher3_bags.gaps import GapCounter
+from sher3_bags import BagError, Recorder, RunMetadata, read_run, recover
+from sher3_bags.codec.encode import encode
+from sher3_bags.errors import TopicError
+from sher3_bags.figures.gaps import GapCounter
+from sher3_common.samples import DiagnosticSample, TextSample
 from sher3_description import TOPICS, load_robot
-from sher3_runtime import DiagnosticSample, TextSample
-from sher3_runtime.cdr import codec
+from sher3_runtime.codec.cdr import codec
 
 ROBOT = load_robot()
 
@@ -118,15 +119,12 @@ def test_recorded_messages_are_kept_even_when_they_are_garbage(tmp_path):
         read_run(tmp_path / "bag")
 
 
-def test_a_full_disk_is_said_and_what_was_written_is_recovered(tmp_path, build):
+def test_a_full_disk_is_said_and_what_was_written_is_recovered(tmp_path, build, fill_disk):
     recorder = Recorder(tmp_path / "bag", ROBOT)
     feed(recorder, build(300))
-    recorder.flush()
-    whole, recorder._file = recorder._file, open("/dev/full", "wb")  # noqa: SIM115
-    recorder._writer._stream = recorder._file
+    fill_disk(recorder)
     with pytest.raises(BagError, match="cannot be written: No space left"):
         feed(recorder, build(3000, start=1_800_000_000_000_000_000))
-    whole.close()
     recovery = recover(tmp_path / "bag")
     assert len(read_run(recovery.target)["measured_js"]) == 300
 

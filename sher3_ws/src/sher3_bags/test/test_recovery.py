@@ -6,7 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from rosbags.highlevel import AnyReader
-from sher3_bags import BagError, DamagedBagError, ForeignBagError, read_run, recover, write_run
+from sher3_bags import BagError, read_run, recover, write_run
+from sher3_bags.errors import DamagedBagError, ForeignBagError
 
 NAMES = {
     1: "header",

@@ -10,7 +10,8 @@ from mcap.reader import make_reader
 from mcap.stream_reader import StreamReader
 from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader
-from sher3_bags import BagError, Case, TopicError, read_case, read_run, stream, write_case, write_run
+from sher3_bags import BagError, Case, read_case, read_run, stream, write_case, write_run
+from sher3_bags.errors import TopicError
 from sher3_bags.messages import TYPES, same_definition, schema_text
 from sher3_description import TOPICS, load_robot
 
@@ -97,7 +98,7 @@ def test_definitions_are_those_of_the_installed_messages(type_name, monkeypatch)
     with monkeypatch.context() as without_files:
         without_files.setattr("sys.prefix", "/nowhere")
         ours = schema_text(type_name)
-    monkeypatch.setattr("sher3_bags.messages._DEFINITIONS", {})
+    monkeypatch.setattr("sher3_bags.messages.DEFINITIONS", {})
     schema_text.cache_clear()
     try:
         installed = schema_text(type_name)

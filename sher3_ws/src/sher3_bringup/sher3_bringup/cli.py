@@ -1,103 +1,144 @@
-"""The `sher3` command: one root, and each package's commands, imported when they are asked for."""
+"""The commands of this package: `up`, `teleop`, `demo`."""
 
 from __future__ import annotations
 
-import os
-import signal
+import json
 import sys
-from collections.abc import Sequence
-from importlib import import_module
-from typing import NamedTuple
+from pathlib import Path
+from typing import Annotated, Optional
 
 import typer
-from sher3_description import Sher3Error
+
+app = typer.Typer(rich_markup_mode="markdown")
+
+Json = Annotated[bool, typer.Option("--json", help="Print one JSON object instead of text.")]
+Robot = Annotated[Optional[Path], typer.Option(help="Robot file; the nominal robot by default.")]  # noqa: UP045
+Domain = Annotated[int, typer.Option(help="ROS domain id.", min=0, max=232, envvar="ROS_DOMAIN_ID")]
 
 
-class Entry(NamedTuple):
-    """Where a command lives: the Typer `app` of `module`, and its name there (empty: the app is a group)."""
+@app.command(
+    epilog="Examples: `sher3 up` · `sher3 up --rate 1000 --record bags/run` · "
+    "`sher3 up --effects backlash.yaml` · `sher3 up --nodes force_sensor+pedal,admittance+kinematics,"
+    "motor_driver,plant,supervisor` · `sher3 up --real --can socketcan:can0 --can socketcan:can1`"
+)
+def up(
+    mock: Annotated[
+        bool, typer.Option("--mock/--real", help="Emulated drives, sensor and pedal, or the hardware.")
+    ] = True,
+    rate: Annotated[float, typer.Option(help="Control rate [Hz].")] = 500.0,
+    nodes: Annotated[
+        str, typer.Option(help="Nodes to run: `,` between processes, `+` within one; all by default.")
+    ] = "",
+    effects: Annotated[Optional[Path], typer.Option(help="Effects for the plant (YAML, sher3.effects/1).")] = None,  # noqa: UP045
+    record: Annotated[Optional[Path], typer.Option(help="Record the run into this new folder.")] = None,  # noqa: UP045
+    record_optional: Annotated[
+        bool,
+        typer.Option("--record-optional", help="Go on when the recorder dies or the disk is full; else stop."),
+    ] = False,
+    monitor: Annotated[
+        bool,
+        typer.Option("--monitor", help="Also run the gap monitor: gap/diagnostics at 1 Hz against the nominal model."),
+    ] = False,
+    patient: Annotated[
+        bool,
+        typer.Option("--patient", help="Mocks on a busy machine: time limits that a held-up process does not trip."),
+    ] = False,
+    duration: Annotated[Optional[float], typer.Option(help="Stop after so many seconds.")] = None,  # noqa: UP045
+    robot: Robot = None,
+    can: Annotated[Optional[list[str]], typer.Option(help="CAN link of each channel, as socketcan:can0.")] = None,  # noqa: UP045
+    force_device: Annotated[str, typer.Option(help="Device of the force sensor (real robot).")] = "",
+    pedal_device: Annotated[str, typer.Option(help="Device of the pedal (real robot).")] = "",
+    realtime: Annotated[
+        int, typer.Option(help="SCHED_FIFO priority, 0 for none; -1: 40 where permitted.", min=-1, max=90)
+    ] = -1,
+    seed: Annotated[int, typer.Option(help="Seed of the plant's noise.")] = 0,
+    regime: Annotated[
+        str, typer.Option(help="Speed regime: near_tissue, free or bench; bench on mocks, free on the robot.")
+    ] = "",
+    near_speed: Annotated[Optional[float], typer.Option(help="Speed cap near tissue [m/s].")] = None,  # noqa: UP045
+    free_speed: Annotated[Optional[float], typer.Option(help="Speed cap elsewhere [m/s].")] = None,  # noqa: UP045
+    domain: Domain = 0,
+    other_hosts: Annotated[
+        bool, typer.Option("--other-hosts", help="Also talk to other machines; loopback by default.")
+    ] = False,
+    as_json: Json = False,
+) -> None:
+    """Start the robot and keep it running until Ctrl-C.
 
-    module: str
-    command: str
-    help: str
+    Every node is a process of its own unless `--nodes` joins some. A line says when all are ready. If a process ends,
+    everything is stopped, drives first.
 
+    Exit codes: 0 stopped as asked, 2 wrong option, 1 bad file, 3 not started (a device is missing), 4 a process died,
+    5 a process had to be killed.
+    """
+    from sher3_bringup.processes.up import run_graph
+    from sher3_bringup.settings.run_settings import checked, parse_processes
 
-COMMANDS: dict[str, Entry] = {
-    "up": Entry("sher3_bringup.commands", "up", "Start the robot: every node, on mocks or on the hardware."),
-    "teleop": Entry("sher3_bringup.commands", "teleop", "Act the surgeon on a running mock: a script or the keyboard."),
-    "demo": Entry("sher3_bringup.commands", "demo", "Run a scripted surgeon on mocks, record, analyse, show."),
-    "completion": Entry("sher3_bringup.commands", "completion", "Print the completion script of a shell."),
-    "fk": Entry("sher3_kinematics.cli", "fk", "Tip pose from actuator positions."),
-    "ik": Entry("sher3_kinematics.cli", "ik", "Actuator positions from a tip pose."),
-    "record": Entry("sher3_bags.cli", "record", "Record the running graph into a bag."),
-    "replay": Entry("sher3_bags.cli", "replay", "Play a bag into the graph, at any rate."),
-    "analyze": Entry("sher3_bags.cli", "analyze", "Figures and a picture of a bag."),
-    "compare": Entry("sher3_bags.cli", "compare", "Differences of two bags, on header time."),
-    "recover": Entry("sher3_bags.cli", "recover", "Save what can be read of a cut bag."),
-    "info": Entry("sher3_bags.cli", "info", "What a bag holds."),
-    "gap": Entry("sher3_gap.cli", "", "Find and explain the gap between a robot and its simulation."),
-    "design": Entry("sher3_paper.cli", "design", "Recompute the design of the robot."),
-    "paper": Entry("sher3_paper.cli", "paper", "Recompute the figures and tables of the paper."),
-    "safety": Entry("sher3_bringup.safety_command", "", "Break everything in turn; measure stops and travel."),
-    "fault": Entry("sher3_bringup.fault_command", "fault", "Break one part of the running robot on mocks."),
-    "benchtop": Entry(
-        "sher3_bringup.benchtop_command", "benchtop", "The bench-top tests of the paper, on the running graph."
-    ),
-}
-
-
-def make_app(chosen: str | None = None) -> typer.Typer:
-    """Return the root with command `chosen` imported and the others as mere names; all of them for `"*"`."""
-    root = typer.Typer(
-        name="sher3",
-        help="The Steady-Hand Eye Robot 3.0: run it, record it, explain it. `sher3 COMMAND --help` shows examples.",
-        no_args_is_help=True,
-        add_completion=False,
-        rich_markup_mode="markdown",
-        pretty_exceptions_enable=False,
+    settings = checked(
+        mock=mock,
+        rate=rate,
+        processes=parse_processes(nodes, mock, record is not None, monitor),
+        robot_path=robot,
+        effects=effects,
+        record=record,
+        recording="optional" if record_optional else "required",
+        duration=duration,
+        links=tuple(can or ()),
+        force_device=force_device,
+        pedal_device=pedal_device,
+        realtime=realtime,
+        seed=seed,
+        patience="patient" if patient else "strict",
+        regime=regime,
+        near_speed=near_speed,
+        free_speed=free_speed,
+        domain=domain,
+        other_hosts=other_hosts,
     )
-    root.callback()(_root)
-    for name, entry in COMMANDS.items():
-        if chosen in (name, "*"):
-            _mount(root, name, entry)
-        else:
-            root.command(name, help=entry.help)(_stub)
-    return root
+    run_graph(settings, say=_say(as_json))
 
 
-def main(arguments: Sequence[str] | None = None) -> None:
-    """Run the command line; every failure is one sentence and an exit code."""
-    words = list(sys.argv[1:] if arguments is None else arguments)
-    completing = os.environ.get("COMP_WORDS", "").split()[1:] if "_SHER3_COMPLETE" in os.environ else []
-    chosen = next((word for word in completing or words if not word.startswith("-")), None)
-    try:
-        make_app(chosen)(args=words, prog_name="sher3")
-    except Sher3Error as error:
-        print(f"sher3: {error}", file=sys.stderr)
-        sys.exit(getattr(error, "exit_code", 1))
-    except KeyboardInterrupt:
-        sys.exit(128 + signal.SIGINT)
-    except BrokenPipeError:
-        # The reader of our output has gone; there is nobody to tell.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        sys.exit(1)
+@app.command(
+    epilog="Examples: `sher3 teleop` (keyboard) · `sher3 teleop surgeon.yaml` · `sher3 teleop --print > surgeon.yaml`"
+)
+def teleop(
+    script: Annotated[
+        Path | None, typer.Argument(help="Script (YAML, sher3.teleop/1); the keyboard without one.")
+    ] = None,
+    show: Annotated[bool, typer.Option("--print", help="Print the script of the demo and leave.")] = False,
+    rate: Annotated[float, typer.Option(help="Control rate of the running graph [Hz].")] = 500.0,
+    domain: Domain = 0,
+) -> None:
+    """Act the surgeon on a running mock: press the pedal and push the tool."""
+    from sher3_bringup.surgeon.script import demo_script, load_script
 
-
-def _mount(root: typer.Typer, name: str, entry: Entry) -> None:
-    app = import_module(entry.module).app
-    if not entry.command:
-        root.add_typer(app, name=name, help=entry.help)
+    if show:
+        typer.echo(demo_script().read_text(), nl=False)
         return
-    for info in app.registered_commands:
-        if (info.name or getattr(info.callback, "__name__", "")) == entry.command:
-            root.registered_commands.append(info)
-            info.name = name
-            return
-    raise LookupError(f"{entry.module} has no command {entry.command}")
+    from sher3_bringup.surgeon.teleop import run_keyboard, run_script
+
+    if script is None:
+        run_keyboard(rate, domain)
+    else:
+        run_script(load_script(script), rate, domain)
 
 
-def _root() -> None:
-    """Keep the root a group even when a single command is imported."""
+@app.command(epilog="Examples: `sher3 demo` · `sher3 demo --rate 1000` · `sher3 demo --effects backlash.yaml --json`")
+def demo(
+    rate: Annotated[float, typer.Option(help="Control rate [Hz].")] = 500.0,
+    effects: Annotated[Optional[Path], typer.Option(help="Effects for the plant.")] = None,  # noqa: UP045
+    script: Annotated[Optional[Path], typer.Option(help="Script of the surgeon.")] = None,  # noqa: UP045
+    folder: Annotated[Path, typer.Option(help="Where the run's folder is made.")] = Path("bags"),
+    as_json: Json = False,
+) -> None:
+    """Run every node on mocks with a scripted surgeon, record it, analyse the recording, show figures and a picture."""
+    from sher3_bringup.demo.session import run_demo
+
+    result = run_demo(rate, effects, script, folder, say=_say(as_json))
+    if as_json:
+        typer.echo(json.dumps(result))
 
 
-def _stub() -> None:
-    """Stand for a command in the list of commands."""
+def _say(quiet: bool):
+    """Return what prints progress: to standard error when standard output carries JSON."""
+    return lambda text: print(text, file=sys.stderr if quiet else sys.stdout, flush=True)

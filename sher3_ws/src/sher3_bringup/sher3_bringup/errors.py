@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from sher3_description import Sher3Error
+from sher3_common import Sher3Error
 
 USAGE = 2
 NOT_STARTED = 3
@@ -22,6 +22,10 @@ class StartError(Sher3Error):
     exit_code = NOT_STARTED
 
 
+class AlreadyRunning(StartError):
+    """A robot is running in this ROS domain already."""
+
+
 class ProcessDied(Sher3Error):
     """A process ended while the robot was running; everything else has been stopped."""
 
@@ -38,13 +42,3 @@ class SessionFailed(Sher3Error):
     """The robot of a recorded session faulted, was not enabled or did not move as its script asked."""
 
     exit_code = DIED
-
-
-class BenchtopStopped(Sher3Error):
-    """The robot did not do as commanded during a bench-top test; carries `test`."""
-
-    exit_code = DIED
-
-    def __init__(self, test: str, why: str) -> None:
-        super().__init__(f"{test} stopped: {why}", remedy="look at motion/status and supervisor/status in its bag")
-        self.test = test

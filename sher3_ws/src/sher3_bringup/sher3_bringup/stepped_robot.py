@@ -6,40 +6,36 @@ import itertools
 from collections.abc import Sequence
 from typing import Any
 
-from sher3_control.admittance_node import AdmittanceNode
-from sher3_control.kinematics_node import KinematicsNode
+from sher3_control.nodes.admittance_node import AdmittanceNode
+from sher3_control.nodes.kinematics_node import KinematicsNode
+from sher3_control.nodes.supervisor_node import SupervisorNode
 from sher3_control.settings import ControlSettings
-from sher3_control.supervisor_node import SupervisorNode
 from sher3_description import Robot, load_robot
-from sher3_drivers.bus import CanLink, LockstepLink, open_link
-from sher3_drivers.force_sensor import InProcessForceSensor
-from sher3_drivers.force_sensor_node import ForceSensorNode
-from sher3_drivers.motor_driver_node import MotorDriverNode
-from sher3_drivers.other_host import LISTEN
-from sher3_drivers.pedal import InProcessPedal
-from sher3_drivers.pedal_node import PedalNode
+from sher3_drivers.bus.link import CanLink, open_link
+from sher3_drivers.bus.lockstep import LockstepLink
+from sher3_drivers.canopen.other_host import LISTEN
+from sher3_drivers.drive.motor_driver_node import MotorDriverNode
+from sher3_drivers.pedal.in_process import InProcessPedal
+from sher3_drivers.pedal.pedal_node import PedalNode
+from sher3_drivers.sensor.device import InProcessForceSensor
+from sher3_drivers.sensor.force_sensor_node import ForceSensorNode
 from sher3_drivers.settings import MotorDriverSettings, default_settings
+from sher3_faults.injector import FaultInjector
 from sher3_runtime import Graph
-from sher3_safety.injector import FaultInjector
-from sher3_sim import Effect
+from sher3_sim import PlantEffect
 from sher3_sim.plant_node import PlantNode
 from sher3_sim.scatter import RunScatter
 
-from .patience import BENCH
+from sher3_bringup.settings.patience import drives_in
 
 _numbers = itertools.count()
-
-
-def bench_drives(robot: Robot) -> MotorDriverSettings:
-    """Return the motor driver's settings on the bench, see `patience.BENCH`."""
-    return MotorDriverSettings.checked(**{**default_settings(robot.control_period).model_dump(), **BENCH})
 
 
 class SteppedRobot:
     """Every node of `sher3 up` but the recorder, in one `Graph`.
 
-    The motor driver's limits are the strict ones unless `drives` are given (`bench_drives` for robots with large gaps);
-    the speed regime is the bench unless `control` says another.
+    The speed regime is the bench unless `control` says another. The motor driver's limits are those of that regime, as
+    in `sher3 up`, unless `drives` are given: who measures the strict limits gives `default_settings(period)`.
 
     Attributes:
         graph: the graph; `force` and `pedal_device`: the device ends; the nodes by their names.
@@ -48,7 +44,7 @@ class SteppedRobot:
     def __init__(
         self,
         graph: Graph,
-        effects: Sequence[Effect] = (),
+        effects: Sequence[PlantEffect] = (),
         seed: int = 1,
         robot: Robot | None = None,
         control: ControlSettings | None = None,
@@ -59,7 +55,8 @@ class SteppedRobot:
         control = control or ControlSettings.from_robot(robot, {"motion": {"regime": "bench"}})
         self.graph, self.robot, self.control = graph, robot, control
         self.force, self.pedal_device = InProcessForceSensor(), InProcessPedal(clock=graph.clock.now)
-        settings, channel = drives or default_settings(robot.control_period), f"stepped{next(_numbers)}"
+        settings = drives or drives_in(control.motion.regime, default_settings(robot.control_period))
+        channel = f"stepped{next(_numbers)}"
         count = len(settings.channels)
         device_ends, host_ends = ([open_link(f"virtual:{channel}-{i}") for i in range(count)] for _ in range(2))
         devices = {"force_device": self.force, "pedal_device": self.pedal_device, "faults": FaultInjector}

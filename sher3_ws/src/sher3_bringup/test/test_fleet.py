@@ -18,9 +18,10 @@ from sher3_runtime import environment
 environment.apply(int(sys.argv[1]))
 from rclpy.node import Node
 from sher3_bringup.errors import NotStopped, ProcessDied, StartError
-from sher3_bringup.fleet import Fleet
-from sher3_description import Sher3Error
-from sher3_runtime import NODE_OPTIONS, WrenchSample, advertise, on_tick, subscribe
+from sher3_bringup.processes.fleet import Fleet
+from sher3_common import Sher3Error
+from sher3_common.samples import WrenchSample
+from sher3_runtime import NODE_OPTIONS, advertise, on_tick, subscribe
 
 class Source(Node):
     def __init__(self):

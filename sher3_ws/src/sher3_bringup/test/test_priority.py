@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from sher3_bringup.up import beside, priority
+from sher3_bringup.processes.up import beside, priority
 
 
 @pytest.mark.parametrize(

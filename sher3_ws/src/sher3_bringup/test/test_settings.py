@@ -3,13 +3,14 @@
 import json
 
 import pytest
-from sher3_bringup.cli import make_app
 from sher3_bringup.errors import ConfigurationError
-from sher3_bringup.patience import BENCH, CONTROL, DRIVES
-from sher3_bringup.settings import NODES, checked, parse_processes
+from sher3_bringup.settings.patience import BENCH, CONTROL, DRIVES, drives_in
+from sher3_bringup.settings.run_settings import NODES, checked, parse_processes
+from sher3_cli.root import make_app
+from sher3_common import Sher3Error
 from sher3_control.settings import ControlSettings
-from sher3_description import Sher3Error
-from sher3_safety.budget import BudgetExceeded
+from sher3_drivers.settings import default_settings
+from sher3_faults.budget import BudgetExceeded
 from typer.testing import CliRunner
 
 
@@ -104,6 +105,7 @@ def test_the_bench_is_the_default_of_mocks_alone_and_has_limits_of_its_own():
     changed = {name for name in strict if bench[name] != strict[name]}
     assert changed == set(BENCH) and all(bench[name] > strict[name] for name in changed)
     assert checked(regime="free").drives().encoder_distance == strict["encoder_distance"]
+    assert drives_in("near_tissue", default_settings()) == drives_in("free", default_settings()) == default_settings()
 
 
 def test_the_budget_is_printed_and_its_exit_code_says_whether_it_is_kept():

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from sher3_bringup.errors import ConfigurationError
-from sher3_bringup.keyboard import FORCE_LIMIT, TORQUE_LIMIT, Keyboard
-from sher3_bringup.surgeon import demo_script, load_script
-from sher3_description import FileError
+from sher3_bringup.surgeon.keyboard import FORCE_LIMIT, TORQUE_LIMIT, Keyboard
+from sher3_bringup.surgeon.script import demo_script, load_script
+from sher3_common import FileError
 
 SCRIPT = load_script(demo_script())
 

@@ -5,10 +5,10 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from sher3_bringup.demo.verdict import judge
 from sher3_bringup.errors import SessionFailed
-from sher3_bringup.surgeon import Script
-from sher3_bringup.teleop_node import ScriptCommands
-from sher3_bringup.verdict import judge
+from sher3_bringup.surgeon.script import Script
+from sher3_bringup.surgeon.teleop_node import ScriptCommands
 
 S = 1_000_000_000
 BEGIN = 1_000_000 * S

@@ -1,10 +1,10 @@
-"""Typed refusals of the control room; each names value, limit and remedy (see `Sher3Error`)."""
+"""What the control package refuses, as types; every error names value, limit and remedy (see `Sher3Error`)."""
 
 from __future__ import annotations
 
 from typing import Any
 
-from sher3_description import Sher3Error
+from sher3_common import Sher3Error
 
 
 class SettingsError(Sher3Error):
@@ -12,7 +12,11 @@ class SettingsError(Sher3Error):
 
 
 class CommandRejected(Sher3Error):
-    """A motion command is refused; `mode` is the CRTK command, the reason is the first clause."""
+    """A motion command is refused; the first clause says why.
+
+    Attributes:
+        mode: CRTK name of the command.
+    """
 
     def __init__(self, mode: str, why: str, **details: Any) -> None:
         super().__init__(f"{mode} rejected: {why}", **details)
@@ -20,7 +24,11 @@ class CommandRejected(Sher3Error):
 
 
 class OwnerConflict(CommandRejected):
-    """Another mode owns the robot, or a command topic has more than one publisher; carries `owner`."""
+    """Another mode owns the robot, or a command topic has more than one publisher.
+
+    Attributes:
+        owner: the mode that owns the robot, `unclear` where there are several publishers.
+    """
 
     def __init__(self, mode: str, why: str, *, owner: str, **details: Any) -> None:
         super().__init__(mode, why, **details)
@@ -28,7 +36,11 @@ class OwnerConflict(CommandRejected):
 
 
 class TareRefused(Sher3Error):
-    """The tare is refused; `reason`: `pressed`, `moving`, `noisy`, `samples`, `faulty` or `too_large`."""
+    """The tare is refused.
+
+    Attributes:
+        reason: `pressed`, `samples` (too few or too old), `faulty`, `moving`, `noisy` or `too_large`.
+    """
 
     def __init__(self, reason: str, what: str, **details: Any) -> None:
         super().__init__(f"tare refused, {reason}: {what}", **details)
@@ -36,7 +48,12 @@ class TareRefused(Sher3Error):
 
 
 class StateCommandRefused(Sher3Error):
-    """A CRTK state command is refused in the present operating state; carries `command` and `state`."""
+    """A CRTK state command is refused in the present operating state.
+
+    Attributes:
+        command: the command.
+        state: the operating state.
+    """
 
     def __init__(self, command: str, state: str, why: str, **details: Any) -> None:
         super().__init__(f"state command {command} refused in {state}: {why}", **details)
@@ -45,4 +62,4 @@ class StateCommandRefused(Sher3Error):
 
 
 class TrajectoryError(Sher3Error):
-    """A point-to-point motion cannot be planned: goal not finite, out of limits or not reachable on the way."""
+    """A point-to-point motion cannot be planned: start or goal is not finite."""

@@ -1,6 +1,6 @@
-"""Compute a recorded run again: the law on the recorded inputs must give the recorded commands bit for bit.
+"""Compute a recorded run again: the laws on the recorded inputs must give the recorded commands bit for bit.
 
-Takes anything with `streams` by topic whose columns are arrays (a run of `sher3_bags`) and the robot in force.
+A recording is anything with `streams` by topic whose columns are arrays, such as a run of `sher3_bags`.
 """
 
 from __future__ import annotations
@@ -11,27 +11,30 @@ from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
-from sher3_description import Robot, Sher3Error, parse_json
-from sher3_kinematics import RobotKinematics, kernel_parameters
+from sher3_common import Sher3Error, parse_json
+from sher3_common.reasons import Reason
+from sher3_common.vectors import ZERO_TWIST
+from sher3_description import Robot
+from sher3_kinematics import RobotKinematics
+from sher3_kinematics.kernel import kernel_parameters
 
-from .admittance import NO_WRENCH, LawInput, LawParameters, initial_state, step
-from .angles import roll_and_tilt
-from .cooperative import RESTING, VelocityModes
-from .law_parameters import law_parameters
-from .live_parameters import LiveParameters, from_json
-from .ownership import MODE_CODES, Mode
-from .position_controller import position_commands
-from .rcm import NO_HOLD
-from .reasons import Reason
-from .settings import MotionSettings
-from .speed_cap import Regime, speed_cap
-from .tick_records import AdmittanceRecord, admittance_record, motion_record
+from sher3_control.law.admittance import NO_WRENCH, LawInput, LawParameters, initial_state, step
+from sher3_control.law.angles import roll_and_tilt
+from sher3_control.law.live_parameters import LiveParameters, from_json
+from sher3_control.law.parameters import law_parameters
+from sher3_control.law.position_controller import position_commands
+from sher3_control.motion.cooperative import RESTING, VelocityModes
+from sher3_control.motion.ownership import MODE_CODES, Mode
+from sher3_control.motion.rcm import NO_HOLD
+from sher3_control.motion.speed_cap import Regime, speed_cap
+from sher3_control.settings import MotionSettings
+from sher3_control.tick_records import AdmittanceRecord, MotionRecord, admittance_record, motion_record
 
 Array = NDArray[Any]
 
 
 class ReplayError(Sher3Error):
-    """The run lacks what a replay needs."""
+    """The run lacks something that its replay needs."""
 
 
 class Recording(Protocol):
@@ -44,11 +47,14 @@ class Recording(Protocol):
 
 @dataclass(frozen=True)
 class Replay:
-    """Outcome: how many commands were computed again, how many differ in any bit, and the largest difference.
+    """Outcome of a replay.
 
     Attributes:
+        compared: number of commands that were computed again.
+        different: number of those that differ in any bit.
+        largest: largest difference of a component [m/s or rad/s].
         first: stamp of the first difference [ns], or None.
-        skipped: commands before the law's memory is known, or of modes that are not computed again.
+        skipped: number of commands before the memory of the law is known, or of modes that are not computed again.
     """
 
     compared: int
@@ -59,7 +65,15 @@ class Replay:
 
 
 class Lookup:
-    """Samples of a stream by their exact stamp."""
+    """Samples of a stream by their exact stamp.
+
+    Attributes:
+        stream: the stream.
+        row: row of each stamp [ns].
+
+    Raises:
+        ReplayError: the run has no such topic.
+    """
 
     def __init__(self, run: Recording, topic: str) -> None:
         if topic not in run.streams:
@@ -68,7 +82,7 @@ class Lookup:
         self.row = {stamp: k for k, stamp in enumerate(self.stream.stamp.tolist())}
 
     def __call__(self, stamp: int) -> int | None:
-        """Return the row, None for a stamp of -1.
+        """Return the row of a stamp [ns], None for -1, which stands for no sample.
 
         Raises:
             ReplayError: the sample was used but not recorded.
@@ -83,7 +97,8 @@ class Lookup:
 def replay_admittance(run: Recording, robot: Robot) -> Replay:
     """Run the cooperative law over the recorded inputs and compare with `servo_cv`.
 
-    A recording that starts in the middle is compared from the first released pedal on: a stop clears the law's memory.
+    A recording that starts in the middle of a session is compared from the first released pedal on, because a stop
+    clears the memory of the law.
 
     Raises:
         ReplayError: a topic or a sample that was used is not in the run.
@@ -102,74 +117,95 @@ def replay_admittance(run: Recording, robot: Robot) -> Replay:
         if row is not None:
             stream = recorded.stream
             twist = np.concatenate([stream.linear[row], stream.angular[row]])
-            count.add(line.stamp, np.array(output.twist), twist, known)
+            count.add(line.stamp, np.array(output.twist), twist, known=known)
         known = known or (n >= parameters.frozen_samples and output.reason is Reason.PEDAL_RELEASED)
     return count.result()
 
 
 def replay_motion(run: Recording, robot: Robot) -> Replay:
-    """Compute `servo_jv` again: the host law where there is a `setpoint_js`, the twist through J in cooperative mode.
+    """Compute `servo_jv` again and compare it with the recording.
 
-    A recording that starts in a motion about a remote centre is compared from the first rest on, where the law has no
-    memory.
+    Where there is a `setpoint_js` the host law is computed, in the cooperative mode the twist through the Jacobian. The
+    velocity commands of a user are skipped. A recording that starts in a motion about a remote centre is compared from
+    the first rest on, where the law has no memory.
 
     Raises:
         ReplayError: a topic or a sample that was used is not in the run.
         SettingsError: a record is damaged.
     """
-    joints, twists, recorded = (Lookup(run, name) for name in ("measured_js", "servo_cv", "servo_jv"))
-    references = Lookup(run, "setpoint_js") if "setpoint_js" in run.streams else None
-    limit = np.array([a.limits.velocity for a in robot.actuators])
-    versions = {(data := parse_json(text))["version"]: data for text in run.streams["motion/settings"].data}
-    modes, previous, rested, count = _Modes(robot, versions), RESTING, False, _Comparison()
+    commands, recorded = _MotionCommands(run, robot), Lookup(run, "servo_jv")
+    previous, rested, count = RESTING, False, _Comparison()
     for text in run.streams["motion/inputs"].data:
         line = motion_record(text)
         row = recorded.row.get(line.stamp)
         if row is None:
             continue
         actual = recorded.stream.velocity[row]
-        rested, about_centre = rested or not actual.any(), False
-        used, reference = joints(line.joints_stamp), references and references.row.get(line.stamp)
-        if line.reason != Reason.MOVING or used is None:
-            command: Array | None = np.zeros(5)
-        elif references is not None and reference is not None:
-            r = references.stream
-            q = joints.stream.position[used]
-            command = position_commands(r.position[reference], r.velocity[reference], q, robot.position_gain, limit)
-        elif line.mode in (MODE_CODES[None], MODE_CODES[Mode.COOPERATIVE]):
-            k = twists(line.twist_stamp)
-            twist = np.zeros(6) if k is None else np.concatenate([twists.stream.linear[k], twists.stream.angular[k]])
-            command = modes.velocity(joints.stream.position[used], twist, previous, line.version)
-            about_centre = modes.at(line.version).centre is not None
+        rested = rested or not actual.any()
+        command, needs_memory = commands.at(line, previous)
+        if command is None:
+            count.add(line.stamp, actual, actual, known=False)
         else:
-            command = None
-        count.add(
-            line.stamp,
-            actual if command is None else command,
-            actual,
-            command is not None and (rested or not about_centre),
-        )
+            count.add(line.stamp, command, actual, known=rested or not needs_memory)
         previous = tuple(actual.tolist())
     return count.result()
 
 
+class _MotionCommands:
+    """The velocity commands of the kinematics node, computed from a recording."""
+
+    def __init__(self, run: Recording, robot: Robot) -> None:
+        self._joints, self._twists = Lookup(run, "measured_js"), Lookup(run, "servo_cv")
+        self._references = Lookup(run, "setpoint_js") if "setpoint_js" in run.streams else None
+        self._gain = robot.position_gain
+        self._limit = np.array([a.limits.velocity for a in robot.actuators])
+        versions = {(data := parse_json(text))["version"]: data for text in run.streams["motion/settings"].data}
+        self._modes = _Modes(robot, versions)
+
+    def at(self, line: MotionRecord, previous: tuple[float, ...]) -> tuple[Array | None, bool]:
+        """Return the velocity (5,) of a tick, and whether it needs the memory of the law.
+
+        The velocity is None where it is not computed: a velocity mode follows a command of the user. `previous` is the
+        recorded velocity (5,) of the tick before.
+        """
+        used = self._joints(line.joints_stamp)
+        if line.reason != Reason.MOVING or used is None:
+            return np.zeros(len(previous)), False
+        q = self._joints.stream.position[used]
+        if self._references is not None and (row := self._references.row.get(line.stamp)) is not None:
+            reference = self._references.stream
+            q_ref, qd_ref = reference.position[row], reference.velocity[row]
+            return position_commands(q_ref, qd_ref, q, self._gain, self._limit), False
+        if line.mode in (MODE_CODES[None], MODE_CODES[Mode.COOPERATIVE]):
+            velocity = self._modes.velocity(q, self._twist(line.twist_stamp), previous, line.version)
+            return velocity, self._modes.at(line.version).centre is not None
+        return None, False
+
+    def _twist(self, stamp: int) -> Array:
+        """Return the recorded twist (6,) in {b} of a stamp, zero for none."""
+        row = self._twists(stamp)
+        if row is None:
+            return np.zeros(len(ZERO_TWIST))
+        return np.concatenate([self._twists.stream.linear[row], self._twists.stream.angular[row]])
+
+
 class _Modes:
-    """The cooperative velocity with the remote centre of a version; the hold passes from one version to the next."""
+    """The velocity modes by version of the settings; the hold of the remote centre passes from version to version."""
 
     def __init__(self, robot: Robot, versions: dict[int, dict[str, Any]]) -> None:
         kinematics = RobotKinematics(robot)
         self._by_version, self._hold = {}, NO_HOLD
         for version, data in versions.items():
-            # Recordings from before the hold had none.
+            # Recordings made before there was a hold have no rate for it.
             mode = VelocityModes(kinematics, data["settings"]["rcm_gain"], data["settings"].get("rcm_integral", 0.0))
             mode.centre = None if data["rcm"] is None else np.array(data["rcm"])
-            # Recordings from before there were regimes had no cap either.
+            # Recordings made before there were regimes had no cap.
             regime = Regime(data.get("regime", Regime.BENCH.value))
             mode.cap = speed_cap(MotionSettings(**data["settings"]), regime)
             self._by_version[version] = mode
 
     def velocity(self, q: Array, twist: Array, previous: tuple[float, ...], version: int) -> Array:
-        """Return the velocity (5,)."""
+        """Return the actuator velocity (5,) at positions `q` (5,) for a tip twist (6,) in {b}."""
         mode = self.at(version)
         mode.hold = self._hold
         velocity = mode.from_twist(tuple(q.tolist()), tuple(twist.tolist()), previous).velocity
@@ -177,14 +213,14 @@ class _Modes:
         return np.array(velocity)
 
     def at(self, version: int) -> VelocityModes:
-        """Return the modes of a version."""
+        """Return the modes of a version; raises ReplayError for one that is not in the run."""
         if version not in self._by_version:
             raise ReplayError("a version of motion/settings is missing", value=version, remedy="record from the start")
         return self._by_version[version]
 
 
 class _Inputs:
-    """The law's input at a recorded tick."""
+    """The input and the constants of the cooperative law at a recorded tick."""
 
     def __init__(self, run: Recording, robot: Robot) -> None:
         self.wrench, self.pedal, self.joints = (
@@ -197,7 +233,7 @@ class _Inputs:
             self._versions[live.version] = (live, law_parameters(robot, settings))
 
     def at(self, line: AdmittanceRecord) -> tuple[LawParameters, LawInput]:
-        """Return parameters and input of a tick."""
+        """Return constants and input of a tick; raises ReplayError where the run lacks a sample or a version."""
         if line.version not in self._versions:
             raise ReplayError("a version of admittance/settings is missing", value=line.version, remedy="record anew")
         live, parameters = self._versions[line.version]
@@ -219,12 +255,14 @@ class _Inputs:
 
 
 class _Comparison:
+    """Counts equal and different commands."""
+
     def __init__(self) -> None:
         self._compared = self._different = self._skipped = 0
         self._largest, self._first = 0.0, None
 
     def add(self, stamp: int, computed: Array, recorded: Array, known: bool) -> None:
-        """Compare the bits of one command."""
+        """Compare the bits of one command; it is skipped where the memory of the law is not `known`."""
         if not known:
             self._skipped += 1
             return
@@ -236,4 +274,5 @@ class _Comparison:
         self._first = self._first or stamp  # type: ignore[assignment]
 
     def result(self) -> Replay:
+        """Return the counts so far."""
         return Replay(self._compared, self._different, self._largest, self._first, self._skipped)

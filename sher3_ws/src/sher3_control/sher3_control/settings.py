@@ -1,7 +1,7 @@
-"""Typed, validated settings of the control nodes, with units and the reason for each default.
+"""Settings of the control nodes: typed and checked, with units and the reason for each default.
 
-What belongs to the robot (gains, dead bands, cut-off, speed caps) defaults to `robot.yaml`; what belongs to the
-software is declared here.
+What belongs to the robot (gains, dead bands, cut-off, speed caps of the law) has its default in `robot.yaml`; what
+belongs to the software has it here.
 """
 
 from __future__ import annotations
@@ -11,15 +11,17 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from sher3_description import Robot
 
-from .errors import SettingsError
+from sher3_control.errors import SettingsError
 
 Number = Annotated[float, Field(allow_inf_nan=False)]
 Seconds = Annotated[Number, Field(gt=0.0, le=10.0)]
 Fraction = Annotated[Number, Field(ge=0.0, le=1.0)]
+CUTOFF_SHARE = 0.8
+"""Highest cut-off of the low-pass as a share of half the control rate; nearer to it the filter would hardly filter."""
 
 
 class Settings(BaseModel):
-    """Base of every settings part: immutable and closed."""
+    """Base of every part of the settings: immutable, and unknown names are errors."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
@@ -28,10 +30,10 @@ class PedalSettings(Settings):
     """How the foot pedal is read.
 
     Attributes:
-        mode: `proportional` scales the velocity with the travel, `binary` switches it.
-        release: travel [1] at and below which the pedal is released; also the dead band of the proportional mode.
-        press: travel [1] from which it is pressed; above `release` by the hysteresis.
-        age_limit: oldest pedal sample that still counts [s]; older means released and a stop.
+        mode: `proportional` scales the velocity with the travel, `binary` switches it on and off.
+        release: travel at and below which the pedal is released; also the dead band of the proportional mode [1].
+        press: travel from which it is pressed; above `release` by the hysteresis [1].
+        age_limit: oldest pedal sample that still counts [s]; an older one is a stop.
     """
 
     mode: Literal["proportional", "binary"] = "proportional"
@@ -45,9 +47,9 @@ class WrenchSettings(Settings):
 
     Attributes:
         age_limit: oldest wrench sample that still counts [s].
-        frozen_samples: this many bit-identical new samples in a row are a frozen sensor [1]. With the nominal noise
-            two neighbours agree in all six axes with probability 3e-4, six in a row with 2e-18.
-        saturation: fraction of the sensor's range from which it is saturated [1].
+        frozen_samples: this many bit-identical new samples in a row mean that the sensor is frozen [1]. With the
+            nominal noise two samples in a row agree in all six axes with probability 3e-4, six in a row with 2e-18.
+        saturation: fraction of the sensor's range from which it counts as saturated [1].
     """
 
     age_limit: Seconds = 0.010
@@ -63,14 +65,15 @@ class AdmittanceSettings(Settings):
         force_deadband, torque_deadband: N and N m, per axis in {t}.
         filter_cutoff: -3 dB frequency of the second-order low-pass [Hz].
         linear_limit, angular_limit: caps of the tip twist [m/s], [rad/s].
-        linear_acceleration, angular_acceleration: caps of its change [m/s^2], [rad/s^2]; the defaults reach the speed
-            caps in 10 ms.
-        gain_rate: largest relative change of a gain [1/s]; 1 takes a second from the gain of the settings to its
-            double.
+        linear_acceleration, angular_acceleration: caps of its change [m/s^2], [rad/s^2]; with the defaults the speed
+            caps are reached in 10 ms.
+        gain_rate: largest change of a gain, relative to the gain of the settings [1/s]; with 1 it takes a second to
+            double it.
         scale_rate: largest rise of the speed scale [1/s]; a fall acts at once.
         gain_maximum: live gains are accepted up to this multiple of the gain of the settings [1].
-        joints_age_limit: oldest joint sample the frames may be taken from [s].
-        lead_limit: a tick that runs late finds samples of later ones; so far beyond one period they may be ahead [s].
+        joints_age_limit: oldest joint sample from which the frames may be taken [s].
+        lead_limit: a tick that runs late finds samples of later ticks; they may be ahead of it by one period and this
+            much more [s].
     """
 
     linear_gain: Annotated[Number, Field(ge=0.0, le=0.05)]
@@ -94,11 +97,11 @@ class TareSettings(Settings):
 
     Attributes:
         samples: length of the window [1].
-        still: largest joint motion within the window, as a fraction of each axis' travel [1]; the default is 4 um of
-            slider.
-        noise_factor: largest standard deviation, in multiples of the sensor's own noise [1].
-        residual: largest bias accepted, as a fraction of the sensor's range [1].
-        drift_force, drift_torque: drift of the resting wrench that the monitor reports [N], [N m].
+        still: largest joint motion within the window, as a fraction of each axis' travel [1]; the default lets a
+            slider move by 4 um.
+        noise_factor: largest standard deviation, as a multiple of the sensor's own noise [1].
+        residual: largest bias that is accepted, as a fraction of the sensor's range [1].
+        drift_force, drift_torque: drift of the resting wrench from which it is reported [N], [N m].
     """
 
     samples: Annotated[int, Field(ge=10, le=10000)] = 250
@@ -113,29 +116,29 @@ class MotionSettings(Settings):
     """The motion modes of the kinematics node.
 
     Attributes:
-        servo_timeout: a servo mode without a newer command for this long ends and the robot stops [s].
-        ahead_limit: a command may bear a stamp this far ahead [s].
-        joints_age_limit: oldest joint sample a command may be computed from [s].
-        lead_limit: how far beyond one period joints and cooperative twist may be ahead of the tick [s].
-        step_factor: largest accepted step of a position reference, in multiples of limits.velocity / position_gain,
-            the step that saturates the host law.
-        settle_time: how long a finished move may settle before the robot is handed back [s].
-        settle_factor: a move is settled within this many load-encoder counts of the goal [1].
-        speed: fraction of the velocity limits that move_* uses [1].
-        acceleration: fraction of the acceleration limits that move_* uses [1].
-        ramp_time: time to build up that acceleration [s]; it sets the jerk.
-        linear_speed, angular_speed: tip caps of move_cp [m/s], [rad/s].
+        servo_timeout: a servo mode that gets no newer command for this long ends, and the robot stops [s].
+        ahead_limit: how far the stamp of a command may be ahead of its arrival [s].
+        joints_age_limit: oldest joint sample from which a command may be computed [s].
+        lead_limit: joints and cooperative twist may be ahead of the tick by one period and this much more [s].
+        step_factor: largest accepted step of a position reference, as a multiple of limits.velocity / position_gain,
+            the step at which the host law saturates [1].
+        settle_time: how long a move may settle after its planned motion before the robot is handed back [s].
+        settle_factor: a move has settled within this many load-encoder counts of the goal [1].
+        speed: fraction of the velocity limits that the move modes use [1].
+        acceleration: fraction of the acceleration limits that the move modes use [1].
+        ramp_time: time in which that acceleration is built up; it sets the jerk [s].
+        linear_speed, angular_speed: caps of the tip for move_cp [m/s], [rad/s].
         rcm_gain: rate at which a deviation from the remote centre decays [1/s].
-        rcm_integral: rate at which the hold against what keeps pushing the shaft off grows [1/s^2]; with `rcm_gain` and
-            the 8 ms of transport and drive it leaves 56 degrees of phase margin.
-        regime: speed regime at the start, see `speed_cap`.
+        rcm_integral: rate at which the hold against a steady push grows [1/s^2]; with `rcm_gain` and the 8 ms of
+            transport and drive it leaves a phase margin of 56 degrees.
+        regime: speed regime at the start, see `sher3_control.motion.speed_cap`.
         free_speed, free_turning: caps of the tip in the regime `free` [m/s], [rad/s].
-        near_speed, near_turning: the same in `near_tissue`.
-        free_travel, near_travel: farthest the tip may travel after a fault in each of the two [m]: a retina's
-            thickness, and the error that a needle may have in it.
-        deflection_compensation: correct pose commands by the modelled deflection of the measured wrench.
-        deflection_cutoff: of the first-order low-pass on that wrench [Hz]; a hand is slower, and 2 Hz leave 0.1 um of
-            the sensor's noise.
+        near_speed, near_turning: caps of the tip in the regime `near_tissue` [m/s], [rad/s].
+        free_travel, near_travel: farthest the tip may travel after a fault in each of the two regimes [m]: the
+            thickness of a retina, and the error that a needle in it may have.
+        deflection_compensation: correct pose commands by the deflection modelled from the measured wrench.
+        deflection_cutoff: cut-off of the first-order low-pass on that wrench [Hz]. A hand is slower than 2 Hz, which
+            let 0.1 um of the sensor's noise through.
     """
 
     servo_timeout: Seconds = 0.020
@@ -167,16 +170,16 @@ class SupervisorSettings(Settings):
     """What the supervisor watches.
 
     Attributes:
-        stream_age_limit: a watched stream silent for longer is a fault while ENABLED or PAUSED [s]; the law itself has
-            stopped long before.
-        publish_period: period of the repeated operating state [s].
+        stream_age_limit: a watched stream that is silent for longer is a fault while ENABLED or PAUSED [s]; the law
+            itself has stopped long before.
+        publish_period: period at which state and status are repeated [s].
         heartbeat_period: period of the supervisor's heartbeat and of its checks [s].
-        heartbeat_limit: silence after which law and modes take the robot as not enabled [s].
-        overrun_share: share of lost or overrun cycles of a node in a second from which the robot pauses [1].
-        leg_distance: motion of one leg's slider that the tracked tip may show beyond the load encoders [m]; a push of
-            1 N bends the paper's structure by up to 0.35 mm.
-        leg_latency: how long it must last [s].
-        leg_memory: time constant with which the slow part of it is followed [s].
+        heartbeat_limit: silence of the supervisor after which law and modes take the robot for not enabled [s].
+        overrun_share: share of lost or overrun cycles of a node within a second above which the robot pauses [1].
+        leg_distance: motion of one leg's slider, seen by the tracker and not by the load encoders, above which the leg
+            has slipped [m]; a push of 1 N bends the structure of the paper by up to 0.35 mm.
+        leg_latency: how long that motion must last [s].
+        leg_memory: time constant with which slow changes of it are taken for granted [s].
     """
 
     stream_age_limit: Seconds = 0.1
@@ -190,7 +193,7 @@ class SupervisorSettings(Settings):
 
 
 class ControlSettings(Settings):
-    """All settings of the control room."""
+    """All settings of the control nodes."""
 
     admittance: AdmittanceSettings
     pedal: PedalSettings = PedalSettings()
@@ -204,7 +207,7 @@ class ControlSettings(Settings):
         """Build the settings from `robot.yaml` and nested overrides such as `{"pedal": {"mode": "binary"}}`.
 
         Raises:
-            SettingsError: an override is unknown, out of range, or contradicts another.
+            SettingsError: an override is unknown, out of range, or contradicts another setting.
         """
         data = dict(overrides or {})
         admittance = data.pop("admittance", {})
@@ -221,6 +224,7 @@ class ControlSettings(Settings):
         return settings
 
     def _check(self, robot: Robot) -> None:
+        """Refuse settings that contradict each other or the control rate."""
         if self.pedal.press <= self.pedal.release:
             raise SettingsError(
                 "pedal.press must lie above pedal.release",
@@ -228,11 +232,12 @@ class ControlSettings(Settings):
                 limit=self.pedal.release,
                 remedy="leave a hysteresis between the two",
             )
-        if self.supervisor.heartbeat_limit < 2.0 * self.supervisor.heartbeat_period:
+        two_heartbeats = 2.0 * self.supervisor.heartbeat_period
+        if self.supervisor.heartbeat_limit < two_heartbeats:
             raise SettingsError(
                 "supervisor.heartbeat_limit [s] trips on one lost heartbeat",
                 value=self.supervisor.heartbeat_limit,
-                limit=f"at least {2.0 * self.supervisor.heartbeat_period:g}",
+                limit=f"at least {two_heartbeats:g}",
                 remedy="shorten supervisor.heartbeat_period or widen the limit",
             )
         if self.motion.near_speed > self.motion.free_speed or self.motion.near_turning > self.motion.free_turning:
@@ -242,17 +247,18 @@ class ControlSettings(Settings):
                 limit=(self.motion.free_speed, self.motion.free_turning),
                 remedy="lower them",
             )
-        nyquist = 0.5 / robot.control_period
-        if self.admittance.filter_cutoff >= 0.8 * nyquist:
+        highest_cutoff = CUTOFF_SHARE * (0.5 / robot.control_period)
+        if self.admittance.filter_cutoff >= highest_cutoff:
             raise SettingsError(
                 "admittance.filter_cutoff [Hz] is too close to half the control rate",
                 value=self.admittance.filter_cutoff,
-                limit=0.8 * nyquist,
+                limit=highest_cutoff,
                 remedy="lower the cut-off or raise the control rate",
             )
 
 
 def _settings_error(error: ValidationError) -> SettingsError:
+    """Return the first objection of a validation as an error of this package."""
     first = error.errors()[0]
     place = ".".join(str(part) for part in first["loc"])
     limit = first.get("ctx")

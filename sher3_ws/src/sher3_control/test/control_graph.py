@@ -7,17 +7,19 @@ from contextlib import contextmanager
 
 from law_bench import ROBOT
 from rclpy.node import Node
-from sher3_control.admittance_node import AdmittanceNode
-from sher3_control.kinematics_node import KinematicsNode
+from sher3_common.samples import JointSample, JoySample, TextSample, WrenchSample
+from sher3_control.nodes.admittance_node import AdmittanceNode
+from sher3_control.nodes.kinematics_node import KinematicsNode
+from sher3_control.nodes.supervisor_node import SupervisorNode
 from sher3_control.settings import ControlSettings
-from sher3_control.supervisor_node import SupervisorNode
-from sher3_runtime import Graph, JointSample, JoySample, TextSample, WrenchSample
+from sher3_runtime import Graph
 from sher3_runtime.ports import NODE_OPTIONS, advertise, on_tick, subscribe
 
 STREAMS = ["setpoint_js", "servo_cv", "servo_jv", "measured_js", "measured_cp", "force/measured_cf", "pedal/measured"]
 RECORDS = [f"{node}/{kind}" for node in ("admittance", "motion") for kind in ("inputs", "settings", "status")]
 RECORDED = [*STREAMS, *RECORDS, "operating_state", "supervisor/status"]
-COMMANDS = ["servo_cv", "servo_jv", "servo_jp", "servo_cp", "move_jp", "move_cp", "state_command", "admittance"]
+TEXTS = ["state_command", "admittance", "rcm", "regime"]
+COMMANDS = ["servo_cv", "servo_jv", "servo_jp", "servo_cp", "move_jp", "move_cp", *TEXTS]
 
 
 class IdealRobot(Node):
@@ -86,14 +88,14 @@ class ControlGraph:
         """Wait until every node has heard of the operating state: latched samples take their own time."""
         nodes = (self.admittance, self.kinematics)
         enabled = state == "ENABLED"
-        heard = lambda: all(node._state_heard.enabled(self.now) == enabled for node in nodes)  # noqa: E731
+        heard = lambda: all(node.heard.enabled(self.now) == enabled for node in nodes)  # noqa: E731
         self.graph.until(lambda: heard() and self.status("supervisor/status")["state"] == state, state)
 
     def until_mode(self, mode):
         """Wait until the owner is `mode` and the admittance node has heard of it."""
         free = mode in (None, "cooperative")
         self.graph.until(
-            lambda: self.status("motion/status")["mode"] == mode and self.admittance._owner == free, f"mode {mode}"
+            lambda: self.status("motion/status")["mode"] == mode and self.admittance.owns == free, f"mode {mode}"
         )
 
     def until_reason(self, topic, reason):

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from itertools import pairwise
 
-from sher3_control import ControlSettings, LawInput, LawOutput, initial_state, law_parameters, step
+from sher3_control import ControlSettings, LawInput, LawOutput, initial_state, step
+from sher3_control.law.parameters import law_parameters
 from sher3_description import load_robot
 
 T = 2_000_000

@@ -8,9 +8,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from law_bench import PARAMETERS, ROBOT, SETTINGS, LawBench
-from sher3_control import AxisLock, ControlSettings, Reason, law_parameters
-from sher3_control.admittance import ZERO_WRENCH, requested_twist
-from sher3_control.limits import ZERO_TWIST
+from sher3_common.reasons import Reason
+from sher3_common.vectors import ZERO_TWIST, ZERO_WRENCH
+from sher3_control import AxisLock, ControlSettings
+from sher3_control.law.admittance import requested_twist
+from sher3_control.law.parameters import law_parameters
 
 finite = st.floats(-10.0, 10.0)
 vector = st.tuples(finite, finite, finite)

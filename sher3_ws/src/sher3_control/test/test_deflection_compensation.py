@@ -7,10 +7,10 @@ import math
 import numpy as np
 import pytest
 from law_bench import ROBOT
-from sher3_control.deflection_compensation import CorrectedPose, DeflectionCompensation
 from sher3_control.errors import CommandRejected, SettingsError
+from sher3_control.law.tool_compensation import tool_gravity
+from sher3_control.motion.deflection import CorrectedPose, DeflectionCompensation
 from sher3_control.settings import ControlSettings
-from sher3_control.tool_compensation import tool_gravity
 from sher3_kinematics import RobotKinematics
 from sher3_kinematics.tip_deflection import TipDeflection
 
@@ -60,7 +60,7 @@ def test_the_wrench_is_low_passed():
     ticks = round(1.0 / (2.0 * math.pi * SETTINGS.motion.deflection_cutoff) / ROBOT.control_period)
     for k in range(ticks):
         compensation.feed((11 + k) * PERIOD, tuple((loaded + 1e-12 * (k % 2)).tolist()))
-    assert (compensation._filtered[1] - rest[1]) == pytest.approx(1.0 - math.exp(-1.0), rel=0.02)
+    assert (compensation.filtered[1] - rest[1]) == pytest.approx(1.0 - math.exp(-1.0), rel=0.02)
 
 
 @pytest.mark.parametrize(

@@ -5,13 +5,13 @@ import json
 import numpy as np
 import pytest
 from law_bench import ROBOT
-from sher3_control.detectors import Finding, OverrunDetector, ReportedFault, SilenceDetector, TwinDetector
-from sher3_control.driver_reports import cycle_counts, driver_stop
+from sher3_common.operating_state import OperatingState
+from sher3_common.reasons import Action, Reason
 from sher3_control.errors import StateCommandRefused
-from sher3_control.leg_residual import LegDetector, leg_residual
-from sher3_control.operating_state import OperatingState
-from sher3_control.reasons import Action, Reason
-from sher3_control.supervisor import Supervisor
+from sher3_control.supervision.detectors import Finding, OverrunDetector, ReportedFault, SilenceDetector, TwinDetector
+from sher3_control.supervision.driver_reports import cycle_counts, driver_stop
+from sher3_control.supervision.leg_residual import LegDetector, leg_residual
+from sher3_control.supervision.supervisor import Supervisor
 from sher3_kinematics import RobotKinematics
 
 S = OperatingState

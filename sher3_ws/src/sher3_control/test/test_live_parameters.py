@@ -4,8 +4,8 @@ import pytest
 from law_bench import SETTINGS
 from sher3_control import AxisLock
 from sher3_control.errors import SettingsError
-from sher3_control.heard import HeardState, status_of
-from sher3_control.live_parameters import apply_command, from_json, live_parameters, to_json, with_bias
+from sher3_control.law.live_parameters import apply_command, from_json, live_parameters, to_json, with_bias
+from sher3_control.nodes.heard import HeardState, status_of
 from sher3_control.tick_records import admittance_record, motion_record, record_text
 
 LIVE = live_parameters(SETTINGS)

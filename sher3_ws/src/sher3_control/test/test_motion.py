@@ -7,15 +7,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from law_bench import ROBOT, SETTINGS
+from sher3_common import Sher3Error
+from sher3_common.reasons import Reason
+from sher3_common.samples import JointSample, PoseSample, TwistSample
 from sher3_control.errors import CommandRejected, OwnerConflict, SettingsError
-from sher3_control.motion import MotionController, MotionInput
-from sher3_control.ownership import Mode
-from sher3_control.pose import tip_pose_sample
-from sher3_control.rcm_command import apply_rcm_command
-from sher3_control.reasons import Reason
-from sher3_description import Sher3Error
-from sher3_kinematics import kernel_parameters
-from sher3_runtime import JointSample, PoseSample, TwistSample
+from sher3_control.motion.controller import MotionController, MotionInput
+from sher3_control.motion.ownership import Mode
+from sher3_control.motion.pose import tip_pose_sample
+from sher3_control.motion.rcm_command import apply_rcm_command
+from sher3_kinematics.kernel import kernel_parameters
 
 T = 2_000_000
 START = 1_000_000_000_000_000_000
@@ -261,25 +261,25 @@ def test_garbage_is_refused_or_stays_within_the_limits(mode, first, second, offs
 
 def test_remote_centre_commands():
     motion = Bench().motion
-    apply_rcm_command(motion, "rcm here 0.018", REST)
+    apply_rcm_command(motion, "here 0.018", REST)
     assert motion.velocity_modes.centre is not None
-    apply_rcm_command(motion, "rcm off", REST)
+    apply_rcm_command(motion, "off", REST)
     assert motion.velocity_modes.centre is None
-    for text in ("rcm", "rcm here", "rcm here x", "rcm here 3", "rcm 1 2", "rcm 0.2 0 0.5 0.1", "rcm 1 1 1"):
+    for text in ("", "here", "here x", "here 3", "1 2", "0.2 0 0.5 0.1", "1 1 1"):
         with pytest.raises(SettingsError):
             apply_rcm_command(motion, text, REST)
     with pytest.raises(SettingsError, match="no joint positions"):
-        apply_rcm_command(motion, "rcm here 0.018", ())
+        apply_rcm_command(motion, "here 0.018", ())
     motion.cooperative_wants(True, START)
     with pytest.raises(SettingsError, match="pedal"):
-        apply_rcm_command(motion, "rcm off", REST)
+        apply_rcm_command(motion, "off", REST)
 
 
 @pytest.mark.parametrize("centre", [False, True])
 def test_where_the_kinematics_fail_the_robot_stops_and_says_so(centre):
     bench = Bench()
     if centre:
-        apply_rcm_command(bench.motion, "rcm here 0.018", REST)
+        apply_rcm_command(bench.motion, "here 0.018", REST)
     bench.motion.cooperative_wants(True, bench.now)
     out = bench.tick(twist=PUSH, q=(0.0, 0.0, 0.0, 0.0, 0.03))
     assert out.velocity == REST

@@ -3,8 +3,8 @@
 import pytest
 from control_graph import control_graph
 from law_bench import ROBOT
-from sher3_control.supervisor_node import OWN
-from sher3_runtime import DiagnosticSample, JointSample, TwistSample
+from sher3_common.samples import DiagnosticSample, JointSample, TwistSample
+from sher3_control.nodes.supervisor_node import OWN
 from std_srvs.srv import Trigger
 
 pytestmark = pytest.mark.graph
@@ -102,10 +102,13 @@ def test_tare_and_live_parameters_answer_over_the_graph():
             future = client.call_async(Trigger.Request())
             g.graph.until(future.done, "answer")
             assert future.result().success == good, future.result().message
-        assert g.admittance._live.version == 1
+        assert g.admittance.live.version == 1
         g.text("admittance", "speed_scale 7")
         g.graph.until(lambda: g.status("admittance/status").get("refused", {}).get("value") == 7.0, "refusal")
-        g.text("admittance", "rcm here 0.018")
+        g.text("rcm", "here 0.018")
+        assert g.kinematics.motion.velocity_modes.centre is not None
+        g.text("admittance", "rcm off")
+        g.graph.until(lambda: g.status("admittance/status")["refused"]["value"] == "rcm", "refusal")
         assert g.kinematics.motion.velocity_modes.centre is not None
 
 

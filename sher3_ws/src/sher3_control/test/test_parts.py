@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from sher3_control import ControlSettings, position_command, position_commands
+from sher3_control import ControlSettings, position_commands
 from sher3_control.errors import SettingsError
-from sher3_control.limits import approach, limit_change, limit_twist
-from sher3_control.low_pass import design_low_pass, low_pass_step
-from sher3_control.pedal import pedal_factor, pedal_pressed
+from sher3_control.law.limits import approach, limit_change, limit_twist
+from sher3_control.law.low_pass import design_low_pass, low_pass_step
+from sher3_control.law.pedal import pedal_factor, pedal_pressed
+from sher3_control.law.position_controller import position_command
 from sher3_description import load_robot
 
 ROBOT = load_robot()

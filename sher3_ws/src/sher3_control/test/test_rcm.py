@@ -5,10 +5,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from law_bench import ROBOT
-from sher3_control.cooperative import CAPTURE_LIMIT, VelocityModes
+from sher3_common.reasons import Reason
 from sher3_control.errors import SettingsError
-from sher3_control.rcm import HOLD_LIMIT, NO_HOLD, next_hold, rcm_velocity, shaft_deviation
-from sher3_control.reasons import Reason
+from sher3_control.motion.cooperative import CAPTURE_LIMIT, VelocityModes
+from sher3_control.motion.rcm import HOLD_LIMIT, NO_HOLD, next_hold, rcm_velocity, shaft_deviation
 from sher3_control.settings import MotionSettings
 from sher3_kinematics import RobotKinematics
 from sher3_sim.plant import Plant

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from control_graph import RECORDED, control_graph
 from law_bench import ROBOT
-from sher3_control.reasons import Reason
+from sher3_common.reasons import Reason
+from sher3_common.samples import JointSample
 from sher3_control.replay import ReplayError, replay_admittance, replay_motion
 from sher3_control.tick_records import motion_record
-from sher3_runtime import JointSample
 
 pytestmark = pytest.mark.graph
 
@@ -63,7 +63,7 @@ def session():
         g.robot.travel = 0.0
         g.step(3)
         g.until_mode(None)
-        g.text("admittance", "rcm here 0.018")
+        g.text("rcm", "here 0.018")
         g.text("admittance", "axis_lock free")
         g.press()
         push(80)

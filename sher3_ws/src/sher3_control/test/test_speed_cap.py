@@ -5,14 +5,14 @@ import math
 import numpy as np
 import pytest
 from law_bench import ROBOT, SETTINGS
+from sher3_common.reasons import Reason
+from sher3_common.samples import JointSample, TwistSample
 from sher3_control.errors import SettingsError
-from sher3_control.motion import MotionController, MotionInput
-from sher3_control.ownership import Mode
-from sher3_control.reasons import Reason
+from sher3_control.motion.controller import MotionController, MotionInput
+from sher3_control.motion.ownership import Mode
+from sher3_control.motion.speed_cap import Regime, parse_regime, speed_cap
 from sher3_control.settings import ControlSettings
-from sher3_control.speed_cap import Regime, parse_regime, speed_cap
 from sher3_kinematics import RobotKinematics
-from sher3_runtime import JointSample, TwistSample
 
 T, START = 2_000_000, 10**18
 KINEMATICS = RobotKinematics(ROBOT)
@@ -98,16 +98,16 @@ def test_a_position_stream_faster_than_the_cap_stops_and_on_the_bench_goes():
 
 def test_the_bench_has_no_cap_and_is_neither_entered_nor_left_while_running():
     assert speed_cap(SETTINGS.motion, Regime.BENCH) == (math.inf, math.inf)
-    for text, present in (("regime bench", Regime.FREE), ("regime free", Regime.BENCH), ("regime fast", Regime.FREE)):
+    for text, present in (("bench", Regime.FREE), ("free", Regime.BENCH), ("fast", Regime.FREE)):
         with pytest.raises(SettingsError, match="regime cannot change"):
             parse_regime(text, present, moving=False)
 
 
 def test_a_slower_regime_is_taken_at_once_a_faster_one_only_at_rest():
-    assert parse_regime("regime near_tissue", Regime.FREE, moving=True) is Regime.NEAR_TISSUE
-    assert parse_regime("regime free", Regime.NEAR_TISSUE, moving=False) is Regime.FREE
+    assert parse_regime("near_tissue", Regime.FREE, moving=True) is Regime.NEAR_TISSUE
+    assert parse_regime("free", Regime.NEAR_TISSUE, moving=False) is Regime.FREE
     with pytest.raises(SettingsError, match="in use"):
-        parse_regime("regime free", Regime.NEAR_TISSUE, moving=True)
+        parse_regime("free", Regime.NEAR_TISSUE, moving=True)
 
 
 def test_caps_that_contradict_each_other_are_refused():

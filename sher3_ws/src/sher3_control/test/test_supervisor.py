@@ -7,11 +7,11 @@ import pytest
 from hypothesis import settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, invariant, rule
-from sher3_control.detectors import EmergencyStopDetector, Finding, ReportedFault, SilenceDetector
+from sher3_common.operating_state import OperatingState, StateCommand, next_state
+from sher3_common.reasons import Reason
 from sher3_control.errors import StateCommandRefused
-from sher3_control.operating_state import OperatingState, StateCommand, next_state
-from sher3_control.reasons import Reason
-from sher3_control.supervisor import Supervisor
+from sher3_control.supervision.detectors import EmergencyStopDetector, Finding, ReportedFault, SilenceDetector
+from sher3_control.supervision.supervisor import Supervisor
 
 S, C = OperatingState, StateCommand
 FELL = Finding(Reason.DRIVE_FELL, 1.0, 0.0, "1", "roll in FAULT")

@@ -6,13 +6,19 @@ from hypothesis import settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, precondition, rule
 from law_bench import PARAMETERS, LawBench
+from sher3_common.operating_state import OperatingState, StateCommand
+from sher3_common.reasons import ACTION, Action, Reason
 from sher3_control import initial_state
-from sher3_control.detectors import EmergencyStopDetector, Finding, OverrunDetector, ReportedFault, SilenceDetector
 from sher3_control.errors import StateCommandRefused
-from sher3_control.heard import HeardState, status_of
-from sher3_control.operating_state import OperatingState, StateCommand
-from sher3_control.reasons import ACTION, Action, Reason
-from sher3_control.supervisor import Status, Supervisor
+from sher3_control.nodes.heard import HeardState, status_of
+from sher3_control.supervision.detectors import (
+    EmergencyStopDetector,
+    Finding,
+    OverrunDetector,
+    ReportedFault,
+    SilenceDetector,
+)
+from sher3_control.supervision.supervisor import Status, Supervisor
 
 S, C = OperatingState, StateCommand
 STEP = 10_000_000

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from law_bench import ROBOT, SETTINGS
 from sher3_control.errors import TareRefused
-from sher3_control.tare import DriftMonitor, TareWindow
-from sher3_control.tool_compensation import tip_rotation, tool_gravity
+from sher3_control.law.tare import DriftMonitor, TareWindow
+from sher3_control.law.tool_compensation import tip_rotation, tool_gravity
 
 BIAS = np.array([0.3, -0.5, 0.8, 0.004, -0.002, 0.001])
 ZERO = (0.0,) * 6

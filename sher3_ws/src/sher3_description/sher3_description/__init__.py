@@ -1,30 +1,33 @@
-"""Parameters, topic table, errors and URDF of the SHER 3.0."""
+"""What the SHER 3.0 is: its numbers, its topics, its URDF.
 
-from .array_files import read_arrays as read_arrays
-from .equipment import ACTUATORS as ACTUATORS
-from .equipment import Actuator as Actuator
-from .equipment import Admittance as Admittance
-from .equipment import Drive as Drive
-from .equipment import ForceSensor as ForceSensor
-from .equipment import Limits as Limits
-from .equipment import Tracker as Tracker
-from .errors import FileError as FileError
-from .errors import Sher3Error as Sher3Error
-from .files import dump_yaml as dump_yaml
-from .files import parse_json as parse_json
-from .files import parse_yaml as parse_yaml
-from .files import read_bytes as read_bytes
-from .files import read_json as read_json
-from .files import read_text as read_text
-from .files import read_yaml as read_yaml
-from .invalid_robot import InvalidRobot as InvalidRobot
-from .mechanism import ArmParameters as ArmParameters
-from .mechanism import DeltaParameters as DeltaParameters
-from .mechanism import TiltLinkageParameters as TiltLinkageParameters
-from .robot import NOMINAL_ROBOT as NOMINAL_ROBOT
-from .robot import Robot as Robot
-from .robot import load_robot as load_robot
-from .topics import NAMESPACE as NAMESPACE
-from .topics import TOPICS as TOPICS
-from .topics import Qos as Qos
-from .topics import Topic as Topic
+The main object is `Robot`, the validated content of `robot.yaml`; `load_robot()` gives the nominal one. `TOPICS` is the
+table of everything that the graph publishes, with types, frames and quality of service.
+"""
+
+from typing import TYPE_CHECKING
+
+from sher3_common.faces import lazy
+
+if TYPE_CHECKING:
+    from sher3_description.actuators import ACTUATORS as ACTUATORS
+    from sher3_description.equipment import Actuator as Actuator
+    from sher3_description.equipment import ForceSensor as ForceSensor
+    from sher3_description.invalid_robot import InvalidRobot as InvalidRobot
+    from sher3_description.robot import NOMINAL_ROBOT as NOMINAL_ROBOT
+    from sher3_description.robot import Robot as Robot
+    from sher3_description.robot import load_robot as load_robot
+    from sher3_description.topics import NAMESPACE as NAMESPACE
+    from sher3_description.topics import TOPICS as TOPICS
+    from sher3_description.topics import Qos as Qos
+    from sher3_description.topics import Topic as Topic
+
+__getattr__, __dir__ = lazy(
+    __name__,
+    {
+        "actuators": ("ACTUATORS",),
+        "equipment": ("Actuator", "ForceSensor"),
+        "invalid_robot": ("InvalidRobot",),
+        "robot": ("NOMINAL_ROBOT", "Robot", "load_robot"),
+        "topics": ("NAMESPACE", "Qos", "TOPICS", "Topic"),
+    },
+)

@@ -7,12 +7,9 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 from typing_extensions import Self
 
-from .fields import Mass, NonNegative, Number, Part, Positive, PositiveVector, Vector
-from .mechanism import refuse
-
-ActuatorName = Literal["delta_1", "delta_2", "delta_3", "roll", "tilt"]
-ACTUATORS: tuple[str, ...] = ("delta_1", "delta_2", "delta_3", "roll", "tilt")
-"""The five actuators in the order of every joint vector."""
+from sher3_description.actuators import ActuatorName
+from sher3_description.fields import Mass, NonNegative, Number, Part, Positive, PositiveVector, Vector
+from sher3_description.mechanism import refuse
 
 
 class Limits(Part):

@@ -37,6 +37,6 @@ AngleVector = Annotated[tuple[Angle, Angle, Angle], BeforeValidator(_sequence)]
 
 
 class Part(BaseModel):
-    """Base of every part of the robot model: immutable, and no key beyond the declared ones."""
+    """Base of every part of the robot model: immutable, with no key beyond those declared."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", populate_by_name=True)

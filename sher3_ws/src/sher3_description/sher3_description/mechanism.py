@@ -8,11 +8,11 @@ from pydantic import model_validator
 from pydantic_core import PydanticCustomError
 from typing_extensions import Self
 
-from .fields import AngleVector, Coordinate, Length, Mass, NonNegative, Part, Positive, Vector
+from sher3_description.fields import AngleVector, Coordinate, Length, Mass, NonNegative, Part, Positive, Vector
 
 
 def refuse(what: str, value: object, limit: object, remedy: str) -> PydanticCustomError:
-    """Return the error a validator raises for a relation between keys that does not hold."""
+    """Return the error that a validator raises when a relation between keys does not hold."""
     return PydanticCustomError("geometry", "{what}", {"what": what, "value": value, "limit": limit, "remedy": remedy})
 
 

@@ -12,13 +12,14 @@ from typing import Annotated, Any, Literal
 
 import yaml
 from pydantic import Field, ValidationError, model_validator
+from sher3_common.files import parse_yaml, read_yaml
 from typing_extensions import Self
 
-from .equipment import ACTUATORS, Actuator, Admittance, ForceSensor, Tracker
-from .fields import NonNegative, Part, Positive
-from .files import parse_yaml, read_yaml
-from .invalid_robot import InvalidRobot
-from .mechanism import ArmParameters, DeltaParameters, TiltLinkageParameters, refuse
+from sher3_description.actuators import ACTUATORS
+from sher3_description.equipment import Actuator, Admittance, ForceSensor, Tracker
+from sher3_description.fields import NonNegative, Part, Positive
+from sher3_description.invalid_robot import InvalidRobot
+from sher3_description.mechanism import ArmParameters, DeltaParameters, TiltLinkageParameters, refuse
 
 NOMINAL_ROBOT = Path(__file__).with_name("robot.yaml")
 

@@ -28,11 +28,11 @@ class Topic:
     """One topic.
 
     Attributes:
-        name: relative to `NAMESPACE`, as in `measured_js`; the key of `TOPICS`.
+        name: Name relative to `NAMESPACE`, as in `measured_js`; the key of `TOPICS`.
         type: ROS interface, as in `sensor_msgs/msg/JointState`.
-        frame_id: `header.frame_id` of every message, or empty where there is none to name.
-        qos: of publishers and subscribers alike.
-        content: what it carries, for `--help` and the docs.
+        frame_id: `header.frame_id` of every message; empty where the message belongs to no frame.
+        qos: Quality of service of publishers and subscribers alike.
+        content: What the topic carries, for `--help` and the docs.
     """
 
     name: str
@@ -48,9 +48,10 @@ class Topic:
 
     @property
     def subscriber_qos(self) -> Qos:
-        """What the control loop's own subscribers ask for; `qos` is what publishers offer, and a recorder asks for.
+        """Quality of service that the control loop's own subscribers ask for.
 
-        A lost sample of a stream is not repaired: the next one comes sooner, and acknowledging each costs the loop.
+        Publishers offer `qos`, and a recorder asks for that. The loop does not ask for a lost sample again: the next
+        one comes sooner, and acknowledging each would cost the loop time.
         """
         stream = self.qos.durability == "volatile" and not self.name.startswith("command/")
         return replace(self.qos, reliability="best_effort") if stream else self.qos
@@ -92,6 +93,8 @@ _TABLE = (
         "command/state_command", _TEXT, "", STREAM, "CRTK state command: enable, disable, pause, resume, home, unhome"
     ),
     Topic("command/admittance", _TEXT, "", STREAM, "live parameter of the cooperative mode: `name value`"),
+    Topic("command/rcm", _TEXT, "", STREAM, "remote centre: `here DEPTH` or `X Y Z` [m] in {b}, or `off`"),
+    Topic("command/regime", _TEXT, "", STREAM, "speed regime: `near_tissue` or `free`"),
     # What the control nodes decided and from what, so that a recording can be computed again bit for bit.
     Topic("admittance/inputs", _TEXT, "", STREAM, "stamps and flags that a tick of the admittance law used"),
     Topic("admittance/settings", _TEXT, "", LATCHED, "settings and live parameters of the admittance law, by version"),

@@ -1,8 +1,8 @@
 """The robot as URDF, generated from its parameters, for viewers and rigid-body libraries.
 
-URDF knows trees only, so the delta stage appears as what it does, three translations of the platform, beside the three
-sliders on their rails; and the tilt is the angle, not the slider. Joint origins and masses are the robot file's;
-inertias about the centres of mass are not in the file, bodies are point masses.
+URDF knows trees only. The delta stage therefore appears as three translations of the platform, which is what it does,
+beside the three sliders on their rails; the tilt joint is the angle, not the slider. Joint origins and masses come from
+the robot file. The file has no inertias about the centres of mass, so bodies are point masses.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from xml.etree import ElementTree
 
-from .robot import Robot
+from sher3_description.robot import Robot
 
 Triple = tuple[float, float, float]
 ZERO: Triple = (0.0, 0.0, 0.0)
@@ -55,7 +55,7 @@ def _sliders(root: ElementTree.Element, robot: Robot) -> None:
 
 
 def _platform(root: ElementTree.Element, robot: Robot) -> None:
-    """Add the platform's translation; its limits are those of the reach, an outer bound of the workspace."""
+    """Add the translation of the platform; its limits are the reach, an outer bound of the workspace."""
     reach = robot.delta.link_length - robot.delta.leg_offset
     travel = [actuator.limits for actuator in robot.actuators[:3]]
     height = robot.delta.slider_zero + robot.delta.link_length

@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from sher3_description import ACTUATORS, FileError, InvalidRobot, Robot, Sher3Error, load_robot, parse_yaml, read_text
+from sher3_common import FileError, Sher3Error, parse_yaml, read_text
+from sher3_description import ACTUATORS, InvalidRobot, Robot, load_robot
 
 SHARED = Path(os.environ.get("SHER3_SHARED", Path(__file__).resolve().parents[4].parent / "shared"))
 

@@ -1,10 +1,10 @@
-"""Typed errors of the drivers: every one carries its numbers and names value, limit and remedy."""
+"""Typed errors of the drivers; each carries value, limit and remedy (`sher3_common.errors`)."""
 
 from __future__ import annotations
 
 from typing import Any
 
-from sher3_description import Sher3Error
+from sher3_common import Sher3Error
 
 
 class DriverError(Sher3Error):
@@ -12,7 +12,7 @@ class DriverError(Sher3Error):
 
 
 class FrameError(DriverError):
-    """Bytes that are no CAN frames."""
+    """Bytes are no CAN frames, or a frame does not carry what it should."""
 
 
 class LinkError(DriverError):
@@ -35,15 +35,15 @@ class BusLoadError(DriverError):
 
 
 class UnknownStatusword(DriverError):
-    """A statusword that is no CiA 402 state."""
+    """A statusword encodes no CiA 402 state."""
 
 
 class ScaleError(DriverError):
-    """A value that its CAN object cannot carry, or a resolution that is no whole number of increments."""
+    """A value does not fit its CAN object, or a resolution is no whole number of increments."""
 
 
-class ConfigurationError(DriverError):
-    """The driver's own settings are inconsistent."""
+class DriverSettingsError(DriverError):
+    """Settings of the motor driver are out of range or inconsistent with each other."""
 
 
 class DriveMismatch(DriverError):
@@ -68,7 +68,7 @@ class DriveSilent(DriverError):
 
 
 class OtherHost(DriverError):
-    """Somebody else commands the drives of this bus already; carries `link`. Nothing was sent."""
+    """Another host commands the drives of this bus already; carries `link`. Nothing was sent."""
 
     def __init__(self, link: str, said: str) -> None:
         remedy = "end the other motor driver, or give this one another bus; nothing was sent"
@@ -77,7 +77,7 @@ class OtherHost(DriverError):
 
 
 class CommandRefused(DriverError):
-    """A velocity command that must not reach the drives; zero velocity was sent instead."""
+    """A request or velocity command must not reach the drives; for a command, zero velocity was sent instead."""
 
 
 class DeviceMissing(DriverError):

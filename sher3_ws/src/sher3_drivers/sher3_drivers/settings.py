@@ -1,4 +1,4 @@
-"""Settings of the motor driver: which drive sits on which channel, and every time limit. Validated once, here."""
+"""Settings of the motor driver: which drive is on which channel, and every limit. They are validated once, here."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from typing import Annotated
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 from sher3_description import ACTUATORS
 
-from .bus_load import ChannelBudget, check_budget
-from .errors import ConfigurationError
+from sher3_drivers.bus.load import ChannelBudget, check_budget
+from sher3_drivers.errors import DriverSettingsError
 
 Seconds = Annotated[float, Field(gt=0.0, le=10.0, allow_inf_nan=False)]
 Length = Annotated[float, Field(gt=0.0, le=0.01, allow_inf_nan=False)]
@@ -21,7 +21,12 @@ class _Part(BaseModel):
 
 
 class ChannelSettings(_Part):
-    """One CAN channel: the link's specification (`bus.open_link`) and the drives on it."""
+    """One CAN channel.
+
+    Attributes:
+        link: specification of its link (`bus.link.open_link`).
+        drives: actuators whose drives are on it.
+    """
 
     link: str
     drives: tuple[str, ...]
@@ -34,7 +39,7 @@ class MotorDriverSettings(_Part):
         channels: CAN channels; together they hold every actuator once.
         period: control period and SYNC period, s.
         host_id: CANopen node id of this computer, for its heartbeat.
-        host_heartbeat: period of the host's heartbeat, s. It is sent by the control loop itself: a loop that hangs
+        host_heartbeat: period of the host's heartbeat, s. The control loop itself sends it, so that a loop that hangs
             falls silent.
         host_heartbeat_limit: silence after which a drive stops by itself, s; the travel budget bounds it. An ordinary
             kernel under load pauses a process for 10 to 20 ms now and then.
@@ -47,20 +52,36 @@ class MotorDriverSettings(_Part):
         stop_age: age after which the drives are quick-stopped, in periods; wide, since zero is being sent by then.
         supervisor_limit: silence of the supervisor's heartbeat (every 10 ms) after which the driver stops, s.
         stall_limit: longest hold-up of the driver's loop while the drives are enabled, s.
-        encoder_distance, encoder_angle: how far motor and load encoder may part, their slow part aside, m and rad.
-            The nominal encoders part by 1 um and 0.04 mrad.
-        encoder_latency: for how long they may be farther apart, s.
+        encoder_distance, encoder_angle: limit of the difference of motor and load encoder without its slow part, m and
+            rad. On the nominal robot it is 1 um and 0.04 mrad.
+        encoder_latency: time for which that limit may be exceeded, s.
         encoder_memory: time constant with which the slow part is followed, s.
-        encoder_total_distance, encoder_total_angle: the same with the slow part, since enabling, at once, m and rad.
+        encoder_drift_distance, encoder_drift_angle: how far they may part since enabling, the slow part too, while the
+            axis stays where it is, m and rad.
+        encoder_drift_share: what the range of its positions since then adds to it: a lead error of 2 %.
+        encoder_total_distance, encoder_total_angle: limit of the difference since the drives were enabled, its slow
+            part included, m and rad; more is a stop at once.
         following_distance, following_angle: integrated demand minus motor motion, its slow part aside, at rest, m and
-            rad: what a contact of 8 N may push a drive off.
-        following_lag: what the demanded speed adds to it, s; the nominal drive lags 4 to 5 ms.
-        following_latency: for how long it may be exceeded, s.
+            rad. A load D pushes a PI drive off by D / ki, and the slow part takes 29 % of a sudden one: 8 N at the tip
+            push a leg off by 50 um. The slider of the tilt bears 1.8 times the force at the tip and trips at a
+            sudden 6 N; at the ends of its travel it bears 3.6 times that force and trips at 3 N.
+        following_lag: what the demanded speed adds to that limit, s; the nominal drive lags 4 to 5 ms.
+        following_latency: time for which that limit may be exceeded, s.
         following_memory: time constant with which its slow part is followed, s.
-        obey_distance, obey_angle: how far an axis may go that was not told to, by its echo of the demand, m and rad.
-        obey_latency: how long a command may take to show in the echo, s; the nominal drive shows it in the next one.
+        obey_distance, obey_angle: travel an axis may make without being told to, by its echo of the demand, m and rad.
+        obey_latency: time a command may take to show in the echo, s; the nominal drive shows it in the next tick.
+        echo_reports: reports in a row that must repeat an older command, or that of another axis, to be called stale or
+            swapped; one may when a command comes late.
+        position_distance, position_angle: how far an axis may be from the sum of the commands sent since enabling, at
+            rest, what its force explains aside, m and rad. Two counts of the motor encoder and of the torque make
+            3 um and 0.1 mrad; the rest is for what no robot file tells.
+        position_lag: what the commanded speed adds to it, s: one and a half periods between the host's clock and the
+            drive's.
+        position_force: what the force explains adds to it, as a share: how well a torque constant is known.
+        elastic_distance, elastic_angle: the most that the force may explain, m and rad: 26 N at a leg.
         brake_time: time after which a stopped robot must rest, s: three times the longest ramp from full tip speed.
-        rest_distance, rest_angle: how far a resting axis may still be pushed, m and rad.
+        rest_distance, rest_angle: how far an axis at rest may go, stopped or disabled, what its force explains aside, m
+            and rad.
         transition_limit: longest time for one CiA 402 transition, s.
         sdo_limit: longest wait for an SDO response, s.
     """
@@ -82,6 +103,9 @@ class MotorDriverSettings(_Part):
     encoder_angle: Angle = 4e-4
     encoder_latency: Seconds = 0.010
     encoder_memory: Seconds = 0.3
+    encoder_drift_distance: Length = 1e-5
+    encoder_drift_angle: Angle = 4e-4
+    encoder_drift_share: Annotated[float, Field(ge=0.0, le=1.0)] = 0.02
     encoder_total_distance: Length = 5e-4
     encoder_total_angle: Angle = 1e-2
     following_distance: Length = 6e-5
@@ -92,9 +116,16 @@ class MotorDriverSettings(_Part):
     obey_distance: Length = 1e-6
     obey_angle: Angle = 3.5e-5
     obey_latency: Seconds = 0.006
+    echo_reports: Annotated[int, Field(ge=1, le=100_000)] = 4
+    position_distance: Length = 7e-6
+    position_angle: Angle = 4e-4
+    position_lag: Seconds = 0.003
+    position_force: Annotated[float, Field(ge=0.0, le=1.0)] = 0.1
+    elastic_distance: Length = 2e-4
+    elastic_angle: Angle = 1e-2
     brake_time: Seconds = 0.1
-    rest_distance: Length = 2e-4
-    rest_angle: Angle = 1e-2
+    rest_distance: Length = 7e-6
+    rest_angle: Angle = 4e-4
     transition_limit: Seconds = 0.5
     sdo_limit: Seconds = 0.3
 
@@ -118,13 +149,13 @@ class MotorDriverSettings(_Part):
         """Return validated settings.
 
         Raises:
-            ConfigurationError: a value is out of range, unknown or inconsistent with another.
+            DriverSettingsError: a value is out of range, unknown or inconsistent with another.
         """
         try:
             return cls.model_validate(values)
         except ValidationError as error:
             where = "; ".join(f"{'.'.join(map(str, e['loc'])) or 'settings'}: {e['msg']}" for e in error.errors())
-            raise ConfigurationError(f"motor driver settings: {where}", remedy="correct the settings") from error
+            raise DriverSettingsError(f"motor driver settings: {where}", remedy="correct the settings") from error
 
     def budgets(self) -> list[ChannelBudget]:
         """Return the bus-load budget of every channel; raise BusLoadError when one is overloaded."""
@@ -146,6 +177,6 @@ def default_settings(
     names = tuple(links) if links is not None else tuple(f"{kind}:drives/{i}" for i in range(len(layout)))
     if len(names) != len(layout):
         remedy = "name one link per channel or configure the channels"
-        raise ConfigurationError("number of links", value=len(names), limit=len(layout), remedy=remedy)
+        raise DriverSettingsError("number of links", value=len(names), limit=len(layout), remedy=remedy)
     channels = [{"link": name, "drives": drives} for name, drives in zip(names, layout, strict=True)]
     return MotorDriverSettings.checked(channels=channels, period=period)

@@ -1,8 +1,8 @@
 """Counts on the wire and SI units, both ways and exact: one `AxisScale` per actuator, from the robot file.
 
-Velocities travel in micro-revolutions per minute of the motor (CiA 402 object 0x60A9 = 0xFAB44700): 1e-6 rpm is
-3.3e-11 m/s on a 2 mm screw and 1.05e-9 rad/s at the roll output, and 32 bits of it reach +-2147 rpm, 1.8 to 5.9
-times the velocity limits. Torque travels in rated/1000 (0x6077).
+Velocities are sent in micro-revolutions per minute of the motor (CiA 402-2, object 0x60A9 = 0xFAB44700). One such count
+is 3.3e-11 m/s on a 2 mm screw and 1.05e-9 rad/s at the roll output. A signed number of 32 bits reaches 2147 rpm, 1.8 to
+5.9 times the velocity limits. Torque is sent in thousandths of the rated torque (object 0x6077).
 """
 
 from __future__ import annotations
@@ -12,16 +12,21 @@ from dataclasses import dataclass
 
 from sher3_description import Actuator
 
-from .errors import ScaleError
+from sher3_drivers.errors import ScaleError
 
 SI_UNIT_VELOCITY = 0xFAB44700
-"""Object 0x60A9: prefix 10^-6, numerator revolutions, denominator minutes."""
+"""Value of object 0x60A9: prefix 10^-6, numerator revolutions, denominator minutes."""
 
 ENCODER_REVOLUTIONS = 100
-"""Encoder resolutions are given as increments per this many motor revolutions (objects 0x608F and 0x60E6/0x60EB)."""
+"""Motor revolutions over which the increments of an encoder are given (objects 0x608F, and 0x60E6 with 0x60EB).
+
+Over a hundred revolutions every encoder of the robot has a whole number of increments.
+"""
 
 _INT32 = 2**31 - 1
 _INT16 = 2**15 - 1
+_WHOLE = 1e-6
+"""How far a number of increments or revolutions may be off a whole one and still be taken for it, relative."""
 
 
 @dataclass(frozen=True)
@@ -40,6 +45,8 @@ class AxisScale:
         rated_milli: rated force or torque, mN or mN m.
         max_motor_speed: the drive's own speed limit, rpm: the velocity limit rounded up.
         stop_deceleration: deceleration of a quick stop, rpm/s: the acceleration limit.
+        hold: force with which the drive's integral holds the axis against a departure, ki, N/m or N m/rad.
+        settling: time in which it does so, kp / ki, s.
         revolute: the axis turns: its unit is rad, not m.
     """
 
@@ -54,7 +61,14 @@ class AxisScale:
     rated_milli: int
     max_motor_speed: int
     stop_deceleration: int
+    hold: float
+    settling: float
     revolute: bool = False
+
+    @property
+    def unit(self) -> str:
+        """Unit of its position: `rad` or `m`."""
+        return "rad" if self.revolute else "m"
 
     @classmethod
     def from_actuator(cls, actuator: Actuator) -> AxisScale:
@@ -75,8 +89,10 @@ class AxisScale:
             motor_increments=_increments(actuator.name, "motor_encoder", actuator.lead, actuator.motor_encoder),
             load_increments=_increments(actuator.name, "load_encoder", actuator.lead, actuator.load_encoder),
             rated_milli=round(actuator.drive.rated * 1000.0),
-            max_motor_speed=math.ceil(actuator.limits.velocity * rpm - 1e-6),
+            max_motor_speed=math.ceil(actuator.limits.velocity * rpm - _WHOLE),
             stop_deceleration=round(actuator.limits.acceleration * rpm),
+            hold=actuator.drive.ki,
+            settling=actuator.drive.kp / actuator.drive.ki,
             revolute=actuator.kind == "revolute",
         )
         largest = scale.velocity * _INT32
@@ -91,23 +107,32 @@ class AxisScale:
         return scale
 
     def velocity_counts(self, velocity: float) -> int:
-        """Return the counts nearest to a velocity; raise ScaleError when it is not finite or does not fit 32 bits."""
+        """Return the counts nearest to a velocity, m/s or rad/s.
+
+        Raises:
+            ScaleError: it is not finite, or does not fit 32 bits.
+        """
         return _counts(self.name, "velocity", velocity, self.velocity, _INT32)
 
     def load_counts(self, position: float) -> int:
-        """Return the load encoder counts nearest to a position."""
+        """Return the load encoder counts nearest to a position, m or rad; raise ScaleError as `velocity_counts`."""
         return _counts(self.name, "load position", position, self.load_encoder, _INT32)
 
     def motor_counts(self, position: float) -> int:
-        """Return the motor encoder counts nearest to a position."""
+        """Return the motor encoder counts nearest to a position, m or rad; raise ScaleError as `velocity_counts`."""
         return _counts(self.name, "motor position", position, self.motor_encoder, _INT32)
 
     def effort_counts(self, effort: float) -> int:
-        """Return the torque counts (rated/1000) nearest to an effort."""
+        """Return the torque counts nearest to an effort, N or N m.
+
+        Raises:
+            ScaleError: it is not finite, or does not fit 16 bits.
+        """
         return _counts(self.name, "effort", effort, self.effort, _INT16)
 
 
 def _counts(axis: str, quantity: str, value: float, resolution: float, limit: int) -> int:
+    """Return a value in counts of `resolution`, whose number must not exceed `limit`."""
     counts = value / resolution
     if not (math.isfinite(counts) and abs(round(counts)) <= limit):
         remedy = "send a finite value within the range"
@@ -118,8 +143,9 @@ def _counts(axis: str, quantity: str, value: float, resolution: float, limit: in
 
 
 def _increments(axis: str, encoder: str, lead: float, resolution: float) -> int:
+    """Return the increments of an encoder over ENCODER_REVOLUTIONS motor revolutions."""
     exact = ENCODER_REVOLUTIONS * lead / resolution
-    if not math.isclose(exact, round(exact), rel_tol=1e-6):
+    if not math.isclose(exact, round(exact), rel_tol=_WHOLE):
         remedy = f"give a resolution that divides {ENCODER_REVOLUTIONS} leads"
         raise ScaleError(
             f"{axis}: {encoder} has no whole number of increments per {ENCODER_REVOLUTIONS} revolutions",

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 from sher3_description import load_robot
-from sher3_drivers.bus import open_link
+from sher3_drivers.bus.link import open_link
 from sher3_drivers.errors import LinkError
-from sher3_drivers.lockstep_rig import LockstepRig
+from sher3_drivers.mock.rig import LockstepRig
 from sher3_drivers.settings import default_settings
 
 ROBOT = load_robot()
@@ -38,7 +38,6 @@ def open_pair(request, tmp_path, monkeypatch):
         links.append(open_interface(0) if socketcan else open_link(f"{request.param}:{channel}"))
         return links[-1]
 
-    open_one.kind = request.param
     yield open_one
     for link in links:
         link.close()

@@ -1,7 +1,7 @@
 """The bus-load budget against the published frame lengths and against frames stuffed bit by bit."""
 
 import pytest
-from sher3_drivers.bus_load import channel_budget, check_budget, fd_frame_seconds, frame_bits
+from sher3_drivers.bus.load import channel_budget, check_budget, fd_frame_seconds, frame_bits
 from sher3_drivers.errors import BusLoadError
 
 

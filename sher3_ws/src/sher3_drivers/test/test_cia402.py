@@ -5,10 +5,18 @@ import itertools
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from sher3_drivers.cia402 import TRANSITIONS, Command, Goal, State, decode_status, next_command, transition
+from sher3_drivers.canopen.cia402 import (
+    TRANSITIONS,
+    Controlword,
+    DriveState,
+    Goal,
+    decode_status,
+    next_command,
+    transition,
+)
 from sher3_drivers.errors import UnknownStatusword
 
-S, C = State, Command
+S, C = DriveState, Controlword
 
 # The automaton of CiA 402-2 written down a second time, state by state, from the standard's figure.
 FIGURE = {
@@ -38,7 +46,7 @@ FIGURE = {
 }
 
 
-@pytest.mark.parametrize(("state", "command"), list(itertools.product(State, Command)))
+@pytest.mark.parametrize(("state", "command"), list(itertools.product(DriveState, Controlword)))
 def test_every_state_and_command(state, command):
     assert transition(state, command) is FIGURE[state].get(command, state)
 
@@ -49,7 +57,7 @@ def test_the_table_has_nothing_else():
 
 @given(st.integers(0, 0xFFFF))
 def test_every_statusword_is_one_state_or_refused(word):
-    matches = [state for state in State if word & state.value[0] == state.value[1]]
+    matches = [state for state in DriveState if word & state.value[0] == state.value[1]]
     if matches:
         assert [decode_status(word)] == matches
     else:
@@ -90,7 +98,7 @@ def test_enabling_takes_three_steps():
     ]
 
 
-@pytest.mark.parametrize("state", list(State))
+@pytest.mark.parametrize("state", list(DriveState))
 def test_no_goal_leaves_a_fault_or_resumes_from_a_stop(state):
     for goal in Goal:
         path = reach(state, goal)

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from hypothesis import given
 from hypothesis import strategies as st
+from sher3_common.reasons import Reason
 from sher3_description import load_robot
-from sher3_description.reasons import Reason
-from sher3_drivers.demand_check import DemandCheck
 from sher3_drivers.settings import default_settings
 from sher3_drivers.units import AxisScale
+from sher3_drivers.watches.demand import DemandCheck
 
 ROBOT = load_robot()
 SCALES = [AxisScale.from_actuator(actuator) for actuator in ROBOT.actuators]

@@ -8,20 +8,20 @@ from hypothesis import given
 from hypothesis import strategies as st
 from sher3_description import load_robot
 from sher3_drivers.errors import DeviceMissing
-from sher3_drivers.force_sensor import InProcessForceSensor, WrenchRecord
-from sher3_drivers.netft import RECORD, NetFtScale, NetFtSensor
-from sher3_drivers.netft_server import NetFtServer
-from sher3_drivers.wrench_checks import WrenchFault, WrenchLimits, WrenchWatch, check_wrench
+from sher3_drivers.sensor.device import InProcessForceSensor, WrenchRecord
+from sher3_drivers.sensor.health import SensorFault, SensorHealth, SensorLimits, judge_record
+from sher3_drivers.sensor.netft import RECORD, NetFtScale, NetFtSensor
+from sher3_drivers.sensor.netft_server import NetFtServer
 
-LIMITS = WrenchLimits.of(load_robot().force_sensor)
+LIMITS = SensorLimits.of(load_robot().force_sensor)
 QUIET = (0.1, 0.2, 0.3, 0.001, 0.002, 0.003)
 
 
 def judge(*records):
     """The faults of records in a row."""
-    watch, faults = WrenchWatch(), []
+    watch, faults = SensorHealth(), []
     for record in records:
-        watch, fault = check_wrench(watch, record, LIMITS)
+        watch, fault = judge_record(watch, record, LIMITS)
         faults.append(fault)
     return faults
 
@@ -31,7 +31,7 @@ def with_component(axis, value):
 
 
 def test_a_live_sensor_has_no_fault():
-    assert set(judge(*(WrenchRecord(with_component(0, 0.01 * k), k) for k in range(100)))) == {WrenchFault.NONE}
+    assert set(judge(*(WrenchRecord(with_component(0, 0.01 * k), k) for k in range(100)))) == {SensorFault.NONE}
 
 
 @pytest.mark.parametrize("axis", range(6))
@@ -39,11 +39,11 @@ def test_a_live_sensor_has_no_fault():
 def test_each_component_is_judged(axis, sign):
     rated = LIMITS.rated[axis]
     cases = {
-        math.nan: WrenchFault.NOT_FINITE,
-        sign * math.inf: WrenchFault.NOT_FINITE,
-        sign * rated * 2.1: WrenchFault.OUT_OF_RANGE,
-        sign * rated: WrenchFault.SATURATED,
-        sign * rated * 0.99: WrenchFault.NONE,
+        math.nan: SensorFault.NOT_FINITE,
+        sign * math.inf: SensorFault.NOT_FINITE,
+        sign * rated * 2.1: SensorFault.OUT_OF_RANGE,
+        sign * rated: SensorFault.SATURATED,
+        sign * rated * 0.99: SensorFault.NONE,
     }
     for value, fault in cases.items():
         assert judge(WrenchRecord(with_component(axis, value), 1)) == [fault]
@@ -53,32 +53,32 @@ def test_each_component_is_judged(axis, sign):
 def test_no_reading_beyond_the_range_passes(wrench, status):
     fault = judge(WrenchRecord(wrench, 7, status))[0]
     believable = all(abs(w) < r for w, r in zip(wrench, LIMITS.rated, strict=True))
-    assert (fault is WrenchFault.NONE) == (believable and not status)
+    assert (fault is SensorFault.NONE) == (believable and not status)
 
 
 def test_frozen_after_eight_identical_readings():
     faults = judge(*(WrenchRecord(QUIET, k) for k in range(20)))
-    assert faults[:7] == [WrenchFault.NONE] * 7 and set(faults[7:]) == {WrenchFault.FROZEN}
+    assert faults[:7] == [SensorFault.NONE] * 7 and set(faults[7:]) == {SensorFault.FROZEN}
 
 
 def test_one_changed_bit_thaws():
     stuck = [WrenchRecord(QUIET, k) for k in range(20)]
     moved = WrenchRecord(with_component(5, math.nextafter(0.003, 1.0)), 20)
-    assert judge(*stuck, moved)[-1] is WrenchFault.NONE
+    assert judge(*stuck, moved)[-1] is SensorFault.NONE
 
 
 def test_no_record_is_silence_and_a_status_word_a_device_fault():
-    assert judge(None, WrenchRecord(QUIET, 1, 0x80000000)) == [WrenchFault.SILENT, WrenchFault.DEVICE]
+    assert judge(None, WrenchRecord(QUIET, 1, 0x80000000)) == [SensorFault.SILENT, SensorFault.DEVICE]
 
 
 @pytest.mark.parametrize(
     ("sequences", "fault"),
     [
-        ((1, 2), WrenchFault.NONE),
-        ((2**32 - 1, 0), WrenchFault.NONE),
-        ((1, 3), WrenchFault.SEQUENCE),
-        ((3, 2), WrenchFault.SEQUENCE),
-        ((3, 3), WrenchFault.SEQUENCE),
+        ((1, 2), SensorFault.NONE),
+        ((2**32 - 1, 0), SensorFault.NONE),
+        ((1, 3), SensorFault.SEQUENCE),
+        ((3, 2), SensorFault.SEQUENCE),
+        ((3, 3), SensorFault.SEQUENCE),
     ],
 )
 def test_lost_and_reordered_records_are_seen(sequences, fault):
@@ -87,8 +87,8 @@ def test_lost_and_reordered_records_are_seen(sequences, fault):
 
 
 def test_lost_records_are_counted():
-    watch, _ = check_wrench(WrenchWatch(), WrenchRecord(QUIET, 10), LIMITS)
-    watch, _ = check_wrench(watch, WrenchRecord(QUIET, 20, drained=4), LIMITS)
+    watch, _ = judge_record(SensorHealth(), WrenchRecord(QUIET, 10), LIMITS)
+    watch, _ = judge_record(watch, WrenchRecord(QUIET, 20, drained=4), LIMITS)
     assert watch.lost == 6
 
 
@@ -167,7 +167,7 @@ def test_a_nan_on_the_wire_reads_as_out_of_range(pair):
     server, sensor = pair
     server.publish(with_component(2, math.nan))
     record = sensor.read(0, 1.0)
-    assert judge(record) == [WrenchFault.OUT_OF_RANGE]
+    assert judge(record) == [SensorFault.OUT_OF_RANGE]
 
 
 @given(st.binary(max_size=48))

@@ -5,9 +5,9 @@ import contextlib
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from sher3_drivers.can_errors import BusCondition, decode_error, error_frame
+from sher3_drivers.bus.condition import BusCondition, decode_error, error_frame
+from sher3_drivers.bus.frame import ERROR_FLAG, EXTENDED_FLAG, Frame, iter_frames, pack_frame, pack_frames
 from sher3_drivers.errors import FrameError
-from sher3_drivers.frame import ERROR_FLAG, EXTENDED_FLAG, Frame, iter_frames, pack_frame, pack_frames
 
 frames = st.builds(Frame, st.integers(0, 0x7FF), st.binary(max_size=8))
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from sher3_common.reasons import Reason
 from sher3_description import load_robot
-from sher3_description.reasons import Reason
-from sher3_drivers.feedback import Feedback
-from sher3_drivers.frozen_check import FrozenCheck
+from sher3_drivers.canopen.tpdo import DriveFeedback
 from sher3_drivers.settings import default_settings
 from sher3_drivers.units import AxisScale
+from sher3_drivers.watches.frozen import FrozenCheck
 
 ROBOT = load_robot()
 SCALES = [AxisScale.from_actuator(actuator) for actuator in ROBOT.actuators]
@@ -18,7 +18,7 @@ def run(speed, ticks, effort=lambda k: 0.0):
     """Return the first trip of a drive whose encoders stand, and its tick."""
     check, still = FrozenCheck(SCALES, SETTINGS), (0.0,) * 5
     for k in range(ticks):
-        feedback = Feedback(k, still, still, still, (effort(k),) * 5, still)
+        feedback = DriveFeedback(k, still, still, still, (effort(k),) * 5, still)
         if trip := check.check(feedback, (speed,) * 5, SETTINGS.period):
             return trip, k
     return None, ticks
@@ -40,7 +40,7 @@ def test_at_rest_nothing_has_to_change():
 
 def test_a_standing_report_makes_the_driver_blind_until_it_starts_afresh():
     check, still = FrozenCheck(SCALES, SETTINGS), (0.0,) * 5
-    feedback = Feedback(0, still, still, still, still, still)
+    feedback = DriveFeedback(0, still, still, still, still, still)
     for _ in range(20):
         check.check(feedback, (5e-3,) * 5, SETTINGS.period)
     assert check.blind

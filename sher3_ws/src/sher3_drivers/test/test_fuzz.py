@@ -9,17 +9,17 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from sher3_description import load_robot
-from sher3_drivers.bus import open_link
-from sher3_drivers.bus_local import LocalCable
-from sher3_drivers.feedback import TPDO_BASES
-from sher3_drivers.force_sensor import WrenchRecord
-from sher3_drivers.frame import ERROR_FLAG, Frame, mark, pack_frames
-from sher3_drivers.lockstep_rig import LockstepRig
-from sher3_drivers.netft import RECORD, NetFtSensor
-from sher3_drivers.netft_server import NetFtServer
-from sher3_drivers.pedal import LocalPedal, PedalSender
+from sher3_drivers.bus.frame import ERROR_FLAG, Frame, mark, pack_frames
+from sher3_drivers.bus.link import open_link
+from sher3_drivers.bus.local import LocalCable
+from sher3_drivers.canopen.tpdo import TPDO_BASES
+from sher3_drivers.mock.rig import LockstepRig
+from sher3_drivers.pedal.local import LocalPedal
+from sher3_drivers.sensor.device import WrenchRecord
+from sher3_drivers.sensor.health import SensorFault, SensorHealth, SensorLimits, judge_record
+from sher3_drivers.sensor.netft import RECORD, NetFtSensor
+from sher3_drivers.sensor.netft_server import NetFtServer
 from sher3_drivers.settings import default_settings
-from sher3_drivers.wrench_checks import WrenchFault, WrenchLimits, WrenchWatch, check_wrench
 
 ROBOT = load_robot()
 SLOW = [0.001, -0.002, 0.003, 0.1, -0.004]
@@ -123,14 +123,14 @@ def test_what_has_another_length_or_address_is_counted_or_foreign(disabled, fram
     """A TPDO cut short is a misfit; the collector takes nothing of it into the feedback."""
     rig, intruders = disabled
     rig.tick()
-    before = rig.driver.collector.misfits
+    before = rig.driver.wire.collector.misfits
     tpdos = {base + node for base in TPDO_BASES for node in range(1, 6)}
     heads = [frames[k : k + 5] for k in range(0, len(frames), 16)]
     cut = sum(head[4] != 8 and int.from_bytes(head[:4], "little") in tpdos for head in heads)
     intruders[channel].send_frames(frames)
     rig.tick()
     rig.tick()
-    assert rig.driver.collector.misfits - before == cut
+    assert rig.driver.wire.collector.misfits - before == cut
 
 
 def drained(sensor, server):
@@ -172,22 +172,24 @@ def test_any_datagram_of_the_force_sensor_is_a_record_or_counted(netft, datagram
     sensor, server = netft
     before = sensor.misfits
     for data in datagrams:
-        server._socket.sendto(data, server._client)
+        server.tamper_bytes = lambda _, sent=data: sent
+        server.publish((0.0,) * 6)
+    server.tamper_bytes = None
     record = drained(sensor, server)
     assert isinstance(record, WrenchRecord) and all(map(math.isfinite, record.wrench))
-    assert sensor.misfits - before == sum(len(data) != RECORD.size for data in datagrams)
+    assert sensor.misfits - before == sum(len(data) not in (0, RECORD.size) for data in datagrams)
 
 
 @relaxed
 @given(st.lists(st.tuples(*[st.integers(-(2**31), 2**31 - 1)] * 6), min_size=1, max_size=3), st.integers(0, 2**32 - 1))
 def test_any_record_is_judged_without_a_crash(readings, status):
     """The counts of a record decode to a wrench whose fault is told whenever a component is not below its range."""
-    limits, watch = WrenchLimits.of(ROBOT.force_sensor), WrenchWatch()
+    limits, watch = SensorLimits.of(ROBOT.force_sensor), SensorHealth()
     for k, counts in enumerate(readings):
         wrench = tuple(c / (1e6 if i < 3 else 1e9) for i, c in enumerate(counts))
-        watch, fault = check_wrench(watch, WrenchRecord(wrench, k, status), limits)
+        watch, fault = judge_record(watch, WrenchRecord(wrench, k, status), limits)
         beyond = any(abs(w) >= r for w, r in zip(wrench, limits.rated, strict=True))
-        assert fault is (WrenchFault.DEVICE if status else fault) and (not beyond or fault.severe)
+        assert fault is (SensorFault.DEVICE if status else fault) and (not beyond or fault.severe)
 
 
 @relaxed
@@ -197,21 +199,22 @@ def test_any_request_leaves_the_mock_sensor_serving(netft, requests):
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as stranger:
         for data in requests:
             stranger.sendto(data, server.address)
-    client = server._client
+    client = server.client
     server.poll()
-    server._client = client  # a stranger that happened to ask for the stream
+    server.client = client  # a stranger that happened to ask for the stream
     assert drained(sensor, server).wrench == pytest.approx((1.0, 2.0, 3.0, 0.01, 0.02, 0.03))
 
 
 @relaxed
 @given(st.lists(st.binary(max_size=70), max_size=8))
 def test_any_datagram_of_the_pedal_is_a_state_or_none(datagrams):
-    pedal, sender = LocalPedal(f"fuzz-{next(_numbers)}"), PedalSender("nobody")
+    pedal = LocalPedal(f"fuzz-{next(_numbers)}")
+    stranger = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM | socket.SOCK_NONBLOCK)
     try:
         for data in datagrams:
-            sender._socket.sendto(data, str(pedal._path))
+            stranger.sendto(data, str(pedal.path))
         state = pedal.read()
         assert state is None or isinstance(state.emergency_stop, bool)
     finally:
         pedal.close()
-        sender.close()
+        stranger.close()

@@ -3,13 +3,13 @@
 import itertools
 
 import pytest
+from sher3_common.reasons import Reason
 from sher3_description import load_robot
-from sher3_description.reasons import Reason
-from sher3_drivers import mock_drive
-from sher3_drivers.bus import open_link
-from sher3_drivers.can_errors import BusCondition
+from sher3_drivers.bus.condition import BusCondition
+from sher3_drivers.bus.link import open_link
 from sher3_drivers.errors import LinkError
-from sher3_drivers.lockstep_rig import LockstepRig
+from sher3_drivers.mock import drive as mock_drive
+from sher3_drivers.mock.rig import LockstepRig
 from sher3_drivers.settings import default_settings
 
 _numbers = itertools.count()
@@ -29,7 +29,7 @@ def test_a_link_that_fails_in_one_direction_stops_the_drives_of_the_other(direct
     monkeypatch.setattr(link, direction, fail)
     rig.tick([0.001] * 5)
     rig.tick()
-    assert rig.driver.stop.code is Reason.LINK_LOST and rig.driver.bus_conditions[1] is BusCondition.OFF
+    assert rig.driver.stop.code is Reason.LINK_LOST and rig.driver.watches.bus.conditions[1] is BusCondition.OFF
     rig.tick()
     assert not rig.driver.enabled
     states = {rig.mock.drives[name].state for name in rig.settings.channels[0].drives}

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import pytest
+from sher3_common.reasons import Reason
 from sher3_description import load_robot
-from sher3_description.reasons import Reason
-from sher3_drivers.feedback import Feedback
-from sher3_drivers.motion_watch import MotionWatch
+from sher3_drivers.canopen.cia402 import Goal
+from sher3_drivers.canopen.tpdo import DriveFeedback
 from sher3_drivers.settings import default_settings
-from sher3_drivers.trips import StopLog
 from sher3_drivers.units import AxisScale
+from sher3_drivers.watches.motion import MotionWatch
+from sher3_drivers.watches.trips import StopLog
 
 ROBOT = load_robot()
 SETTINGS = default_settings(ROBOT.control_period)
@@ -28,7 +29,10 @@ def watch(lost, went=1.0, ticks=100):
             continue
         stamp = round(k * SETTINGS.period * 1e9)
         place = tuple(went * v * stamp * 1e-9 for v in FAST)
-        trip = checks.check(Feedback(stamp, place, place, tuple(FAST), (0.0,) * 5, tuple(FAST)), True, log, stamp)
+        checks.sync()
+        trip = checks.check(
+            DriveFeedback(stamp, place, place, tuple(FAST), (0.0,) * 5, tuple(FAST)), Goal.ENABLED, True, log, stamp
+        )
         if trip is not None:
             return trip
     return None
@@ -42,7 +46,7 @@ def test_an_axis_that_goes_on_in_lost_ticks_follows_its_demand(lost):
 @pytest.mark.parametrize("lost", range(5))
 def test_one_that_falls_behind_is_found_whatever_is_lost(lost):
     trip = watch(lost, went=0.7)
-    assert trip is not None and trip.reason is Reason.FOLLOWING_ERROR
+    assert trip is not None and trip.reason is Reason.POSITION_LEFT
 
 
 @pytest.mark.parametrize("hold", [2, 6, 8, 12, 16])

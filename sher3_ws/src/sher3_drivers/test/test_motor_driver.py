@@ -6,20 +6,20 @@ import threading
 import time
 
 import pytest
+from sher3_common.reasons import Reason
 from sher3_description import ACTUATORS, load_robot
-from sher3_description.reasons import Reason
-from sher3_drivers import drive_objects as od
-from sher3_drivers.bus import open_link
-from sher3_drivers.bus_load import BusLoadError
-from sher3_drivers.cia402 import Goal
-from sher3_drivers.drive_objects import Address
-from sher3_drivers.errors import CommandRefused, ConfigurationError, DriveMismatch, DriveSilent
-from sher3_drivers.lockstep_rig import LockstepRig
-from sher3_drivers.mock_bus import MockDriveBus
-from sher3_drivers.mock_plant import IntegratorPlant
-from sher3_drivers.motor_driver import MotorDriver
+from sher3_drivers.bus.link import open_link
+from sher3_drivers.bus.load import BusLoadError
+from sher3_drivers.canopen import objects as od
+from sher3_drivers.canopen.cia402 import Goal
+from sher3_drivers.canopen.objects import Address
+from sher3_drivers.drive.motor_driver import MotorDriver
+from sher3_drivers.errors import CommandRefused, DriveMismatch, DriverSettingsError, DriveSilent
+from sher3_drivers.mock.bus import MockDriveBus
+from sher3_drivers.mock.plant import IntegratorPlant
+from sher3_drivers.mock.rig import LockstepRig
 from sher3_drivers.settings import MotorDriverSettings, default_settings
-from sher3_drivers.trips import Trip
+from sher3_drivers.watches.trips import Trip
 
 ROBOT = load_robot()
 SLOW = [0.001, -0.002, 0.003, 0.1, -0.004]
@@ -193,7 +193,7 @@ def test_an_overloaded_channel_is_refused_before_anything_is_sent(make_rig):
 )
 def test_inconsistent_settings_are_refused(change, text):
     values = {"channels": [channel.model_dump() for channel in default_settings().channels], **change}
-    with pytest.raises(ConfigurationError, match=text):
+    with pytest.raises(DriverSettingsError, match=text):
         MotorDriverSettings.checked(**values)
 
 
@@ -242,7 +242,7 @@ def test_the_wrong_number_of_axes_is_refused(rig):
 
 
 def test_the_velocity_limit_itself_passes(rig):
-    limits = [scale.velocity_limit for scale in rig.driver._scales]
+    limits = [scale.velocity_limit for scale in rig.driver.scales]
     rig.tick(limits)
     assert rig.tick().velocity_demand == pytest.approx(limits, abs=6e-10)
 

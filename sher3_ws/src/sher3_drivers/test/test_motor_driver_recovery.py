@@ -3,13 +3,15 @@
 import itertools
 
 import pytest
+from sher3_common.reasons import Reason
 from sher3_description import load_robot
-from sher3_description.reasons import Reason
-from sher3_drivers import mock_drive
-from sher3_drivers.cia402 import TRANSITIONS, Command, State, transition
-from sher3_drivers.driver_report import driver_report
+from sher3_drivers.bus.frame import iter_frames
+from sher3_drivers.canopen.cia402 import TRANSITIONS, Controlword, DriveState, transition
+from sher3_drivers.canopen.objects import RPDO_BASE
+from sher3_drivers.drive.report import driver_report
 from sher3_drivers.errors import CommandRefused
-from sher3_drivers.trips import Trip
+from sher3_drivers.mock import drive as mock_drive
+from sher3_drivers.watches.trips import Trip
 
 ROBOT = load_robot()
 SLOW = [0.001, -0.002, 0.003, 0.1, -0.004]
@@ -33,12 +35,12 @@ def test_reset_needs_a_stop_and_enabling_needs_a_reset(rig):
     rig.tick(SLOW)
 
 
-def test_enabling_is_refused_in_fault_without_a_stop(make_rig):
+def test_a_fault_that_nothing_announced_is_a_stop_at_rest_too(make_rig):
     rig = make_rig()
     rig.driver.configure()
     rig.mock.drives["delta_3"].state = mock_drive.FAULT
     rig.tick()
-    assert rig.driver.stop.reason is None
+    assert rig.driver.stop.code is Reason.DRIVE_FAULT and "delta_3" in rig.driver.stop.reason
     with pytest.raises(CommandRefused, match="delta_3"):
         rig.driver.enable()
     rig.driver.reset()
@@ -50,8 +52,12 @@ def test_enabling_is_refused_in_fault_without_a_stop(make_rig):
 def test_a_fault_is_reset_by_one_rising_edge_and_leaves_the_drive_disabled(rig):
     words = []
     drive = rig.mock.drives["delta_2"]
-    original = drive._on_controlword
-    drive._on_controlword = lambda word: (words.append(word), original(word))
+
+    def listen(channel, frames, now):
+        words.extend(data[0] for can_id, data in iter_frames(frames) if can_id == RPDO_BASE + drive.node_id)
+        return frames
+
+    rig.mock.tamper_received = listen
     drive.fault(0x8611)
     for _ in range(10):
         rig.tick(SLOW)
@@ -85,26 +91,26 @@ def test_the_first_reason_is_kept_and_later_ones_counted(rig):
     rig.mock.drives["tilt"].fault(0x4310)
     rig.tick(SLOW)
     assert "roll" in rig.driver.stop.reason and rig.driver.stop.later > 0
-    assert [e.code for e in rig.driver.health[4].emergencies] == [0x4310]
+    assert [e.code for e in rig.driver.session.drives[4].emergencies] == [0x4310]
 
 
 _STATES = {
-    State.NOT_READY_TO_SWITCH_ON: mock_drive.NOT_READY,
-    State.SWITCH_ON_DISABLED: mock_drive.SWITCH_ON_DISABLED,
-    State.READY_TO_SWITCH_ON: mock_drive.READY,
-    State.SWITCHED_ON: mock_drive.SWITCHED_ON,
-    State.OPERATION_ENABLED: mock_drive.ENABLED,
-    State.QUICK_STOP_ACTIVE: mock_drive.QUICK_STOP,
-    State.FAULT_REACTION_ACTIVE: mock_drive.FAULT_REACTION,
-    State.FAULT: mock_drive.FAULT,
+    DriveState.NOT_READY_TO_SWITCH_ON: mock_drive.NOT_READY,
+    DriveState.SWITCH_ON_DISABLED: mock_drive.SWITCH_ON_DISABLED,
+    DriveState.READY_TO_SWITCH_ON: mock_drive.READY,
+    DriveState.SWITCHED_ON: mock_drive.SWITCHED_ON,
+    DriveState.OPERATION_ENABLED: mock_drive.ENABLED,
+    DriveState.QUICK_STOP_ACTIVE: mock_drive.QUICK_STOP,
+    DriveState.FAULT_REACTION_ACTIVE: mock_drive.FAULT_REACTION,
+    DriveState.FAULT: mock_drive.FAULT,
 }
 
 
-@pytest.mark.parametrize(("state", "command"), list(itertools.product(State, Command)))
+@pytest.mark.parametrize(("state", "command"), list(itertools.product(DriveState, Controlword)))
 def test_both_sides_of_the_wire_have_the_same_state_machine(state, command):
     """All pairs but transition 16, which drives have and the host's table leaves out."""
     after = mock_drive.next_state(_STATES[state], command.value, previous=0)
-    if (state, command) == (State.QUICK_STOP_ACTIVE, Command.ENABLE_OPERATION):
+    if (state, command) == (DriveState.QUICK_STOP_ACTIVE, Controlword.ENABLE_OPERATION):
         assert after == mock_drive.ENABLED and (state, command) not in TRANSITIONS
     else:
         assert after == _STATES[transition(state, command)]

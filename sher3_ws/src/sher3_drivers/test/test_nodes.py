@@ -4,17 +4,20 @@ import itertools
 import math
 
 import pytest
+from sher3_common.samples import JointSample, TextSample
 from sher3_description import load_robot
-from sher3_drivers.bus import LockstepLink, open_link
-from sher3_drivers.force_sensor import InProcessForceSensor
-from sher3_drivers.force_sensor_node import ForceSensorNode
-from sher3_drivers.mock_bus import MockDriveBus
-from sher3_drivers.mock_plant import IntegratorPlant
-from sher3_drivers.motor_driver_node import MotorDriverNode
-from sher3_drivers.pedal import InProcessPedal, PedalState
-from sher3_drivers.pedal_node import PedalNode
+from sher3_drivers.bus.link import open_link
+from sher3_drivers.bus.lockstep import LockstepLink
+from sher3_drivers.drive.motor_driver_node import MotorDriverNode
+from sher3_drivers.mock.bus import MockDriveBus
+from sher3_drivers.mock.plant import IntegratorPlant
+from sher3_drivers.pedal.device import PedalState
+from sher3_drivers.pedal.in_process import InProcessPedal
+from sher3_drivers.pedal.pedal_node import PedalNode
+from sher3_drivers.sensor.device import InProcessForceSensor
+from sher3_drivers.sensor.force_sensor_node import ForceSensorNode
 from sher3_drivers.settings import default_settings
-from sher3_runtime import Graph, JointSample, TextSample, on_tick
+from sher3_runtime import Graph, on_tick
 
 pytestmark = pytest.mark.graph
 ROBOT = load_robot()
@@ -85,21 +88,21 @@ def test_the_echo_is_the_command_of_the_tick_before(drives):
 
 def test_nothing_moves_while_disabled(drives):
     drives.move(SLOW, 20)
-    assert drives.mock._plant.position == [0.0] * 5
+    assert drives.mock.plant.position == [0.0] * 5
 
 
 def test_fault_stops_and_only_disable_then_enable_recovers(drives):
     drives.state("ENABLED")
     drives.move(SLOW, 5)
     drives.state("FAULT")
-    resting = list(drives.mock._plant.position)
+    resting = list(drives.mock.plant.position)
     drives.state("ENABLED")
     drives.move(SLOW, 20)
-    assert drives.mock._plant.position == resting
+    assert drives.mock.plant.position == resting
     drives.state("DISABLED")
     drives.state("ENABLED")
     drives.move(SLOW, 5)
-    assert drives.mock._plant.position != resting
+    assert drives.mock.plant.position != resting
 
 
 def test_a_silent_controller_stops_the_drives_and_is_reported(drives):
@@ -174,7 +177,7 @@ def test_the_action_of_the_heartbeat_decides_how_hard_the_robot_is_stopped(drive
     drives.move(SLOW, 5)
     drives.state("FAULT", action)
     drives.graph.step(80)
-    assert {health.state.name for health in drives.node.driver.health} == states
+    assert {health.state.name for health in drives.node.driver.session.drives} == states
     drives.beat = "DISABLED NONE"
     drives.graph.step(20)
     assert drives.node.driver.stop.first is None and drives.node.driver.goal.name == "DISABLED"

@@ -7,11 +7,11 @@ import time
 
 import pytest
 from sher3_description import load_robot
-from sher3_drivers.bus import open_link, open_links
+from sher3_drivers.bus.frame import pack_frame
+from sher3_drivers.bus.link import open_link, open_links
+from sher3_drivers.canopen.other_host import LISTEN, refuse_other_host
+from sher3_drivers.drive.motor_driver import MotorDriver
 from sher3_drivers.errors import OtherHost
-from sher3_drivers.frame import pack_frame
-from sher3_drivers.motor_driver import MotorDriver
-from sher3_drivers.other_host import LISTEN, refuse_other_host
 
 ROBOT = load_robot()
 SLOW = [0.001, -0.002, 0.003, 0.1, -0.004]

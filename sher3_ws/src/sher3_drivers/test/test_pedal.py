@@ -5,15 +5,10 @@ import os
 
 import pytest
 from sher3_drivers.errors import DeviceMissing
-from sher3_drivers.pedal import (
-    JS_EVENT,
-    InProcessPedal,
-    JoystickPedal,
-    LocalPedal,
-    PedalSender,
-    PedalState,
-    check_pedal,
-)
+from sher3_drivers.pedal.device import PedalState, check_pedal
+from sher3_drivers.pedal.in_process import InProcessPedal
+from sher3_drivers.pedal.joystick import JS_EVENT, JoystickPedal
+from sher3_drivers.pedal.local import LocalPedal, PedalSender
 
 
 @pytest.fixture

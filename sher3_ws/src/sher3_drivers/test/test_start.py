@@ -5,10 +5,10 @@ from __future__ import annotations
 import itertools
 
 from sher3_description import load_robot
-from sher3_drivers.bus import open_link
-from sher3_drivers.drive_setup import set_up_drives
-from sher3_drivers.mock_bus import MockDriveBus
-from sher3_drivers.mock_plant import IntegratorPlant
+from sher3_drivers.bus.link import open_link
+from sher3_drivers.drive.setup import set_up_drives
+from sher3_drivers.mock.bus import MockDriveBus
+from sher3_drivers.mock.plant import IntegratorPlant
 from sher3_drivers.settings import default_settings
 from sher3_drivers.units import AxisScale
 

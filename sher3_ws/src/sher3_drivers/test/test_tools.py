@@ -5,11 +5,11 @@ import threading
 import canopen
 import pytest
 from sher3_description import load_robot
-from sher3_drivers.bus import open_link
-from sher3_drivers.bus_python_can import LinkBus
-from sher3_drivers.canopen_dictionary import drive_dictionary
-from sher3_drivers.mock_bus import MockDriveBus
-from sher3_drivers.mock_plant import IntegratorPlant
+from sher3_drivers.bus.link import open_link
+from sher3_drivers.bus.python_can import LinkBus
+from sher3_drivers.canopen.dictionary import drive_dictionary
+from sher3_drivers.mock.bus import MockDriveBus
+from sher3_drivers.mock.plant import IntegratorPlant
 from sher3_drivers.settings import default_settings
 
 

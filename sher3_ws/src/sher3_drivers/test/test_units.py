@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from sher3_description import load_robot
-from sher3_drivers.emcy import CODES, EMCY, decode_emergency
+from sher3_drivers.canopen.emcy import CODES, EMCY, decode_emergency
 from sher3_drivers.errors import FrameError, ScaleError
 from sher3_drivers.units import AxisScale
 

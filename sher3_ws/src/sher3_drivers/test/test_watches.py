@@ -3,13 +3,13 @@
 import itertools
 
 import pytest
+from sher3_common.reasons import ACTION, TEXT, Action, Reason
 from sher3_description import ACTUATORS
-from sher3_description.reasons import ACTION, TEXT, Action, Reason
-from sher3_drivers.cia402 import Goal
-from sher3_drivers.driver_report import driver_report
-from sher3_drivers.errors import CommandRefused, ConfigurationError
+from sher3_drivers.canopen.cia402 import Goal
+from sher3_drivers.drive.report import driver_report
+from sher3_drivers.errors import CommandRefused, DriverSettingsError
 from sher3_drivers.settings import MotorDriverSettings, default_settings
-from sher3_drivers.trips import StopLog, Trip
+from sher3_drivers.watches.trips import StopLog, Trip
 
 SLOW = [0.001, -0.002, 0.003, 0.1, -0.004]
 MS = 1_000_000
@@ -58,7 +58,7 @@ def test_a_loop_that_was_held_up_stops_the_robot(rig, hold, stops):
     rig.stamp += hold * MS
     rig.tick(SLOW)
     assert (rig.driver.stop.code is Reason.CPU_STARVED) == stops
-    assert rig.driver.loop.stall == (hold + 2) * MS
+    assert rig.driver.watches.loop.stall == (hold + 2) * MS
 
 
 @pytest.mark.parametrize("jump", [-1000, -2, 25, 3_600_000])
@@ -154,8 +154,8 @@ def test_an_axis_that_does_not_follow_stops_the_robot(rig):
     rig.mock.drives["tilt"].tamper = half
     ticks_to_stop(rig)
     stop = rig.driver.stop
-    assert stop.code is Reason.FOLLOWING_ERROR and stop.first.text.startswith("tilt")
-    assert stop.first.limit <= rig.settings.following_distance + rig.settings.following_lag * 0.0041
+    assert stop.code is Reason.POSITION_LEFT and stop.first.text.startswith("tilt")
+    assert stop.first.limit <= rig.settings.position_distance + rig.settings.position_lag * 0.0041
 
 
 def test_a_robot_that_moves_after_its_stop_loses_its_power(rig):
@@ -219,5 +219,5 @@ def test_diagnostics_show_every_number_with_its_limit(rig):
 @pytest.mark.parametrize("name", ["supervisor_limit", "stall_limit", "encoder_distance", "following_lag", "brake_time"])
 @pytest.mark.parametrize("value", [0.0, -1.0, float("nan"), float("inf"), 1e6])
 def test_impossible_limits_are_refused(name, value):
-    with pytest.raises(ConfigurationError, match=name):
+    with pytest.raises(DriverSettingsError, match=name):
         MotorDriverSettings.checked(**{**default_settings().model_dump(), name: value})

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from sher3_description import Sher3Error
+from sher3_common import Sher3Error
 
 
 class CaseError(Sher3Error):

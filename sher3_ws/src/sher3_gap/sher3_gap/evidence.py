@@ -7,37 +7,39 @@ from dataclasses import dataclass
 
 import numpy as np
 from sher3_description import ACTUATORS, Robot
+from sher3_diagnosis.channel import Array, Channel, Floors, Residual, Residuals
+from sher3_diagnosis.evidence import Evidence
+from sher3_diagnosis.whitened import Whitened
 
-from sher3_gap.channels import Array, Channel, Residual
-from sher3_gap.fitting import Whitened
-from sher3_gap.floors import Floors, floors
-from sher3_gap.geometry import Geometry
-from sher3_gap.library import View
-from sher3_gap.residuals import Demand, Residuals, all_residuals, motor_residual
-from sher3_gap.selffloor import driven_as, followed
-from sher3_gap.signals import RunSignals
-from sher3_gap.timing import Timing, demand_in_force, timing_of
+from sher3_gap.case.signals import RunSignals
+from sher3_gap.simulate.twin import driven_as, followed
+from sher3_gap.stages.floors import floors
+from sher3_gap.stages.geometry import Geometry
+from sher3_gap.stages.residuals import Demand, all_residuals, motor_residual
+from sher3_gap.stages.timing import Timing, demand_in_force, timing_of
+from sher3_gap.stages.units import AS_BUILT, PLACES, ROTARY_AXES, unit_of
+from sher3_gap.stages.view import SherView
 
 
-@dataclass(frozen=True)
-class Evidence:
-    """Everything the attribution works on."""
+@dataclass(frozen=True, kw_only=True)
+class SherEvidence(Evidence):
+    """The engine's evidence with what the robot's exact stages and its simulator need.
 
-    runs: list[RunSignals]
+    Attributes:
+        runs: signals of every run.
+        robot: the nominal model.
+        timing: what the echo tells of the commands' timing; None where it was not recorded.
+    """
+
+    runs: Sequence[RunSignals]
     robot: Robot
-    geometry: Geometry
-    views: list[View]
-    data: Whitened
     timing: Timing | None
 
-    @property
-    def floors(self) -> list[Floors]:
-        """Floor per run and channel."""
-        return self.data.floors
-
-    def count(self, channel: Channel) -> float:
-        """One count of the motor encoder at an actuator, m or rad."""
-        return self.robot.actuators[ACTUATORS.index(channel.actuator)].motor_encoder
+    def view(self, run: int) -> SherView:
+        """Return what effects see of a run."""
+        found = self.data.views[run]
+        assert isinstance(found, SherView)
+        return found
 
 
 SHIFTS = (0.0, 0.5)
@@ -50,7 +52,7 @@ def own_residuals(run: RunSignals, robot: Robot, shift: float) -> Residuals:
     return {} if twin is None else all_residuals(twin, robot, Geometry(robot))
 
 
-def gather(runs: Sequence[RunSignals], robot: Robot) -> Evidence:
+def gather(runs: Sequence[RunSignals], robot: Robot) -> SherEvidence:
     """Compute residuals, floors and whitened targets of a case."""
     geometry = Geometry(robot)
     timing = timing_of(runs, robot)
@@ -58,13 +60,25 @@ def gather(runs: Sequence[RunSignals], robot: Robot) -> Evidence:
     residuals = [all_residuals(run, robot, geometry, d) for run, d in zip(runs, demands, strict=True)]
     simulated = [[own_residuals(run, robot, shift) for shift in SHIFTS] for run in runs]
     own = floors(runs, residuals, simulated, robot)
-    views = [View(run, robot, geometry) for run in runs]
+    views = [SherView(run, robot, geometry) for run in runs]
     largest = largest_force(runs)
     residuals = [
         _follow_the_drive(run, robot, geometry, r, f, d, largest)
         for run, r, f, d in zip(runs, residuals, own, demands, strict=True)
     ]
-    return Evidence(list(runs), robot, geometry, views, Whitened(views, residuals, own), timing)
+    data = Whitened(views, residuals, own)
+    return SherEvidence(
+        excitations=[run.excitation for run in runs],
+        data=data,
+        units={c: unit_of(c) for run in residuals for c in run},
+        places=PLACES,
+        rotary=ROTARY_AXES,
+        counts={a: x.motor_encoder for a, x in zip(ACTUATORS, robot.actuators, strict=True)},
+        as_built=AS_BUILT,
+        runs=list(runs),
+        robot=robot,
+        timing=timing,
+    )
 
 
 def largest_force(runs: Sequence[RunSignals]) -> Array | None:
@@ -84,7 +98,7 @@ def _follow_the_drive(
 ) -> Residuals:
     """Where a drive does not follow its law its force need not step with the demand.
 
-    It may end at a limit, or follow continuously: of the two, and of shares of the second, what fits best is taken.
+    It may end at a limit, or it may follow continuously, wholly or in part. What fits best is taken.
     """
     odd = [a for a in ACTUATORS if _ratio(residuals, floor, Channel("drive", a)) > 1.3]
     if not odd:

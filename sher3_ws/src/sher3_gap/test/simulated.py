@@ -1,9 +1,9 @@
 """Cases made by the simulator, for the tests of what surrounds the diagnosis."""
 
 from sher3_description import load_robot
+from sher3_gap.case.loading import signals_of
 from sher3_gap.excitation import excite
-from sher3_gap.loading import signals_of
-from sher3_gap.rehearsal import rehearse
+from sher3_gap.experiments.rehearsal import rehearse
 from sher3_sim import RunScatter
 
 ROBOT = load_robot()

@@ -1,10 +1,10 @@
 """Every effect: into the simulated robot, diagnosed, applied, and the corrected simulator shows a smaller gap."""
 
 import pytest
-from sher3_gap.closing import close_loop
+from sher3_effects import plants
 from sher3_gap.excitation import excite
-from sher3_gap.rehearsal import rehearse
-from sher3_sim import EFFECTS
+from sher3_gap.experiments.rehearsal import rehearse
+from sher3_gap.simulate.closing import close_loop
 from simulated import ROBOT, SCATTER, signals
 
 GIVEN = {
@@ -30,8 +30,8 @@ QUICK = ("thermal_expansion", "force_scale", "structural_vibration", "backlash",
 
 
 def made(name):
-    kind = EFFECTS[name]
-    place, values = GIVEN.get(name, (next((p for p in ("tip", "tilt") if p in kind.places), kind.places[-1]), {}))
+    kind = plants()[name]
+    place, values = GIVEN.get(name, (next((p for p in ("tip", "tilt") if p in kind.sites), kind.sites[-1]), {}))
     return kind(place, **values)
 
 
@@ -61,6 +61,6 @@ def test_applying_the_verdict_closes_the_gap(name):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", sorted(set(EFFECTS) - set(QUICK)))
+@pytest.mark.parametrize("name", sorted(set(plants()) - set(QUICK)))
 def test_applying_any_verdict_closes_the_gap(name):
     check(name)

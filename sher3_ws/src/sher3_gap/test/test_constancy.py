@@ -1,18 +1,17 @@
 """A true effect has one size in every excitation; one that stands in for another does not."""
 
 import numpy as np
-from sher3_gap.constancy import constancy_of
+from sher3_diagnosis.attribute.constancy import constancy_of
+from sher3_diagnosis.fitting import fit, make_term
+from sher3_effects import library, plants
 from sher3_gap.evidence import gather
-from sher3_gap.fitting import fit, make_term
-from sher3_gap.library import LIBRARY
-from sher3_sim.effects import EFFECTS
 from simulated import ROBOT, runs_of, signals
 
 
 def found(effect, **truth):
-    runs = runs_of(("reversals", "sweep", "sweep_0.4"), [EFFECTS["coulomb_friction"]("delta_1", force=1.0)], repeats=1)
+    runs = runs_of(("reversals", "sweep", "sweep_0.4"), [plants()["coulomb_friction"]("delta_1", force=1.0)], repeats=1)
     evidence = gather(signals(runs), ROBOT)
-    term = make_term(evidence.data, LIBRARY[effect], "delta_1", truth)
+    term = make_term(evidence.data, library()[effect], "delta_1", truth)
     return constancy_of(evidence, fit(evidence.data, [term]), 0)
 
 

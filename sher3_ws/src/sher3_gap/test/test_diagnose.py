@@ -4,8 +4,8 @@ A unit test of the chain, not evidence of its power.
 """
 
 import pytest
-from sher3_gap.diagnose import diagnose_runs
-from sher3_sim.effects import EFFECTS
+from sher3_effects import plants
+from sher3_gap.sher import diagnose_runs
 from simulated import ROBOT, runs_of, signals
 
 LABELS = ("reversals", "sweep")
@@ -44,7 +44,7 @@ def test_a_healthy_robot_has_no_gap():
     ],
 )
 def test_a_single_effect_is_found_where_it_is(effect, actuator, parameters, stage):
-    verdict = verdict_of(EFFECTS[effect](actuator, **parameters))
+    verdict = verdict_of(plants()[effect](actuator, **parameters))
     assert verdict.status == "attributed"
     assert verdict.where[0].stage == stage
     cause = verdict.causes[0]
@@ -56,17 +56,17 @@ def test_a_single_effect_is_found_where_it_is(effect, actuator, parameters, stag
 
 
 def test_two_effects_in_two_stages_are_both_found():
-    verdict = verdict_of(EFFECTS["coulomb_friction"]("delta_2", force=0.8), EFFECTS["tool_offset"]("tip", x=1e-5))
+    verdict = verdict_of(plants()["coulomb_friction"]("delta_2", force=0.8), plants()["tool_offset"]("tip", x=1e-5))
     assert {c.effect for c in verdict.causes} == {"coulomb_friction", "tool_offset"}
 
 
 def test_without_the_true_effect_and_its_kin_the_gap_is_outside_the_library():
-    effects = [EFFECTS["transmission_ripple"]("roll", amplitude=1e-4, periods_per_rev=2.0)]
+    effects = [plants()["transmission_ripple"]("roll", amplitude=1e-4, periods_per_rev=2.0)]
     verdict = verdict_of(*effects, without=("transmission_ripple",))
     assert verdict.status == "outside_library"
     assert (verdict.unexplained.stage, verdict.unexplained.actuator) == ("transmission", "roll")
 
 
 def test_an_unknown_effect_cannot_be_left_out():
-    with pytest.raises(ValueError, match="no such effect: gremlins"):
+    with pytest.raises(ValueError, match="no such effect; value gremlins"):
         diagnose_runs([], ROBOT, ("gremlins",))

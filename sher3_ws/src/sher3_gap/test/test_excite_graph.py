@@ -11,7 +11,7 @@ T = 2_000_000
 
 def robot_node():
     from rclpy.node import Node
-    from sher3_runtime import JointSample, JoySample, WrenchSample
+    from sher3_common.samples import JointSample, JoySample, WrenchSample
     from sher3_runtime.ports import NODE_OPTIONS, advertise, on_tick, subscribe
 
     class IdealRobot(Node):
@@ -37,12 +37,12 @@ def robot_node():
 
 
 def test_every_set_point_reaches_the_host_at_its_tick():
-    from sher3_control.admittance_node import AdmittanceNode
-    from sher3_control.kinematics_node import KinematicsNode
+    from sher3_control.nodes.admittance_node import AdmittanceNode
+    from sher3_control.nodes.kinematics_node import KinematicsNode
+    from sher3_control.nodes.supervisor_node import SupervisorNode
     from sher3_control.settings import ControlSettings
-    from sher3_control.supervisor_node import SupervisorNode
-    from sher3_gap.excite_node import ExciteNode
-    from sher3_gap.player import Phase, Player
+    from sher3_gap.excitation.excite_node import ExciteNode
+    from sher3_gap.excitation.player import Phase, Player
     from sher3_runtime import Graph
 
     excitation = excite("sweep", ROBOT, posture="p1", duration=2.0)

@@ -4,19 +4,20 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from sher3_description import FileError
-from sher3_gap import Verdict, diagnose_runs
-from sher3_gap.channels import Channel
-from sher3_gap.design import CHOICES, Design, build
+from sher3_common import FileError
+from sher3_diagnosis.channel import Channel
+from sher3_diagnosis.verdict import Verdict
+from sher3_effects import plants
+from sher3_gap import diagnose_runs
 from sher3_gap.excitation import ExcitationError
-from sher3_gap.excitation_file import load_excitation, save_excitation
-from sher3_gap.experiment import ExperimentError, Given, design_experiment, realised
-from sher3_gap.rehearsal import rehearse
-from sher3_gap.separation import Prediction, Separation
-from sher3_sim import EFFECTS
+from sher3_gap.excitation.file import load_excitation, save_excitation
+from sher3_gap.experiments.design import ExperimentError, Given, design_experiment, realised
+from sher3_gap.experiments.family import CHOICES, Design, build
+from sher3_gap.experiments.rehearsal import rehearse
+from sher3_gap.experiments.separation import Prediction, Separation
 from simulated import ROBOT, SCATTER, runs_of, signals
 
-TRUTH = EFFECTS["presliding_friction"]("tilt", force=0.5, displacement=12e-6)
+TRUTH = plants()["presliding_friction"]("tilt", force=0.5, displacement=12e-6)
 
 
 @pytest.fixture(scope="module")

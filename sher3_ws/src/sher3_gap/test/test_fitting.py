@@ -2,23 +2,22 @@
 
 import numpy as np
 import pytest
+from sher3_diagnosis.fitting import fit, make_term, solve
+from sher3_effects import library, plants
 from sher3_gap.evidence import gather
-from sher3_gap.fitting import fit, make_term, solve
-from sher3_gap.library import LIBRARY
-from sher3_gap.timing import timing_of
-from sher3_sim.effects import EFFECTS
+from sher3_gap.stages.timing import timing_of
 from simulated import ROBOT, runs_of, signals
 
 
 @pytest.fixture(scope="module")
 def evidence():
-    effects = [EFFECTS["coulomb_friction"]("delta_1", force=0.5)]
+    effects = [plants()["coulomb_friction"]("delta_1", force=0.5)]
     return gather(signals(runs_of(("reversals", "sweep"), effects, repeats=2)), ROBOT)
 
 
 def test_leaving_a_run_out_by_subtraction_is_leaving_it_out(evidence):
     data = evidence.data
-    term = make_term(data, LIBRARY["coulomb_friction"], "delta_1", {"displacement": 5e-6})
+    term = make_term(data, library()["coulomb_friction"], "delta_1", {"displacement": 5e-6})
     found = fit(data, [term])
     (channel,) = term.channels
     for held in range(4):
@@ -39,7 +38,7 @@ def test_collinear_columns_are_solved_and_dead_ones_are_zero():
 
 @pytest.mark.parametrize("latency", [0.4, 1.0, 2.65])
 def test_a_constant_latency_is_read_off_the_echo(latency):
-    effects = [EFFECTS["command_delay"]("all", delay=latency * ROBOT.control_period)]
+    effects = [plants()["command_delay"]("all", delay=latency * ROBOT.control_period)]
     timing = timing_of(signals(runs_of(("steps",), effects, repeats=1)), ROBOT)
     assert timing.common == pytest.approx(latency, abs=0.02)
     assert timing.constant < 1e-6 * timing.energy
@@ -47,6 +46,6 @@ def test_a_constant_latency_is_read_off_the_echo(latency):
 
 
 def test_drops_are_counted():
-    effects = [EFFECTS["dropped_commands"]("all", probability=0.02)]
+    effects = [plants()["dropped_commands"]("all", probability=0.02)]
     timing = timing_of(signals(runs_of(("sweep", "steps"), effects, repeats=2)), ROBOT)
     assert timing.drops == pytest.approx(0.02, rel=0.4)

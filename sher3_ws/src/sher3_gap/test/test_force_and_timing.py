@@ -2,13 +2,13 @@
 
 import numpy as np
 import pytest
-from sher3_gap.channels import Channel
+from sher3_diagnosis.channel import Channel
+from sher3_diagnosis.localise.gaps import gap_of
+from sher3_effects import plants
 from sher3_gap.evidence import gather
-from sher3_gap.geometry import Geometry
-from sher3_gap.localise import gap_of, repeats
-from sher3_gap.residuals import motor_residual, step_share
-from sher3_gap.timing import demand_in_force, timing_of
-from sher3_sim.effects import EFFECTS
+from sher3_gap.stages.geometry import Geometry
+from sher3_gap.stages.residuals import motor_residual, step_share
+from sher3_gap.stages.timing import demand_in_force, timing_of
 from simulated import ROBOT, runs_of, signals
 
 
@@ -39,7 +39,7 @@ def test_the_nominal_mass_is_found_to_a_half_percent():
 )
 def test_late_commands_are_no_force(effect, parameters):
     healthy = signals(runs_of(("steps",), repeats=1))
-    late = signals(runs_of(("steps",), [EFFECTS[effect]("all", **parameters)], repeats=1))
+    late = signals(runs_of(("steps",), [plants()[effect]("all", **parameters)], repeats=1))
     timing = timing_of(late, ROBOT)
     told = rms(late[0], demand_in_force(late[0], ROBOT, timing))
     assert (told < 1.15 * rms(healthy[0])).all()
@@ -48,7 +48,7 @@ def test_late_commands_are_no_force(effect, parameters):
 
 
 def test_one_axis_alone_tells_its_ticks():
-    runs = signals(runs_of(("sweep", "steps"), [EFFECTS["command_jitter"]("delta_1", sigma=3e-4)], repeats=1))
+    runs = signals(runs_of(("sweep", "steps"), [plants()["command_jitter"]("delta_1", sigma=3e-4)], repeats=1))
     timing = timing_of(runs, ROBOT)
     assert timing.alone == 0
     assert timing.per_tick < 1e-12 * timing.energy
@@ -62,9 +62,9 @@ def test_no_force_is_told_without_the_echo():
 
 
 def test_few_repeats_ask_for_a_larger_gap():
-    runs = signals(runs_of(("reversals", "sweep"), [EFFECTS["viscous_friction"]("tilt", extra=40.0)], repeats=3))
+    runs = signals(runs_of(("reversals", "sweep"), [plants()["viscous_friction"]("tilt", extra=40.0)], repeats=3))
     few = [r for r in runs if r.repeat < 2]
-    assert (repeats(runs), repeats(few)) == (4, 2)
+    assert (gather(runs, ROBOT).repeats, gather(few, ROBOT).repeats) == (4, 2)
     channel = Channel("motor_mechanics", "tilt")
     many, less = (gap_of(gather(r, ROBOT), channel) for r in (runs, few))
     assert less.power / less.ratio**2 < many.power / many.ratio**2

@@ -4,17 +4,14 @@ import json
 import math
 
 import pytest
-from sher3_gap import gap_monitor_node
-from sher3_gap.cli import app
+from sher3_common.samples import JointSample, WrenchSample
+from sher3_effects import plants
 from sher3_gap.excitation import excite
-from sher3_gap.monitor import TOPICS, Monitor, StageStatus
-from sher3_gap.rehearsal import rehearse
-from sher3_runtime.samples import JointSample, WrenchSample
-from sher3_sim import EFFECTS
+from sher3_gap.experiments.rehearsal import rehearse
+from sher3_gap.live.monitor import TOPICS, Monitor
 from simulated import ROBOT
-from typer.testing import CliRunner
 
-FRICTION = EFFECTS["coulomb_friction"]("delta_2", force=1.5)
+FRICTION = plants()["coulomb_friction"]("delta_2", force=1.5)
 
 
 def samples(run, ticks=2300):
@@ -56,7 +53,7 @@ def test_a_known_effect_is_no_gap():
 
 
 def test_late_commands_show_in_transport():
-    found = judged([EFFECTS["command_delay"]("all", delay=1e-3)])
+    found = judged([plants()["command_delay"]("all", delay=1e-3)])
     assert found["transport", "delta_1"].level == 2
     assert not found["controller", "delta_1"].level
 
@@ -78,14 +75,14 @@ def test_memory_is_bounded():
     monitor = Monitor(ROBOT, window=0.1)
     for k in range(1000):
         monitor.feed("measured_js", JointSample(k * 2_000_000, (0.0,) * 5))
-    assert len(monitor._ticks) <= 100
+    assert monitor.held <= 100
     assert monitor.judge() == []
 
 
 @pytest.mark.graph
 def test_the_node_publishes_once_a_second():
     from rclpy.node import Node
-    from sher3_gap.gap_monitor_node import TOPIC, GapMonitorNode, judged_json
+    from sher3_gap.live.gap_monitor_node import TOPIC, GapMonitorNode, judged_json
     from sher3_runtime import Graph
     from sher3_runtime.ports import NODE_OPTIONS, advertise, on_tick
 
@@ -124,18 +121,3 @@ def test_the_node_publishes_once_a_second():
         assert len(lines[-1]["stages"]) == 26 and lines[-1]["stamp"] % 10**9 == 0
         (row,) = [r for r in lines[-1]["stages"] if (r["stage"], r["actuator"]) == ("motor_mechanics", "delta_2")]
         assert row["level"] == 2 and row["ratio"] == pytest.approx(row["gap"] / row["floor"])
-
-
-@pytest.mark.parametrize("arguments", [[], ["--json"]])
-def test_the_command_prints_one_object_a_second_when_asked(arguments, monkeypatch):
-    def run(robot, effects, window, domain, told):
-        if told is not None:
-            told(1, [])
-            told(2, [StageStatus("drive", "tilt", 3e-6, 1e-6, "m/s")])
-
-    monkeypatch.setattr(gap_monitor_node, "run", run)
-    result = CliRunner().invoke(app, ["monitor", *arguments])
-    assert result.exit_code == 0, result.output
-    rows = [json.loads(line) for line in result.stdout.splitlines()]
-    stage = {"stage": "drive", "actuator": "tilt", "gap": 3e-6, "floor": 1e-6, "unit": "m/s", "ratio": 3e-6 / 1e-6}
-    assert rows == ([{"stamp": 1, "stages": []}, {"stamp": 2, "stages": [stage | {"level": 2}]}] if arguments else [])

@@ -1,15 +1,14 @@
 """Where a gap lives against where its cause says it does."""
 
 import pytest
-from sher3_gap.attribute import Candidates
+from sher3_diagnosis.attribute.candidates import Candidates
+from sher3_diagnosis.localise.pattern import pattern_of
+from sher3_diagnosis.localise.regimes import regime_masks
+from sher3_effects import library, plants
 from sher3_gap.evidence import gather
-from sher3_gap.library import LIBRARY
-from sher3_gap.pattern import pattern_of
-from sher3_gap.regimes import regime_masks
-from sher3_sim import EFFECTS
 from simulated import ROBOT, runs_of, signals
 
-RUBBING = EFFECTS["coulomb_friction"]("tilt", force=1.0)
+RUBBING = plants()["coulomb_friction"]("tilt", force=1.0)
 
 
 @pytest.fixture(scope="module")
@@ -18,7 +17,7 @@ def evidence():
 
 
 def agreement(evidence, effect):
-    fit = Candidates(evidence).best(LIBRARY[effect], "tilt")
+    fit = Candidates(evidence, list(library().values())).best(library()[effect], "tilt")
     return pattern_of(evidence, fit, 0)
 
 
@@ -42,5 +41,5 @@ def test_shares_of_a_family_add_up_to_one(evidence):
 
 
 def test_regimes_of_a_family_do_not_overlap(evidence):
-    for family in regime_masks(evidence, 0, 4).values():
+    for family in regime_masks(evidence, 0, "tilt").values():
         assert (sum(mask.astype(int) for mask in family.values()) <= 1).all()

@@ -1,7 +1,7 @@
 """Structural isolability: what each further topic tells apart."""
 
-from sher3_gap.library import LIBRARY
-from sher3_gap.structure import isolability, structure
+from sher3_effects import library
+from sher3_gap.stages.isolability import isolability, structure
 
 FULL = (
     "setpoint_js",
@@ -20,7 +20,7 @@ def group(topics, effect):
 
 def test_every_effect_is_somewhere():
     found = structure(FULL)
-    assert set().union(*found.groups) | found.invisible == set(LIBRARY)
+    assert set().union(*found.groups) | found.invisible == set(library())
     assert not found.invisible
 
 

@@ -4,11 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from sher3_effects import plants
+from sher3_gap.case.loading import signals_of
+from sher3_gap.case.ticks import in_order, on_grid, tick_grid
 from sher3_gap.errors import CaseError
-from sher3_gap.exact import controller_error, transport_error, with_lateness
-from sher3_gap.loading import signals_of
-from sher3_gap.ticks import in_order, on_grid, tick_grid
-from sher3_sim import EFFECTS
+from sher3_gap.stages.exact import controller_error, transport_error, with_lateness
 from simulated import ROBOT, runs_of
 
 T = 2_000_000
@@ -92,7 +92,7 @@ def test_what_happens_all_the_time_is_the_robots():
 
 
 def test_commands_that_are_dropped_often_are_the_robots():
-    effects = [EFFECTS["dropped_commands"]("all", probability=0.05)]
+    effects = [plants()["dropped_commands"]("all", probability=0.05)]
     (run,) = runs_of(("sweep",), effects, repeats=1, duration=2.5)
     signals = signals_of(replace(run, metadata=replace(run.metadata, origin="robot")), ROBOT)
     assert signals.held is None

@@ -12,7 +12,7 @@ import pinocchio as pin
 from sher3_description import Robot
 from sher3_description.urdf import urdf
 
-from .arrays import Floats, vector
+from sher3_kinematics.arrays import Floats, vector
 
 
 def whole_robot_model(robot: Robot) -> pin.Model:

@@ -12,11 +12,12 @@ import numpy as np
 from numba import config
 from numba.np.unsafe.ndarray import to_fixed_tuple as _to_fixed_tuple
 from numpy.typing import NDArray
+from sher3_common.compiled import compiled_ieee
 
-from . import kernel, kernel_reach
-from .errors import BadInput
-from .kernel_delta import compiled
-from .kernel_parameters import KernelParameters
+from sher3_kinematics import kernel
+from sher3_kinematics.errors import BadInput
+from sher3_kinematics.kernel import reach as kernel_reach
+from sher3_kinematics.kernel.parameters import KernelParameters
 
 Floats = NDArray[np.float64]
 _COUNT = len(KernelParameters._fields)
@@ -42,7 +43,10 @@ def vector(values: Sequence[float] | Floats, size: int, name: str) -> Floats:
 
 
 def _is_plain(values: object, size: int) -> bool:
-    """Return whether nothing need be converted: the control loop's case, and several times faster than converting."""
+    """Return whether a value is a vector that needs no conversion.
+
+    This is the case of the control loop, and the test is several times faster than a conversion.
+    """
     return (
         isinstance(values, np.ndarray)
         and values.dtype == np.float64
@@ -62,16 +66,17 @@ def rows(values: Sequence[Sequence[float]] | Floats, size: int, name: str) -> Fl
 
 _OFF = config.DISABLE_JIT  # type: ignore[attr-defined]
 to_fixed_tuple = (lambda array, _: tuple(array)) if _OFF else _to_fixed_tuple
-"""Numba's own is for compiled code alone; with numba switched off, as mutation checks do, Python's does."""
+"""Numba's function works in compiled code alone; with numba switched off (mutation checks do so) Python's does the
+same."""
 
 
-@compiled
+@compiled_ieee
 def unpack(parameters: Floats) -> KernelParameters:
     """Return the parameter tuple held in an array (44,)."""
     return KernelParameters(*to_fixed_tuple(parameters, _COUNT))  # type: ignore[call-arg]
 
 
-@compiled
+@compiled_ieee
 def tip_transform(parameters: Floats, q: Floats) -> Floats:
     """Return T_bt (4, 4) for actuator positions (5,)."""
     transform = np.empty((4, 4))
@@ -81,13 +86,13 @@ def tip_transform(parameters: Floats, q: Floats) -> Floats:
     return transform
 
 
-@compiled
+@compiled_ieee
 def tip_jacobian(parameters: Floats, q: Floats) -> Floats:
     """Return the tip Jacobian (6, 5)."""
     return kernel.tip_jacobian(unpack(parameters), q)
 
 
-@compiled
+@compiled_ieee
 def pose_inverse(
     parameters: Floats, position: Floats, axis: Floats, lower: Floats, upper: Floats, elevation: float
 ) -> tuple[Floats, bool]:
@@ -104,25 +109,25 @@ def pose_inverse(
     return q, inside
 
 
-@compiled
+@compiled_ieee
 def gravity_load(parameters: Floats, q: Floats) -> Floats:
     """Return G(q) (5,)."""
     return kernel.gravity_load(unpack(parameters), q)
 
 
-@compiled
+@compiled_ieee
 def delta_forward(parameters: Floats, q: Floats) -> Floats:
     """Return the platform centre (3,) for slider positions (3,)."""
     return np.array(kernel.delta_forward(unpack(parameters), q[0], q[1], q[2]))
 
 
-@compiled
+@compiled_ieee
 def delta_inverse(parameters: Floats, centre: Floats) -> Floats:
     """Return the slider positions (3,) for a platform centre (3,)."""
     return np.array(kernel.delta_inverse(unpack(parameters), centre[0], centre[1], centre[2]))
 
 
-@compiled
+@compiled_ieee
 def delta_jacobian(parameters: Floats, q: Floats) -> Floats:
     """Return the Jacobian (3, 3) of the platform centre for slider positions (3,)."""
     return kernel.delta_jacobian(unpack(parameters), q[0], q[1], q[2])

@@ -5,14 +5,15 @@ from __future__ import annotations
 import json
 import math
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
-import numpy as np
 import typer
-from sher3_description import ACTUATORS, Sher3Error, load_robot
+from sher3_common import Sher3Error
 
-from .kernel_batch import tip_quaternion_batch
-from .robot_kinematics import RobotKinematics
+if TYPE_CHECKING:
+    import numpy as np
+
+    from sher3_kinematics.robot_kinematics import RobotKinematics
 
 app = typer.Typer(no_args_is_help=True, help="Forward and inverse kinematics.")
 
@@ -41,6 +42,11 @@ def fk(
 
         sher3 fk --mm-deg 4 -3 1 -10 5 --json
     """
+    import numpy as np
+    from sher3_description import load_robot
+
+    from sher3_kinematics.robot_kinematics import RobotKinematics
+
     with reported(as_json):
         _expect(len(q), 5, "positions", "delta_1 delta_2 delta_3 roll tilt")
         kinematics = RobotKinematics(load_robot(robot))
@@ -70,6 +76,11 @@ def ik(
 
         sher3 ik --mm-deg 200 5 100 0.1 -0.2 -1 --json
     """
+    import numpy as np
+    from sher3_description import load_robot
+
+    from sher3_kinematics.robot_kinematics import RobotKinematics
+
     with reported(as_json):
         if len(pose) == 3:
             pose = [*pose, 0.0, 0.0, -1.0]
@@ -104,10 +115,16 @@ def _expect(count: int, needed: int, what: str, order: str) -> None:
 
 
 def _scale(mm_deg: bool) -> np.ndarray:
+    import numpy as np
+
     return np.array([1e-3, 1e-3, 1e-3, math.pi / 180, 1e-3]) if mm_deg else np.ones(5)
 
 
 def _print_pose(kinematics: RobotKinematics, q: np.ndarray, as_json: bool, mm_deg: bool) -> None:
+    import numpy as np
+
+    from sher3_kinematics.kernel.batch import tip_quaternion_batch
+
     transform = kinematics.transform_tip_to_base(q)
     rotation = np.ascontiguousarray(transform[:3, :3])
     tilt, singularity = kinematics.tilt_linkage.angle(float(q[4])), kinematics.singularity_distance(q)
@@ -134,6 +151,8 @@ def _print_pose(kinematics: RobotKinematics, q: np.ndarray, as_json: bool, mm_de
 
 
 def _print_actuators(kinematics: RobotKinematics, q: np.ndarray, as_json: bool, mm_deg: bool) -> None:
+    from sher3_description import ACTUATORS
+
     if as_json:
         result = {"q": dict(zip(ACTUATORS, q.tolist(), strict=True)), "units": dict(zip(ACTUATORS, UNITS, strict=True))}
         result["tilt_angle"] = kinematics.tilt_linkage.angle(float(q[4]))  # type: ignore[assignment]

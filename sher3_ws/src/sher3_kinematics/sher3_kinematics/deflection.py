@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from sher3_description import Robot
 
-from .errors import BadInput, Singular, Unreachable
-from .link_law import LinkLaw
+from sher3_kinematics.errors import BadInput, Singular, Unreachable
+from sher3_kinematics.link_law import LinkLaw
 
 Floats = NDArray[np.float64]
 

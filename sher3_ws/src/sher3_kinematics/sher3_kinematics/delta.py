@@ -8,13 +8,15 @@ from collections.abc import Sequence
 import numpy as np
 from sher3_description import ACTUATORS, Robot
 
-from . import arrays, kernel_batch, kernel_reach
-from .arrays import Floats, rows, vector
-from .errors import BadInput, Unreachable
-from .kernel_parameters import KernelParameters, kernel_parameters
+from sher3_kinematics import arrays
+from sher3_kinematics.arrays import Floats, rows, vector
+from sher3_kinematics.errors import BadInput, Unreachable
+from sher3_kinematics.kernel import batch as kernel_batch
+from sher3_kinematics.kernel import reach as kernel_reach
+from sher3_kinematics.kernel.parameters import KernelParameters, kernel_parameters
 
 LEAST_ELEVATION = 0.1
-"""Least sine of a leg's elevation in the workspace: a slider then moves at most ten times as fast as the platform."""
+"""Least sine of a leg's elevation in the workspace: there a slider moves at most ten times as fast as the platform."""
 
 
 class Delta:
@@ -128,7 +130,7 @@ class Delta:
         return distances
 
     def _do_not_meet(self, sliders: Floats) -> Unreachable:
-        """Return the error of slider positions that no platform centre fits, with the height to give up [m]."""
+        """Return the error for slider positions that no platform centre fits, with the height that is missing [m]."""
         mean, meets, fails = sliders.mean(), 0.0, 1.0
         for _ in range(50):
             middle = 0.5 * (meets + fails)

@@ -1,7 +1,7 @@
-"""Compiled functions without numba's look-up of the argument types, which in a control loop costs more than the work.
+"""Calls of compiled functions without numba's look-up of the argument types.
 
-A call of a compiled function first finds out the type of every argument, down to the last member of nested tuples:
-11 us of the 15 us of a tick of the admittance law. Where the types are always the same they are looked up once.
+A call of a compiled function first finds out the type of every argument, down to the last member of nested tuples.
+That takes 11 us of the 15 us of one tick of the admittance law. Where the types never change, one look-up is enough.
 """
 
 from __future__ import annotations
@@ -15,9 +15,13 @@ import numba
 def direct(function: Any, *example: Any) -> Callable[..., Any]:
     """Return the machine code of a compiled function for arguments of the types of `example`, called by position.
 
-    The caller answers for the types: the dtype and shape of arrays and the length of tuples must be those of the
-    example (numba raises ValueError or TypeError for another length or a number that is none). A function that is not
-    compiled, as when numba is switched off, is returned as it is.
+    The caller vouches for the types: dtype and shape of arrays and length of tuples must be those of the example.
+
+    Returns:
+        The machine code; the function itself when it is not compiled, as with numba switched off.
+
+    Raises:
+        ValueError, TypeError: In a call, for a tuple of another length or a value that is not a number.
     """
     if not hasattr(function, "overloads"):
         return function

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from sher3_description import Sher3Error
+from sher3_common.errors import Sher3Error
 
 
 class Unreachable(Sher3Error):
-    """A pose or platform position the mechanism cannot take.
+    """A pose or platform position that the mechanism cannot take.
 
     Attributes:
-        part: what ends there, as in `delta_2`, `roll` or `tilt`.
-        distance: how far beyond the end the request lies, in `unit`.
+        part: The part whose end is exceeded, as in `delta_2`, `roll` or `tilt`.
+        distance: How far the request lies beyond that end, in `unit`.
         unit: `m` or `rad`.
     """
 

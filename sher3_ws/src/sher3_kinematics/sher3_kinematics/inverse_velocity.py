@@ -6,27 +6,30 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+from sher3_common.compiled import compiled_ieee
 from sher3_description import ACTUATORS
 
-from . import kernel_velocity as codes
-from .arrays import Floats, compiled, unpack, vector
-from .direct import direct
-from .errors import BadInput
-from .robot_kinematics import RobotKinematics
+from sher3_kinematics.arrays import Floats, unpack, vector
+from sher3_kinematics.direct import direct
+from sher3_kinematics.errors import BadInput
+from sher3_kinematics.kernel import velocity as codes
+from sher3_kinematics.robot_kinematics import RobotKinematics
 
 REACTION_PERIODS = 3.0
-"""Control periods between a reading and the effect of the command computed from it: transport, drive, one in hand."""
+"""Control periods from a reading to the effect of the command computed from it: one for transport, one for the drive,
+one in reserve."""
 REACH_MARGIN = 1.1
-"""Least leg elevation allowed to a commanded motion over that of the workspace."""
+"""Least leg elevation that a commanded motion may reach, as a multiple of the least elevation of the workspace."""
 
 
 class LimitedVelocity(NamedTuple):
-    """A permitted velocity.
+    """A velocity that all limits permit.
 
     Attributes:
-        q_dot: actuator velocities (5,).
-        scale: what the velocity and braking limits leave of the commanded one, 0 to 1, direction kept.
-        limited_by: empty, or what limits: `velocity of roll`, `travel of delta_1`, `reach of delta_2`, `acceleration`.
+        q_dot: Actuator velocities (5,) [m/s, rad/s].
+        scale: Factor 0 to 1 by which velocity and braking limits scale the commanded velocity; its direction is kept.
+        limited_by: What limits, as in `velocity of roll`, `travel of delta_1`, `reach of delta_2`, `acceleration`;
+            empty when nothing does.
     """
 
     q_dot: Floats
@@ -50,9 +53,10 @@ class InverseVelocity:
         margin: float = 0.0,
         reaction_periods: float = REACTION_PERIODS,
     ) -> None:
-        """Take limits from the kinematics; `margin` [m or rad] keeps clear of each end of travel.
+        """Take limits from the kinematics; `margin` [m or rad] is kept free at each end of travel.
 
-        The ends are drawn in by what a braking actuator, faster before than `previous` tells, covers while it reacts.
+        Each end is drawn in further by the distance an actuator covers while it reacts: at that moment it may be faster
+        than `previous` says, because it has been braking.
         """
         self.period = kinematics.robot.control_period if period is None else period
         if not self.period > 0.0 or not margin >= 0.0:
@@ -73,9 +77,10 @@ class InverseVelocity:
     def of_finite(
         self, q: tuple[float, ...], twist: tuple[float, ...], previous: tuple[float, ...]
     ) -> tuple[tuple[float, ...], float, int]:
-        """Return as the call does q_dot, scale and limit code (see `describe`), for tuples of finite numbers.
+        """Return q_dot, scale and limit code (see `describe`) for tuples of finite numbers.
 
-        This is the control loop's way, which has judged its inputs: 2 us in place of 12.
+        The control loop calls this: it has judged its inputs already, and the checks of `__call__` would make 12 us of
+        2 us.
         """
         return self._finite(self._values, q, twist, previous, *self._constants)
 
@@ -90,7 +95,7 @@ class InverseVelocity:
             previous: actuator velocity (5,) commanded one period ago.
         """
         state = vector(q, 5, "actuator positions")
-        wanted = _twist_inverse(self._values, state, vector(twist, 6, "twist"))
+        wanted = twist_inverse(self._values, state, vector(twist, 6, "twist"))
         return self._limited(state, wanted, vector(previous, 5, "previous velocity"))
 
     def limit(
@@ -108,21 +113,22 @@ class InverseVelocity:
 
 
 def describe(code: int) -> str:
-    """Return the text for a limit code of `kernel_velocity`."""
+    """Return the text for a limit code of `kernel.velocity`."""
     if code in (codes.FREE, codes.NOT_FINITE, codes.ACCELERATION):
         return ("", "a value that is not finite", "acceleration")[code]
     kind = {1: "velocity", 2: "travel", 3: "reach"}[code // 10]
     return f"{kind} of {ACTUATORS[code % 10]}"
 
 
-@compiled
-def _twist_inverse(parameters: Floats, q: Floats, twist: Floats) -> Floats:
+@compiled_ieee
+def twist_inverse(parameters: Floats, q: Floats, twist: Floats) -> Floats:
+    """Return the actuator velocities (5,) that make a twist (6,) of the tip at q, without any limit."""
     q_dot = np.empty(5)
     codes.twist_inverse_into(unpack(parameters), q, twist, q_dot)
     return q_dot
 
 
-@compiled
+@compiled_ieee
 def _limit(
     parameters: Floats,
     q: Floats,
@@ -139,7 +145,7 @@ def _limit(
     return q_dot, scale, code
 
 
-@compiled
+@compiled_ieee
 def _limited_inverse(
     parameters: Floats,
     q: tuple[float, ...],

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from sher3_description import Robot
 
-from .errors import BadInput
+from sher3_kinematics.errors import BadInput
 
 Floats = NDArray[np.float64]
 

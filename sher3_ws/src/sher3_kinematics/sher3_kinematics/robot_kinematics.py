@@ -9,21 +9,23 @@ from typing import NamedTuple
 import numpy as np
 from sher3_description import ACTUATORS, Robot, load_robot
 
-from . import arrays, kernel_batch, kernel_reach
-from .arrays import Floats, rows, vector
-from .delta import Delta
-from .errors import BadInput, OutsideLimits, Unreachable
-from .kernel_parameters import KernelParameters, kernel_parameters
-from .tilt_linkage import TiltLinkage
+from sher3_kinematics import arrays
+from sher3_kinematics.arrays import Floats, rows, vector
+from sher3_kinematics.delta import Delta
+from sher3_kinematics.errors import BadInput, OutsideLimits, Unreachable
+from sher3_kinematics.kernel import batch as kernel_batch
+from sher3_kinematics.kernel import reach as kernel_reach
+from sher3_kinematics.kernel.parameters import KernelParameters, kernel_parameters
+from sher3_kinematics.tilt_linkage import TiltLinkage
 
 TOLERANCE = 1e-12
-"""Slack [m, rad] of the travel limits, so that a limit itself is reachable in floating point."""
+"""Slack [m, rad] of the travel limits, so that rounding does not put a position at a limit out of reach."""
 SHORTEST_AXIS = 1e-150
-"""Shortest tool axis whose direction floating point still holds."""
+"""Length of a tool axis below which its square underflows and it has no direction."""
 
 
 class SingularityDistance(NamedTuple):
-    """The nearest singularity: dimensionless `distance`, 0 at it and at most 1, and the `part` it belongs to."""
+    """The nearest singularity: dimensionless `distance` (0 at it, at most 1) and the `part` that it belongs to."""
 
     distance: float
     part: str
@@ -99,7 +101,10 @@ class RobotKinematics:
         return q
 
     def _require_angles(self, q: Floats, axis: Floats) -> None:
-        """Refuse roll or tilt angles beyond the actuators' travel, naming the angles rather than slider positions."""
+        """Refuse roll or tilt angles beyond the travel of the actuators.
+
+        The error tells the angles: the caller gave a direction and knows nothing of slider positions.
+        """
         low, high = (self.tilt_linkage.angle(float(end)) for end in (self.lower[4], self.upper[4]))
         if not self._lower[4] <= q[4] <= self._upper[4]:
             raise self._angle_error("tilt", math.asin(max(-1.0, min(1.0, -axis[0]))), low, high)
@@ -130,7 +135,7 @@ class RobotKinematics:
         """Return the nearest singularity of the actuator Jacobian at q (5,).
 
         The Jacobian is block triangular, so it is singular only where the delta or the tilt linkage is; see
-        `kernel_reach.singularity_margins_into` for the five measures.
+        `kernel.reach.singularity_margins_into` for the five measures.
         """
         margins = np.empty(5)
         kernel_reach.singularity_margins_into(self.parameters, vector(q, 5, "actuator positions"), margins)

@@ -6,9 +6,9 @@ import math
 
 from sher3_description import Robot
 
-from . import kernel
-from .errors import BadInput, Unreachable
-from .kernel_parameters import KernelParameters, kernel_parameters
+from sher3_kinematics import kernel
+from sher3_kinematics.errors import BadInput, Unreachable
+from sher3_kinematics.kernel.parameters import KernelParameters, kernel_parameters
 
 
 class TiltLinkage:
@@ -27,7 +27,7 @@ class TiltLinkage:
         self.travel = (kernel.tilt_slider(p, self.dead_points[0]), kernel.tilt_slider(p, self.dead_points[1]))
 
     def _angle_in_line(self, reach: float) -> float:
-        """Return the crank angle [rad] with crank and coupler in line, `reach` being their signed sum of lengths."""
+        """Return the crank angle [rad] with crank and coupler in line; `reach` [m] is their signed sum of lengths."""
         cosine = self.parameters.offset / reach
         return math.acos(cosine) if abs(cosine) <= 1.0 else math.pi
 

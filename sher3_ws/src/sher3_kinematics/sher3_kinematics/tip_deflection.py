@@ -7,17 +7,18 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from sher3_description import Robot, Sher3Error
+from sher3_common import Sher3Error
+from sher3_description import Robot
 
-from .arrays import vector
-from .deflection import DeltaDeflection
-from .deflection_kernel import point_deflection
-from .link_law import LinkLaw
-from .robot_kinematics import RobotKinematics
+from sher3_kinematics.arrays import vector
+from sher3_kinematics.deflection import DeltaDeflection
+from sher3_kinematics.kernel.deflection import point_deflection
+from sher3_kinematics.link_law import LinkLaw
+from sher3_kinematics.robot_kinematics import RobotKinematics
 
 Floats = NDArray[np.float64]
 ABSURD_FORCE = 1e6
-"""Link force [N] that no load within the sensor's range causes except near a singularity."""
+"""Link force [N] that a load within the sensor's range causes only near a singularity."""
 
 
 class LoadBeyondRange(Sher3Error):
@@ -108,7 +109,10 @@ class TipDeflection:
         return self._at_point_fast(centre, transform[:3, 3] - centre, load)
 
     def _at_point_fast(self, centre: Floats, lever: Floats, load: Floats) -> Floats:
-        """Return what `at_point` does, compiled; where links carry absurd forces leave it to `at_point` to say why."""
+        """Return the same as `at_point`, computed by compiled code.
+
+        Where links carry absurd forces `at_point` is called instead: its error says why.
+        """
         delta = self.delta
         geometry = delta.platform, delta.base, delta.link_length
         try:
@@ -124,8 +128,8 @@ class TipDeflection:
     ) -> Floats:
         """Return the tip position (3,) [m] to command so that the deflected tip is where `position` (3,) says.
 
-        The first-order correction: the deflection at the present pose is subtracted. Its change over the correction
-        itself, a fraction of a millimetre, is of second order.
+        This is the first-order correction: the deflection at the present pose is subtracted. The correction is a
+        fraction of a millimetre, and the deflection changes over it by a quantity of second order only.
         """
         return vector(position, 3, "tip position") - self(q, wrench)[:3]
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from sher3_description import Robot, load_robot
 from sher3_kinematics import RobotKinematics
-from sher3_kinematics.kernel_parameters import KernelParameters, kernel_parameters
+from sher3_kinematics.kernel.parameters import KernelParameters, kernel_parameters
 
 
 @pytest.fixture(scope="session")

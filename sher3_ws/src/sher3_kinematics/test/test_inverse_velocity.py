@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from sher3_kinematics import BadInput, InverseVelocity, RobotKinematics, kernel_velocity
+from sher3_kinematics import BadInput, InverseVelocity, RobotKinematics
+from sher3_kinematics.kernel import velocity as kernel_velocity
 
 PERIOD = 0.002
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from sher3_kinematics import RobotKinematics
-from sher3_kinematics import kernel_batch as batch
+from sher3_kinematics.kernel import batch as batch
 
 EXACT = 1e-12
 

@@ -7,7 +7,7 @@ from scipy.optimize import root
 from sher3_description import Robot
 from sher3_kinematics import RobotKinematics
 from sher3_kinematics.arm import Arm, whole_robot_model
-from sher3_kinematics.kernel_parameters import KernelParameters
+from sher3_kinematics.kernel.parameters import KernelParameters
 
 
 def test_urdf_model_has_the_tip_pose_jacobian_and_gravity(

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from sher3_kinematics import BadInput, Delta, RobotKinematics, Unreachable
-from sher3_kinematics.kernel_parameters import KernelParameters
+from sher3_kinematics.kernel.parameters import KernelParameters
 
 
 def test_reach_and_leg_offset(kinematics: RobotKinematics) -> None:

@@ -5,20 +5,13 @@ from __future__ import annotations
 import json
 import time
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
-import numpy as np
 import typer
 from sher3_kinematics.cli import reported
 
-from .constraints import AS_STATED, REACH_ONLY, RELAXED, Constraints
-from .design import CHOSEN, READINGS, Reading
-from .errors import BadData, InfeasibleDesign
-from .optimise import Search, best, fine_grid, search, search_parallel
-
 app = typer.Typer(no_args_is_help=True, help="The SHER 3.0 paper recomputed.")
 
-SETS: dict[str, Constraints] = {"stated": AS_STATED, "relaxed": RELAXED, "reach": REACH_ONLY}
 JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 
 
@@ -43,21 +36,24 @@ def design(
 
         sher3 design --fine 1000000 --jobs 2
     """
+    from sher3_paper.search.optimise import fine_grid, search, search_parallel
+    from sher3_paper.search.summary import choices, summary, text
+
     with reported(as_json):
-        taken, chosen_set = _choices(reading, constraints)
+        taken, chosen_set = choices(reading, constraints)
         start = time.perf_counter()
         if fine:
             found = search_parallel(fine_grid(fine), taken, poses, jobs, dask)
         else:
             found = search(reading=taken, poses=poses, torque=torque)
         seconds = time.perf_counter() - start
-        result = _summary(found, chosen_set, seconds)
+        result = summary(found, chosen_set, seconds)
         if figure is not None:
-            from .figures import draw
+            from sher3_paper.figures import draw
 
             picture = {"found": found, "sets": {constraints: chosen_set}} if fine else {"found": found}
             figure.write_bytes(draw("pareto" if fine else "trends", picture))
-    typer.echo(json.dumps(result, indent=2) if as_json else _text(result))
+    typer.echo(json.dumps(result, indent=2) if as_json else text(result))
 
 
 @app.command()
@@ -80,9 +76,9 @@ def paper(
         sher3 paper --json
     """
     with reported(as_json):
-        from .report import html
-        from .report import markdown as as_markdown
-        from .sections import build
+        from sher3_paper.report import html
+        from sher3_paper.report import markdown as as_markdown
+        from sher3_paper.sections import build
 
         sections = build(only, benchtop)
         if markdown is not None:
@@ -100,67 +96,6 @@ def paper(
             typer.echo(f"  {line.quantity:46s} {values} {line.verdict:12s} {line.note}")
     if out is not None:
         typer.echo(f"\nwrote {out / 'report.html'}")
-
-
-def _choices(reading: str, constraints: str) -> tuple[Reading, Constraints]:
-    taken = next((name for name in READINGS if name == reading), None)
-    if taken is None:
-        raise BadData("reading", value=reading, limit=" or ".join(READINGS), remedy="choose one")
-    if constraints not in SETS:
-        raise BadData("constraints", value=constraints, limit=", ".join(SETS), remedy="choose one")
-    return taken, SETS[constraints]
-
-
-def _summary(found: Search, constraints: Constraints, seconds: float) -> dict[str, Any]:
-    met = constraints.met(found.values)
-    front = found.pareto(met)
-
-    def entry(k: int) -> dict[str, Any]:
-        gci, t_c = float(found.index[k]), float(np.degrees(found.compliance[k]))
-        return {"design": str(found.design(k)), "gci": gci, "t_c_deg_per_Nm": t_c}
-
-    result: dict[str, Any] = {
-        "designs": len(found),
-        "reading": found.reading,
-        "seconds": seconds,
-        "reach": int(found.values.reaches.sum()),
-        "feasible": int(met.sum()),
-        "best": {name: entry(k) for name, k in best(found, constraints).items()},
-        "pareto_size": len(front),
-        "pareto": [entry(int(k)) for k in front[:200]],
-    }
-    try:
-        k = found.find(CHOSEN)
-    except InfeasibleDesign:
-        return result
-    each = {name: bool(flags[k]) for name, flags in constraints.each(found.values).items()}
-    rank, among = found.rank(k, found.values.reaches)
-    better = len(found.dominating(k, found.values.reaches))
-    result["chosen"] = {**entry(k), "meets": each, "rank": rank, "of": among, "dominated_by": better}
-    return result
-
-
-def _text(result: dict[str, Any]) -> str:
-    lines = [
-        f"{result['designs']} designs in {result['seconds']:.2f} s, reading {result['reading']}",
-        f"  {result['reach']} reach, {result['feasible']} meet the constraints, {result['pareto_size']} on the front",
-    ]
-    for name, entry in result["best"].items():
-        lines.append(f"  {name:30s} {_entry(entry)}")
-    if "chosen" in result:
-        chosen = result["chosen"]
-        failed = [name for name, met in chosen["meets"].items() if not met]
-        lines.append(f"  {'chosen by the paper':30s} {_entry(chosen)}")
-        verdict = "violates " + ", ".join(failed) if failed else "meets the constraints"
-        lines.append(
-            f"  it {verdict}; rank {chosen['rank']} of {chosen['of']} by GCI / T_c among designs that reach, "
-            f"{chosen['dominated_by']} are better in both"
-        )
-    return "\n".join(lines)
-
-
-def _entry(entry: dict[str, Any]) -> str:
-    return f"{entry['design']:34s} GCI {entry['gci']:.4f}  T_c {entry['t_c_deg_per_Nm']:.4f} deg/(N m)"
 
 
 def _short(value: float | None) -> str:

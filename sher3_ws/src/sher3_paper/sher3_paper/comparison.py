@@ -1,4 +1,4 @@
-"""One line of the report: what the paper prints, what comes out here, and the verdict."""
+"""One line of the report: what the paper prints, what is computed here, and the verdict."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ class Comparison:
     """A printed value beside a computed one.
 
     Attributes:
-        quantity: what it is.
-        unit: of both values.
-        printed: by the paper, None where it prints none.
-        computed: here, None where nothing ran.
+        quantity: Name of the quantity.
+        unit: Unit of both values.
+        printed: Value in the paper; None where it prints none.
+        computed: Value computed here; None where nothing ran.
         verdict: `reproduced` within the tolerance of printing, `within band` of a stated wider one, `differs`,
             `inconsistent` (the paper contradicts itself, see `note`), `computed` (nothing printed), `not run`.
-        command: that makes the computed value.
-        note: tolerance, definition or the id of an inconsistency.
+        command: Command that makes the computed value.
+        note: Tolerance, definition, or the id of an inconsistency.
     """
 
     quantity: str
@@ -78,12 +78,12 @@ class Section:
     """One part of the report.
 
     Attributes:
-        name: by which `--only` chooses it.
-        title: heading.
-        text: what was done, a paragraph.
-        comparisons: lines printed value against computed.
-        tables: further tables.
-        figures: names of the functions of `figures` that draw it, with their arguments.
+        name: Name by which `--only` chooses it.
+        title: Heading.
+        text: What was done, one paragraph.
+        comparisons: Lines with a printed beside a computed value.
+        tables: Further tables.
+        figures: Names of the functions of `figures` that draw it, with their arguments.
     """
 
     name: str

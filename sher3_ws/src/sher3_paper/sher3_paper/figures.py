@@ -11,13 +11,13 @@ import numpy as np
 from matplotlib.figure import Figure
 from sher3_kinematics.link_law import LinkLaw
 
-from .constraints import Constraints
-from .design import CHOSEN
-from .grasp import GraspModel
-from .optimise import Search
-from .simulated import TwistLoop
-from .tables import DeflectionTable, TorsionTable
-from .torsion import TableModel, leg_slope, link_deflection, link_force
+from sher3_paper.grasp import GraspModel
+from sher3_paper.search.constraints import Constraints
+from sher3_paper.search.design import CHOSEN
+from sher3_paper.search.optimise import Search
+from sher3_paper.simulated import TwistLoop
+from sher3_paper.tables import DeflectionTable, TorsionTable
+from sher3_paper.torsion import TableModel, leg_slope, link_deflection, link_force
 
 matplotlib.use("Agg")
 

@@ -1,7 +1,8 @@
 """The deflection table: compliance of the grasping point, split between the delta stage and everything behind it.
 
-The delta links alone explain a fifth of what was measured; the rest is put into a lumped compliance about the platform
-centre, fitted to the means. Where the grasping point is, and whether springs were in, is not printed; see `Setup`.
+The delta links alone explain a fifth of what was measured. The rest is put into a lumped compliance about the platform
+centre, fitted to the means. The paper prints neither where the grasping point is nor whether springs were in; see
+`Setup`.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from sher3_description import Robot, load_robot
 from sher3_kinematics.link_law import LinkLaw
 from sher3_kinematics.tip_deflection import RIGID, ArmCompliance, TipDeflection
 
-from .tables import DeflectionTable, deflection_table
+from sher3_paper.tables import DeflectionTable, deflection_table
 
 Floats = NDArray[np.float64]
 
@@ -25,9 +26,9 @@ class Setup:
     """What the paper leaves open about its deflection test.
 
     Attributes:
-        lever: grasping point seen from P (3,) [m]; an assumption from the arm's dimensions.
-        force: at which the secant is taken [N]; the printed forces range from -6 to 8 N.
-        springs: whether the links are pre-loaded, as in the final robot.
+        lever: Vector from P to the grasping point (3,) [m]; an assumption from the dimensions of the arm.
+        force: Force at which the secant is taken [N]; the printed forces range from -6 to 8 N.
+        springs: Whether the links are pre-loaded by springs, as in the final robot.
     """
 
     lever: tuple[float, float, float] = (0.220, 0.0, 0.040)

@@ -9,9 +9,9 @@ from pathlib import Path
 import jinja2
 from sher3_description import load_robot
 
-from .comparison import Section
-from .figures import draw
-from .tables import inconsistencies
+from sher3_paper.comparison import Section
+from sher3_paper.figures import draw
+from sher3_paper.tables import inconsistencies
 
 
 def number(value: float | None) -> str:

@@ -8,24 +8,25 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 from sher3_description import Robot, load_robot
+from sher3_description.contract import GRAVITY
+from sher3_effects import plants
 from sher3_kinematics import RobotKinematics
-from sher3_kinematics.kernel_parameters import GRAVITY
 from sher3_kinematics.tip_deflection import TipDeflection
-from sher3_sim.effects import EFFECTS, Effect
-from sher3_sim.simulate import simulate
+from sher3_sim import PlantEffect
+from sher3_sim.closed_loop import simulate
 
-from .design import Design
-from .torsion import PowerFit, fit_power_law, link_deflection, link_force
+from sher3_paper.search.design import Design
+from sher3_paper.torsion import PowerFit, fit_power_law, link_deflection, link_force
 
 Floats = NDArray[np.float64]
 
 SETTLE_SECONDS = 0.5
-"""Time [s] the drives get to take up a load; their slowest mode decays in about 20 ms."""
+"""Time [s] that the drives get to take up a load: 25 times the 20 ms in which their slowest mode decays."""
 
 
-def effect(name: str, actuator: str, **parameters: float) -> Effect:
+def effect(name: str, actuator: str, **parameters: float) -> PlantEffect:
     """Return an effect of the simulator's library by its id."""
-    return EFFECTS[name](actuator=actuator, **parameters)
+    return plants()[name](actuator=actuator, **parameters)
 
 
 class TwistLoop(NamedTuple):
@@ -79,12 +80,14 @@ def identify_from_loops(loops: list[TwistLoop], least: float = 0.2) -> PowerFit:
 
 
 def measured_wrench_at_tip(robot: Robot, rotation: Floats, measured: Floats) -> Floats:
-    """Return the contact wrench (6,) at the tip in {b} from a force sensor reading (6,) in {f}, tool weight removed.
+    """Return the contact wrench (6,) at the tip in {b} from a force sensor reading (6,) in {f}.
+
+    The weight of the tool is removed.
 
     Args:
-        robot: sensor position and tool mass.
-        rotation: of {t}, to which {f} is parallel, in {b} (3, 3).
-        measured: reading.
+        robot: Robot that gives sensor position and tool mass.
+        rotation: Rotation (3, 3) of {t}, to which {f} is parallel, in {b}.
+        measured: The reading (6,) [N, N m].
     """
     sensor = robot.force_sensor
     weight = rotation.T @ np.array([0.0, 0.0, -sensor.tool_mass * GRAVITY])
@@ -113,14 +116,16 @@ class Compensation:
 def compensation(
     links: float = 1.0, structure: float = 1.0, poses: int = 6, force: float = 1.0, seed: int = 1
 ) -> Compensation:
-    """Hold poses under hand forces on a plant that gives way; correct by the model and the measured wrench; hold again.
+    """Measure the tip error under hand forces, without and with compensation, on a plant that gives way.
+
+    Each pose is held under a force, then held again with the correction of the model for the measured wrench.
 
     Args:
-        links: compliance of the plant's delta links over the model's: 1 is a perfect model, 1.2 a softer robot.
-        structure: the same for everything behind the links.
-        poses: number of random poses.
-        force: of the hand [N], random direction.
-        seed: of poses, forces and noise.
+        links: Compliance of the plant's delta links over that of the model: 1 is a perfect model, 1.2 a softer robot.
+        structure: The same ratio for everything behind the links.
+        poses: Number of random poses.
+        force: Force of the hand [N], in a random direction.
+        seed: Seed of poses, forces and noise.
     """
     robot, rng = load_robot(), np.random.default_rng(seed)
     kinematics, model = RobotKinematics(robot), TipDeflection(robot)
@@ -143,8 +148,12 @@ def compensation(
     return Compensation(np.array(before), np.array(after))
 
 
-def _hold(robot: Robot, q: Floats, wrench: Floats, effects: list[Effect], seed: int) -> tuple[Floats, Floats]:
-    """Return the tip position (3,) [m] by the tracker and the sensor reading (6,), settled under a constant wrench."""
+def _hold(robot: Robot, q: Floats, wrench: Floats, effects: list[PlantEffect], seed: int) -> tuple[Floats, Floats]:
+    """Hold a pose under a constant wrench until it has settled.
+
+    Returns:
+        The tip position (3,) [m] by the tracker, and the sensor reading (6,).
+    """
     ticks = round(2 * SETTLE_SECONDS / robot.control_period)
     run = simulate(robot, np.tile(q, (ticks, 1)), np.tile(wrench, (ticks, 1)), effects, seed)
     tracker, sensor = run["tracker/measured_cp"], run["force/measured_cf"]

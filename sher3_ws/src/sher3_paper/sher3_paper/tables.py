@@ -8,9 +8,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from sher3_description import read_yaml
+from sher3_common import read_yaml
 
-from .errors import BadData
+from sher3_paper.errors import BadData
 
 Floats = NDArray[np.float64]
 DATA = Path(__file__).parent

@@ -14,17 +14,17 @@ from numpy.typing import NDArray
 from scipy import stats
 from sher3_kinematics.link_law import LinkLaw
 
-from .errors import BadData
-from .tables import TorsionTable, require_rows
+from sher3_paper.errors import BadData
+from sher3_paper.tables import TorsionTable, require_rows
 
 Floats = NDArray[np.float64]
 Geometry = Literal["hole rows", "literal"]
 GEOMETRIES: tuple[Geometry, ...] = ("hole rows", "literal")
 
 LINK_LENGTH = 0.086
-"""Link length [m] of the tested stage, the design before the optimisation."""
+"""Link length [m] of the tested stage, which is the design before the optimisation."""
 ROW_PITCH = 0.010
-"""Distance [m] of the hole rows of the test discs: leg offsets R are its multiples."""
+"""Distance [m] between the hole rows of the test discs: the leg offsets R are multiples of it."""
 
 
 class Interval(NamedTuple):

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from distributed import LocalCluster
 from sher3_kinematics.deflection import DeltaDeflection
-from sher3_paper.constraints import AS_STATED, REACH_ONLY, RELAXED, Constraints, Workspace, quantities
-from sher3_paper.design import BEFORE, CHOSEN, READINGS, Design, Reading, base_radius, platform_radius
 from sher3_paper.errors import BadData, InfeasibleDesign
-from sher3_paper.optimise import PAPER_LAW, Search, best, fine_grid, grid, search, search_parallel
+from sher3_paper.search.constraints import AS_STATED, REACH_ONLY, RELAXED, Constraints, Workspace, quantities
+from sher3_paper.search.design import BEFORE, CHOSEN, READINGS, Design, Reading, base_radius, platform_radius
+from sher3_paper.search.optimise import PAPER_LAW, Search, best, fine_grid, grid, search, search_parallel
 
 
 @pytest.fixture(scope="module")

@@ -4,7 +4,7 @@ import json
 from pathlib import Path
 
 import pytest
-from sher3_description import FileError
+from sher3_common import FileError
 from sher3_paper.cli import app
 from sher3_paper.comparison import Comparison, compare, within
 from sher3_paper.errors import BadData

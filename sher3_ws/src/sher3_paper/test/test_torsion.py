@@ -5,10 +5,10 @@ import pytest
 from sher3_description import load_robot
 from sher3_kinematics.deflection import DeltaDeflection
 from sher3_kinematics.link_law import LinkLaw
-from sher3_paper.design import Design
 from sher3_paper.errors import BadData
 from sher3_paper.grasp import Setup, fit_grasp_model
-from sher3_paper.optimise import PAPER_LAW
+from sher3_paper.search.design import Design
+from sher3_paper.search.optimise import PAPER_LAW
 from sher3_paper.simulated import compensation, identify_from_loops, measured_wrench_at_tip, twist_loop
 from sher3_paper.tables import deflection_table, inconsistencies, torsion_table
 from sher3_paper.torsion import (

@@ -1,63 +1,51 @@
-"""Clock grid, executor, CDR codecs and process statistics.
+"""The small real-time runtime under the nodes, and the one place beside them that sees rclpy.
 
-`samples`, `cdr`, `clock` and `timing` are plain Python; `ports`, `spinning` and `graph` see rclpy. Import from here
-what a node needs.
+A node needs five words: `on_tick` runs a function on the clock grid, `latest` gives the newest sample of a topic,
+`subscribe` and `advertise` join a topic, `clock_of` tells the time. `Graph` runs nodes in stepped time for tests. The
+clock, the codecs and the statistics are plain Python; importing this package alone loads no rclpy.
 """
 
 from typing import TYPE_CHECKING
 
-from .samples import DiagnosticSample as DiagnosticSample
-from .samples import JointSample as JointSample
-from .samples import JoySample as JoySample
-from .samples import PoseSample as PoseSample
-from .samples import Sample as Sample
-from .samples import TemperatureSample as TemperatureSample
-from .samples import TextSample as TextSample
-from .samples import TwistSample as TwistSample
-from .samples import WrenchSample as WrenchSample
+from sher3_common.faces import lazy
 
 if TYPE_CHECKING:
-    from .clock import Clock as Clock
-    from .clock import SteppedClock as SteppedClock
-    from .graph import Graph as Graph
-    from .on_demand import advertise_on_demand as advertise_on_demand
-    from .ports import NODE_OPTIONS as NODE_OPTIONS
-    from .ports import advertise as advertise
-    from .ports import advertise_raw as advertise_raw
-    from .ports import clock_of as clock_of
-    from .ports import latest as latest
-    from .ports import on_readable as on_readable
-    from .ports import on_tick as on_tick
-    from .ports import statistics_of as statistics_of
-    from .ports import subscribe as subscribe
-    from .ports import subscribe_raw as subscribe_raw
-    from .ports import use_clock as use_clock
-    from .spinning import spin as spin
+    from sher3_runtime.clock import Clock as Clock
+    from sher3_runtime.clock import SteppedClock as SteppedClock
+    from sher3_runtime.graph import Graph as Graph
+    from sher3_runtime.on_demand import advertise_on_demand as advertise_on_demand
+    from sher3_runtime.ports import NODE_OPTIONS as NODE_OPTIONS
+    from sher3_runtime.ports import advertise as advertise
+    from sher3_runtime.ports import advertise_raw as advertise_raw
+    from sher3_runtime.ports import clock_of as clock_of
+    from sher3_runtime.ports import latest as latest
+    from sher3_runtime.ports import on_readable as on_readable
+    from sher3_runtime.ports import on_tick as on_tick
+    from sher3_runtime.ports import statistics_of as statistics_of
+    from sher3_runtime.ports import subscribe as subscribe
+    from sher3_runtime.ports import subscribe_raw as subscribe_raw
+    from sher3_runtime.ports import use_clock as use_clock
+    from sher3_runtime.spinning import spin as spin
 
-_DOORS = {
-    "NODE_OPTIONS": "ports",
-    "advertise": "ports",
-    "advertise_on_demand": "on_demand",
-    "advertise_raw": "ports",
-    "clock_of": "ports",
-    "latest": "ports",
-    "on_readable": "ports",
-    "on_tick": "ports",
-    "statistics_of": "ports",
-    "subscribe": "ports",
-    "subscribe_raw": "ports",
-    "use_clock": "ports",
-    "spin": "spinning",
-    "Graph": "graph",
-    "Clock": "clock",
-    "SteppedClock": "clock",
-}
-
-
-def __getattr__(name: str) -> object:
-    """Import a door at its first use, so that `import sher3_runtime` alone needs no rclpy."""
-    if name in _DOORS:
-        from importlib import import_module
-
-        return getattr(import_module(f".{_DOORS[name]}", __name__), name)
-    raise AttributeError(name)
+__getattr__, __dir__ = lazy(
+    __name__,
+    {
+        "clock": ("Clock", "SteppedClock"),
+        "graph": ("Graph",),
+        "on_demand": ("advertise_on_demand",),
+        "ports": (
+            "NODE_OPTIONS",
+            "advertise",
+            "advertise_raw",
+            "clock_of",
+            "latest",
+            "on_readable",
+            "on_tick",
+            "statistics_of",
+            "subscribe",
+            "subscribe_raw",
+            "use_clock",
+        ),
+        "spinning": ("spin",),
+    },
+)

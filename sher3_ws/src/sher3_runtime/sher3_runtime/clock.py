@@ -1,8 +1,8 @@
 """The clock grid: every process computes the same ticks `t_k = k T` of the system time without a master.
 
-Stamps are integer nanoseconds of the system time. The wall clock reads the monotonic clock plus an offset frozen at
-start, so a correction of the system time during a run moves nothing; `sher3 up` hands the same offset to every
-process. The stepped clock stands still between two steps.
+Stamps are integer nanoseconds of the system time. The wall clock reads the monotonic clock and adds an offset that is
+frozen at start, so a correction of the system time during a run moves nothing; `sher3 up` gives the same offset to
+every process. The stepped clock is at rest between two steps.
 """
 
 from __future__ import annotations
@@ -70,6 +70,6 @@ def _reading() -> tuple[int, int, int]:
 
 
 def set_timer_slack(ns: int = 1) -> None:
-    """Let the kernel wake this thread when it asked for it; the default slack is 50 us (Linux only)."""
+    """Let the kernel wake this thread at the time it asked for; the default slack is 50 us (Linux only)."""
     with suppress(OSError, AttributeError):
         ctypes.CDLL(None, use_errno=True).prctl(_PR_SET_TIMERSLACK, ctypes.c_ulong(ns), 0, 0, 0)

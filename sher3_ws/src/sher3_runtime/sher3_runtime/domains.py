@@ -1,7 +1,7 @@
-"""ROS domains of this process's own, so that two test runs on one machine do not hear each other.
+"""ROS domains claimed for this process, so that two test runs on one machine do not hear each other.
 
-A claim is an abstract AF_UNIX name: it belongs to one network namespace, as the ports of a domain do, and is gone with
-the process, however that ends.
+A claim is an abstract AF_UNIX name. Such a name belongs to one network namespace, as the ports of a domain do, and it
+disappears with the process, however the process ends.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import os
 import socket
 from collections.abc import Sequence
 
-from sher3_description import Sher3Error
+from sher3_common import Sher3Error
 
 IN_PROCESS = range(1, 101)
 """Domains of graphs within a process."""
@@ -27,22 +27,23 @@ class NoDomainLeft(Sher3Error):
 
 
 def own_domain() -> int:
-    """Return the domain of all graphs within this process, claimed at the first call and kept until the process ends.
+    """Return the domain of all graphs within this process; it is claimed at the first call and kept to the end.
 
     Raises:
-        NoDomainLeft: the others have all of `IN_PROCESS`.
+        NoDomainLeft: Other processes have claimed all of `IN_PROCESS`.
     """
     mine = [domain for domain in _claims if domain in IN_PROCESS]
     return mine[0] if mine else claim_domain(IN_PROCESS)
 
 
 def claim_domain(domains: Sequence[int]) -> int:
-    """Claim the first domain that nobody has, from a place on that depends on the process and moves on with each claim.
+    """Claim and return the first free domain.
 
-    A released one is so not taken again at once: its last participants may not have left it yet.
+    The search starts at a domain that depends on the process and moves on with each claim. A domain that was released
+    is therefore not claimed again at once: its last participants may not have left it yet.
 
     Raises:
-        NoDomainLeft: there is none.
+        NoDomainLeft: Every domain is claimed.
     """
     begin = (os.getpid() + next(_places)) % len(domains)
     for domain in (*domains[begin:], *domains[:begin]):
@@ -59,13 +60,13 @@ def claim_domain(domains: Sequence[int]) -> int:
 
 
 def release_domain(domain: int) -> None:
-    """Give a claimed domain back; one that is not claimed is left alone."""
+    """Release a claimed domain; for a domain that is not claimed nothing happens."""
     if claim := _claims.pop(domain, None):
         claim.close()
 
 
 def _forget() -> None:
-    """Leave the parent its domains: a forked process has its sockets too."""
+    """Forget the parent's claims in a forked process, which holds copies of the parent's sockets."""
     for domain in tuple(_claims):
         release_domain(domain)
 

@@ -11,11 +11,11 @@ _GUARD = "_ROS_WHEELS_BOOTSTRAP_COMPLETE"
 
 
 def graph_environment(domain: int | None = None, other_hosts: bool = False) -> dict[str, str]:
-    """Return the variables of a graph; nothing leaves the machine unless `other_hosts` is set.
+    """Return the environment variables of a graph; nothing leaves the machine unless `other_hosts` is set.
 
     Args:
-        domain: ROS domain id, 0 to 232; None leaves the caller's.
-        other_hosts: announce and talk to other machines on the subnet.
+        domain: ROS domain id, 0 to 232; None keeps that of the caller's environment.
+        other_hosts: Announce this graph to other machines on the subnet and talk to them.
     """
     variables = {
         "RMW_IMPLEMENTATION": "rmw_fastrtps_cpp",
@@ -39,8 +39,8 @@ def apply(domain: int | None = None, other_hosts: bool = False) -> None:
 def child_environment(**changes: str) -> dict[str, str]:
     """Return this process's environment for a child Python.
 
-    The wheels' start-up hook re-executes Python once to set `LD_LIBRARY_PATH` and marks that with a guard variable. A
-    child that gets the guard without the path cannot import rclpy, so both are passed or neither.
+    The start-up hook of the ROS wheels executes Python a second time to set `LD_LIBRARY_PATH`, and marks that with a
+    guard variable. A child that gets the guard without the path cannot import rclpy, so it gets both or neither.
     """
     variables = {**os.environ, **changes}
     if _GUARD in variables and "LD_LIBRARY_PATH" not in variables:

@@ -1,10 +1,10 @@
-"""A small rclpy executor: wait sets built once, raw takes until the queue is empty, ticks of the clock grid.
+"""A small rclpy executor: wait sets built once, raw messages taken until the queue is empty, ticks of the clock grid.
 
 rclpy's own executor builds a new wait set and one task per message at every spin, which costs more than the rest of
 the control loop. This one keeps its wait sets until an entity comes or goes (rclpy then triggers the guard condition)
-and hands the raw bytes straight to the codec. A control loop waits for its streams alone; topics on which nothing
-came lately, services, timers, clients, guard conditions and event handlers are waited for every `LOOK_NS`, the last
-five through rclpy's own takers. It is single threaded and raises what a callback raises.
+and hands the raw bytes straight to the codec. A control loop waits only for the topics that carry a stream. Silent
+topics, services, timers, clients, guard conditions and event handlers are looked at every `LOOK_NS`; all of these but
+the topics go through rclpy's own takers. The executor has one thread and raises what a callback raises.
 """
 
 from __future__ import annotations
@@ -21,16 +21,16 @@ from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.node import Node
 from rclpy.task import Task
 
-from .clock import Clock
-from .ports import Subscribed, clock_of, ports
-from .tick import Tick
+from sher3_runtime.clock import Clock
+from sher3_runtime.ports import Subscribed, clock_of, ports
+from sher3_runtime.tick import Tick
 
 IDLE_NS = 100_000_000
-"""Longest wait; bounds the time to notice a shutdown that woke nobody."""
+"""Longest wait [ns]: a shutdown that wakes nobody is noticed after this time."""
 LOOK_NS = 5_000_000
-"""A process that wakes up at the control rate looks at everything that is no stream this often."""
+"""Period [ns] at which a process that wakes up at the control rate looks at everything that is no stream."""
 QUIET_NS = 100_000_000
-"""A topic that was silent for this long is no stream, until a sample comes again."""
+"""A topic that was silent for this long [ns] counts as no stream, until its next sample."""
 
 
 Take = Callable[[Any], Any]
@@ -50,7 +50,7 @@ class _Topic:
         self.heard_ns = monotonic_ns()
 
     def drain(self) -> bool:
-        """Take and deliver every sample that waits; return whether there was one."""
+        """Take and deliver every waiting sample; return whether there was one."""
         take, kind, raw = self.take, self.type, self.raw
         if (taken := take(kind, raw)) is None:
             return False
@@ -141,7 +141,7 @@ class RawExecutor(Executor):
         self.spin_once(getattr(timeout_sec, "timeout", timeout_sec))
 
     def shutdown(self, timeout_sec: float | None = None) -> bool:
-        """Let go of all entities."""
+        """Release all entities."""
         self._held.close()
         return super().shutdown(timeout_sec)
 
@@ -156,7 +156,7 @@ class RawExecutor(Executor):
         return super().add_node(node)
 
     def remove_node(self, node: Node) -> None:
-        """Stop running the callbacks of a node; its entities are let go of at once."""
+        """Stop running the callbacks of a node and release its entities at once."""
         super().remove_node(node)
         self._held.close()
         self._stale = True
@@ -252,7 +252,10 @@ class RawExecutor(Executor):
         wait_set.wait(timeout_ns)
 
     def _wait_on_files(self, timeout_ns: int) -> bool:
-        """Wait on the files instead, no longer than a period, since the topics are only looked at afterwards."""
+        """Wait on the files instead of the wait set.
+
+        The wait is no longer than a period, since the topics are only looked at afterwards.
+        """
         readable, _, _ = select.select(self._files, (), (), min(timeout_ns, self._period_ns) * 1e-9)
         # Several files may share a callback, which serves them all.
         for callback in dict.fromkeys([self._files[number] for number in readable]):
@@ -298,7 +301,7 @@ class RawExecutor(Executor):
                 task.result()
 
     def _run_tasks(self) -> None:
-        """Run what was woken by a future or given to `create_task`."""
+        """Run the tasks that a future has woken or that `create_task` was given."""
         with self._tasks_lock:
             tasks, self._tasks = self._tasks, []
         for task, _, _ in tasks:

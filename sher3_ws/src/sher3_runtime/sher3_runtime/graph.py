@@ -13,19 +13,20 @@ from typing import Any, TypeVar
 
 from rclpy.context import Context
 from rclpy.node import Node
-from sher3_description import TOPICS, Sher3Error
+from sher3_common import Sher3Error
+from sher3_description import TOPICS
 
-from . import environment
-from .clock import SteppedClock, set_timer_slack
-from .domains import own_domain
-from .executor import RawExecutor
-from .ports import NODE_OPTIONS, advertise, ports, subscribe, use_clock
-from .spinning import close
-from .tick import Tick
+from sher3_runtime import environment
+from sher3_runtime.clock import SteppedClock, set_timer_slack
+from sher3_runtime.domains import own_domain
+from sher3_runtime.executor import RawExecutor
+from sher3_runtime.ports import NODE_OPTIONS, advertise, ports, subscribe, use_clock
+from sher3_runtime.spinning import close
+from sher3_runtime.tick import Tick
 
 N = TypeVar("N", bound=Node)
 Route = tuple[str, list[dict[str, int]], list[dict[str, int]]]
-"""A topic, and the counters of what was sent and received, by end."""
+"""A topic and, by end, the counters of the samples sent and received."""
 
 
 class NotSettled(Sher3Error):
@@ -89,14 +90,17 @@ class Graph:
         return stamp
 
     def pause(self, node: Node) -> None:
-        """Stop a node as SIGSTOP stops its process: no tick, no callback; what is sent to it waits in its queues."""
+        """Stop a node as SIGSTOP stops its process: no tick, no callback.
+
+        What is sent to the node waits in its queues.
+        """
         self.nodes.remove(node)
         self._paused.append(node)
         self.executor.remove_node(node)
         self._routes = self._find_routes()
 
     def resume(self, node: Node) -> None:
-        """Let a paused node go on: what waits in its queues comes first, what did not fit into them is lost."""
+        """Let a paused node go on: it gets first what waits in its queues; what did not fit into them is lost."""
         self.executor.add_node(node)
         while self.executor.settle():
             pass
@@ -106,7 +110,7 @@ class Graph:
         self._expect_nothing(node)
 
     def _expect_nothing(self, node: Node) -> None:
-        """Take what was sent until now as received by a node that was not there."""
+        """Count what was sent until now as received by a node that did not exist then."""
         received = ports(node).received
         for name, sent, _ in self._routes:
             if name in received:
@@ -129,10 +133,10 @@ class Graph:
                 raise NotSettled("samples not received", value=self._missing(), limit=self._patience, remedy=remedy)
 
     def until(self, condition: Callable[[], bool], what: str = "condition") -> None:
-        """Settle until `condition()`, for what the middleware does in its own time (services, latched samples).
+        """Settle until `condition()` is true: for what the middleware does in its own time (services, latched samples).
 
         Raises:
-            NotSettled: it is not met after `patience` seconds.
+            NotSettled: The condition is not true after `patience` seconds.
         """
         deadline = time.monotonic() + self._patience
         while not condition():
@@ -157,7 +161,10 @@ class Graph:
         return missing
 
     def _find_routes(self) -> list[Route]:
-        """Return the counters of each topic with both ends in the graph; latched samples come in their own time."""
+        """Return the counters of each topic that has both ends in the graph.
+
+        Latched topics are left out: their samples come in their own time.
+        """
         senders, receivers = list(map(ports, [*self.nodes, *self._paused])), list(map(ports, self.nodes))
         volatile = (name for name, topic in TOPICS.items() if topic.qos.durability == "volatile")
         routes = [

@@ -1,4 +1,4 @@
-"""Publishers of streams that the loop itself does not need: nothing is made or sent while nobody listens."""
+"""Publishers of streams that the control loop does not need: nothing is made or sent while nobody listens."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from typing import Any
 
 from rclpy.node import Node
 
-from .ports import Publish, advertise, ports
+from sher3_runtime.ports import Publish, advertise, ports
 
 COUNT_EVERY = 50
-"""Samples after which a publisher on demand asks again whether anybody listens."""
+"""Samples after which a publisher on demand asks again whether there is a subscriber."""
 
 
 class OnDemand:
-    """`publish(sample)` of a stream that the loop itself does not need; ask `wanted()` before making the sample.
+    """`publish(sample)` of a stream that the control loop does not need; ask `wanted()` before making the sample.
 
     A new subscriber is noticed after at most `COUNT_EVERY` samples, in stepped time at once.
     """
@@ -26,7 +26,7 @@ class OnDemand:
         self._ask_in, self._wanted = 0, True
 
     def wanted(self) -> bool:
-        """Tell, once for each sample, whether anybody listens."""
+        """Return whether there is a subscriber; to be asked once for each sample."""
         if self._stepped:
             return True
         if self._ask_in == 0:

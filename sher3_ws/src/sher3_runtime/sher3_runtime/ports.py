@@ -18,14 +18,15 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.utilities import get_default_context
-from sher3_description import ACTUATORS, Sher3Error
+from sher3_common import Sher3Error
+from sher3_description import ACTUATORS
 from sher3_description.topics import NAMESPACE, TOPICS, Qos, Topic
 
-from .cdr import CdrError, codec
-from .clock import Clock
-from .messages import from_message, message_class, to_message
-from .tick import Tick
-from .timing import Histogram, Statistics
+from sher3_runtime.clock import Clock
+from sher3_runtime.codec.cdr import CdrError, codec
+from sher3_runtime.codec.messages import from_message, message_class, to_message
+from sher3_runtime.tick import Tick
+from sher3_runtime.timing import Histogram, Statistics
 
 EXECUTOR_VARIABLE = "SHER3_EXECUTOR"
 PERIOD_VARIABLE = "SHER3_CONTROL_PERIOD"
@@ -39,12 +40,13 @@ NODE_OPTIONS: dict[str, Any] = {
     "use_global_arguments": False,
     "parameter_overrides": [Parameter("start_type_description_service", value=False)],
 }
-"""Pass these to `Node.__init__`: no parameter and type services and no rosout, which would cost a fifth of the loop."""
+"""Keyword arguments for `Node.__init__`: no parameter and type services and no rosout, which would cost a fifth of the
+loop."""
 
 GAPLESS = frozenset(
     {"servo_jv", "drives/setpoint_jv", "drives/measured_js", "measured_js", "force/measured_cf", "pedal/measured"}
 )
-"""Streams with a sample at every tick: a stamp that skips a tick is a lost sample."""
+"""Streams with a sample at every tick: a stamp that skips a tick means a lost sample."""
 
 Publish = Callable[[Any], None]
 
@@ -53,8 +55,9 @@ class Subscribed:
     """A subscription of a node.
 
     Attributes:
-        wakes: a sample wakes the process. A node that has nothing to do before another sample comes says False, and
-            gets the sample, in the order of its subscriptions, once something else has woken it.
+        wakes: Whether a sample wakes the process. A node that has nothing to do before some other sample comes sets
+            this to False, and gets the sample, in the order of its subscriptions, once something else has woken the
+            process.
     """
 
     __slots__ = ("wakes",)
@@ -81,7 +84,10 @@ def clock_of(node: Node) -> Clock:
 
 
 def context_clock(context: Context | None = None) -> Clock:
-    """Return the clock of a context, by default the process's own; for devices that are made before their node."""
+    """Return the clock of a context, by default that of the process's own context.
+
+    For devices that are made before their node.
+    """
     context = context or get_default_context()
     if context not in _clocks:
         _clocks[context] = Clock(round(float(os.environ.get(PERIOD_VARIABLE, "0.002")) * 1e9))
@@ -143,7 +149,7 @@ def find_topic(name: str) -> Topic:
 
 
 def raw_mode() -> bool:
-    """Tell whether topics are handled as raw bytes (the default) or as message objects."""
+    """Return whether topics are handled as raw bytes (the default) or as message objects."""
     return os.environ.get(EXECUTOR_VARIABLE, "") != "default"
 
 
@@ -151,16 +157,16 @@ def subscribe(node: Node, name: str, callback: Callable[[Any], None], depth: int
     """Subscribe `node` to a topic of the table; `callback` gets one sample at a time, in order of arrival.
 
     Args:
-        node: the subscribing node.
-        name: topic relative to `/sher3`.
-        callback: called with a sample; its exceptions end the spinning.
-        depth: queue length instead of the table's (a recorder wants a deep one).
+        node: The subscribing node.
+        name: Topic relative to `/sher3`.
+        callback: Called with each sample; an exception in it ends the spinning.
+        depth: Queue length instead of the table's; a recorder needs a longer one.
 
     Returns:
-        The subscription; rclpy's own executor takes no notice of its `wakes`.
+        The subscription; rclpy's own executor ignores its `wakes`.
 
     Raises:
-        UnknownTopic: the name is not in the table.
+        UnknownTopic: The name is not in the table.
     """
     topic, port = find_topic(name), ports(node)
     receive = _receiver(port, topic, callback)
@@ -272,10 +278,10 @@ def advertise(node: Node, name: str) -> Publish:
 def latest(node: Node, name: str) -> Callable[[], Any]:
     """Return `take()` of a topic of the table: the newest sample since the last call, or None.
 
-    For who looks at its own pace: nothing wakes up when a sample arrives, and the queue holds one.
+    For a node that looks at its own pace: no sample wakes it, and the queue holds one sample.
 
     Raises:
-        UnknownTopic: the name is not in the table.
+        UnknownTopic: The name is not in the table.
     """
     topic, port = find_topic(name), ports(node)
     kind, profile = message_class(topic.type), qos_profile(topic.subscriber_qos)
@@ -353,17 +359,16 @@ def advertise_raw(node: Node, name: str, depth: int | None = None) -> Callable[[
 def on_tick(node: Node, callback: Callable[[int], None], phase: float = 0.0, every: int = 1) -> Tick:
     """Call `callback(stamp_ns)` at every grid stamp plus `phase`.
 
-    A tick that comes so late that the next one is due is skipped and counted as a lost cycle; ticks are never made up
-    for.
+    A tick that is so late that the next one is due is skipped and counted as a lost cycle; it is never made up for.
 
     Args:
-        node: the node.
-        callback: gets the grid stamp `t_k` in ns, the same in every process.
-        phase: delay behind the stamp, s.
-        every: call only at stamps that are a multiple of `every` periods.
+        node: The node.
+        callback: Gets the grid stamp `t_k` [ns], which is the same in every process.
+        phase: Delay behind the stamp [s].
+        every: Call only at stamps that are a multiple of `every` periods.
 
     Returns:
-        The tick; a node whose tick only looks after late samples tells it `done(stamp)` when they were in time.
+        The tick. A node whose tick only looks for late samples calls its `done(stamp)` when they were in time.
     """
     port = ports(node)
     tick = Tick(callback, round(phase * 1e9), every, port.clock, port.statistics)
@@ -374,9 +379,10 @@ def on_tick(node: Node, callback: Callable[[int], None], phase: float = 0.0, eve
 
 
 def on_readable(node: Node, file: Any, callback: Callable[[], None]) -> None:
-    """Call `callback()` whenever `file` (with `fileno()`) is readable; it takes all there is without blocking.
+    """Call `callback()` whenever `file` (with `fileno()`) is readable.
 
-    A process with such a file waits on the file and looks at its topics at least once a period.
+    The callback must take all there is without blocking. A process with such a file waits on the file and looks at its
+    topics at least once a period.
     """
     ports(node).readables.append((file, callback))
     if node.executor is not None:

@@ -1,8 +1,8 @@
 """The life of one process of the graph: set up, meet the others, start on the same tick, run, report how it ended.
 
-With a control socket (from `sher3 up`) the process takes part in the start barrier: it sends what it publishes and
-subscribes to, learns how many partners each topic has, waits until it has found them all, and starts at the stamp that
-all processes are given. So no cycle is lost at the start.
+With a control socket (from `sher3 up`) the process takes part in the start barrier. It sends the names of the topics it
+publishes and subscribes to, is told how many partners each topic has, waits until it has found them all, and starts at
+the stamp that all processes are given. So no cycle is lost at the start.
 """
 
 from __future__ import annotations
@@ -21,16 +21,19 @@ import rclpy
 from rclpy.executors import Executor
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
-from sher3_description import Sher3Error
+from sher3_common import Sher3Error
 
-from .ports import clock_of, ports
-from .spinning import spin
+from sher3_runtime.ports import clock_of, ports
+from sher3_runtime.spinning import spin
 
 REALTIME_VARIABLE = "SHER3_REALTIME"
 CONTROL_VARIABLE = "SHER3_CONTROL_FD"
 NEVER_NS = 1 << 62
 LEAVE_LIMIT = 1.0
-"""Seconds that the middleware has for its farewell, which takes milliseconds when it ends at all."""
+"""Time [s] that the middleware has to leave the graph; it needs milliseconds if it succeeds at all."""
+ORPHAN_LIMIT = 0.1
+"""Seconds after which the kernel ends a process whose parent has died. Braking at the drives' own ramp takes 15 ms of
+them; the rest is for the loop to notice."""
 _PR_SET_PDEATHSIG = 1
 
 
@@ -39,10 +42,10 @@ class NotStarted(Sher3Error):
 
 
 def run(make_nodes: Callable[[], Sequence[Node]]) -> None:
-    """Make nodes and run them until they are told to stop; the process is to end soon after (see `leave_in_time`).
+    """Make nodes and run them until they are told to stop; the process must end soon after (see `leave_in_time`).
 
     Raises:
-        Exception: what making or running a node raises; the other end of the control socket has been told.
+        Exception: Whatever making or running a node raises; the supervising process has been told by then.
     """
     control = _control_socket()
     die_with_parent()
@@ -70,42 +73,65 @@ def run(make_nodes: Callable[[], Sequence[Node]]) -> None:
 
 
 def leave_in_time() -> None:
-    """Let the kernel end this process `LEAVE_LIMIT` s from now, when all of ours is closed already.
+    """Let the kernel end this process `LEAVE_LIMIT` s from now; called when all nodes are closed already.
 
-    Now and then a participant waits for ever for a thread of its own as it is destroyed, and no Python code runs then.
+    Now and then a DDS participant, while it is destroyed, waits for ever for a thread of its own. No Python code runs
+    then, so no Python code could end the process.
     """
+    _end_within(LEAVE_LIMIT)
+
+
+def _end_within(seconds: float) -> None:
+    """Let the kernel end this process in `seconds`, or sooner where that is settled already."""
     signal.signal(signal.SIGALRM, signal.SIG_DFL)
-    signal.setitimer(signal.ITIMER_REAL, LEAVE_LIMIT)
+    before, _ = signal.getitimer(signal.ITIMER_REAL)
+    signal.setitimer(signal.ITIMER_REAL, min(seconds, before or seconds))
 
 
 def make_logging_prompt() -> None:
-    """Pay now for the first line that is logged: it would hold up the loop for 60 to 110 ms, and stop the robot.
+    """Log one line now: the first line would otherwise delay the loop by 60 to 110 ms, which stops the robot.
 
-    rclpy asks `inspect` who logs, which looks at the file of every imported module, once.
+    rclpy asks `inspect` which code logs, and `inspect` then looks at the file of every imported module, once.
     """
     inspect.getmodule(inspect.currentframe())
 
 
 def stop_on_signals() -> Callable[[], bool]:
-    """Turn SIGINT and SIGTERM into a flag, so that nodes are closed between two callbacks and never inside one."""
+    """Turn SIGINT and SIGTERM into a flag, so that nodes are closed between two callbacks and never inside one.
+
+    A process whose parent has died in the meantime closes its nodes too, but has `ORPHAN_LIMIT` s for it.
+    """
     caught: list[int] = []
+    parent = os.getppid()
+
+    def catch(received: int, _: object) -> None:
+        caught.append(received)
+        if os.getppid() != parent:
+            _end_within(ORPHAN_LIMIT)
+
     for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda received, _: caught.append(received))
+        signal.signal(number, catch)
     return lambda: bool(caught)
 
 
-def die_with_parent() -> None:
-    """Ask for a SIGTERM when the parent dies (Linux only), so that nothing runs on unsupervised."""
+def die_with_parent(parent: int | None = None) -> None:
+    """Ask for a SIGTERM when the parent dies (Linux only), so that nothing runs on unsupervised.
+
+    Args:
+        parent: process id of the parent where it was forked; a process whose parent died before it could ask ends here.
+    """
     with suppress(OSError, AttributeError):
         ctypes.CDLL(None, use_errno=True).prctl(_PR_SET_PDEATHSIG, signal.SIGTERM, 0, 0, 0)
+    if parent is not None and os.getppid() != parent:
+        os._exit(1)
 
 
 def use_realtime(priority: int) -> bool:
-    """Put the threads of this process under SCHED_FIFO; return whether it worked.
+    """Put the threads of this process under SCHED_FIFO; return whether the kernel permitted it.
 
     Args:
-        priority: of all threads; 0 for none; a negative one is for the middleware's threads only, which then take what
-            comes in while the main thread is busy with what must not hold up others.
+        priority: Priority of all threads; 0 changes nothing. A negative number gives its magnitude to the threads of
+            the middleware only: they take what comes in while the main thread does what must not delay other processes.
     """
     if priority == 0:
         return False
@@ -142,10 +168,10 @@ class Barrier:
     """The part of this process in the start barrier; files and services are served meanwhile, ticks wait.
 
     Args:
-        nodes: of this process.
-        control: socket to the supervising process.
-        stop: true when the process has been told to stop.
-        patience: seconds to wait for the others.
+        nodes: Nodes of this process.
+        control: Socket to the supervising process.
+        stop: Returns true when the process has been told to stop.
+        patience: Time to wait for the others [s].
     """
 
     def __init__(

@@ -11,11 +11,11 @@ from typing import Any
 from rclpy.executors import Executor, ExternalShutdownException
 from rclpy.node import Node
 
-from .baseline import BaselineExecutor
-from .clock import set_timer_slack
-from .executor import RawExecutor
-from .ports import STATISTICS_VARIABLE, TRACE_VARIABLE, ports, raw_mode
-from .report import report_statistics
+from sher3_runtime.clock import set_timer_slack
+from sher3_runtime.executor import RawExecutor
+from sher3_runtime.ports import STATISTICS_VARIABLE, TRACE_VARIABLE, ports, raw_mode
+from sher3_runtime.statistics.baseline import BaselineExecutor
+from sher3_runtime.statistics.report import report_statistics
 
 
 def make_executor(nodes: Iterable[Node], context: Any = None) -> Executor:
@@ -37,14 +37,15 @@ def spin(
     """Run `nodes` until `stop()` or shutdown; then close them, while they can still publish.
 
     Args:
-        nodes: of one context. A node's `close()`, where it has one, is called at the end, even after an exception.
-        stop: asked at every spin; true ends it.
-        meet: called once with the executor before the first tick (the start barrier).
-        leave: called once when the nodes are closed, before they leave the middleware.
-        diagnostics: publish each node's statistics at 1 Hz on `/diagnostics`.
+        nodes: Nodes of one context. The `close()` of a node, where it has one, is called at the end, even after an
+            error.
+        stop: Asked at every spin; true ends the spinning.
+        meet: Called once with the executor before the first tick (the start barrier).
+        leave: Called once when the nodes are closed, before they leave the middleware.
+        diagnostics: Publish the statistics of each node at 1 Hz on `/diagnostics`.
 
     Raises:
-        Exception: whatever a callback raises.
+        Exception: Whatever a callback raises.
     """
     executor = None
     try:
@@ -74,7 +75,7 @@ def spin(
 
 
 def close(nodes: Iterable[Node], executor: Executor | None = None, leave: Callable[[], None] = lambda: None) -> None:
-    """Close and destroy nodes in reverse order; every one is closed even when another's `close()` raises."""
+    """Close and destroy nodes in reverse order; each is closed even when the `close()` of another one raises."""
     failure: BaseException | None = None
     for node in reversed(list(nodes)):
         try:

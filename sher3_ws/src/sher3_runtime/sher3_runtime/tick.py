@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from .clock import Clock
-from .timing import Histogram, Statistics
+from sher3_runtime.clock import Clock
+from sher3_runtime.timing import Histogram, Statistics
 
 
 class Tick:
-    """Knows when it is due next and counts how well that was met.
+    """A callback on the grid: when it is due next, and counts of how punctual it was.
 
     Attributes:
-        phase_ns: delay behind the stamp. due_ns: time of the next call; `due_ns - phase_ns` is its stamp.
+        phase_ns: Delay behind the stamp [ns].
+        due_ns: Time of the next call [ns]; `due_ns - phase_ns` is its stamp.
     """
 
     def __init__(
@@ -36,7 +37,7 @@ class Tick:
         self.due_ns = -(-stamp // self.period_ns) * self.period_ns + self.phase_ns
 
     def done(self, stamp: int) -> None:
-        """Skip the call for `stamp`: what it was to look after has already happened. Saves a wake-up a period."""
+        """Skip the call for `stamp`, whose work has been done already; this saves one wake-up a period."""
         if self.due_ns - self.phase_ns == stamp:
             self.due_ns += self.period_ns
             if self._counts:

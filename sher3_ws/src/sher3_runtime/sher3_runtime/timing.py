@@ -16,8 +16,8 @@ _PENDING = 4096
 class Histogram:
     """Counts of durations in buckets of 1/16 octave: a percentile is at most 6 % too high, the maximum is exact.
 
-    Adding is one list append, all a control loop can afford; the buckets are filled when somebody looks or the list is
-    long.
+    Adding a duration appends to a list, which is all that a control loop can afford. The buckets are filled when
+    somebody looks or when the list is long.
     """
 
     __slots__ = ("_buckets", "_count", "_maximum", "_pending", "_total")
@@ -87,7 +87,7 @@ def _upper(key: int) -> int:
 
 
 class Trace:
-    """Pairs (stamp, time) of one point of the chain, for exact percentiles between two processes."""
+    """Pairs (stamp, time) at one point of the chain, for exact percentiles between two processes."""
 
     __slots__ = ("stamps", "times")
 
@@ -96,7 +96,7 @@ class Trace:
         self.times = array("q")
 
     def mark(self, stamp: int, time_ns: int) -> None:
-        """Note that the sample of `stamp` passed at `time_ns`."""
+        """Note that the sample with this stamp passed at `time_ns`."""
         self.stamps.append(stamp)
         self.times.append(time_ns)
 
@@ -105,10 +105,14 @@ class Statistics:
     """Timing of one node.
 
     Attributes:
-        wakeup: tick started later than due. period: between two ticks. callback: duration of a tick's or message's
-        callback, by name. age: time since the stamp when a sample of a topic arrives.
-        lost_cycles: ticks that were never run. overruns: ticks that took longer than a period.
-        dropped: samples missing in a host-rate stream. garbage: messages that were no valid CDR, by topic.
+        wakeup: How much later than due a tick started.
+        period: Time between two ticks.
+        callback: Duration of the callback of a tick or message, by name.
+        age: Time from the stamp of a sample to its arrival, by topic.
+        lost_cycles: Ticks that were never run.
+        overruns: Ticks that took longer than a period.
+        dropped: Samples missing in a stream at the host rate.
+        garbage: Messages that were no valid CDR, by topic.
     """
 
     def __init__(self) -> None:

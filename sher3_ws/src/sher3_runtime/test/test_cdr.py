@@ -9,10 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from rclpy.serialization import deserialize_message, serialize_message
-from sher3_description.topics import TOPICS
-from sher3_runtime import messages
-from sher3_runtime.cdr import CdrError, codec
-from sher3_runtime.samples import (
+from sher3_common.samples import (
     DiagnosticSample,
     JointSample,
     JoySample,
@@ -22,6 +19,9 @@ from sher3_runtime.samples import (
     TwistSample,
     WrenchSample,
 )
+from sher3_description.topics import TOPICS
+from sher3_runtime.codec import messages
+from sher3_runtime.codec.cdr import CdrError, codec
 
 JOINTS = ("delta_1", "delta_2", "delta_3", "roll", "tilt")
 STAMP = 1_700_000_000_123_456_789

@@ -5,7 +5,8 @@ import time
 import pytest
 from rclpy.context import Context
 from rclpy.node import Node
-from sher3_runtime import NODE_OPTIONS, JoySample, TextSample, TwistSample, WrenchSample, advertise, subscribe
+from sher3_common.samples import JoySample, TextSample, TwistSample, WrenchSample
+from sher3_runtime import NODE_OPTIONS, advertise, subscribe
 from sher3_runtime.domains import own_domain
 from sher3_runtime.executor import QUIET_NS, RawExecutor
 from std_srvs.srv import Trigger

@@ -4,12 +4,10 @@ from itertools import pairwise
 
 import pytest
 from rclpy.node import Node
+from sher3_common.samples import JoySample, TextSample, WrenchSample
 from sher3_runtime import (
     NODE_OPTIONS,
     Graph,
-    JoySample,
-    TextSample,
-    WrenchSample,
     advertise,
     advertise_raw,
     latest,
@@ -18,7 +16,7 @@ from sher3_runtime import (
     subscribe,
     subscribe_raw,
 )
-from sher3_runtime.cdr import codec
+from sher3_runtime.codec.cdr import codec
 from sher3_runtime.ports import UnknownTopic
 from std_srvs.srv import Trigger
 

@@ -7,7 +7,7 @@ import pytest
 from sher3_runtime import ports
 from sher3_runtime.clock import Clock, SteppedClock
 from sher3_runtime.process import make_logging_prompt
-from sher3_runtime.report import _reports
+from sher3_runtime.statistics.report import reports as reports_of
 from sher3_runtime.tick import Tick
 from sher3_runtime.timing import Histogram, Statistics
 
@@ -59,7 +59,7 @@ def test_a_report_tells_the_cycles_lost_until_it_is_sent():
     """The supervisor stops for them: counters taken at the beginning of a report would be a second old."""
     statistics = Statistics()
     statistics.wakeup.add(1000)
-    reports = _reports("node", statistics)
+    reports = reports_of("node", statistics)
     assert next(reports) is None
     statistics.lost_cycles = 7
     report = next(sample for sample in reports if sample is not None)

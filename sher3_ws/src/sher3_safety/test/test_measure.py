@@ -9,7 +9,7 @@ import pytest
 from sher3_bags.run import Run, Stream
 from sher3_description import load_robot
 from sher3_safety.errors import MeasurementError
-from sher3_safety.measure import Recording
+from sher3_safety.measurement.recording import Recording
 
 ROBOT = load_robot()
 PERIOD, SPEED = 2_000_000, 5e-3

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from sher3_safety.matrix import IDLE, LIMIT, MOVING, STATES, Row
-from sher3_safety.measure import Outcome
-from sher3_safety.report import as_markdown, as_text, false_trips, misses
-from sher3_safety.verdict import judge
+from sher3_safety.measurement.recording import Outcome
+from sher3_safety.measurement.report import as_markdown, as_text, false_trips, misses
+from sher3_safety.measurement.verdict import judge
+from sher3_safety.rows.row import IDLE, LIMIT, MOVING, STATES, Row
 
 ROW = Row("force_sensor", "off", reasons=("WRENCH_STALE",))
 GOOD = Outcome("x", 5e-3, "WRENCH_STALE", 0.012, 0.040, 65e-6, 0.0, True, 0.0, 300e-6)

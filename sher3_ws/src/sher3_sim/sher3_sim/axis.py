@@ -1,8 +1,9 @@
 """Dynamics of one axis over one control period: demand queue, drive, motor, friction, transmission (compiled).
 
 Exponential integrator: the linear part (drive PI, mass, viscous friction, lag of the force) is advanced by its exact
-matrix exponential; every other force is held over a step at its middle value, where the bristle lives (leapfrog).
-Exact for the nominal axis in one step per period, second order in the step for the other forces.
+matrix exponential. Every other force is held over a step at its value in the middle of the step, where the state of the
+bristle is computed (leapfrog). One step per period is exact for the nominal axis; with other forces the error is of
+second order in the step.
 """
 
 from __future__ import annotations
@@ -12,16 +13,16 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 from scipy.linalg import expm
+from sher3_common.compiled import compiled
 
 from sher3_sim.parameters import Records
 
 PENDING = 64
-"""Demands that can be under way to one drive."""
+"""Largest number of demands that can be under way to one drive."""
 FINER = 16
-"""Parts of a step in which the drive begins or ceases to saturate."""
+"""Parts into which a step is divided when the drive begins or ceases to saturate within it."""
 
 AXIS_STATE = np.dtype(
     [
@@ -55,7 +56,7 @@ def propagators(axis: Records, step: float) -> NDArray[np.float64]:
 
 @lru_cache(maxsize=4096)
 def _exact_step(rates: bytes) -> NDArray[np.float64]:
-    """Return the used part (4, 5) of the exponential; runs of one robot share most of theirs."""
+    """Return the used part (4, 5) of the matrix exponential, remembered: runs of one robot use few of them."""
     return expm(np.frombuffer(rates).reshape(6, 6))[:4, [0, 1, 2, 4, 5]]
 
 
@@ -75,7 +76,7 @@ def _rates(a: Any, saturated: bool) -> NDArray[np.float64]:
     return rates
 
 
-@njit(cache=True)
+@compiled
 def send(s: Any, value: float, latency: float) -> None:
     """Queue a demand that the drive will act on `latency` seconds into the coming period; order is kept."""
     n = s.pending
@@ -88,7 +89,7 @@ def send(s: Any, value: float, latency: float) -> None:
     s.pending = n + 1
 
 
-@njit(cache=True)
+@compiled
 def _drop_executed(s: Any, executed: int, period: float) -> None:
     for j in range(executed, s.pending):
         s.pending_time[j - executed] = s.pending_time[j] - period
@@ -96,13 +97,13 @@ def _drop_executed(s: Any, executed: int, period: float) -> None:
     s.pending -= executed
 
 
-@njit(cache=True)
+@compiled
 def dead_zone(a: Any, demand: float) -> float:
     """Return the demand the drive acts on: zero inside its dead zone."""
     return 0.0 if abs(demand) < a.deadband else demand
 
 
-@njit(cache=True)
+@compiled
 def sliding_friction(a: Any, q: float, v: float, time: float) -> float:
     """Friction level g(v) [N] of steady sliding: Coulomb, Stribeck, modulated along the lead, decaying with time."""
     level = a.coulomb
@@ -115,14 +116,14 @@ def sliding_friction(a: Any, q: float, v: float, time: float) -> float:
     return max(level, 0.0)
 
 
-@njit(cache=True)
+@compiled
 def bristle_step(z: float, distance: float, scale: float) -> float:
     """Advance a bristle over a travelled distance, exactly: z' = v - |v| z / scale (Dahl 1968)."""
     end = math.copysign(scale, distance)
     return end + (z - end) * math.exp(-abs(distance) / scale)
 
 
-@njit(cache=True)
+@compiled
 def drive_force(a: Any, s: Any) -> float:
     """Force the drive exerts now [N], before a new demand acts; what it reports as effort, without noise."""
     if a.lag > 0.0:
@@ -130,7 +131,7 @@ def drive_force(a: Any, s: Any) -> float:
     return min(max(a.kp * (dead_zone(a, s.demand) - s.velocity) + s.integral, -a.limit), a.limit)
 
 
-@njit(cache=True)
+@compiled
 def linear_step(
     a: Any, maps: Any, v: float, integral: float, force: float, demand: float, other: float, h: float
 ) -> tuple[float, float, float, float]:
@@ -153,18 +154,18 @@ def linear_step(
     return moved, v_end, i_end, f_end
 
 
-@njit(cache=True)
+@compiled
 def advance(a: Any, s: Any, step_maps: Any, load: float, time: float, period: float, substeps: int) -> None:
     """Advance one axis over one control period under a constant load.
 
     Args:
-        a: its AXIS record.
-        s: its AXIS_STATE record, changed in place.
-        step_maps: (2, 2, 4, 5) its propagators for `period / substeps`.
-        load: gravity less contact force along the axis [N], positive against positive motion.
-        time: since the start of the run [s].
-        period: [s].
-        substeps: steps in the period.
+        a: AXIS record of the axis.
+        s: AXIS_STATE record of the axis, changed in place.
+        step_maps: Propagators of the axis for `period / substeps`, (2, 2, 4, 5).
+        load: Gravity less contact force along the axis [N], positive against positive motion.
+        time: Time since the start of the run [s].
+        period: Control period [s].
+        substeps: Steps in the period.
     """
     h = period / substeps
     q, v, integral, force = s.position, s.velocity, s.integral, s.force

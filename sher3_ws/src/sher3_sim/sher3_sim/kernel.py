@@ -6,9 +6,10 @@ import math
 from typing import Any
 
 import numpy as np
-from numba import njit
+from sher3_common.compiled import compiled
+from sher3_description.contract import GRAVITY, REFERENCE_TEMPERATURE
 from sher3_kinematics.arrays import unpack
-from sher3_kinematics.kernel import GRAVITY, KernelParameters, gravity_load_into, tip_jacobian_into
+from sher3_kinematics.kernel import KernelParameters, gravity_load_into, tip_jacobian_into
 
 from sher3_sim.axis import advance, drive_force, send
 from sher3_sim.noise import DISTURBANCE, DROP, EFFORT, FORCE, JITTER, TRACKER, normal, uniform
@@ -50,7 +51,7 @@ READING = np.dtype(
 )
 
 
-@njit(cache=True)
+@compiled
 def _loads(p: KernelParameters, axis: Any, state: Any, s: Any, wrench: Array, ahead: float) -> None:
     """Write into `s` the load G - tau_ext of every axis `ahead` seconds from now, and the tip Jacobian there."""
     q = np.empty(5)
@@ -66,7 +67,7 @@ def _loads(p: KernelParameters, axis: Any, state: Any, s: Any, wrench: Array, ah
         s.load[i] = gravity[i] * (1.0 + axis[i].gravity_scale) - contact
 
 
-@njit(cache=True)
+@compiled
 def read_sensors(axis: Any, b: Any, p: KernelParameters, state: Any, s: Any, r: Any) -> None:
     """Sample every sensor at the present tick into the READING record."""
     q = np.empty(5)
@@ -89,9 +90,12 @@ def read_sensors(axis: Any, b: Any, p: KernelParameters, state: Any, s: Any, r: 
     _read_tracker(b, s, r)
 
 
-@njit(cache=True)
+@compiled
 def _read_wrench(b: Any, s: Any, r: Any) -> None:
-    """Force sensor: contact and tool weight moved to {f}, cable, sensor matrix, bias, drift, noise, rounding, range."""
+    """Read the force sensor.
+
+    Contact and tool weight are moved to {f}; then come cable, sensor matrix, bias, drift, noise, rounding and range.
+    """
     force, moment = np.zeros(3), np.zeros(3)
     weight, cable = np.empty(3), np.zeros(3)
     rotation = r.tip_rotation
@@ -113,14 +117,14 @@ def _read_wrench(b: Any, s: Any, r: Any) -> None:
     moment += cross(b.tool_com, weight) - cross(b.sensor_position, force)
     force += weight
     for i in range(6):
-        value = b.wrench_bias[i] + b.wrench_drift[i] * (b.temperature - 22.0)
+        value = b.wrench_bias[i] + b.wrench_drift[i] * (b.temperature - REFERENCE_TEMPERATURE)
         for j in range(3):
             value += b.wrench_matrix[i, j] * force[j] + b.wrench_matrix[i, 3 + j] * moment[j]
         value += b.wrench_noise[i] * normal(s.seed, FORCE + i, s.tick)
         r.wrench[i] = to_count(min(max(value, -b.wrench_range[i]), b.wrench_range[i]), b.wrench_resolution[i])
 
 
-@njit(cache=True)
+@compiled
 def _read_tracker(b: Any, s: Any, r: Any) -> None:
     """Tracker: the true tip pose with noise, at its own rate."""
     samples = b.period / b.tracker_period
@@ -143,9 +147,9 @@ def _read_tracker(b: Any, s: Any, r: Any) -> None:
         o[i] /= norm
 
 
-@njit(cache=True)
+@compiled
 def start(axis: Any, b: Any, p: KernelParameters, state: Any, s: Any, r: Any, q_ref: Array, wrench: Array) -> None:
-    """Put the plant at rest at q_ref under a contact wrench, the drives holding it, and sample the first tick."""
+    """Put the plant at rest at q_ref, held by its drives under a contact wrench, and sample the first tick."""
     for i in range(6):
         s.wrench[i] = wrench[i]
     for i in range(5):
@@ -167,7 +171,7 @@ def start(axis: Any, b: Any, p: KernelParameters, state: Any, s: Any, r: Any, q_
     read_sensors(axis, b, p, state, s, r)
 
 
-@njit(cache=True)
+@compiled
 def step(
     axis: Any,
     b: Any,
@@ -185,14 +189,15 @@ def step(
     Args:
         axis: AXIS records.
         b: BODY record.
-        p: geometry of the true mechanism.
-        maps: (5, 2, 2, 4, 5) propagators for `period / substeps`.
-        substeps: steps in the period.
+        p: Geometry of the true mechanism.
+        maps: Propagators for `period / substeps`, (5, 2, 2, 4, 5).
+        substeps: Steps in the period.
         state: AXIS_STATE records, changed in place.
         s: BODY_STATE record, changed in place.
-        r: READING record, the sensors at the end of the period.
-        command: (5,) velocities [m/s, rad/s] sent at its beginning.
-        wrench: (6,) contact wrench on the tip in {b} at its end; between its ends the wrench is taken at the middle.
+        r: READING record: receives the sensors at the end of the period.
+        command: Velocities sent at the beginning of the period (5,) [m/s, rad/s].
+        wrench: Contact wrench on the tip in {b} at the end of the period (6,). Over the period the mean of the wrenches
+            at its two ends acts.
     """
     mean = np.empty(6)
     for i in range(6):
@@ -218,7 +223,7 @@ READING_SIZE = 5 * 5 + 6 + 1 + 3 + 4
 """Numbers of a reading as `step_flat` writes them: five columns of five, wrench, tracked, tracker pose."""
 
 
-@njit(cache=True)
+@compiled
 def flatten(r: Any, flat: Array) -> None:
     """Write a READING record as numbers (READING_SIZE,)."""
     for i in range(5):
@@ -233,7 +238,7 @@ def flatten(r: Any, flat: Array) -> None:
         flat[35 + i] = r.tracker_orientation[i]
 
 
-@njit(cache=True)
+@compiled
 def step_flat(
     axis: Any,
     body: Any,
@@ -250,15 +255,15 @@ def step_flat(
 ) -> None:
     """Do as `step` does and write the reading into `flat` (READING_SIZE,), for a caller in Python.
 
-    Records are slow arguments there: `body`, `s` and `r` are arrays of one record, `geometry` is an array (44,), and
-    `temperature` is that of the structure [degC].
+    Records are slow arguments for such a caller. So `body`, `s` and `r` are arrays of one record each, `geometry` is an
+    array (44,), and `temperature` [degC], that of the structure, is an argument of its own.
     """
     body[0].temperature = temperature
     step(axis, body[0], unpack(geometry), maps, substeps, state, s[0], r[0], command, wrench)
     flatten(r[0], flat)
 
 
-@njit(cache=True)
+@compiled
 def host_command(axis: Any, setpoint: Array, setpoint_rate: Array, load_reading: Array, out: Array) -> None:
     """Write the velocities the host commands in position modes, clamped: contract, section 3."""
     for i in range(5):
@@ -267,7 +272,7 @@ def host_command(axis: Any, setpoint: Array, setpoint_rate: Array, load_reading:
         out[i] = min(max(wanted, -a.velocity_limit), a.velocity_limit)
 
 
-@njit(cache=True)
+@compiled
 def run(
     axis: Any,
     b: Any,
@@ -284,23 +289,23 @@ def run(
     temperature: Array,
     out: Any,
 ) -> None:
-    """Run n ticks, in closed loop on set-points or open on recorded commands.
+    """Run n ticks, in closed loop on set-points or in open loop on recorded commands.
 
     Args:
         axis: AXIS records.
         b: BODY record; its temperature is changed.
-        p: geometry of the true mechanism.
-        maps: propagators.
-        substeps: steps in the period.
+        p: Geometry of the true mechanism.
+        maps: Propagators.
+        substeps: Steps in the period.
         state: AXIS_STATE records, fresh.
         s: BODY_STATE record, fresh but for the seed.
-        closed: host law on the set-points, or `command` as it is.
-        setpoint: (n, 5) q_ref; the first is the start in either mode.
-        rate: (n, 5) its rate.
-        command: (n, 5) commanded velocities: written when closed, read when not.
-        wrench: (n, 6) contact wrench at the ticks.
-        temperature: (n,) of the structure [degC].
-        out: (n,) READING records, written.
+        closed: True for the host's law on the set-points, false for `command` as it is.
+        setpoint: q_ref (n, 5); the first row is the start in either mode.
+        rate: Rate of q_ref (n, 5).
+        command: Commanded velocities (n, 5): written in closed loop, read in open loop.
+        wrench: Contact wrench at the ticks (n, 6).
+        temperature: Temperature of the structure at the ticks (n,) [degC].
+        out: READING records (n,), written.
     """
     b.temperature = temperature[0]
     start(axis, b, p, state, s, out[0], setpoint[0], wrench[0])

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
+from sher3_common.compiled import compiled
 
 _STEP = np.uint64(0x9E3779B97F4A7C15)
 _MIX_1 = np.uint64(0xBF58476D1CE4E5B9)
@@ -19,7 +19,7 @@ _STREAM = np.uint64(0xD1342543DE82EF95)
 EFFORT, FORCE, TRACKER, JITTER, DROP, DISTURBANCE = 0, 8, 16, 24, 25, 32
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def _mix(x):
     """Finaliser of splitmix64 (Steele, Lea, Flood 2014)."""
     x = (x ^ (x >> np.uint64(30))) * _MIX_1
@@ -27,7 +27,7 @@ def _mix(x):
     return x ^ (x >> np.uint64(31))
 
 
-@njit(cache=True)
+@compiled
 def uniform(seed: int, stream: int, index: int) -> float:
     """Return a uniform number in (0, 1)."""
     x = _mix(np.uint64(seed) + np.uint64(stream + 1) * _STREAM)
@@ -35,7 +35,7 @@ def uniform(seed: int, stream: int, index: int) -> float:
     return (np.float64(x >> np.uint64(11)) + 0.5) * 1.1102230246251565e-16
 
 
-@njit(cache=True)
+@compiled
 def normal(seed: int, stream: int, index: int) -> float:
     """Return a standard normal number, by Box and Muller's transform of two uniform ones."""
     radius = math.sqrt(-2.0 * math.log(uniform(seed, stream, 2 * index)))

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from sher3_description import Robot
+from sher3_description.contract import EFFORT_NOISE, EFFORT_RESOLUTION, REFERENCE_TEMPERATURE
 from sher3_kinematics.kernel import KernelParameters, kernel_parameters
 
 Records = NDArray[Any]
@@ -88,14 +89,14 @@ BODY = np.dtype(
 
 @dataclass
 class PlantParameters:
-    """Everything the plant needs to know, nominal until effects are applied.
+    """Everything the plant needs to know; nominal until effects are applied.
 
     Attributes:
-        robot: the nominal robot, which the host believes.
-        axis: (5,) records of type AXIS, SI units.
-        body: (1,) record of type BODY.
-        geometry: the geometry of the true mechanism; effects replace values in it.
-        substeps: integration steps per control period.
+        robot: The nominal robot, which is what the host believes.
+        axis: Records of type AXIS, (5,), SI units.
+        body: One record of type BODY, (1,).
+        geometry: Geometry of the true mechanism; effects replace values in it.
+        substeps: Integration steps per control period.
     """
 
     robot: Robot
@@ -129,7 +130,8 @@ def nominal_parameters(robot: Robot) -> PlantParameters:
     for record, actuator in zip(axis, robot.actuators, strict=True):
         record["kp"], record["ki"] = actuator.drive.kp, actuator.drive.ki
         record["limit"] = actuator.drive.limit
-        record["effort_noise"], record["effort_count"] = 0.002 * actuator.drive.rated, 0.001 * actuator.drive.rated
+        record["effort_noise"] = EFFORT_NOISE * actuator.drive.rated
+        record["effort_count"] = EFFORT_RESOLUTION * actuator.drive.rated
         record["mass"], record["viscous"], record["lead"] = actuator.mass, actuator.viscous, actuator.lead
         record["motor_count"], record["load_count"] = actuator.motor_encoder, actuator.load_encoder
         record["velocity_limit"], record["position_gain"] = actuator.limits.velocity, robot.position_gain
@@ -141,7 +143,7 @@ def _nominal_body(robot: Robot) -> Records:
     body = np.zeros(1, BODY)
     sensor, record = robot.force_sensor, body[0]
     record["period"] = robot.control_period
-    record["temperature"] = 22.0
+    record["temperature"] = REFERENCE_TEMPERATURE
     law = robot.delta.link_compliance
     record["link_law"], record["link_exponent"] = law.a * robot.delta.spring_factor, law.b
     record["platform_balls"] = _platform_balls(robot)

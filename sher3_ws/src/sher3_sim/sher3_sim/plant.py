@@ -9,11 +9,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from sher3_description import Robot
+from sher3_description.contract import REFERENCE_TEMPERATURE
 from sher3_kinematics.direct import direct
 
 from sher3_sim import kernel
 from sher3_sim.axis import AXIS_STATE, propagators
-from sher3_sim.effects.base import Effect, with_effects
+from sher3_sim.effect import PlantEffect, with_effects
 from sher3_sim.errors import InputError
 from sher3_sim.scatter import RunScatter
 
@@ -24,14 +25,14 @@ class Reading(NamedTuple):
     """What the sensors say at one tick.
 
     Attributes:
-        motor_position: (5,) motor encoders [m, rad].
-        motor_velocity: (5,) difference of the last two motor readings over the period.
-        effort: (5,) reported by the drives [N, N m].
-        load_position: (5,) load encoders [m, rad].
-        demand: (5,) velocity the drives executed in the period that ends now, its mean [m/s, rad/s].
-        wrench: (6,) force sensor in {f} [N, N m].
-        tracker: (7,) tip position [m] and quaternion (x, y, z, w) in {b}, or None between its samples.
-        temperature: of the structure [degC].
+        motor_position: Motor encoders (5,) [m, rad].
+        motor_velocity: Difference of the last two motor readings over the period (5,) [m/s, rad/s].
+        effort: Effort reported by the drives (5,) [N, N m].
+        load_position: Load encoders (5,) [m, rad].
+        demand: Mean velocity demand that the drives executed in the period that ends now (5,) [m/s, rad/s].
+        wrench: Force sensor in {f} (6,) [N, N m].
+        tracker: Tip position [m] and quaternion (x, y, z, w) in {b}, (7,); None between two samples of the tracker.
+        temperature: Temperature of the structure [degC].
     """
 
     motor_position: Vector
@@ -67,15 +68,15 @@ def checked(name: str, values: ArrayLike, shape: tuple[int, ...]) -> Vector:
 
 
 class Plant:
-    """A simulated robot that is stepped by its caller; deterministic for a seed and a sequence of inputs."""
+    """A simulated robot that its caller steps; the same seed and inputs always give the same readings."""
 
     def __init__(
         self,
         robot: Robot,
-        effects: Iterable[Effect] = (),
+        effects: Iterable[PlantEffect] = (),
         seed: int = 0,
         *,
-        temperature: float = 22.0,
+        temperature: float = REFERENCE_TEMPERATURE,
         scatter: RunScatter | None = None,
     ) -> None:
         """Build the plant with effects in it and put it at rest at zero position.
@@ -110,7 +111,9 @@ class Plant:
         kernel.flatten(self._out[0], self._flat)
         constants = (self.parameters.axis, self.parameters.body, np.array(self.parameters.geometry), self._maps)
         self._arguments = (*constants, self.parameters.substeps, self._axes, self._body, self._out)
-        self._step = direct(kernel.step_flat, *self._arguments, self._command, self._wrench, 22.0, self._flat)
+        self._step = direct(
+            kernel.step_flat, *self._arguments, self._command, self._wrench, REFERENCE_TEMPERATURE, self._flat
+        )
         return self._reading()
 
     def step(self, velocity_command: ArrayLike, contact_wrench: ArrayLike | Sequence[float] = (0.0,) * 6) -> Reading:

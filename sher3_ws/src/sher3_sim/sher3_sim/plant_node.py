@@ -1,8 +1,9 @@
 """The plant process on mocks: the robot behind the CAN links, the force sensor's cable and the pedal's.
 
-The plant takes a step at each SYNC of the mock drives. The wrench on the tip and the foot on the pedal come in on
-`mock/contact_wrench` and `mock/pedal`; whoever sends them and falls silent has let go of both. Faults of the devices
-come in on `mock/fault`; from the first one on the plant tells the truth on `mock/true_js`, for whoever measures.
+The plant takes a step at each SYNC of the mock drives. The wrench on the tip and the foot on the pedal arrive on
+`mock/contact_wrench` and `mock/pedal`; a sender that falls silent counts as having let go of both. Faults of the
+devices are requested on `mock/fault`; from the first request on the plant publishes the true positions on
+`mock/true_js`, for whoever measures.
 """
 
 from __future__ import annotations
@@ -13,15 +14,8 @@ from typing import Any, Protocol, cast
 
 import numpy as np
 from rclpy.node import Node
-from sher3_description import Robot, Sher3Error
-from sher3_drivers.bus import CanLink, open_links
-from sher3_drivers.force_sensor import InProcessForceSensor
-from sher3_drivers.mock_bus import DrivePlant, MockDriveBus
-from sher3_drivers.netft_server import NetFtServer
-from sher3_drivers.pedal import InProcessPedal, PedalSender, PedalState
-from sher3_drivers.settings import MotorDriverSettings, default_settings
-from sher3_runtime import (
-    NODE_OPTIONS,
+from sher3_common import Sher3Error
+from sher3_common.samples import (
     DiagnosticSample,
     JointSample,
     JoySample,
@@ -29,27 +23,32 @@ from sher3_runtime import (
     TemperatureSample,
     TextSample,
     WrenchSample,
-    advertise,
-    clock_of,
-    on_readable,
-    on_tick,
-    subscribe,
 )
+from sher3_description import Robot
+from sher3_drivers.bus.link import CanLink, open_links
+from sher3_drivers.mock.bus import DrivePlant, MockDriveBus
+from sher3_drivers.pedal.device import PedalState
+from sher3_drivers.pedal.in_process import InProcessPedal
+from sher3_drivers.pedal.local import PedalSender
+from sher3_drivers.sensor.device import InProcessForceSensor
+from sher3_drivers.sensor.netft_server import NetFtServer
+from sher3_drivers.settings import MotorDriverSettings, default_settings
+from sher3_runtime import NODE_OPTIONS, advertise, clock_of, on_readable, on_tick, subscribe
 
-from sher3_sim.effects import Effect
+from sher3_sim.effect import PlantEffect
 from sher3_sim.plant import Plant, Reading
 from sher3_sim.scatter import RunScatter
 
 HOLD = 0.2
-"""Seconds after which a wrench or a pedal that is no longer sent counts as let go."""
+"""Time [s] after which a wrench or a pedal position that is no longer sent counts as let go."""
 RELEASED = PedalState(0.0, False)
 NOTHING = (0.0,) * 6
 MAX_CONTACT = 1000.0
-"""What the plant takes as a hand, N and N m: fifty times the sensor; its encoders count to 2^31."""
+"""Largest contact [N, N m] that is accepted: far beyond any hand, and no encoder overflows its 32 bits under it."""
 
 
 class Faults(Protocol):
-    """What breaks the devices on request; see `sher3_safety.injector`."""
+    """The injector that breaks the devices on request; see `sher3_faults.injector`."""
 
     def take(self, text: str, now: int) -> object:
         """Take a request of `mock/fault` at `now` [ns]; raise a Sher3Error when it cannot be done."""
@@ -65,26 +64,30 @@ class PlantNode(Node):
     """The simulated robot with its mock devices.
 
     Args:
-        robot: the nominal robot.
-        settings: CAN channels and period; by default the local links of the robot's control period.
-        effects: what the plant does that the model does not.
-        seed: of all noise.
-        scatter: run-to-run variation, drawn from the seed.
-        links: opened links instead of those the settings name (stepped tests).
-        force_device: the sensor's device end; default one on its standard port.
-        pedal_device: the pedal's device end, or the name of its socket.
-        faults: makes what breaks (drives, sensor, pedal) on request; without it `mock/fault` is ignored.
+        robot: The nominal robot.
+        settings: CAN channels and period; by default the local links and the robot's control period.
+        effects: What the plant does that the nominal model does not.
+        seed: Seed of all noise.
+        scatter: Run-to-run variation, drawn from the seed.
+        links: Opened links instead of those that the settings name (stepped tests).
+        force_device: Device end of the force sensor; by default one on its standard port.
+        pedal_device: Device end of the pedal, or the name of its socket.
+        faults: Makes the injector from what can break (drives, sensor, pedal); without it `mock/fault` is ignored.
+
+    Attributes:
+        plant: The simulated robot.
+        reading: What its sensors said at the newest step.
 
     Raises:
-        EffectError: an effect does not fit the robot.
-        LinkError, DeviceMissing: a link or a port is taken.
+        EffectError: An effect does not fit the robot.
+        LinkError, DeviceMissing: A link or a port is taken.
     """
 
     def __init__(
         self,
         robot: Robot,
         settings: MotorDriverSettings | None = None,
-        effects: Iterable[Effect] = (),
+        effects: Iterable[PlantEffect] = (),
         seed: int = 0,
         scatter: RunScatter | None = None,
         links: Sequence[CanLink] | None = None,
@@ -96,8 +99,8 @@ class PlantNode(Node):
         super().__init__("plant", **{**NODE_OPTIONS, **options})
         settings = settings or default_settings(robot.control_period)
         self._now, self._period = clock_of(self).now, robot.control_period
-        self._plant = Plant(robot, effects, seed, scatter=scatter)
-        self._reading = self._plant.reset(np.zeros(5))
+        self.plant = Plant(robot, effects, seed, scatter=scatter)
+        self.reading = self.plant.reset(np.zeros(5))
         self._wrench: tuple[float, ...] = NOTHING
         self._wrench_at = 0
         self._foot, self._foot_at = RELEASED, 0
@@ -133,7 +136,7 @@ class PlantNode(Node):
     def step(self, velocity_command: Sequence[float]) -> Reading:
         """Advance the plant by one period, as `MockDriveBus` asks at a SYNC, and let the sensors speak."""
         fresh = self._now() - self._wrench_at < HOLD * 1e9
-        self._reading = reading = self._plant.step(velocity_command, self._wrench if fresh else NOTHING)
+        self.reading = reading = self.plant.step(velocity_command, self._wrench if fresh else NOTHING)
         stamp = self._stamp()
         self._stream(stamp)
         if self._truth_told:
@@ -151,8 +154,8 @@ class PlantNode(Node):
         self.drives.serve(0.0)  # the executor calls again at once when more has come
 
     def _tell_truth(self) -> None:
-        """Publish where the axes truly are at the end of the step."""
-        position, demand = self._plant.true_position.tolist(), self._reading.demand.tolist()
+        """Publish the true positions of the axes at the end of the step."""
+        position, demand = self.plant.true_position.tolist(), self.reading.demand.tolist()
         self._publish_truth(JointSample(self.drives.step_end, tuple(position), tuple(demand)))
 
     def _stamp(self) -> int:
@@ -162,13 +165,13 @@ class PlantNode(Node):
 
     def _stream(self, stamp: int) -> None:
         self._streamed = stamp
-        self._say_wrench(tuple(self._reading.wrench.tolist()))
+        self._say_wrench(tuple(self.reading.wrench.tolist()))
 
     def _press(self) -> None:
         self._say_pedal(self._foot if self._now() - self._foot_at < HOLD * 1e9 else RELEASED)
 
     def _tick(self, stamp: int) -> None:
-        """Speak for devices that have a clock of their own: sensor and pedal go on when no SYNC comes."""
+        """Send for the devices that have a clock of their own: sensor and pedal go on when no SYNC comes."""
         if self._faults is not None:
             self._faults.poll(self._now())
         self.drives.poll()
@@ -177,7 +180,7 @@ class PlantNode(Node):
         self._press()
 
     def _second(self, stamp: int) -> None:
-        self._publish_temperature(TemperatureSample(stamp, self._reading.temperature))
+        self._publish_temperature(TemperatureSample(stamp, self.reading.temperature))
 
     def _on_wrench(self, sample: WrenchSample) -> None:
         if all(abs(value) <= MAX_CONTACT for value in sample.wrench):  # a NaN compares false

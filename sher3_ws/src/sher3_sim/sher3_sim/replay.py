@@ -1,4 +1,4 @@
-"""Recorded runs as inputs of the plant: what drove the robot, put back in front of the model."""
+"""Recorded runs as inputs of the plant: what drove the robot drives the model."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 from sher3_bags.run import Run
+from sher3_common.compiled import compiled
 from sher3_description import Robot
+from sher3_description.contract import GRAVITY, REFERENCE_TEMPERATURE
 from sher3_kinematics.kernel import (
-    GRAVITY,
     KernelParameters,
     gravity_load_into,
     kernel_parameters,
@@ -19,18 +19,20 @@ from sher3_kinematics.kernel import (
     tip_pose_into,
 )
 
-from sher3_sim.effects.base import Effect
-from sher3_sim.simulate import Array, Excitation, excitation, simulate
+from sher3_sim.closed_loop import Array, Excitation, excitation, simulate
+from sher3_sim.effect import PlantEffect
 from sher3_sim.tip import cross
 
 SMOOTHING = 11
-"""Ticks over which a parabola is fitted to the recorded wrench before it acts on the model: noise goes, edges stay."""
+"""Ticks over which a parabola is fitted to the recorded wrench before it acts on the model: the fit removes noise and
+keeps edges."""
 
 
 def contact_wrench(run: Run, robot: Robot, smoothing: int = SMOOTHING) -> Array:
-    """Return (n, 6) the contact wrench at the tip in {b} that the recorded force sensor and load encoders imply.
+    """Return the contact wrench (n, 6) at the tip in {b} that the recorded force sensor and load encoders imply.
 
-    The tool's weight is taken off and the moment moved from {f} to the tip (contract, section 3); all of it nominal.
+    The weight of the tool is subtracted and the moment is moved from {f} to the tip (contract, section 3), all by the
+    nominal model.
 
     Raises:
         MissingTopicError: `measured_js` or `force/measured_cf` was not recorded.
@@ -45,7 +47,7 @@ def contact_wrench(run: Run, robot: Robot, smoothing: int = SMOOTHING) -> Array:
     return savgol_filter(raw, min(smoothing, (len(raw) - 1) // 2 * 2 + 1), min(2, len(raw) - 1), axis=0)
 
 
-@njit(cache=True)
+@compiled
 def _to_tip(p: KernelParameters, q: Any, reading: Any, weight: float, com: Any, place: Any) -> Any:
     out, rotation, position = np.empty((len(q), 6)), np.empty((3, 3)), np.empty(3)
     for k in range(len(q)):
@@ -61,7 +63,7 @@ def _to_tip(p: KernelParameters, q: Any, reading: Any, weight: float, com: Any, 
     return out
 
 
-@njit(cache=True)
+@compiled
 def _axis_loads(p: KernelParameters, q: Any, wrench: Any) -> Any:
     out, jacobian = np.empty((len(q), 5)), np.empty((6, 5))
     for k in range(len(q)):
@@ -80,18 +82,20 @@ def axis_loads(robot: Robot, q: Array, wrench: Array) -> Array:
 
 
 def recorded_temperature(run: Run, stamp: NDArray[np.int64]) -> Array:
-    """Return (n,) the recorded structure temperature [degC] at the stamps, 22 where none was recorded."""
+    """Return (n,) the recorded structure temperature [degC] at the stamps, the reference where none was recorded."""
     if "temperature" not in run:
-        return np.full(len(stamp), 22.0)
+        return np.full(len(stamp), REFERENCE_TEMPERATURE)
     seen = run["temperature"]
     return np.interp(stamp, seen.stamp, seen.temperature)
 
 
 def recorded_excitation(run: Run, robot: Robot, *, open_loop: bool = False) -> Excitation:
-    """Return what drove a recorded run: set-points, or with `open_loop` its `servo_jv`, and wrench and temperature.
+    """Return what drove a recorded run: its set-points, wrench and temperature.
+
+    With `open_loop` its recorded commands (`servo_jv`) take the place of the set-points.
 
     Raises:
-        MissingTopicError: the run lacks a stream this needs.
+        MissingTopicError: The run lacks a stream that this needs.
     """
     wrench = contact_wrench(run, robot)
     if open_loop:
@@ -105,12 +109,12 @@ def recorded_excitation(run: Run, robot: Robot, *, open_loop: bool = False) -> E
 
 
 def resimulate(
-    run: Run, robot: Robot, effects: Iterable[Effect] = (), seed: int = 0, *, open_loop: bool = False
+    run: Run, robot: Robot, effects: Iterable[PlantEffect] = (), seed: int = 0, *, open_loop: bool = False
 ) -> Run:
-    """Return the run the model makes of what drove a recorded run.
+    """Return the run that the model makes of what drove a recorded run.
 
     Raises:
-        MissingTopicError, InputError, EffectError: see `recorded_excitation` and `simulate`.
+        MissingTopicError, InputError, EffectError: See `recorded_excitation` and `simulate`.
     """
     drive = recorded_excitation(run, robot, open_loop=open_loop)
     return simulate(

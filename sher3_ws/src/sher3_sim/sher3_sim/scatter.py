@@ -1,4 +1,4 @@
-"""What differs between two runs of the same commands on the same robot: the floor below which a gap is none."""
+"""What differs between two runs of the same commands on the same robot: a gap smaller than this is no gap."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from sher3_sim.parameters import PlantParameters
 
 @dataclass(frozen=True)
 class RunScatter:
-    """Run-to-run variation, one standard deviation each; a new draw per seed.
+    """Run-to-run variation, each value one standard deviation; every seed gives a new draw.
 
     Attributes:
-        start: of the start position [motor counts].
-        zero: of the load encoder's zero against the motor's [motor counts].
-        disturbance: of a random force on the axis [rated force], first-order with `disturbance_time` [s].
-        disturbance_time: its correlation time.
-        viscous: of the viscous coefficient [1].
+        start: Of the start position [motor counts].
+        zero: Of the load encoder's zero against that of the motor encoder [motor counts].
+        disturbance: Of a random force on the axis, first-order [rated force].
+        disturbance_time: Correlation time of that force [s].
+        viscous: Of the viscous coefficient, relative [1].
     """
 
     start: float = 0.25

@@ -6,9 +6,10 @@ import math
 from typing import Any
 
 import numpy as np
-from numba import njit
+from sher3_common.compiled import compiled
+from sher3_description.contract import REFERENCE_TEMPERATURE
 from sher3_kinematics.kernel import KernelParameters, tip_pose_into
-from sher3_kinematics.kernel_delta import leg_vectors
+from sher3_kinematics.kernel.delta import leg_vectors
 from sher3_kinematics.tip_deflection import ArmCompliance
 
 Array = np.ndarray
@@ -16,23 +17,24 @@ _ARM = ArmCompliance()
 YAW_STIFFNESS, PITCH_STIFFNESS, AXIAL_COMPLIANCE = _ARM.yaw, _ARM.pitch, _ARM.along_x
 """Lumped structure behind the delta stage [N m/rad, N m/rad, m/N] that reproduces the paper's deflection table."""
 CONTACT_FORCE = 0.1
-"""Load [N] at which a ball joint rests on one side of its clearance; smooths the switch."""
+"""Load [N] at which a ball joint rests on one side of its clearance; below it the change of side is smoothed."""
 LINK_FORCE = 0.5
 """Force [N] below which the link law a |F|^b, whose slope is infinite at zero, is made linear."""
 
 
-@njit(cache=True)
+@compiled
 def cross(a: Array, b: Array) -> Array:
     """Return a x b."""
     return np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
 
 
-@njit(cache=True)
+@compiled
 def add_clearance(p: KernelParameters, axis: Any, q: Array, load: Array, jacobian: Array, twist: Array) -> None:
-    """Add to the platform's twist the shift of legs longer by half their clearance in tension, shorter in compression.
+    """Add to the platform's twist the shift from clearance in the ball joints.
 
-    A slider that carries `load` pushes its leg, which leans, with load L / n_z; n_k . dP = L dL_k, and the columns of
-    the stage Jacobian give the shift per leg.
+    A leg is longer by half its clearance in tension and shorter by as much in compression. A slider that carries `load`
+    pushes its leg, which leans, with load L / n_z; n_k . dP = L dL_k, and the columns of the stage Jacobian give the
+    shift per leg.
     """
     _, n1, n2, n3 = leg_vectors(p, q[0], q[1], q[2])
     slant = (p.link_1 / n1[2], p.link_2 / n2[2], p.link_3 / n3[2])
@@ -42,7 +44,7 @@ def add_clearance(p: KernelParameters, axis: Any, q: Array, load: Array, jacobia
             twist[i] += jacobian[i, k] * slant[k] * longer
 
 
-@njit(cache=True)
+@compiled
 def add_growth(p: KernelParameters, growth: float, q: Array, jacobian: Array, shift: Array) -> None:
     """Add the platform's shift [m] when all links are longer by the share `growth`; the legs keep their slant."""
     _, n1, n2, n3 = leg_vectors(p, q[0], q[1], q[2])
@@ -52,12 +54,13 @@ def add_growth(p: KernelParameters, growth: float, q: Array, jacobian: Array, sh
             shift[i] += jacobian[i, k] * longer[k] * growth
 
 
-@njit(cache=True)
+@compiled
 def add_links(p: KernelParameters, b: Any, q: Array, arm: Array, wrench: Array, twist: Array) -> None:
-    """Add the platform twist of six single links: unequal in a pair, and elastic under a wrench at the tip.
+    """Add the platform twist of six single links, which are unequal in a pair and elastic under a wrench at the tip.
 
-    With Gamma the links' (direction; moment about P): Gamma f = w gives their forces, dl = scale a |f|^b plus or minus
-    half the difference of the pair their lengths, and Gamma^T (dP; rotation) = dl the twist.
+    Gamma has the columns (direction of link; its moment about P). Gamma f = w gives the link forces, and the link
+    lengths change by dl = scale a |f|^b plus or minus half the difference of the pair. Gamma^T (dP; rotation) = dl is
+    the twist.
     """
     _, n1, n2, n3 = leg_vectors(p, q[0], q[1], q[2])
     legs = (n1, n2, n3)
@@ -80,7 +83,7 @@ def add_links(p: KernelParameters, b: Any, q: Array, arm: Array, wrench: Array, 
     twist += np.linalg.solve(gamma.T.copy(), longer)
 
 
-@njit(cache=True)
+@compiled
 def add_lumped(fraction: float, arm: Array, wrench: Array, twist: Array) -> None:
     """Add the twist of rails, roll and arm lumped at P: springs in yaw and pitch, one along x."""
     about_y = wrench[4] + arm[2] * wrench[0] - arm[0] * wrench[2]
@@ -90,7 +93,7 @@ def add_lumped(fraction: float, arm: Array, wrench: Array, twist: Array) -> None
     twist[5] += fraction * about_z / YAW_STIFFNESS
 
 
-@njit(cache=True)
+@compiled
 def bending_shift(compliance: float, rotation: Array, wrench: Array, shift: Array) -> None:
     """Add the shift [m] of a tool that bends across its axis, z of {t}."""
     axis = rotation[:, 2]
@@ -99,11 +102,11 @@ def bending_shift(compliance: float, rotation: Array, wrench: Array, shift: Arra
         shift[i] += compliance * (wrench[i] - along * axis[i])
 
 
-@njit(cache=True)
+@compiled
 def vibrate(b: Any, s: Any, acceleration: Array, shift: Array) -> None:
     """Advance one mode of the structure by a period and add its shift [m].
 
-    x'' + 2 zeta w x' + w^2 x = -gain a with a the tip's acceleration, held over the period: exact below critical.
+    x'' + 2 zeta w x' + w^2 x = -gain a, with the tip's acceleration a held over the period: exact for zeta < 1.
     """
     w, zeta, h = 2.0 * math.pi * b.mode_frequency, b.mode_damping, b.period
     damped = w * math.sqrt(1.0 - zeta * zeta)
@@ -117,7 +120,7 @@ def vibrate(b: Any, s: Any, acceleration: Array, shift: Array) -> None:
         shift[i] += s.mode_shift[i]
 
 
-@njit(cache=True)
+@compiled
 def true_tip(
     p: KernelParameters,
     axis: Any,
@@ -146,7 +149,7 @@ def true_tip(
         rotation: (3, 3), written.
         position: (3,), written.
     """
-    warmth = b.temperature - 22.0
+    warmth = b.temperature - REFERENCE_TEMPERATURE
     for i in range(5):
         q[i] *= 1.0 + axis[i].expansion * warmth
     tip_pose_into(p, q, rotation, position)
@@ -177,7 +180,7 @@ def true_tip(
         position[i] += growth * position[i] + shift[i]
 
 
-@njit(cache=True)
+@compiled
 def quaternion(r: Array, out: Array) -> None:
     """Write the unit quaternion (x, y, z, w), w >= 0, of a rotation matrix (Shepperd 1978)."""
     trace = r[0, 0] + r[1, 1] + r[2, 2]

@@ -1,7 +1,7 @@
 """From motor to load and from both to their encoder readings, one axis, at the ticks (compiled).
 
-Everything here is static or rate-independent, so it needs no integration: lead error, ripple and compliance are
-functions of motor position and load, hysteresis and play depend only on the path, which is monotone within a tick.
+Nothing here needs integration. Lead error, ripple and compliance are functions of motor position and load. Hysteresis
+and play depend only on the path, which is monotone within a tick.
 """
 
 from __future__ import annotations
@@ -10,14 +10,14 @@ import math
 from typing import Any
 
 import numpy as np
-from numba import njit
+from sher3_common.compiled import compiled
 
 from sher3_sim.axis import TWO_PI, bristle_step
 
 
-@njit(cache=True)
+@compiled
 def elastic_output(a: Any, motor: float, load: float) -> float:
-    """Position behind lead error, ripple and compliance, before lost motion [m or rad]."""
+    """Return the position [m or rad] behind lead error, ripple and compliance, before lost motion."""
     out = motor * (1.0 + a.lead_error) - a.compliance * load
     if a.ripple_amplitude != 0.0 or a.ripple_base_amplitude != 0.0:
         out += a.ripple_amplitude * math.sin(TWO_PI * a.ripple_periods * motor / a.lead + a.ripple_phase)
@@ -25,9 +25,9 @@ def elastic_output(a: Any, motor: float, load: float) -> float:
     return out
 
 
-@njit(cache=True)
+@compiled
 def transmit(a: Any, s: Any, load: float) -> None:
-    """Carry the load along with the motor: hysteresis as a bristle, backlash as a play, both on the path so far."""
+    """Move the load with the motor: hysteresis is a bristle and backlash a play; both depend on the path so far."""
     base = elastic_output(a, s.position, load)
     moved = base - s.base
     s.base = base
@@ -41,7 +41,7 @@ def transmit(a: Any, s: Any, load: float) -> None:
         s.load = base
 
 
-@njit(cache=True)
+@compiled
 def encode_load(a: Any, load: float) -> float:
     """Return the load encoder's reading before rounding: scale, eccentricity, zero."""
     reading = load * (1.0 + a.encoder_scale) + a.encoder_offset
@@ -50,13 +50,13 @@ def encode_load(a: Any, load: float) -> float:
     return reading
 
 
-@njit(cache=True)
+@compiled
 def to_count(value: float, count: float) -> float:
     """Round to the nearest multiple of a count."""
     return math.floor(value / count + 0.5) * count
 
 
-@njit(cache=True)
+@compiled
 def place(a: Any, s: Any, reading: float) -> None:
     """Put the axis at rest where its load encoder reads `reading`, the transmission resting on the loaded flank.
 
@@ -76,15 +76,15 @@ def place(a: Any, s: Any, reading: float) -> None:
     s.velocity = 0.0
 
 
-@njit(cache=True)
+@compiled
 def follow(a: Any, s: Any, motor: Any, load: Any) -> Any:
-    """Return (n,) load positions for a recorded motor path: the transmission stage alone, conditioned on its input.
+    """Return load positions (n,) for a recorded motor path: the transmission stage alone, given its input.
 
     Args:
         a: AXIS record.
         s: AXIS_STATE record, fresh; changed in place.
-        motor: (n,) motor positions [m or rad].
-        load: (n,) load on the axis, gravity less contact [N or N m].
+        motor: Motor positions (n,) [m or rad].
+        load: Load on the axis, gravity less contact (n,) [N or N m].
     """
     out = np.empty(len(motor))
     for k in range(len(motor)):

@@ -4,14 +4,16 @@ import itertools
 
 import numpy as np
 import pytest
+from sher3_common.samples import JointSample, JoySample, TextSample, WrenchSample
 from sher3_description import load_robot
-from sher3_drivers.bus import LockstepLink, open_link
-from sher3_drivers.force_sensor import InProcessForceSensor
-from sher3_drivers.motor_driver_node import MotorDriverNode
-from sher3_drivers.pedal import InProcessPedal
+from sher3_drivers.bus.link import open_link
+from sher3_drivers.bus.lockstep import LockstepLink
+from sher3_drivers.drive.motor_driver_node import MotorDriverNode
+from sher3_drivers.pedal.in_process import InProcessPedal
+from sher3_drivers.sensor.device import InProcessForceSensor
 from sher3_drivers.settings import default_settings
-from sher3_runtime import Graph, JointSample, JoySample, TextSample, WrenchSample, on_tick
-from sher3_sim import EFFECTS
+from sher3_effects import plants
+from sher3_runtime import Graph, on_tick
 from sher3_sim.plant_node import PlantNode
 
 pytestmark = pytest.mark.graph
@@ -101,7 +103,7 @@ def test_temperature_once_a_second(rig):
 
 def test_effects_act_in_the_running_plant():
     with Graph(period=ROBOT.control_period) as graph:
-        rig = Rig(graph, [EFFECTS["command_delay"]("all", delay=ROBOT.control_period)])
+        rig = Rig(graph, [plants()["command_delay"]("all", delay=ROBOT.control_period)])
         rig.enable()
         rig.move((0.001, 0.0, 0.0, 0.0, 0.0), 5)
         graph.step(2)

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from sher3_description import Robot
 
-from . import standard
-from .excitation import Excitation, ExcitationError, check_limits
+from sher3_gap.excitation import standard
+from sher3_gap.excitation.excitation import Excitation, ExcitationError, check_limits
 
 POSTURES: dict[str, tuple[float, float, float, float, float]] = {
     "p0": (0.0, 0.0, 0.0, 0.0, 0.0),

@@ -7,9 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from sher3_bags import RunMetadata
-from sher3_description import ACTUATORS, Robot, Sher3Error
+from sher3_common import Sher3Error
+from sher3_description import ACTUATORS, Robot
 
-from .profile import FloatArray
+from sher3_gap.excitation.profile import FloatArray
 
 Load = tuple[float, float, float, float, float]
 

@@ -13,8 +13,8 @@ import numpy as np
 from sher3_description import Robot
 from sher3_description.equipment import Actuator
 
-from .excitation import Load
-from .profile import (
+from sher3_gap.excitation.excitation import Load
+from sher3_gap.excitation.profile import (
     FloatArray,
     Move,
     SpeedChange,

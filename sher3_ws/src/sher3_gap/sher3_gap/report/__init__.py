@@ -1,3 +1,1 @@
-"""The HTML report of a diagnosis: one self-contained page, one section per file."""
-
-from sher3_gap.report.page import write_report as write_report
+"""What the SHER adds to the report of its diagnosis: names, topics, and pictures of its exact stages and its tip."""

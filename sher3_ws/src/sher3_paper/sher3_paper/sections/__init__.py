@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from ..comparison import Section
-from ..errors import BadData
-from .benchtop import benchtop
-from .compensation import deflection_compensation
-from .design import design
-from .geometry import geometry
-from .grasp import grasp
-from .identification import identification
-from .torsion import torsion
+from sher3_paper.comparison import Section
+from sher3_paper.errors import BadData
+from sher3_paper.sections.benchtop import benchtop
+from sher3_paper.sections.compensation import deflection_compensation
+from sher3_paper.sections.design import design
+from sher3_paper.sections.geometry import geometry
+from sher3_paper.sections.grasp import grasp
+from sher3_paper.sections.identification import identification
+from sher3_paper.sections.torsion import torsion
 
 SECTIONS: dict[str, Callable[[], Section]] = {
     "geometry": geometry,

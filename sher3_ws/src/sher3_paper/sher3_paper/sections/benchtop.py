@@ -6,10 +6,10 @@ import json
 from pathlib import Path
 from typing import Any
 
-from sher3_description import FileError, read_text
+from sher3_common import FileError, read_text
 
-from ..comparison import Comparison, Section, Table
-from ..tables import printed
+from sher3_paper.comparison import Comparison, Section, Table
+from sher3_paper.tables import printed
 
 COMMAND = "sher3 benchtop"
 MAX_BYTES = 1 << 22

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from ..comparison import Section, computed
-from ..simulated import compensation
+from sher3_paper.comparison import Section, computed
+from sher3_paper.simulated import compensation
 
 COMMAND = "sher3 paper --only compensation"
 CASES = (("as modelled", 1.0, 1.0), ("20 % softer", 1.2, 1.2), ("20 % stiffer", 0.8, 0.8))

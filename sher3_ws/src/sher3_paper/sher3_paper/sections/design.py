@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from ..comparison import Comparison, Section, Table, compare, computed
-from ..constraints import AS_STATED, REACH_ONLY, RELAXED, Constraints
-from ..design import CHOSEN, READINGS, Reading
-from ..optimise import PAPER_LAW, Search, best, search
-from ..tables import printed
+from sher3_paper.comparison import Comparison, Section, Table, compare, computed
+from sher3_paper.search.constraints import AS_STATED, REACH_ONLY, RELAXED, Constraints
+from sher3_paper.search.design import CHOSEN, READINGS, Reading
+from sher3_paper.search.optimise import PAPER_LAW, Search, best, search
+from sher3_paper.tables import printed
 
 COMMAND = "sher3 design"
 SETS: dict[str, Constraints] = {"as stated": AS_STATED, "relaxed": RELAXED, "reach only": REACH_ONLY}

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..comparison import Comparison, Section, compare, computed
-from ..design import BEFORE, CHOSEN, base_radius, platform_radius
-from ..tables import printed
+from sher3_paper.comparison import Comparison, Section, compare, computed
+from sher3_paper.search.design import BEFORE, CHOSEN, base_radius, platform_radius
+from sher3_paper.tables import printed
 
 COMMAND = "sher3 paper --only geometry"
 

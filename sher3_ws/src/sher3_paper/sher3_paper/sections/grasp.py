@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from ..comparison import Comparison, Section, Table, compare, computed, within
-from ..grasp import Setup, fit_grasp_model
-from ..tables import deflection_table
+from sher3_paper.comparison import Comparison, Section, Table, compare, computed, within
+from sher3_paper.grasp import Setup, fit_grasp_model
+from sher3_paper.tables import deflection_table
 
 COMMAND = "sher3 paper --only grasp"
 BANDS = (15.0, 15.0, 45.0)
-"""Per-position bands [%] along x, y, z: what a model that is exact in the means is allowed to miss."""
+"""Bands [%] along x, y, z for one position: by this much may a model that is exact in the means miss a position."""
 
 
 def grasp() -> Section:

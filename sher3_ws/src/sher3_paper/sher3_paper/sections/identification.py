@@ -6,12 +6,12 @@ import numpy as np
 from sher3_description import load_robot
 from sher3_kinematics.link_law import LinkLaw
 
-from ..comparison import Comparison, Section, Table, computed
-from ..design import Design
-from ..optimise import PAPER_LAW
-from ..simulated import identify_from_loops, twist_loop
-from ..tables import printed, torsion_table
-from ..torsion import (
+from sher3_paper.comparison import Comparison, Section, Table, computed
+from sher3_paper.search.design import Design
+from sher3_paper.search.optimise import PAPER_LAW
+from sher3_paper.simulated import identify_from_loops, twist_loop
+from sher3_paper.tables import printed, torsion_table
+from sher3_paper.torsion import (
     GEOMETRIES,
     LINK_LENGTH,
     PowerFit,

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..comparison import Comparison, Section, Table, computed, within
-from ..optimise import PAPER_LAW
-from ..tables import printed, torsion_table
-from ..torsion import GEOMETRIES, compare_with_table
+from sher3_paper.comparison import Comparison, Section, Table, computed, within
+from sher3_paper.search.optimise import PAPER_LAW
+from sher3_paper.tables import printed, torsion_table
+from sher3_paper.torsion import GEOMETRIES, compare_with_table
 
 COMMAND = "sher3 paper --only torsion"
 

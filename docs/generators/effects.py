@@ -1,0 +1,45 @@
+"""The library of effects as a page, from `sher3 gap library --json`."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+
+from generators.command_line import run_json
+from generators.table import table
+
+INTRODUCTION = """# The library of effects
+
+What the diagnosis knows, by family. `sher3 gap library EFFECT` prints one page of it. *Stage* is the place in the
+signal chain at which the effect enters; *on* says which actuators or parts may have it.
+
+"""
+
+
+def page() -> str:
+    """Return the page."""
+    families = defaultdict(list)
+    for effect in run_json("gap", "library", "--json")["effects"]:
+        families[effect["family"]].append(effect)
+    text = INTRODUCTION
+    for family, effects in sorted(families.items()):
+        text += f"## {family.replace('_', ' ').capitalize()}\n\n" + "\n".join(_effect(effect) for effect in effects)
+    return text
+
+
+def _effect(effect: dict) -> str:
+    sites = ", ".join(f"`{site}`" for site in effect["sites"])
+    stage = effect["stage"].replace("_", " ")
+    text = f"### {effect['effect']}\n\nStage {stage}, on {sites}. {effect['explanation']}\n\n"
+    text += f"- Law: {effect['law']}\n- In the simulator: {effect['simulated']}\n"
+    text += f"- Shows best in {effect['best']['excitation']}: {effect['best']['why']}\n\n" if effect["best"] else "\n"
+    parameters = effect["parameters"].items()
+    rows = [(f"`{name}`", p["unit"], _range(p), p["text"]) for name, p in parameters]
+    text += table(("parameter", "unit", "range", "meaning"), rows) + "\n" if rows else ""
+    rows = [(f"`{name}`", difference) for name, difference in effect["siblings"].items()]
+    return text + (table(("not to be confused with", "which differs in this"), rows) + "\n" if rows else "")
+
+
+def _range(parameter: dict) -> str:
+    """Return the bounds; a parameter of the fit that the plant does not take has none."""
+    low, high = parameter["low"], parameter["high"]
+    return "" if low is None or high is None else f"{low:g} to {high:g}"

@@ -1,0 +1,120 @@
+"""Analysis and comparison as text."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from sher3_bags.figures.analysis import Analysis
+from sher3_bags.figures.compare import Comparison
+from sher3_bags.figures.statistics import Spread
+from sher3_bags.figures.tracking import AxisError
+
+_PREFIXES = ((1.0, ""), (1e-3, "m"), (1e-6, "u"), (1e-9, "n"))
+
+
+def quantity(value: float | None, unit: str) -> str:
+    """Return a number with three digits and an SI prefix, `-` for None."""
+    if value is None:
+        return "-"
+    if value == 0:
+        return f"0 {unit}"
+    for scale, prefix in _PREFIXES:
+        if abs(value) >= scale:
+            return f"{value / scale:.3g} {prefix}{unit}"
+    return f"{value / 1e-9:.2g} n{unit}"
+
+
+def table(header: Iterable[str], rows: Iterable[Iterable[object]]) -> str:
+    """Return columns aligned with spaces; the first column to the left."""
+    lines = [[str(cell) for cell in row] for row in (header, *rows)]
+    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
+    return "\n".join(
+        "  ".join(
+            cell.ljust(w) if k == 0 else cell.rjust(w) for k, (cell, w) in enumerate(zip(line, widths, strict=True))
+        )
+        for line in lines
+    )
+
+
+def _spread(spread: Spread | None) -> str:
+    if spread is None:
+        return "-"
+    return "/".join(f"{value * 1e3:.3g}" for value in (spread.p50, spread.p99, spread.max))
+
+
+def analysis_text(analysis: Analysis) -> str:
+    """Return the figures of a run, a screenful."""
+    count = sum(timing.messages for timing in analysis.topics.values())
+    parts = [f"{analysis.source}: {analysis.duration:.3f} s, {count} messages, {analysis.dropped} dropped"]
+    parts.append(_timing_text(analysis))
+    parts += _tracking_text("position tracking (setpoint_js - measured_js)", analysis.position_tracking)
+    parts += _tracking_text("drive tracking (integral of drives/setpoint_jv - motor position)", analysis.drive_tracking)
+    parts += _tracking_text("velocity tracking (drives/setpoint_jv - motor, 20 ms average)", analysis.velocity_tracking)
+    if analysis.tip is not None:
+        extent = " x ".join(f"{1e3 * value:.3g}" for value in analysis.tip.extent)
+        speed = quantity(analysis.tip.max_speed, "m/s")
+        parts.append(f"tip: path {quantity(analysis.tip.length, 'm')}, extent {extent} mm, largest speed {speed}")
+    if analysis.tracker_rms is not None:
+        parts.append(f"tracker: {quantity(analysis.tracker_rms, 'm')} rms from measured_cp")
+    if analysis.force_velocity is not None:
+        fit = analysis.force_velocity
+        parts.append(
+            f"force against velocity: {1e3 * fit.gain:.3g} (mm/s)/N, correlation {fit.correlation:.3f}, "
+            f"largest force {fit.max_force:.3g} N, {fit.samples} samples with the pedal pressed"
+        )
+    return "\n\n".join(parts)
+
+
+def _timing_text(analysis: Analysis) -> str:
+    header = ("topic", "node", "messages", "Hz", "period [ms]", "latency [ms]", "from force [ms]", "dropped", "pauses")
+    rows = [
+        (
+            topic,
+            timing.node or "-",
+            timing.messages,
+            f"{timing.rate:.1f}",
+            _spread(timing.period),
+            _spread(timing.latency),
+            _spread(timing.from_force),
+            timing.dropped,
+            timing.pauses,
+        )
+        for topic, timing in analysis.topics.items()
+    ]
+    text = "times are median/99 %/max\n" + table(header, rows)
+    bad = [f"{t}: {x.disordered} stamps out of order" for t, x in analysis.topics.items() if x.disordered]
+    bad += [f"{t}: {x.not_finite} values not finite" for t, x in analysis.topics.items() if x.not_finite]
+    return "\n".join([text, *bad])
+
+
+def _tracking_text(title: str, errors: tuple[AxisError, ...]) -> list[str]:
+    if not errors:
+        return []
+    rows = [(e.actuator, quantity(e.mean, e.unit), quantity(e.rms, e.unit), quantity(e.max, e.unit)) for e in errors]
+    return [f"{title}\n" + table(("axis", "mean", "rms", "max"), rows)]
+
+
+def comparison_text(comparison: Comparison) -> str:
+    """Return the residuals of two runs, one line per axis."""
+    rows = [
+        (
+            f"{topic} {column} {axis.axis}" if len(axes) > 1 else f"{topic} {column}",
+            quantity(axis.lag, "s"),
+            "-" if axis.correlation is None else f"{axis.correlation:.4f}",
+            f"{axis.mean:.3g}",
+            f"{axis.rms:.3g}",
+            f"{axis.max:.3g}",
+            "-" if axis.rms_aligned is None else f"{axis.rms_aligned:.3g}",
+        )
+        for topic, columns in comparison.residuals.items()
+        for column, axes in columns.items()
+        for axis in axes
+    ]
+    head = f"b: {comparison.b}\na: {comparison.a}\n"
+    head += f"aligned by {comparison.alignment}, {comparison.overlap:.3f} s in common, "
+    head += f"b is later by {quantity(comparison.lag, 's')} (median)"
+    parts = [head, table(("b - a, SI units", "lag", "correlation", "mean", "rms", "max", "rms aligned"), rows)]
+    for name, only in (("a", comparison.only_in_a), ("b", comparison.only_in_b)):
+        if only:
+            parts.append(f"only in {name}: {', '.join(only)}")
+    return "\n\n".join(parts)

@@ -1,0 +1,1 @@
+"""Bags as files: MCAP with the layout and metadata of rosbag2."""

@@ -1,0 +1,1 @@
+"""From a bag back onto the ROS graph."""

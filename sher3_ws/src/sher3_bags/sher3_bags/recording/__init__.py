@@ -1,0 +1,1 @@
+"""From the ROS graph into a bag."""

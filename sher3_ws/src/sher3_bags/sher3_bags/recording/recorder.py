@@ -1,0 +1,191 @@
+"""Record raw CDR messages into a rosbag2 folder; plain code that is told the time.
+
+A chunk is written in one piece as soon as it is full or old. Whatever happens to the process afterwards, the file lacks
+at most the samples of one chunk (`CHUNK_LIMIT` bytes, `MAX_AGE_NS`).
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import struct
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import TracebackType
+
+import numpy as np
+from sher3_common.stamps import SECOND
+from sher3_description import TOPICS, Robot, Topic
+
+from sher3_bags.codec.cdr import STAMP
+from sher3_bags.errors import BagError, TopicError
+from sher3_bags.figures.gaps import GapCounter, grid_periods, is_stamped
+from sher3_bags.mcap.kernels import MESSAGE, MESSAGE_HEAD, RECORD_HEAD
+from sher3_bags.mcap.rosbag2 import TopicCount, write_metadata
+from sher3_bags.mcap.writer import CHUNK_LIMIT, McapWriter
+from sher3_bags.provenance import PROVENANCE_RECORD, provenance
+from sher3_bags.reading import ROBOT_FILE, RUN_RECORD
+from sher3_bags.run import RunMetadata
+
+RECORDING_RECORD = "sher3.recording"
+MAX_AGE_NS = 500_000_000
+
+_HEAD = struct.Struct("<BQHIQQ")
+_STAMP = struct.Struct("<iI")
+
+
+@dataclass
+class _Source:
+    topic: Topic
+    channel: int
+    gaps: GapCounter
+    sequence: int = 0
+
+
+@dataclass
+class _OpenChunk:
+    body: bytearray = field(default_factory=bytearray)
+    channel: list[int] = field(default_factory=list)
+    log_time: list[int] = field(default_factory=list)
+    position: list[int] = field(default_factory=list)
+
+
+class Recorder:
+    """Writes the bag `folder`, a new rosbag2 folder; a context manager.
+
+    Args:
+        folder: must not exist yet.
+        robot: in force; attached to the bag, and the source of the sample periods.
+        metadata: the contract's `sher3.run` record.
+        parameters: settings of the nodes, noted in the provenance.
+
+    Raises:
+        BagError: the folder exists.
+    """
+
+    def __init__(
+        self,
+        folder: Path,
+        robot: Robot,
+        metadata: RunMetadata | None = None,
+        parameters: Mapping[str, object] | None = None,
+    ) -> None:
+        if folder.exists():
+            raise BagError("exists already", path=folder, remedy="choose another name")
+        folder.mkdir(parents=True)
+        self.folder = folder
+        self._file = (folder / f"{folder.name}.mcap").open("xb")
+        self._writer = McapWriter(self._file)
+        self._writer.add_metadata(RUN_RECORD, (metadata or RunMetadata(origin="robot")).to_record())
+        self._writer.add_metadata(PROVENANCE_RECORD, provenance(robot, parameters))
+        self._writer.add_attachment(ROBOT_FILE, "application/yaml", robot.to_yaml().encode())
+        self._periods = grid_periods(robot)
+        self._sources: dict[str, _Source] = {}
+        self._chunk = _OpenChunk()
+        self.closed = False
+        self._file.flush()
+
+    def fileno(self) -> int:
+        """Return the descriptor of the open file, by which its disk can be watched."""
+        return self._file.fileno()
+
+    def write(self, topic: str, data: bytes, log_time: int, publish_time: int | None = None) -> None:
+        """Record one message.
+
+        Args:
+            topic: name in the topic table.
+            data: the CDR bytes.
+            log_time: ns at which it was received.
+            publish_time: ns at which it was sent, where known.
+
+        Raises:
+            TopicError: the topic is not in the table.
+            BagError: the recorder is closed, or the disk does not take the chunk.
+        """
+        if self.closed:
+            raise BagError("the recording is complete", path=self.folder, remedy="start another one")
+        source = self._sources.get(topic) or self._add(topic)
+        if source.gaps.stamped and len(data) >= STAMP + _STAMP.size:
+            seconds, nanoseconds = _STAMP.unpack_from(data, STAMP)
+            source.gaps.see(seconds * SECOND + nanoseconds)
+        else:
+            source.gaps.see(log_time)
+        chunk = self._chunk
+        size = RECORD_HEAD + MESSAGE_HEAD + len(data)
+        if chunk.body and (len(chunk.body) + size > CHUNK_LIMIT or log_time - chunk.log_time[0] > MAX_AGE_NS):
+            self.flush()
+            chunk = self._chunk
+        chunk.channel.append(source.channel)
+        chunk.log_time.append(log_time)
+        chunk.position.append(len(chunk.body))
+        sent = log_time if publish_time is None else publish_time
+        chunk.body += _HEAD.pack(MESSAGE, MESSAGE_HEAD + len(data), source.channel, source.sequence, log_time, sent)
+        chunk.body += data
+        source.sequence = (source.sequence + 1) & 0xFFFFFFFF
+
+    def flush(self) -> None:
+        """Write what has been recorded so far to the file.
+
+        Raises:
+            BagError: the disk does not take it; what was written before can be recovered.
+        """
+        chunk, self._chunk = self._chunk, _OpenChunk()
+        if not chunk.body:
+            return
+        try:
+            self._writer.add_chunk(
+                bytes(chunk.body), np.array(chunk.channel), np.array(chunk.log_time), np.array(chunk.position)
+            )
+            self._file.flush()
+        except OSError as error:
+            raise self._unwritable(error) from error
+
+    def _unwritable(self, error: OSError) -> BagError:
+        remedy = "free some space; `sher3 recover` saves what was written before"
+        return BagError(f"cannot be written: {error.strerror}", path=self.folder, remedy=remedy)
+
+    def counts(self) -> dict[str, dict[str, int]]:
+        """Return messages, dropped samples, pauses and disorder per topic so far."""
+        return {name: source.gaps.counts() for name, source in self._sources.items()}
+
+    def close(self) -> dict[str, dict[str, int]]:
+        """Complete the bag; return the counts per topic, which are also in the bag as `sher3.recording`.
+
+        Raises:
+            BagError: the disk does not take it.
+        """
+        counts = self.counts()
+        if self.closed:
+            return counts
+        self.closed = True
+        self.flush()
+        try:
+            self._writer.add_metadata(RECORDING_RECORD, {name: json.dumps(entry) for name, entry in counts.items()})
+            self._writer.close()
+            os.fsync(self._file.fileno())
+            self._file.close()
+        except OSError as error:
+            raise self._unwritable(error) from error
+        topics = {
+            source.topic.full_name: TopicCount(source.topic.type, source.gaps.messages, source.topic.qos)
+            for source in self._sources.values()
+        }
+        write_metadata(self.folder, f"{self.folder.name}.mcap", self._writer.start, self._writer.end, topics)
+        return counts
+
+    def _add(self, name: str) -> _Source:
+        if name not in TOPICS:
+            raise TopicError("no such topic in the table", topic=name, remedy="use a name relative to /sher3")
+        topic = TOPICS[name]
+        channel = self._writer.channel(topic.full_name, topic.type, topic.qos)
+        self._sources[name] = _Source(topic, channel, GapCounter(self._periods.get(name), is_stamped(name)))
+        return self._sources[name]
+
+    def __enter__(self) -> Recorder:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()

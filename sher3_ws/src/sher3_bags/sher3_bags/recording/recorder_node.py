@@ -1,0 +1,210 @@
+"""Record the graph: raw bytes of every topic of the table into a new bag.
+
+When the disk refuses the recording, `/diagnostics` says so. A node whose recording is required then ends, which stops
+the robot. Otherwise the node stays, counts the samples it does not record, and the robot goes on.
+
+In stepped time samples are taken as they come, so that all of them are recorded when a step ends.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable
+from operator import itemgetter
+from pathlib import Path
+from typing import Any
+
+import rclpy
+from rclpy.event_handler import SubscriptionEventCallbacks
+from rclpy.node import Node
+from rclpy.signals import SignalHandlerOptions
+from sher3_common.samples import DiagnosticSample
+from sher3_description import TOPICS, Robot, load_robot
+from sher3_runtime import advertise, environment
+from sher3_runtime.codec.messages import message_class
+from sher3_runtime.ports import NODE_OPTIONS, clock_of, find_topic, on_tick, ports, qos_profile, subscribe_raw
+from sher3_runtime.process import stop_on_signals
+from sher3_runtime.spinning import spin
+
+from sher3_bags.errors import BagError
+from sher3_bags.recording.recorder import Recorder
+from sher3_bags.run import RunMetadata
+
+POLL_NS = 5_000_000
+REPORT_NS = 1_000_000_000
+OK, ERROR = 0, 2
+
+DEPTH = 2000
+"""Samples that may wait while a chunk is compressed or the disk is slow: four seconds of a 500 Hz stream."""
+
+
+class Ears(Node):
+    """The subscriptions of the recorder: a node that no executor waits on, emptied by `listen`.
+
+    Waking up for each of thousands of samples a second would cost the recorder five times the work of writing them. The
+    middleware notes when a sample arrived, so looking later loses nothing.
+    """
+
+    def __init__(self, owner: Node, names: Iterable[str], **options: Any) -> None:
+        super().__init__(f"{owner.get_name()}_ears", **{**NODE_OPTIONS, **options})
+        self._now = clock_of(owner).now
+        self._received = ports(owner).received
+        self._takes: list[tuple[str, Callable[..., Any], Any]] = []
+        for name in names:
+            topic, kind = find_topic(name), message_class(find_topic(name).type)
+            profile = qos_profile(topic.qos)
+            profile.depth = DEPTH
+            events = SubscriptionEventCallbacks(use_default_callbacks=False)
+            subscription = self.create_subscription(
+                kind, topic.full_name, _never, profile, raw=True, event_callbacks=events
+            )
+            # The start barrier counts the owner's subscriptions.
+            ports(owner).subscriptions[name] = subscription
+            self._received[name] = 0
+            self._takes.append((name, subscription.handle.take_message, kind))
+
+    def listen(self) -> list[tuple[int, str, bytes, int]]:
+        """Return (arrival [ns], topic, data, time of sending [ns]) of all samples since the last call, by arrival."""
+        shift = self._shift()
+        samples = []
+        for name, take, kind in self._takes:
+            while (taken := take(kind, True)) is not None:
+                data, info = taken
+                samples.append((info["received_timestamp"] + shift, name, data, info["source_timestamp"] + shift))
+                self._received[name] += 1
+        samples.sort(key=itemgetter(0))
+        return samples
+
+    def _shift(self) -> int:
+        """Return the clock of the graph minus the system time, with which the middleware stamps [ns].
+
+        Of several readings the one taken in the shortest time counts: a process that is held up between the two clocks
+        would misplace a whole batch of samples.
+        """
+        readings = ((self._now(), time.time_ns(), self._now()) for _ in range(3))
+        _, shift = min((after - before, (before + after) // 2 - system) for before, system, after in readings)
+        return shift
+
+
+def _never(_: bytes) -> None:
+    raise AssertionError("no executor runs this node")
+
+
+class RecorderNode(Node):
+    """Records `topics` (by default all) into the new folder `output`; `close` completes the bag and reports losses.
+
+    Attributes:
+        recorder: The plain recorder that writes the bag.
+        counts: Counts per topic, set by `close`.
+        failure: Why the bag takes no more samples; None while it does.
+        unrecorded: Number of samples that came after the failure.
+    """
+
+    def __init__(
+        self,
+        output: Path | str,
+        robot: Robot | None = None,
+        *,
+        topics: Iterable[str] | None = None,
+        metadata: RunMetadata | None = None,
+        parameters: dict[str, Any] | None = None,
+        required: bool = True,
+        **options: Any,
+    ) -> None:
+        """Take the new folder, robot, topics and metadata; a `required` recording that fails ends the node."""
+        super().__init__("recorder", **{**NODE_OPTIONS, **options})
+        self.recorder = Recorder(Path(output), robot or load_robot(), metadata, parameters)
+        self.counts: dict[str, dict[str, int]] = {}
+        self.failure: BagError | None = None
+        self.unrecorded = 0
+        self._required = required
+        self._ears: Ears | None = None
+        self._publish_report = advertise(self, "diagnostics")
+        names = tuple(TOPICS if topics is None else topics)
+        if clock_of(self).stepped:
+            for name in names:
+                subscribe_raw(self, name, self._receiver(name), depth=DEPTH)
+        else:
+            self._ears = Ears(self, names, **options)
+            on_tick(self, self._poll, every=max(1, round(POLL_NS / clock_of(self).period_ns)))
+        # In the quieter half of the period.
+        period = clock_of(self).period_ns
+        on_tick(self, self._report, phase=0.7e-9 * period, every=max(1, round(REPORT_NS / period)))
+
+    def _receiver(self, name: str) -> Callable[[bytes], None]:
+        now = clock_of(self).now
+
+        def receive(data: bytes) -> None:
+            self._write(name, data, now())
+
+        return receive
+
+    def _poll(self, _: int) -> None:
+        if self._ears is not None and not self.recorder.closed:
+            for arrived, name, data, sent in self._ears.listen():
+                self._write(name, data, arrived, sent)
+
+    def _write(self, name: str, data: bytes, arrived: int, sent: int | None = None) -> None:
+        if self.failure is not None:
+            self.unrecorded += 1
+        elif not self.recorder.closed:
+            try:
+                self.recorder.write(name, data, arrived, sent)
+            except BagError as error:
+                self._fail(error)
+
+    def _fail(self, error: BagError) -> None:
+        """Say that the recording has ended; end the node if the recording is required."""
+        self.failure = error
+        self.unrecorded += 1
+        self._report(clock_of(self).now())
+        if self._required:
+            raise error
+        self.get_logger().error(f"{error}; the robot goes on without a recording")
+
+    def _report(self, stamp: int) -> None:
+        values = (
+            ("messages", str(sum(entry["messages"] for entry in self.recorder.counts().values()))),
+            ("unrecorded", str(self.unrecorded)),
+            ("required", str(self._required)),
+        )
+        level, message = (OK, "recording") if self.failure is None else (ERROR, f"not recording: {self.failure}")
+        self._publish_report(DiagnosticSample(stamp, "recorder: bag", level, message, values))
+
+    def close(self) -> None:
+        """Complete the bag; say what is in it and what was missed."""
+        if self.recorder.closed:
+            return
+        try:
+            self._poll(0)
+            self.counts = self.recorder.close() if self.failure is None else self.recorder.counts()
+        finally:
+            if self._ears is not None:
+                self._ears.destroy_node()
+        total = sum(entry["messages"] for entry in self.counts.values())
+        self.get_logger().info(f"recorded {total} messages of {len(self.counts)} topics in {self.recorder.folder}")
+        for topic, entry in self.counts.items():
+            if entry["dropped"] or entry["disordered"]:
+                self.get_logger().warning(
+                    f"{topic}: {entry['dropped']} samples dropped, {entry['disordered']} out of order"
+                )
+
+
+def run(
+    output: Path, robot: Robot | None = None, *, topics: Iterable[str] | None = None, seconds: float | None = None
+) -> dict[str, dict[str, int]]:
+    """Record in a process of its own until a signal or for `seconds`; return the counts per topic.
+
+    Raises:
+        BagError: the output exists.
+    """
+    environment.apply()
+    rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
+    try:
+        stop = stop_on_signals()
+        node = RecorderNode(output, robot, topics=topics)
+        end = time.monotonic() + (float("inf") if seconds is None else seconds)
+        spin([node], stop=lambda: stop() or time.monotonic() > end, diagnostics=False)
+        return node.counts
+    finally:
+        rclpy.try_shutdown()

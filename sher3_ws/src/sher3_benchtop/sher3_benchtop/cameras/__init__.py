@@ -1,0 +1,1 @@
+"""The two cameras of the bench and the pictures they take."""

@@ -1,0 +1,1 @@
+"""The bench-top tests on the running graph."""

@@ -1,0 +1,1 @@
+"""The paper's five tests as tables of commands and loads."""

@@ -1,0 +1,1 @@
+"""The recorded session of `sher3 demo`, and its verdict."""

@@ -1,0 +1,1 @@
+"""The processes of a run: the nodes in each, their start, their supervision and their end."""

@@ -1,0 +1,120 @@
+"""`sher3 up`: start the processes of a run, say when they are ready, keep them together, stop them."""
+
+from __future__ import annotations
+
+import os
+import signal
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from functools import partial
+
+from sher3_runtime import environment
+from sher3_runtime.ports import PERIOD_VARIABLE
+from sher3_runtime.process import realtime_permitted
+
+from sher3_bringup.processes.fleet import Fleet
+from sher3_bringup.processes.nodes import make_nodes, preload
+from sher3_bringup.processes.only_robot import only_robot
+from sher3_bringup.settings.run_settings import RunSettings
+
+DEFAULT_REALTIME = 40
+UNHURRIED = frozenset({"recorder", "gap_monitor"})
+"""Processes without real-time priority: compressing a chunk at the priority of the loop would hold the loop up. Only
+their receiving threads have it."""
+BESIDE = frozenset({"pedal", "supervisor"})
+BESIDE_BY = 10
+"""By how much the priority of a process beside the chain from force sample to CAN frame is lower than the chain's."""
+
+
+def run_graph(
+    settings: RunSettings,
+    say: Callable[[str], None] = print,
+    extra: Mapping[str, Callable[[], object]] | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> None:
+    """Run the graph until Ctrl-C, SIGTERM or the end of its duration.
+
+    Args:
+        settings: of the run, checked.
+        say: prints a line.
+        extra: further processes by name, each given by what makes its nodes.
+        progress: called every 50 ms with the seconds since the first tick.
+
+    Raises:
+        AlreadyRunning, StartError, ProcessDied, NotStopped: see `errors`; whatever was running has been stopped.
+    """
+    begin = time.monotonic()
+    realtime = prepare(settings)
+    imported = time.monotonic()
+    with only_robot(settings.domain), _signals() as caught, Fleet() as fleet:
+        launch_nodes(fleet, settings, realtime)
+        for name, make in (extra or {}).items():
+            fleet.launch(name, make, beside(realtime))
+        fleet.start()
+        started = time.monotonic()
+        count, seconds = len(fleet.members), started - imported
+        say(
+            f"ready: {count} processes at {settings.rate:g} Hz on {'mocks' if settings.mock else 'hardware'} "
+            f"in {seconds:.2f} s after {imported - begin:.2f} s of imports; Ctrl-C stops"
+        )
+
+        def finished() -> bool:
+            elapsed = time.monotonic() - started
+            if progress is not None:
+                progress(elapsed)
+            return bool(caught) or (settings.duration is not None and elapsed >= settings.duration)
+
+        fleet.watch(finished, spare=("recorder",) if settings.recording == "optional" else ())
+    say("stopped" + (f"; recorded {settings.record}" if settings.record else ""))
+
+
+def launch_nodes(fleet: Fleet, settings: RunSettings, realtime: int, patience: float = 60.0) -> None:
+    """Launch the processes of a run, the chain at priority `realtime`; wait at most `patience` s for the plant's nodes.
+
+    Raises:
+        StartError: the plant's process failed, or did not answer in time.
+    """
+    for process in launch_order(settings.processes):
+        fleet.launch("+".join(process), partial(make_nodes, settings, process), priority(process, realtime))
+        if "plant" in process:
+            fleet.gather("publishes", patience)
+
+
+def priority(process: Sequence[str], realtime: int) -> int:
+    """Return the priority of a process, as `use_realtime` takes it, where the chain has `realtime`."""
+    if set(process) <= UNHURRIED:
+        return -realtime
+    return beside(realtime) if set(process) <= BESIDE else realtime
+
+
+def beside(realtime: int) -> int:
+    """Return the priority of a process beside a chain of priority `realtime`; 0 stays 0."""
+    return min(realtime, max(1, realtime - BESIDE_BY))
+
+
+def launch_order(processes: Sequence[tuple[str, ...]]) -> list[tuple[str, ...]]:
+    """Return the processes with the plant's first: devices are there before their drivers look for them."""
+    return sorted(processes, key=lambda process: "plant" not in process)
+
+
+def prepare(settings: RunSettings) -> int:
+    """Set the environment of the run and import what its processes share; return the priority it may use."""
+    environment.apply(settings.domain, settings.other_hosts)
+    os.environ[PERIOD_VARIABLE] = repr(1.0 / settings.rate)
+    preload(settings)
+    if settings.realtime >= 0:
+        return settings.realtime
+    return DEFAULT_REALTIME if realtime_permitted() else 0
+
+
+@contextmanager
+def _signals() -> Iterator[list[int]]:
+    """Collect SIGINT and SIGTERM instead of ending at them."""
+    caught: list[int] = []
+    before = {n: signal.signal(n, lambda number, _: caught.append(number)) for n in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        yield caught
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)

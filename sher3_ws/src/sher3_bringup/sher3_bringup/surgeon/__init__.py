@@ -1,0 +1,1 @@
+"""Who acts the surgeon on mocks: a script or the keyboard."""

@@ -1,0 +1,1 @@
+"""What simpler methods answer on the same residuals."""

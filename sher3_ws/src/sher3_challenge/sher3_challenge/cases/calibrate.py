@@ -1,0 +1,103 @@
+"""Magnitudes: faults are scaled until their own part of the gap stands in the wanted ratio to the floor."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+
+from sher3_description import ACTUATORS, Robot, load_robot
+from sher3_description.contract import REFERENCE_TEMPERATURE
+from sher3_gap.excitation import excite
+
+from sher3_challenge.cases.plan import RUN_SPACING_NS, CasePlan
+from sher3_challenge.oracle.oracle import Residuals, excess, floors, stage_residuals
+from sher3_challenge.truth.fault import Fault
+from sher3_challenge.truth.plant import Climate, Plant, RunPlan
+
+ITERATIONS = 4
+CLOSE_ENOUGH = 0.12
+REFERENCE_SEED = 990_001
+
+
+def distinct_runs(plan: CasePlan) -> tuple[RunPlan, ...]:
+    """Return one run of every excitation of the case."""
+    return tuple({run.excitation.label: run for run in reversed(plan.runs)}.values())
+
+
+def residual_keys(fault: Fault) -> list[str]:
+    """Return the residuals that show a fault: several for one that sits on all actuators."""
+    stage, actuator = fault.kind.stage, fault.actuator
+    if stage in ("mechanism", "structure"):
+        return [f"{name}/tip" for name in (stage, *fault.kind.also)]
+    if actuator == "all":
+        return [f"{stage}/{name}" for name in ACTUATORS]
+    if stage == "sensing" and actuator in ACTUATORS:
+        return [f"transmission/{actuator}"]
+    return [f"{stage}/{actuator}"]
+
+
+def ideal_residuals(plant: Plant, runs: Sequence[RunPlan]) -> list[Residuals]:
+    """Return the residuals of ideal runs."""
+    return [stage_residuals(plant.run(run, ideal=True), plant.robot) for run in runs]
+
+
+@lru_cache(maxsize=4)
+def reference_floor(robot: Robot) -> dict[str, float]:
+    """Return the floor of every stage of one healthy robot, from three repeats of motion, postures and loads."""
+    plant = Plant(robot, REFERENCE_SEED, (), Climate(REFERENCE_TEMPERATURE, 1.0, 200.0, 0))
+    runs = []
+    for n, name in enumerate(("sweep", "postures", "loads")):
+        excitation = excite(name, robot, posture="p1")
+        repeats = (RunPlan(excitation, k, (3 * n + k) * RUN_SPACING_NS, REFERENCE_SEED + 3 * n + k) for k in range(3))
+        runs += [plant.run(repeat) for repeat in repeats]
+    return floors(runs, [stage_residuals(run, robot) for run in runs], robot)
+
+
+@dataclass
+class Calibration:
+    """Scales the faults of a plan, one at a time, against the ideal nominal robot's residuals."""
+
+    robot: Robot
+    plan: CasePlan
+
+    def __post_init__(self) -> None:
+        self.runs = distinct_runs(self.plan)
+        self.nominal = ideal_residuals(Plant(self.robot, 0, (), self.plan.climate, built=False), self.runs)
+        self.floor = reference_floor(self.robot)
+
+    def ratio(self, fault: Fault) -> float:
+        """Return sqrt(D / F): the fault's own part of the gap over the floor, the largest of its residuals."""
+        plant = Plant(self.robot, 0, (fault,), self.plan.climate, built=False, region=self.plan.region)
+        own = excess(ideal_residuals(plant, self.runs), self.nominal)
+        return max((math.sqrt(own[key] / self.floor[key]) for key in residual_keys(fault) if key in own), default=0.0)
+
+    def fit(self, fault: Fault, target: float) -> Fault:
+        """Return the fault with the magnitude that meets the target, or as near as its bounds let it."""
+        best, best_error = fault, math.inf
+        for _ in range(ITERATIONS):
+            ratio = self.ratio(fault)
+            error = abs(math.log(max(ratio, 1e-9) / target))
+            if error < best_error:
+                best, best_error = fault, error
+            if error < CLOSE_ENOUGH:
+                break
+            # some faults (a limit, a threshold) start late: step towards, not beyond, a factor of 8
+            fault = fault.scaled_by(min(8.0, max(0.125, target / max(ratio, 1e-9))))
+            if fault == best:
+                break
+        return best
+
+
+def calibrated(plan: CasePlan, robot: Robot | None = None) -> CasePlan:
+    """Return the plan with final magnitudes."""
+    robot = robot or load_robot()
+    if not any(plan.targets):
+        return plan
+    calibration = Calibration(robot, plan)
+    faults = tuple(
+        calibration.fit(fault, target) if target else fault
+        for fault, target in zip(plan.faults, plan.targets, strict=True)
+    )
+    return replace(plan, faults=faults)

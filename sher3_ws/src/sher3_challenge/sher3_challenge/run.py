@@ -1,0 +1,133 @@
+"""Run a challenge: build, seal, diagnose in other processes that get the case folders alone, score.
+
+The labels stay in this process, as text whose hashes are in the manifest, until every verdict is written.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import time
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+import yaml
+from joblib import Parallel, delayed
+from joblib.externals.loky import get_reusable_executor
+
+from sher3_challenge.answers.diagnosis import Answers, ask
+from sher3_challenge.cases.builder import Request, build_case
+from sher3_challenge.cases.plan import KINDS, TARGETS
+from sher3_challenge.cases.seal import CASES, LABELS, MANIFEST, hashes
+from sher3_challenge.errors import ChallengeError
+from sher3_challenge.score.case import CaseScore, score_case
+from sher3_challenge.score.outcome import SCORES, Outcome
+from sher3_challenge.truth.catalogue import EFFECTS, LIBRARY
+
+VERDICTS = "verdicts"
+MAXIMUM_CASES = 2000
+"""Cases of one challenge: an end against slips of the keyboard."""
+WITHHELD = "withheld"
+
+
+def requests(
+    seeds: tuple[int, int],
+    kinds: Sequence[str] = (),
+    without: str | None = None,
+    gap: tuple[float, float] = TARGETS,
+) -> list[Request]:
+    """Return the cases of a seed range.
+
+    Args:
+        seeds: first seed and the one after the last.
+        kinds: kinds of cases, dealt in turn; empty draws them in the standard mix. `withheld` is a single fault whose
+            effect the diagnosis must do without.
+        without: an effect: every case has it as its fault, and the diagnosis must do without it.
+        gap: range of gap over floor of single faults.
+
+    Raises:
+        ChallengeError: empty or too long range, unknown kind or effect.
+    """
+    first, last = seeds
+    if not 0 < last - first <= MAXIMUM_CASES:
+        raise ChallengeError("number of cases out of range", value=last - first, limit=f"1 to {MAXIMUM_CASES}")
+    unknown = [kind for kind in kinds if kind not in (*KINDS, WITHHELD)]
+    if unknown:
+        raise ChallengeError("no such kind of case", value=unknown[0], limit=", ".join((*KINDS, WITHHELD)))
+    names = [name for name, kind in LIBRARY.items() if kind.effect == without]
+    if without is not None and not names:
+        raise ChallengeError("no such effect", value=without, limit=", ".join(EFFECTS))
+    made = []
+    for n, seed in enumerate(range(first, last)):
+        kind = kinds[n % len(kinds)] if kinds else None
+        if without is not None:
+            made.append(Request(seed, "single", names[n % len(names)], True, gap))
+        elif kind == WITHHELD:
+            made.append(Request(seed, "single", None, True, gap))
+        else:
+            made.append(Request(seed, kind, gap=gap))
+    return made
+
+
+def run_challenge(
+    out: Path,
+    wanted: Iterable[Request],
+    *,
+    jobs: int = 1,
+    baselines: bool = True,
+    say: Callable[[str], None] = lambda _: None,
+) -> Outcome:
+    """Build, seal, diagnose and score a challenge in the new folder `out`.
+
+    Raises:
+        ChallengeError: the folder exists.
+    """
+    started = time.perf_counter()
+    todo = list(wanted)
+    if out.exists():
+        raise ChallengeError("exists already", value=str(out), remedy="choose another folder")
+    say(f"building {len(todo)} cases")
+    labels = _in_parallel(jobs, (delayed(build_case)(request, out / CASES) for request in todo))
+    texts = {truth["case"]: yaml.safe_dump(truth, sort_keys=False) for truth in labels}
+    sealed = {f"{LABELS}/{name}.yaml": hashlib.sha256(text.encode()).hexdigest() for name, text in texts.items()}
+    (out / MANIFEST).write_text(json.dumps(hashes(out / CASES) | sealed, indent=1), encoding="utf-8")
+    # The processes that built the cases know the truth; the diagnosis gets new ones.
+    get_reusable_executor().shutdown(wait=True)
+    say(f"diagnosing {len(todo)} cases")
+    answers = diagnose_all(out / CASES, labels, jobs=jobs, baselines=baselines)
+    (out / VERDICTS).mkdir()
+    for name, given in answers.items():
+        (out / VERDICTS / f"{name}.json").write_text(json.dumps(given.verdict, indent=1), encoding="utf-8")
+    (out / LABELS).mkdir()
+    for name, text in texts.items():
+        (out / LABELS / f"{name}.yaml").write_text(text, encoding="utf-8")
+    errors = {name: given.error for name, given in answers.items() if given.error is not None}
+    outcome = Outcome(score_all(labels, answers), time.perf_counter() - started, _range(todo), errors)
+    (out / SCORES).write_text(json.dumps(outcome.as_dict(), indent=1), encoding="utf-8")
+    return outcome
+
+
+def diagnose_all(cases: Path, labels: Sequence[dict[str, Any]], *, jobs: int, baselines: bool) -> dict[str, Answers]:
+    """Diagnose cases in other processes, which get a folder and, for withheld cases, the effects to do without."""
+    names = [truth["case"] for truth in labels]
+    without = [tuple(truth.get("without", ())) for truth in labels]
+    tasks = (delayed(ask)(cases / name, left_out, baselines) for name, left_out in zip(names, without, strict=True))
+    return dict(zip(names, _in_parallel(jobs, tasks), strict=True))
+
+
+def score_all(labels: Sequence[dict[str, Any]], answers: dict[str, Answers]) -> dict[str, list[CaseScore]]:
+    """Return the scores by competitor."""
+    scores = {"diagnosis": [score_case(truth, answers[truth["case"]].verdict) for truth in labels]}
+    for who in sorted({who for given in answers.values() for who in given.baselines}):
+        scores[who] = [score_case(truth, answers[truth["case"]].baselines.get(who)) for truth in labels]
+    return scores
+
+
+def _in_parallel(jobs: int, tasks: Iterable[Any]) -> list[Any]:
+    # One job still means another process: the diagnosis must not share memory with the labels.
+    return list(Parallel(n_jobs=max(2, jobs), backend="loky", pre_dispatch="n_jobs", batch_size=1)(tasks))
+
+
+def _range(todo: Sequence[Request]) -> tuple[int, int]:
+    return min(r.seed for r in todo), max(r.seed for r in todo) + 1

@@ -1,0 +1,11 @@
+"""Flags with which the truth plant's kernels are compiled: IEEE division instead of exceptions."""
+
+from functools import partial
+
+from sher3_common.compiled import compiled as _compiled
+
+compiled = partial(_compiled, error_model="numpy", no_cfunc_wrapper=True)
+"""Compile a kernel that Python calls."""
+
+compiled_inner = partial(compiled, no_cpython_wrapper=True)
+"""Compile a kernel that only other kernels call: without an entry from Python it compiles faster."""

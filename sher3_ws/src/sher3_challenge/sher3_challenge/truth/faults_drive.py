@@ -1,0 +1,230 @@
+"""Faults between the host and the load: timing, limits, scale, friction, inertia, periodic and lost motion."""
+
+from __future__ import annotations
+
+import math
+
+from sher3_description import ACTUATORS
+from sher3_description.contract import GRAVITY
+
+from sher3_challenge.truth.fault import ALL, DELTAS, SLIDERS, Catalogue, Rig, Site
+
+CATALOGUE = Catalogue()
+add = CATALOGUE.add
+
+
+@add("timing", "transport", ALL, 1e-3, 5e-5, 8e-3, company=("command_jitter",))
+def command_delay(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """Every command arrives later."""
+    rig.delay += x
+    return {"delay": x}
+
+
+@add("timing", "transport", ALL, 3e-4, 2e-5, 1.5e-3, company=("command_delay",))
+def command_jitter(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """Commands arrive late by a half-normal time."""
+    rig.jitter = x
+    return {"sigma": x}
+
+
+@add("timing", "transport", ALL, 0.02, 0.004, 0.3)
+def dropped_commands(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """Some commands never arrive."""
+    rig.loss = x
+    return {"probability": x}
+
+
+@add("timing", "transport", ACTUATORS, 1e-3, 5e-5, 6e-3, company=("command_delay",))
+def axis_skew(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """Commands of one axis arrive later than those of the others."""
+    rig.delay[site.index] += x
+    return {"skew": x}
+
+
+@add("timing", "drive", ACTUATORS, 1e-3, 5e-5, 8e-3)
+def drive_lag(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """A first-order lag of the force (three of four) or of the demand."""
+    lag = rig.truth.drive.current_lag if site.rng.random() < 0.75 else rig.truth.drive.demand_lag
+    lag[site.rows] += x
+    return {"time_constant": x}
+
+
+@add("scale", "controller", (*ACTUATORS, "all"), 0.1, 0.01, 0.6)
+def controller_gain(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """The host works with another position gain."""
+    relative = site.sign() * x
+    rig.truth.host.gain[site.rows] *= 1 + relative
+    return {"relative": relative}
+
+
+@add("scale", "motor_mechanics", ACTUATORS, 0.05, 0.002, 0.5)
+def torque_constant(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """Real force over reported effort is not 1."""
+    relative = site.sign() * x
+    rig.truth.motor.torque_gain[site.rows] *= 1 + relative
+    return {"relative": relative}
+
+
+@add("scale", "transmission", ACTUATORS, 5e-4, 1e-5, 0.02)
+def lead_error(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """The load travels more or less than the motor."""
+    relative = site.sign() * x
+    rig.truth.transmission.lead_error[site.rows] += relative
+    return {"relative": relative}
+
+
+@add("limit", "drive", ACTUATORS, 0.3, 0.02, 1.35)
+def force_saturation(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """The force ends early: at 12 N / (1 + x), more on roll, whose accelerations are larger."""
+    limit = site.scaled(12.0, "force") / (1 + x)
+    rig.truth.drive.limit[site.rows] = limit
+    return {"limit": limit}
+
+
+@add("limit", "drive", ACTUATORS, 8e-5, 4e-6, 1.5e-3)
+def velocity_deadband(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """Small demands do nothing; in a third of the cases the larger ones are shortened too."""
+    width = site.scaled(x, "speed")
+    rig.truth.drive.deadband[site.rows] = width
+    rig.truth.drive.deadband_soft[site.rows] = float(site.rng.random() < 1 / 3)
+    return {"width": width}
+
+
+FRICTION_COMPANY = ("coulomb_friction", "presliding_friction")
+
+
+@add("friction", "motor_mechanics", ACTUATORS, 0.3, 0.01, 8.0, company=("presliding_friction",))
+def coulomb_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """Friction of one level."""
+    force = site.scaled(x, "force")
+    rig.truth.motor.coulomb[site.rows] += force
+    rig.truth.motor.static[site.rows] += force
+    return {"force": force}
+
+
+@add("friction", "motor_mechanics", ACTUATORS, 0.4, 0.01, 8.0, company=FRICTION_COMPANY)
+def stribeck_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """Friction that falls with speed."""
+    static, level = site.scaled(x, "force"), site.rng.uniform(0.1, 0.4)
+    velocity = site.scaled(site.rng.uniform(4e-4, 1.6e-3), "speed")
+    rig.truth.motor.static[site.rows] += static
+    rig.truth.motor.coulomb[site.rows] += level * static
+    rig.truth.motor.stribeck_velocity[site.rows] = velocity
+    return {"static": static, "force": level * static, "velocity": velocity}
+
+
+@add("friction", "motor_mechanics", ACTUATORS, 60.0, 2.0, 1500.0)
+def viscous_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """More drag in proportion to speed."""
+    extra = site.scaled(x, "stiffness")
+    rig.truth.motor.viscous[site.rows] += extra
+    return {"extra": extra}
+
+
+@add("friction", "motor_mechanics", ACTUATORS, 0.3, 0.01, 8.0, company=("coulomb_friction",))
+def presliding_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """Friction that takes tens of micrometres to build up."""
+    force, reach = site.scaled(x, "force"), site.scaled(site.rng.uniform(25e-6, 110e-6), "length")
+    rig.truth.motor.coulomb[site.rows] += force
+    rig.truth.motor.static[site.rows] += force
+    rig.truth.motor.presliding[site.rows] = reach
+    return {"force": force, "displacement": reach}
+
+
+@add("friction", "motor_mechanics", ACTUATORS, 0.4, 0.01, 8.0, company=FRICTION_COMPANY)
+def position_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """Friction that waxes and wanes along the stroke, down to none."""
+    amplitude, period = site.scaled(x, "force"), site.scaled(site.rng.uniform(0.8e-3, 2.6e-3), "length")
+    m = rig.truth.motor
+    m.friction_wave[site.rows], m.friction_period[site.rows] = amplitude, period
+    m.friction_phase[site.rows] = site.rng.uniform(0, 2 * math.pi)
+    return {"force": amplitude / 2, "amplitude": amplitude / 2, "period": period}
+
+
+@add("friction", "motor_mechanics", ACTUATORS, 0.5, 0.01, 8.0, company=FRICTION_COMPANY)
+def friction_drift(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """Friction after standing, which runs in within seconds."""
+    force, constant = site.scaled(x, "force"), site.rng.uniform(0.8, 3.0)
+    rig.truth.motor.friction_fading[site.rows] = force
+    rig.truth.motor.friction_time[site.rows] = constant
+    return {"force": force, "time_constant": constant}
+
+
+@add("inertia", "motor_mechanics", ACTUATORS, 0.2, 0.01, 10.0, company=("gravity_load",))
+def payload_mass(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """Mass on an axis; on the vertical rails its weight too, of a mass on the slider or on the platform."""
+    mass = site.scaled(x, "inertia")
+    rig.truth.motor.mass[site.rows] += mass
+    if site.actuator in DELTAS:
+        if site.rng.random() < 0.5:
+            rig.truth.motor.weight[site.rows] += GRAVITY * mass
+        else:
+            rig.truth.motor.gravity_gain[site.rows] += mass / rig.truth.geometry.masses[0]
+    return {"mass": mass}
+
+
+@add("inertia", "motor_mechanics", SLIDERS, 0.05, 0.002, 3.0, company=("payload_mass",))
+def gravity_load(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """Weight without inertia, in the pattern of the axis's own gravity."""
+    mass = site.sign() * x
+    carried = rig.truth.geometry.masses[2] if site.actuator == "tilt" else rig.truth.geometry.masses[0]
+    rig.truth.motor.gravity_gain[site.rows] += mass / carried
+    return {"mass": mass}
+
+
+@add("periodic", "motor_mechanics", ACTUATORS, 0.3, 0.01, 8.0)
+def cogging(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """Force in phase with the motor's poles."""
+    amplitude, order = site.scaled(x, "force"), float(site.rng.choice([2, 3, 4, 6, 7, 8]))
+    m = rig.truth.motor
+    m.cogging[site.rows], m.cogging_order[site.rows] = amplitude, order
+    m.cogging_phase[site.rows] = site.rng.uniform(0, 2 * math.pi)
+    return {"amplitude": amplitude, "periods_per_rev": order}
+
+
+@add("periodic", "transmission", ACTUATORS, 2e-6, 5e-8, 5e-5)
+def transmission_ripple(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """The load runs ahead and behind with the motor's turn."""
+    amplitude, order = site.scaled(x, "length"), float(site.rng.choice([1, 2, 3, 4]))
+    t = rig.truth.transmission
+    t.ripple[site.rows], t.ripple_order[site.rows] = amplitude, order
+    t.ripple_phase[site.rows] = site.rng.uniform(0, 2 * math.pi)
+    return {"amplitude": amplitude, "periods_per_rev": order}
+
+
+@add("lost_motion", "transmission", ACTUATORS, 3e-6, 1e-7, 1e-4, company=("coulomb_friction", "presliding_friction"))
+def backlash(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """A gap with soft flanks."""
+    width = site.scaled(x, "length")
+    rig.truth.transmission.backlash[site.rows] = width
+    return {"width": width}
+
+
+@add("lost_motion", "transmission", ACTUATORS, 2e-6, 1e-7, 1e-4, company=("coulomb_friction", "presliding_friction"))
+def transmission_hysteresis(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """Lost motion that builds up gradually after a reversal."""
+    half, reach = site.scaled(x, "length"), site.scaled(site.rng.uniform(40e-6, 200e-6), "length")
+    rig.truth.transmission.hysteresis[site.rows] = half
+    rig.truth.transmission.hysteresis_reach[site.rows] = reach
+    return {"width": 2 * half, "displacement": reach}
+
+
+@add("compliance", "transmission", ACTUATORS, 1e-6, 5e-8, 1.2e-5, company=("backlash",))
+def transmission_compliance(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """A screw that gives way, more where its free length is longer, with the load's mass behind it."""
+    compliance = site.scaled(x, "compliance")
+    rig.truth.transmission.compliance[site.rows] = compliance
+    slope = site.rng.uniform(3.0, 10.0)
+    rig.truth.transmission.compliance_slope[site.rows] = slope / 30 if site.actuator == "roll" else slope
+    return {"compliance": compliance, "stiffness": 1 / compliance}
+
+
+@add("wrench", "motor_mechanics", ACTUATORS, 0.3, 0.01, 8.0)
+def cable_drag_axis(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """A cable pulls an axis back, with hysteresis over a long stroke; `x` is its force one millimetre away."""
+    force, stroke = site.scaled(x, "force"), site.scaled(1e-3, "length")
+    m = rig.truth.motor
+    m.cable[site.rows], m.cable_loop[site.rows] = force / stroke, 0.6 * force
+    m.cable_rest[site.rows] = site.rng.uniform(-0.5, 0.5) * stroke
+    m.cable_reach[site.rows] = 0.4 * stroke
+    return {"stiffness": force / stroke, "force": 0.6 * force}

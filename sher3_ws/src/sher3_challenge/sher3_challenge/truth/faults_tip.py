@@ -1,0 +1,195 @@
+"""Faults behind the load encoders and in the sensors: geometry, compliance, drift, encoders, force sensor."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from sher3_description import ACTUATORS
+
+from sher3_challenge.truth.fault import DELTAS, FORCE_SENSOR, TIP, Catalogue, Rig, Site
+from sher3_challenge.truth.tip import OUTER_HINGE
+
+CATALOGUE = Catalogue()
+add = CATALOGUE.add
+ENCODER = ("transmission",)
+
+
+@add("scale", "sensing", ACTUATORS, 5e-4, 1e-5, 0.02, also=ENCODER)
+def encoder_scale(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """The load encoder's ratio is off."""
+    relative = site.sign() * x
+    rig.truth.host.encoder_scale[site.rows] += relative
+    return {"relative": relative}
+
+
+@add("periodic", "sensing", ACTUATORS, 2e-6, 5e-8, 5e-5, also=ENCODER)
+def encoder_eccentricity(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """The load encoder errs once per revolution; the load does not move."""
+    amplitude = site.scaled(x, "length")
+    rig.truth.host.eccentricity[site.rows] = amplitude
+    rig.truth.host.eccentricity_phase[site.rows] = site.rng.uniform(0, 2 * math.pi)
+    return {"amplitude": amplitude}
+
+
+@add("lost_motion", "mechanism", DELTAS, 8e-6, 5e-7, 3e-4, also=("structure",))
+def joint_clearance(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """Play in a leg's ball joints: it follows its slider late, or is longer in tension than in compression."""
+    play = rig.truth.geometry.clearance if site.rng.random() < 0.6 else rig.truth.geometry.rattle
+    play[site.index] = x
+    return {"clearance": x}
+
+
+@add("compliance", "structure", TIP, 0.1, 0.005, 3.0)
+def structural_compliance(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """The structure turns about P and, in part, about a hinge on the arm; `x` is the fraction of the measured one."""
+    share, arm = 0.3, rig.truth.geometry.arm[1]
+    weight = 1 - share + share * (1 - OUTER_HINGE / arm) ** 2  # keeps the tip's compliance that of one hinge at P
+    rig.truth.geometry.hinge[:] = x * np.array([15e-6, 0.0, 1 / 244 / weight, 1 / 213 / weight, 0.0, 0.0])
+    rig.truth.geometry.hinge[4] = share
+    return {"fraction": x}
+
+
+@add("compliance", "structure", TIP, 0.3, 0.01, 5.0)
+def link_compliance(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """The six links give way by their published law; `x` is the fraction of it."""
+    delta = rig.robot.delta
+    rig.truth.geometry.link_law[0] = x * delta.link_compliance.a * delta.spring_factor
+    return {"fraction": x}
+
+
+@add("compliance", "structure", TIP, 1e-5, 5e-7, 4e-4)
+def tool_bending(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """The tool bends across its axis."""
+    rig.truth.geometry.bending[0] = x
+    return {"compliance": x}
+
+
+@add("compliance", "structure", TIP, 0.5, 0.02, 6.0, also=("mechanism",))
+def structural_vibration(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """A mode of the structure rings when the tip accelerates, in y or z."""
+    frequency, damping = site.rng.uniform(8.0, 22.0), site.rng.uniform(0.02, 0.08)
+    rig.truth.geometry.vibration[:4] = x, frequency, damping, site.rng.choice([1, 2])
+    return {"frequency": frequency, "damping": damping, "gain": x}
+
+
+@add("geometry", "mechanism", DELTAS, 5e-6, 2e-7, 3e-4)
+def link_length_error(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """Both links of a leg are longer or shorter."""
+    length = site.sign() * x
+    rig.truth.geometry.link[2 * site.index : 2 * site.index + 2] += length
+    return {"length": length}
+
+
+@add("geometry", "mechanism", DELTAS, 8e-6, 2e-7, 4e-4)
+def platform_geometry_error(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """The balls of a leg on the platform sit elsewhere in its plane, the two not quite alike."""
+    angle, unlike = site.rng.uniform(0, 2 * math.pi), site.rng.uniform(-0.15, 0.15)
+    offset = x * np.array([math.cos(angle), math.sin(angle), 0.0])
+    balls = rig.truth.geometry.platform_ball
+    balls[2 * site.index] += (1 + unlike) * offset
+    balls[2 * site.index + 1] += (1 - unlike) * offset
+    return {"x": offset[0], "y": offset[1]}
+
+
+@add("geometry", "mechanism", DELTAS, 2e-3, 5e-5, 5e-2)
+def rail_tilt(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """A rail leans."""
+    angle = site.rng.uniform(0, 2 * math.pi)
+    lean = np.array([x * math.cos(angle), x * math.sin(angle), 0.0])
+    rail = rig.truth.geometry.rail
+    rail[site.index] += lean
+    rail[site.index] /= np.linalg.norm(rail[site.index])
+    return {"x": lean[0], "y": lean[1], "angle": x}
+
+
+@add("geometry", "mechanism", TIP, 4e-5, 1e-6, 2e-3)
+def base_tilt(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """The base leans against the tracker."""
+    angle = site.rng.uniform(0, 2 * math.pi)
+    lean = np.array([x * math.cos(angle), x * math.sin(angle), 0.0])
+    rig.truth.geometry.base_tilt[:] += lean
+    return {"x": lean[0], "y": lean[1], "angle": x}
+
+
+@add("geometry", "mechanism", ("tilt",), 3e-5, 1e-6, 2e-3)
+def tilt_linkage_error(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """Crank, coupler or offset of the tilt linkage differs; the axis is homed at zero tilt."""
+    which, length = int(site.rng.integers(3)), site.sign() * x
+    g = rig.truth.geometry
+    g.linkage[which] += length
+    crank, coupler, offset = g.linkage
+    g.linkage_zero[0] = math.sqrt(coupler**2 - (offset - crank) ** 2)
+    return {("crank", "coupler", "offset")[which]: length, "length": length}
+
+
+@add("geometry", "mechanism", TIP, 6e-6, 2e-7, 4e-4)
+def tool_offset(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """The tool's tip is elsewhere."""
+    offset = x * site.direction()
+    rig.truth.geometry.arm[3:] += offset
+    return dict(zip("xyz", offset.tolist(), strict=True))
+
+
+@add("geometry", "mechanism", ACTUATORS, 8e-6, 2e-7, 4e-4)
+def encoder_offset(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """The axis was homed wrongly: both encoders read too much or too little."""
+    offset = site.sign() * site.scaled(x, "length")
+    rig.truth.host.offset[site.rows] += offset
+    return {"offset": offset}
+
+
+@add("drift", "mechanism", TIP, 3e-5, 2e-6, 3e-3)
+def thermal_expansion(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """The structure grows with its temperature."""
+    rig.truth.geometry.expansion[0] = x
+    return {"coefficient": x}
+
+
+@add("drift", "sensing", FORCE_SENSOR, 0.005, 2e-4, 0.5, company=("force_bias",))
+def force_drift(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """The force sensor's zero moves with temperature."""
+    drift = x * site.direction()
+    rig.truth.sensors.force_drift[:3] = drift
+    return dict(zip(("fx", "fy", "fz"), drift.tolist(), strict=True))
+
+
+@add("wrench", "sensing", FORCE_SENSOR, 0.01, 4e-4, 1.0)
+def force_bias(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """The force sensor's zero is off."""
+    bias = x * site.direction()
+    rig.truth.sensors.force_bias[:3] += bias
+    rig.truth.sensors.force_bias[3:] += 0.01 * x * site.direction()
+    return dict(zip(("fx", "fy", "fz"), bias.tolist(), strict=True))
+
+
+@add("wrench", "sensing", FORCE_SENSOR, 0.002, 5e-5, 0.1)
+def tool_gravity(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """The tool on the sensor is heavier or lighter than its data."""
+    mass = site.sign() * min(x, 0.015) if x > 0.015 else site.sign() * x
+    rig.truth.sensors.tool_mass[0] += mass
+    return {"mass": mass}
+
+
+@add("scale", "sensing", FORCE_SENSOR, 0.03, 1e-3, 0.4)
+def force_scale(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """The force sensor's gain is off."""
+    relative = site.sign() * x
+    rig.truth.sensors.force_scale[0] *= 1 + relative
+    return {"relative": relative}
+
+
+@add("wrench", "sensing", FORCE_SENSOR, 0.03, 1e-3, 0.4)
+def force_crosstalk(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """A force along one axis of the sensor shows on another."""
+    row, column = site.rng.choice(3, 2, replace=False)
+    coefficient = site.sign() * x
+    rig.truth.sensors.crosstalk[row, column] += coefficient
+    return {"coefficient": coefficient}
+
+
+@add("wrench", "sensing", FORCE_SENSOR, 0.03, 1e-3, 1.0)
+def cable_drag_sensor(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """A cable pulls at the sensor as roll and tilt turn, with hysteresis in roll; `x` is N per rad."""
+    rig.truth.sensors.cable_force[:] = x, 0.7 * x, 0.08 * x, 0.05
+    return {"stiffness": x, "force": 0.08 * x}

@@ -1,0 +1,219 @@
+"""The closed loop of one run in one compiled call: host, transport, drives, axes, transmission, encoders."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from sher3_challenge.truth.axis import (
+    LOAD_Q,
+    LOAD_V,
+    STATES,
+    XI,
+    Q,
+    V,
+    advance,
+    input_position,
+    motor_force,
+    reported_force,
+)
+from sher3_challenge.truth.compiled import compiled, compiled_inner
+from sher3_challenge.truth.hysteresis import ELEMENTS, drag_anchors, play_offset, slip_state
+from sher3_challenge.truth.mechanism import load_forces
+from sher3_challenge.truth.parameters import (
+    AXES,
+    Array,
+    Drive,
+    Geometry,
+    Host,
+    Motor,
+    Transmission,
+    TruthParameters,
+    axis_slice,
+)
+
+HISTORY = 8
+
+Motors = tuple[Motor, ...]
+Drives = tuple[Drive, ...]
+Transmissions = tuple[Transmission, ...]
+
+
+class Course(NamedTuple):
+    """What the loop leaves behind, all (n, 5) per tick unless noted."""
+
+    command: Array  # host's velocity command
+    echo: Array  # demand the drive executed in the interval that ended here
+    motor: Array  # true motor position
+    load: Array  # true load position
+    force: Array  # force the drive makes, before noise
+    motor_reading: Array
+    load_reading: Array
+
+
+class Script(NamedTuple):
+    """What the loop is given besides the robot."""
+
+    position: Array  # (n, 5) set-points
+    velocity: Array  # (n, 5)
+    contact: Array  # (n, 3) force at the tip in {b}
+    delay: Array  # (n, 5) from the command's tick to its arrival at the drive [s]; inf: it never arrives
+    glitch: Array  # (n, 5) what the load encoder adds
+    side: Array  # (5,) +-1, side of a gap on which the run starts
+    period: float
+
+
+@compiled_inner
+def rounded(x: float, resolution: float) -> float:
+    """Return `x` rounded to the nearest multiple of `resolution`; 0 means exact."""
+    return x if resolution == 0.0 else round(x / resolution) * resolution
+
+
+@compiled_inner
+def load_of(t: Transmission, state: Array, load: float, slip: Array, follower: Array) -> float:
+    """Advance lost motion of an axis to its present input; return the load position."""
+    x = state[LOAD_Q] if t.compliance > 0.0 else input_position(t, state[Q])
+    if t.bump != 0.0:
+        place = (state[Q] - t.bump_place) / t.bump_width
+        x -= load * t.bump * math.exp(-place * place)
+    out = x
+    if t.hysteresis != 0.0:
+        out -= t.hysteresis * slip_state(x, slip, t.hysteresis_reach)
+        drag_anchors(x, slip, t.hysteresis_reach)
+    if t.backlash != 0.0:
+        out += play_offset(x, t.backlash, follower)
+    return out
+
+
+@compiled_inner
+def encoder_angle(h: Host, j: int, load: float, speed: float) -> float:
+    """Return what the load encoder would read without quantisation, hysteresis and jumps."""
+    x = (1 + h.encoder_scale[j]) * (load - h.encoder_lag[j] * speed)
+    return x + h.eccentricity[j] * math.sin(2 * math.pi * load / h.lead[j] + h.eccentricity_phase[j])
+
+
+@compiled_inner
+def start_states(
+    m: Motors, d: Drives, t: Transmissions, h: Host, g: Geometry, s: Script, pose: Array, slip: Array, follower: Array
+) -> Array:
+    """Return (5, 7) states at rest with the load encoders at the first set-point and the drives holding."""
+    state = np.zeros((AXES, STATES))
+    target = s.position[0] - h.offset
+    q = target.copy()
+    for j in range(AXES):
+        for _ in range(6):
+            q[j] -= encoder_angle(h, j, q[j], 0.0) - target[j]
+    gravity, external = load_forces(g, q, pose, s.contact[0])
+    for j in range(AXES):
+        load = gravity[j] * m[j].gravity_gain - external[j]
+        lost = 0.5 * s.side[j] * t[j].backlash + s.side[j] * t[j].hysteresis
+        sprung = load * t[j].compliance * (1 + t[j].compliance_slope * q[j])
+        motor = q[j]
+        for _ in range(6):
+            motor -= input_position(t[j], motor) - q[j] - lost - sprung
+        state[j, Q] = motor
+        state[j, LOAD_Q] = q[j] + lost
+        reach = t[j].hysteresis_reach
+        for i in range(ELEMENTS):
+            follower[j, i] = q[j]
+            slip[2, j, i] = q[j] + lost - s.side[j] * 3 * reach
+            slip[0, j, i] = slip[1, j, i] = motor
+        drag_anchors(q[j] + lost, slip[2, j], reach)
+        held = load - motor_force(m[j], motor, 0.0, 0.0, 0.0, slip[0, j], slip[1, j])
+        state[j, XI] = held / m[j].torque_gain / d[j].ki
+        state[j, 4] = held / m[j].torque_gain
+    return state
+
+
+@compiled_inner
+def host_command(h: Host, j: int, s: Script, k: int, readings: Array) -> float:
+    """Return the host's velocity command of axis `j` at tick `k`."""
+    seen = readings[max(0, k - 1), j] if h.stale[j] > 0.0 else readings[k, j]
+    u = s.velocity[k, j] + h.gain[j] * (s.position[k, j] - seen)
+    u = min(h.velocity_limit[j], max(-h.velocity_limit[j], u))
+    return rounded(u, h.command_resolution[j])
+
+
+@compiled_inner
+def taken(h: Host, j: int, demand: float, held: float, period: float) -> float:
+    """Return the demand the drive takes from a command, given the one it holds."""
+    demand = rounded(demand, h.demand_resolution[j])
+    if h.demand_slew[j] > 0.0:
+        step = h.demand_slew[j] * period
+        demand = min(held + step, max(held - step, demand))
+    return demand
+
+
+@compiled_inner
+def tick_interval(
+    m: Motor, d: Drive, t: Transmission, h: Host, j: int, k: int, s: Script, state: Array, held: float,
+    load: Array, command: Array, slip: Array,
+) -> tuple[float, float]:  # fmt: skip
+    """Integrate axis `j` over the interval after tick `k`; return the demand held at its end and the mean demand."""
+    at, total, begin, whole = 0.0, 0.0, k * s.period, False
+    for c in range(max(0, k - HISTORY), k + 2):
+        end = c > k
+        arrival = s.period if end else (c - k) * s.period + s.delay[c, j]
+        if not at <= arrival < s.period and not end:
+            continue
+        if arrival > at:
+            advance(m, d, t, state, held, load, begin + at, arrival - at, slip[0, j], slip[1, j])
+            total += held * (arrival - at)
+            whole = at == 0.0 and end
+            at = arrival
+        if not end:
+            held = taken(h, j, command[c, j], held, s.period)
+    if whole:
+        return held, held
+    return held, total / s.period
+
+
+@compiled
+def _run(m: Motors, d: Drives, t: Transmissions, h: Host, g: Geometry, s: Script) -> Course:
+    """Run the closed loop over the script."""
+    n = len(s.position)
+    out = Course(
+        np.zeros((n, AXES)), np.zeros((n, AXES)), np.zeros((n, AXES)), np.zeros((n, AXES)),
+        np.zeros((n, AXES)), np.zeros((n, AXES)), np.zeros((n, AXES)),
+    )  # fmt: skip
+    slip, follower = np.zeros((4, AXES, ELEMENTS)), np.zeros((AXES, ELEMENTS))
+    pose = np.zeros(6)
+    pose[2] = 0.05 + s.position[0, :3].mean()
+    state = start_states(m, d, t, h, g, s, pose, slip, follower)
+    slip[3] = follower
+    held, load, load_before = np.zeros(AXES), np.zeros((AXES, 2)), np.zeros(AXES)
+    for k in range(n):
+        for j in range(AXES):
+            q = load_of(t[j], state[j], load[j, 0], slip[2, j], follower[j])
+            speed = state[j, LOAD_V] if t[j].compliance > 0.0 else state[j, V]
+            reading = encoder_angle(h, j, q, speed) + h.offset[j] + s.glitch[k, j]
+            if h.encoder_loop[j] > 0.0:
+                reading += play_offset(reading, 2 * h.encoder_loop[j], slip[3, j])
+            out.load[k, j], out.motor[k, j] = q, state[j, Q]
+            out.load_reading[k, j] = rounded(reading, h.load_resolution[j])
+            out.motor_reading[k, j] = rounded(state[j, Q] + h.offset[j], h.motor_resolution[j])
+            out.force[k, j] = reported_force(d[j], state[j], held[j], k * s.period)
+            out.command[k, j] = host_command(h, j, s, k, out.load_reading)
+        total = (np.abs(out.force[k]) / h.force_limit).sum() * h.sag[0]
+        gravity, external = load_forces(g, out.load[k], pose, s.contact[k])
+        coupling = h.coupling @ np.ascontiguousarray(state[:, V])
+        for j in range(AXES):
+            now = gravity[j] * m[j].gravity_gain - external[j] + coupling[j] + total * out.force[k, j]
+            slope = (now - load_before[j]) / s.period if k > 0 else 0.0
+            load_before[j] = now
+            load[j, 0], load[j, 1] = now - slope * k * s.period, slope
+            held[j], mean = tick_interval(m[j], d[j], t[j], h, j, k, s, state[j], held[j], load[j], out.command, slip)
+            load[j, 0] = now
+            if k + 1 < n:
+                out.echo[k + 1, j] = mean
+    return out
+
+
+def run_loop(p: TruthParameters, s: Script) -> Course:
+    """Run the closed loop of one robot over a script."""
+    motors, drives, transmissions = (
+        tuple(axis_slice(part, j) for j in range(AXES)) for part in (p.motor, p.drive, p.transmission)
+    )
+    return _run(motors, drives, transmissions, p.host, p.geometry, s)

@@ -1,0 +1,1 @@
+"""The sher3 command."""

@@ -1,0 +1,31 @@
+"""Numba's cache of one function, with a folder that the caller names."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from numba.core.caching import CompileResultCacheImpl, FunctionCache, UserWideCacheLocator
+
+
+class SourceNamedCache(FunctionCache):
+    """The machine code of one function for each combination of argument types, kept in a given folder.
+
+    Numba chooses the folder by asking locator classes in turn, which see the function alone; the class made here for
+    each folder is the only one it asks.
+    """
+
+    def __init__(self, function: Callable[..., Any], folder: Path) -> None:
+        class Locator(UserWideCacheLocator):
+            def get_cache_path(self) -> str:
+                return str(folder)
+
+            def ensure_cache_path(self) -> None:
+                """Do nothing: the folder was made, and tried, when it was chosen."""
+
+        class Implementation(CompileResultCacheImpl):
+            _locator_classes = [Locator]  # noqa: RUF012 (numba's name and type)
+
+        self._impl_class = Implementation
+        super().__init__(function)

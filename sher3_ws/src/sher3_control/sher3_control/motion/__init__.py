@@ -1,0 +1,1 @@
+"""Motion modes: who commands the robot, and which actuator velocities follow from it at each tick."""

@@ -1,0 +1,190 @@
+"""The supervisor node: streams and state commands in, `operating_state` out, latched and repeated.
+
+All decisions are in `sher3_control.supervision`. The tick that asks the detectors also sends the heartbeat, so a
+supervisor that hangs falls silent, and everybody stops.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from itertools import cycle
+from typing import Any
+
+import numpy as np
+from rclpy.node import Node
+from sher3_common import Sher3Error
+from sher3_common.operating_state import OperatingState
+from sher3_common.reasons import Reason, reading
+from sher3_common.samples import DiagnosticSample, JointSample, JoySample, PoseSample, TextSample
+from sher3_common.stamps import NO_STAMP
+from sher3_description import TOPICS, Robot
+from sher3_kinematics import RobotKinematics
+from sher3_runtime.ports import NODE_OPTIONS, advertise, clock_of, latest, on_tick, ports, subscribe
+
+from sher3_control.settings import ControlSettings, SupervisorSettings
+from sher3_control.supervision.detectors import (
+    Detector,
+    EmergencyStopDetector,
+    OverrunDetector,
+    ReportedFault,
+    SilenceDetector,
+    TwinDetector,
+)
+from sher3_control.supervision.driver_reports import DRIVES, LOOP, cycle_counts, driver_stop
+from sher3_control.supervision.leg_residual import LegDetector, leg_residual
+from sher3_control.supervision.supervisor import Supervisor
+
+PEDAL = "pedal/measured"
+STREAMS = {
+    "force/measured_cf": (Reason.WRENCH_MISSING, Reason.WRENCH_STALE),
+    "measured_js": (Reason.JOINTS_MISSING, Reason.JOINTS_STALE),
+    "servo_jv": (Reason.COMMAND_MISSING, Reason.COMMAND_STALE),
+    PEDAL: (Reason.PEDAL_MISSING, Reason.PEDAL_STALE),
+}
+"""Watched streams, each with the reason when no sample ever came and when it fell silent."""
+STEERING = ("servo_cv", "operating_state")
+BESIDE = ("drives/measured_js", "drives/setpoint_jv", "supervisor/heartbeat")
+OWN = (*STREAMS, *STEERING, *BESIDE)
+"""Streams that only the robot itself publishes: those that are watched, those that steer it, and the others."""
+LEVELS = {OperatingState.FAULT: 2, OperatingState.PAUSED: 1}
+"""Level of the supervisor's diagnostic by operating state: 2 error, 1 warning; 0, the others, is ok."""
+
+
+class SupervisorNode(Node):
+    """Owner of the operating state.
+
+    Attributes:
+        settings: what is watched, and against which limits.
+        supervisor: the state machine with its detectors.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        settings: ControlSettings | None = None,
+        detectors: Sequence[Detector] = (),
+        **options: Any,
+    ) -> None:
+        """Make the node with its doors, in DISABLED.
+
+        Args:
+            robot: the robot; its `control_period` is the rate of the ticks.
+            settings: of all control nodes, by default those of the robot.
+            detectors: further detectors beside the built-in ones.
+            options: of `rclpy.node.Node`.
+        """
+        super().__init__("supervisor", **{**NODE_OPTIONS, **options})
+        self.settings = (ControlSettings.from_robot(robot) if settings is None else settings).supervisor
+        limit = self.settings.stream_age_limit
+        self._silence = {name: SilenceDetector(name, limit, *reasons) for name, reasons in STREAMS.items()}
+        self._button = EmergencyStopDetector()
+        self._drives = ReportedFault("motor_driver")
+        self._overruns = OverrunDetector(self.settings.overrun_share)
+        self._leg, self._twins = _leg_detector(robot, self.settings), TwinDetector()
+        built_in = [self._button, self._drives, *self._silence.values(), self._overruns, self._leg, self._twins]
+        self.supervisor = Supervisor([*built_in, *detectors])
+        self._refused: dict[str, Any] | None = None
+        self._beat = TextSample(self.supervisor.status.heartbeat)
+        self._joints = JointSample(NO_STAMP)
+
+        self._publish_state = advertise(self, "operating_state")
+        self._publish_status = advertise(self, "supervisor/status")
+        self._publish_heartbeat = advertise(self, "supervisor/heartbeat")
+        self._publish_report = advertise(self, "diagnostics")
+        self._watched = [(name, self._silence[name], latest(self, name)) for name in STREAMS if name != PEDAL]
+        self._take_tip = latest(self, "tracker/measured_cp")
+        subscribe(self, PEDAL, self.on_pedal)
+        self._matched = [(name, ports(self).subscriptions[name].handle.get_publisher_count) for name in STREAMS]
+        self._in_turn = cycle(BESIDE)
+        subscribe(self, "diagnostics", self._on_diagnostics)
+        subscribe(self, "command/state_command", self._on_command)
+        self._now = clock_of(self).now
+        period = robot.control_period
+        on_tick(self, self.check, phase=0.5 * period, every=max(1, round(self.settings.heartbeat_period / period)))
+        on_tick(self, self._repeat, phase=0.5 * period, every=max(1, round(self.settings.publish_period / period)))
+        self._publish()
+
+    def _look(self) -> None:
+        """Note the newest sample of each watched stream; to wake up for every sample would cost more than the rest."""
+        for name, detector, take in self._watched:
+            if (sample := take()) is not None:
+                detector.last = sample.stamp
+                if name == "measured_js":
+                    self._joints = sample
+        tip: PoseSample | None = self._take_tip()
+        if tip is not None and tip.stamp == self._joints.stamp and self._joints.position is not None:
+            self._leg.feed(tip.stamp, tip.position, self._joints.position)
+
+    def _count_publishers(self, *beside: str) -> None:
+        """Count the publishers of the streams that move the robot, and of the streams `beside`.
+
+        A subscription knows its publishers. Where there is no subscription the graph is asked, which costs twenty times
+        as much.
+        """
+        counts = {name: count() for name, count in self._matched}
+        counts.update((name, self.count_publishers(TOPICS[name].full_name)) for name in (*STEERING, *beside))
+        self._twins.feed(counts)
+
+    def on_pedal(self, sample: JoySample) -> None:
+        """Take the pedal's sample; a change of the emergency stop is judged at once."""
+        self._silence[PEDAL].last = sample.stamp
+        pressed = bool(sample.buttons[0]) if sample.buttons else True
+        if pressed != self._button.pressed:
+            self._button.feed(pressed)
+            self._judge()
+
+    def _on_diagnostics(self, sample: DiagnosticSample) -> None:
+        if sample.name == DRIVES:
+            self._drives.feed(driver_stop(sample.level, sample.message, sample.values), self._now())
+            self._judge()
+        elif sample.name in LOOP and (counts := cycle_counts(sample.values)) is not None:
+            self._overruns.feed(sample.name, *counts, self._now())
+
+    def _judge(self) -> None:
+        self._look()
+        if self.supervisor.check(self._now()):
+            self._publish()
+            self._publish_heartbeat(self._beat)
+
+    def check(self, _stamp: int) -> None:
+        """Count publishers, ask the detectors and send the heartbeat."""
+        self._count_publishers(next(self._in_turn))
+        self._look()
+        if self.supervisor.check(self._now()):
+            self._publish()
+        self._publish_heartbeat(self._beat)
+
+    def _on_command(self, sample: TextSample) -> None:
+        self._count_publishers(*BESIDE)
+        self._look()
+        try:
+            self.supervisor.command(sample.text, self._now())
+            self._refused = None
+        except Sher3Error as error:
+            self._refused = {"command": sample.text, "error": type(error).__name__, "text": str(error)}
+        self._publish()
+        self._publish_heartbeat(self._beat)
+
+    def _repeat(self, stamp: int) -> None:
+        self._publish()
+        status, now = self.supervisor.status, self._now()
+        looks = [detector.look(now) for detector in self.supervisor.detectors]
+        values = [reading(f.reason, f.source, f.value, f.limit, f.unit) for f in looks]
+        values += [("reason", status.reason), ("action", status.action.name)]
+        values.append(("later_faults", str(status.later_faults)))
+        level = LEVELS.get(status.state, 0)
+        self._publish_report(DiagnosticSample(stamp, "supervisor: state", level, status.state.value, tuple(values)))
+
+    def _publish(self) -> None:
+        status = self.supervisor.status
+        self._beat = TextSample(status.heartbeat)
+        self._publish_state(TextSample(status.state.value))
+        self._publish_status(TextSample(json.dumps({**json.loads(status.to_json()), "refused": self._refused})))
+
+
+def _leg_detector(robot: Robot, settings: SupervisorSettings) -> LegDetector:
+    kinematics = RobotKinematics(robot)
+    leg_residual(kinematics, (0.0,) * 5, np.zeros(3))  # compiled now, not in the first check
+    kinematics.transform_tip_to_base(np.zeros(5))
+    return LegDetector(kinematics, settings.leg_distance, settings.leg_latency, settings.leg_memory)

@@ -1,0 +1,118 @@
+"""Fits of every effect at every site it may sit on, given the causes already chosen."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, field
+
+from sher3_diagnosis.channel import AT_TIP, Channel
+from sher3_diagnosis.effect import Effect, Shape
+from sher3_diagnosis.evidence import Evidence
+from sher3_diagnosis.fitting import Fit, Term, fit, make_term
+from sher3_diagnosis.thresholds import AS_BUILT_PRICE, NEEDED, PARSIMONY, PRICE, UNLIKELY
+
+ROUNDS = 3
+"""Rounds of the search over shapes: the effect's own, then twice around the best so far."""
+
+
+@dataclass
+class Candidates:
+    """The effects that may be causes of one piece of evidence; terms are evaluated once.
+
+    Attributes:
+        evidence: to be explained.
+        effects: that may explain it.
+    """
+
+    evidence: Evidence
+    effects: Sequence[Effect]
+    terms: dict[tuple, Term] = field(default_factory=dict)
+
+    def sites(self, effect: Effect) -> Sequence[str]:
+        """Return where an effect may sit."""
+        return [site for place in effect.places for site in self.evidence.places.get(place, ())]
+
+    def term(self, effect: Effect, site: str, shape: Shape) -> Term:
+        """Evaluate a term once."""
+        key = (effect.id, site, tuple(sorted(shape.items())))
+        if key not in self.terms:
+            self.terms[key] = make_term(self.evidence.data, effect, site, shape)
+        return self.terms[key]
+
+    def best(self, effect: Effect, site: str, given: Sequence[Term] = ()) -> Fit | None:
+        """Fit the best shape of an effect together with the terms given; the effect is the last term.
+
+        Returns:
+            None when no shape is physically possible, or the effect does not show in the evidence.
+        """
+        found: Fit | None = None
+        shapes = effect.shapes(self.evidence.views, site)
+        for _ in range(ROUNDS):
+            before = found
+            for shape in shapes:
+                trial = fit(self.evidence.data, [*given, self.term(effect, site, shape)])
+                if possible(trial) and (found is None or cost(trial) < cost(found)):
+                    found = trial
+            if found is None or found is before:
+                break
+            shapes = effect.refine(found.terms[-1].shape)
+        return found
+
+    def search(self, channels: Collection[Channel], given: Sequence[Term] = ()) -> list[Fit]:
+        """Fit every effect that shows on any of `channels`, best first.
+
+        An effect that contains a simpler one is left out unless it explains markedly more than that one does.
+        """
+        taken = {t.key for t in given}
+        out: list[Fit] = []
+        for effect in self.effects:
+            for site in self.sites(effect):
+                if (effect.id, site) in taken or not set(effect.channels(site)) & set(channels):
+                    continue
+                found = self.best(effect, site, given)
+                if found is not None:
+                    out.append(found)
+        return sorted(self._without_idle_extensions(out, given), key=cost)
+
+    def _without_idle_extensions(self, fits: list[Fit], given: Sequence[Term]) -> list[Fit]:
+        base = fit(self.evidence.data, given).total
+        loss = {f.terms[-1].key: f.total for f in fits}
+        kept = []
+        for f in fits:
+            effect, site = f.terms[-1].effect, f.terms[-1].site
+            simpler = min((loss[b, site] for b in effect.extends if (b, site) in loss), default=None)
+            if simpler is None or simpler - f.total > max(NEEDED, 2.0 * PARSIMONY * (base - f.total)):
+                kept.append(f)
+        return kept
+
+
+def possible(trial: Fit) -> bool:
+    """Return whether the last term shows anywhere and its fit is physically possible."""
+    last = len(trial.terms) - 1
+    term = trial.terms[last]
+    return bool(term.channels) and term.effect.admissible(term.shape, trial.of(last))
+
+
+def complexity(term: Term) -> int:
+    """Return the number of free numbers of a term."""
+    return term.width + len(term.shape)
+
+
+def cost(trial: Fit) -> float:
+    """Return the held-out loss plus the price of the last term's numbers."""
+    if not trial.terms:
+        return trial.total
+    last = len(trial.terms) - 1
+    term = trial.terms[last]
+    doubt = UNLIKELY if term.effect.unlikely(term.shape, trial.of(last)) else 0.0
+    return trial.total + price(term) + doubt
+
+
+def price(term: Term) -> float:
+    """Return the held-out loss that a term's numbers must buy."""
+    return PRICE * complexity(term) + AS_BUILT_PRICE * samples_at_tip(term) * term.width
+
+
+def samples_at_tip(term: Term) -> int:
+    """Return the whitened samples of the tip on which a term shows."""
+    return sum(len(x) for run in term.columns for c, x in run.items() if c.stage in AT_TIP)

@@ -1,0 +1,73 @@
+"""Rivals: the effects that would explain as much in the place of a cause."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from sher3_diagnosis.attribute.candidates import Candidates, samples_at_tip
+from sher3_diagnosis.channel import AT_TIP
+from sher3_diagnosis.evidence import Evidence
+from sher3_diagnosis.fitting import Fit, fit
+from sher3_diagnosis.thresholds import AS_BUILT_PRICE, NEEDED, RIVAL
+
+RANKED = 6
+"""Effects kept in the ranking of a cause, and tried in pairs."""
+
+
+@dataclass(frozen=True)
+class Attribution:
+    """Chosen causes, jointly fitted, and for each the effects that explain as much; one entry per term of the fit."""
+
+    fit: Fit
+    rivals: tuple[tuple[Fit, ...], ...]
+    explained: tuple[float, ...]
+    """Loss that removing each term, and refitting the others, adds."""
+    ranking: tuple[tuple[Fit, ...], ...] = ()
+    """For each term the effects that come closest to it in its place, best first, itself among them."""
+    nuisance: int = 0
+    """Number of leading terms that are no causes."""
+    steps: tuple[Fit, ...] = ()
+    """Fits on the way to this one, where the effects were looked for in layers."""
+
+    @property
+    def causes(self) -> range:
+        """Indices of the terms that are causes."""
+        return range(self.nuisance, len(self.fit.terms))
+
+
+def without_term(evidence: Evidence, current: Fit, index: int) -> Fit:
+    """Fit again without one term."""
+    return fit(evidence.data, [t for j, t in enumerate(current.terms) if j != index])
+
+
+def with_rivals(candidates: Candidates, current: Fit) -> Attribution:
+    """Add to a fit, for each of its causes, the effects that would explain as much in its place."""
+    evidence = candidates.evidence
+    rivals: list[tuple[Fit, ...]] = []
+    explained: list[float] = []
+    ranking: list[tuple[Fit, ...]] = []
+    for i, term in enumerate(current.terms):
+        others = [t for j, t in enumerate(current.terms) if j != i]
+        worth = fit(evidence.data, others).total - current.total
+        ranked = candidates.search(term.channels, others) if i >= len(evidence.nuisance) else []
+        ranking.append(tuple(ranked[:RANKED]))
+        alike = [f for f in ranked if _alike(f, current, worth)]
+        rivals.append(tuple(f for f in alike if f.terms[-1].effect.id != term.effect.id))
+        explained.append(worth)
+    return Attribution(current, tuple(rivals), tuple(explained), tuple(ranking), len(evidence.nuisance))
+
+
+def _alike(rival: Fit, chosen: Fit, worth: float) -> bool:
+    """Whether a rival explains as much: all but a share, and at the tip but for what the robot as built deviates by.
+
+    The share is of the gap with its floor: rounding repeats, so that a small part of the floor is no evidence. Each
+    coefficient takes its part of the deviations as built, so that a rival with fewer of them may leave more.
+    """
+    floor = sum(len(x) for run in rival.terms[-1].columns for c, x in run.items() if c.stage not in AT_TIP)
+    margin = max(NEEDED, RIVAL * (worth + floor))
+    built = AS_BUILT_PRICE * max(samples_at_tip(rival.terms[-1]), *(samples_at_tip(t) for t in chosen.terms), 0)
+    apart = {k: rival.loss[k] - x for k, x in chosen.loss.items()}
+    tip = sum(x for (_, c), x in apart.items() if c.stage in AT_TIP)
+    missing = max(0, max(t.width for t in chosen.terms) - rival.terms[-1].width)
+    widest = 2.0 * built * (2 + missing)
+    return tip < max(NEEDED, min(margin, widest), built) and sum(apart.values()) - tip < margin

@@ -1,0 +1,121 @@
+"""Which effects explain the gaps: forward selection with pairs, a backward pass, and the rivals of each cause.
+
+All comparisons are of held-out loss (every run scored with coefficients fitted to the others), in units of the floor.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from itertools import combinations
+
+from sher3_diagnosis.attribute.candidates import Candidates, complexity
+from sher3_diagnosis.attribute.constancy import constancy_of
+from sher3_diagnosis.attribute.rivals import RANKED, Attribution, with_rivals, without_term
+from sher3_diagnosis.channel import Channel
+from sher3_diagnosis.evidence import Evidence
+from sher3_diagnosis.fitting import Fit, Term, fit
+from sher3_diagnosis.thresholds import (
+    COMPLETE,
+    MAX_CAUSES,
+    NEEDED,
+    PAIR_GAIN,
+    PAIR_WORTH,
+    PARSIMONY,
+    WORTH,
+)
+
+Say = Callable[[str], None]
+Left = Callable[[Fit], dict[Channel, float]]
+"""Gaps that are left under a fit: channel -> excess loss."""
+
+
+def attribute(candidates: Candidates, left_over: Left, say: Say) -> Attribution:
+    """Select causes until no gap is left that an effect explains.
+
+    Args:
+        candidates: the evidence and the effects that may explain it.
+        left_over: says which gaps are left under a fit.
+        say: progress.
+    """
+    evidence = candidates.evidence
+    current = evidence.null()
+    chosen = list(current.terms)
+    most = len(evidence.nuisance) + MAX_CAUSES
+    while len(chosen) < most:
+        left = left_over(current)
+        if not left:
+            break
+        say(f"explaining {', '.join(map(str, sorted(left)))}")
+        step = _step(candidates, current, chosen, left)
+        if step is None:
+            break
+        current = step
+        chosen = list(current.terms)
+    current = _prune(evidence, current, left_over)
+    found = with_rivals(candidates, current)
+    steady = _steadier(evidence, found)
+    return found if steady is None else with_rivals(candidates, steady)
+
+
+def _gain(before: Fit, after: Fit, left: dict[Channel, float]) -> float:
+    """Largest share of a remaining gap that a fit explains."""
+    best = 0.0
+    for channel, excess in left.items():
+        was = sum(v for (_, c), v in before.loss.items() if c == channel)
+        now = sum(v for (_, c), v in after.loss.items() if c == channel)
+        best = max(best, (was - now) / excess)
+    return best
+
+
+def _step(candidates: Candidates, current: Fit, chosen: list[Term], left: dict[Channel, float]) -> Fit | None:
+    found = candidates.search(left, chosen)
+    if not found:
+        return None
+    best = found[0]
+    gain = _gain(current, best, left)
+    if gain < COMPLETE and len(chosen) + 2 <= len(candidates.evidence.nuisance) + MAX_CAUSES:
+        pair = _pair(candidates, current, chosen, found[:RANKED], left)
+        if pair is not None and _gain(current, pair, left) > max(gain + PAIR_GAIN, PAIR_WORTH):
+            return pair
+    if gain < WORTH:
+        return None
+    return best
+
+
+def _pair(
+    candidates: Candidates, current: Fit, chosen: list[Term], found: list[Fit], left: dict[Channel, float]
+) -> Fit | None:
+    best: Fit | None = None
+    for a, b in combinations([f.terms[-1] for f in found], 2):
+        if a.key == b.key or not a.channels & b.channels:
+            continue
+        trial = fit(candidates.evidence.data, [*chosen, a, b])
+        if trial.admissible and (best is None or trial.total < best.total):
+            best = trial
+    return best
+
+
+def _prune(evidence: Evidence, current: Fit, left_over: Left) -> Fit:
+    """Backward pass: drop a cause whose loss nobody misses."""
+    first, base = len(evidence.nuisance), evidence.null().total
+    while len(current.terms) > first + 1:
+        reduced = {i: without_term(evidence, current, i) for i in range(first, len(current.terms))}
+        i = min(reduced, key=lambda j: reduced[j].total)
+        price = NEEDED * complexity(current.terms[i]) + PARSIMONY * (base - current.total)
+        if reduced[i].total - current.total > price or set(left_over(reduced[i])) - set(left_over(current)):
+            return current
+        current = reduced[i]
+    return current
+
+
+def _steadier(evidence: Evidence, found: Attribution) -> Fit | None:
+    """Where a cause changes size between excitations and a rival does not, the fit with that rival in its place."""
+    for i in found.causes:
+        if constancy_of(evidence, found.fit, i).constant:
+            continue
+        for rival in found.rivals[i]:
+            terms = [*found.fit.terms[:i], rival.terms[-1], *found.fit.terms[i + 1 :]]
+            trial = fit(evidence.data, terms)
+            if trial.admissible and constancy_of(evidence, trial, i).constant:
+                return trial
+    return None

@@ -1,0 +1,153 @@
+"""What an effect is: one page that says what it is, where it may sit, how it shows, and how its numbers read.
+
+A signature is linear in its coefficients. Where the law needs more, it is nonlinear in a `shape` that is searched over
+a few values. Every fit is then a small least-squares problem whose held-out loss is exact.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, ClassVar, NamedTuple
+
+import numpy as np
+
+from sher3_diagnosis.channel import Array, Channel
+
+Shape = Mapping[str, float]
+"""Values of the parameters in which a law is not linear."""
+
+ROTARY = {
+    "m": "rad",
+    "N": "N*m",
+    "N/(m/s)": "N*m/(rad/s)",
+    "m/s": "rad/s",
+    "N/m": "N*m/rad",
+    "m/N": "rad/(N*m)",
+    "kg": "kg*m^2",
+}
+"""Unit on a linear axis -> unit of the same quantity on an axis that turns."""
+
+
+INPUTS: Mapping[str, str] = {
+    "position": "position of the motor",
+    "velocity": "velocity of the motor",
+    "direction": "direction of motion and the travel since it last changed",
+    "acceleration": "acceleration of the motor, or of the tip",
+    "force": "force that the drive gives or the axis carries",
+    "weight": "weight that the axis carries",
+    "load": "load on the tip",
+    "posture": "posture of the whole machine",
+    "temperature": "temperature of the machine",
+    "time": "time since the run or the session began",
+    "command": "what the host or the drive was asked for",
+}
+"""Quantities that the law of an effect may depend on."""
+
+
+@dataclass(frozen=True)
+class Signature:
+    """What an effect adds to the residuals of one run.
+
+    Attributes:
+        columns: per channel (g, d, p), one column for each coefficient.
+        fixed: per channel (g, d), the part without a coefficient.
+    """
+
+    columns: dict[Channel, Array] = field(default_factory=dict)
+    fixed: dict[Channel, Array] = field(default_factory=dict)
+
+
+class Best(NamedTuple):
+    """The excitation of the standard set that shows an effect best, and why."""
+
+    excitation: str
+    why: str
+
+
+class Effect:
+    """Base of every effect; a subclass is a page in a file of its own.
+
+    Class attributes:
+        id, family, stage: of the recorded-run contract, section 7.
+        explanation: plain language: what it is and how it shows.
+        places: kinds of place it may sit on; a machine says which of its sites are such a place.
+        kinds: kinds of machine this form of the effect is written for: "robot" the SHER; "axis" one axis of any
+            machine; "servo" a position servo whose force was not recorded; "arm" a serial arm.
+        needs: facts that must be known of an axis before the effect can be looked for: "lead" its travel per motor
+            revolution, "load" a second encoder behind the transmission, "mass" its mass, "drive" the force it is
+            driven with.
+        inputs: quantities the law may depend on, of `INPUTS`; none for an error that is constant.
+        units: parameter -> SI unit on a linear axis.
+        bounds: parameter -> smallest and largest value that is physically possible.
+        siblings: effect id -> what tells it from this one.
+        extends: ids of simpler effects that this one contains; it must explain markedly more than they do.
+        finer: shape value -> factors by which the best value is multiplied in the finer search.
+        companion: family of another effect on the same axis without which this one does not show.
+        dry: whether it is a friction that holds an axis at rest.
+        best: the excitation that shows it best.
+    """
+
+    id: ClassVar[str]
+    family: ClassVar[str]
+    stage: ClassVar[str]
+    explanation: ClassVar[str]
+    places: ClassVar[tuple[str, ...]] = ("axis",)
+    kinds: ClassVar[tuple[str, ...]] = ("robot",)
+    needs: ClassVar[tuple[str, ...]] = ()
+    inputs: ClassVar[tuple[str, ...]] = ()
+    units: ClassVar[Mapping[str, str]] = {}
+    bounds: ClassVar[Mapping[str, tuple[float, float]]] = {}
+    siblings: ClassVar[Mapping[str, str]] = {}
+    extends: ClassVar[tuple[str, ...]] = ()
+    finer: ClassVar[Mapping[str, tuple[float, ...]]] = {}
+    companion: ClassVar[str] = ""
+    dry: ClassVar[bool] = False
+    best: ClassVar[Best]
+
+    def channels(self, site: str) -> tuple[Channel, ...]:
+        """Return the channels in which the effect must show to be looked for at a site."""
+        return (Channel(self.stage, site),)
+
+    def shapes(self, views: Sequence[Any], site: str) -> list[Shape]:
+        """Return the shapes to search over; empty when the runs cannot show the effect. Default: one without values."""
+        return [{}]
+
+    def refine(self, shape: Shape) -> list[Shape]:
+        """Return neighbours of the best shape for a finer search: one value at a time times its factors."""
+        return [
+            {**shape, name: shape[name] * factor}
+            for name, factors in self.finer.items()
+            for factor in factors
+            if shape[name]  # a value of zero has no neighbours
+        ]
+
+    def signature(self, view: Any, site: str, shape: Shape) -> Signature:
+        """Return what the effect adds to the residuals of one run at a site; every page that is fitted has its own."""
+        raise NotImplementedError
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Return the physical parameters of a fit, SI units; default the values of the shape."""
+        return dict(shape)
+
+    def admissible(self, shape: Shape, coefficients: Array) -> bool:
+        """Return whether a fit is physically possible; default always."""
+        return True
+
+    def unlikely(self, shape: Shape, coefficients: Array) -> bool:
+        """Return whether a fit, though possible, would rather be called another effect; default never."""
+        return False
+
+    def stage_at(self, channel: Channel) -> str:
+        """Return the stage a cause is booked under when it shows in `channel`; default the page's."""
+        return self.stage
+
+    def unit(self, name: str, site: str, rotary: bool) -> str:
+        """Return the unit of a parameter at a site; `rotary` where that is an axis that turns."""
+        unit = self.units.get(name, "1")
+        return ROTARY.get(unit, unit) if rotary else unit
+
+
+def column(*parts: Array) -> Array:
+    """Stack (g,) columns into (g, 1, p)."""
+    return np.stack(parts, axis=-1)[:, None, :]

@@ -1,0 +1,75 @@
+"""What was found: on one part of a machine by fitting, and in one exact stage without a fit."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Generic, TypeVar
+
+from sher3_diagnosis.attribute.rivals import Attribution
+from sher3_diagnosis.channel import Channel
+from sher3_diagnosis.evidence import Evidence
+from sher3_diagnosis.localise.gaps import Gap
+from sher3_diagnosis.verdict import Cause, Interval, Residual, Verdict, Where
+
+E = TypeVar("E", bound=Evidence)
+
+
+@dataclass(frozen=True)
+class ExactFinding:
+    """What an exact stage says: its error is computed, not fitted, and its floor is rounding.
+
+    Attributes:
+        where: the stage, its gap and floor.
+        causes: that reproduce it; none when nothing does.
+        closure: of all of them together.
+        residual: what they leave.
+        note: why nothing reproduces it.
+    """
+
+    where: Where
+    causes: Sequence[Cause]
+    closure: Interval
+    residual: Residual
+    note: str = ""
+
+
+@dataclass(frozen=True)
+class Finding(Generic[E]):
+    """What was found on one part of a machine.
+
+    Attributes:
+        evidence: of the part.
+        gaps: of every channel, most significant first.
+        attribution: the causes and their rivals.
+        causes: quantified, in the order of the attribution.
+        left: gaps that remain with the causes: channel -> excess loss.
+        notes: what the machine says of the part.
+    """
+
+    evidence: E
+    gaps: Sequence[Gap]
+    attribution: Attribution
+    causes: Sequence[Cause]
+    left: dict[Channel, float]
+    notes: Sequence[str] = field(default_factory=tuple)
+
+    @property
+    def significant(self) -> dict[Channel, Gap]:
+        """Channels with a gap, most significant first."""
+        return {g.channel: g for g in self.gaps if g.significant}
+
+
+@dataclass(frozen=True)
+class Findings(Generic[E]):
+    """A verdict with what it rests on.
+
+    Attributes:
+        verdict: the answer.
+        findings: one for each part of the machine.
+        exact: what the exact stages say.
+    """
+
+    verdict: Verdict
+    findings: Sequence[Finding[E]]
+    exact: Sequence[ExactFinding]

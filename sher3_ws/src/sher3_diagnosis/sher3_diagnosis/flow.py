@@ -1,0 +1,99 @@
+"""The one flow of every diagnosis: audit, localise, attribute, quantify, judge."""
+
+from __future__ import annotations
+
+import importlib.metadata
+import time
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any, TypeVar
+
+from sher3_diagnosis.attribute.candidates import Candidates
+from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.errors import UnknownEffect
+from sher3_diagnosis.evidence import Evidence
+from sher3_diagnosis.finding import Finding, Findings
+from sher3_diagnosis.judge.causes import causes_of
+from sher3_diagnosis.judge.judge import judge
+from sher3_diagnosis.judge.left_over import down_to_floor, left_over
+from sher3_diagnosis.localise.gaps import localise
+from sher3_diagnosis.machine import Machine
+from sher3_diagnosis.quantify.closure import residual_after
+
+R = TypeVar("R")
+E = TypeVar("E", bound=Evidence)
+Say = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Diagnosis(Findings[E]):
+    """A verdict with what it rests on, and the machine that was diagnosed, for reports and further experiments."""
+
+    machine: Machine[Any, E]
+
+
+def diagnose(
+    machine: Machine[R, E],
+    runs: Sequence[R],
+    without: Collection[str] = (),
+    say: Say = lambda _: None,
+    started: float | None = None,
+) -> Diagnosis[E]:
+    """Say where a machine leaves its model, which effects explain it, and how far the gap shrinks.
+
+    Args:
+        machine: gives residuals, floors, effects, exact stages and a simulator.
+        runs: of one machine in one condition, repeats included.
+        without: effect ids that are left out of the library.
+        say: takes a line of progress.
+        started: value of `time.perf_counter` at which the work began, s; default now.
+
+    Raises:
+        UnknownEffect: an id in `without` is none of the machine's effects.
+    """
+    started = time.perf_counter() if started is None else started
+    check_known(machine, without)
+    notes = machine.audit(runs)
+    say("computing residuals and floors")
+    parts = machine.gather(runs)
+    exact = machine.exact(runs, parts, without)
+    findings = [find(machine, part, without, say) for part in parts]
+    notes += [n for f in findings for n in f.notes]
+    say("judging")
+    verdict = judge(machine, findings, exact, notes)
+    versions = {p: importlib.metadata.version(p) for p in machine.sources}
+    verdict = verdict.model_copy(update={"seconds": time.perf_counter() - started, "versions": versions})
+    return Diagnosis(verdict, findings, exact, machine)
+
+
+def find(machine: Machine[R, E], evidence: E, without: Collection[str], say: Say) -> Finding[E]:
+    """Localise the gaps of one part of a machine, attribute them and quantify the causes."""
+    gaps = localise(evidence, nominal(evidence))
+    significant = [g.channel for g in gaps if g.significant]
+    candidates = Candidates(evidence, [e for e in machine.effects(evidence) if e.id not in without])
+    rule = down_to_floor if machine.policy.down_to_floor else left_over
+    attribution = machine.attribute(evidence, candidates, partial(rule, significant, evidence), say)
+    say("quantifying")
+    refined, causes = machine.refine(evidence, causes_of(evidence, attribution))
+    left = left_over(significant, evidence, attribution.fit)
+    finding = Finding(refined, gaps, attribution, causes, left)
+    return replace(finding, notes=machine.remarks(finding))
+
+
+def nominal(evidence: Evidence) -> dict[Channel, dict[int, Array]]:
+    """Return what the terms that are no causes leave of every channel, per run; empty where there are none."""
+    if not evidence.nuisance:
+        return {}
+    null = evidence.null()
+    return {channel: residual_after(evidence, null, channel) for channel in evidence.channels}
+
+
+def check_known(machine: Machine, ids: Collection[str]) -> None:
+    """Refuse ids that are none of the machine's effects; raises UnknownEffect."""
+    known = sorted({e.id for e in machine.library()})
+    unknown = sorted(set(ids) - set(known))
+    if unknown:
+        raise UnknownEffect(
+            "no such effect", value=", ".join(unknown), limit=", ".join(known), remedy="name one of them"
+        )

@@ -1,0 +1,1 @@
+"""The answer: places, causes, what is left, and the status that follows from them."""

@@ -1,0 +1,128 @@
+"""The verdict: status, places, causes and what is left, from the findings on every part of a machine."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from sher3_diagnosis.attribute.constancy import constancy_of
+from sher3_diagnosis.channel import Channel
+from sher3_diagnosis.effect import Effect
+from sher3_diagnosis.finding import ExactFinding, Finding
+from sher3_diagnosis.judge.causes import ordered, places_of
+from sher3_diagnosis.judge.next_experiment import next_experiment
+from sher3_diagnosis.judge.remainder import remainder
+from sher3_diagnosis.localise.gaps import Gap, gap_of
+from sher3_diagnosis.machine import Machine, Policy
+from sher3_diagnosis.quantify.closure import closure, residual_after
+from sher3_diagnosis.thresholds import REPRODUCED, SLIGHT
+from sher3_diagnosis.verdict import Cause, Closure, Interval, Residual, Status, Unexplained, Verdict, Where
+
+Gaps = dict[Channel, Gap]
+
+
+def judge(machine: Machine, findings: Sequence[Finding], exact: Sequence[ExactFinding], notes: list[str]) -> Verdict:
+    """Build the verdict of a machine from what was found on its parts and in its exact stages."""
+    causes = [c for f in exact for c in f.causes] + [c for f in findings for c in f.causes]
+    explained = bool(causes or exact)
+    gaps = [_own_gaps(machine.policy, f, explained) for f in findings]
+    if not any(gaps) and not exact:
+        return Verdict(status="no_gap", notes=notes)
+    causes = ordered(causes, list(findings))
+    fitted = [w for f in findings for w in places_of(f, f.significant)]
+    where = [f.where for f in exact] + (fitted if len(findings) == 1 else sorted(fitted, key=lambda w: -_ratio(w)))
+    stage, residual = _first(findings, gaps, exact, where[0].gap)
+    unexplained = _unexplained(machine.policy, findings, gaps, exact)
+    proposals = [p for f in findings if (p := next_experiment(f.evidence, f.attribution)) is not None]
+    library = {e.id: e for e in machine.library()}
+    status: Status = "attributed"
+    if unexplained is not None:
+        status = "outside_library"
+    elif proposals and any(_crossing(library, c) for c in causes):
+        status = "under_excited"
+    return Verdict(
+        status=status,
+        where=where,
+        causes=causes,
+        closure=Closure(stage=stage, tip=machine.end_to_end(findings, causes)),
+        residual=residual,
+        unexplained=unexplained,
+        next_experiment=proposals[0] if proposals else None,
+        notes=notes,
+    )
+
+
+def _ratio(where: Where) -> float:
+    return where.gap / max(where.floor, np.finfo(float).tiny)
+
+
+def _slight(finding: Finding) -> set[Channel]:
+    """Channels whose gap is left and so slight that it may be spill-over from an explained one."""
+    return {c for c in finding.left if finding.significant[c].power < SLIGHT}
+
+
+def _own_gaps(policy: Policy, finding: Finding, explained: bool) -> Gaps:
+    """Gaps that ask for a cause of their own."""
+    spilt = _slight(finding) if policy.spill_over and explained else set()
+    return {c: g for c, g in finding.significant.items() if c not in spilt}
+
+
+def _first(
+    findings: Sequence[Finding], gaps: Sequence[Gaps], exact: Sequence[ExactFinding], size: float
+) -> tuple[Interval | None, Residual | None]:
+    """Closure and remainder at the first place of the verdict, whose gap is `size`."""
+    if exact:
+        return exact[0].closure, exact[0].residual
+    for finding, own in zip(findings, gaps, strict=True):
+        channel = next((c for c, g in own.items() if g.gap == size), None)
+        if channel is not None:
+            evidence, after = finding.evidence, finding.attribution.fit
+            left = gap_of(evidence, channel, residual_after(evidence, after, channel))
+            assert left is not None
+            residual = Residual(gap=left.gap, floor=left.floor, unit=evidence.unit(channel, left.part))
+            return closure(evidence, channel, evidence.null(), after), residual
+    return None, None
+
+
+def _unexplained(
+    policy: Policy, findings: Sequence[Finding], gaps: Sequence[Gaps], exact: Sequence[ExactFinding]
+) -> Unexplained | None:
+    """What is left that no effect explains: in an exact stage, of a gap, or as a cause that changes its size."""
+    for stage in exact:
+        if stage.closure.value < REPRODUCED:
+            reason = f"an exact stage is not reproduced: {stage.note or 'no timing or gain error fits'}"
+            return Unexplained(stage=stage.where.stage, actuator=stage.where.actuator, signature=reason)
+    for finding, own in zip(findings, gaps, strict=True):
+        left = {c: x for c, x in finding.left.items() if c in own}
+        if left:
+            return _described(finding, max(left, key=left.__getitem__), "")
+    if not any(f.causes for f in findings) and not exact:
+        finding, own = next((f, own) for f, own in zip(findings, gaps, strict=True) if own)
+        return _described(finding, max(own, key=lambda c: own[c].power), "")
+    changing = (_inconstant(f) for f in findings) if policy.constancy else ()
+    return next((x for x in changing if x is not None), None)
+
+
+def _inconstant(finding: Finding) -> Unexplained | None:
+    """A cause whose size differs between excitations stands in for an effect the library does not have."""
+    for i in finding.attribution.causes:
+        found = constancy_of(finding.evidence, finding.attribution.fit, i)
+        if not found.constant:
+            term = finding.attribution.fit.terms[i]
+            channel = max(term.channels, key=finding.evidence.excess)
+            share = f"{found.spread:.1%} of what it explains differs"
+            text = f"{term.effect.id} fits, but not with one size in all excitations ({share}); "
+            return _described(finding, channel, text)
+    return None
+
+
+def _described(finding: Finding, channel: Channel, before: str) -> Unexplained:
+    text = remainder(finding.evidence, channel, finding.attribution.fit)
+    return Unexplained(stage=channel.stage, actuator=channel.actuator, signature=before + text)
+
+
+def _crossing(library: Mapping[str, Effect], cause: Cause) -> bool:
+    """Whether a rival is of another family; an effect that the cause contains was found to explain markedly less."""
+    contained = library[cause.effect].extends if cause.effect in library else ()
+    return any(library[r].family != cause.family for r in set(cause.rivals) - set(contained))

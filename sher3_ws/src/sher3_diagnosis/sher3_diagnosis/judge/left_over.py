@@ -1,0 +1,36 @@
+"""Which gaps are left under a fit, and how much of one may be left when its cause is known."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+
+from sher3_diagnosis.channel import Channel
+from sher3_diagnosis.evidence import Evidence
+from sher3_diagnosis.fitting import Fit
+from sher3_diagnosis.localise.gaps import gap_of
+from sher3_diagnosis.quantify.closure import residual_after
+from sher3_diagnosis.thresholds import REMAINDER, SMALL_REMAINDER, SMALL_SHARE
+
+
+def left_over(gaps: Collection[Channel], evidence: Evidence, current: Fit) -> dict[Channel, float]:
+    """Return the gaps that remain under a fit: channel -> excess loss. A known cause may leave a share of its gap."""
+    out: dict[Channel, float] = {}
+    for channel in gaps:
+        gap = gap_of(evidence, channel, residual_after(evidence, current, channel))
+        if gap is None or not gap.significant:
+            continue
+        now, null = evidence.excess(channel, current), evidence.excess(channel)
+        small = now < SMALL_REMAINDER * evidence.samples(channel)
+        if null <= 0.0 or now > (SMALL_SHARE if small else REMAINDER) * null:
+            out[channel] = max(now, 1.0)
+    return out
+
+
+def down_to_floor(gaps: Collection[Channel], evidence: Evidence, current: Fit) -> dict[Channel, float]:
+    """Return the gaps that remain under a fit when nothing may be left: channel -> excess loss."""
+    out: dict[Channel, float] = {}
+    for channel in gaps:
+        gap = gap_of(evidence, channel, residual_after(evidence, current, channel))
+        if gap is not None and gap.significant:
+            out[channel] = max(1.0, evidence.excess(channel, current))
+    return out

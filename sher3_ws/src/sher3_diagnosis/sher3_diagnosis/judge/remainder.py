@@ -1,0 +1,119 @@
+"""What a gap looks like that no effect of the library explains."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.evidence import Evidence
+from sher3_diagnosis.fitting import Fit
+from sher3_diagnosis.localise.regimes import regime
+from sher3_diagnosis.quantify.closure import residual_after
+from sher3_diagnosis.thresholds import LINE_SHARE, PERIOD_SHARE
+
+SPECTRUM = 512
+"""Samples of the discrete spectrum: a resolution of 0.2 Hz at 100 Hz."""
+PERIODS = (*np.arange(0.25, 4.0, 0.25), *np.arange(4.0, 25.0))
+"""Periods per motor revolution that are tried."""
+FEW = 100
+"""Samples below which a free function is not trained."""
+
+
+def remainder(evidence: Evidence, channel: Channel, after: Fit) -> str:
+    """Describe what is left of a gap under a fit: its regimes, its frequency, its period over a motor revolution, and
+    the share that a free function of the inputs closes.
+    """
+    left = residual_after(evidence, after, channel)
+    parts = [f"largest {regime(evidence, channel)}"]
+    rate = evidence.views[next(iter(left))].rate
+    frequency, share = (0.0, 0.0) if rate is None else dominant_frequency(left, rate)
+    if share > LINE_SHARE:
+        parts.append(f"{share:.0%} of its power near {frequency:.1f} Hz")
+    period, fraction = position_period(evidence, channel, left)
+    if fraction > PERIOD_SHARE:
+        parts.append(f"repeats {period:.2f} times per motor revolution ({fraction:.0%})")
+    parts.append(f"a free function of the inputs closes {ceiling(evidence, channel, left):.0%}")
+    return "; ".join(parts)
+
+
+def dominant_frequency(left: Mapping[int, Array], rate: float) -> tuple[float, float]:
+    """Return the frequency of the strongest spectral line, Hz, and its share of the power, over all runs.
+
+    Args:
+        left: run -> (N, d); the first component is looked at.
+        rate: samples per second.
+    """
+    total = np.zeros(SPECTRUM // 2 + 1)
+    for x in left.values():
+        y = x[:, 0] - x[:, 0].mean()
+        total += np.abs(np.fft.rfft(y * np.hanning(len(y)), SPECTRUM)) ** 2
+    if total.sum() == 0.0:
+        return 0.0, 0.0
+    line = int(np.argmax(total[1:])) + 1
+    return line * rate / SPECTRUM, float(total[max(0, line - 2) : line + 3].sum() / total.sum())
+
+
+def position_period(evidence: Evidence, channel: Channel, left: Mapping[int, Array]) -> tuple[float, float]:
+    """Return the periods per motor revolution that explain most of what is left, and the share they explain.
+
+    Both are 0 where the place is no axis or its lead is not known.
+    """
+    turns = []
+    for r in left:
+        motion = evidence.views[r].motion(channel.actuator)
+        if motion is None or motion.lead is None:
+            return 0.0, 0.0
+        turns.append(2 * np.pi * motion.position[evidence.data.residuals[r][channel].ok] / motion.lead)
+    best = (0.0, 0.0)
+    y, turn = np.concatenate([x[:, 0] for x in left.values()]), np.concatenate(turns)
+    for n in PERIODS:
+        basis = np.column_stack([np.sin(n * turn), np.cos(n * turn), np.ones_like(turn)])
+        coefficients = np.linalg.lstsq(basis, y, rcond=None)[0]
+        share = 1.0 - np.mean((y - basis @ coefficients) ** 2) / np.mean(y**2)
+        if share > best[1]:
+            best = (float(n), float(share))
+    return best
+
+
+def ceiling(evidence: Evidence, channel: Channel, left: Mapping[int, Array]) -> float:
+    """Return the held-out closure of a free function of the inputs: boosted trees on pairs of binned inputs.
+
+    It bounds what any static model of these inputs could close.
+    """
+    rows, targets, runs = [], [], []
+    for r, x in left.items():
+        rows.append(evidence.views[r].inputs(channel.actuator)[evidence.data.residuals[r][channel].ok])
+        targets.append(x[:, 0] / evidence.floors[r][channel][0])
+        runs.append(np.full(len(x), r))
+    inputs, y, group = np.concatenate(rows), np.concatenate(targets), np.concatenate(runs)
+    predicted = np.zeros_like(y)
+    for r in np.unique(group):
+        train, test = group != r, group == r
+        if train.sum() > FEW:
+            predicted[test] = boosted(inputs[train], y[train], inputs[test])
+    before, after = float(np.mean(y**2)), float(np.mean((y - predicted) ** 2))
+    return float(np.clip((before - after) / max(before - 1.0, 1e-9), 0.0, 1.0))
+
+
+def boosted(x: Array, y: Array, new: Array, rounds: int = 60, bins: int = 24, rate: float = 0.3) -> Array:
+    """Fit y (n,) by a sum of functions of pairs of the inputs x (n, k) and predict it at `new` (m, k) -> (m,).
+
+    Each round fits the means of what is left over the cells of one pair of binned inputs, shrunk by `rate`. Small,
+    fast, and without an assumption on the shape.
+    """
+    edges = [np.unique(np.quantile(c, np.linspace(0, 1, bins + 1)[1:-1])) for c in x.T]
+    codes = [np.searchsorted(e, c) for e, c in zip(edges, x.T, strict=True)]
+    fresh = [np.searchsorted(e, c) for e, c in zip(edges, new.T, strict=True)]
+    out, left = np.zeros(len(new)), y.copy()
+    pairs = [(i, j) for i in range(x.shape[1]) for j in range(i, x.shape[1])]
+    size = (bins + 1) ** 2
+    for k in range(rounds):
+        i, j = pairs[k % len(pairs)]
+        cell, other = codes[i] * (bins + 1) + codes[j], fresh[i] * (bins + 1) + fresh[j]
+        count = np.bincount(cell, minlength=size)
+        mean = np.bincount(cell, left, minlength=size) / (count + 5.0)
+        left -= rate * mean[cell]
+        out += rate * mean[other]
+    return out

@@ -1,0 +1,123 @@
+"""Where the gap is: gap over floor of every channel, over all runs and excitation by excitation."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.evidence import Evidence
+from sher3_diagnosis.thresholds import FLOOR_SCATTER, GROUPED, GROUPED_ENCODERS, POOLED, ZERO_COUNTS
+
+PARTS = {6: (slice(0, 3), slice(3, 6)), 1: (slice(0, 1),)}
+"""Number of components -> those that are judged together: position and rotation, force and torque."""
+
+Powers = Mapping[str, Sequence[Array]]
+"""Excitation -> mean squares of its runs, (d,) each."""
+
+
+@dataclass(frozen=True)
+class Gap:
+    """Gap and floor of one channel.
+
+    Attributes:
+        power: mean square over its allowance (floor and as-built tolerance), pooled over all runs and of the worst
+            excitation, each over its threshold; the larger of the two. Above 1 there is a gap.
+        ratio: rms gap over rms floor, over all runs, of the worse part.
+        gap, floor: rms of that part, SI units.
+        groups: excitation -> power over its allowance.
+        part: which components these are: 0 position or force, 1 rotation or torque.
+    """
+
+    channel: Channel
+    power: float
+    ratio: float
+    gap: float
+    floor: float
+    groups: Mapping[str, float]
+    part: int = 0
+
+    @property
+    def significant(self) -> bool:
+        """Whether the gap exceeds its floor."""
+        return self.power > 1.0
+
+
+def localise(evidence: Evidence, residuals: Mapping[Channel, Mapping[int, Array]] | None = None) -> list[Gap]:
+    """Return the gap of every channel recorded, most significant first.
+
+    Args:
+        evidence: to be judged.
+        residuals: per channel and run, in place of the nominal residual where other terms than causes act on it.
+    """
+    residuals = residuals or {}
+    gaps = [g for c in evidence.channels if (g := gap_of(evidence, c, residuals.get(c))) is not None]
+    return sorted(gaps, key=lambda g: -g.power)
+
+
+def gap_of(evidence: Evidence, channel: Channel, residual: Mapping[int, Array] | None = None) -> Gap | None:
+    """Return the gap of a channel; None where it was not recorded.
+
+    Args:
+        evidence: of the part the channel belongs to.
+        channel: to judge.
+        residual: run -> (N, d) samples that count, relieved of their free mean; default the nominal residual.
+    """
+    tolerance = evidence.as_built.get(channel)
+    left: dict[int, Array] = {}
+    square: dict[str, list[Array]] = defaultdict(list)
+    allowed: dict[str, list[Array]] = defaultdict(list)
+    floor: dict[str, list[Array]] = defaultdict(list)
+    for r, excitation in enumerate(evidence.excitations):
+        found = evidence.data.residuals[r].get(channel)
+        if found is None or not found.ok.any():
+            continue
+        left[r] = found.relieved(found.values[found.ok]) if residual is None else residual[r]
+        base = evidence.floors[r][channel] ** 2
+        square[excitation].append(np.mean(left[r] ** 2, axis=0))
+        floor[excitation].append(base)
+        allowed[excitation].append(base + (tolerance**2 if tolerance is not None else 0.0))
+    if not left:
+        return None
+    rise = 1.0 + FLOOR_SCATTER / max(evidence.repeats, 1)
+    parts = [_part(channel, i, p, square, floor, allowed, rise) for i, p in enumerate(PARTS[len(base)])]
+    return _with_zeros(evidence, channel, left, max(parts, key=lambda g: g.power))
+
+
+def _part(
+    channel: Channel, index: int, part: slice, square: Powers, floor: Powers, allowed: Powers, rise: float
+) -> Gap:
+    """Judge the components that belong together."""
+    mean, low, limit = (np.mean(_all(x), axis=0)[part] for x in (square, floor, allowed))
+    groups = {e: float(np.mean(np.mean(square[e], axis=0)[part] / np.mean(allowed[e], axis=0)[part])) for e in square}
+    grouped = GROUPED_ENCODERS if channel.stage == "transmission" else GROUPED
+    pooled = float(np.mean(mean / limit)) / (rise * POOLED[channel.stage])
+    worst = max(groups.values()) / (rise * grouped)
+    return Gap(
+        channel,
+        power=max(pooled, worst),
+        ratio=float(np.sqrt(np.mean(mean / low))),
+        gap=float(np.sqrt(np.mean(mean))),
+        floor=float(np.sqrt(np.mean(low))),
+        groups=groups,
+        part=index,
+    )
+
+
+def _all(powers: Powers) -> list[Array]:
+    return [x for runs in powers.values() for x in runs]
+
+
+def _with_zeros(evidence: Evidence, channel: Channel, left: Mapping[int, Array], best: Gap) -> Gap:
+    """Judge the runs' mean encoder difference as well, against what their zeros may differ by."""
+    residuals = {r: evidence.data.residuals[r][channel] for r in left}
+    if not all(x.partly_free for x in residuals.values()):
+        return best
+    means = [float(residuals[r].restored(values).mean()) for r, values in left.items()]
+    mean, limit = float(np.sqrt(np.mean(np.square(means)))), ZERO_COUNTS * evidence.count(channel)
+    if (mean / limit) ** 2 <= best.power:
+        return best
+    return replace(best, power=(mean / limit) ** 2, gap=mean, floor=limit / 3.0, ratio=3.0 * mean / limit)

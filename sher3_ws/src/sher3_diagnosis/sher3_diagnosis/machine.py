@@ -1,0 +1,101 @@
+"""What a machine is to the engine: it turns runs into evidence and says which effects it may have.
+
+A machine is a value. `diagnose(machine, runs)` asks it for everything that is particular to it; whatever is not said
+here is the same for all machines.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Generic, TypeVar
+
+from sher3_diagnosis.attribute.candidates import Candidates
+from sher3_diagnosis.attribute.rivals import Attribution
+from sher3_diagnosis.attribute.search import Left, Say, attribute
+from sher3_diagnosis.effect import Effect
+from sher3_diagnosis.evidence import Evidence
+from sher3_diagnosis.finding import ExactFinding, Finding
+from sher3_diagnosis.verdict import Cause, Interval
+
+if TYPE_CHECKING:
+    from sher3_diagnosis.report.reporter import Reporter
+
+R = TypeVar("R")
+"""A run as the machine reads it."""
+E = TypeVar("E", bound=Evidence)
+"""The machine's own evidence: the engine's, with whatever its simulator needs."""
+
+
+@dataclass(frozen=True)
+class Policy:
+    """What a machine's descriptions allow the judgement to lean on.
+
+    Attributes:
+        down_to_floor: causes are searched until no gap is left at all. For machines whose description leaves several
+            plain causes out; otherwise a known cause may leave a share, since laws are idealisations.
+        constancy: a cause must keep its size over the excitations. Only where these were designed to differ.
+        spill_over: a slight gap beside an explained one needs no cause of its own.
+    """
+
+    down_to_floor: bool = False
+    constancy: bool = True
+    spill_over: bool = True
+
+
+class Machine(ABC, Generic[R, E]):
+    """A machine that can be diagnosed.
+
+    Attributes:
+        policy: what the judgement may lean on.
+        sources: names of the packages whose versions a verdict records.
+    """
+
+    policy: Policy = Policy()
+    sources: tuple[str, ...] = ("sher3", "numpy", "scipy")
+
+    @abstractmethod
+    def gather(self, runs: Sequence[R]) -> Sequence[E]:
+        """Compute residuals and floors; one piece of evidence for each part that is judged by itself."""
+
+    @abstractmethod
+    def library(self) -> Sequence[Effect]:
+        """Return every effect the machine may have."""
+
+    def effects(self, evidence: E) -> Sequence[Effect]:
+        """Return the effects that one part may have; default all of the library."""
+        return self.library()
+
+    def audit(self, runs: Sequence[R]) -> list[str]:
+        """Refuse runs no answer could rest on; return a sentence for each thing that narrows the answer."""
+        return []
+
+    def exact(self, runs: Sequence[R], evidence: Sequence[E], without: Collection[str]) -> list[ExactFinding]:
+        """Judge the stages whose error is computed without a fit; `without` are effects not to be named."""
+        return []
+
+    def attribute(self, evidence: E, candidates: Candidates, left_over: Left, say: Say) -> Attribution:
+        """Choose the causes of one part; default the engine's search."""
+        return attribute(candidates, left_over, say)
+
+    def refine(self, evidence: E, causes: list[Cause]) -> tuple[E, list[Cause]]:
+        """Improve a part's causes, and nominal constants found from the data, by means the fit does not have.
+
+        Default: both as they are.
+        """
+        return evidence, causes
+
+    def remarks(self, finding: Finding[E]) -> list[str]:
+        """Return notes on one part; default none."""
+        return []
+
+    def end_to_end(self, findings: Sequence[Finding[E]], causes: Sequence[Cause]) -> Interval | None:
+        """Return the closure of the machine run again in its simulator, at the end of its chain; default none."""
+        return None
+
+    def reporter(self) -> Reporter[E]:
+        """Return what a report shows that only this machine knows; default nothing."""
+        from sher3_diagnosis.report.reporter import Reporter
+
+        return Reporter()

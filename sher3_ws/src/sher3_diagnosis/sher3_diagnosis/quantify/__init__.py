@@ -1,0 +1,1 @@
+"""How far the gap shrinks with its causes, and how sure their numbers are."""

@@ -1,0 +1,149 @@
+"""The causes: what they are in plain words, their parameters, and why rivals were or were not ruled out."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from sher3_diagnosis.attribute.rivals import Attribution
+from sher3_diagnosis.effect import Effect
+from sher3_diagnosis.finding import Finding
+from sher3_diagnosis.flow import Diagnosis
+from sher3_diagnosis.localise.pattern import Pattern, pattern_of
+from sher3_diagnosis.report.reporter import Isolability
+from sher3_diagnosis.report.words import place, quantity, range_text, share, words
+from sher3_diagnosis.verdict import Cause
+
+NO_LOSS = 1e-9
+"""Explained loss below which a share of it means nothing."""
+
+
+@dataclass(frozen=True)
+class RivalRow:
+    """One effect in place of the cause.
+
+    Attributes:
+        name, site: which effect, and where.
+        behind: share of the explained loss that it explains less.
+        kept: whether it was not told apart.
+        separator: what tells the two apart.
+    """
+
+    name: str
+    site: str
+    behind: str
+    kept: bool
+    separator: str
+
+
+@dataclass(frozen=True)
+class CauseCard:
+    """Everything the report says of one cause.
+
+    Attributes:
+        title: effect and place.
+        family, stage: in words.
+        explanation: plain language: what the effect is and how it shows.
+        closure, interval: of this cause alone, in words.
+        parameters: (name, value, interval) each.
+        rivals: effects that come closest in its place, best first; None where none was tried.
+        alike: effects that show in the same equations.
+        pattern: whether the gap lives where the cause says it does; empty when no regimes can tell.
+    """
+
+    title: str
+    family: str
+    stage: str
+    explanation: str
+    closure: str
+    interval: str
+    parameters: list[tuple[str, str, str]]
+    rivals: list[RivalRow] | None
+    alike: list[str]
+    pattern: str
+
+
+def cause_cards(diagnosis: Diagnosis, isolability: Isolability | None) -> list[CauseCard]:
+    """Return one card per cause of the verdict."""
+    library = {e.id: e for e in diagnosis.machine.library()}
+    return [_card(c, diagnosis, library, isolability) for c in diagnosis.verdict.causes]
+
+
+def _card(
+    cause: Cause, diagnosis: Diagnosis, library: Mapping[str, Effect], isolability: Isolability | None
+) -> CauseCard:
+    fitted = _term_of(cause, diagnosis)
+    effect = library.get(cause.effect)
+    rivals: list[RivalRow] | None = None
+    pattern = ""
+    if fitted is not None:
+        finding, index = fitted
+        effect = finding.attribution.fit.terms[index].effect
+        if finding.attribution.ranking:
+            rivals = _rivals(cause, finding.attribution, index)
+        pattern = pattern_text(pattern_of(finding.evidence, finding.attribution.fit, index))
+    alike = frozenset() if isolability is None else isolability.alike(cause.effect)
+    low, high = cause.closure.low, cause.closure.high
+    return CauseCard(
+        title=f"{words(cause.effect)} on {place(cause.actuator)}",
+        family=words(cause.family),
+        stage=words(cause.stage),
+        explanation="" if effect is None else effect.explanation,
+        closure=share(cause.closure.value),
+        interval="interval: too few runs" if low is None else f"95 %: {share(low)} … {share(high)}",
+        parameters=[
+            (name.replace("_", " "), quantity(p.value, p.unit), range_text(p.low, p.high, p.unit))
+            for name, p in cause.parameters.items()
+        ],
+        rivals=rivals,
+        alike=sorted(words(e) for e in alike),
+        pattern=pattern,
+    )
+
+
+def _term_of(cause: Cause, diagnosis: Diagnosis) -> tuple[Finding, int] | None:
+    """Return the finding and the index of the term a cause came from; None for a cause of an exact stage."""
+    for finding in diagnosis.findings:
+        for index in finding.attribution.causes:
+            if finding.attribution.fit.terms[index].key == (cause.effect, cause.actuator):
+                return finding, index
+    return None
+
+
+def pattern_text(found: Pattern) -> str:
+    """Return whether the gap lives where the cause says it does, in a sentence; empty when no regimes can tell."""
+    worst = found.worst
+    if worst is None:
+        return ""
+    return (
+        f"What it takes off lies where it predicts to {share(found.agreement)} over speed, direction, position, load "
+        f"and runs. It differs most {worst.regime}: {share(worst.predicted)} predicted, {share(worst.realised)} of the "
+        "reduction on held-out runs."
+    )
+
+
+def _rivals(cause: Cause, attribution: Attribution, index: int) -> list[RivalRow]:
+    """Return the effects that come closest in the cause's place, best first."""
+    kept = {f.terms[-1].key for f in attribution.rivals[index]}
+    ranked = {f.terms[-1].key: f for f in (*attribution.ranking[index], *attribution.rivals[index])}
+    chosen, worth = attribution.fit.terms[index].effect, max(attribution.explained[index], NO_LOSS)
+    rows = []
+    for key, trial in sorted(ranked.items(), key=lambda item: item[1].total):
+        if key == (cause.effect, cause.actuator):
+            continue
+        rival = trial.terms[-1]
+        behind = f"{100.0 * (trial.total - attribution.fit.total) / worth:.1f} %"
+        separator = separates(chosen, rival.effect)
+        rows.append(RivalRow(words(rival.effect.id), place(rival.site), behind, key in kept, separator))
+    return rows
+
+
+def separates(cause: Effect, rival: Effect) -> str:
+    """Return what tells a rival from a cause, from either side's siblings; empty when neither page says."""
+    if rival.id in cause.siblings:
+        return f"{words(rival.id)}: {cause.siblings[rival.id]}"
+    if cause.id in rival.siblings:
+        return f"{words(cause.id)}: {rival.siblings[cause.id]}"
+    if cause.stage != rival.stage:
+        return f"shows at another stage ({words(rival.stage).lower()})"
+    return ""

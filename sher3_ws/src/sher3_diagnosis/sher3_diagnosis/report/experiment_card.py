@@ -1,0 +1,43 @@
+"""The proposed next experiment: what to run, why, and how far these runs separate the rivals."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from sher3_diagnosis.report.reporter import Reporter
+from sher3_diagnosis.report.words import words
+from sher3_diagnosis.verdict import Verdict
+
+
+@dataclass(frozen=True)
+class ExperimentCard:
+    """The experiment as the report shows it.
+
+    Attributes:
+        title: name of the excitation.
+        about: what that excitation is for; empty when the machine does not say.
+        why: it separates these rivals.
+        separates: their names.
+        separation: by how many floors they differ in these runs; empty when that was not computed.
+    """
+
+    title: str
+    about: str
+    why: str
+    separates: str
+    separation: str
+
+
+def experiment_card(verdict: Verdict, reporter: Reporter) -> ExperimentCard | None:
+    """Return the card, or None when nothing needs to be told apart."""
+    proposed = verdict.next_experiment
+    if proposed is None:
+        return None
+    known = proposed.predicted_separation
+    return ExperimentCard(
+        title=proposed.excitation,
+        about=reporter.purpose(proposed.excitation),
+        why=proposed.purpose,
+        separates=" / ".join(words(e) for e in proposed.separates),
+        separation="" if known is None else f"{known:.2g}",
+    )

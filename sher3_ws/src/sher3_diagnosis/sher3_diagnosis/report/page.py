@@ -1,0 +1,61 @@
+"""The page: collects the sections and fills the template."""
+
+from __future__ import annotations
+
+import jinja2
+from matplotlib import rc_context
+
+from sher3_diagnosis.flow import Diagnosis
+from sher3_diagnosis.report.causes import cause_cards
+from sher3_diagnosis.report.chain import chain
+from sher3_diagnosis.report.closures import closure_bars
+from sher3_diagnosis.report.drawing import STYLE
+from sher3_diagnosis.report.experiment_card import experiment_card
+from sher3_diagnosis.report.regimes import regimes
+from sher3_diagnosis.report.reporter import Isolability
+from sher3_diagnosis.report.summary import five_lines, headline
+from sher3_diagnosis.report.traces import traces
+from sher3_diagnosis.report.words import place, words
+
+TEMPLATE = "template.html"
+
+
+def render(diagnosis: Diagnosis, title: str) -> str:
+    """Return the report of a diagnosis as one HTML page without external resources."""
+    loader = jinja2.PackageLoader("sher3_diagnosis", "report")
+    environment = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True)
+    with rc_context(STYLE):
+        return environment.get_template(TEMPLATE).render(**_sections(diagnosis, title))
+
+
+def _sections(diagnosis: Diagnosis, title: str) -> dict[str, object]:
+    verdict, reporter = diagnosis.verdict, diagnosis.machine.reporter()
+    parts = [f.evidence for f in diagnosis.findings]
+    isolability = reporter.isolability(parts)
+    return dict(
+        title=title,
+        verdict=verdict,
+        headline=headline(verdict),
+        lines=five_lines(verdict, reporter.simulated),
+        data=reporter.data(parts),
+        held_out=reporter.held_out,
+        simulated=reporter.simulated,
+        chain=chain(diagnosis, reporter),
+        traces=traces(diagnosis, reporter),
+        closures=closure_bars(verdict, reporter.end),
+        causes=cause_cards(diagnosis, isolability),
+        regimes=regimes(diagnosis),
+        isolability=None if isolability is None else _in_words(isolability),
+        experiment=experiment_card(verdict, reporter),
+        words=words,
+        place=place,
+    )
+
+
+def _in_words(found: Isolability) -> dict[str, list]:
+    """Return the groups, the invisible effects and the sources, by name."""
+    return {
+        "groups": [sorted(words(e) for e in group) for group in found.groups],
+        "invisible": sorted(words(e) for e in found.invisible),
+        "sources": sorted(found.sources),
+    }

@@ -1,0 +1,175 @@
+"""Real against nominal against corrected, with residuals, of the channels with the largest gaps."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.effect import ROTARY
+from sher3_diagnosis.evidence import Evidence
+from sher3_diagnosis.finding import Finding
+from sher3_diagnosis.flow import Diagnosis
+from sher3_diagnosis.localise.gaps import PARTS
+from sher3_diagnosis.quantify.closure import residual_after
+from sher3_diagnosis.report.drawing import ABOVE, CORRECTED, FLOOR, MARGINS, NOMINAL, REAL, figure, to_svg
+from sher3_diagnosis.report.reporter import Reporter, Trace
+from sher3_diagnosis.report.words import place, words
+
+WORST = 3
+"""Channels shown of each part of the machine."""
+COMPONENTS = ("x", "y", "z", "about x", "about y", "about z")
+TURNS = 3
+"""Components of a pose or wrench before those about an axis."""
+SCALES = ((1.0, ""), (1e3, "m"), (1e6, "µ"), (1e9, "n"))
+LEAST = 0.5
+"""Largest value on an axis of a picture below which the next prefix is taken."""
+HOLE = 2.5
+"""Sample steps without a sample at which a line breaks."""
+
+
+@dataclass(frozen=True)
+class _Lines:
+    """What is drawn over `time` (n,).
+
+    Attributes:
+        real, nominal, corrected: output of the stage, (n,).
+        floor: standard deviation of the residual's floor.
+        name, unit: of the output.
+    """
+
+    time: Array
+    real: Array
+    nominal: Array
+    corrected: Array
+    floor: float
+    name: str
+    unit: str
+
+    @property
+    def changed(self) -> bool:
+        """Whether a cause acts on what is drawn."""
+        return not np.array_equal(self.nominal, self.corrected)
+
+
+def traces(diagnosis: Diagnosis, reporter: Reporter) -> list[Trace]:
+    """Return the pictures: the machine's own first ones, the worst channels, the machine's own last ones."""
+    first = reporter.first_traces(diagnosis)
+    worst = [(f, g.channel) for f in diagnosis.findings for g in [g for g in f.gaps if g.significant][:WORST]]
+    if not worst and not first:
+        largest = [(f, f.gaps[0]) for f in diagnosis.findings if f.gaps]
+        worst = [(f, g.channel) for f, g in sorted(largest, key=lambda x: -x[1].power)[:1]]
+    made = [_channel(f, c, reporter) for f, c in worst]
+    return [*first, *(t for t in made if t is not None), *reporter.last_traces(diagnosis)]
+
+
+def _channel(finding: Finding, channel: Channel, reporter: Reporter) -> Trace | None:
+    """Return the picture of a channel in the run with its largest gap; None where no run has it."""
+    evidence = finding.evidence
+    after = residual_after(evidence, finding.attribution.fit, channel)
+    if not after:
+        return None
+    run = max(after, key=lambda r: _power(evidence, r, channel))
+    found = evidence.data.residuals[run][channel]
+    best = _component(found.values[found.ok], evidence.floors[run][channel])
+    shown = [r for r in reporter.together(evidence, run) if r in after]
+    lines = _lines(evidence, reporter, channel, shown, best, after)
+    title = f"{words(channel.stage)}, {place(channel.actuator)}"
+    if found.values.shape[1] > 1:
+        title += f", {COMPONENTS[best]}"
+    caption = reporter.run_name(evidence, run)
+    caption += f", held out: the correction was fitted to the other {reporter.held_out}." if lines.changed else ""
+    caption += "" if lines.changed else "; no cause acts here."
+    return Trace(title, caption, _draw(lines, title, reporter.abscissa))
+
+
+def _lines(
+    evidence: Evidence,
+    reporter: Reporter,
+    channel: Channel,
+    runs: Sequence[int],
+    best: int,
+    after: dict[int, Array],
+) -> _Lines:
+    """Collect the lines of one component over the samples that count of these runs, in the order of time."""
+    parts = []
+    name = ""
+    for run in runs:
+        found = evidence.data.residuals[run][channel]
+        clock = reporter.clock(evidence, run)
+        if clock is None:
+            clock = np.arange(len(found.values)) / (evidence.views[run].rate or 1.0)
+        put_out = reporter.output(evidence, run, channel)
+        name = put_out.name
+        before = found.values[found.ok][:, best]
+        real = before if put_out.values is None else put_out.values[found.ok]
+        parts.append(np.stack([clock[found.ok], real, real - before, real - after[run][:, best]]))
+    together = np.concatenate(parts, axis=1)
+    time, real, nominal, corrected = together[:, np.argsort(together[0], kind="stable")]
+    floor = float(evidence.floors[runs[0]][channel][best])
+    return _Lines(time, real, nominal, corrected, floor, name, _unit(evidence, channel, best))
+
+
+def _unit(evidence: Evidence, channel: Channel, component: int) -> str:
+    unit = evidence.unit(channel)
+    if component >= TURNS:
+        unit = evidence.second_units.get(channel, ROTARY.get(unit, unit))
+    return unit.replace("*", "·")
+
+
+def _power(evidence: Evidence, run: int, channel: Channel) -> float:
+    found = evidence.data.residuals[run][channel]
+    return float(np.mean((found.values[found.ok] / evidence.floors[run][channel]) ** 2))
+
+
+def _component(values: Array, floor: Array) -> int:
+    """Component with the largest gap over floor, of the part that counts."""
+    power = np.mean((values / floor) ** 2, axis=0)
+    best = max(PARTS[len(floor)], key=lambda p: float(np.mean(power[p])))
+    return int(best.start + np.argmax(power[best]))
+
+
+def _draw(lines: _Lines, title: str, abscissa: str) -> str:
+    made, (top, bottom) = figure(2, 4.1, sharex=True, height_ratios=[1.5, 1.0])
+    _draw_output(top, lines)
+    _draw_residual(bottom, lines)
+    bottom.set_xlabel(abscissa)
+    for ax in (top, bottom):
+        ax.legend(**ABOVE)
+        ax.margins(**MARGINS)
+    return to_svg(made, title)
+
+
+def _draw_output(ax: Axes, lines: _Lines) -> None:
+    scale, prefix = scale_of(lines.real)
+    _line(ax, lines.time, scale * lines.real, REAL, "real", 1.3)
+    _line(ax, lines.time, scale * lines.nominal, NOMINAL, "nominal model", 1.1)
+    if lines.changed:
+        _line(ax, lines.time, scale * lines.corrected, CORRECTED, "with the causes", 1.1)
+    ax.set_ylabel(f"{lines.name} [{prefix}{lines.unit}]")
+
+
+def _draw_residual(ax: Axes, lines: _Lines) -> None:
+    before, left = lines.real - lines.nominal, lines.real - lines.corrected
+    scale, prefix = scale_of(before)
+    ax.axhspan(-2 * scale * lines.floor, 2 * scale * lines.floor, color=FLOOR, alpha=0.25, lw=0, label="± 2 floor")
+    _line(ax, lines.time, scale * before, NOMINAL, "nominal residual", 0.9)
+    if lines.changed:
+        _line(ax, lines.time, scale * left, CORRECTED, "residual left", 0.9)
+    ax.set_ylabel(f"residual [{prefix}{lines.unit}]")
+
+
+def _line(ax: Axes, time: Array, y: Array, color: str, label: str, width: float) -> None:
+    """Draw a line that breaks where samples are missing."""
+    steps = np.diff(time)
+    holes = np.flatnonzero(steps > HOLE * np.median(steps)) + 1 if len(steps) else np.array([], dtype=int)
+    ax.plot(np.insert(time, holes, np.nan), np.insert(y, holes, np.nan), color=color, lw=width, label=label)
+
+
+def scale_of(y: Array) -> tuple[float, str]:
+    """Return the factor and the SI prefix with which values are drawn."""
+    size = float(np.nanmax(np.abs(y))) if len(y) else 1.0
+    return next(((s, p) for s, p in SCALES if size * s >= LEAST), SCALES[-1])

@@ -1,0 +1,73 @@
+"""Names and numbers as every report and every command prints them."""
+
+from __future__ import annotations
+
+import math
+
+_PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"), (1e-12, "p"))
+_PLAIN = frozenset({"1", "", "1/K", "1/s", "%"})
+"""Units that take no prefix."""
+ROUNDS_UP = 0.9995
+"""Share of a prefix from which a number of three digits is printed with it: 999.5 µm reads 1 mm."""
+WHOLE = 99.95
+"""Number from which three digits leave none behind the point."""
+TENTHS = 100.0
+"""Gap over floor from which its tenths are not told."""
+BEYOND = 1000.0
+"""Gap over floor that is only called very large: the floor's own spread makes its digits meaningless."""
+
+
+def words(identifier: str) -> str:
+    """Return an effect, family or stage id in words: `coulomb_friction` -> `Coulomb friction`."""
+    text = identifier.replace("_", " ")
+    return text[:1].upper() + text[1:]
+
+
+def place(site: str) -> str:
+    """Return a place of a machine in words: `delta_1` -> `delta 1`; `all` is every axis."""
+    return "all axes" if site == "all" else site.replace("_", " ")
+
+
+def quantity(value: float | None, unit: str) -> str:
+    """Return a number with three digits, an SI prefix and its unit; a dash for None and for what is not finite."""
+    if value is None or not math.isfinite(value):
+        return "–"
+    shown = unit.replace("*", "·")
+    if unit in _PLAIN:
+        return f"{value:.3g}" + ("" if unit in ("1", "") else f" {shown}")
+    if unit.startswith("kg"):
+        value, shown = value * 1e3, shown[1:]
+    size = abs(value)
+    scale, prefix = next(((s, p) for s, p in _PREFIXES if size >= ROUNDS_UP * s), (1.0, ""))
+    number = value / scale
+    digits = f"{number:.0f}" if abs(number) >= WHOLE else f"{number:.3g}"
+    return f"{digits} {prefix}{shown}"
+
+
+def range_text(low: float | None, high: float | None, unit: str) -> str:
+    """Return an interval, or why there is none."""
+    if low is None or high is None:
+        return "too few runs"
+    return f"{quantity(low, unit)} … {quantity(high, unit)}"
+
+
+def share(value: float | None) -> str:
+    """Return a closure as a percentage; rounding never makes a part look like the whole."""
+    if value is None:
+        return "–"
+    text = f"{100 * value:.0f} %"
+    return "> 99 %" if text == "100 %" and value < 1.0 else text
+
+
+def ratio_text(ratio: float) -> str:
+    """Return a gap over its floor."""
+    if ratio >= BEYOND:
+        return "≫ 1000"
+    return f"{ratio:.1f}" if ratio < TENTHS else f"{ratio:.0f}"
+
+
+def listed(names: list[str], shown: int = 3) -> str:
+    """Return names as a list in a sentence: `a`, `a and b`, `a, b and 2 more`."""
+    if len(names) > shown:
+        names = [*names[: shown - 1], f"{len(names) - shown + 1} more"]
+    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"

@@ -1,0 +1,222 @@
+"""Every number that decides in the diagnosis, in one place: its meaning, the data it was set on, and how to measure it.
+
+Losses are held-out sums of squares over the floor: a sample at its floor adds one. "Development seeds" are the
+challenge's seeds 0 to 199, from the truth plant of `sher3_challenge.truth`; the command beside a number prints the
+figures it was chosen from. A number set on a plant is not shown by that plant.
+"""
+
+from __future__ import annotations
+
+# -- localise: is there a gap? -------------------------------------------------------------------------------------
+
+POOLED = {
+    "drive": 1.3,
+    "motor_mechanics": 1.3,
+    "transmission": 1.25,
+    "mechanism": 2.0,
+    "structure": 2.0,
+    "sensing": 1.35,
+}
+"""Power over its allowance, over all runs, from which a channel has a gap when its floor is known from many repeats.
+Higher at the tip: a robot as built may be off by as much as the floor there, which no repeat shows.
+Set on: healthy development seeds, none of which may pass. Measure: `sher3 gap challenge --kinds healthy`."""
+
+FLOOR_SCATTER = 0.5
+"""Share by which those thresholds rise for each lost degree of freedom of the floor (divided by the repeats): a floor
+that came out small by chance is no gap. Set on and measured as `POOLED`, with two and three repeats."""
+
+GROUPED = 2.5
+"""The threshold for the runs of one excitation: fewer samples than over all runs, and more groups looked at.
+Set on and measured as `POOLED`."""
+
+GROUPED_ENCODERS = 3.0
+"""The same for the difference of two encoders, of which a slow run has few independent roundings.
+Set on and measured as `POOLED`."""
+
+ZERO_COUNTS = 0.75
+"""Mean difference of two encoders, in counts of the motor's, from which it is a gap: rounding alone moves a run's mean
+by up to half a count. Set by that argument. Measure: `sher3 gap challenge --kinds healthy`."""
+
+# -- attribute: which effect? --------------------------------------------------------------------------------------
+
+MAX_CAUSES = 3
+"""Causes named at most. Set by the plan of the challenge, whose compound cases have up to three faults."""
+
+PRICE = 12.0
+"""Held-out loss that each coefficient or shape parameter must buy: four standard deviations of a chi-square with
+eight repeats' worth of searching. Set on: development seeds. Measure: `sher3 gap challenge --seeds 0:40`."""
+
+AS_BUILT_PRICE = 0.05
+"""Loss per sample that a coefficient must buy in addition at the tip: the robot as built deviates from its drawing by a
+fraction of the floor, and every coefficient takes its part of that.
+Set on: healthy development seeds with a tracker. Measure: `sher3 gap challenge --kinds healthy`."""
+
+UNLIKELY = 3.0 * PRICE
+"""Loss that an effect must buy in addition where the sign of its parameters speaks for another effect.
+Set on and measured as `PRICE`."""
+
+NEEDED = 3.0 * PRICE
+"""Loss that a cause, or the more general of two related effects, must be worth for each of its numbers in order to
+stay. Set on and measured as `PRICE`."""
+
+PARSIMONY = 0.004
+"""Share of what is explained that a further cause must be worth to stay: laws are idealisations, and what a right law
+leaves is not worth a second cause. Set on and measured as `PRICE`."""
+
+WORTH = 0.35
+"""Share of a remaining gap that a further cause must explain. Set on: compound development seeds.
+Measure: `sher3 gap challenge --kinds compound`."""
+
+COMPLETE = 0.8
+"""Share of a remaining gap above which a single cause is enough and no pair is tried.
+Set on and measured as `WORTH`."""
+
+PAIR_GAIN = 0.15
+"""Share of a remaining gap by which a pair must beat the best single cause. Set on and measured as `WORTH`."""
+
+PAIR_WORTH = 0.6
+"""Share of a remaining gap that a pair must explain. Set on and measured as `WORTH`."""
+
+RIVAL = 0.02
+"""A rival explains all but this share of what the chosen effect explains.
+Set on: pairs of siblings in the development seeds. Measure: `sher3 gap challenge --seeds 0:40` (set size)."""
+
+CONSTANT = 0.029
+"""Share of what a cause explains that letting its size differ between excitations may add. Measured 0.0001 to 0.013
+for true effects of the development seeds, 0.03 to 0.12 for effects that stand in for another one.
+Measure: `python bench/gap_pattern.py`."""
+
+CERTAIN = 100.0
+"""Loss that a varying size must explain before it counts. Set on and measured as `CONSTANT`."""
+
+AGREEMENT = 0.9
+"""Agreement of a gap's places with its cause below which the cause stands in for another: of 51 true causes of the
+development seeds 50 have more, of 37 stand-ins 20 have. Measure: `python bench/gap_pattern.py`."""
+
+# -- judge: what may be left? --------------------------------------------------------------------------------------
+
+REMAINDER = 0.10
+"""Share of a channel's gap that may be left when its cause is known: laws are idealisations.
+Set on: development seeds. Measure: `sher3 gap challenge --seeds 0:40` (status)."""
+
+SMALL_SHARE = 0.25
+"""Share that may be left if what is left is also small. Set on and measured as `REMAINDER`."""
+
+SMALL_REMAINDER = 2.5
+"""Power over floor of what is left up to which it is small. Set on and measured as `REMAINDER`."""
+
+SLIGHT = 1.6
+"""Power over threshold below which a gap beside an explained one is spill-over and no cause of its own.
+Set on and measured as `REMAINDER`."""
+
+REPRODUCED = 0.9
+"""Share of an exact stage's error that its causes must reproduce. Set on: development seeds with faults of transport
+and controller. Measure: `sher3 gap challenge --seeds 0:40` (status)."""
+
+# -- exact stages: what does the timing of the echo say? -----------------------------------------------------------
+
+SKEW = 0.02
+"""Latency in periods from which a command is late, and difference from which two axes are not alike: what a tenth of a
+percent of rounded ticks makes. Set on: development seeds of the timing family.
+Measure: `sher3 gap challenge --seeds 0:40` (top-1 of the timing family)."""
+
+APART = 0.05
+"""Share of the transport's error that latencies of their own must explain beyond a common one.
+Set on and measured as `SKEW`."""
+
+RANDOM_SHARE = 0.005
+"""Share of the transport's error that latencies of every tick must explain beyond constant ones before random lateness
+is looked for. Set on and measured as `SKEW`."""
+
+ANY_JITTER = 0.1
+"""Share from which random lateness is jitter even where it scatters little against the latency.
+Set on and measured as `SKEW`."""
+
+JITTER_OVER_LATENCY = 0.35
+"""Scatter of the ticks' latencies over their median from which lateness is random: a half-normal one has 0.6.
+Set on and measured as `SKEW`."""
+
+DROPS_SEEN = 2e-4
+"""Share of ticks held for whole periods from which commands are dropped: one in 5000, fewer than two a case.
+Set on and measured as `SKEW`."""
+
+DROPS_USUAL = 0.5
+"""Share of held ticks above which holding is the rule and no jitter. Set on and measured as `SKEW`."""
+
+MOSTLY_DROPS = 0.5
+"""Share of the random error that whole-period holds must make for it to be drops. Set on and measured as `SKEW`."""
+
+EXACT_UNTOLD = 0.005
+"""Share of an exact stage's error in ticks whose timing cannot be told. Set on and measured as `SKEW`."""
+
+SAME_GAIN = (1e-3, 0.02)
+"""Difference of the axes' gain errors, absolute and relative, below which they are one error.
+Set on: development seeds with `controller_gain`. Measure: `sher3 gap challenge --seeds 0:40`."""
+
+# -- quantify: how sure are the numbers? ---------------------------------------------------------------------------
+
+MIN_RUNS = 5
+"""Fewer runs than this carry no interval: a resample of four runs has too few distinct ones."""
+
+FLOOR_UNCERTAINTY = 0.05
+"""Relative standard error of the floor's power with a handful of repeats.
+Set on: development seeds. Measure: `sher3 gap challenge --seeds 0:40` (coverage of the closure)."""
+
+SHAPE_UNCERTAINTY = 0.25
+"""Relative uncertainty of a nonlinear parameter: the step of its search and what it means in another form of the law.
+Set on: development seeds. Measure: `sher3 gap challenge --seeds 0:40` (coverage of the parameters)."""
+
+REACH_UNCERTAINTY = 0.4
+"""The same of a displacement over which a force or a lag builds up: laws differ most in the form of that.
+Set on and measured as `SHAPE_UNCERTAINTY`."""
+
+LAW_UNCERTAINTY = 0.06
+"""Relative uncertainty of any parameter that comes from the law being an idealisation.
+Set on and measured as `SHAPE_UNCERTAINTY`."""
+
+JACKKNIFE = 2.3
+"""Half width of a 95 % interval in standard errors of a jackknife over about nine runs (Student's t, 8 degrees)."""
+
+AS_BUILT_SHARE = 0.5
+"""Systematic residual of a healthy robot at tip and force sensor, over the floor. Set on: healthy development seeds.
+Measure: `sher3 gap challenge --kinds healthy`."""
+
+AS_BUILT_CLOSURE = 0.02
+"""Closure that a healthy robot's own deviations may take or give. Set on and measured as `FLOOR_UNCERTAINTY`."""
+
+IDEALISED = 0.1
+"""Share of the gap that an idealised law may leave of an effect it stands for, which would close that much more.
+Set on and measured as `FLOOR_UNCERTAINTY`."""
+
+NO_TIP_GAP = 1.2
+"""Power over floor of the nominal tip error below which there is nothing at the tip to close.
+Set on and measured as `POOLED`."""
+
+# -- regimes and remainders: what a gap looks like -----------------------------------------------------------------
+
+AT_REST = 0.01
+"""Share of its top speed below which an axis is at rest. A convention of the words, no decision hangs on it."""
+
+FAST = 0.2
+"""Share of its top speed from which an axis is fast. A convention of the words."""
+
+JUST_AFTER = 10
+"""Samples that count as just after a reversal: 0.1 s at 100 Hz. A convention of the words."""
+
+WARM = 0.5
+"""Range of temperatures [K] from which warm and cool samples are told apart. A convention of the words."""
+
+REGIME_SAMPLES = 20
+"""Samples a regime must have before its power is told."""
+
+STANDS_OUT = 1.3
+"""Power of a regime over the mean of all from which it is named."""
+
+REGIME_GAP = 1.5
+"""Power over floor from which a regime is named."""
+
+LINE_SHARE = 0.15
+"""Share of a remainder's power in one spectral line from which its frequency is told."""
+
+PERIOD_SHARE = 0.2
+"""Share of a remainder that a period over a motor revolution must explain to be told."""

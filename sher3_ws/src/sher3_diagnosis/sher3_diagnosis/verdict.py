@@ -1,0 +1,136 @@
+"""The verdict of a diagnosis: typed, validated, written as the recorded-run contract's §8 lays down."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Literal
+
+from pydantic import BaseModel, ConfigDict, Field, field_validator, model_validator
+from sher3_common import read_text
+
+SCHEMA = "sher3.verdict/1"
+Status = Literal["no_gap", "attributed", "under_excited", "outside_library"]
+
+
+class _Model(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+
+class Interval(_Model):
+    """A value with its 95 % interval; `low` and `high` are None when too few runs carry one."""
+
+    value: float
+    low: float | None = None
+    high: float | None = None
+
+
+class Parameter(Interval):
+    """A fitted parameter with its unit."""
+
+    unit: str
+
+
+class Where(_Model):
+    """One place of the signal chain at which the robot leaves the simulation."""
+
+    stage: str
+    actuator: str
+    gap: float = Field(ge=0.0, description="rms of the nominal residual")
+    floor: float = Field(ge=0.0, description="rms between repeats")
+    unit: str
+    regime: str
+    confidence: float = Field(ge=0.0, le=1.0)
+
+
+class Cause(_Model):
+    """An effect that explains a gap, with the effects that could not be told apart from it."""
+
+    effect: str
+    family: str
+    stage: str
+    actuator: str
+    parameters: dict[str, Parameter]
+    closure: Interval
+    rivals: list[str] = []
+
+
+class Closure(_Model):
+    """Closure with all causes added: at the first `where`, and at the tip when there was a tracker."""
+
+    stage: Interval | None = None
+    tip: Interval | None = None
+
+
+class Residual(_Model):
+    """What is left at the first `where` with all causes added."""
+
+    gap: float = Field(ge=0.0)
+    floor: float = Field(ge=0.0)
+    unit: str
+
+
+class Unexplained(_Model):
+    """Where a gap lives that no effect of the library explains, and what it looks like."""
+
+    stage: str
+    actuator: str
+    signature: str
+
+
+class NextExperiment(_Model):
+    """The excitation that best tells the rivals apart."""
+
+    excitation: str
+    purpose: str
+    separates: list[str]
+    predicted_separation: float | None
+
+
+class Verdict(_Model):
+    """What `diagnose` answers for one case."""
+
+    schema_: Literal["sher3.verdict/1"] = Field(default="sher3.verdict/1", alias="schema")
+    status: Status
+    where: list[Where] = []
+    causes: list[Cause] = []
+    closure: Closure = Closure()
+    residual: Residual | None = None
+    unexplained: Unexplained | None = None
+    next_experiment: NextExperiment | None = None
+    seconds: float = 0.0
+    versions: dict[str, str] = {}
+    notes: list[str] = []
+
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, populate_by_name=True)
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Verdict:
+        if self.status == "no_gap" and (self.where or self.causes):
+            raise ValueError("a no_gap verdict lists no place and no cause")
+        if self.status != "no_gap" and not self.where:
+            raise ValueError(f"a verdict {self.status!r} says where the gap is")
+        if self.status == "attributed" and not self.causes:
+            raise ValueError("an attributed verdict names at least one cause")
+        if self.status == "under_excited" and not self.next_experiment:
+            raise ValueError("an under_excited verdict proposes the next experiment")
+        if self.status == "outside_library" and self.unexplained is None:
+            raise ValueError("an outside_library verdict says what is unexplained")
+        return self
+
+    @field_validator("notes")
+    @classmethod
+    def _bounded(cls, notes: list[str]) -> list[str]:
+        return notes[:50]
+
+    def to_json(self) -> str:
+        """Return the verdict as JSON text."""
+        return self.model_dump_json(by_alias=True, indent=1)
+
+    def write(self, path: Path) -> None:
+        """Write the verdict to `path`."""
+        path.write_text(self.to_json() + "\n", encoding="utf-8")
+
+    @classmethod
+    def read(cls, path: Path) -> Verdict:
+        """Read and validate a verdict file; raises FileError, or `pydantic.ValidationError` naming each wrong field."""
+        return cls.model_validate_json(read_text(path))

@@ -1,0 +1,36 @@
+"""What the evidence counts: repeats, samples, losses above the floor."""
+
+import math
+
+import numpy as np
+import pytest
+from sher3_diagnosis.channel import Channel
+from toy import AXIS, ToyRun, evidence_of
+
+
+def run(excitation, value):
+    return ToyRun(excitation, np.full(4, value), np.zeros(4), np.ones(4))
+
+
+def test_repeats_are_runs_beyond_the_first_of_each_excitation():
+    assert evidence_of([run("a", 1.0), run("a", 1.0), run("b", 1.0)]).repeats == 1
+    assert evidence_of([run("a", 1.0), run("b", 1.0)]).repeats == 0
+
+
+def test_excess_is_the_loss_above_one_per_sample():
+    evidence = evidence_of([run("a", 3.0), run("a", 1.0)])
+    assert evidence.samples(AXIS) == 8
+    assert evidence.excess(AXIS) == pytest.approx(4 * 9.0 + 4 * 1.0 - 8)
+    assert evidence.excess(AXIS, evidence.null()) == pytest.approx(evidence.excess(AXIS))
+    assert evidence.channels == [AXIS]
+
+
+def test_units_are_of_a_part_of_the_components():
+    tip = Channel("mechanism", "tip")
+    evidence = evidence_of([run("a", 1.0)], units={AXIS: "N", tip: "m"}, second_units={tip: "rad"})
+    assert (evidence.unit(tip), evidence.unit(tip, 1), evidence.unit(AXIS, 1)) == ("m", "rad", "N")
+
+
+def test_an_unknown_count_is_infinite():
+    assert evidence_of([run("a", 1.0)], counts={"axis": 0.5}).count(AXIS) == 0.5
+    assert math.isinf(evidence_of([run("a", 1.0)]).count(AXIS))

@@ -1,0 +1,76 @@
+"""The page of a machine that says nothing particular: the sections it has, and numbers worked out by hand."""
+
+import re
+
+import numpy as np
+import pytest
+from sher3_diagnosis.flow import diagnose
+from sher3_diagnosis.report.causes import cause_cards, separates
+from sher3_diagnosis.report.chain import AT_FLOOR, GAP, chain
+from sher3_diagnosis.report.page import render
+from sher3_diagnosis.report.reporter import Isolability, Reporter, counted
+from sher3_diagnosis.report.traces import scale_of
+from toy import DIRECTION, SPEED, Toy, case
+
+
+@pytest.fixture(scope="module")
+def rubbing():
+    return diagnose(Toy(), case(3.0))
+
+
+@pytest.fixture(scope="module")
+def healthy():
+    return diagnose(Toy(), case(0.0))
+
+
+def test_the_page_stands_alone_and_answers_first(rubbing):
+    page = render(rubbing, "toy")
+    assert "<h1>Direction on axis explains the gap." in page
+    assert not re.findall(r'(?:src|href)="(?!#)[^"]+"', page) and "<script" not in page
+    for heading in ("Where the gap is", "What causes it", "How far the gap shrinks", "Real, nominal, corrected"):
+        assert f"<h2>{heading}</h2>" in page
+    assert "What these topics can tell apart" not in page  # the machine does not say
+
+
+def test_a_healthy_machine_has_no_causes(healthy):
+    page = render(healthy, "toy")
+    assert "<h1>No gap" in page and "What causes it" not in page and "How far the gap shrinks" not in page
+
+
+def test_the_chain_shows_what_was_recorded(rubbing, healthy):
+    (column,) = chain(rubbing, Reporter())
+    (cell,) = column.cells
+    assert (column.name, column.level, cell.label) == ("Motor mechanics", GAP, "axis")
+    assert float(cell.text) == pytest.approx(np.sqrt(1 + 3.0**2), rel=0.05)  # noise of one floor, gap of three
+    assert chain(healthy, Reporter())[0].level == AT_FLOOR
+
+
+def test_stages_without_data_are_shown_where_the_machine_asks(rubbing):
+    class Every(Reporter):
+        every_stage = True
+
+    columns = chain(rubbing, Every())
+    assert len(columns) == 8
+    assert [c.cells[0].text for c in columns if c.name == "Drive"] == ["not recorded"]
+
+
+def test_a_card_says_what_came_close(rubbing):
+    (card,) = cause_cards(rubbing, Isolability([], [frozenset({"direction", "speed"})], frozenset()))
+    assert card.title == "Direction on axis" and card.alike == ["Speed"]
+    assert "Speed" in [r.name for r in card.rivals] and not any(r.kept for r in card.rivals)
+
+
+def test_what_tells_two_apart_is_read_from_either_page():
+    assert separates(DIRECTION, SPEED) == "Direction: grows with speed"
+    assert separates(SPEED, DIRECTION) == "Direction: grows with speed"
+
+
+def test_groups_and_the_invisible():
+    found = Isolability([], [frozenset({"a", "b"}), frozenset({"c"})], frozenset({"d", "e"}))
+    assert [found.alike(x) for x in "acd"] == [{"b"}, frozenset(), {"e"}]
+
+
+def test_excitations_are_counted_and_scales_chosen():
+    assert counted(["sweep", "steps", "sweep"]) == "steps × 1, sweep × 2"
+    assert scale_of(np.array([0.6])) == (1.0, "")
+    assert scale_of(np.array([-4e-4])) == (1e6, "µ")

@@ -1,0 +1,89 @@
+"""The answer in words, for each status."""
+
+import pytest
+from sher3_diagnosis.report.summary import cause_text, closure_text, five_lines, headline
+from sher3_diagnosis.verdict import (
+    Cause,
+    Closure,
+    Interval,
+    NextExperiment,
+    Parameter,
+    Residual,
+    Unexplained,
+    Verdict,
+    Where,
+)
+
+PLACE = Where(
+    stage="transmission",
+    actuator="tilt",
+    gap=6e-6,
+    floor=2e-6,
+    unit="m",
+    regime="just after a reversal",
+    confidence=1.0,
+)
+FRICTION = Cause(
+    effect="coulomb_friction",
+    family="friction",
+    stage="motor_mechanics",
+    actuator="delta_2",
+    parameters={"force": Parameter(value=0.3, low=0.25, high=0.35, unit="N")},
+    closure=Interval(value=0.98, low=0.9, high=1.0),
+)
+BACKLASH = FRICTION.model_copy(
+    update={"effect": "backlash", "actuator": "tilt", "parameters": {}, "rivals": ["transmission_compliance"]}
+)
+TELLS = NextExperiment(excitation="loads", purpose="", separates=["backlash", "cogging"], predicted_separation=None)
+LEFT = Unexplained(stage="transmission", actuator="tilt", signature="largest at rest")
+
+
+def verdict(status, **more):
+    return Verdict(status=status, where=[PLACE], **more)
+
+
+@pytest.mark.parametrize(
+    ("answer", "text"),
+    [
+        (Verdict(status="no_gap"), "No gap: the machine does what its model says, to within its own repeatability."),
+        (verdict("attributed", causes=[FRICTION]), "Coulomb friction on delta 2 explains the gap."),
+        (
+            verdict("attributed", causes=[BACKLASH, FRICTION]),
+            "Backlash on tilt and Coulomb friction on delta 2 explain the gap.",
+        ),
+        (
+            verdict("under_excited", causes=[FRICTION, BACKLASH], next_experiment=TELLS),
+            "Backlash on tilt or transmission compliance: these runs cannot tell.",
+        ),
+        (
+            verdict("outside_library", unexplained=LEFT),
+            "No effect of the library explains the gap in transmission, tilt.",
+        ),
+    ],
+)
+def test_the_headline_is_the_answer(answer, text):
+    assert headline(answer) == text
+
+
+def test_five_lines_of_an_explained_gap():
+    closed = Closure(stage=Interval(value=0.98, low=0.9, high=1.0), tip=Interval(value=0.5))
+    left = Residual(gap=2.1e-6, floor=2e-6, unit="m")
+    lines = dict(five_lines(verdict("attributed", causes=[FRICTION], closure=closed, residual=left), simulated=True))
+    assert list(lines) == ["verdict", "where", "cause", "closure", "next"]
+    assert lines["where"] == "transmission, tilt: 6 µm rms, 3.0 times the floor, just after a reversal"
+    assert lines["cause"] == "Coulomb friction on delta 2, force 300 mN (250 mN … 350 mN)"
+    assert lines["closure"] == "stage 98 % (90 % … 100 %), tip 50 %, left 2.1 µm over a floor of 2 µm"
+    assert "sher3 gap apply" in lines["next"]
+
+
+def test_commands_are_named_for_a_simulated_machine_only():
+    answer = verdict("attributed", causes=[FRICTION])
+    assert "own simulator" in dict(five_lines(answer, simulated=False))["next"]
+    open_one = verdict("under_excited", causes=[BACKLASH], next_experiment=TELLS)
+    assert dict(five_lines(open_one, simulated=False))["next"] == "loads tells backlash / cogging apart"
+    assert "`sher3 gap experiment" in dict(five_lines(open_one, simulated=True))["next"]
+
+
+def test_rivals_stand_behind_the_cause():
+    assert cause_text(BACKLASH) == "Backlash on tilt [or transmission compliance]"
+    assert closure_text(Interval(value=0.997)) == "> 99 %"

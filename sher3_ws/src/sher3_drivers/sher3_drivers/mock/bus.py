@@ -1,0 +1,274 @@
+"""The five mock drives on their channels, stepped by SYNC: the device end of the CAN links, driven by a plant.
+
+At SYNC k the plant integrates [t_k-1, t_k] with the demands received since SYNC k-1, and the drives report its reading.
+So the nominal latency is zero and echo(k) = command(k-1), as the recorded-run contract asks. While no SYNC comes, the
+plant goes on at its own period with the drives' stop ramps: a robot whose host died travels on as far as a real one.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import Protocol
+
+from sher3_description import ACTUATORS, Robot
+
+from sher3_drivers.bus.frame import BUNDLED, FRAME_SIZE, bundle, mark, unbundle
+from sher3_drivers.bus.group import LinkGroup
+from sher3_drivers.bus.link import CanLink
+from sher3_drivers.canopen.objects import NODE_IDS, NODE_MASK, SYNC_ID
+from sher3_drivers.mock.drive import MockDrive
+from sher3_drivers.settings import MotorDriverSettings
+from sher3_drivers.units import AxisScale
+
+_FREE_RUN_PERIODS = 5
+"""Periods without SYNC after which the plant goes on by itself; fewer are a host that is late."""
+_MOST_FREE_STEPS = 1000
+"""Periods made up for in one call at most: a process that was suspended for longer does not hang in the past."""
+_BATCHES = 64
+"""Batches of frames taken in by one `poll` at most."""
+
+FrameTamper = Callable[[int, bytes, int], bytes]
+
+
+class PlantReading(Protocol):
+    """What the plant returns; sequences of five in the order of ACTUATORS, SI units."""
+
+    @property
+    def motor_position(self) -> Sequence[float]:
+        """Motor encoder readings."""
+
+    @property
+    def load_position(self) -> Sequence[float]:
+        """Load encoder readings."""
+
+    @property
+    def demand(self) -> Sequence[float]:
+        """Demand the drives executed in the interval that ends now."""
+
+    @property
+    def effort(self) -> Sequence[float]:
+        """Reported force or torque."""
+
+
+class DrivePlant(Protocol):
+    """What drives the mock drives."""
+
+    def step(self, velocity_command: list[float]) -> PlantReading:
+        """Integrate one control period with these velocity demands (5,) and return the reading at its end."""
+
+
+class _Channel:
+    """The drives of a channel, and how far they are in this tick.
+
+    Attributes:
+        synced: it has had the SYNC of this tick; frames behind it wait until the plant has made its step.
+        synced_at: time of that SYNC, ns.
+        live: it had a SYNC whenever the other channels had one.
+    """
+
+    def __init__(self, drives: Sequence[MockDrive]) -> None:
+        self.drives = drives
+        self.synced = False
+        self.synced_at = 0
+        self.live = True
+        self._by_node = {drive.node_id: (drive,) for drive in drives}
+        self._waiting: list[tuple[int, bytes]] = []
+
+    def take(self, can_id: int, data: bytes, now: int) -> None:
+        """Take a frame for the drive whose node id it carries, or, without one (NMT, other nodes), for all drives."""
+        if self.synced:
+            self._waiting.append((can_id, data))
+        elif can_id == SYNC_ID:
+            self.synced = self.live = True
+            self.synced_at = now
+        else:
+            for drive in self._by_node.get(can_id & NODE_MASK, self.drives):
+                drive.receive(can_id, data, now)
+
+    def go_on(self, now: int) -> None:
+        """Take the frames that wait behind the SYNC which has been answered."""
+        self.synced = False
+        if self._waiting:
+            waiting, self._waiting = self._waiting, []
+            for can_id, data in waiting:
+                self.take(can_id, data, now)
+
+    def sync_waits(self) -> bool:
+        """Whether a further SYNC waits behind the one that is being answered."""
+        return any(can_id == SYNC_ID for can_id, _ in self._waiting)
+
+
+class MockDriveBus:
+    """Five mock drives on the channels of `settings`.
+
+    Args:
+        links: one link per channel, in the order of the settings.
+        plant: what they drive.
+        robot: its scales.
+        settings: channels and period.
+        clock: time in ns, monotonic; stepped in tests.
+
+    Attributes:
+        links: the channels' links, to wait on.
+        drives: the drives by actuator name.
+        plant: what they drive.
+        ticks: SYNCs the plant was stepped with.
+        free_steps: steps it made without SYNC.
+        step_end: time at which the present step of the plant ends, ns; steps that are made up for have their own.
+        tamper_frames: called with (channel, frames, now) for frames the drives send; returns those that go on the wire.
+        tamper_received: the same for frames they are sent; called with b"" too, so that it can deliver frames later.
+    """
+
+    def __init__(
+        self,
+        links: Sequence[CanLink],
+        plant: DrivePlant,
+        robot: Robot,
+        settings: MotorDriverSettings,
+        clock: Callable[[], int] = time.monotonic_ns,
+    ) -> None:
+        self.ticks = 0
+        self.free_steps = 0
+        self.step_end = 0
+        self.tamper_frames: FrameTamper | None = None
+        self.tamper_received: FrameTamper | None = None
+        self.plant, self._clock, self._period = plant, clock, settings.period
+        self._period_ns = round(settings.period * 1e9)
+        self._stepped_at = clock()
+        self.links = tuple(links)
+        self._group = LinkGroup(links)
+        scales: dict[str, AxisScale] = {
+            actuator.name: AxisScale.from_actuator(actuator) for actuator in robot.actuators
+        }
+        by_name: dict[str, MockDrive] = {}
+        for number, part in enumerate(settings.channels):
+            for name in part.drives:
+                node_id = NODE_IDS[name]
+                by_name[name] = MockDrive(scales[name], node_id, partial(self._send_on, number), number)
+        self.drives = {name: by_name[name] for name in ACTUATORS}
+        self._in_order = tuple(self.drives.values())
+        self._channels = [_Channel([by_name[name] for name in part.drives]) for part in settings.channels]
+
+    @property
+    def clock(self) -> Callable[[], int]:
+        """The clock, in ns."""
+        return self._clock
+
+    def on_channel(self, channel: int) -> Sequence[MockDrive]:
+        """Return the drives of a channel."""
+        return self._channels[channel].drives
+
+    def _send_on(self, channel: int, frames: bytes) -> None:
+        self._send(mark(frames, channel))
+
+    def _send(self, frames: bytes) -> None:
+        """Send a bundle; raise LinkError when a channel cannot take its frames."""
+        if self.tamper_frames is not None:
+            frames = self._tampered(self.tamper_frames, frames, False)
+        if frames:
+            for _, error in self._group.send(frames):
+                raise error
+
+    def _tampered(self, tamper: FrameTamper, frames: bytes, silence: bool) -> bytes:
+        """Return a bundle as `tamper` leaves it, channel by channel; it sees silent channels when `silence` is set."""
+        now, parts = self._clock(), unbundle(frames, len(self._channels))
+        parts = [tamper(i, part, now) if part or silence else b"" for i, part in enumerate(parts)]
+        return bundle([part if len(part) % FRAME_SIZE == 0 else b"" for part in parts])
+
+    def serve(self, timeout: float) -> bool:
+        """Wait at most `timeout` s for frames and handle the next bundle; False when none came.
+
+        SYNCs are answered, heartbeats and watchdogs kept going.
+        """
+        frames = self._group.receive(timeout)
+        if self._group.failures:
+            raise next(iter(self._group.failures.values()))
+        if self.tamper_received is not None:
+            frames = self._tampered(self.tamper_received, frames, True)
+        now, channels = self._clock(), self._channels
+        for can_id, length, number, data in BUNDLED.iter_unpack(frames):
+            if number < len(channels):
+                channels[number].take(can_id, data[:length], now)
+        while self._synced(now):
+            self._step(now)
+        self._keep_going(now)
+        return bool(frames)
+
+    def _keep_going(self, now: int) -> None:
+        """Let the plant go on without SYNC, and heartbeats and watchdogs when they are due."""
+        silent = now - self._stepped_at
+        if self.ticks and silent >= _FREE_RUN_PERIODS * self._period_ns:
+            # The last period stays for the SYNC that may come at this very time.
+            for left in range(min(silent // self._period_ns, _MOST_FREE_STEPS) - 1, 0, -1):
+                self.step_end = self._stepped_at = now - left * self._period_ns
+                self._free_step(now)
+        for drive in self._in_order:
+            if now >= drive.due:
+                drive.watch(now)
+
+    def poll(self) -> None:
+        """Handle every frame that waits, as `serve` does."""
+        for _ in range(_BATCHES):
+            if not self.serve(0.0):
+                return
+
+    def _synced(self, now: int) -> bool:
+        """Whether the plant is to make a step.
+
+        A channel that misses a SYNC of the others holds them up once, for half a period. Then they go on without it.
+        """
+        synced = [channel for channel in self._channels if channel.synced]
+        if len(synced) == len(self._channels) or not synced:
+            return bool(synced)
+        missing = [channel for channel in self._channels if channel.live and not channel.synced]
+        overdue = any(channel.sync_waits() or now - channel.synced_at > self._period_ns // 2 for channel in synced)
+        if missing and not overdue:
+            return False
+        for channel in missing:
+            channel.live = False
+        return True
+
+    def _step(self, now: int) -> None:
+        """Step the plant, answer the SYNC on the channels that had it, and take what waited behind it."""
+        self._make_up_for(now)
+        self.step_end = min([channel.synced_at for channel in self._channels if channel.synced])
+        frames = self._plant_step()
+        self._send(b"".join([frames[drive.node_id - 1] for c in self._channels if c.synced for drive in c.drives]))
+        self.ticks += 1
+        self._stepped_at += self._period_ns
+        for channel in self._channels:
+            channel.go_on(now)
+
+    def _make_up_for(self, now: int) -> None:
+        """Make the steps of SYNCs that did not come: a drive goes on in time whether it is asked or not."""
+        if not self.ticks or abs(now - self._stepped_at) > 1000 * self._period_ns:
+            self._stepped_at = now - self._period_ns
+        late = round((now - self._stepped_at) / self._period_ns) - 1
+        for _ in range(late):
+            self._stepped_at += self._period_ns
+            self.step_end = self._stepped_at
+            self._free_step(now)
+
+    def _free_step(self, now: int) -> None:
+        for drive in self.drives.values():
+            drive.check_host(now)
+        self._plant_step()
+        self.free_steps += 1
+
+    def _plant_step(self) -> list[bytes]:
+        """Step the plant with the drives' demands; return the TPDOs of every drive."""
+        drives = self._in_order
+        reading = self.plant.step([drive.demand(self._period) for drive in drives])
+        columns = map(_floats, (reading.motor_position, reading.load_position, reading.demand, reading.effort))
+        return [drive.sample(*axis) for drive, *axis in zip(drives, *columns, strict=True)]
+
+    def close(self) -> None:
+        """Leave every channel."""
+        self._group.close()
+
+
+def _floats(column: Sequence[float]) -> list[float]:
+    """Return a column as Python floats, which round three times as fast as those of NumPy."""
+    return column.tolist() if hasattr(column, "tolist") else list(column)

@@ -1,0 +1,1 @@
+"""The foot pedal: its back-ends and its node."""

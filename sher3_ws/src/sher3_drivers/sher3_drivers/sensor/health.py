@@ -1,0 +1,136 @@
+"""The sensor's health: does this record come from a force sensor that works? Pure functions over records.
+
+This is a judgement of the device. Its limits are those of a device that is broken: twice the rated range, which no true
+reading exceeds, and eight records in a row that repeat bit for bit. Whether a robot may move on a wrench is judged
+apart from it, by the control law (`sher3_control.law.wrench_gate`). The gate has tighter limits, the rated range
+itself, saturation a little below it and six repetitions: a false objection there costs a pause, and here it would
+call a good sensor defective.
+"""
+
+from __future__ import annotations
+
+import math
+from enum import Enum
+from typing import NamedTuple
+
+from sher3_common.reasons import Reason, reading
+from sher3_common.vectors import ZERO_WRENCH, Wrench
+from sher3_description import ForceSensor
+
+from sher3_drivers.sensor.device import WrenchRecord
+
+
+class SensorFault(Enum):
+    """What is wrong with the stream of records; the value is the sentence for the log."""
+
+    NONE = "ok"
+    SILENT = "no record arrived in time"
+    DEVICE = "the sensor reports an error in its status word"
+    SEQUENCE = "records were lost or came out of order"
+    NOT_FINITE = "a component is NaN or infinite"
+    OUT_OF_RANGE = "a component is beyond what the sensor can read"
+    SATURATED = "a component reached the rated range"
+    FROZEN = "bit-identical readings in a row: a live sensor has noise"
+
+    @property
+    def severe(self) -> bool:
+        """Whether the sensor cannot be used in this tick; lost records alone are reported and do no harm."""
+        return self not in (SensorFault.NONE, SensorFault.SEQUENCE)
+
+
+class SensorLimits(NamedTuple):
+    """What the records of a working sensor satisfy.
+
+    Attributes:
+        rated: rated range (6,), N and N m; reaching it is saturation.
+        overload: multiple of the rated range that no true reading exceeds, 1.
+        frozen: number of bit-identical readings in a row that make a frozen sensor, 1. The noise of the nominal sensor
+            repeats all six components with a chance of about 2e-4 a sample: eight in a row do not occur in its life.
+    """
+
+    rated: tuple[float, ...]
+    overload: float = 2.0
+    frozen: int = 8
+
+    @classmethod
+    def of(cls, sensor: ForceSensor) -> SensorLimits:
+        """Return the limits of a sensor."""
+        return cls((*sensor.range_force, *sensor.range_torque))
+
+
+class SensorHealth(NamedTuple):
+    """What is remembered of the records so far.
+
+    Attributes:
+        last: newest record, None before the first.
+        repeats: how often its wrench has repeated in a row.
+        lost: number of records that never arrived.
+    """
+
+    last: WrenchRecord | None = None
+    repeats: int = 0
+    lost: int = 0
+
+
+def judge_record(
+    health: SensorHealth, record: WrenchRecord | None, limits: SensorLimits
+) -> tuple[SensorHealth, SensorFault]:
+    """Judge the record of a tick.
+
+    Args:
+        health: what is remembered of the records so far.
+        record: the record, None when none came in time.
+        limits: limits of the sensor.
+
+    Returns:
+        What to remember, and the gravest fault.
+    """
+    if record is None:
+        return health, SensorFault.SILENT
+    last = health.last
+    repeats = health.repeats + 1 if last is not None and record.wrench == last.wrench else 0
+    in_order = last is None or _follows(record.sequence, last.sequence)
+    lost = health.lost
+    if last is not None and in_order:
+        lost += _steps(record.sequence, last.sequence) - record.drained
+    health = SensorHealth(record, repeats, lost)
+    if record.status:
+        return health, SensorFault.DEVICE
+    magnitude = _magnitude_fault(record.wrench, limits)
+    if magnitude is not SensorFault.NONE:
+        return health, magnitude
+    if repeats + 1 >= limits.frozen:
+        return health, SensorFault.FROZEN
+    lost_now = last is not None and _steps(record.sequence, last.sequence) != record.drained
+    return health, SensorFault.SEQUENCE if lost_now or not in_order else SensorFault.NONE
+
+
+def _magnitude_fault(wrench: Wrench, limits: SensorLimits) -> SensorFault:
+    """Judge the numbers of one wrench."""
+    if not all(map(math.isfinite, wrench)):
+        return SensorFault.NOT_FINITE
+    # A list: a generator costs twice as much, a thousand times a second.
+    share = max([abs(value) / rated for value, rated in zip(wrench, limits.rated, strict=True)])
+    if share > limits.overload:
+        return SensorFault.OUT_OF_RANGE
+    return SensorFault.SATURATED if share >= 1.0 else SensorFault.NONE
+
+
+def sensor_readings(health: SensorHealth, limits: SensorLimits) -> list[tuple[str, str]]:
+    """Return the largest component and the repetitions with their limits, for the diagnostics."""
+    wrench = ZERO_WRENCH if health.last is None else health.last.wrench
+    share = max(abs(value) / rated for value, rated in zip(wrench, limits.rated, strict=True))
+    return [
+        reading(Reason.WRENCH_OUT_OF_RANGE, "sensor", share, limits.overload, "of the range"),
+        reading(Reason.WRENCH_FROZEN, "sensor", health.repeats + 1, limits.frozen, "samples"),
+    ]
+
+
+def _steps(sequence: int, last: int) -> int:
+    """Return how far a 32-bit counter went, modulo its range."""
+    return sequence - last & 0xFFFFFFFF
+
+
+def _follows(sequence: int, last: int) -> bool:
+    """Return whether a 32-bit counter went forward: by less than half its range, across the wrap-around too."""
+    return 0 < _steps(sequence, last) < 1 << 31

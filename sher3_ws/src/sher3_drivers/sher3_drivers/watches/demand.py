@@ -1,0 +1,85 @@
+"""Does a drive execute what it was sent? Its echo of the velocity demand against the newest commands on the wire.
+
+The echo of a tick is the mean of the velocity the drive executed since the last tick, so it lies within the range of
+the newest commands. Whatever lies outside that range, integrated over time, is travel that nobody asked for. A drive
+that does not obey a command will not obey a stop either: then the driver withholds the host's heartbeat too
+(`MotionWatch.deaf`).
+"""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from collections.abc import Sequence
+from operator import mul
+
+from sher3_common.reasons import Reason
+from sher3_common.vectors import Vector
+
+from sher3_drivers.settings import MotorDriverSettings
+from sher3_drivers.units import AxisScale
+from sher3_drivers.watches.trips import Trip
+
+_COUNTS = 2.0
+"""Counts by which an echo may differ from its command: one for the rounding of each."""
+_FORGOTTEN = 1e-3
+"""Share of the limit below which travel that nobody asked for is set to zero, so that the quick test passes again."""
+_ROUNDING = 1e-9
+"""Slack of a quotient before it is rounded up to whole ticks."""
+
+
+class DemandCheck:
+    """Watches the echoes of the five drives.
+
+    Attributes:
+        strayed: travel of each axis that nobody asked for, m or rad; it fades with `following_memory`.
+    """
+
+    def __init__(self, scales: Sequence[AxisScale], settings: MotorDriverSettings) -> None:
+        self._scales, self._period = tuple(scales), settings.period
+        self._units = tuple([scale.velocity for scale in scales])
+        self._limits = [settings.obey_angle if s.revolute else settings.obey_distance for s in scales]
+        self._keep = 1.0 - min(1.0, settings.period / settings.following_memory)
+        ticks = math.ceil(settings.obey_latency / settings.period - _ROUNDING)
+        self._sent: deque[Vector] = deque(maxlen=max(2, ticks))
+        self.strayed = [0.0] * len(scales)
+
+    def begin(self) -> None:
+        """Start afresh."""
+        self._sent.clear()
+        self.strayed = [0.0] * len(self._scales)
+
+    def sent(self, counts: Sequence[int]) -> None:
+        """Take note of a velocity command (5,) on its way to the drives, in their counts."""
+        self._sent.append(tuple(map(mul, counts, self._units)))
+
+    @property
+    def newest(self) -> Vector:
+        """The newest command on the wire (5,) [m/s, rad/s]; zero before the first."""
+        return self._sent[-1] if self._sent else (0.0,) * len(self._scales)
+
+    def check(self, echo: Vector) -> Trip | None:
+        """Judge the echoes (5,) [m/s, rad/s] of a tick."""
+        if not self._sent:
+            return None
+        for axis, scale in enumerate(self._scales):
+            slack = _COUNTS * scale.velocity
+            if abs(echo[axis] - self._sent[-1][axis]) <= slack and not self.strayed[axis]:
+                continue
+            trip = self._stray(axis, echo[axis], slack)
+            if trip is not None:
+                return trip
+        return None
+
+    def _stray(self, axis: int, value: float, slack: float) -> Trip | None:
+        """Integrate how far the echo `value` of an axis lies outside the range of its newest commands."""
+        commands = [sent[axis] for sent in self._sent]
+        outside = max(value - max(commands) - slack, min(commands) - slack - value, 0.0)
+        travel = self._keep * self.strayed[axis] + outside * self._period
+        limit, scale = self._limits[axis], self._scales[axis]
+        self.strayed[axis] = 0.0 if travel < _FORGOTTEN * limit else travel
+        if travel <= limit:
+            return None
+        unit = scale.unit
+        text = f"{scale.name}: executes {value:.3g} {unit}/s, was sent {commands[-1]:.3g} {unit}/s"
+        return Trip(Reason.DRIVE_DISOBEYS, text, travel, limit, unit, (axis,))

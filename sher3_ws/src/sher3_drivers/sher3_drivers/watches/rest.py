@@ -1,0 +1,51 @@
+"""Does a robot rest that is to rest? After the braking time every axis must stay where it then is, in every state."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from sher3_common.reasons import Reason
+from sher3_common.vectors import Vector
+
+from sher3_drivers.settings import MotorDriverSettings
+from sher3_drivers.units import AxisScale
+from sher3_drivers.watches.trips import Trip
+
+_WHEN = {Reason.STOP_NOT_OBEYED: "after the stop", Reason.MOVED_DISABLED: "while the robot is disabled"}
+
+
+class RestCheck:
+    """Watches the departures of a robot that is stopped or disabled.
+
+    Attributes:
+        resting: the braking time is over.
+        disobeyed: an axis moved after it was over.
+    """
+
+    def __init__(self, scales: Sequence[AxisScale], settings: MotorDriverSettings) -> None:
+        self._scales = tuple(scales)
+        self._limits = [settings.rest_angle if scale.revolute else settings.rest_distance for scale in scales]
+        self._brake = round(settings.brake_time * 1e9)
+        self.resting = self.disobeyed = False
+
+    def begin(self) -> None:
+        """Forget the last rest: another one begins."""
+        self.resting = self.disobeyed = False
+
+    def begins_now(self, since: int, now: int) -> bool:
+        """Return whether the axes have just had the time to brake, in a rest that began at `since` [ns]."""
+        if self.resting or now - since < self._brake:
+            return False
+        self.resting = True
+        return True
+
+    def check(self, moved: Vector, reason: Reason) -> Trip | None:
+        """Object once, for `reason`, to an axis that has `moved` (5,) [m, rad] since it rests."""
+        if not self.resting or self.disobeyed:
+            return None
+        for axis, (limit, way) in enumerate(zip(self._limits, map(abs, moved), strict=True)):
+            if way > limit:
+                scale, self.disobeyed = self._scales[axis], True
+                text = f"{scale.name}: moved {way:.3g} {scale.unit} {_WHEN[reason]} (limit {limit:.3g})"
+                return Trip(reason, text, way, limit, scale.unit, (axis,))
+        return None

@@ -1,0 +1,1 @@
+"""Parts that give way under a load, and ring."""

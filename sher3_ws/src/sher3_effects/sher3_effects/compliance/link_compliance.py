@@ -1,0 +1,77 @@
+"""Link compliance: the links of the delta give way, more at small forces."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.effect import Best, Shape, Signature
+from sher3_sim.effect import SLIDERS, PlantEffect, parameter
+from sher3_sim.parameters import PlantParameters
+
+from sher3_effects.page import Page
+from sher3_effects.view import RobotView
+
+
+class LinkCompliance(Page):
+    """Each link shortens by fraction * spring_factor * a |F|^b: six links carry the load on the platform."""
+
+    id, family, stage = "link_compliance", "compliance", "structure"
+    inputs = ("load", "posture")
+    best = Best("loads", "known loads in several postures separate springs")
+    places = ("tip", "leg")
+    explanation = (
+        "The six links of the delta and their joints give way under the load on the tip, relatively more at "
+        "small forces than at large ones."
+    )
+    siblings = {"structural_compliance": "in proportion to the force"}
+
+    def channels(self, site: str) -> tuple[Channel, ...]:
+        """Return the loaded tip."""
+        return (Channel("structure", "tip"),)
+
+    def signature(self, view: RobotView, site: str, shape: Shape) -> Signature:
+        """One column: the deflection of the tip by the paper's law."""
+        if view.run.tracker_position is None:
+            return Signature()
+        legs = (0, 1, 2) if site == "tip" else (int(site[-1]) - 1,)
+        out = link_deflection(view, legs)
+        return Signature({Channel("structure", "tip"): out[:, :, None]})
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Share of the paper's law with pre-loading springs."""
+        return {"fraction": float(coefficients[0])}
+
+    def admissible(self, shape: Shape, coefficients: Array) -> bool:
+        """Links give way."""
+        return bool(coefficients[0] > 0.0)
+
+
+def link_deflection(view: RobotView, legs: Sequence[int]) -> Array:
+    """Deflection of the tip (g, 6) from the compliance of the links of `legs` under the known contact force.
+
+    Link forces f = Gamma^-1 w, deflections by the paper's law, tip displaced as by links of other lengths.
+    """
+    delta = view.robot.delta
+    force = view.path.contact
+    wrench = np.hstack([force, np.cross(view.lever, force)])
+    link = np.linalg.solve(view.links, wrench[:, :, None])[:, :, 0]
+    law = delta.link_compliance
+    change = delta.spring_factor * law.a * np.sign(link) * np.abs(link) ** law.b
+    keep = np.repeat([k in legs for k in range(3)], 2)
+    return np.einsum("gij,gj->gi", view.link_changes, change * keep)
+
+
+@dataclass(frozen=True)
+class LinkComplianceInPlant(PlantEffect, page=LinkCompliance, sites=(*SLIDERS, "all", "tip")):
+    """The links of the delta stage, of a leg or of all, give way as a |F|^b: a fraction of the paper's measured law."""
+
+    fraction: float = parameter("1", 0.5, 0.0, 10.0, "of the paper's link law with springs")
+
+    def apply(self, p: PlantParameters) -> None:
+        """Soften the links."""
+        rows = self.rows if self.actuator in SLIDERS else [0, 1, 2]
+        p.body["link_fraction"][0, rows] += self.fraction
+        p.body["gives_way"] = True

@@ -1,0 +1,87 @@
+"""Structural compliance: the arm gives way under a load on the tip."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.effect import Best, Shape, Signature
+from sher3_kinematics.tip_deflection import ArmCompliance
+from sher3_sim.effect import PlantEffect, parameter
+from sher3_sim.parameters import PlantParameters
+
+from sher3_effects.page import Page
+from sher3_effects.view import RobotView
+
+_ARM = ArmCompliance()
+
+
+class StructuralCompliance(Page):
+    """A share of the paper's lumped compliance: rotation springs about y and z at the platform and a spring along x."""
+
+    id, family, stage = "structural_compliance", "compliance", "structure"
+    inputs = ("load", "posture")
+    best = Best("loads", "known loads in several postures separate springs")
+    places = ("tip",)
+    explanation = (
+        "A force on the tip displaces and turns it in proportion, most across the arm, as if the arm were "
+        "hinged at the platform with springs."
+    )
+    siblings = {
+        "tool_bending": "only across the tool",
+        "link_compliance": "softer at small forces",
+        "transmission_compliance": "the load encoders see it",
+    }
+    units = {"x": "m/N", "y": "rad/(N*m)", "z": "rad/(N*m)"}
+    LUMPED = (_ARM.along_x, 1.0 / _ARM.pitch, 1.0 / _ARM.yaw)
+    """Along x, about y, about z, of the deflection table less the delta's own share [m/N, rad/(N m), rad/(N m)]."""
+
+    def channels(self, site: str) -> tuple[Channel, ...]:
+        """Return the loaded tip."""
+        return (Channel("structure", "tip"),)
+
+    def shapes(self, views: Sequence[RobotView], site: str) -> list[Shape]:
+        """The paper's ratios, or three free springs."""
+        return [{"free": 0.0}, {"free": 1.0}]
+
+    def signature(self, view: RobotView, site: str, shape: Shape) -> Signature:
+        """One column, or three."""
+        lever, force = view.lever, view.path.contact
+        moment = np.cross(lever, force)
+        parts = np.zeros((len(lever), 6, 3))
+        parts[:, 0, 0] = force[:, 0]
+        for j in (1, 2):
+            turn = np.zeros_like(moment)
+            turn[:, j] = moment[:, j]
+            parts[:, :3, j], parts[:, 3:, j] = np.cross(turn, lever), turn
+        lumped = parts @ np.array(self.LUMPED)
+        columns = parts if shape["free"] else lumped[:, :, None]
+        return Signature({Channel("structure", "tip"): columns} if view.run.tracker_position is not None else {})
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Share of the paper's compliance; the three springs where they were free."""
+        if len(coefficients) == 1:
+            return {"fraction": float(coefficients[0])}
+        share = float(np.mean(coefficients / np.array(self.LUMPED)))
+        return {"fraction": share, **{n: float(c) for n, c in zip("xyz", coefficients, strict=True)}}
+
+    def admissible(self, shape: Shape, coefficients: Array) -> bool:
+        """Springs give way."""
+        return bool((coefficients >= -0.02 * np.abs(coefficients).max()).all())
+
+
+@dataclass(frozen=True)
+class StructuralComplianceInPlant(PlantEffect, page=StructuralCompliance):
+    """Rails, roll and arm bend under a wrench at the tip: a fraction of the lumped model of the paper's deflections.
+
+    Lumped at the platform centre P: two springs in yaw and pitch, one along x (`sher3_kinematics.ArmCompliance`).
+    """
+
+    fraction: float = parameter("1", 0.2, 0.0, 3.0, "of the paper's structure")
+
+    def apply(self, p: PlantParameters) -> None:
+        """Soften the structure."""
+        p.body["lumped_fraction"] += self.fraction
+        p.body["gives_way"] = True

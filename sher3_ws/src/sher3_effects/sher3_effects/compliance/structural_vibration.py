@@ -1,0 +1,74 @@
+"""Structural vibration: the arm rings after fast moves and load steps."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.effect import Best, Shape, Signature
+from sher3_sim.effect import PlantEffect, parameter
+from sher3_sim.parameters import PlantParameters
+
+from sher3_effects.operators import oscillator
+from sher3_effects.page import Page
+from sher3_effects.view import RobotView
+
+
+class StructuralVibration(Page):
+    """The tip rides on a lightly damped spring-mass that its own acceleration shakes."""
+
+    id, family, stage = "structural_vibration", "compliance", "structure"
+    inputs = ("acceleration",)
+    best = Best("loads", "known loads in several postures separate springs")
+    places = ("tip",)
+    explanation = "After each acceleration the tip rings at one frequency while the encoders are still."
+    siblings = {"structural_compliance": "follows a static load without ringing"}
+    FREQUENCIES = (4.0, 5.0, 6.3, 8.0, 10.0, 12.5, 15.0, 17.5, 20.0, 22.5, 25.0, 28.0, 31.0, 34.0, 38.0, 42.0, 46.0)
+    finer = {"frequency": (0.9, 0.94, 0.97, 0.985, 1.015, 1.03, 1.06, 1.1), "damping": (0.5, 1.7)}
+
+    def channels(self, site: str) -> tuple[Channel, ...]:
+        """Return the tip, free and loaded."""
+        return (Channel("mechanism", "tip"), Channel("structure", "tip"))
+
+    def shapes(self, views: Sequence[RobotView], site: str) -> list[Shape]:
+        """Frequency and damping."""
+        return [{"frequency": f, "damping": z} for f in self.FREQUENCIES for z in (0.02, 0.08)]
+
+    def signature(self, view: RobotView, site: str, shape: Shape) -> Signature:
+        """Three columns: the relative motion along x, y, z of {b}."""
+        if view.run.tracker_position is None:
+            return Signature()
+        scale = (2.0 * np.pi * shape["frequency"]) ** 2
+        motion = oscillator(-view.tip_acceleration / scale, shape["frequency"], shape["damping"], view.run.period)[
+            view.run.grid
+        ]
+        columns = np.zeros((len(motion), 6, 3))
+        for a in range(3):
+            columns[:, a, a] = motion[:, a]
+        return Signature(view.at_tip(columns))
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Frequency, damping, and participation with its direction."""
+        amplitude = float(np.linalg.norm(coefficients))
+        direction = coefficients / amplitude if amplitude > 0.0 else np.zeros(3)
+        return {**shape, "amplitude": amplitude, **dict(zip("xyz", direction.tolist(), strict=True))}
+
+
+@dataclass(frozen=True)
+class StructuralVibrationInPlant(PlantEffect, page=StructuralVibration):
+    """The arm swings at its own frequency when the tip is accelerated."""
+
+    frequency: float = parameter("Hz", 25.0, 1.0, 200.0, "of the undamped mode")
+    damping: float = parameter("1", 0.03, 1e-3, 0.9, "damping ratio")
+    amplitude: float = parameter("1", 1.0, 0.0, 20.0, "deflection per static deflection under the tip's acceleration")
+    x: float = parameter("1", 1.0, -1.0, 1.0, "share of the amplitude along x of {b}")
+    y: float = parameter("1", 1.0, -1.0, 1.0, "share of the amplitude along y of {b}")
+    z: float = parameter("1", 1.0, -1.0, 1.0, "share of the amplitude along z of {b}")
+
+    def apply(self, p: PlantParameters) -> None:
+        """Add the mode."""
+        p.body["mode_frequency"] = self.frequency
+        p.body["mode_damping"] = self.damping
+        p.body["mode_gain"] = self.amplitude * np.array([self.x, self.y, self.z])

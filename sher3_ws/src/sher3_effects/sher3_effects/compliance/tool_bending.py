@@ -1,0 +1,64 @@
+"""Tool bending: the needle bends across its axis."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.effect import Best, Shape, Signature
+from sher3_sim.effect import PlantEffect, parameter
+from sher3_sim.parameters import PlantParameters
+
+from sher3_effects.page import Page
+from sher3_effects.view import AxisView
+
+
+class ToolBending(Page):
+    """Displacement compliance * F across the tool axis, with the slope of a cantilever."""
+
+    id, family, stage = "tool_bending", "compliance", "structure"
+    inputs = ("load", "posture")
+    best = Best("loads", "known loads in several postures separate springs")
+    places = ("tip",)
+    explanation = (
+        "A force across the tool bends it: the tip moves across the tool's axis, in proportion, whatever the "
+        "pose; a force along the tool does nothing."
+    )
+    siblings = {"structural_compliance": "a force along the tool moves the tip too"}
+    units = {"slope": "rad/N"}
+
+    def channels(self, site: str) -> tuple[Channel, ...]:
+        """Return the loaded tip."""
+        return (Channel("structure", "tip"),)
+
+    def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
+        """Two columns: displacement and slope."""
+        if view.run.tracker_position is None:
+            return Signature()
+        axis = view.path.rotation[:, :, 2]
+        force = view.path.contact
+        across = force - axis * np.einsum("gi,gi->g", axis, force)[:, None]
+        columns = np.zeros((len(force), 6, 2))
+        columns[:, :3, 0], columns[:, 3:, 1] = across, np.cross(-axis, across)
+        return Signature({Channel("structure", "tip"): columns})
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Compliance across the tool and slope per force."""
+        return {"compliance": float(coefficients[0]), "slope": float(coefficients[1])}
+
+    def admissible(self, shape: Shape, coefficients: Array) -> bool:
+        """The tool gives way."""
+        return bool(coefficients[0] > 0.0)
+
+
+@dataclass(frozen=True)
+class ToolBendingInPlant(PlantEffect, page=ToolBending):
+    """The tool is a thin needle: it bends under a force across its axis, not along it."""
+
+    compliance: float = parameter("m/N", 50e-6, 0.0, 5e-3, "displacement of the tip per force across the tool")
+
+    def apply(self, p: PlantParameters) -> None:
+        """Soften the tool."""
+        p.body["bending"] += self.compliance
+        p.body["gives_way"] = True

@@ -1,0 +1,87 @@
+"""Transmission compliance: the load gives way in proportion to the force."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.effect import Best, Shape, Signature, column
+from sher3_sim.effect import PlantEffect, parameter
+from sher3_sim.parameters import PlantParameters
+
+from sher3_effects.operators import oscillator
+from sher3_effects.page import Page
+from sher3_effects.view import AxisView
+
+
+class TransmissionCompliance(Page):
+    """load = motor - force / stiffness, force what the load side needs."""
+
+    id, family, stage = "transmission_compliance", "compliance", "transmission"
+    inputs = ("force", "weight", "load", "acceleration")
+    kinds = ("robot", "axis")
+    needs = ("load", "lead")
+    best = Best("loads", "known loads in several postures separate springs")
+    companion = "friction"
+    explanation = (
+        "Between motor and load lies a spring: their difference follows weight, external load and acceleration."
+    )
+    siblings = {
+        "backlash": "a fixed width, whatever the force",
+        "transmission_hysteresis": "follows the path, not the force",
+    }
+    units = {"stiffness": "N/m"}
+
+    FREQUENCIES = (8.0, 11.0, 14.0, 17.0, 20.0, 24.0, 28.0, 34.0, 40.0, 50.0)
+
+    def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
+        """Share of the axis' mass on the load side.
+
+        Resonance of that mass on the spring (0: far above the bandwidth).
+        """
+        static: list[Shape] = [{"load_mass": s, "frequency": 0.0, "damping": 0.0} for s in (0.0, 0.1, 0.3, 1.0)]
+        ringing = [{"load_mass": s, "frequency": f, "damping": 0.1} for s in (0.1, 0.3) for f in self.FREQUENCIES]
+        return [*static, *ringing]
+
+    def refine(self, shape: Shape) -> list[Shape]:
+        """Around the resonance."""
+        if not shape["frequency"]:
+            return [{**shape, "load_mass": s} for s in (0.03, 0.06, 0.2, 0.5)]
+        near = [{**shape, "frequency": shape["frequency"] * f} for f in (0.9, 0.95, 1.05, 1.1)]
+        return [*near, *({**shape, "damping": z} for z in (0.02, 0.05, 0.2, 0.4)), {**shape, "load_mass": 0.5}]
+
+    def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
+        """One column: minus the force on the spring, ringing; the motor feels the load's mass move against it."""
+        axis, run = view.row(site), view.run
+        clock = run.stage_clock
+        mass = shape["load_mass"] * view.axis(site).mass
+        pull = np.interp(clock, clock[run.grid], view.path.gravity[:, axis] - view.path.contact_force[:, axis])
+        force = (pull + mass * np.gradient(run.velocity[:, axis], run.period))[:, None]
+        if not shape["frequency"]:
+            return Signature({Channel(self.stage, site): column(-run.to_grid(force[:, 0]))})
+        bend = oscillator(force, shape["frequency"], shape["damping"], run.period)[:, 0]
+        back = mass * np.gradient(np.gradient(bend, run.period), run.period)
+        motor = Channel("motor_mechanics", site)
+        return Signature({Channel(self.stage, site): column(-run.to_grid(bend)), motor: column(-run.to_grid(back))})
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Stiffness and its inverse."""
+        c = float(coefficients[0])
+        return {"stiffness": 1.0 / c if c else 0.0, "compliance": c}
+
+    def admissible(self, shape: Shape, coefficients: Array) -> bool:
+        """A spring."""
+        return bool(coefficients[0] > 0.0)
+
+
+@dataclass(frozen=True)
+class TransmissionComplianceInPlant(PlantEffect, page=TransmissionCompliance):
+    """Screw, bearing or flexspline give way under the load they carry, weight and contact; too stiff to swing."""
+
+    compliance: float = parameter("m/N", 1e-6, 0.0, 1e-4, "displacement of the load per force it carries")
+
+    def apply(self, p: PlantParameters) -> None:
+        """Soften the transmission."""
+        p.axis["compliance"][self.rows] += self.compliance

@@ -1,0 +1,1 @@
+"""What follows the temperature of the robot."""

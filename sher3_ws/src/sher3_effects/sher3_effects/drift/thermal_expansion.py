@@ -1,0 +1,82 @@
+"""Thermal expansion: the structure grows with its temperature."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from sher3_description import ACTUATORS
+from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.effect import Best, Shape, Signature
+from sher3_sim.effect import SLIDERS, PlantEffect, parameter
+from sher3_sim.parameters import PlantParameters
+
+from sher3_effects.page import Page
+from sher3_effects.view import RobotView
+
+
+class ThermalExpansion(Page):
+    """Lengths grow by coefficient * (T - 22 deg C): the links, the arm, the rails, or everything."""
+
+    id, family, stage = "thermal_expansion", "drift", "mechanism"
+    inputs = ("temperature", "posture", "position")
+    best = Best("postures", "the same postures again at another temperature separate drift from offset")
+    places = ("tip",)
+    explanation = (
+        "The tip wanders with the temperature of the structure, in every pose, in proportion to the warming "
+        "since 22 deg C."
+    )
+    siblings = {
+        "tool_offset": "does not change with temperature",
+        "link_length_error": "does not change with temperature",
+    }
+
+    def channels(self, site: str) -> tuple[Channel, ...]:
+        """Return the tip, free and loaded."""
+        return (Channel("mechanism", "tip"), Channel("structure", "tip"))
+
+    def shapes(self, views: Sequence[RobotView], site: str) -> list[Shape]:
+        """What grows: 0 everything, 1 the links, 2 the arm, 3 the slider travel."""
+        if all(np.ptp(v.warmth) == 0.0 and not v.warmth.any() for v in views):
+            return []
+        return [{"part": float(i)} for i in range(4)]
+
+    def _growth(self, view: RobotView, part: int) -> Array:
+        p = view.geometry.parameters
+        links = {f"link_{k}": getattr(p, f"link_{k}") for k in (1, 2, 3)}
+        arm = {n: getattr(p, n) for n in ("d1", "d2", "d3", "tool_x", "tool_y", "tool_z")}
+        if part == 3:
+            q = view.geometry.positions(view.run)
+            return np.einsum("gik,gk->gi", view.path.jacobian[:, :, [0, 1, 2, 4]], q[:, [0, 1, 2, 4]])
+        if part == 0:
+            growth = np.zeros((len(view.run.grid), 6))
+            growth[:, :3] = view.path.position
+            return growth
+        return view.geometry.pose_change(view.run, 1e-5, **(links if part == 1 else arm))
+
+    def signature(self, view: RobotView, site: str, shape: Shape) -> Signature:
+        """One column: growth per unit of strain, times the warmth."""
+        growth = self._growth(view, int(shape["part"])) * view.warmth[:, None]
+        return Signature(view.at_tip(growth[:, :, None]))
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Coefficient of expansion and what grows."""
+        return {"coefficient": float(coefficients[0]), "part": shape["part"]}
+
+
+@dataclass(frozen=True)
+class ThermalExpansionInPlant(PlantEffect, page=ThermalExpansion, sites=(*SLIDERS, "tilt", "tip", "all")):
+    """The structure grows with its temperature: one slide, the whole robot from its base, or a part of it."""
+
+    coefficient: float = parameter("1/K", 12e-6, -1e-3, 1e-3, "relative growth per kelvin")
+    part: float = parameter("1", 0.0, 0.0, 3.0, "what grows: 0 everything, 1 the links, 2 the arm, 3 all slides")
+
+    def apply(self, p: PlantParameters) -> None:
+        """Grow one slide, or a part of the robot."""
+        if self.actuator in ACTUATORS:
+            p.axis["expansion"][self.rows] += self.coefficient
+        elif round(self.part) == 3:
+            p.axis["expansion"][[0, 1, 2, 4]] += self.coefficient
+        else:
+            p.body[("expansion", "link_expansion", "arm_expansion")[round(self.part)]] += self.coefficient

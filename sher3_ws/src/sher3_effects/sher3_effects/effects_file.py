@@ -1,0 +1,67 @@
+"""Effects as YAML: `schema: sher3.effects/1`, `effects: [{effect, actuator, parameters: {name: value}}]`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Any
+
+from sher3_common import FileError, dump_yaml, read_yaml
+from sher3_sim.effect import PlantEffect
+from sher3_sim.errors import EffectError
+
+from sher3_effects.registry import plants
+
+SCHEMA = "sher3.effects/1"
+
+
+def effect_from_dict(data: Mapping[str, Any]) -> PlantEffect:
+    """Build an effect from its plain form.
+
+    Raises:
+        EffectError: unknown id, actuator or parameter, or a value out of bounds.
+    """
+    unknown = set(data) - {"effect", "actuator", "parameters"}
+    if unknown or "effect" not in data or "actuator" not in data:
+        raise EffectError("an effect has the keys effect, actuator and parameters", value=", ".join(map(str, data)))
+    known = plants()
+    if data["effect"] not in known:
+        near = "; ".join(f"did you mean {name}?" for name in get_close_matches(str(data["effect"]), known, 1))
+        raise EffectError("no such effect", value=data["effect"], remedy=near or f"use one of {', '.join(known)}")
+    kind, given = known[data["effect"]], data.get("parameters") or {}
+    if not isinstance(given, Mapping):
+        raise EffectError(f"{kind.id}: parameters are not a mapping", value=given)
+    names = kind.specification(str(data["actuator"]))
+    for name in given:
+        if name not in names:
+            raise EffectError(f"{kind.id} has no such parameter", value=name, limit=", ".join(names))
+    return kind(str(data["actuator"]), **given)
+
+
+def effect_to_dict(effect: PlantEffect) -> dict[str, Any]:
+    """Return the plain form of an effect, with all its parameters."""
+    return {"effect": effect.id, "actuator": effect.actuator, "parameters": effect.parameters}
+
+
+def load_effects(path: Path | str) -> list[PlantEffect]:
+    """Read an effects file.
+
+    Raises:
+        FileError: it cannot be read or is not of the schema.
+        EffectError: an entry is wrong.
+    """
+    data = read_yaml(path)
+    schema = data.get("schema")
+    if schema != SCHEMA:
+        raise FileError("is not an effects file", path=path, value=schema, limit=SCHEMA, remedy="set schema")
+    entries = data.get("effects")
+    if not isinstance(entries, list) or not all(isinstance(entry, Mapping) for entry in entries):
+        raise FileError("effects is not a list of mappings", path=path)
+    return [effect_from_dict(entry) for entry in entries]
+
+
+def save_effects(path: Path | str, effects: Iterable[PlantEffect]) -> None:
+    """Write an effects file that `load_effects` reads back to equal effects."""
+    content = {"schema": SCHEMA, "effects": [effect_to_dict(effect) for effect in effects]}
+    Path(path).write_text(dump_yaml(content), encoding="utf-8")

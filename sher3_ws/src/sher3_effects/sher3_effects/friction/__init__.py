@@ -1,0 +1,1 @@
+"""Forces that oppose the motion of an axis."""

@@ -1,0 +1,120 @@
+"""Coulomb friction: a force of constant size against the motion."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.effect import Best, Shape, Signature, column
+from sher3_sim.effect import PlantEffect, parameter
+from sher3_sim.parameters import PlantParameters
+
+from sher3_effects.friction.bristle import deflection, soften
+from sher3_effects.operators import held_lag, play
+from sher3_effects.page import Page
+from sher3_effects.view import AxisView
+
+
+class CoulombFriction(Page):
+    """F = force * z, z the Dahl state over a displacement of a few micrometres."""
+
+    id, family, stage = "coulomb_friction", "friction", "motor_mechanics"
+    inputs = ("direction",)
+    kinds: ClassVar[tuple[str, ...]] = ("robot", "axis")
+    dry = True
+    best = Best("reversals", "reversals of several amplitudes and speeds separate friction laws")
+    explanation = (
+        "The axis needs a constant extra force whose sign follows the direction of motion: a step at every "
+        "reversal, the same "
+        "at every speed."
+    )
+    siblings = {
+        "presliding_friction": "the force builds up over tens of micrometres instead of a few",
+        "stribeck_friction": "the force is higher at low speed",
+        "viscous_friction": "the force grows with speed",
+    }
+    on_axis = {"force": "coulomb"}
+    DISPLACEMENTS = (1.0e-3, 2.5e-3, 5.0e-3)
+    """In motor revolutions: 2, 5 and 10 um on a 2 mm lead."""
+
+    def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
+        """Displacement over which the force reverses."""
+        return [{"displacement": d * views[0].lead(site)} for d in self.DISPLACEMENTS]
+
+    def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
+        """One column: the Dahl state."""
+        z = view.run.to_grid(view.sliding(view.row(site), shape["displacement"]))
+        return Signature({Channel(self.stage, site): column(z)})
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Force and displacement."""
+        return {"force": float(coefficients[0]), "displacement": shape["displacement"]}
+
+    def admissible(self, shape: Shape, coefficients: Array) -> bool:
+        """Friction resists."""
+        return bool(coefficients[0] > 0.0)
+
+
+class ServoStiction(CoulombFriction):
+    """Coulomb friction under a proportional servo: the axis stays until the error reaches friction over stiffness.
+
+    The position is the reference after a play of +-force, force in units of the servo's stiffness (m or rad of error).
+    """
+
+    kinds = ("servo",)
+    explanation = (
+        "The axis does not answer small changes of its reference: it stays until the error is large enough to break it "
+        "loose."
+    )
+    siblings = {"drive_lag": "late at every amplitude"}
+    units = {"force": "m", "late": "s"}
+    SHARES = (0.02, 0.04, 0.07, 0.1, 0.15, 0.2, 0.3, 0.45)
+    """Half widths of the play that are tried, as shares of the span of the tracking error."""
+    LATE = (0.0, 2.0, 4.0)
+    """Lag of what the friction sees, in periods of the record: a servo is late before it sticks."""
+    MOVES = 0.45
+    """Share of the reference's stroke that stiction may hold: an axis that never breaks loose tells nothing of it."""
+    finer = {"force": (0.7, 0.85, 0.93, 1.07, 1.15, 1.3), "late": (0.6, 0.8, 1.25, 1.6)}
+
+    def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
+        """Return half widths of the play, m or rad, and lags, s."""
+        i = views[0].row(site)
+        pairs = [(v.run.reference[:, i], v.run.motor[:, i]) for v in views if v.run.reference is not None]
+        span = float(np.ptp(np.percentile(np.concatenate([r - q for r, q in pairs]), [0.5, 99.5])))
+        stroke = max(float(np.ptp(r)) for r, _ in pairs)
+        late = [n * views[0].run.period for n in self.LATE]
+        forces = [s * span for s in self.SHARES if 0.0 < s * span < self.MOVES * stroke]
+        return [{"force": f, "late": t} for f in forces for t in late]
+
+    def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
+        """Return minus the play of the lagged reference; nothing is left to fit."""
+        assert view.run.reference is not None
+        x = view.run.reference[:, [view.row(site)]]
+        x = (held_lag(x, shape["late"], view.run.period) if shape["late"] else x)[:, 0]
+        behind = play(x, np.zeros_like(x), 2.0 * shape["force"], np.inf, view.run.period, 0.0)
+        return Signature({}, {Channel(self.stage, site): view.run.to_grid(-behind)[:, None]})
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Return friction over stiffness, and how late the servo is before it sticks."""
+        return {"force": shape["force"], **({"late": shape["late"]} if shape["late"] else {})}
+
+    def admissible(self, shape: Shape, coefficients: Array) -> bool:
+        """Return True: a play of positive width always resists."""
+        return True
+
+
+@dataclass(frozen=True)
+class CoulombFrictionInPlant(PlantEffect, page=CoulombFriction):
+    """A constant force against motion; at rest it holds up to that force, over a few micrometres of deflection."""
+
+    force: float = parameter("N", 1.0, 0.0, 50.0, "friction in sliding")
+    displacement: float = deflection()
+
+    def apply(self, p: PlantParameters) -> None:
+        """Raise the sliding and static level alike."""
+        p.axis["coulomb"][self.rows] += self.force
+        p.axis["static"][self.rows] += self.force
+        soften(p, self.rows, self.displacement)

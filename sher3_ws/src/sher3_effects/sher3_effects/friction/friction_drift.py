@@ -1,0 +1,89 @@
+"""Friction that changes with temperature or as the run goes on."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from sher3_description import Robot
+from sher3_description.contract import REFERENCE_TEMPERATURE
+from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.effect import Best, Shape, Signature, column
+from sher3_sim.effect import PlantEffect, parameter
+from sher3_sim.parameters import PlantParameters
+
+from sher3_effects.friction.bristle import deflection, soften
+from sher3_effects.friction.coulomb_friction import CoulombFriction
+from sher3_effects.page import Page, Part, Values
+from sher3_effects.view import AxisView
+
+
+class FrictionDrift(Page):
+    """F = z (force + drift * s), s the warmth or the run-in 1 - exp(-t / tau)."""
+
+    id, family, stage = "friction_drift", "friction", "motor_mechanics"
+    inputs = ("direction", "time", "temperature")
+    best = Best("reversals", "reversals of several amplitudes and speeds separate friction laws")
+    extends = ("coulomb_friction", "presliding_friction")
+    explanation = (
+        "Friction is not the same early and late, cold and warm: the step at a reversal changes with time or "
+        "temperature."
+    )
+    siblings = {"coulomb_friction": "the same step in every run"}
+    units = {"drift": "N"}
+    TIMES = (0.5, 1.0, 2.0, 4.0, 10.0, 60.0, 300.0)
+    finer = {"time_constant": (0.7, 0.85, 1.2, 1.4)}
+
+    def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
+        """Run-in within a run, over the session, or warmth (time constant 0)."""
+        fine = 2.5e-3 * views[0].lead(site)
+        return [{"time_constant": t, "displacement": fine} for t in (0.0, *self.TIMES)]
+
+    def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
+        """Two columns: the constant part and the changing one."""
+        z = view.sliding(view.row(site), shape["displacement"])
+        run = view.run
+        if shape["time_constant"] == 0.0:
+            change = np.zeros(run.ticks) if run.temperature is None else run.temperature - REFERENCE_TEMPERATURE
+        else:
+            change = 1.0 - np.exp(
+                -(run.stage_clock + run.session_time * (shape["time_constant"] > 20.0)) / shape["time_constant"]
+            )
+        return Signature({Channel(self.stage, site): column(run.to_grid(z), run.to_grid(z * change))})
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Constant part, drift (per kelvin where the time constant is 0) and time constant."""
+        return {
+            "force": float(coefficients[0]),
+            "drift": float(coefficients[1]),
+            "time_constant": shape["time_constant"],
+        }
+
+    def admissible(self, shape: Shape, coefficients: Array) -> bool:
+        """The change is a marked one."""
+        return bool(abs(coefficients[1]) > 0.2 * abs(coefficients[0]))
+
+    def to_simulator(self, actuator: str, values: Values, robot: Robot) -> list[Part]:
+        """Return f + d (1 - exp(-t / T)) as a constant level f + d and one of -d that decays."""
+        constant, change = values["force"], values["drift"]
+        if values["time_constant"] <= 0.0:
+            return [Part(CoulombFriction.id, actuator, {"force": constant})]
+        decaying = {"force": max(-change, 0.0), "time_constant": values["time_constant"]}
+        parts, level = [Part(self.id, actuator, decaying)], constant + change
+        return parts if level <= 0.0 else [*parts, Part(CoulombFriction.id, actuator, {"force": level})]
+
+
+@dataclass(frozen=True)
+class FrictionDriftInPlant(PlantEffect, page=FrictionDrift):
+    """Extra friction at the start of a run that runs in: force exp(-t / time_constant)."""
+
+    force: float = parameter("N", 1.0, 0.0, 50.0, "extra friction at the start of the run")
+    time_constant: float = parameter("s", 2.0, 0.05, 3600.0, "of its decay")
+    displacement: float = deflection()
+
+    def apply(self, p: PlantParameters) -> None:
+        """Add the decaying level."""
+        p.axis["friction_decaying"][self.rows] += self.force
+        p.axis["friction_decay_time"][self.rows] = self.time_constant
+        soften(p, self.rows, self.displacement)

@@ -1,0 +1,87 @@
+"""Position-dependent friction: Coulomb friction that varies along the stroke."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from sher3_description import ACTUATORS, Robot
+from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.effect import Best, Shape, Signature, column
+from sher3_sim.effect import PlantEffect, parameter
+from sher3_sim.parameters import PlantParameters
+
+from sher3_effects.friction.bristle import deflection, soften
+from sher3_effects.page import Page, Part, Values
+from sher3_effects.view import AxisView
+
+
+class PositionFriction(Page):
+    """F = z (force + a cos kx + b sin kx): odd in the direction of motion, periodic along the stroke."""
+
+    id, family, stage = "position_friction", "friction", "motor_mechanics"
+    inputs = ("direction", "position")
+    kinds = ("robot", "axis")
+    needs = ("lead",)
+    best = Best("reversals", "reversals of several amplitudes and speeds separate friction laws")
+    extends = ("coulomb_friction",)
+    explanation = (
+        "Friction changes along the stroke (seal, guide, ball return): at the same place the extra force has "
+        "the opposite sign in the other direction."
+    )
+    siblings = {"cogging": "at the same place the force has the same sign in both directions"}
+    units = {"wavelength": "m"}
+    WAVELENGTHS = tuple(np.geomspace(0.2, 8.0, 28))
+    """In motor revolutions."""
+    finer = {"wavelength": (0.91, 0.94, 0.96, 0.98, 0.99, 1.01, 1.02, 1.04, 1.06, 1.1), "displacement": (0.4,)}
+
+    def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
+        """Wavelength along the stroke."""
+        scale = views[0].lead(site)
+        return [{"wavelength": float(n) * scale, "displacement": 2.5e-3 * scale} for n in self.WAVELENGTHS]
+
+    def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
+        """Three columns: the mean force and its two quadratures."""
+        axis = view.row(site)
+        z = view.sliding(axis, shape["displacement"])
+        phase = 2.0 * np.pi * view.run.smooth[:, axis] / shape["wavelength"]
+        parts = [view.run.to_grid(x) for x in (z, z * np.cos(phase), z * np.sin(phase))]
+        return Signature({Channel(self.stage, site): column(*parts)})
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Mean, amplitude of the variation and its wavelength."""
+        return {
+            "force": float(coefficients[0]),
+            "amplitude": float(np.hypot(coefficients[1], coefficients[2])),
+            "wavelength": shape["wavelength"],
+        }
+
+    def admissible(self, shape: Shape, coefficients: Array) -> bool:
+        """The variation is a marked one."""
+        return bool(np.hypot(coefficients[1], coefficients[2]) > 0.2 * abs(coefficients[0]))
+
+    def to_simulator(self, actuator: str, values: Values, robot: Robot) -> list[Part]:
+        """Return the wavelength as periods per motor revolution."""
+        lead = robot.actuators[ACTUATORS.index(actuator)].lead
+        return [Part(self.id, actuator, {**values, "periods_per_rev": lead / values["wavelength"]})]
+
+
+@dataclass(frozen=True)
+class PositionFrictionInPlant(PlantEffect, page=PositionFriction):
+    """Friction that changes along the travel, against motion in both directions: preload, guide, seal."""
+
+    force: float = parameter("N", 1.0, 0.0, 50.0, "mean friction in sliding")
+    amplitude: float = parameter("N", 0.5, 0.0, 50.0, "of its change along the travel")
+    periods_per_rev: float = parameter("1", 1.0, 0.01, 200.0, "periods per lead")
+    phase: float = parameter("rad", 0.0, -7.0, 7.0, "of the change at zero position", fixed_unit=True)
+    displacement: float = deflection()
+
+    def apply(self, p: PlantParameters) -> None:
+        """Raise the level and modulate it."""
+        p.axis["coulomb"][self.rows] += self.force
+        p.axis["static"][self.rows] += self.force
+        p.axis["friction_amplitude"][self.rows] = self.amplitude
+        p.axis["friction_periods"][self.rows] = self.periods_per_rev
+        p.axis["friction_phase"][self.rows] = self.phase
+        soften(p, self.rows, self.displacement)

@@ -1,0 +1,69 @@
+"""Presliding friction: an elastic-plastic force over tens to hundreds of micrometres."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.effect import Best, Shape, Signature, column
+from sher3_sim.effect import PlantEffect, parameter
+from sher3_sim.parameters import PlantParameters
+
+from sher3_effects.friction.bristle import deflection, soften
+from sher3_effects.page import Page
+from sher3_effects.view import AxisView
+
+
+class PreslidingFriction(Page):
+    """F = force * z, z the Dahl state over a displacement that is long against the encoder."""
+
+    id, family, stage = "presliding_friction", "friction", "motor_mechanics"
+    inputs = ("direction",)
+    kinds = ("robot", "axis")
+    dry = True
+    best = Best("reversals", "reversals of several amplitudes and speeds separate friction laws")
+    explanation = (
+        "After a reversal the friction force builds up gradually, over a micrometre-scale stroke, as bristles "
+        "bend before they "
+        "slip: force-displacement loops whose width grows with the stroke."
+    )
+    siblings = {
+        "coulomb_friction": "the force reverses at once",
+        "cable_drag": "the force grows with the distance from one pose and does not saturate",
+    }
+    DISPLACEMENTS = (0.01, 0.02, 0.04, 0.08, 0.16, 0.32)
+    """In motor revolutions: 20 um to 0.64 mm on a 2 mm lead."""
+    finer = {"displacement": (0.7, 0.85, 1.2, 1.4)}
+
+    def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
+        """Displacement over which the force builds up."""
+        return [{"displacement": d * views[0].lead(site)} for d in self.DISPLACEMENTS]
+
+    def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
+        """One column: the Dahl state."""
+        z = view.run.to_grid(view.sliding(view.row(site), shape["displacement"]))
+        return Signature({Channel(self.stage, site): column(z)})
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Force, displacement and the initial stiffness they give."""
+        force = float(coefficients[0])
+        return {"force": force, "displacement": shape["displacement"], "stiffness": force / shape["displacement"]}
+
+    def admissible(self, shape: Shape, coefficients: Array) -> bool:
+        """Friction resists."""
+        return bool(coefficients[0] > 0.0)
+
+
+@dataclass(frozen=True)
+class PreslidingFrictionInPlant(PlantEffect, page=PreslidingFriction):
+    """Friction that yields over tens of micrometres before it slides: rolling contacts, wipers."""
+
+    force: float = parameter("N", 1.0, 0.0, 50.0, "friction in sliding")
+    displacement: float = deflection(20e-6)
+
+    def apply(self, p: PlantParameters) -> None:
+        """Raise the level and soften the bristle."""
+        p.axis["coulomb"][self.rows] += self.force
+        p.axis["static"][self.rows] += self.force
+        soften(p, self.rows, self.displacement)

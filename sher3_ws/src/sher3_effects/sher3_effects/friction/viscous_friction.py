@@ -1,0 +1,50 @@
+"""Viscous friction: a force in proportion to speed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.effect import Best, Shape, Signature, column
+from sher3_sim.effect import PlantEffect, parameter
+from sher3_sim.parameters import PlantParameters
+
+from sher3_effects.page import Page
+from sher3_effects.view import AxisView
+
+
+class ViscousFriction(Page):
+    """F = extra * v."""
+
+    id, family, stage = "viscous_friction", "friction", "motor_mechanics"
+    inputs = ("velocity",)
+    kinds = ("robot", "axis")
+    best = Best("reversals", "reversals of several amplitudes and speeds separate friction laws")
+    explanation = (
+        "The axis needs more force the faster it moves, in proportion: lubricant or seals are stiffer than "
+        "the model says."
+    )
+    siblings = {
+        "coulomb_friction": "the force does not depend on speed",
+        "torque_constant": "all forces are scaled, gravity too",
+    }
+    on_axis = {"extra": "viscous"}
+
+    def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
+        """One column: the motor velocity."""
+        return Signature({Channel(self.stage, site): column(view.velocity[:, view.row(site)])})
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Coefficient over the nominal one."""
+        return {"extra": float(coefficients[0])}
+
+
+@dataclass(frozen=True)
+class ViscousFrictionInPlant(PlantEffect, page=ViscousFriction):
+    """Friction in proportion to speed beyond the nominal one: lubricant, seals, back-EMF."""
+
+    extra: float = parameter("N/(m/s)", 60.0, -60.0, 2000.0, "added to the nominal viscous coefficient")
+
+    def apply(self, p: PlantParameters) -> None:
+        """Add damping."""
+        p.axis["viscous"][self.rows] += self.extra

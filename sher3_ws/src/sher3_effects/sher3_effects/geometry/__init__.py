@@ -1,0 +1,1 @@
+"""A mechanism that is not as drawn."""

@@ -1,0 +1,88 @@
+"""Platform geometry: the joints of a leg, or of all legs, are not where drawn."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from sher3_description import ACTUATORS, Robot
+from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.effect import Best, Shape, Signature
+from sher3_sim.effect import SLIDERS, PlantEffect
+from sher3_sim.parameters import PlantParameters
+
+from sher3_effects.geometry.drawing import direction, metres, shift
+from sher3_effects.page import Page, Part, Values
+from sher3_effects.view import RobotView
+
+
+class PlatformGeometryError(Page):
+    """Ball joints of one leg (or all, radially) displaced by x, y in {b}: they shift the leg's anchor."""
+
+    id, family, stage = "platform_geometry_error", "geometry", "mechanism"
+    inputs = ("posture",)
+    best = Best("postures", "well-spread postures separate geometric errors")
+    places = ("leg", "tip")
+    explanation = (
+        "The ball joints of the platform or the base are off sideways: the tip error changes smoothly with "
+        "the position of the platform, not with roll or tilt."
+    )
+    siblings = {"link_length_error": "along the leg", "rail_tilt": "grows with the height of the slider"}
+    units = {"x": "m", "y": "m", "difference": "m", "radius": "m"}
+
+    def channels(self, site: str) -> tuple[Channel, ...]:
+        """Return the tip, free and loaded."""
+        return (Channel("mechanism", "tip"), Channel("structure", "tip"))
+
+    def shapes(self, views: Sequence[RobotView], site: str) -> list[Shape]:
+        """Which of the leg's two balls: both (0), the first (1), the second (2), both but not quite alike (3)."""
+        return [{"ball": 0.0}] if site == "tip" else [{"ball": float(b)} for b in range(4)]
+
+    def signature(self, view: RobotView, site: str, shape: Shape) -> Signature:
+        """Two columns (x, y of the balls) per leg, a third for how the two differ along it, or one: the radius of all.
+
+        A ball displaced by d changes what its link spans by u . d, u the link's direction.
+        """
+        azimuth = view.robot.delta.leg_azimuth
+        span = view.links[:, :3]
+        if site == "tip":
+            outward = np.repeat([[np.cos(a), np.sin(a), 0.0] for a in azimuth], 2, axis=0)
+            change = np.einsum("gij,gkj,jk->gi", view.link_changes, span, outward)[:, :, None]
+        else:
+            first = 2 * view.row(site)
+            links = {1: (first,), 2: (first + 1,)}.get(int(shape["ball"]), (first, first + 1))
+            change = sum(view.link_changes[:, :, [j]] * span[:, None, :2, j] for j in links)
+            if shape["ball"] == 3.0:
+                apart = view.link_changes[:, :, [first]] - view.link_changes[:, :, [first + 1]]
+                change = np.concatenate([change, apart], axis=2)
+        return Signature(view.at_tip(-change))
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Offsets of the platform's joint."""
+        names = ("radius",) if len(coefficients) == 1 else ("x", "y", "difference")
+        return {n: float(c) for n, c in zip(names, coefficients, strict=False)}
+
+    def to_simulator(self, actuator: str, values: Values, robot: Robot) -> list[Part]:
+        """Return radial and tangential offsets of one leg, or the same radius on all three."""
+        if "radius" in values:
+            return [Part(self.id, leg, {"x": values["radius"], "y": 0.0}) for leg in SLIDERS]
+        azimuth = robot.delta.leg_azimuth[ACTUATORS.index(actuator)]
+        c, s = math.cos(azimuth), math.sin(azimuth)
+        x, y = values["x"], values["y"]
+        return [Part(self.id, actuator, {"x": c * x + s * y, "y": c * y - s * x})]
+
+
+@dataclass(frozen=True)
+class PlatformGeometryErrorInPlant(PlantEffect, page=PlatformGeometryError, sites=SLIDERS):
+    """The ball joints of one leg sit elsewhere on the platform than drawn, radially and tangentially."""
+
+    x: float = metres(20e-6, "outwards, along the leg's azimuth")
+    y: float = metres(0.0, "sideways, towards growing azimuth")
+
+    def apply(self, p: PlantParameters) -> None:
+        """Move the platform ball pair: the leg's anchor is the base pair less the platform pair."""
+        leg = self.rows[0] + 1
+        c, s = direction(p, self.rows[0])
+        shift(p, **{f"anchor_{leg}x": -(c * self.x - s * self.y), f"anchor_{leg}y": -(s * self.x + c * self.y)})

@@ -1,0 +1,1 @@
+"""Masses and weights that the model does not know."""

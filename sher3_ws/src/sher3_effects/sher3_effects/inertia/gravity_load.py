@@ -1,0 +1,84 @@
+"""Gravity load: weight on an axis that differs from the model."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from sher3_description import ACTUATORS, Robot
+from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.effect import Best, Shape, Signature, column
+from sher3_kinematics.kernel import gravity_load_into, kernel_parameters
+from sher3_sim.effect import PlantEffect, parameter
+from sher3_sim.parameters import PlantParameters
+
+from sher3_effects.inertia.carried import carried_mass
+from sher3_effects.page import Page, Part, Values
+from sher3_effects.view import AxisView
+
+
+class GravityLoad(Page):
+    """Extra gravity force on an axis: in proportion to the modelled one, or constant."""
+
+    id, family, stage = "gravity_load", "inertia", "motor_mechanics"
+    inputs = ("weight",)
+    kinds: ClassVar[tuple[str, ...]] = ("robot", "axis")
+    best = Best("steps", "accelerations separate mass from weight")
+    explanation = "The axis holds more or less weight than the model says, at rest and in motion, without more inertia."
+    siblings = {
+        "payload_mass": "inertia as well as weight",
+        "torque_constant": "all forces are scaled",
+        "cable_drag": "the force changes with pose and direction",
+    }
+    units = {"relative": "1", "force": "N"}
+    on_axis = {"force": "offset", "relative": "weight"}
+
+    def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
+        """Return scaled (0) and constant (1); only constant where the model has no weight to scale."""
+        scaled: list[Shape] = [{"constant": 0.0}] if any(v.path.gravity.any() for v in views) else []
+        return [*scaled, {"constant": 1.0}]
+
+    def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
+        """One column: the modelled gravity force, or one."""
+        gravity = view.path.gravity[:, view.row(site)]
+        return Signature({Channel(self.stage, site): column(np.ones_like(gravity) if shape["constant"] else gravity)})
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Ratio of the extra weight to the modelled one, or the extra force."""
+        return {"force" if shape["constant"] else "relative": float(coefficients[0])}
+
+    def to_simulator(self, actuator: str, values: Values, robot: Robot) -> list[Part]:
+        """Return the mass whose weight is missing: a share of the carried one, or a force at zero of all axes."""
+        row = ACTUATORS.index(actuator)
+        carried = carried_mass(robot, row)
+        if "relative" in values:
+            return [Part(self.id, actuator, {"mass": values["relative"] * carried})]
+        weight = np.zeros(5)
+        gravity_load_into(kernel_parameters(robot), np.zeros(5), weight)
+        hangs = abs(weight[row]) >= 1e-6  # N: an axis that carries no weight at zero cannot carry a share of it
+        return [Part(self.id, actuator, {"mass": values["force"] / weight[row] * carried if hangs else 0.0})]
+
+
+class ServoSag(GravityLoad):
+    """A position servo that hangs behind its reference under a weight: the load over the servo's stiffness."""
+
+    kinds = ("servo",)
+    explanation = "The axis rests beside its reference, as a spring does under a weight."
+    siblings = {"coulomb_friction": "the side it rests on changes with the direction it came from"}
+    units = {"force": "m", "relative": "m/N"}
+
+
+@dataclass(frozen=True)
+class GravityLoadInPlant(PlantEffect, page=GravityLoad, sites=(*ACTUATORS, "all")):
+    """More weight on an axis than the model has, without inertia worth speaking of: a wrong mass, a lost spring."""
+
+    mass: float = parameter(
+        "kg", 0.2, -2.0, 10.0, "whose weight is added where the axis carries its own", fixed_unit=True
+    )
+
+    def apply(self, p: PlantParameters) -> None:
+        """Scale the axis's own gravity."""
+        for row in self.rows:
+            p.axis["gravity_scale"][row] += self.mass / carried_mass(p.robot, row)

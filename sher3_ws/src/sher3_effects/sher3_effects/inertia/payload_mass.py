@@ -1,0 +1,95 @@
+"""Payload: mass the model does not know."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from sher3_description import ACTUATORS
+from sher3_description.contract import GRAVITY
+from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.effect import Best, Shape, Signature, column
+from sher3_sim.effect import PlantEffect, parameter
+from sher3_sim.parameters import PlantParameters
+
+from sher3_effects.inertia.carried import carried_mass
+from sher3_effects.page import Page
+from sher3_effects.view import AxisView, RobotView
+
+
+class PayloadMass(Page):
+    """Mass carried by one axis (inertia and weight), by the platform or at the tip."""
+
+    id, family, stage = "payload_mass", "inertia", "motor_mechanics"
+    inputs = ("acceleration", "weight")
+    best = Best("steps", "accelerations separate mass from weight")
+    places: ClassVar[tuple[str, ...]] = ("axis", "tip")
+    explanation = "Extra mass: more force in proportion to acceleration, and more weight where the axis carries it."
+    siblings = {"gravity_load": "weight without inertia", "torque_constant": "all forces are scaled"}
+
+    def channels(self, site: str) -> tuple[Channel, ...]:
+        """A tip mass shows on every axis."""
+        return tuple(Channel(self.stage, a) for a in ACTUATORS) if site == "tip" else super().channels(site)
+
+    def shapes(self, views: Sequence[RobotView], site: str) -> list[Shape]:
+        """What carries the mass: the axis alone, or, for a delta axis, the whole platform."""
+        return [{"weight": 1.0}] if site == "tip" else [{"weight": 0.0}, {"weight": 1.0}]
+
+    def signature(self, view: RobotView, site: str, shape: Shape) -> Signature:
+        """One column: acceleration plus the weight, per kilogram."""
+        if site == "tip":
+            weight = GRAVITY * view.path.jacobian[:, 2, :]
+            acceleration = view.run.to_grid(view.run.acceleration)
+            inertia = np.einsum("gji,gjk,gk->gi", view.path.jacobian[:, :3], view.path.jacobian[:, :3], acceleration)
+            return Signature({c: column(weight[:, i] + inertia[:, i]) for i, c in enumerate(self.channels(site))})
+        axis = view.row(site)
+        inertia = view.run.to_grid(view.run.acceleration[:, axis])
+        scale = {3: view.robot.arm.roll_mass, 4: view.robot.arm.tilt_mass}.get(axis, view.robot.delta.moving_mass)
+        return Signature(
+            {Channel(self.stage, site): column(inertia + shape["weight"] * view.path.gravity[:, axis] / scale)}
+        )
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Extra mass (inertia on roll)."""
+        return {"mass": float(coefficients[0])}
+
+    def unlikely(self, shape: Shape, coefficients: Array) -> bool:
+        """A payload adds mass; where some is missing it is the weight that is off."""
+        return bool(coefficients[0] < 0.0)
+
+
+class MassOnAxis(PayloadMass):
+    """Mass on one axis of any machine that its description does not know: F = mass * a."""
+
+    kinds, places = ("axis",), ("axis",)
+    needs = ("mass",)
+
+    def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
+        """Return one shape: there is nothing to search."""
+        return [{}]
+
+    def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
+        """Return one column: the acceleration."""
+        return Signature(
+            {Channel(self.stage, site): column(view.run.to_grid(view.run.acceleration)[:, view.row(site)])}
+        )
+
+    def unlikely(self, shape: Shape, coefficients: Array) -> bool:
+        """Return False: a description may state too large a mass as well as too small a one."""
+        return False
+
+
+@dataclass(frozen=True)
+class PayloadMassInPlant(PlantEffect, page=PayloadMass, sites=(*ACTUATORS, "all")):
+    """More mass to accelerate on an axis than the model has; on a slider, whose rail is vertical, also more weight."""
+
+    mass: float = parameter("kg", 0.5, -5.0, 20.0, "added to the axis")
+
+    def apply(self, p: PlantParameters) -> None:
+        """Add inertia, and on the sliders the weight of the same mass on the platform."""
+        for row in self.rows:
+            p.axis["mass"][row] += self.mass if row != 3 or self.actuator == "roll" else self.mass / 500
+            if row < 3:
+                p.axis["gravity_scale"][row] += self.mass / carried_mass(p.robot, row)

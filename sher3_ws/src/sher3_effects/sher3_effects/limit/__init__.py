@@ -1,0 +1,1 @@
+"""Limits inside the drive."""

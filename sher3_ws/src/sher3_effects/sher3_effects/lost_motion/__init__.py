@@ -1,0 +1,1 @@
+"""Motion that is lost when the direction or the load reverses."""

@@ -1,0 +1,92 @@
+"""Backlash: a gap between motor and load."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.effect import Best, Shape, Signature
+from sher3_sim.effect import PlantEffect, parameter
+from sher3_sim.parameters import PlantParameters
+
+from sher3_effects.operators import play
+from sher3_effects.page import Page
+from sher3_effects.view import AxisView
+
+
+class Backlash(Page):
+    """load = follower behind a gap of `width`; between the flanks the load drifts under its own weight and load."""
+
+    id, family, stage = "backlash", "lost_motion", "transmission"
+    inputs = ("position", "direction", "load", "weight")
+    kinds = ("robot", "axis", "servo")
+    needs = ("load",)
+    best = Best("loads", "known loads at rest separate a fixed gap from a spring")
+    companion = "friction"
+    explanation = (
+        "After a reversal the motor moves by a fixed amount before the load follows; a load that pushes the "
+        "other way takes the load across the gap without the motor moving."
+    )
+    siblings = {
+        "transmission_compliance": "in proportion to the force, no fixed width",
+        "transmission_hysteresis": "the lag builds up over a stroke much longer than itself",
+        "joint_clearance": "the encoders agree, the tip jumps",
+    }
+    WIDTHS = (0.7, 0.8, 0.9, 1.0, 1.1, 1.25)
+    """In spans of the residual."""
+    DRIFTS = ((np.inf, 0.0), (1000.0, 0.0), (200.0, 0.0), (1000.0, 1.0), (200.0, 1.0))
+    """How the load moves in the gap: viscous drag in units of the nominal coefficient over 60, and whether the friction
+    of the axis holds it until the pull on it is larger."""
+    finer = {"width": (0.94, 0.97, 1.03, 1.06), "damping": (0.5, 2.0), "stick": (0.8, 1.2)}
+
+    def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
+        """Width around the span of the residual, and how freely the load moves in the gap."""
+        axis = views[0].row(site)
+        lags = [v.run.to_grid(v.run.load - v.run.motor)[:, axis] for v in views if v.run.load is not None]
+        span = max((float(np.ptp(np.percentile(lag, [1, 99]))) for lag in lags), default=0.0)
+        if span == 0.0:
+            return []
+        stick = resting_force(views, site)
+        return [{"width": w * span, "damping": d, "stick": s * stick} for w in self.WIDTHS for d, s in self.DRIFTS]
+
+    def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
+        """No coefficient: the width is the shape. The side at the start is the one that fits the first samples."""
+        axis, run = view.row(site), view.run
+        clock = run.stage_clock
+        pull = np.interp(clock, clock[run.grid], view.path.contact_force[:, axis] - view.path.gravity[:, axis])
+        pull -= np.clip(pull, -shape["stick"], shape["stick"])
+        damping = shape["damping"] * view.axis(site).viscous / 60.0
+        first = (run.load[:25, axis] - run.motor[:25, axis]).mean() if run.load is not None else 0.0
+        start = float(np.clip(2.0 * first / shape["width"], -1.0, 1.0))
+        lag = play(run.smooth[:, axis], pull, shape["width"], damping, run.period, start)
+        return Signature({}, {Channel(self.stage, site): run.to_grid(lag)[:, None]})
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Width of the gap."""
+        return {"width": shape["width"]}
+
+
+def resting_force(views: Sequence[AxisView], site: str) -> float:
+    """Typical force against the motion beyond the nominal one, N: what holds a load that nothing else moves."""
+    held = []
+    for view in views:
+        if view.run.effort is None:
+            continue
+        axis = view.row(site)
+        moving = np.abs(view.velocity[:, axis]) > 0.02 * view.axis(site).top
+        extra = view.run.to_grid(view.run.effort)[:, axis] - view.inertial[:, axis]
+        held.append((extra * np.sign(view.velocity[:, axis]))[moving & view.run.loaded_ok])
+    return max(0.0, float(np.median(np.concatenate(held)))) if held and sum(map(len, held)) > 50 else 0.0
+
+
+@dataclass(frozen=True)
+class BacklashInPlant(PlantEffect, page=Backlash):
+    """A gap between motor and load: after a reversal the load waits until the motor has crossed it."""
+
+    width: float = parameter("m", 5e-6, 0.0, 1e-3, "of the gap")
+
+    def apply(self, p: PlantParameters) -> None:
+        """Widen the gap."""
+        p.axis["backlash"][self.rows] += self.width

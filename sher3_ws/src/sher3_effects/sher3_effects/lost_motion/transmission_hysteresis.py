@@ -1,0 +1,67 @@
+"""Transmission hysteresis: the load lags by an amount that builds up over a stroke."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.effect import Best, Shape, Signature, column
+from sher3_sim.effect import PlantEffect, parameter
+from sher3_sim.parameters import PlantParameters
+
+from sher3_effects.page import Page
+from sher3_effects.view import AxisView
+
+
+class TransmissionHysteresis(Page):
+    """load = motor - amplitude * z, z a Dahl state over `displacement`."""
+
+    id, family, stage = "transmission_hysteresis", "lost_motion", "transmission"
+    inputs = ("direction",)
+    kinds = ("robot", "axis", "servo")
+    needs = ("load", "lead")
+    best = Best("loads", "known loads at rest separate a fixed gap from a spring")
+    companion = "friction"
+    explanation = (
+        "Going and coming differ by a fixed amount that builds up gradually after each reversal (harmonic drive, belt)."
+    )
+    siblings = {
+        "backlash": "the load stays at rest, then follows at once",
+        "transmission_compliance": "in proportion to the force",
+    }
+    units = {"amplitude": "m"}
+    DISPLACEMENTS = (0.002, 0.005, 0.01, 0.02, 0.04, 0.08, 0.16, 0.32, 0.64)
+    """In motor revolutions."""
+    finer = {"displacement": (0.7, 0.85, 1.2, 1.4)}
+
+    def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
+        """Displacement over which the lag builds up."""
+        return [{"displacement": d * views[0].lead(site)} for d in self.DISPLACEMENTS]
+
+    def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
+        """One column: minus the Dahl state."""
+        z = view.run.to_grid(view.sliding(view.row(site), shape["displacement"]))
+        return Signature({Channel(self.stage, site): column(-z)})
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Half the width of the loop and its displacement; `width` is the whole loop."""
+        a = float(coefficients[0])
+        return {"amplitude": a, "width": 2.0 * a, "displacement": shape["displacement"]}
+
+    def admissible(self, shape: Shape, coefficients: Array) -> bool:
+        """The load lags behind, and by less than the stroke over which the lag builds up."""
+        return bool(0.0 < coefficients[0] < shape["displacement"])
+
+
+@dataclass(frozen=True)
+class TransmissionHysteresisInPlant(PlantEffect, page=TransmissionHysteresis):
+    """After a reversal the load lags and catches up gradually: friction inside an elastic transmission."""
+
+    width: float = parameter("m", 5e-6, 0.0, 1e-3, "of the loop, between the two directions")
+    displacement: float = parameter("m", 20e-6, 1e-8, 1e-2, "travel over which it turns to 1/e")
+
+    def apply(self, p: PlantParameters) -> None:
+        """Widen the loop."""
+        p.axis["hysteresis"][self.rows] += self.width
+        p.axis["hysteresis_displacement"][self.rows] = self.displacement

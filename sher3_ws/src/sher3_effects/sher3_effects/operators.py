@@ -1,0 +1,121 @@
+"""Hysteresis operators that several effects share, compiled."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from scipy.signal import lfilter
+from sher3_common.compiled import compiled
+from sher3_diagnosis.channel import Array
+
+
+@compiled
+def dahl(x: Array, displacement: float) -> Array:
+    """Dahl's solid friction state of a path x (n,).
+
+    Dz/dx = (1 - z sgn dx) / displacement, z(0) = 0 -> (n,) in -1..1.
+    """
+    out = np.zeros(len(x))
+    z = 0.0
+    for k in range(1, len(x)):
+        step = x[k] - x[k - 1]
+        if step > 0.0:
+            z = 1.0 - (1.0 - z) * math.exp(-step / displacement)
+        elif step < 0.0:
+            z = -1.0 + (1.0 + z) * math.exp(step / displacement)
+        out[k] = z
+    return out
+
+
+@compiled
+def play(x: Array, drive: Array, width: float, damping: float, period: float, start: float) -> Array:
+    """Follower behind a gap of `width`, minus x, (n,): -width/2..width/2.
+
+    Between the flanks the follower moves under the load `drive` (n,) against a viscous `damping` (inf: it stays put).
+    A load that reverses thus takes the follower across the gap without the motor moving. `start` in -1..1 is where in
+    the gap the follower begins.
+    """
+    out = np.empty(len(x))
+    half = 0.5 * width
+    y = x[0] + start * half
+    for k in range(len(x)):
+        y += period * drive[k] / damping
+        if y > x[k] + half:
+            y = x[k] + half
+        elif y < x[k] - half:
+            y = x[k] - half
+        out[k] = y - x[k]
+    return out
+
+
+@compiled
+def oscillator(force: Array, frequency: float, damping: float, period: float) -> Array:
+    """Response x of x'' + 2 z w x' + w^2 x = w^2 force (n, d), w = 2 pi frequency, with a static gain of one.
+
+    It is exact for an input that is held from one sample to the next.
+    """
+    w = 2.0 * math.pi * frequency
+    wd = w * math.sqrt(1.0 - damping * damping)
+    e, c, s = math.exp(-damping * w * period), math.cos(wd * period), math.sin(wd * period)
+    a11, a12 = e * (c + damping * w / wd * s), e * s / wd
+    a21, a22 = -w * w * a12, e * (c - damping * w / wd * s)
+    out = np.zeros_like(force)
+    for i in range(force.shape[1]):
+        x, v = force[0, i], 0.0
+        for k in range(force.shape[0]):
+            out[k, i] = x
+            dx = x - force[k, i]
+            x = force[k, i] + a11 * dx + a12 * v
+            v = a21 * dx + a22 * v
+    return out
+
+
+@compiled
+def first_order(start: Array, end: Array, time_constant: float, period: float) -> Array:
+    """First-order lag (n,) of an input that runs from start[k] to end[k] over the interval that ends at tick k.
+
+    It starts at rest at end[0] and is exact for such an input: a force law steps at a tick and moves on until the next.
+    """
+    out = np.empty(len(end))
+    keep = math.exp(-period / time_constant)
+    share = time_constant / period * (1.0 - keep)
+    y = end[0]
+    for k in range(len(end)):
+        y = keep * y + (share - keep) * start[k] + (1.0 - share) * end[k]
+        out[k] = y
+    return out
+
+
+@compiled
+def clamped_law(
+    demand: Array, position: Array, kp: float, ki: float, limit: float, start: float, period: float
+) -> tuple[Array, Array]:
+    """PI force with and without a clamp, (n,) each, of the measured motion and the demand held over each past interval.
+
+    The integrator starts at `start` / ki. It does not move while the force is clamped and the error would drive it
+    further into the clamp.
+    """
+    clamped, free = np.empty(len(demand)), np.empty(len(demand))
+    xi = start / ki
+    xi_free = xi
+    for k in range(len(demand)):
+        j = max(k - 1, 0)
+        step = demand[k] * period - (position[k] - position[j])
+        xi_free += step
+        a, b = max(k - 1, 0), min(k + 1, len(demand) - 1)
+        velocity = (position[b] - position[a]) / ((b - a) * period)
+        raw = kp * (demand[k] - velocity) + ki * (xi + step)
+        if abs(raw) > limit and raw * step > 0.0:
+            raw = kp * (demand[k] - velocity) + ki * xi
+        else:
+            xi += step
+        clamped[k] = min(max(raw, -limit), limit)
+        free[k] = kp * (demand[k] - velocity) + ki * xi_free
+    return clamped, free
+
+
+def held_lag(x: Array, time_constant: float, period: float) -> Array:
+    """First-order lag of x (n, d), exact for an input that is held from one sample to the next; at rest at first."""
+    keep = math.exp(-period / time_constant)
+    return np.asarray(lfilter([0.0, 1.0 - keep], [1.0, -keep], x - x[0], axis=0) + x[0])

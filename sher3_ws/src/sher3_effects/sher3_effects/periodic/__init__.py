@@ -1,0 +1,1 @@
+"""Errors with a period of the motor's revolution."""

@@ -1,0 +1,69 @@
+"""Cogging: a force that repeats with the motor angle."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.effect import Best, Shape, Signature, column
+from sher3_sim.effect import PlantEffect, parameter
+from sher3_sim.parameters import PlantParameters
+
+from sher3_effects.page import Page
+from sher3_effects.periodic.phase import phase_at_zero
+from sher3_effects.view import AxisView
+
+
+class Cogging(Page):
+    """F = A sin(2 pi n q / lead + phase)."""
+
+    id, family, stage = "cogging", "periodic", "motor_mechanics"
+    inputs = ("position",)
+    kinds = ("robot", "axis")
+    needs = ("lead",)
+    best = Best("sweep", "constant speeds over several revolutions separate periods")
+    explanation = (
+        "A force that repeats several times per motor revolution, the same in both directions and at every speed."
+    )
+    siblings = {
+        "position_friction": "the sign follows the direction of motion",
+        "transmission_ripple": "the load moves, no force is needed",
+    }
+    ORDERS = (1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 14, 16, 18, 20, 22, 24)
+
+    def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
+        """Periods per motor revolution."""
+        return [{"periods_per_rev": float(n)} for n in self.ORDERS]
+
+    def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
+        """Two columns: the quadratures, low-passed as the residual is."""
+        axis = view.row(site)
+        phase = 2.0 * np.pi * shape["periods_per_rev"] * view.run.smooth[:, axis] / view.lead(site)
+        return Signature(
+            {Channel(self.stage, site): column(view.run.to_grid(np.sin(phase)), view.run.to_grid(np.cos(phase)))}
+        )
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Amplitude, order and phase."""
+        return {
+            "amplitude": float(np.hypot(*coefficients)),
+            "periods_per_rev": shape["periods_per_rev"],
+            "phase": float(np.arctan2(coefficients[1], coefficients[0])),
+        }
+
+
+@dataclass(frozen=True)
+class CoggingInPlant(PlantEffect, page=Cogging):
+    """Magnets pull the rotor towards the teeth: a force that repeats with the motor's angle, alike both ways."""
+
+    amplitude: float = parameter("N", 0.5, 0.0, 50.0, "of the force")
+    periods_per_rev: float = parameter("1", 12.0, 0.5, 200.0, "periods per lead")
+    phase: float = phase_at_zero()
+
+    def apply(self, p: PlantParameters) -> None:
+        """Add the force."""
+        p.axis["cogging_amplitude"][self.rows] = self.amplitude
+        p.axis["cogging_periods"][self.rows] = self.periods_per_rev
+        p.axis["cogging_phase"][self.rows] = self.phase

@@ -1,0 +1,79 @@
+"""Transmission ripple: the load runs ahead and behind periodically."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.effect import Best, Shape, Signature, column
+from sher3_sim.effect import PlantEffect, parameter
+from sher3_sim.parameters import PlantParameters
+
+from sher3_effects.page import Page
+from sher3_effects.periodic.phase import phase_at_zero
+from sher3_effects.view import AxisView
+
+
+class TransmissionRipple(Page):
+    """load = motor + A sin(2 pi n q / lead + phase)."""
+
+    id, family, stage = "transmission_ripple", "periodic", "transmission"
+    inputs = ("position",)
+    kinds = ("robot", "axis", "servo")
+    needs = ("load", "lead")
+    best = Best("sweep", "constant speeds over several revolutions separate periods")
+    explanation = (
+        "The load moves ahead and behind the motor, n times per lead; the load encoder sees it and the tip follows."
+    )
+    siblings = {
+        "encoder_eccentricity": "only the reading swings, the tip does not",
+        "cogging": "a force, not a displacement",
+    }
+    ORDERS = (1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 12, 14, 16, 18, 20)
+
+    def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
+        """Periods per lead."""
+        return [{"periods_per_rev": float(n), "side": 0.0} for n in self.ORDERS]
+
+    def refine(self, shape: Shape) -> list[Shape]:
+        """Add a second order: the first, a neighbour (side-band), or a harmonic."""
+        n = shape["periods_per_rev"]
+        sides = {1.0, n - 1.0, n + 1.0, 2.0 * n, 3.0 * n} - {0.0, n}
+        return [{**shape, "side": s} for s in sorted(sides)]
+
+    def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
+        """Two columns per order: the quadratures."""
+        axis = view.row(site)
+        turn = 2.0 * np.pi * view.run.smooth[:, axis] / view.lead(site)
+        orders = [shape["periods_per_rev"], *([shape["side"]] if shape["side"] else [])]
+        waves = [view.run.to_grid(f(n * turn)) for n in orders for f in (np.sin, np.cos)]
+        return Signature({Channel(self.stage, site): column(*waves)})
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Amplitude, order and phase."""
+        return {
+            "amplitude": float(np.hypot(coefficients[0], coefficients[1])),
+            "periods_per_rev": shape["periods_per_rev"],
+            "phase": float(np.arctan2(coefficients[1], coefficients[0])),
+        }
+
+
+@dataclass(frozen=True)
+class TransmissionRippleInPlant(PlantEffect, page=TransmissionRipple):
+    """The load runs ahead and behind within a revolution: screw drunkenness, kinematic error of the harmonic drive."""
+
+    amplitude: float = parameter("m", 3e-6, 0.0, 1e-3, "of the load's motion")
+    periods_per_rev: float = parameter("1", 1.0, 0.5, 200.0, "periods per lead")
+    phase: float = phase_at_zero()
+    base_amplitude: float = parameter("m", 0.0, 0.0, 1e-3, "of a companion with one period per lead")
+    base_phase: float = phase_at_zero()
+
+    def apply(self, p: PlantParameters) -> None:
+        """Add the motion."""
+        p.axis["ripple_amplitude"][self.rows] = self.amplitude
+        p.axis["ripple_periods"][self.rows] = self.periods_per_rev
+        p.axis["ripple_phase"][self.rows] = self.phase
+        p.axis["ripple_base_amplitude"][self.rows] = self.base_amplitude
+        p.axis["ripple_base_phase"][self.rows] = self.base_phase

@@ -1,0 +1,108 @@
+"""Finds the pages: of this package, and of the files and folders that the user names.
+
+Every class that derives from `Page` and has an id is a page. A file of the user's own needs no registration: its path,
+or that of its folder, stands in the environment variable SHER3_LIBRARY (paths parted like those of PATH) or in the
+option `--library`. A page of the user's takes the place of one with the same id. Every process that reads the variable
+knows the same pages, those that `sher3 up` starts too.
+"""
+
+from __future__ import annotations
+
+import importlib
+import os
+import pkgutil
+import sys
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from functools import lru_cache
+from importlib.util import module_from_spec, spec_from_file_location
+from pathlib import Path
+from types import ModuleType
+
+from sher3_common import FileError
+from sher3_sim.effect import PlantEffect
+
+import sher3_effects
+from sher3_effects.page import Page
+
+VARIABLE = "SHER3_LIBRARY"
+"""Environment variable that names files and folders with pages of the user's own."""
+
+
+def library() -> Mapping[str, Page]:
+    """Return the pages of the robot by effect id, in alphabetical order."""
+    return {e.id: e for e in pages("robot")}
+
+
+def plants() -> Mapping[str, type[PlantEffect]]:
+    """Return the effects' forms in the plant by effect id, in alphabetical order."""
+    return {e.id: e.plant for e in pages("robot") if e.plant is not None}
+
+
+def pages(kind: str, facts: Collection[str] | None = None) -> list[Page]:
+    """Return the pages written for a kind of machine, in alphabetical order of their ids.
+
+    Args:
+        kind: "robot", "axis", "servo" or "arm"; see `Effect.kinds`.
+        facts: what is known, see `Effect.needs`; pages that need more are left out. None: everything is known.
+
+    Raises:
+        FileError: a file of the user's own cannot be read.
+    """
+    found = {e.id: e for e in _pages(os.environ.get(VARIABLE, "")) if kind in e.kinds}
+    return [found[i] for i in sorted(found) if facts is None or set(found[i].needs) <= set(facts)]
+
+
+def add_library(paths: Sequence[Path]) -> None:
+    """Name files and folders with pages for this process and those it starts.
+
+    Raises:
+        FileError: a path is not there, or a file below it cannot be read as pages.
+    """
+    known = [x for x in os.environ.get(VARIABLE, "").split(os.pathsep) if x]
+    named = os.pathsep.join([*known, *(str(p.resolve()) for p in paths if str(p.resolve()) not in known)])
+    _pages(named)
+    os.environ[VARIABLE] = named
+
+
+@lru_cache(maxsize=8)
+def _pages(named: str) -> tuple[Page, ...]:
+    own = [x for x in pkgutil.walk_packages(sher3_effects.__path__, f"{sher3_effects.__name__}.") if not x.ispkg]
+    modules = [importlib.import_module(x.name) for x in own]
+    modules += [_loaded(file) for path in named.split(os.pathsep) if path for file in _files(Path(path))]
+    return tuple(page for module in modules for page in _defined_in(module))
+
+
+def _files(path: Path) -> Iterator[Path]:
+    if not path.exists():
+        raise FileError("is not there", path=path, remedy="name a file or folder with pages of effects")
+    yield from sorted(path.rglob("*.py")) if path.is_dir() else [path]
+
+
+def _loaded(file: Path) -> ModuleType:
+    """Import a file of the user's under a name that no other file has."""
+    name = f"sher3_library.{file.stem}_{abs(hash(str(file.resolve()))):x}"
+    if name in sys.modules:
+        return sys.modules[name]
+    spec = spec_from_file_location(name, file)
+    assert spec is not None and spec.loader is not None
+    module = module_from_spec(spec)
+    sys.modules[name] = module
+    try:
+        spec.loader.exec_module(module)
+    except Exception as error:  # whatever a file of somebody else's raises when it is run
+        del sys.modules[name]
+        remedy = "correct the file, or do not name it"
+        raise FileError("is not a page of an effect", path=file, value=f"{error}", remedy=remedy) from error
+    return module
+
+
+def _defined_in(module: ModuleType) -> list[Page]:
+    """Return an instance of every page that a module defines itself."""
+    return [
+        thing()
+        for thing in vars(module).values()
+        if isinstance(thing, type)
+        and issubclass(thing, Page)
+        and thing.__module__ == module.__name__
+        and hasattr(thing, "id")
+    ]

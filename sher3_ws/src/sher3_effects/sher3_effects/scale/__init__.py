@@ -1,0 +1,1 @@
+"""Ratios that are not what the model says."""

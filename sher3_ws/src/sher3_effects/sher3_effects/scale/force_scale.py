@@ -1,0 +1,62 @@
+"""Force scale: the sensor reads too much or too little in proportion."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.effect import Best, Shape, Signature
+from sher3_sim.effect import PlantEffect, parameter
+from sher3_sim.parameters import PlantParameters
+
+from sher3_effects.page import Page
+from sher3_effects.view import AxisView
+
+
+class ForceScale(Page):
+    """reading = (1 + relative) * wrench, of the whole sensor or of one axis."""
+
+    id, family, stage = "force_scale", "scale", "sensing"
+    inputs = ("load",)
+    breaks = "force_sensor"
+    best = Best("sweep", "long constant-speed strokes separate ratios from offsets")
+    places = ("force_sensor",)
+    explanation = (
+        "The force sensor's reading is off by a constant ratio: nothing without load, more the larger the load."
+    )
+    siblings = {"force_crosstalk": "a load on one axis shows on another", "force_bias": "does not depend on the load"}
+
+    def channels(self, site: str) -> tuple[Channel, ...]:
+        """Return the reading of the force sensor."""
+        return (Channel("sensing", "force_sensor"),)
+
+    def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
+        """Forces and moments (-1), forces only (-2), one component (0..5)."""
+        return [{"axis": float(a)} for a in (-1, -2, 0, 1, 2)]
+
+    def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
+        """One column: the nominal reading of the components concerned."""
+        keep = {-1: np.ones(6), -2: np.array([1.0, 1, 1, 0, 0, 0])}.get(int(shape["axis"]))
+        if keep is None:
+            keep = np.eye(6)[int(shape["axis"])]
+        return Signature({Channel("sensing", site): (view.path.nominal_wrench * keep)[:, :, None]})
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Ratio error and the axis it is of."""
+        return {"relative": float(coefficients[0]), "axis": shape["axis"]}
+
+
+@dataclass(frozen=True)
+class ForceScaleInPlant(PlantEffect, page=ForceScale):
+    """The force sensor's gain is wrong, in all its channels or in some."""
+
+    relative: float = parameter("1", 0.05, -0.5, 1.0, "reading over wrench, less one")
+    axis: float = parameter("1", -1.0, -2.0, 5.0, "component of (force, torque) it is of; -1 all, -2 the forces")
+
+    def apply(self, p: PlantParameters) -> None:
+        """Scale the sensor's matrix, or rows of it."""
+        chosen = round(self.axis)
+        rows = slice(None) if chosen == -1 else slice(0, 3) if chosen == -2 else slice(chosen, chosen + 1)
+        p.body["wrench_matrix"][0, rows] *= 1.0 + self.relative

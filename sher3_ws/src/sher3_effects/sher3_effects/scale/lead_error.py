@@ -1,0 +1,50 @@
+"""Lead error: a constant ratio between motor and load."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.effect import Best, Shape, Signature, column
+from sher3_sim.effect import PlantEffect, parameter
+from sher3_sim.parameters import PlantParameters
+
+from sher3_effects.page import Page
+from sher3_effects.view import AxisView
+
+
+class LeadError(Page):
+    """load = (1 + relative) * motor."""
+
+    id, family, stage = "lead_error", "scale", "transmission"
+    inputs = ("position",)
+    kinds = ("robot", "axis", "servo")
+    needs = ("load",)
+    best = Best("sweep", "long constant-speed strokes separate ratios from offsets")
+    explanation = (
+        "The load moves a little more or less than the motor, in proportion to the travel; the load encoder "
+        "and the tip agree."
+    )
+    siblings = {
+        "encoder_scale": "the tip does not follow the load encoder",
+        "thermal_expansion": "grows with temperature",
+    }
+
+    def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
+        """One column: the motor position."""
+        return Signature({Channel(self.stage, site): column(view.position[:, view.row(site)])})
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Ratio error."""
+        return {"relative": float(coefficients[0])}
+
+
+@dataclass(frozen=True)
+class LeadErrorInPlant(PlantEffect, page=LeadError):
+    """The load moves by a constant ratio more than the motor encoder says: lead of the screw, reduction."""
+
+    relative: float = parameter("1", 1e-3, -0.05, 0.05, "load over motor travel, less one")
+
+    def apply(self, p: PlantParameters) -> None:
+        """Scale the load's travel."""
+        p.axis["lead_error"][self.rows] += self.relative

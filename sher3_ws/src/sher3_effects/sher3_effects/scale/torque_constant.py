@@ -1,0 +1,54 @@
+"""Torque constant: the real force is not the one the drive reports."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.effect import Best, Shape, Signature, column
+from sher3_sim.effect import EVERYWHERE, PlantEffect, parameter
+from sher3_sim.parameters import PlantParameters
+
+from sher3_effects.page import Page
+from sher3_effects.view import AxisView
+
+
+class TorqueConstant(Page):
+    """Real force = (1 + relative) * reported effort."""
+
+    id, family, stage = "torque_constant", "scale", "motor_mechanics"
+    inputs = ("force",)
+    kinds = ("robot", "axis")
+    needs = ("drive",)
+    best = Best("sweep", "long constant-speed strokes separate ratios from offsets")
+    explanation = "Every force on the axis is off by the same ratio: gravity, acceleration and external load alike."
+    siblings = {
+        "viscous_friction": "only the part in proportion to speed",
+        "payload_mass": "only inertia and weight",
+        "gravity_load": "only weight",
+    }
+    on_axis = {"relative": "drive"}
+
+    def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
+        """One column: the force the motion needs. reported - needed = -relative / (1 + relative) * needed."""
+        return Signature({Channel(self.stage, site): column(-view.inertial[:, view.row(site)])})
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Force over reported effort, minus one."""
+        c = float(coefficients[0])
+        return {"relative": c / (1.0 - c)}
+
+    def admissible(self, shape: Shape, coefficients: Array) -> bool:
+        """Within a factor of three either way."""
+        return bool(-2.0 < coefficients[0] < 0.67)
+
+
+@dataclass(frozen=True)
+class TorqueConstantInPlant(PlantEffect, page=TorqueConstant, sites=EVERYWHERE):
+    """The force on the axis is not the force the drive reports: weak magnets, wrong constant, losses."""
+
+    relative: float = parameter("1", 0.05, -0.5, 1.0, "force over reported effort, less one")
+
+    def apply(self, p: PlantParameters) -> None:
+        """Scale the force on the motor."""
+        p.axis["torque_scale"][self.rows] *= 1.0 + self.relative

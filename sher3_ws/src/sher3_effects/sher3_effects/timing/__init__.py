@@ -1,0 +1,1 @@
+"""Commands and forces that come late."""

@@ -1,0 +1,70 @@
+"""Command delay: every command acts a constant time after it was given."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.effect import Best, Shape, Signature
+from sher3_sim.effect import EVERYWHERE, PlantEffect, parameter
+from sher3_sim.parameters import PlantParameters
+
+from sher3_effects.page import Page
+from sher3_effects.view import AxisView
+
+
+class CommandDelay(Page):
+    """Read off the echo tick by tick: the stage is exact and needs no fit."""
+
+    id, family, stage = "command_delay", "timing", "transport"
+    inputs = ("command",)
+    best = Best("steps", "steps of several amplitudes show a dead time as an onset and a lag as a slope")
+    explanation = "A constant dead time between the host's command and the drives' demand, the same on every axis."
+    siblings = {"drive_lag": "the echo is on time, the force is late"}
+
+    def channels(self, site: str) -> tuple[Channel, ...]:
+        """Return none: the exact stage is judged without residuals."""
+        return ()
+
+
+class ServoDelay(CommandDelay):
+    """A position servo that follows its reference a dead time late."""
+
+    kinds = ("servo",)
+    explanation = "The axis follows its reference a fixed time late."
+    siblings = {"drive_lag": "the reference is smoothed as well as late"}
+    PERIODS = (0.25, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0)
+    """Dead times that are tried, in periods of the record."""
+    finer = {"delay": (0.8, 0.9, 0.95, 1.05, 1.1, 1.25)}
+
+    def channels(self, site: str) -> tuple[Channel, ...]:
+        """Return the tracking error of the servo."""
+        return (Channel("motor_mechanics", site),)
+
+    def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
+        """Return dead times, s."""
+        return [{"delay": n * views[0].run.period} for n in self.PERIODS]
+
+    def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
+        """Return reference minus the reference of a dead time ago; nothing is left to fit."""
+        assert view.run.reference is not None
+        clock, reference = view.run.stage_clock, view.run.reference[:, view.row(site)]
+        late = np.interp(clock - shape["delay"], clock, reference)
+        return Signature({}, {self.channels(site)[0]: view.run.to_grid((reference - late)[:, None])})
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Return the dead time."""
+        return {"delay": shape["delay"]}
+
+
+@dataclass(frozen=True)
+class CommandDelayInPlant(PlantEffect, page=CommandDelay, sites=EVERYWHERE):
+    """Every command acts a constant time after it was published: bus cycle, buffers, computing time."""
+
+    delay: float = parameter("s", 1e-3, 0.0, 0.03, "dead time of the command")
+
+    def apply(self, p: PlantParameters) -> None:
+        """Delay the commands."""
+        p.axis["delay"][self.rows] += self.delay

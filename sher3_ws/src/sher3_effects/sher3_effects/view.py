@@ -1,0 +1,172 @@
+"""What the law of an effect sees of a run: the motion of an axis, and for a robot its kinematics and loads.
+
+A machine hands its own object to the pages; these protocols say which facts a page may ask it for.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple, Protocol
+
+from sher3_diagnosis.channel import Array, Channel, Mask
+
+
+class NominalAxis(NamedTuple):
+    """Nominal constants of one axis.
+
+    Attributes:
+        mass: moving mass, kg, or inertia, kg m^2.
+        viscous: viscous coefficient, N/(m/s) or N m/(rad/s).
+        lead: travel per motor revolution, m or rad.
+        top: largest velocity, m/s or rad/s.
+    """
+
+    mass: float
+    viscous: float
+    lead: float
+    top: float
+
+
+class RecordedRun(Protocol):
+    """Signals of one run on its ticks, (n, axes) in SI units; None where a signal was not recorded."""
+
+    period: float
+    stage_clock: Array
+    motor: Array
+    effort: Array | None
+    reference: Array | None
+    command: Array | None
+    load: Array | None
+
+    @property
+    def smooth(self) -> Array:
+        """Motor position after the low-pass of the residuals, (n, axes)."""
+
+    @property
+    def velocity(self) -> Array:
+        """Motor velocity from the smoothed position, (n, axes)."""
+
+    @property
+    def acceleration(self) -> Array:
+        """Second difference of the motor position, not smoothed, (n, axes)."""
+
+    @property
+    def grid(self) -> Any:
+        """Ticks of the residual grid, (g,)."""
+
+    def to_grid(self, x: Array) -> Array:
+        """Low-pass an (n, ...) signal and sample it on the residual grid -> (g, ...)."""
+
+
+class AxisView(Protocol):
+    """A run of one or more axes with their nominal forces; all that an effect of an axis needs."""
+
+    run: Any
+    """Signals of the run: see `RecordedRun`."""
+
+    def row(self, site: str) -> int:
+        """Return the column of an actuator in the run's arrays."""
+
+    def axis(self, site: str) -> NominalAxis:
+        """Return the nominal constants of an axis."""
+
+    def lead(self, site: str) -> float:
+        """Return the travel of an axis per motor revolution, m or rad."""
+
+    def sliding(self, axis: int, displacement: float) -> Array:
+        """Return the Dahl state of an axis, -1..1, (n,): +1 after moving forward by a few `displacement`."""
+
+    @property
+    def path(self) -> Any:
+        """Kinematics and nominal loads on the residual grid."""
+
+    @property
+    def position(self) -> Array:
+        """Smoothed motor position on the residual grid, (g, axes)."""
+
+    @property
+    def velocity(self) -> Array:
+        """Motor velocity on the residual grid, (g, axes)."""
+
+    @property
+    def inertial(self) -> Array:
+        """Nominal force that the measured motion needs, (g, axes)."""
+
+    @property
+    def warmth(self) -> Array:
+        """Temperature above the reference on the residual grid, (g,), K; zero where it was not recorded."""
+
+    @property
+    def loaded(self) -> Mask:
+        """(g,) True where a load acts."""
+
+
+class RobotView(AxisView, Protocol):
+    """A run of the robot with its geometry: what an effect between the encoders and the tip needs."""
+
+    robot: Any
+    geometry: Any
+
+    @property
+    def platform(self) -> Array:
+        """Platform centre in {b} on the residual grid, (g, 3)."""
+
+    @property
+    def lever(self) -> Array:
+        """From the platform centre to the tip in {b}, (g, 3)."""
+
+    @property
+    def links(self) -> Array:
+        """Gamma (g, 6, 6): columns (u; b x u) of the six links at the platform (paper, eq. 9)."""
+
+    @property
+    def link_changes(self) -> Array:
+        """Change of the tip pose (g, 6, 6) per change of the length of each of the six links."""
+
+    @property
+    def law(self) -> Array:
+        """Nominal drive law just before every tick, (n, 5)."""
+
+    @property
+    def tip_acceleration(self) -> Array:
+        """Acceleration of the tip in {b} at every tick, (n, 3), from the smoothed motion."""
+
+    def tip_channels(self) -> tuple[Channel, ...]:
+        """Return the channels on which the tip pose is seen."""
+
+    def at_tip(self, columns: Array) -> dict[Channel, Array]:
+        """Return the same (g, 6, p) columns on the tip channels; empty without a tracker."""
+
+
+class Postures(Protocol):
+    """Joint frames of a serial arm at n postures, in the base frame.
+
+    Attributes:
+        frames: (n, k, 4, 4) frames of the k joints before their turn.
+        axes: (n, k, 3) unit vectors along the joint axes.
+    """
+
+    frames: Array
+    axes: Array
+
+
+class ArmView(Protocol):
+    """Postures of a serial arm as the measuring system sees them."""
+
+    @property
+    def postures(self) -> Postures:
+        """The nominal joint frames."""
+
+    def row(self, site: str) -> int:
+        """Return the number of a joint, from 0 at the base."""
+
+    def own_axis(self, site: str) -> Array:
+        """Return the axis of a joint in its own frame, a unit vector (3,)."""
+
+    def place(self, site: str) -> Array:
+        """Return where a joint is in the base frame, (n, 3), m."""
+
+    def turned(self, axis: Array, through: Array) -> Array:
+        """Return the pose change (n, 6) per rad of a turn about `axis` (n, 3) through a point (n, 3), base frame."""
+
+    def shifted(self, direction: Array) -> Array:
+        """Return the pose change (n, 6) per m along `direction` (n, 3) in the base frame."""

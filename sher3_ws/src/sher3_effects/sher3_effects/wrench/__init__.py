@@ -1,0 +1,1 @@
+"""What the force sensor reads, or an axis feels, beside the contact."""

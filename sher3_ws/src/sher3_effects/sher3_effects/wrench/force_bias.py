@@ -1,0 +1,53 @@
+"""Force bias: the sensor reads a constant at no load."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.effect import Best, Shape, Signature
+from sher3_sim.effect import PlantEffect, parameter
+from sher3_sim.parameters import PlantParameters
+
+from sher3_effects.page import Page
+from sher3_effects.view import AxisView
+
+
+class ForceBias(Page):
+    """reading = wrench + (fx, fy, fz, tx, ty, tz)."""
+
+    id, family, stage = "force_bias", "wrench", "sensing"
+    breaks = "force_sensor"
+    best = Best("loads", "known loads in several orientations separate bias, weight and cross-talk")
+    places = ("force_sensor",)
+    explanation = "The force sensor is off by a constant in its own frame, in every pose and under every load."
+    siblings = {"tool_gravity": "turns with roll and tilt", "force_drift": "grows with temperature"}
+
+    def channels(self, site: str) -> tuple[Channel, ...]:
+        """Return the reading of the force sensor."""
+        return (Channel("sensing", "force_sensor"),)
+
+    def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
+        """Six columns of ones."""
+        return Signature({Channel("sensing", site): np.tile(np.eye(6), (len(view.run.grid), 1, 1))})
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Bias per component."""
+        return {n: float(c) for n, c in zip(self.specification, coefficients, strict=True)}
+
+
+@dataclass(frozen=True)
+class ForceBiasInPlant(PlantEffect, page=ForceBias):
+    """The force sensor's zero is off by a constant in its own frame."""
+
+    fx: float = parameter("N", 0.05, -12.0, 12.0, "along x of {f}")
+    fy: float = parameter("N", 0.0, -12.0, 12.0, "along y of {f}")
+    fz: float = parameter("N", 0.0, -17.0, 17.0, "along z of {f}")
+    tx: float = parameter("N*m", 0.0, -0.12, 0.12, "about x of {f}")
+    ty: float = parameter("N*m", 0.0, -0.12, 0.12, "about y of {f}")
+    tz: float = parameter("N*m", 0.0, -0.12, 0.12, "about z of {f}")
+
+    def apply(self, p: PlantParameters) -> None:
+        """Add the bias."""
+        p.body["wrench_bias"][0] += (self.fx, self.fy, self.fz, self.tx, self.ty, self.tz)

@@ -1,0 +1,85 @@
+"""Force cross-talk: a load on one axis shows on another."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from sher3_description import Robot
+from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.effect import Best, Shape, Signature
+from sher3_sim.effect import PlantEffect, parameter
+from sher3_sim.parameters import PlantParameters
+
+from sher3_effects.page import Page, Part, Values
+from sher3_effects.view import AxisView
+
+
+class ForceCrosstalk(Page):
+    """reading_i += coefficient * wrench_j, i != j: one pair of forces, or all pairs."""
+
+    id, family, stage = "force_crosstalk", "wrench", "sensing"
+    inputs = ("load",)
+    breaks = "force_sensor"
+    best = Best("loads", "known loads in several orientations separate bias, weight and cross-talk")
+    places = ("force_sensor",)
+    explanation = "A force along one axis of the sensor shows up on another axis, in proportion."
+    siblings = {"force_scale": "on the same axis", "tool_gravity": "there without a load on the tip"}
+    FORCES = tuple((j, i) for j in range(3) for i in range(3) if i != j)
+    PAIRS = tuple("xyz"[i] + "xyz"[j] for j, i in FORCES)
+    units = {"coefficient": "1", "source": "1", "target": "1", **dict.fromkeys(PAIRS, "1")}
+
+    def channels(self, site: str) -> tuple[Channel, ...]:
+        """Return the reading of the force sensor."""
+        return (Channel("sensing", "force_sensor"),)
+
+    def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
+        """A pair (source, target), or every pair of forces (-1)."""
+        return [{"source": -1.0, "target": -1.0}, *({"source": float(j), "target": float(i)} for j, i in self.FORCES)]
+
+    def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
+        """One column per pair: the source's nominal reading on the target."""
+        pairs = self.FORCES if shape["source"] < 0 else ((int(shape["source"]), int(shape["target"])),)
+        columns = np.zeros((len(view.run.grid), 6, len(pairs)))
+        for k, (j, i) in enumerate(pairs):
+            columns[:, i, k] = view.path.nominal_wrench[:, j]
+        return Signature({Channel("sensing", site): columns})
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Largest coefficient and its pair; where all were free, each: the axis that reads, then the loaded one."""
+        k = int(np.argmax(np.abs(coefficients)))
+        j, i = self.FORCES[k] if len(coefficients) > 1 else (shape["source"], shape["target"])
+        out = {"coefficient": float(coefficients[k]), "source": float(j), "target": float(i)}
+        if len(coefficients) > 1:
+            out |= {pair: float(c) for pair, c in zip(self.PAIRS, coefficients, strict=True)}
+        return out
+
+    def to_simulator(self, actuator: str, values: Values, robot: Robot) -> list[Part]:
+        """Return the pairs of forces by name: every one where all were free, else the one fitted."""
+        free = {name: value for name, value in values.items() if name in self.PAIRS}
+        pair = "xyz"[int(values["target"])] + "xyz"[int(values["source"])]
+        return [Part(self.id, actuator, free or {pair: values["coefficient"]})]
+
+
+def coupling(pair: str, default: float = 0.0) -> Any:
+    """Declare one pair of forces as a parameter: the axis that reads, then the loaded one."""
+    return parameter("1", default, -0.5, 0.5, f"share of the force along {pair[1]} read along {pair[0]}")
+
+
+@dataclass(frozen=True)
+class ForceCrosstalkInPlant(PlantEffect, page=ForceCrosstalk):
+    """A force along one axis of the sensor is read along another as well."""
+
+    xy: float = coupling("xy")
+    xz: float = coupling("xz", 0.03)
+    yx: float = coupling("yx")
+    yz: float = coupling("yz")
+    zx: float = coupling("zx")
+    zy: float = coupling("zy")
+
+    def apply(self, p: PlantParameters) -> None:
+        """Add to the sensor's matrix."""
+        for name, value in self.parameters.items():
+            p.body["wrench_matrix"][0, "xyz".index(name[0]), "xyz".index(name[1])] += value

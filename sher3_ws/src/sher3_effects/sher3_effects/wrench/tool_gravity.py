@@ -1,0 +1,76 @@
+"""Tool gravity: the tool weighs more or less than the model says."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from sher3_description import Robot
+from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.effect import Best, Shape, Signature
+from sher3_sim.effect import PlantEffect, parameter
+from sher3_sim.parameters import PlantParameters
+
+from sher3_effects.page import Page, Part, Values
+from sher3_effects.view import RobotView
+
+
+class ToolGravity(Page):
+    """reading += mass * g turned into {f}, at the centre of mass (and its shift)."""
+
+    id, family, stage = "tool_gravity", "wrench", "sensing"
+    inputs = ("posture",)
+    breaks = "force_sensor"
+    best = Best("loads", "known loads in several orientations separate bias, weight and cross-talk")
+    places = ("force_sensor",)
+    explanation = (
+        "What the sensor reads of the tool's weight is off: the error turns with roll and tilt exactly as gravity does."
+    )
+    siblings = {"force_bias": "does not turn", "cable_drag": "turns, but lags behind the motion"}
+    units = {"com_x": "kg*m", "com_y": "kg*m", "com_z": "kg*m"}
+
+    def channels(self, site: str) -> tuple[Channel, ...]:
+        """Return the reading of the force sensor."""
+        return (Channel("sensing", "force_sensor"),)
+
+    def shapes(self, views: Sequence[RobotView], site: str) -> list[Shape]:
+        """At the nominal centre of mass, or with a first moment of its own."""
+        return [{"free_com": 0.0}, {"free_com": 1.0}]
+
+    def signature(self, view: RobotView, site: str, shape: Shape) -> Signature:
+        """Weight per kilogram; with a free centre also the first moment."""
+        unit = view.path.tool_wrench / view.robot.force_sensor.tool_mass
+        if not shape["free_com"]:
+            return Signature({Channel("sensing", site): unit[:, :, None]})
+        columns = np.zeros((len(unit), 6, 4))
+        columns[:, :3, 0] = unit[:, :3]
+        for a in range(3):
+            columns[:, 3:, 1 + a] = np.cross(np.eye(3)[a], unit[:, :3])
+        return Signature({Channel("sensing", site): columns})
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Extra mass; with a free centre the extra first moment."""
+        names = ("mass", "com_x", "com_y", "com_z")[: len(coefficients)]
+        return {n: float(c) for n, c in zip(names, coefficients, strict=True)}
+
+    def to_simulator(self, actuator: str, values: Values, robot: Robot) -> list[Part]:
+        """Return the first moment beyond that of the mass as a shift of the centre of mass."""
+        mass = robot.force_sensor.tool_mass + values["mass"]
+        shift = {a: values.get(f"com_{a}", 0.0) / mass for a in "xyz"} if mass > 0.0 else {}
+        return [Part(self.id, actuator, {"mass": values["mass"], **shift})]
+
+
+@dataclass(frozen=True)
+class ToolGravityInPlant(PlantEffect, page=ToolGravity):
+    """The tool outboard of the sensor is heavier than thought, or its centre of mass lies elsewhere."""
+
+    mass: float = parameter("kg", 5e-3, -0.02, 0.5, "tool mass less nominal")
+    x: float = parameter("m", 0.0, -0.1, 0.1, "centre of mass less nominal, along x of {f}")
+    y: float = parameter("m", 0.0, -0.1, 0.1, "centre of mass less nominal, along y of {f}")
+    z: float = parameter("m", 0.0, -0.1, 0.1, "centre of mass less nominal, along z of {f}")
+
+    def apply(self, p: PlantParameters) -> None:
+        """Change the tool's weight."""
+        p.body["tool_mass"] += self.mass
+        p.body["tool_com"][0] += (self.x, self.y, self.z)

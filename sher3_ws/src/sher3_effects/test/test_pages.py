@@ -1,0 +1,80 @@
+"""Every page: a complete data sheet, siblings that exist, units on both kinds of axis, a form in the plant."""
+
+import subprocess
+import sys
+
+import pytest
+from sher3_diagnosis.channel import STAGES
+from sher3_diagnosis.effect import INPUTS, ROTARY
+from sher3_effects import library, load_effects, pages, plants, save_effects
+from sher3_sim.effect import REVOLUTE, SITES
+
+KINDS = ("robot", "axis", "servo", "arm")
+EVERY = [pytest.param(page, id=f"{kind}-{page.id}") for kind in KINDS for page in pages(kind)]
+ROBOT_PAGES = [pytest.param(page, id=page.id) for page in library().values()]
+CONSTANT = {"force_bias"}
+"""Effects whose law depends on nothing."""
+RELATIONS = {"", "load_encoder", "both_encoders", "force_sensor"}
+
+
+@pytest.mark.parametrize("page", EVERY)
+def test_the_data_sheet_is_complete(page):
+    assert page.stage in STAGES and page.family
+    assert page.explanation.endswith(".") and page.best.why
+    assert set(page.kinds) <= set(KINDS) and page.places
+    assert set(page.inputs) <= set(INPUTS) and (page.inputs or page.id in CONSTANT or page.kinds == ("arm",))
+    assert set(page.needs) <= {"lead", "load", "mass", "drive"}
+    assert page.breaks in RELATIONS
+    assert set(page.extends) <= library().keys()
+    assert type(page).__doc__
+
+
+@pytest.mark.parametrize("page", EVERY)
+def test_siblings_exist_and_say_what_differs(page):
+    assert page.siblings and page.siblings.keys() <= library().keys()
+    assert page.id not in page.siblings
+    assert all(why and not why.endswith(".") for why in page.siblings.values())
+
+
+@pytest.mark.parametrize("page", ROBOT_PAGES)
+def test_the_page_and_its_form_in_the_plant_are_one(page):
+    form = plants()[page.id]
+    assert (form.id, form.family, form.stage) == (page.id, page.family, page.stage)
+    assert type(page).__module__ == form.__module__ == f"sher3_effects.{page.family}.{page.id}"
+    assert set(page.places) <= SITES.keys()
+    for name, spec in page.specification.items():
+        assert spec.low <= spec.default <= spec.high and spec.text, name
+
+
+@pytest.mark.parametrize("page", ROBOT_PAGES)
+def test_units_turn_with_the_axis(page):
+    for name, spec in page.specification.items():
+        if name in page.units:
+            continue
+        assert page.unit(name, "delta_1", False) == spec.unit
+        turned = spec.unit if spec.fixed_unit else ROTARY.get(spec.unit, spec.unit)
+        assert page.unit(name, "roll", True) == turned
+
+
+def test_plant_and_engine_turn_units_alike():
+    assert {unit: turned for unit, (turned, _) in REVOLUTE.items()} == dict(ROTARY)
+
+
+@pytest.mark.parametrize("page", ROBOT_PAGES)
+def test_the_form_in_the_plant_survives_the_effects_file(page, tmp_path):
+    made = [page.plant(site) for site in page.plant.sites]
+    save_effects(tmp_path / "effects.yaml", made)
+    assert load_effects(tmp_path / "effects.yaml") == made
+
+
+def test_pages_that_need_more_than_is_known_are_left_out():
+    bare = {page.id for page in pages("axis", ())}
+    assert {"coulomb_friction", "viscous_friction", "gravity_load"} <= bare
+    assert not bare & {"payload_mass", "torque_constant", "cogging", "backlash"}
+    assert "backlash" in {page.id for page in pages("axis", {"load"})}
+    assert {page.id for page in pages("arm")} == {"encoder_offset", "link_length_error", "rail_tilt"}
+
+
+def test_the_face_imports_no_page():
+    code = "import sys, sher3_effects; print([m for m in sys.modules if m.startswith('sher3_effects.')])"
+    assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout.strip() == "[]"

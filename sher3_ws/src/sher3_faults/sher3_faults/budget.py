@@ -1,0 +1,179 @@
+"""The travel budget: how far the tip may travel after each fault, and whether its speed regime allows that.
+
+travel = speed (detection + stop) + parting. `stop` is the time at full speed that covers the braking distance
+(`braking`), `parting` the tip travel that belongs to the largest difference of the encoders that is not noticed.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from sher3_common import Sher3Error
+from sher3_control.motion.speed_cap import Regime, SpeedCap, speed_cap
+from sher3_control.settings import ControlSettings
+from sher3_description import ACTUATORS, Robot
+from sher3_drivers.settings import MotorDriverSettings
+
+from sher3_faults.braking import Braking, braking_of
+from sher3_faults.fault_classes import FaultClass, fault_classes
+
+GUARDED = (Regime.NEAR_TISSUE, Regime.FREE)
+"""Regimes with a stated budget."""
+
+
+class BudgetRow(NamedTuple):
+    """One fault in one regime; times in s, lengths in m, `speed` in m/s; `budget` is infinite on the bench."""
+
+    regime: str
+    fault: str
+    reason: str
+    detection: float
+    stop: float
+    speed: float
+    parting: float
+    travel: float
+    budget: float
+    setting: str
+
+
+class BudgetExceeded(Sher3Error):
+    """A fault's travel exceeds the budget of its regime; carries the `row`, names settings that keep it."""
+
+    exit_code = 2
+
+    def __init__(self, row: BudgetRow, longest: float, fastest: float) -> None:
+        name = "near_speed" if row.regime == Regime.NEAR_TISSUE.value else "free_speed"
+        remedies = [f"lower {row.setting}"]
+        if longest > 0.0:
+            remedies = [f"shorten {row.setting} so that it is noticed within {longest * 1e3:.1f} ms"]
+        if fastest > 0.0:
+            option = name.replace("_", "-")
+            remedies.append(f"lower motion.{name} (--{option}) to {fastest:.6f} m/s")
+        super().__init__(
+            f"travel budget of the regime {row.regime} exceeded: {row.fault} ({row.reason}) is noticed after "
+            f"{row.detection * 1e3:.1f} ms and stopped in {row.stop * 1e3:.1f} ms at {row.speed * 1e3:g} mm/s",
+            value=f"{row.travel * 1e6:.1f} um",
+            limit=f"{row.budget * 1e6:g} um",
+            remedy=", or ".join(remedies),
+        )
+        self.row = row
+
+
+class TravelBudget:
+    """The budget of a configuration.
+
+    Attributes:
+        rows: every fault in every regime.
+        runaway: tip travel [m] per axis when its drive disobeys at its own speed limit; stated, not limited.
+    """
+
+    def __init__(self, robot: Robot, control: ControlSettings, drives: MotorDriverSettings) -> None:
+        self._braking = braking_of(robot.to_yaml())
+        self._control, self._drives = control, drives
+        self._classes = fault_classes(control, drives)
+        self.rows = [row for regime in Regime for row in self._rows(regime, self._cap(regime))]
+        self.runaway = _runaway(self._braking, drives, control.motion.free_speed)
+
+    def _cap(self, regime: Regime) -> SpeedCap:
+        cap = speed_cap(self._control.motion, regime)
+        if regime is Regime.BENCH:
+            return SpeedCap(self._braking.top_speed(), float(self._braking.velocity[3]))
+        return cap
+
+    def _rows(self, regime: Regime, cap: SpeedCap) -> list[BudgetRow]:
+        motion = self._control.motion
+        budgets = {Regime.NEAR_TISSUE: motion.near_travel, Regime.FREE: motion.free_travel}
+        zero, ramp = self._braking.distances(cap.linear, cap.angular)
+        distance = {"zero": zero, "ramp": ramp}
+        drives = self._drives
+        encoders = _per_axis(drives.encoder_distance, drives.encoder_angle)
+        position = _per_axis(drives.position_distance, drives.position_angle)
+        position = position + drives.position_lag * self._braking.axis_speeds(cap.linear, cap.angular)
+        reach = self._braking.reach()
+        parting = {"": 0.0, "encoders": float((reach * encoders).max()), "position": float((reach * position).max())}
+        rows = []
+        for item in self._classes:
+            way = parting[item.apart]
+            travel = cap.linear * item.detection + distance[item.stop] + way
+            rows.append(_row(regime, item, distance[item.stop] / cap.linear, cap.linear, way, travel, budgets))
+        return rows
+
+    def of(self, regime: Regime) -> list[BudgetRow]:
+        """Return the rows of a regime, the longest travel first."""
+        return sorted((row for row in self.rows if row.regime == regime.value), key=lambda row: -row.travel)
+
+    def require(self) -> None:
+        """Refuse a configuration that does not keep its budgets.
+
+        Raises:
+            BudgetExceeded: names the fault that exceeds its budget most, and what to change.
+        """
+        over = [row for regime in GUARDED for row in self.of(regime) if row.travel > row.budget]
+        if not over:
+            return
+        worst = max(over, key=lambda row: row.travel / row.budget)
+        longest = (worst.budget - worst.parting) / worst.speed - worst.stop
+        raise BudgetExceeded(worst, longest, self._fastest(worst))
+
+    def _fastest(self, row: BudgetRow) -> float:
+        """Return the largest speed [m/s] at which the row keeps its budget, the turning lowered alike; by bisection."""
+        regime = Regime(row.regime)
+        cap, low, high = self._cap(regime), 0.0, 1.0
+        for _ in range(12):
+            share = 0.5 * (low + high)
+            rows = self._rows(regime, SpeedCap(share * cap.linear, share * cap.angular))
+            fits = next(r for r in rows if r.fault == row.fault).travel <= row.budget
+            low, high = (share, high) if fits else (low, share)
+        return low * cap.linear
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return everything as plain data; an infinite budget is None."""
+        rows = [{**row._asdict(), "budget": row.budget if np.isfinite(row.budget) else None} for row in self.rows]
+        return {"rows": rows, "runaway": self.runaway}
+
+    def as_text(self) -> str:
+        """Return the tables."""
+        parts = []
+        for regime in Regime:
+            rows = self.of(regime)
+            limit = f"budget {rows[0].budget * 1e6:g} um" if np.isfinite(rows[0].budget) else "no travel guarantee"
+            parts.append(f"{regime.value}: tip speed {rows[0].speed * 1e3:.3g} mm/s, {limit}")
+            parts.append(f"  {'fault':34}{'reason':19}{'detect':>9}{'stop':>9}{'travel':>11}")
+            parts += [
+                f"  {row.fault:34}{row.reason:19}{row.detection * 1e3:6.1f} ms{row.stop * 1e3:6.1f} ms"
+                f"{row.travel * 1e6:8.1f} um{'  OVER' if row.travel > row.budget else ''}"
+                for row in rows
+            ]
+        away = ", ".join(f"{name} {way * 1e6:.0f} um" for name, way in self.runaway.items())
+        return "\n".join([*parts, f"a drive that disobeys at its own speed limit (stated, not limited): {away}"])
+
+
+def _row(
+    regime: Regime,
+    item: FaultClass,
+    stop: float,
+    speed: float,
+    parting: float,
+    travel: float,
+    budgets: dict[Regime, float],
+) -> BudgetRow:
+    budget = budgets.get(regime, float("inf"))
+    return BudgetRow(
+        regime.value, item.fault, item.reason.name, item.detection, stop, speed, parting, travel, budget, item.setting
+    )
+
+
+def _per_axis(distance: float, angle: float) -> NDArray[np.float64]:
+    """Return a limit of sliders [m] and roll [rad] in the order of ACTUATORS."""
+    return np.array([distance] * 3 + [angle, distance])
+
+
+def _runaway(braking: Braking, drives: MotorDriverSettings, speed: float) -> dict[str, float]:
+    """Return the tip's travel [m] per axis that runs at its limit whatever its demand: error, latency and ramp."""
+    v, a, lag = braking.velocity, braking.deceleration, braking.lag
+    astray = _per_axis(drives.position_distance, drives.position_angle)
+    noticed = astray + drives.position_lag * speed + 2.0 * v * drives.period
+    way = braking.reach() * (noticed + v * v / (2.0 * a) + v * lag)
+    return dict(zip(ACTUATORS, way.tolist(), strict=True))

@@ -1,0 +1,259 @@
+"""Injects faults into the device ends that the plant process holds, at run time, over the frames of the real ones.
+
+Seams are closed while nothing is wrong, so a healthy run costs nothing.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Callable
+from functools import partial
+from random import Random
+from typing import Any, NamedTuple, Protocol
+
+from sher3_description import ACTUATORS
+from sher3_drivers.bus.frame import FRAME_SIZE
+from sher3_drivers.canopen import objects as od
+from sher3_drivers.mock.bus import MockDriveBus
+from sher3_drivers.mock.drive import AxisReading, MockDrive
+from sher3_drivers.pedal.device import PedalState
+from sher3_drivers.sensor.device import WrenchRecord
+
+from sher3_faults.errors import FaultRefused
+from sher3_faults.items import BusFrames, DriveFrames, Numbers, PedalStates, WrenchRecords
+from sher3_faults.kinds import KINDS, OFF, OK, Kind
+from sher3_faults.requests import DEVICES, FaultRequest, parse_request
+
+_RPDO = struct.Struct("<IB3xHi2x")
+_UP, _DOWN = "up", "down"
+
+
+class ForceEnd(Protocol):
+    """The force sensor's device end."""
+
+    tamper: Callable[[WrenchRecord], list[WrenchRecord]] | None
+
+
+class PedalEnd(Protocol):
+    """The pedal's device end."""
+
+    tamper: Callable[[PedalState], list[PedalState]] | None
+
+
+class Active(NamedTuple):
+    """A requested fault; it acts from `begin` to `end` [ns]."""
+
+    request: FaultRequest
+    begin: int
+    end: int | None
+    faults: dict[str, Kind]
+
+    def acts(self, now: int) -> bool:
+        """Whether it acts at `now`."""
+        return self.begin <= now and (self.end is None or now < self.end)
+
+
+class FaultInjector:
+    """Faults of drives, bus, sensor and pedal of one plant process.
+
+    Args:
+        drives, force, pedal: the device ends.
+        clock: time in ns.
+
+    Attributes:
+        active: the requested faults by component; a new request for a component replaces the old one.
+        refused: the newest refusal, None after a request that was taken.
+    """
+
+    def __init__(
+        self, drives: MockDriveBus, force: ForceEnd, pedal: PedalEnd, clock: Callable[[], int] | None = None
+    ) -> None:
+        self.active: dict[str, Active] = {}
+        self.refused: str | None = None
+        self._drives, self._force, self._pedal = drives, force, pedal
+        self._clock = clock or drives.clock
+        self._held: dict[str, float] = {}
+
+    def take(self, text: str, now: int) -> FaultRequest:
+        """Take a request as it came on `mock/fault` at `now` [ns].
+
+        Raises:
+            FaultRefused: it names what does not exist; nothing changes.
+        """
+        try:
+            request = parse_request(text)
+            self._check_channel(request)
+        except FaultRefused as error:
+            self.refused = str(error)
+            raise
+        self.refused = None
+        if request.fault == OK:
+            for name in list(self.active) if request.component == "all" else [request.component]:
+                self.active.pop(name, None)
+        elif request.component in DEVICES:
+            begin = now + round(request.start * 1e9)
+            end = None if request.duration is None else begin + round(request.duration * 1e9)
+            self.active[request.component] = Active(request, begin, end, self._kinds(request))
+            self._held.pop(request.component, None)
+        self._connect()
+        return request
+
+    def poll(self, now: int) -> None:
+        """End the faults whose time is over; switch drives on and off, which is no change of a stream."""
+        for name, drive in self._drives.drives.items():
+            self._act_on_drive(name, drive, now)
+        over = [name for name, active in self.active.items() if active.end is not None and now >= active.end]
+        for name in over:
+            del self.active[name]
+        if over:
+            self._connect()
+
+    def _act_on_drive(self, name: str, drive: MockDrive, now: int) -> None:
+        """Take a whole drive off the line, deaf to SYNC and heartbeat too, or let it find an error in itself."""
+        line, inside = self.active.get(name), self.active.get(f"{name}.demand")
+        drive.powered = line is None or line.request.fault != OFF or not line.acts(now)
+        if inside is not None and inside.acts(now) and (code := int(inside.request.parameters.get("code", 0))):
+            drive.fault(code)
+
+    def report(self) -> tuple[int, str, tuple[tuple[str, str], ...]]:
+        """Return level, sentence and values for `/diagnostics`."""
+        values = tuple((name, active.request.fault) for name, active in self.active.items())
+        if self.refused is not None:
+            return 1, self.refused, values
+        return (1, f"{len(values)} faults injected", values) if values else (0, "no fault injected", ())
+
+    def _check_channel(self, request: FaultRequest) -> None:
+        unit = request.component.partition(".")[0]
+        if unit.startswith("bus") and unit[3:] and int(unit[3:]) >= len(self._drives.links):
+            limit = f"bus0 to bus{len(self._drives.links) - 1}"
+            raise FaultRefused(request.component, request.fault, "no such channel", value=unit, limit=limit)
+
+    def _kinds(self, request: FaultRequest) -> dict[str, Kind]:
+        """Return the fault, one object for each direction of a line."""
+        unit, _, part = request.component.partition(".")
+        ways = (part,) if part or unit in ("force_sensor", "pedal") else (_UP, _DOWN)
+        make, items = KINDS[request.fault], self._items(unit, part)
+        return {way: make(items, request.parameters, Random(f"{request.seed} {way}")) for way in ways}
+
+    def _items(self, unit: str, part: str) -> Any:
+        if unit == "force_sensor":
+            return WrenchRecords()
+        if unit == "pedal":
+            return PedalStates()
+        if part in ("", _UP, _DOWN):
+            return BusFrames() if unit.startswith("bus") else DriveFrames()
+        scale = self._drives.drives[unit].scale
+        if part == "power":
+            return Numbers(scale.velocity_limit)
+        return Numbers(scale.velocity_limit / scale.velocity if part == "demand" else 0.05)
+
+    # The seams.
+
+    def _connect(self) -> None:
+        """Open the seams that are needed and close the others."""
+        names = self.active
+        self._force.tamper = self._samples("force_sensor") if "force_sensor" in names else None
+        self._pedal.tamper = self._samples("pedal") if "pedal" in names else None
+        for name, drive in self._drives.drives.items():
+            wanted = {f"{name}.load_encoder", f"{name}.motor_encoder"} & names.keys()
+            drive.tamper = self._feedback(name) if wanted else None
+            drive.stray = partial(self._number, name, "power") if f"{name}.power" in names else None
+        parts = [name.partition(".")[::2] for name in names if name not in ("force_sensor", "pedal")]
+        up = any(part in ("", _UP) for _, part in parts)
+        down = any(part in ("", _DOWN, "demand") for _, part in parts)
+        self._drives.tamper_frames = self._frames(_UP) if up else None
+        self._drives.tamper_received = self._frames(_DOWN) if down else None
+
+    def _samples(self, component: str) -> Callable[[Any], list[Any]]:
+        active = self.active[component]
+        (fault,) = active.faults.values()
+
+        def tamper(sample: Any) -> list[Any]:
+            now = self._clock()
+            return fault([sample], now) if active.acts(now) else [sample]
+
+        return tamper
+
+    def _feedback(self, name: str) -> Callable[[AxisReading], AxisReading]:
+        fields = {"motor_encoder": "motor_position", "load_encoder": "load_position"}
+
+        def tamper(feedback: AxisReading) -> AxisReading:
+            for part, field in fields.items():
+                value = self._number(name, part, getattr(feedback, field))
+                feedback = feedback._replace(**{field: value})
+            return feedback
+
+        return tamper
+
+    def _number(self, name: str, part: str, value: float) -> float:
+        """Return a number as a fault leaves it; a number that the fault drops keeps its last value."""
+        component, now = f"{name}.{part}", self._clock()
+        active = self.active.get(component)
+        if active is not None and active.acts(now):
+            passed = active.faults[part]([value], now)
+            value = passed[-1] if passed else self._held.get(component, value)
+        self._held[component] = value
+        return value
+
+    def _frames(self, way: str) -> Callable[[int, bytes, int], bytes]:
+        def tamper(channel: int, frames: bytes, now: int) -> bytes:
+            items = [frames[i : i + FRAME_SIZE] for i in range(0, len(frames), FRAME_SIZE)]
+            for component, active in list(self.active.items()):
+                unit, _, part = component.partition(".")
+                if unit in ("force_sensor", "pedal") or not active.acts(now):
+                    continue
+                if part == "demand" and way == _DOWN:
+                    items = [self._demand(unit, item) for item in items]
+                elif way in active.faults and unit in ("bus", f"bus{channel}"):
+                    items = self._of_bus(active, way, channel, items, now)
+                elif way in active.faults and unit in ACTUATORS:
+                    items = self._of_drive(unit, channel, active.faults[way], items, now)
+            return b"".join(items)
+
+        return tamper
+
+    def _of_bus(self, active: Active, way: str, channel: int, items: list[bytes], now: int) -> list[bytes]:
+        """Let the fault act on all frames of a channel; a SYNC twice would be a step of the plant too many."""
+        fault = _of_channel(active, way, channel)
+        if active.request.fault not in ("duplicated", "reordered"):
+            return fault(items, now)
+        passed: list[bytes] = []
+        for item in items:
+            passed += [item] if int.from_bytes(item[:4], "little") == od.SYNC_ID else fault([item], now)
+        return passed
+
+    def _of_drive(self, name: str, channel: int, fault: Kind, items: list[bytes], now: int) -> list[bytes]:
+        """Let the fault act on the frames of one drive, in their place among the others."""
+        drive = self._drives.drives[name]
+        if drive not in self._drives.on_channel(channel):
+            return items
+        passed: list[bytes] = []
+        for item in items:
+            passed += fault([item], now) if _concerns(item, drive) else [item]
+        return passed + fault([], now)
+
+    def _demand(self, name: str, item: bytes) -> bytes:
+        """Return a frame with the velocity demand as the fault leaves it; other frames stay as they are."""
+        node = self._drives.drives[name].node_id
+        if int.from_bytes(item[:4], "little") != od.RPDO_BASE + node:
+            return item
+        can_id, length, word, velocity = _RPDO.unpack(item)
+        limit = 2**31 - 1
+        changed = max(-limit, min(limit, round(self._number(name, "demand", velocity))))
+        return _RPDO.pack(can_id, length, word, changed)
+
+
+def _of_channel(active: Active, way: str, channel: int) -> Kind:
+    """Return the fault of one channel: what waits on one line never comes out of another."""
+    key = f"{way} {channel}"
+    if key not in active.faults:
+        model = active.faults[way]
+        random = Random(f"{active.request.seed} {key}")
+        active.faults[key] = KINDS[active.request.fault](model.items, active.request.parameters, random)
+    return active.faults[key]
+
+
+def _concerns(item: bytes, drive: MockDrive) -> bool:
+    """Whether a frame is of one drive and no other: SYNC and NMT belong to all."""
+    can_id = int.from_bytes(item[:4], "little")
+    return can_id not in (od.SYNC_ID, od.NMT_ID) and can_id & 0x7F == drive.node_id

@@ -1,0 +1,118 @@
+"""What the items of each faulty stream are: CAN frames, force records, pedal states, single numbers."""
+
+from __future__ import annotations
+
+import math
+import struct
+from collections.abc import Hashable
+from random import Random
+
+from sher3_drivers.bus.frame import ERROR_FLAG
+from sher3_drivers.pedal.device import PedalState
+from sher3_drivers.sensor.device import WrenchRecord
+
+from sher3_faults.kinds import Parameters
+
+_FRAME = struct.Struct("<IB3x8s")
+_ERROR_PASSIVE = _FRAME.pack(ERROR_FLAG | 0x004, 8, bytes([0, 0x30, 0, 0, 0, 0, 0, 0]))
+"""Error frame of class "controller" with "error passive" (include/uapi/linux/can/error.h)."""
+
+
+class BusFrames:
+    """Frames of a whole bus, 16 bytes each. Wrong: damaged on the line, an error frame comes in its place."""
+
+    def key(self, item: bytes) -> Hashable:
+        """Return the CAN identifier, the source of a frame."""
+        return item[:4]
+
+    def garbage(self, item: bytes, random: Random) -> bytes:
+        """Return random data under the same identifier and length."""
+        return item[:8] + random.randbytes(8)
+
+    def wrong(self, item: bytes, parameters: Parameters) -> bytes:
+        """Return an error frame, "error passive"."""
+        return _ERROR_PASSIVE
+
+
+class DriveFrames(BusFrames):
+    """Frames of one drive. Wrong: they bear the node id of the next one, as after a wrong COB-ID."""
+
+    def wrong(self, item: bytes, parameters: Parameters) -> bytes:
+        """Return the frame with the node id of the next drive."""
+        can_id, length, data = _FRAME.unpack(item)
+        return _FRAME.pack(can_id + 1, length, data)
+
+
+class WrenchRecords:
+    """Records of the force sensor. Wrong: scaled, offset along every axis of force [N], with a status word `code`."""
+
+    def key(self, item: WrenchRecord) -> Hashable:
+        """Return one source: all records come from one sensor."""
+        return None
+
+    def garbage(self, item: WrenchRecord, random: Random) -> WrenchRecord:
+        """Draw each component from the whole range of 32 bit counts: up to 2147 N and 2.1 N m."""
+        wrench = tuple([random.uniform(-2147.0, 2147.0) * scale for scale in (1, 1, 1, 1e-3, 1e-3, 1e-3)])
+        return item._replace(wrench=wrench)  # type: ignore[arg-type]
+
+    def wrong(self, item: WrenchRecord, parameters: Parameters) -> WrenchRecord:
+        """Scale, then add the offset to the force."""
+        scale, offset = parameters["scale"], parameters["offset"]
+        fx, fy, fz, mx, my, mz = (scale * value for value in item.wrench)
+        wrench = (fx + offset, fy + offset, fz + offset, mx, my, mz)
+        return item._replace(wrench=wrench, status=int(parameters["code"]))
+
+
+class PedalStates:
+    """States of the pedal. Wrong: the travel is scaled and offset."""
+
+    def key(self, item: PedalState) -> Hashable:
+        """Return one source: all states come from one pedal."""
+        return None
+
+    def garbage(self, item: PedalState, random: Random) -> PedalState:
+        """Draw a travel, also outside 0 to 1."""
+        return PedalState(random.choice([random.uniform(-2.0, 2.0), math.nan, math.inf, 1e300]), False)
+
+    def wrong(self, item: PedalState, parameters: Parameters) -> PedalState:
+        """Return the value scaled, then offset."""
+        return item._replace(travel=parameters["scale"] * item.travel + parameters["offset"])
+
+
+class Stamps:
+    """Stamps of the ticks of one node [ns]: its clock. Wrong: offset [s]; garbage: up to a tenth of a second off."""
+
+    def key(self, item: int) -> Hashable:
+        """Return one source: the stream has no others."""
+        return None
+
+    def garbage(self, item: int, random: Random) -> int:
+        """Draw a stamp evenly around the true one."""
+        return item + random.randint(-100_000_000, 100_000_000)
+
+    def wrong(self, item: int, parameters: Parameters) -> int:
+        """Return the stamp with the offset added."""
+        return item + round(parameters["offset"] * 1e9)
+
+
+class Numbers:
+    """One number per tick: an encoder [m, rad] or a velocity demand [counts].
+
+    Args:
+        spread: garbage is drawn from plus and minus this.
+    """
+
+    def __init__(self, spread: float) -> None:
+        self._spread = spread
+
+    def key(self, item: float) -> Hashable:
+        """Return one source: the stream has no others."""
+        return None
+
+    def garbage(self, item: float, random: Random) -> float:
+        """Draw a number evenly between plus and minus `spread`."""
+        return random.uniform(-self._spread, self._spread)
+
+    def wrong(self, item: float, parameters: Parameters) -> float:
+        """Return the value scaled, then offset."""
+        return parameters["scale"] * item + parameters["offset"]

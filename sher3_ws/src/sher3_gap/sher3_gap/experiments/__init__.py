@@ -1,0 +1,1 @@
+"""Experiments that tell rivals apart: designed, rehearsed in the simulator, and judged by what they separated."""

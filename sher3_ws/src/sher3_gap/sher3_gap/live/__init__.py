@@ -1,0 +1,1 @@
+"""The diagnosis beside the running robot."""

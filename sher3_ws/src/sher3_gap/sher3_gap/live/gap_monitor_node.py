@@ -1,0 +1,93 @@
+"""The gap monitor on the graph: gap over floor per stage on `gap/diagnostics` at 1 Hz; all else is in `monitor`."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable, Sequence
+from dataclasses import asdict
+from typing import Any
+
+import rclpy
+from rclpy.node import Node
+from rclpy.signals import SignalHandlerOptions
+from sher3_common.samples import DiagnosticSample
+from sher3_description import Robot
+from sher3_runtime import environment
+from sher3_runtime.ports import NODE_OPTIONS, PERIOD_VARIABLE, advertise, on_tick, subscribe
+from sher3_runtime.process import stop_on_signals
+from sher3_runtime.spinning import spin
+from sher3_sim import PlantEffect
+
+from sher3_gap.live.monitor import TOPICS, Monitor, StageStatus
+
+TOPIC = "gap/diagnostics"
+MESSAGES = ("at the floor", "gap above the floor", "gap far above the floor")
+STALE = 3
+Told = Callable[[int, list[StageStatus]], None]
+
+
+class GapMonitorNode(Node):
+    """Listens to the robot's streams and publishes one status per stage and axis at 1 Hz.
+
+    `told` gets the stamp and what is published, once a second; no statuses while there is no whole window to judge.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        effects: Sequence[PlantEffect] = (),
+        *,
+        window: float = 4.0,
+        told: Told | None = None,
+        **options: Any,
+    ) -> None:
+        super().__init__("gap_monitor", **{**NODE_OPTIONS, **options})
+        self.monitor = Monitor(robot, effects, window)
+        self._publish, self._told = advertise(self, TOPIC), told
+        for topic in TOPICS:
+            subscribe(self, topic, self._feeder(topic), depth=500)
+        on_tick(self, self._tick, every=round(1.0 / robot.control_period))
+
+    def _feeder(self, topic: str) -> Callable[[Any], None]:
+        feed = self.monitor.feed
+        return lambda sample: feed(topic, sample)
+
+    def _tick(self, stamp: int) -> None:
+        found = self.monitor.judge()
+        for status in found:
+            self._publish(diagnostic(stamp, status))
+        if self._told is not None:
+            self._told(stamp, found)
+        if not found:
+            self._publish(DiagnosticSample(stamp, "gap", STALE, "waiting for a window without long holes"))
+
+
+def diagnostic(stamp: int, status: StageStatus) -> DiagnosticSample:
+    """Return a stage's status as a diagnostic: gap, floor and their ratio."""
+    values = (
+        ("gap", f"{status.gap:.6g}"),
+        ("floor", f"{status.floor:.6g}"),
+        ("ratio", f"{status.ratio:.4g}"),
+        ("unit", status.unit),
+    )
+    name = f"gap/{status.stage}/{status.actuator}"
+    return DiagnosticSample(stamp, name, status.level, MESSAGES[status.level], values)
+
+
+def judged_json(stamp: int, found: Sequence[StageStatus]) -> str:
+    """Return what was judged at `stamp` [ns] as one line of JSON; no stages while there is no whole window."""
+    stages = [{**asdict(s), "ratio": s.ratio, "level": s.level} for s in found]
+    return json.dumps({"stamp": stamp, "stages": stages})
+
+
+def run(robot: Robot, effects: Sequence[PlantEffect], window: float, domain: int = 0, told: Told | None = None) -> None:
+    """Run the monitor in a process of its own beside a running graph until a signal; `told` as in the node."""
+    environment.apply(domain)
+    os.environ[PERIOD_VARIABLE] = repr(robot.control_period)
+    rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
+    try:
+        stop = stop_on_signals()
+        spin([GapMonitorNode(robot, effects, window=window, told=told)], stop=stop, diagnostics=False)
+    finally:
+        rclpy.try_shutdown()

@@ -1,0 +1,85 @@
+"""What the report shows that only the SHER knows."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from sher3_description import ACTUATORS
+from sher3_diagnosis.channel import STAGES, Array, Channel
+from sher3_diagnosis.finding import Findings
+from sher3_diagnosis.report.reporter import FLOWS, Isolability, Output, Reporter, Trace
+
+from sher3_gap.evidence import SherEvidence
+from sher3_gap.excitation import catalogue
+from sher3_gap.report.topics import data_text, exact_stages, isolability_of
+from sher3_gap.stages.residuals import mean_force
+from sher3_gap.stages.timing import demand_in_force
+
+AT_TIP = "tip − nominal tip"
+DEVIATIONS = {"transmission": "load − motor", "mechanism": AT_TIP, "structure": AT_TIP, "sensing": "reading − nominal"}
+"""Stages whose deviation from the model is itself the picture -> its name."""
+
+
+class SherReporter(Reporter[SherEvidence]):
+    """The SHER's part of a report."""
+
+    stages = ("controller", "transport", *STAGES[2:])  # the host computes before it sends
+    flows = {**FLOWS, "sensing": "truth → wrench reading"}
+    places = (*ACTUATORS, "tip", "force_sensor")
+    every_stage = True
+    simulated = True
+
+    def data(self, parts: Sequence[SherEvidence]) -> str:
+        """Return runs, their duration and their excitations."""
+        return data_text(parts[0].runs)
+
+    def exact_places(self, parts: Sequence[SherEvidence]) -> Mapping[str, Sequence[str]]:
+        """Return the axes for transport and controller, where their topics were recorded."""
+        return {stage: ACTUATORS if recorded else () for stage, recorded in exact_stages(parts[0].runs).items()}
+
+    def purpose(self, excitation: str) -> str:
+        """Return what an excitation of the standard set is for; a suffix such as `_0.8` scales it."""
+        entry = catalogue().get(excitation.split("_")[0])
+        return entry.purpose if entry else ""
+
+    def isolability(self, parts: Sequence[SherEvidence]) -> Isolability:
+        """Return what the recorded topics can tell apart."""
+        return isolability_of(parts[0].runs)
+
+    def run_name(self, evidence: SherEvidence, run: int) -> str:
+        """Return name, excitation and repeat."""
+        signals = evidence.runs[run]
+        return f"Run {signals.name} ({signals.excitation}, repeat {signals.repeat})"
+
+    def clock(self, evidence: SherEvidence, run: int) -> Array:
+        """Return the time of the residual grid, (g,) s."""
+        signals = evidence.runs[run]
+        return signals.stage_clock[signals.grid]
+
+    def output(self, evidence: SherEvidence, run: int, channel: Channel) -> Output:
+        """Return the measured output of a stage on the residual grid, or the name of its deviation."""
+        signals = evidence.runs[run]
+        if channel.stage in DEVIATIONS or signals.effort is None:
+            return Output(DEVIATIONS.get(channel.stage, "measured − nominal"))
+        axis = ACTUATORS.index(channel.actuator)
+        if channel.stage == "drive":
+            return Output("reported effort", signals.to_grid(signals.effort[:, [axis]])[:, 0])
+        demand = demand_in_force(signals, evidence.robot, evidence.timing)
+        force = mean_force(signals, evidence.robot, demand)[:, [axis]]
+        return Output("motor force", signals.to_grid(force)[:, 0])
+
+    def first_traces(self, diagnosis: Findings[SherEvidence]) -> list[Trace]:
+        """Return the picture of the transport stage where it failed."""
+        from sher3_gap.report.transport import transport_trace
+
+        if not any(f.where.stage == "transport" for f in diagnosis.exact):
+            return []
+        found = transport_trace(diagnosis.findings[0].evidence)
+        return [] if found is None else [found]
+
+    def last_traces(self, diagnosis: Findings[SherEvidence]) -> list[Trace]:
+        """Return the picture of the tip in free runs of the simulator."""
+        from sher3_gap.report.free_run import free_run_trace
+
+        found = free_run_trace(diagnosis.findings[0].evidence, diagnosis.verdict.causes)
+        return [] if found is None else [found]

@@ -1,0 +1,49 @@
+"""What was recorded of a case: topics, runs, and what the topics can tell apart at all."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from sher3_diagnosis.report.reporter import Isolability, counted
+
+from sher3_gap.case.signals import RunSignals
+from sher3_gap.stages.isolability import structure
+
+TOPIC_OF = {
+    "motor": "drives/measured_js",
+    "reference": "setpoint_js",
+    "command": "servo_jv",
+    "echo": "drives/setpoint_jv",
+    "load": "measured_js",
+    "wrench": "force/measured_cf",
+    "tracker_position": "tracker/measured_cp",
+}
+"""Signal of a run -> topic it comes from."""
+EXACT_NEEDS = {"controller": ("command", "reference", "load"), "transport": ("command", "echo")}
+"""Exact stage -> signals it is computed from."""
+
+
+def recorded_topics(runs: Sequence[RunSignals]) -> set[str]:
+    """Return the topics that at least one run has."""
+    return {topic for name, topic in TOPIC_OF.items() if any(getattr(run, name) is not None for run in runs)}
+
+
+def isolability_of(runs: Sequence[RunSignals]) -> Isolability:
+    """Return what the topics of these runs can tell apart."""
+    topics = recorded_topics(runs)
+    found = structure(topics)
+    return Isolability(sorted(topics), found.groups, found.invisible)
+
+
+def exact_stages(runs: Sequence[RunSignals]) -> dict[str, bool]:
+    """Return, per exact stage, whether some run recorded what it is computed from."""
+    return {
+        stage: any(all(getattr(run, name) is not None for name in names) for run in runs)
+        for stage, names in EXACT_NEEDS.items()
+    }
+
+
+def data_text(runs: Sequence[RunSignals]) -> str:
+    """Return how many runs there are, how long, and of which excitations."""
+    seconds = sum(r.ticks * r.period for r in runs)
+    return f"{len(runs)} runs, {seconds:.0f} s: {counted([r.excitation for r in runs])}"

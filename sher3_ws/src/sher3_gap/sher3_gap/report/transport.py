@@ -1,0 +1,64 @@
+"""A picture of the transport stage: commands and the drives' echo around the steepest change of a command."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from sher3_description import ACTUATORS
+from sher3_diagnosis.report.drawing import NOMINAL, REAL, figure, to_svg
+from sher3_diagnosis.report.reporter import Trace
+from sher3_diagnosis.report.traces import scale_of
+from sher3_diagnosis.report.words import place
+
+from sher3_gap.case.signals import RunSignals
+from sher3_gap.evidence import SherEvidence
+from sher3_gap.stages.exact import delayed
+from sher3_gap.stages.units import ROTARY_AXES
+
+BEFORE, BEHIND = 12, 22
+"""Ticks shown on either side of the change: a late demand follows it."""
+
+
+class _Change(NamedTuple):
+    """Where the echo leaves the command: run, axis and tick."""
+
+    run: RunSignals
+    axis: int
+    tick: int
+
+
+def transport_trace(evidence: SherEvidence) -> Trace | None:
+    """Return the picture; None where no echo was recorded."""
+    found = _steepest(evidence)
+    if found is None:
+        return None
+    run, axis, at = found
+    assert run.command is not None and run.echo is not None
+    low, high = max(0, at - BEFORE), min(run.ticks, at + BEHIND)
+    clock = 1e3 * (run.stage_clock[low:high] - run.stage_clock[at])
+    nominal = delayed(run.command, 1)[low:high, axis]
+    scale, prefix = scale_of(nominal)
+    made, (ax,) = figure(1, 2.6)
+    ax.step(clock, scale * run.echo[low:high, axis], where="pre", color=REAL, lw=1.5, label="demand executed (echo)")
+    ax.step(clock, scale * nominal, where="pre", color=NOMINAL, lw=1.2, label="nominal: command on time")
+    ax.set_xlabel("time [ms]")
+    unit = "rad/s" if ACTUATORS[axis] in ROTARY_AXES else "m/s"
+    ax.set_ylabel(f"velocity demand [{prefix}{unit}]")
+    ax.legend(loc="best", fontsize=8)
+    title = f"Transport, {place(ACTUATORS[axis])}"
+    return Trace(title, f"Run {run.name} around its steepest command.", to_svg(made, title))
+
+
+def _steepest(evidence: SherEvidence) -> _Change | None:
+    """Return where the error of the echo changes most, over the velocity limit of its axis."""
+    top = np.array([a.limits.velocity for a in evidence.robot.actuators])
+    best, found = -1.0, None
+    for run in evidence.runs:
+        if run.command is None or run.echo is None:
+            continue
+        steps = np.abs(np.diff(run.echo - delayed(run.command, 1), axis=0)) / top
+        at, axis = np.unravel_index(int(np.argmax(steps)), steps.shape)
+        if steps[at, axis] > best:
+            best, found = float(steps[at, axis]), _Change(run, int(axis), int(at))
+    return found

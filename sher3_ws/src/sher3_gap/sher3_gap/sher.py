@@ -1,0 +1,101 @@
+"""The SHER as a machine of the diagnosis, and the diagnosis of its case folders."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from sher3_description import Robot
+from sher3_diagnosis.effect import Effect
+from sher3_diagnosis.finding import ExactFinding, Finding
+from sher3_diagnosis.flow import Diagnosis, Say, diagnose
+from sher3_diagnosis.machine import Machine
+from sher3_diagnosis.verdict import Cause, Interval
+from sher3_effects import library
+
+from sher3_gap.case.audit import audit
+from sher3_gap.case.loading import load_case
+from sher3_gap.case.signals import RunSignals
+from sher3_gap.evidence import SherEvidence, gather
+from sher3_gap.simulate.tip import tip_closure
+from sher3_gap.stages.controller_causes import controller_finding
+from sher3_gap.stages.transport_causes import transport_finding
+
+if TYPE_CHECKING:
+    from sher3_gap.report.reporter import SherReporter
+
+
+@dataclass(frozen=True)
+class Sher(Machine[RunSignals, SherEvidence]):
+    """The robot with its nominal model.
+
+    Attributes:
+        robot: the model that the host and the nominal simulator believe.
+    """
+
+    robot: Robot
+
+    def library(self) -> Sequence[Effect]:
+        """Return every effect of the robot."""
+        return list(library().values())
+
+    def audit(self, runs: Sequence[RunSignals]) -> list[str]:
+        """Refuse unit slips and unequal repeats (CaseError); return what narrows the answer."""
+        return audit(runs, self.robot)
+
+    def gather(self, runs: Sequence[RunSignals]) -> list[SherEvidence]:
+        """Return the robot as one part: an effect of its platform shows on several axes."""
+        return [gather(runs, self.robot)]
+
+    def exact(
+        self, runs: Sequence[RunSignals], evidence: Sequence[SherEvidence], without: Collection[str]
+    ) -> list[ExactFinding]:
+        """Judge transport and controller, whose nominal output is computed to rounding."""
+        timing = evidence[0].timing
+        found = (transport_finding(timing, runs, self.robot, without), controller_finding(runs, self.robot, without))
+        return [f for f in found if f is not None]
+
+    def end_to_end(self, findings: Sequence[Finding[SherEvidence]], causes: Sequence[Cause]) -> Interval | None:
+        """Return the closure of the tip in free runs of the simulator."""
+        return tip_closure(findings[0].evidence, causes, findings[0].attribution.fit)
+
+    def reporter(self) -> SherReporter:
+        """Return the robot's part of a report."""
+        from sher3_gap.report.reporter import SherReporter
+
+        return SherReporter()
+
+
+def diagnose_runs(
+    runs: Sequence[RunSignals],
+    robot: Robot,
+    without: Collection[str] = (),
+    say: Say = lambda _: None,
+    started: float | None = None,
+) -> Diagnosis[SherEvidence]:
+    """Diagnose runs of one robot in one condition; see `sher3_diagnosis.diagnose`."""
+    return diagnose(Sher(robot), runs, without, say, started)
+
+
+def diagnose_case(
+    case: Path | str, robot: Path | None = None, without: Collection[str] = (), say: Say = lambda _: None
+) -> Diagnosis[SherEvidence]:
+    """Diagnose a case folder.
+
+    Args:
+        case: folder of the recorded-run contract, section 5.
+        robot: `robot.yaml` of the nominal model; default the case's own.
+        without: effect ids that are left out of the library.
+        say: takes a line of progress.
+
+    Raises:
+        CaseError: the case cannot be diagnosed; the error names the run, the value and the remedy.
+        UnknownEffect: an id in `without` is no effect.
+    """
+    started = time.perf_counter()
+    say("reading the bags")
+    runs, model = load_case(Path(case), robot)
+    return diagnose_runs(runs, model, without, say, started)

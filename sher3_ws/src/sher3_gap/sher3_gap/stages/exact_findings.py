@@ -1,0 +1,38 @@
+"""What the findings of both exact stages have in common: no floor but rounding, and intervals of ticks not told."""
+
+from __future__ import annotations
+
+import numpy as np
+from sher3_diagnosis.finding import ExactFinding
+from sher3_diagnosis.thresholds import EXACT_UNTOLD
+from sher3_diagnosis.verdict import Cause, Interval, Parameter, Residual, Where
+from sher3_effects import library
+
+
+def exact_finding(where: Where, causes: list[Cause], closure: float) -> ExactFinding:
+    """Return a finding; what its causes leave of an exact stage is its floor, for nothing lies between the two."""
+    left = Residual(gap=where.floor, floor=where.floor, unit=where.unit)
+    return ExactFinding(where, causes, exact_interval(closure), left)
+
+
+def exact_place(stage: str, actuator: str, gap: float, floor: float, regime: str) -> Where:
+    """Return the place of an error that is computed: there is no doubt that it is there."""
+    return Where(stage=stage, actuator=actuator, gap=gap, floor=floor, unit="m/s", regime=regime, confidence=1.0)
+
+
+def exact_interval(value: float) -> Interval:
+    """Return the interval of a closure: no floor is unsure, only rare ticks cannot be told."""
+    return Interval(value=value, low=value - EXACT_UNTOLD, high=min(1.0, value + EXACT_UNTOLD))
+
+
+def exact_cause(effect: str, actuator: str, closure: float, **parameters: Parameter) -> Cause:
+    """Return a cause of an exact stage; family and stage are those of the effect's page."""
+    page = library()[effect]
+    return Cause(
+        effect=effect,
+        family=page.family,
+        stage=page.stage,
+        actuator=actuator,
+        parameters=parameters,
+        closure=exact_interval(float(np.clip(closure, 0.0, 1.0))),
+    )

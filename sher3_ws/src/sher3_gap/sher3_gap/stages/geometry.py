@@ -1,0 +1,167 @@
+"""Kinematic quantities along a recorded run, and how they change when the geometry is not nominal."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+from sher3_common.compiled import compiled
+from sher3_description import Robot
+from sher3_description.contract import GRAVITY
+from sher3_diagnosis.channel import Array
+from sher3_kinematics.kernel import (
+    KernelParameters,
+    delta_forward,
+    gravity_load_into,
+    kernel_parameters,
+    tip_jacobian_into,
+    tip_pose_into,
+)
+
+from sher3_gap.case.signals import RunSignals
+
+
+@compiled
+def _along(p: KernelParameters, q: Array, rotation: Array, position: Array, jacobian: Array, gravity: Array) -> None:
+    for k in range(q.shape[0]):
+        tip_pose_into(p, q[k], rotation[k], position[k])
+        tip_jacobian_into(p, q[k], jacobian[k])
+        gravity_load_into(p, q[k], gravity[k])
+
+
+@compiled
+def _poses(p: KernelParameters, q: Array, rotation: Array, position: Array) -> None:
+    for k in range(q.shape[0]):
+        tip_pose_into(p, q[k], rotation[k], position[k])
+
+
+@dataclass(frozen=True)
+class Path:
+    """Nominal kinematics at the residual grid of one run.
+
+    Attributes:
+        position: (g, 3) tip in {b}; rotation: (g, 3, 3) R_bt; jacobian: (g, 6, 5); gravity: (g, 5) G(q).
+        contact: (g, 3) known force on the tip in {b}; contact_force: (g, 5) J^T W.
+        loaded: (g,) a known load is on the tip.
+        tool_wrench, contact_wrench: (g, 6) what the sensor reads nominally of the tool's weight and of the
+            contact, in {f}.
+    """
+
+    position: Array
+    rotation: Array
+    jacobian: Array
+    gravity: Array
+    contact: Array
+    contact_force: Array
+    loaded: np.ndarray
+    tool_wrench: Array
+    contact_wrench: Array
+
+    @property
+    def nominal_wrench(self) -> Array:
+        """What the force sensor reads nominally, (g, 6) in {f}."""
+        return self.tool_wrench + self.contact_wrench
+
+
+class Geometry:
+    """Kinematics of one robot along runs; paths are computed once per run."""
+
+    def __init__(self, robot: Robot) -> None:
+        self.robot = robot
+        self._paths: dict[str, Path] = {}
+
+    @cached_property
+    def parameters(self) -> KernelParameters:
+        """Kernel parameters of the nominal robot."""
+        return kernel_parameters(self.robot)
+
+    def path(self, run: RunSignals) -> Path:
+        """Kinematics at the residual grid of `run`, from the load encoders (motor encoders where there are none)."""
+        if run.name not in self._paths:
+            self._paths[run.name] = self._compute(run)
+        return self._paths[run.name]
+
+    def positions(self, run: RunSignals) -> Array:
+        """Joint positions at the residual grid, (g, 5).
+
+        The reading of the tick, as the tracker's sample belongs to it.
+        """
+        source = run.motor if run.load is None else run.load
+        return np.ascontiguousarray(source[run.grid])
+
+    def _compute(self, run: RunSignals) -> Path:
+        q = self.positions(run)
+        g = len(q)
+        rotation, position = np.empty((g, 3, 3)), np.empty((g, 3))
+        jacobian, gravity = np.empty((g, 6, 5)), np.empty((g, 5))
+        _along(self.parameters, q, rotation, position, jacobian, gravity)
+        contact = np.zeros((g, 3)) if run.contact is None else run.contact[run.grid]
+        contact_force = np.einsum("gji,gj->gi", jacobian[:, :3], contact)
+        tool, touch = self._wrench(rotation, contact)
+        loaded = np.abs(contact).max(axis=1) > 0.0
+        return Path(position, rotation, jacobian, gravity, contact, contact_force, loaded, tool, touch)
+
+    def _wrench(self, rotation: Array, contact: Array) -> tuple[Array, Array]:
+        sensor = self.robot.force_sensor
+        weight = np.array([0.0, 0.0, -sensor.tool_mass * GRAVITY])
+        gravity = np.einsum("gji,j->gi", rotation, weight)
+        tool = np.hstack([gravity, np.cross(np.array(sensor.tool_com), gravity)])
+        force = np.einsum("gji,gj->gi", rotation, contact)
+        return tool, np.hstack([force, np.cross(-np.array(sensor.position), force)])
+
+    def platform(self, run: RunSignals) -> Array:
+        """Platform centre in {b} at the residual grid, (g, 3)."""
+        return np.array([delta_forward(self.parameters, *q[:3]) for q in self.positions(run)])
+
+    def links(self, platform: Array) -> Array:
+        """Gamma (g, 6, 6) for platform centres (g, 3): columns (u; b x u), links of leg 1, 2, 3 in pairs."""
+        delta = self.robot.delta
+        half = 0.5 * delta.leg_width
+        inner = np.sqrt(delta.platform_radius**2 - half**2)
+        spread = np.sqrt(delta.base_radius**2 - half**2) - inner
+        gamma = np.empty((len(platform), 6, 6))
+        for k, azimuth in enumerate(delta.leg_azimuth):
+            radial = np.array([np.cos(azimuth), np.sin(azimuth), 0.0])
+            across = platform[:, :2] - spread * radial[:2]
+            height = np.sqrt(delta.link_length**2 - (across**2).sum(axis=1))
+            u = np.column_stack([across, height]) / delta.link_length
+            for side in (0, 1):
+                ball = inner * radial + (1 - 2 * side) * half * np.array([-radial[1], radial[0], 0.0])
+                gamma[:, :3, 2 * k + side], gamma[:, 3:, 2 * k + side] = u, np.cross(ball, u)
+        return gamma
+
+    def poses(self, parameters: KernelParameters, q: Array) -> tuple[Array, Array]:
+        """Rotation (g, 3, 3) and position (g, 3) of the tip of a robot with other kernel parameters."""
+        rotation, position = np.empty((len(q), 3, 3)), np.empty((len(q), 3))
+        _poses(parameters, np.ascontiguousarray(q), rotation, position)
+        return rotation, position
+
+    def tip_error(self, run: RunSignals) -> Array:
+        """Tracked pose minus nominal pose at its own tick, sorted into the residual grid, (g, 6): position, rotation
+        vector in {b}; 0 where no sample.
+        """
+        assert run.tracker_position is not None and run.tracker_rotation is not None and run.tracker_index is not None
+        source = run.motor if run.load is None else run.load
+        rotation, position = self.poses(self.parameters, source[run.tracker_index])
+        out, slot = np.zeros((len(run.grid), 6)), run.tracker_slot
+        out[slot, :3] = run.tracker_position - position
+        measured = Rotation.from_quat(run.tracker_rotation)
+        out[slot, 3:] = (measured * Rotation.from_matrix(rotation).inv()).as_rotvec()
+        return out
+
+    def pose_change(self, run: RunSignals, step: float, **changes: float) -> Array:
+        """Derivative of the tip pose along a change of kernel parameters, (g, 6) per unit, by a central difference.
+
+        `changes` gives the direction (d parameter per unit); `step` is the size of the difference in that unit.
+        """
+        q = self.positions(run)
+        sides = []
+        for sign in (1.0, -1.0):
+            moved = {k: getattr(self.parameters, k) + sign * step * d for k, d in changes.items()}
+            sides.append(self.poses(self.parameters._replace(**moved), q))
+        (r1, p1), (r0, p0) = sides
+        linear = (p1 - p0) / (2.0 * step)
+        angular = (Rotation.from_matrix(r1) * Rotation.from_matrix(r0).inv()).as_rotvec() / (2.0 * step)
+        return np.hstack([linear, angular])

@@ -1,0 +1,117 @@
+"""What the recorded topics can tell apart at all: structural isolability, computed before anything is fitted.
+
+One DAE of the signal chain with one fault per effect, analysed by its Dulmage-Mendelsohn decomposition (Krysander and
+Frisk 2008) with `faultdiagnosistoolbox`. Effects in one group show in the same equations: only the *shape* of their
+signature (over speed, position, load, time) can tell them apart, never the place where they show.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+from sher3_effects import library
+
+PAYLOAD = "payload"
+"""Stands for known tip loads among the topics: the contract records them, a surgeon's hand does not."""
+
+
+class Equation(NamedTuple):
+    """One equation: its unknowns, the effects that break it, and the topic it needs when it is a reading."""
+
+    unknowns: tuple[str, ...]
+    effects: tuple[str, ...] = ()
+    topic: str = ""
+
+
+@dataclass(frozen=True)
+class Structure:
+    """Result of the analysis.
+
+    Attributes:
+        groups: effect ids that the structure cannot tell apart, largest group first; groups of one are told apart.
+        invisible: effects that no combination of the recorded topics shows.
+        topics: the topics the analysis used.
+    """
+
+    groups: tuple[frozenset[str], ...]
+    invisible: frozenset[str]
+    topics: frozenset[str]
+
+    def group_of(self, effect: str) -> frozenset[str]:
+        """Return the group an effect belongs to; the invisible ones are one group."""
+        return next((g for g in self.groups if effect in g), self.invisible)
+
+
+def _breaking(*relations: str) -> tuple[str, ...]:
+    """Return the effects that break one of the relations: the one their page names, or the one of their stage."""
+    return tuple(i for i, page in library().items() if (page.breaks or page.stage) in relations)
+
+
+def _chain() -> list[Equation]:
+    """Return the chain of one axis from set-point to tip; the tip twice, because loads come and go within a run."""
+    return [
+        Equation(("reference",), (), "setpoint_js"),
+        Equation(("command", "reference", "load_reading"), _breaking("controller")),
+        Equation(("demand", "command"), _breaking("transport")),
+        Equation(("force", "demand", "speed"), _breaking("drive")),
+        Equation(("force", "speed", "motor", "load", "wrench"), _breaking("motor_mechanics")),
+        Equation(("speed", "motor")),
+        Equation(("load", "motor", "force"), _breaking("transmission")),
+        Equation(("free_tip", "load"), _breaking("mechanism")),
+        Equation(("loaded_tip", "load", "wrench"), _breaking("mechanism", "structure")),
+        Equation(("command",), (), "servo_jv"),
+        Equation(("demand",), (), "drives/setpoint_jv"),
+        Equation(("force",), (), "drives/measured_js"),
+        Equation(("motor",), _breaking("both_encoders"), "drives/measured_js"),
+        Equation(("load_reading", "load"), _breaking("load_encoder", "both_encoders")),
+        Equation(("load_reading",), (), "measured_js"),
+        Equation(("wrench_reading", "wrench", "load"), _breaking("force_sensor")),
+        Equation(("wrench_reading",), (), "force/measured_cf"),
+        Equation(("wrench",), (), PAYLOAD),
+        Equation(("free_tip",), (), "tracker/measured_cp"),
+        Equation(("loaded_tip",), (), "tracker/measured_cp"),
+    ]
+
+
+def _incidence(equations: Iterable[Equation], columns: list[str], field: str) -> np.ndarray:
+    rows = [[int(name in getattr(e, field)) for name in columns] for e in equations]
+    return np.array(rows, dtype=np.int64).reshape(len(rows), len(columns))
+
+
+@lru_cache(maxsize=64)
+def _analyse(topics: frozenset[str]) -> Structure:
+    from faultdiagnosistoolbox import DiagnosisModel  # seconds to import, wanted by reports only
+
+    equations = [e for e in _chain() if not e.topic or e.topic in topics]
+    unknowns = sorted({u for e in equations for u in e.unknowns})
+    effects = sorted({f for e in equations for f in e.effects})
+    x, f = _incidence(equations, unknowns, "unknowns"), _incidence(equations, effects, "effects")
+    model = DiagnosisModel({"type": "MatrixStruc", "X": x, "F": f, "Z": [], "x": unknowns, "f": effects})
+    overdetermined = list(model.GetDMParts().Mp.row)
+    visible = f[overdetermined].any(axis=0)
+    confused = np.asarray(model.IsolabilityAnalysis(), dtype=bool)  # [i, j]: i cannot be isolated from j
+    alike = confused & confused.T
+    groups = {frozenset(effects[j] for j in np.flatnonzero(alike[i] & visible)) for i in np.flatnonzero(visible)}
+    hidden = frozenset(e for e, seen in zip(effects, visible, strict=True) if not seen)
+    ordered = tuple(sorted(groups, key=lambda g: (-len(g), sorted(g))))
+    return Structure(ordered, hidden, topics)
+
+
+def structure(topics: Collection[str], known_load: bool = True) -> Structure:
+    """Analyse what the recorded topics can tell apart.
+
+    Args:
+        topics: names relative to `/sher3`; those that no equation uses are ignored.
+        known_load: whether the load on the tip is known, as in scripted runs.
+    """
+    used = {e.topic for e in _chain() if e.topic} & set(topics)
+    return _analyse(frozenset(used | ({PAYLOAD} if known_load else set())))
+
+
+def isolability(topics: Collection[str], known_load: bool = True) -> list[set[str]]:
+    """Return the groups of effect ids that these topics cannot tell apart by where they show; see `structure`."""
+    return [set(group) for group in structure(topics, known_load).groups]

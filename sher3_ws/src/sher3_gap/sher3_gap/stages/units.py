@@ -1,0 +1,36 @@
+"""Units of the robot's residual channels, and where its effects may sit."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.effect import ROTARY
+from sher3_sim.effect import SITES
+
+UNITS = {
+    "transport": "m/s",
+    "controller": "m/s",
+    "drive": "N",
+    "motor_mechanics": "N",
+    "transmission": "m",
+    "mechanism": "m",
+    "structure": "m",
+    "sensing": "N",
+}
+"""Stage -> unit of its first component on a linear axis."""
+ROTARY_AXES = frozenset({"roll"})
+"""Actuators that turn."""
+PLACES: Mapping[str, tuple[str, ...]] = SITES
+"""Kind of place -> sites of the robot."""
+FORCE_SENSOR = Channel("sensing", "force_sensor")
+TIP, LOADED_TIP = Channel("mechanism", "tip"), Channel("structure", "tip")
+AS_BUILT: Mapping[Channel, Array] = {FORCE_SENSOR: np.array([1.0e-3] * 3 + [1.2e-5] * 3)}
+"""What a healthy force sensor may deviate from its drawing, which no repeat shows: N and N m."""
+
+
+def unit_of(channel: Channel) -> str:
+    """Return the unit of the first component of a channel."""
+    unit = UNITS[channel.stage]
+    return ROTARY.get(unit, unit) if channel.actuator in ROTARY_AXES else unit

@@ -1,0 +1,69 @@
+"""Every page on simulated runs: its signature is finite, and a fit finds what its form in the plant did."""
+
+import numpy as np
+import pytest
+from sher3_diagnosis.attribute.candidates import Candidates
+from sher3_diagnosis.fitting import make_term
+from sher3_effects import library
+from sher3_gap.evidence import gather
+from sher3_gap.excitation import excite
+from sher3_gap.experiments.rehearsal import rehearse
+from sher3_gap.stages.units import PLACES
+from sher3_sim import RunScatter
+from simulated import ROBOT, runs_of, signals
+
+
+@pytest.fixture(scope="module")
+def evidence():
+    return gather(signals(runs_of(("reversals", "loads"), repeats=1)), ROBOT)
+
+
+@pytest.mark.parametrize("effect", library().values(), ids=library())
+def test_signatures_are_finite_on_their_channels(effect, evidence):
+    site = PLACES[effect.places[0]][0]
+    shapes = effect.shapes(evidence.views, site) if effect.channels(site) else []
+    for shape in shapes[:2]:
+        term = make_term(evidence.data, effect, site, shape)
+        for part in (*term.columns, *term.fixed):
+            for channel, values in part.items():
+                assert np.isfinite(values).all(), (effect.id, channel)
+        coefficients = np.ones(term.width) * 0.1
+        for name, value in effect.parameters(shape, coefficients).items():
+            assert np.isfinite(value)
+            assert effect.unit(name, site, False)
+
+
+QUIET = RunScatter(zero=0.0, disturbance=0.0, viscous=0.0)
+RECOVERED = [
+    ("coulomb_friction", "delta_1", {"force": 0.8}),
+    ("viscous_friction", "tilt", {"extra": 40.0}),
+    ("viscous_friction", "roll", {"extra": 0.05}),
+    ("cogging", "delta_2", {"amplitude": 0.6, "periods_per_rev": 6.0}),
+    ("torque_constant", "delta_3", {"relative": 0.08}),
+    ("lead_error", "roll", {"relative": 1e-3}),
+    ("backlash", "tilt", {"width": 4e-5}),
+    ("backlash", "roll", {"width": 1e-3}),
+    ("transmission_ripple", "delta_1", {"amplitude": 1e-5, "periods_per_rev": 2.0}),
+    ("tool_offset", "tip", {"x": 1e-4}),
+    ("link_length_error", "delta_2", {"length": 1e-4}),
+    ("base_tilt", "tip", {"x": 1e-3}),
+    ("force_bias", "force_sensor", {"fx": 0.2}),
+    ("force_crosstalk", "force_sensor", {"xz": 0.05}),
+    ("drive_lag", "delta_1", {"time_constant": 6e-3}),
+]
+
+
+@pytest.mark.parametrize(("effect", "site", "truth"), RECOVERED, ids=[f"{e}-{s}" for e, s, _ in RECOVERED])
+def test_a_fit_finds_what_the_form_in_the_plant_did(effect, site, truth):
+    """Simulated, seen in its channel, fitted, carried back to the simulator: within five percent of the truth."""
+    page = library()[effect]
+    runs = rehearse(
+        ROBOT, [(excite(x, ROBOT), 0) for x in ("sweep", "loads")], [page.plant(site, **truth)], seed=1, scatter=QUIET
+    )
+    evidence = gather(signals(runs), ROBOT)
+    found = Candidates(evidence, [page]).best(page, site)
+    assert found is not None
+    assert set(page.channels(site)) & found.terms[0].channels
+    (part,) = page.to_simulator(site, page.parameters(found.terms[0].shape, found.of(0)), ROBOT)
+    for name, value in truth.items():
+        assert part.parameters[name] == pytest.approx(value, rel=0.05), part

@@ -1,0 +1,89 @@
+"""Causes of late commands from timings that are written down."""
+
+import numpy as np
+import pytest
+from recorded import PERIOD, ROBOT, run
+from sher3_diagnosis.thresholds import DROPS_SEEN
+from sher3_gap.stages.timing import Timing
+from sher3_gap.stages.transport_causes import transport_finding
+
+RUNS = [run(1000, command=0.0, echo=0.0)]
+
+
+def timing(**facts):
+    given = {
+        "energy": 1.0,
+        "shared": 1.0,
+        "constant": 1.0,
+        "per_tick": 1.0,
+        "latency": np.zeros(5),
+        "common": 0.0,
+        "samples": np.zeros(500),
+        "drops": 0.0,
+        "scatter": 0.0,
+        **facts,
+    }
+    return Timing(**given)
+
+
+def found(without=(), **facts):
+    return transport_finding(timing(**facts), RUNS, ROBOT, without)
+
+
+def test_nothing_is_found_where_commands_arrive_on_time():
+    assert found(energy=0.0) is None
+    assert transport_finding(None, RUNS, ROBOT) is None
+
+
+def test_a_common_latency_is_a_delay_in_seconds():
+    late = {"latency": np.full(5, 1.5), "samples": np.full(500, 1.5), "shared": 0.0, "constant": 0.0, "per_tick": 0.0}
+    (cause,) = found(**late).causes
+    assert (cause.effect, cause.actuator) == ("command_delay", "all")
+    assert cause.parameters["delay"].value == pytest.approx(1.5 * PERIOD)
+    assert cause.parameters["delay"].high - cause.parameters["delay"].low == pytest.approx(0.02 * PERIOD)
+    assert found(**late).closure.value == pytest.approx(1.0)
+    assert found(("command_delay",), **late).causes == []
+
+
+def test_one_axis_later_than_the_others_is_a_skew_on_that_axis():
+    latency = np.array([0.0, 0.8, 0.0, 0.0, 0.0])
+    result = found(latency=latency, constant=0.0, per_tick=0.0)
+    (cause,) = result.causes
+    assert (cause.effect, cause.actuator) == ("axis_skew", "delta_2")
+    assert cause.parameters["skew"].value == pytest.approx(0.8 * PERIOD)
+    assert result.where.actuator == "delta_2"
+
+
+def test_commands_held_for_whole_periods_are_drops():
+    samples = np.concatenate([np.zeros(490), np.ones(10)])
+    (cause,) = found(samples=samples, drops=0.02, per_tick=0.0).causes
+    assert cause.effect == "dropped_commands"
+    share = cause.parameters["probability"]
+    error = 2.0 * np.sqrt(0.02 * 0.98 / 500) + 0.002
+    assert (share.value, share.low, share.high) == (0.02, pytest.approx(0.02 - error), pytest.approx(0.02 + error))
+    assert found(samples=samples, drops=DROPS_SEEN, per_tick=0.999).causes == []
+
+
+def test_latencies_that_scatter_are_jitter_with_their_rms():
+    samples = np.abs(np.random.default_rng(0).normal(0.0, 0.3, 500))
+    scatter = float(samples.std())
+    median = np.full(5, float(np.median(samples)))
+    facts = {"samples": samples, "scatter": scatter, "latency": median, "constant": 0.5, "per_tick": 0.0}
+    (cause,) = found(**facts).causes
+    assert cause.effect == "command_jitter"
+    assert cause.parameters["sigma"].value == pytest.approx(np.sqrt(np.mean(samples**2)) * PERIOD)
+    assert cause.parameters["sigma"].low < 0.3 * PERIOD < cause.parameters["sigma"].high
+
+
+def test_a_single_late_axis_is_where_its_lateness_sits():
+    facts = {"alone": 4, "latency": np.array([0.0, 0.0, 0.0, 0.0, 0.6]), "samples": np.full(500, 0.6)}
+    result = found(constant=0.0, per_tick=0.0, **facts)
+    assert result.where.actuator == "tilt"
+    assert [(c.effect, c.actuator) for c in result.causes] == [("axis_skew", "tilt")]
+
+
+def test_the_gap_is_the_rms_of_the_echo_error_in_units_of_the_axes():
+    result = found(energy=5000.0)
+    top = np.median([a.limits.velocity for a in ROBOT.actuators])
+    assert result.where.gap == pytest.approx(top)  # an energy of one per axis and tick
+    assert result.where.confidence == 1.0

@@ -1,0 +1,28 @@
+"""The nominal plant driven as a run was."""
+
+import numpy as np
+import pytest
+from recorded import ROBOT, run, stroke
+from sher3_gap.simulate.twin import bridged, driven_as, followed
+
+
+def test_a_run_without_set_points_has_no_twin_but_can_be_followed():
+    signals = run(400, motor=stroke())
+    assert driven_as(signals, ROBOT) is None
+    own = followed(signals)
+    assert own.reference == pytest.approx(signals.smooth)
+    twin = driven_as(own, ROBOT)
+    assert np.abs(twin.motor - signals.motor)[100:300].max() < 0.2 * np.abs(signals.motor).max()
+
+
+def test_a_run_with_set_points_keeps_them():
+    signals = run(400, reference=stroke(), reference_velocity=0.0)
+    assert followed(signals) is signals
+
+
+def test_a_load_is_bridged_by_a_straight_line_where_it_is_not_known():
+    contact, known = np.zeros((5, 3)), np.array([True, False, False, True, True])
+    contact[3:] = 3.0
+    assert bridged(run(5, contact=contact, contact_known=known))[:, 0].tolist() == [0.0, 1.0, 2.0, 3.0, 3.0]
+    assert not bridged(run(5)).any()
+    assert bridged(run(5, contact=contact)) is not None

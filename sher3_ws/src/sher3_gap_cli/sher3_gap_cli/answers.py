@@ -1,0 +1,172 @@
+"""Cases and their answers: one or many, diagnosed on this machine or on a cluster, written to files."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Collection, Iterator, Sequence
+from contextlib import closing
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from sher3_common.errors import Sher3Error
+from sher3_diagnosis.verdict import Verdict
+
+from sher3_gap_cli.options import RequestError
+
+if TYPE_CHECKING:
+    from sher3_diagnosis import Diagnosis
+
+VERDICT_FILE, REPORT_FILE = "verdict.json", "report.html"
+Say = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Task:
+    """One case to diagnose; paths as the worker sees them."""
+
+    case: Path
+    robot: Path | None = None
+    without: tuple[str, ...] = ()
+    report: bool = True
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What a worker hands back: a verdict, its five lines and a report as text, or the error that stopped it."""
+
+    task: Task
+    verdict: Verdict | None = None
+    lines: Sequence[tuple[str, str]] = ()
+    html: str = ""
+    error: Sher3Error | None = None
+
+
+def answer(task: Task, say: Say = lambda _: None) -> Answer:
+    """Diagnose one case; input errors come back as the answer, mistakes of ours are raised."""
+    from sher3_diagnosis.report.summary import five_lines
+
+    try:
+        found = _diagnosed(task, say)
+    except Sher3Error as error:
+        return Answer(task, error=error)
+    lines = five_lines(found.verdict, found.machine.reporter().simulated)
+    if not task.report:
+        return Answer(task, found.verdict, lines)
+    from sher3_diagnosis.report.page import render
+
+    say("writing the report")
+    return Answer(task, found.verdict, lines, render(found, task.case.resolve().name))
+
+
+def _diagnosed(task: Task, say: Say) -> Diagnosis[Any]:
+    """Diagnose the case of the SHER or of another machine."""
+    from sher3_machines import is_machine_case
+
+    if is_machine_case(task.case):
+        from sher3_diagnosis import diagnose
+        from sher3_machines import open_case
+
+        started = time.perf_counter()
+        machine, runs = open_case(task.case)
+        return diagnose(machine, runs, task.without, say, started)
+    from sher3_gap import diagnose_case
+
+    return diagnose_case(task.case, task.robot, task.without, say)
+
+
+def check_effects(without: Sequence[str]) -> tuple[str, ...]:
+    """Return the effects to leave out, split at commas; raises RequestError for an unknown one."""
+    from sher3_effects import library
+
+    names = tuple(name for entry in without for name in entry.split(",") if name)
+    for name in names:
+        if name not in library():
+            raise RequestError(
+                "no such effect", value=name, limit=", ".join(library()), remedy="see `sher3 gap library`"
+            )
+    return names
+
+
+def folders(cases: Collection[Path], out: Path | None) -> dict[Path, Path]:
+    """Return the output folder of every case: `out` for one, `out/<case>` for several; by default `gap/<case>`.
+
+    Raises:
+        RequestError: two cases would write to one folder.
+    """
+    if out is not None and len(cases) == 1:
+        return {case: out for case in cases}
+    root = Path("gap") if out is None else out
+    chosen = {case: root / case.resolve().name for case in cases}
+    if len(set(chosen.values())) < len(cases):
+        names = ", ".join(sorted(str(case) for case in cases))
+        raise RequestError("cases of the same name", value=names, remedy="diagnose them with separate --out")
+    return chosen
+
+
+def run_here(tasks: Sequence[Task], jobs: int, say: Say) -> Iterator[Answer]:
+    """Diagnose on this machine, `jobs` cases at a time; answers as they come."""
+    if jobs == 1 or len(tasks) == 1:
+        for task in tasks:
+            yield answer(task, say)
+        return
+    from joblib import Parallel, delayed
+
+    parallel = Parallel(n_jobs=min(jobs, len(tasks)), return_as="generator_unordered")
+    yield from parallel(delayed(answer)(task) for task in tasks)
+
+
+def run_on_dask(tasks: Sequence[Task], address: str, timeout: float = 10.0) -> Iterator[Answer]:
+    """Diagnose on a Dask cluster whose workers see the case folders under the same paths; answers as they come.
+
+    Raises:
+        RequestError: no scheduler answers at the address.
+    """
+    from distributed import Client, as_completed
+
+    try:
+        client = Client(address, timeout=timeout)
+    except (OSError, ValueError, TimeoutError) as error:
+        remedy = "start one with `dask scheduler --host 127.0.0.1`"
+        raise RequestError("no Dask scheduler answers", value=address, limit=f"{timeout:g} s", remedy=remedy) from error
+    absolute = [_absolute(task) for task in tasks]
+    with closing(client):
+        futures = client.map(answer, absolute, pure=False)
+        back = dict(zip((f.key for f in futures), tasks, strict=True))
+        for future in as_completed(futures):
+            found = future.result()
+            yield replace(found, task=back[future.key])
+
+
+def _absolute(task: Task) -> Task:
+    robot = None if task.robot is None else task.robot.resolve()
+    return Task(task.case.resolve(), robot, task.without, task.report)
+
+
+def write_answer(found: Answer, folder: Path) -> list[Path]:
+    """Write verdict and report into `folder`; return the files.
+
+    Raises:
+        RequestError: the folder cannot be written.
+    """
+    assert found.verdict is not None
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        found.verdict.write(folder / VERDICT_FILE)
+        if not found.html:
+            return [folder / VERDICT_FILE]
+        (folder / REPORT_FILE).write_text(found.html, encoding="utf-8")
+    except OSError as error:
+        raise RequestError(
+            f"{folder}: cannot be written", value=error.strerror, remedy="choose another --out"
+        ) from error
+    return [folder / VERDICT_FILE, folder / REPORT_FILE]
+
+
+def as_data(found: Answer, files: Sequence[Path]) -> dict[str, Any]:
+    """Return an answer as plain data for `--json`."""
+    if found.error is not None:
+        return {"case": str(found.task.case), "error": found.error.to_dict()}
+    assert found.verdict is not None
+    verdict = found.verdict.model_dump(by_alias=True, mode="json")
+    return {"case": str(found.task.case), "files": [str(f) for f in files], "verdict": verdict}

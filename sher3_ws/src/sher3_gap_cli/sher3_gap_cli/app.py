@@ -1,0 +1,34 @@
+"""The command group `sher3 gap`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import typer
+
+from sher3_gap_cli.apply import apply, compare
+from sher3_gap_cli.challenge import challenge
+from sher3_gap_cli.diagnose import diagnose
+from sher3_gap_cli.excite import excite
+from sher3_gap_cli.experiment import experiment
+from sher3_gap_cli.intake import IMPORT_EXAMPLE, import_data
+from sher3_gap_cli.library import library
+from sher3_gap_cli.monitor import monitor
+
+app = typer.Typer(no_args_is_help=True, help="Find and explain the gap between a robot and its simulation.")
+
+EXAMPLES: dict[Callable[..., None], str] = {
+    diagnose: "sher3 gap diagnose case_001 · sher3 gap diagnose cases/* --jobs 2 --out verdicts",
+    apply: "sher3 gap apply gap/case_001/verdict.json -o corrected.yaml --case case_001",
+    compare: "sher3 gap compare case corrected",
+    experiment: "sher3 gap experiment gap/case_001/verdict.json case_001 -o tell_apart.yaml",
+    library: "sher3 gap library · sher3 gap library friction · sher3 gap library backlash",
+    excite: "sher3 gap excite · sher3 gap excite all -o case · sher3 gap excite sweep --simulate -o case",
+    monitor: "sher3 gap monitor --effects effects.yaml --json",
+    challenge: "sher3 gap challenge --seeds 0:40 --json",
+}
+"""Every command whose function bears its name, with an example."""
+
+for _command, _example in EXAMPLES.items():
+    app.command(epilog=f"Example{'s' * (' · ' in _example)}: {_example}")(_command)
+app.command("import", epilog=f"Example: {IMPORT_EXAMPLE}")(import_data)

@@ -1,0 +1,86 @@
+"""`sher3 gap apply` and `compare`: the causes in the simulator, and what is left of the gap."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from sher3_gap_cli.options import Json, Library, RobotFile, VerdictFile, reported
+
+if TYPE_CHECKING:
+    from sher3_gap.simulate.apply import StageGap
+    from sher3_sim import PlantEffect
+
+
+def apply(
+    verdict: VerdictFile,
+    output: Annotated[Path, typer.Option("--output", "-o", help="Effects file to write.")] = Path("effects.yaml"),
+    case: Annotated[Path | None, typer.Option(help="Also run this case again and print the gap that is left.")] = None,
+    robot: RobotFile = None,
+    own: Library = None,
+    as_json: Json = False,
+) -> None:
+    """Write the effects file that puts a verdict's causes into the simulator; `sher3 up --effects` loads it."""
+    from sher3_description import load_robot
+    from sher3_effects import add_library
+    from sher3_gap.case.loading import load_case
+    from sher3_gap.simulate.apply import apply_verdict, compare_case
+
+    with reported(as_json):
+        add_library(own or [])
+        runs, model = load_case(case, robot) if case else ([], load_robot(robot))
+        effects = apply_verdict(verdict, output, model)
+        stages = compare_case(runs, model, effects) if runs else []
+        if as_json:
+            typer.echo(json.dumps({"effects": str(output), "count": len(effects), "stages": stages_data(stages)}))
+        else:
+            typer.echo(applied_text(effects, stages, output))
+
+
+def compare(
+    case: Annotated[Path, typer.Argument(help="Case of the robot.")],
+    other: Annotated[Path, typer.Argument(help="Case of the corrected simulator, of the same excitations.")],
+    robot: RobotFile = None,
+    as_json: Json = False,
+) -> None:
+    """Print per stage how far the robot is from the nominal simulator, and from what another case recorded."""
+    from sher3_gap.case.loading import load_case
+    from sher3_gap.simulate.apply import compare_cases
+
+    with reported(as_json):
+        runs, model = load_case(case, robot)
+        stages = compare_cases(runs, model, load_case(other, robot)[0])
+        typer.echo(json.dumps({"stages": stages_data(stages)}) if as_json else stages_text(stages))
+
+
+def applied_text(effects: Sequence[PlantEffect], stages: Sequence[StageGap], output: Path) -> str:
+    """Return what was written, and the gap per stage before and after."""
+    from sher3_diagnosis.report.words import quantity
+
+    lines = [f"{output}: {len(effects)} effect{'s' * (len(effects) != 1)}"]
+    for effect in effects:
+        spec = type(effect).specification(effect.actuator)
+        values = ", ".join(f"{n} {quantity(v, spec[n].unit)}" for n, v in effect.parameters.items() if v)
+        lines.append(f"  {effect.id} on {effect.actuator}: {values}")
+    return "\n".join([*lines, *(["", stages_text(stages)] if stages else [])])
+
+
+def stages_text(stages: Sequence[StageGap]) -> str:
+    """Return the gap per stage before and after as a table."""
+    from sher3_diagnosis.report.words import place, quantity, share, words
+
+    lines = [f"{'robot against simulator, rms':<34}{'nominal':>12}{'corrected':>12}{'closed':>9}"]
+    for s in stages:
+        closed = "-" if s.closure is None else share(s.closure)
+        name = f"{words(s.stage).lower()}, {place(s.actuator)}"
+        lines.append(f"  {name:<32}{quantity(s.before, s.unit):>12}{quantity(s.after, s.unit):>12}{closed:>9}")
+    return "\n".join(lines)
+
+
+def stages_data(stages: Sequence[StageGap]) -> list[dict[str, object]]:
+    """Return the gaps per stage as plain data."""
+    return [{**s.__dict__, "closure": s.closure} for s in stages]

@@ -1,0 +1,47 @@
+"""`sher3 gap diagnose`: the answer on one or many cases, on this machine or on a cluster."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from sher3_gap_cli.options import BAD_INPUT, Json, Library, RobotFile, reported
+
+
+def diagnose(
+    case: Annotated[list[Path], typer.Argument(help="Case folder; several are diagnosed one by one.")],
+    robot: RobotFile = None,
+    without: Annotated[list[str] | None, typer.Option(help="Leave this effect out; repeat for more.")] = None,
+    out: Annotated[Path | None, typer.Option(help="Folder for verdict.json and report.html; default gap/CASE.")] = None,
+    own: Library = None,
+    jobs: Annotated[int, typer.Option(min=1, help="Cases at a time on this machine.")] = 1,
+    dask: Annotated[str, typer.Option(help="Address of a Dask scheduler that diagnoses the cases.")] = "",
+    report: Annotated[bool, typer.Option("--report/--no-report", help="Write the HTML report.")] = True,
+    as_json: Json = False,
+) -> None:
+    """Say where robot and simulation part, which effect causes it and how far the gap shrinks; or abstain.
+
+    Exit codes: 0 every case was answered, 2 a case or option is wrong (one sentence says why).
+    """
+    from sher3_effects import add_library
+
+    from sher3_gap_cli.answers import Task, as_data, check_effects, folders, run_here, run_on_dask, write_answer
+    from sher3_gap_cli.printing import progress, summary
+
+    with reported(as_json):
+        add_library(own or [])
+        target, effects = folders(case, out), check_effects(without or [])
+        tasks = [Task(c, robot, effects, report) for c in case]
+        data: list[dict[str, Any]] = []
+        with progress(len(tasks)) as (say, done):
+            for found in run_on_dask(tasks, dask) if dask else run_here(tasks, jobs, say):
+                files = [] if found.error else write_answer(found, target[found.task.case])
+                data.append(as_data(found, files))
+                done(found, "" if as_json else summary(found, files, len(tasks) > 1))
+    if as_json:
+        typer.echo(json.dumps({"cases": data}, default=str))
+    if any("error" in entry for entry in data):
+        raise typer.Exit(BAD_INPUT)

@@ -1,0 +1,131 @@
+"""`sher3 gap experiment`: a design that tells rivals apart, and what its run realised of the prediction."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from sher3_gap_cli.options import Json, RobotFile, VerdictFile, reported
+
+if TYPE_CHECKING:
+    from sher3_gap.experiments.design import Experiment
+    from sher3_gap.experiments.separation import Separation
+
+
+def experiment(
+    verdict: VerdictFile,
+    case: Annotated[
+        Path | None, typer.Argument(help="Its case: actual floors and loads, excitations not again.")
+    ] = None,
+    output: Annotated[Path, typer.Option("--output", "-o", help="Excitation file to write.")] = Path("experiment.yaml"),
+    ran: Annotated[
+        Path | None, typer.Option(help="Case the written file was run to: predicted against realised.")
+    ] = None,
+    robot: RobotFile = None,
+    as_json: Json = False,
+) -> None:
+    """Design the excitation that best tells a verdict's rivals apart; `sher3 gap excite FILE` runs it."""
+    with reported(as_json):
+        text = (
+            design_command(verdict, case, output, robot, as_json)
+            if ran is None
+            else realised_command(verdict, output, ran, robot, as_json)
+        )
+        typer.echo(text)
+
+
+def design_command(verdict: Path, case: Path | None, output: Path, robot: Path | None, as_json: bool) -> str:
+    """Design an experiment, write its file and return what to print."""
+    from sher3_description import load_robot
+    from sher3_gap.case.loading import load_case
+    from sher3_gap.excitation.file import save_excitation
+    from sher3_gap.experiments.design import design_experiment
+    from sher3_gap.simulate.apply import read_verdict
+
+    from sher3_gap_cli.printing import steps
+
+    runs, model = load_case(case, robot) if case else ([], load_robot(robot))
+    with steps() as say:
+        made = design_experiment(read_verdict(verdict), model, say, runs=runs)
+    data = experiment_data(made)
+    save_excitation(output, made.excitation, data)
+    return json.dumps({"file": str(output), **data}) if as_json else experiment_text(made, output)
+
+
+def realised_command(verdict: Path, experiment: Path, ran: Path, robot: Path | None, as_json: bool) -> str:
+    """Judge the runs of an experiment and return what its prediction came to."""
+    from sher3_gap.case.loading import load_case
+    from sher3_gap.excitation.file import about_excitation
+    from sher3_gap.experiments.design import realised
+    from sher3_gap.simulate.apply import read_verdict
+
+    about = about_excitation(experiment)
+    runs, model = load_case(ran, robot)
+    found = realised(read_verdict(verdict), model, runs)
+    data = {
+        "predicted_separation": about.get("predicted_separation"),
+        "spread": about.get("spread"),
+        "realised_separation": found.floors,
+        "margin": found.margin,
+        "closest_rival": found.closest,
+        "runs": len(runs),
+    }
+    return json.dumps(data) if as_json else realised_text(found, about)
+
+
+def experiment_data(made: Experiment) -> dict[str, Any]:
+    """Return an experiment as plain data."""
+    predicted = made.predicted
+    return {
+        "separates": list(made.separates),
+        "predicted_separation": predicted.floors,
+        "spread": predicted.spread,
+        "draws": len(predicted.draws),
+        "resolved": predicted.resolved,
+        "margin": predicted.margin,
+        "closest_rival": predicted.closest,
+        "design": made.design,
+        "tried": made.tried,
+    }
+
+
+def experiment_text(made: Experiment, output: Path) -> str:
+    """Return what was designed and what to expect of it."""
+    settings = ", ".join(f"{k} {v}" for k, v in made.design.items())
+    predicted = made.predicted
+    lines = [
+        f"separates  {' / '.join(made.separates)}",
+        f"design     {settings} (best of {made.tried} rehearsals)",
+        f"predicted  {predicted.floors:.2f} ± {predicted.spread:.2f} floors from {predicted.closest} over "
+        f"{len(predicted.draws)} draws: {_outlook(predicted.margin)}",
+        f"file       {output}; run it with `sher3 gap excite {output} -o CASE`, then see what came of it with "
+        f"`sher3 gap experiment VERDICT -o {output} --ran CASE`",
+    ]
+    return "\n".join(lines)
+
+
+def realised_text(found: Separation, about: dict[str, Any]) -> str:
+    """Return predicted against realised."""
+    expected = about.get("predicted_separation")
+    said = "-" if expected is None else f"{expected:.2f} ± {about.get('spread', 0.0):.2f} floors"
+    return "\n".join(
+        [
+            f"predicted  {said}",
+            f"realised   {found.floors:.2f} floors from {found.closest}: {_verdict(found.margin)}",
+        ]
+    )
+
+
+def _outlook(margin: float) -> str:
+    if margin > 1.0:
+        return f"{margin:.1f} times what rules a rival out"
+    return f"only {margin:.2f} of what rules a rival out; no excitation of the family is expected to separate them"
+
+
+def _verdict(margin: float) -> str:
+    if margin > 1.0:
+        return f"{margin:.1f} times what rules a rival out"
+    return f"{margin:.2f} of what rules a rival out: not told apart" if margin > 0.0 else "a rival fits better"

@@ -1,0 +1,29 @@
+"""`sher3 gap library`: the effects the diagnosis knows, or the page of one."""
+
+from __future__ import annotations
+
+import json
+from typing import Annotated
+
+import typer
+
+from sher3_gap_cli.options import Json, Library, reported
+
+
+def library(
+    which: Annotated[str, typer.Argument(help="Effect id or family; all by default.")] = "",
+    own: Library = None,
+    as_json: Json = False,
+) -> None:
+    """List the effects the diagnosis knows, or print the whole page of one."""
+    from sher3_effects import add_library
+
+    from sher3_gap_cli.library_page import library_data, list_text, page_text
+
+    with reported(as_json):
+        add_library(own or [])
+        rows = library_data(which)
+        if as_json:
+            typer.echo(json.dumps({"effects": rows}))
+        else:
+            typer.echo(page_text(rows[0]) if len(rows) == 1 else list_text(rows))

@@ -1,0 +1,73 @@
+"""What the commands show while they work, and the answer of a diagnosis as text."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+
+from sher3_gap_cli.answers import Answer
+
+BAR, STEP, STATUS = 20, 60, 100
+"""Width of the bar and of the texts beside it, characters."""
+
+Done = Callable[[Answer, str], None]
+
+
+@contextmanager
+def progress(total: int) -> Iterator[tuple[Callable[[str], None], Done]]:
+    """Show progress on stderr; yields `say(step)` and `done(answer, text)`, which prints the text on stdout."""
+    columns = (
+        SpinnerColumn(),
+        TextColumn("{task.description}"),
+        BarColumn(BAR),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+    )
+    console = Console(stderr=True)
+    with Progress(*columns, console=console, transient=True) as bar:
+        task = bar.add_task("diagnosing", total=total)
+
+        def say(step: str) -> None:
+            bar.update(task, description=step[:STEP])
+            if not console.is_terminal:
+                console.print(f"  {step}", highlight=False, markup=False)
+
+        def done(found: Answer, text: str) -> None:
+            bar.advance(task)
+            if found.error is not None:
+                console.print(f"error: {found.task.case}: {found.error}", highlight=False, markup=False, soft_wrap=True)
+            elif text:
+                bar.stop()
+                print(text, flush=True)
+                bar.start()
+
+        yield say, done
+
+
+def summary(found: Answer, files: Sequence[Path], named: bool) -> str:
+    """Return the five lines of an answer, with the case's name before them when there are several."""
+    if found.verdict is None:
+        return ""
+    lines = [f"{found.task.case}"] if named else []
+    written = ", ".join(str(f) for f in files)
+    notes = [("note", note) for note in found.verdict.notes]
+    labelled = [*found.lines, *notes, ("files", written)]
+    return "\n".join([*lines, *(f"{label:<8} {text}" for label, text in labelled)])
+
+
+@contextmanager
+def steps() -> Iterator[Callable[[str], None]]:
+    """Show the steps of one task on stderr."""
+    console = Console(stderr=True)
+    with console.status("working") as status:
+
+        def say(step: str) -> None:
+            status.update(step[:STATUS])
+            if not console.is_terminal:
+                console.print(f"  {step}", highlight=False, markup=False)
+
+        yield say

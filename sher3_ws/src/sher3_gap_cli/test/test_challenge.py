@@ -1,0 +1,39 @@
+"""`sher3 gap challenge`: ranges, and tables over finished folders."""
+
+import json
+
+import pytest
+from sher3_challenge.errors import ChallengeError
+from sher3_gap_cli.app import app
+from sher3_gap_cli.challenge import parse_gap, parse_seeds
+from typer.testing import CliRunner
+
+ROW = {"case": "a", "truth": "no_gap", "said": "no_gap", "fault": "-", "answer": "-", "families": "-"}
+
+
+def test_ranges():
+    assert parse_seeds("3:7") == (3, 7)
+    assert parse_gap("0.5:30") == (0.5, 30.0)
+
+
+@pytest.mark.parametrize("text", ["3:1", "0:4", "2:101", "three"])
+def test_a_gap_that_is_no_range_is_named(text):
+    with pytest.raises(ChallengeError, match="not a range"):
+        parse_gap(text)
+
+
+def test_the_command_names_a_bad_range():
+    result = CliRunner().invoke(app, ["challenge", "--seeds", "three"])
+    assert result.exit_code == 2 and "seeds are not a range" in result.output
+
+
+def test_finished_folders_are_printed_together(tmp_path):
+    arguments = []
+    for k, name in enumerate(("x", "y")):
+        row = {**ROW, "case": name, "said_family": "-", "detected": False}
+        kept = {"seeds": [k, k + 1], "seconds": 1.0, "errors": {}, "cases": {"diagnosis": [row]}}
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "scores.json").write_text(json.dumps(kept))
+        arguments += ["--merge", str(tmp_path / name)]
+    result = CliRunner().invoke(app, ["challenge", *arguments])
+    assert result.exit_code == 0 and "2 cases in 2 s" in result.output

@@ -1,0 +1,107 @@
+"""Residuals and floors of one axis, in blocks that take the place of runs when nothing was repeated."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from sher3_diagnosis.channel import Channel, Residual, Residuals
+from sher3_diagnosis.evidence import Evidence
+from sher3_diagnosis.whitened import Whitened
+
+from sher3_machines.axes.description import Axis
+from sher3_machines.axes.floors import floors_of
+from sher3_machines.axes.identify import identify_mass
+from sher3_machines.axes.record import AxesRun
+from sher3_machines.axes.signals import signals_of
+from sher3_machines.axes.view import AxisView
+from sher3_machines.thresholds import BLOCKS, MIN_BLOCK
+
+
+@dataclass(frozen=True, kw_only=True)
+class AxisEvidence(Evidence):
+    """The engine's evidence for one axis; a block of a record is a run.
+
+    Nothing says where two encoders have their zeros, so that `counts` is empty and no mean of theirs is a gap.
+
+    Attributes:
+        axis: as described.
+        runs: records as imported.
+        records: views of the axis, one for each record; blocks of one record share theirs.
+        mass: nominal or identified, kg or kg m^2; 0 where the force balance is not looked at.
+        mass_interval: 95 %, of an identified mass.
+    """
+
+    axis: Axis
+    runs: Sequence[AxesRun]
+    records: Sequence[AxisView]
+    mass: float
+    mass_interval: tuple[float, float] | None = None
+
+
+def gather_axis(runs: Sequence[AxesRun], axis: Axis, repeats: bool) -> AxisEvidence:
+    """Compute residuals and floors of one axis and cut them into blocks.
+
+    Raises:
+        MachineError: an unknown mass cannot be identified.
+    """
+    signals = [signals_of(run, axis, "repeats" if repeats else run.name) for run in runs]
+    mass, interval = (axis.mass, None) if isinstance(axis.mass, float) else (0.0, None)
+    if axis.mass == "unknown":
+        mass, interval = identify_mass([AxisView(s, axis, 0.0) for s in signals])
+    records = [AxisView(s, axis, mass) for s in signals]
+    found = [residuals_of(view) for view in records]
+    floors = floors_of(records, found, repeats)
+    per_record = -(-BLOCKS // len(records))
+    blocks = [(r, block) for r, x in enumerate(found) for block in blocks_of(x, per_record)]
+    return AxisEvidence(
+        excitations=[records[r].excitation for r, _ in blocks],
+        data=Whitened([records[r] for r, _ in blocks], [b for _, b in blocks], [floors[r] for r, _ in blocks]),
+        units=units_of(axis),
+        places={"axis": (axis.name,)},
+        rotary=frozenset({axis.name} if axis.motion == "rotary" else ()),
+        axis=axis,
+        runs=list(runs),
+        records=records,
+        mass=mass,
+        mass_interval=interval,
+    )
+
+
+def units_of(axis: Axis) -> Mapping[Channel, str]:
+    """Return the unit of each channel; the tracking error of a servo is a position."""
+    force = axis.unit_of_position if axis.servo else axis.unit_of_force
+    return {
+        Channel("motor_mechanics", axis.name): force,
+        Channel("transmission", axis.name): axis.unit_of_position,
+    }
+
+
+def residuals_of(view: AxisView) -> Residuals:
+    """Return the residuals of one record.
+
+    They are the force balance, or the tracking error of a servo, and load encoder minus motor encoder.
+    """
+    run, axis = view.run, view.described
+    out: Residuals = {}
+    if axis.servo:
+        assert run.reference is not None
+        out[Channel("motor_mechanics", axis.name)] = Residual(run.to_grid(run.reference - run.motor), run.inner)
+    elif axis.mass is not None and run.effort is not None:
+        balance = run.to_grid(run.effort) - view.inertial
+        out[Channel("motor_mechanics", axis.name)] = Residual(balance, view.in_motion)
+    if run.load is not None:
+        out[Channel("transmission", axis.name)] = Residual(run.to_grid(run.load - run.motor), run.inner)
+    return {channel: x for channel, x in out.items() if x.ok.sum() >= BLOCKS}
+
+
+def blocks_of(found: Residuals, number: int) -> list[Residuals]:
+    """Cut the residuals of a record into at most `number` blocks with about equal numbers of samples that count."""
+    if not found:
+        return []
+    counts = max(found.values(), key=lambda x: int(x.ok.sum())).ok
+    total = int(counts.sum())
+    number = max(1, min(number, total // MIN_BLOCK))
+    block = np.minimum(np.cumsum(counts) * number // (total + 1), number - 1)
+    return [{c: Residual(x.values, x.ok & (block == k)) for c, x in found.items()} for k in range(number)]

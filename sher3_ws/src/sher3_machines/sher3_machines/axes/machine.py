@@ -1,0 +1,137 @@
+"""A chain of axes as a machine of the diagnosis."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from sher3_diagnosis.attribute.candidates import Candidates
+from sher3_diagnosis.attribute.rivals import Attribution
+from sher3_diagnosis.attribute.search import Left, Say
+from sher3_diagnosis.effect import Effect
+from sher3_diagnosis.finding import ExactFinding, Finding
+from sher3_diagnosis.machine import Machine, Policy
+from sher3_diagnosis.verdict import Cause, Interval
+from sher3_effects import library, pages
+
+from sher3_machines.axes.description import AxesDescription, Axis
+from sher3_machines.axes.evidence import AxisEvidence, gather_axis
+from sher3_machines.axes.limits import EFFECT as LIMIT
+from sher3_machines.axes.limits import limit_finding
+from sher3_machines.axes.record import AxesRun
+from sher3_machines.axes.refine import refine_free
+from sher3_machines.axes.replay import replay
+from sher3_machines.axes.search import causes_of_axis
+
+if TYPE_CHECKING:
+    from sher3_machines.axes.reporter import AxesReporter
+
+NO_REPEATS = (
+    "no repeats: floors are the residuals' innovations or the sensors' resolution, and intervals come from blocks of a "
+    "record: what differs from day to day is in neither"
+)
+
+
+@dataclass(frozen=True)
+class Axes(Machine[AxesRun, AxisEvidence]):
+    """Axes that move independently of each other.
+
+    A description of a few lines leaves several plain causes out, so that the search goes on down to the floor. Records
+    are what somebody happened to take: nothing asks a cause to keep its size from one to the next.
+
+    Attributes:
+        description: nominal constants of every axis, and what was recorded of it.
+    """
+
+    description: AxesDescription
+    policy = Policy(down_to_floor=True, constancy=False, spill_over=False)
+
+    def library(self) -> Sequence[Effect]:
+        """Return the pages for these kinds of axes, and that of the limit, which is read off without a fit."""
+        kinds = sorted({kind_of(axis) for axis in self.description.axes}, reverse=True)
+        return [*(page for kind in kinds for page in pages(kind)), library()[LIMIT]]
+
+    def effects(self, evidence: AxisEvidence) -> Sequence[Effect]:
+        """Return the pages that can show in what was recorded of an axis."""
+        return pages(kind_of(evidence.axis), facts_of(evidence.axis))
+
+    def audit(self, runs: Sequence[AxesRun]) -> list[str]:
+        """Return what was done to the data, and whether floors are known from repeats."""
+        notes = [note for run in runs for note in run.notes]
+        return notes if self._repeats(runs) else [*notes, NO_REPEATS]
+
+    def gather(self, runs: Sequence[AxesRun]) -> Sequence[AxisEvidence]:
+        """Compute residuals and floors of every axis; raises MachineError where an unknown mass cannot be found."""
+        return [gather_axis(runs, axis, self._repeats(runs)) for axis in self.description.axes]
+
+    def exact(
+        self, runs: Sequence[AxesRun], evidence: Sequence[AxisEvidence], without: Collection[str]
+    ) -> list[ExactFinding]:
+        """Look for drives at their limit."""
+        if LIMIT in without:
+            return []
+        found = (limit_finding(runs, axis) for axis in self.description.axes)
+        return [limit for limit in found if limit is not None]
+
+    def attribute(self, evidence: AxisEvidence, candidates: Candidates, left_over: Left, say: Say) -> Attribution:
+        """Choose the causes of one axis; what it does at rest counts too."""
+        return causes_of_axis(evidence, candidates, left_over, say)
+
+    def refine(self, evidence: AxisEvidence, causes: list[Cause]) -> tuple[AxisEvidence, list[Cause]]:
+        """Refine mass and forces of a free axis on its simulated motion."""
+        return refine_free(evidence, causes)
+
+    def remarks(self, finding: Finding[AxisEvidence]) -> list[str]:
+        """Say which mass was found, what the recorded signals cannot tell, and how the axis runs again."""
+        again = replay(finding.evidence, finding.causes) if finding.significant else None
+        return [*mass_notes(finding.evidence), *blind_spots(finding.evidence.axis), *([again.note] if again else [])]
+
+    def reporter(self) -> AxesReporter:
+        """Return the part of this machine in a report."""
+        from sher3_machines.axes.reporter import AxesReporter
+
+        return AxesReporter()
+
+    def end_to_end(self, findings: Sequence[Finding[AxisEvidence]], causes: Sequence[Cause]) -> Interval | None:
+        """Return the closure of the position of the first axis that can be run again."""
+        runs_again = (replay(f.evidence, f.causes) for f in findings if f.significant)
+        return next((again.closure for again in runs_again if again is not None), None)
+
+    def _repeats(self, runs: Sequence[AxesRun]) -> bool:
+        return self.description.repeats and len(runs) > 1
+
+
+def kind_of(axis: Axis) -> str:
+    """Return the kind of machine that pages for an axis are written for."""
+    return "servo" if axis.servo else "axis"
+
+
+def facts_of(axis: Axis) -> set[str]:
+    """Return what is known of an axis, as pages ask for it."""
+    known = {
+        "lead": axis.lead is not None,
+        "load": axis.signals.load is not None,
+        "mass": isinstance(axis.mass, float),
+        "drive": not axis.free,
+    }
+    return {fact for fact, is_known in known.items() if is_known}
+
+
+def mass_notes(evidence: AxisEvidence) -> list[str]:
+    """Return the mass that was identified, with its interval."""
+    if evidence.mass_interval is None:
+        return []
+    axis, (low, high) = evidence.axis, evidence.mass_interval
+    unit = "kg" if axis.motion == "linear" else "kg m^2"
+    return [f"{axis.name}: mass identified as {evidence.mass:.5g} {unit} ({low:.5g} .. {high:.5g})"]
+
+
+def blind_spots(axis: Axis) -> list[str]:
+    """Return what the recorded signals cannot tell, which is known before any fit."""
+    out = []
+    if axis.signals.load is None:
+        out.append(f"{axis.name}: one encoder: backlash and compliance behind it cannot be seen and are not looked for")
+    if axis.servo:
+        out.append(f"{axis.name}: force not recorded: forces are given in units of the servo's stiffness")
+    return out

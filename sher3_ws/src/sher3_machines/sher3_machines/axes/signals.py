@@ -1,0 +1,144 @@
+"""One axis' signals of a run, filtered and sampled on the residual grid."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from sher3_diagnosis.channel import Array, Mask
+from sher3_diagnosis.filter import BANDWIDTH, DECIMATED_RATE, EDGE, low_pass
+
+from sher3_machines.axes.description import Axis
+from sher3_machines.axes.record import AxesRun
+
+NYQUIST_SHARE = 0.4
+"""Cut-off over the Nyquist rate where a record is too slow for the engine's: two differentiations must survive it."""
+
+
+@dataclass(frozen=True)
+class AxisSignals:
+    """Signals of one axis, (n, 1) each in SI units; None where a signal was not recorded.
+
+    The second index is the axis, so that the laws of the effects read one axis and a robot's five alike.
+
+    Attributes:
+        name: of the run; `excitation`: the name that repeats share.
+        period: of the samples, s.
+        motor: position of the axis' encoder.
+        effort: measured force, or the force the command asks for.
+        reference, command: as recorded.
+        load: position of the second encoder.
+        bandwidth: cut-off of the low-pass, Hz.
+    """
+
+    name: str
+    excitation: str
+    period: float
+    motor: Array
+    effort: Array | None = None
+    reference: Array | None = None
+    command: Array | None = None
+    load: Array | None = None
+    bandwidth: float = BANDWIDTH
+
+    @property
+    def ticks(self) -> int:
+        """Number of samples."""
+        return len(self.motor)
+
+    @cached_property
+    def stage_clock(self) -> Array:
+        """Time since the first sample, (n,), s."""
+        return self.period * np.arange(self.ticks, dtype=np.float64)
+
+    @cached_property
+    def stride(self) -> int:
+        """Samples of the record per sample of the residual grid: 2.5 grid samples per period of the cut-off."""
+        return max(1, round(BANDWIDTH / self.bandwidth / (DECIMATED_RATE * self.period)))
+
+    @property
+    def rate(self) -> float:
+        """Samples per second of the residual grid, Hz."""
+        return 1.0 / (self.stride * self.period)
+
+    @cached_property
+    def grid(self) -> NDArray[np.int64]:
+        """Samples of the record that are on the residual grid, (g,)."""
+        return np.arange(0, self.ticks, self.stride)
+
+    @cached_property
+    def inner(self) -> Mask:
+        """(g,) False where the ends of the filter spoil a sample."""
+        edge = EDGE * BANDWIDTH / self.bandwidth / self.period
+        return (self.grid >= edge) & (self.grid < self.ticks - edge)
+
+    @cached_property
+    def loaded_ok(self) -> Mask:
+        """(g,) True where the load on the axis is known: everywhere, since none acts."""
+        return np.ones(len(self.grid), dtype=bool)
+
+    @cached_property
+    def smooth(self) -> Array:
+        """Position after the low-pass, (n, 1)."""
+        return self.filtered(self.motor)
+
+    @cached_property
+    def velocity(self) -> Array:
+        """Velocity from the smoothed position, (n, 1)."""
+        return np.gradient(self.smooth, self.period, axis=0)
+
+    @cached_property
+    def acceleration(self) -> Array:
+        """Second difference of the position, not smoothed, (n, 1)."""
+        out = np.zeros_like(self.motor)
+        out[1:-1] = np.diff(self.motor, 2, axis=0) / self.period**2
+        return out
+
+    def filtered(self, x: Array) -> Array:
+        """Return an (n, ...) signal after the low-pass; n may differ from the run's."""
+        return low_pass(x, self.period, self.bandwidth)
+
+    def to_grid(self, x: Array) -> Array:
+        """Low-pass an (n, ...) signal and sample it on the residual grid -> (g, ...)."""
+        return self.filtered(x)[self.grid]
+
+
+def signals_of(run: AxesRun, axis: Axis, excitation: str) -> AxisSignals:
+    """Return the signals of one axis.
+
+    Args:
+        run: the record.
+        axis: of the record.
+        excitation: the name that repeats of the run share.
+    """
+    found = {k: x[:, None] for k, x in run.signals[axis.name].items()}
+    return AxisSignals(
+        name=run.name,
+        excitation=excitation,
+        period=run.period,
+        motor=found["position"],
+        effort=_effort(found, axis),
+        reference=found.get("reference"),
+        command=found.get("command"),
+        load=found.get("load"),
+        bandwidth=min(BANDWIDTH, NYQUIST_SHARE * 0.5 / run.period),
+    )
+
+
+def _effort(found: dict[str, Array], axis: Axis) -> Array | None:
+    """The force on the axis (n, 1): measured, else what the command asks for; zero where nothing drives it."""
+    law = axis.command_law
+    if "effort" in found:
+        return found["effort"]
+    if "command" in found:
+        return law.gain * (held_mean(found["command"]) if law.held else found["command"])
+    return np.zeros_like(found["position"]) if axis.free else None
+
+
+def held_mean(command: Array) -> Array:
+    """Return the mean around each sample of a command (n, 1) that is held from one sample to the next."""
+    out = command.copy()
+    out[1:] = 0.5 * (command[1:] + command[:-1])
+    return out

@@ -1,0 +1,181 @@
+"""A run of one axis with its nominal forces, as the effects and the engine see it."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from sher3_diagnosis.channel import Array, Mask
+from sher3_diagnosis.evidence import Motion
+from sher3_diagnosis.filter import settled
+from sher3_effects.operators import dahl
+from sher3_effects.view import NominalAxis
+
+from sher3_machines.axes.description import Axis
+from sher3_machines.axes.signals import AxisSignals
+
+LEAD_OF_STROKE = 0.02
+"""Share of the stroke that stands for the lead of a linear axis where it is not known. Effects search displacements in
+shares of the lead; of a turning axis one turn stands for it."""
+SLIP = 1e-9
+"""Viscous coefficient in place of none, N/(m/s) or N m/(rad/s): effects take it as a scale."""
+STILL = 1e-12
+"""Top speed in place of none, m/s or rad/s: shares of the top speed are taken."""
+
+
+class Loads(NamedTuple):
+    """Nominal loads on the residual grid, (g, 1) each, N or N m.
+
+    Attributes:
+        gravity: weight on the axis.
+        contact_force: of a contact; none acts on these axes.
+    """
+
+    gravity: Array
+    contact_force: Array
+
+
+class AxisView:
+    """A run of one axis with its nominal forces.
+
+    Attributes:
+        run: signals of the axis.
+        described: the axis as its description has it.
+        mass: nominal mass, or the one identified, kg or kg m^2.
+    """
+
+    def __init__(self, run: AxisSignals, axis: Axis, mass: float) -> None:
+        self.run = run
+        self.described = axis
+        self.mass = mass
+        self._sliding: dict[float, Array] = {}
+
+    # what the effects read
+
+    def row(self, site: str) -> int:
+        """Return the column of the axis: signals have one."""
+        return 0
+
+    def axis(self, site: str) -> NominalAxis:
+        """Return the nominal constants of the axis."""
+        return NominalAxis(self.mass, max(self.described.viscous, SLIP), self.lead(site), self.top)
+
+    def lead(self, site: str) -> float:
+        """Return the travel per motor revolution, m or rad; what stands for it where it is not known."""
+        if self.described.lead is not None:
+            return self.described.lead
+        if self.described.motion == "rotary":
+            return 2.0 * np.pi
+        return LEAD_OF_STROKE * max(float(np.ptp(self.run.motor)), self.described.encoder_resolution)
+
+    def sliding(self, axis: int, displacement: float) -> Array:
+        """Return the Dahl state of the axis, -1..1, (n,): +1 after moving forward by a few `displacement`, m or rad."""
+        if displacement not in self._sliding:
+            self._sliding[displacement] = dahl(self.run.smooth[:, 0], displacement)
+        return self._sliding[displacement]
+
+    @cached_property
+    def path(self) -> Loads:
+        """Nominal weight along the motion; no contact."""
+        law = self.described.gravity
+        weight = law.constant + law.arm * np.sin(self.position - law.hanging)
+        return Loads(weight, np.zeros_like(weight))
+
+    @cached_property
+    def position(self) -> Array:
+        """Smoothed position on the residual grid, (g, 1)."""
+        return self.run.smooth[self.run.grid]
+
+    @cached_property
+    def velocity(self) -> Array:
+        """Velocity on the residual grid, (g, 1)."""
+        return self.run.velocity[self.run.grid]
+
+    @cached_property
+    def inertial(self) -> Array:
+        """Nominal force that the measured motion needs, (g, 1): mass * a + viscous * v + weight."""
+        viscous = max(self.described.viscous, SLIP)
+        return self.run.to_grid(self.mass * self.run.acceleration + viscous * self.run.velocity) + self.path.gravity
+
+    # which samples can be judged
+
+    @cached_property
+    def moving(self) -> Mask:
+        """(g,) True where the axis moves: at rest friction takes any value, and the force balance says nothing."""
+        run = self.run
+        half = max(1, run.stride)
+        before = run.smooth[np.maximum(run.grid - half, 0), 0]
+        after = run.smooth[np.minimum(run.grid + half, run.ticks - 1), 0]
+        return np.abs(after - before) > self.described.encoder_resolution
+
+    @cached_property
+    def released(self) -> Mask:
+        """(g,) False for an undriven axis before it is let go: until then something else holds it."""
+        if not self.described.free:
+            return np.ones(len(self.run.grid), dtype=bool)
+        return self.run.grid >= self.release
+
+    @cached_property
+    def release(self) -> int:
+        """Sample of the record at which the stretch of motion with the largest travel begins."""
+        edges = np.flatnonzero(np.diff(np.concatenate([[0], self.moving.astype(int), [0]])))
+        q = self.position[:, 0]
+        travel = [abs(q[min(b, len(q) - 1)] - q[a]) for a, b in zip(edges[::2], edges[1::2], strict=True)]
+        return int(self.run.grid[edges[::2][int(np.argmax(travel))]]) if travel else 0
+
+    @cached_property
+    def in_motion(self) -> Mask:
+        """(g,) True where the force balance can be judged: well inside a stretch of motion."""
+        return self.run.inner & self.released & settled(self.moving, 1)
+
+    @cached_property
+    def at_rest(self) -> Mask:
+        """(g,) True well inside a stretch without motion."""
+        return self.run.inner & self.released & settled(~self.moving, 2)
+
+    # what the engine reads
+
+    @property
+    def excitation(self) -> str:
+        """Name that repeats of the run share."""
+        return self.run.excitation
+
+    @property
+    def rate(self) -> float:
+        """Samples per second of the residual grid, Hz."""
+        return self.run.rate
+
+    @cached_property
+    def top(self) -> float:
+        """Largest velocity of the run, m/s or rad/s."""
+        return max(float(np.abs(self.run.velocity).max()), STILL)
+
+    @cached_property
+    def speed_share(self) -> Array:
+        """(g,) speed over the largest of the run."""
+        return np.abs(self.velocity[:, 0]) / self.top
+
+    @property
+    def loaded(self) -> Mask:
+        """(g,) False: no load acts but the axis' own weight."""
+        return np.zeros(len(self.run.grid), dtype=bool)
+
+    @property
+    def warmth(self) -> Array:
+        """(g,) zero: temperatures are not recorded."""
+        return np.zeros(len(self.run.grid))
+
+    @property
+    def temperature_known(self) -> bool:
+        """False: temperatures are not recorded."""
+        return False
+
+    def motion(self, actuator: str) -> Motion | None:
+        """Return the motion of the axis."""
+        return Motion(self.position[:, 0], self.velocity[:, 0], self.top, self.described.lead)
+
+    def inputs(self, actuator: str) -> Array:
+        """Return (g, 3): position, velocity, and direction of the motion, 0 at rest."""
+        velocity = self.velocity[:, 0]
+        return np.column_stack([self.position[:, 0], velocity, np.sign(velocity) * self.moving])

@@ -1,0 +1,107 @@
+"""A machine's case folder: `machine.yaml` (the description) and `runs/NAME.npz`, in SI units."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from sher3_common import FileError, read_json, read_text
+from sher3_diagnosis.machine import Machine
+
+from sher3_machines.errors import MachineError
+from sher3_machines.intake.fields import Description
+from sher3_machines.intake.kinds import kinds, load_description
+from sher3_machines.intake.tables import read_tables
+
+MACHINE, RUNS, IMPORT = "machine.yaml", "runs", "import.json"
+"""The description, the folder of runs, and the record of the import."""
+
+
+def is_machine_case(path: Path) -> bool:
+    """Whether a folder holds a case of another machine."""
+    return (Path(path) / MACHINE).is_file()
+
+
+def described(path: Path) -> Path:
+    """Return a description's path; a bare name is one of the descriptions that come with the project."""
+    known = Path(__file__).parents[1] / "descriptions" / f"{path.name}.yaml"
+    return known if path.suffix == "" and not path.exists() and known.is_file() else path
+
+
+def import_case(data: Sequence[Path], description: Path, out: Path) -> list[str]:
+    """Turn data files, each of them a run, and a description into a case folder.
+
+    Args:
+        data: files or folders of files.
+        description: YAML file.
+        out: folder of the case; runs of an earlier import are replaced.
+
+    Returns:
+        Notes on what was done to the data.
+
+    Raises:
+        MachineError: description or data are wrong, or `out` holds something else.
+    """
+    machine = load_description(description)
+    if out.exists() and any(out.iterdir()) and not is_machine_case(out):
+        raise MachineError(f"{out}: is not empty and no case", remedy="choose another --out")
+    kind = kinds()[machine.kind]
+    tables = [read_tables(path) for path in data]
+    runs = [kind.read(name, table, machine) for name, table in zip(_names(data), tables, strict=True)]
+    notes = [note for run in runs for note in run.notes]
+    (out / RUNS).mkdir(parents=True, exist_ok=True)
+    for stale in (out / RUNS).glob("*.npz"):
+        stale.unlink()
+    for run in runs:
+        np.savez_compressed(out / RUNS / f"{run.name}.npz", **kind.pack(run))  # type: ignore[arg-type]
+    (out / MACHINE).write_text(_resolved(description, machine), encoding="utf-8")
+    record = {"data": [str(path) for path in data], "notes": notes}
+    (out / IMPORT).write_text(json.dumps(record, indent=1), encoding="utf-8")
+    return notes
+
+
+def open_case(path: Path) -> tuple[Machine[Any, Any], list[Any]]:
+    """Read a case folder: the machine it describes and its runs, ready for `sher3_diagnosis.diagnose`.
+
+    Raises:
+        MachineError: the description is wrong, or no run can be read.
+    """
+    description = load_description(path / MACHINE)
+    kind = kinds()[description.kind]
+    files = sorted((path / RUNS).glob("*.npz"))
+    if not files:
+        raise MachineError(f"{path}: no runs", remedy="import the data again")
+    notes = _notes(path / IMPORT)
+    runs = []
+    for file in files:
+        own = [note for note in notes if note.startswith(f"{file.stem}:")]
+        try:
+            runs.append(kind.unpack(file.stem, read_tables(file), own))
+        except KeyError as error:
+            raise MachineError(f"{file}: {error} is missing", remedy="import the data again") from error
+    return kind.machine(description), runs
+
+
+def _names(data: Sequence[Path]) -> list[str]:
+    """Names of the runs: of their files, numbered where two are alike."""
+    names = [p.resolve().name if p.is_dir() else p.stem for p in data]
+    return names if len(set(names)) == len(names) else [f"{n}_{i}" for i, n in enumerate(names)]
+
+
+def _notes(path: Path) -> list[str]:
+    """Notes of the import; none where its record is missing or not readable, since no answer rests on them."""
+    try:
+        return list(map(str, read_json(path)["notes"]))
+    except (FileError, KeyError, TypeError):
+        return []
+
+
+def _resolved(path: Path, description: Description) -> str:
+    """The description as written, the files it names by their absolute path: the case may lie anywhere."""
+    text = read_text(path)
+    for name in description.named_files():
+        text = text.replace(name, str((path.parent / name).resolve()))
+    return text

@@ -1,0 +1,108 @@
+"""Fields that descriptions of every kind share: a recorded column with its unit, and the clock."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Literal
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+UNITS: Mapping[str, float] = {
+    "m": 1.0,
+    "cm": 1e-2,
+    "mm": 1e-3,
+    "um": 1e-6,
+    "rad": 1.0,
+    "mrad": 1e-3,
+    "deg": math.pi / 180.0,
+    "rev": 2.0 * math.pi,
+    "m/s": 1.0,
+    "mm/s": 1e-3,
+    "rad/s": 1.0,
+    "deg/s": math.pi / 180.0,
+    "rpm": math.pi / 30.0,
+    "N": 1.0,
+    "kN": 1e3,
+    "N*m": 1.0,
+    "mN*m": 1e-3,
+    "V": 1.0,
+    "mV": 1e-3,
+    "A": 1.0,
+    "mA": 1e-3,
+    "1": 1.0,
+    "s": 1.0,
+    "ms": 1e-3,
+    "us": 1e-6,
+    "ns": 1e-9,
+}
+"""Unit -> factor to SI."""
+
+
+class Strict(BaseModel):
+    """A part of a description: no field that is not known, no number that is not finite."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+
+class Description(Strict):
+    """What every description says first; each kind of machine extends it.
+
+    Attributes:
+        kind: name of the kind of machine.
+        name: of the machine, for people.
+    """
+
+    kind: str
+    name: str
+
+    def named_files(self) -> tuple[str, ...]:
+        """Return the paths the description gives, as written; a case gives them absolute."""
+        return ()
+
+
+class Column(Strict):
+    """A recorded signal.
+
+    Attributes:
+        column: its name in the data; `table/name` where a run is a folder of tables.
+        unit: of the recorded numbers.
+        factor: turns the SI value of that unit into what the signal stands for, such as N m per A of a current.
+        index: entry to pick where each sample is a list.
+    """
+
+    column: str
+    unit: str
+    factor: float = 1.0
+    index: int | None = None
+
+    @model_validator(mode="after")
+    def _known(self) -> Column:
+        if self.unit not in UNITS:
+            raise ValueError(f"unit {self.unit!r} is not known; units are {', '.join(UNITS)}")
+        return self
+
+    @property
+    def scale(self) -> float:
+        """Factor from recorded numbers to SI."""
+        return self.factor * UNITS[self.unit]
+
+
+class Clock(Strict):
+    """The time of the samples.
+
+    Attributes:
+        column: of the stamps, of the same name in every table.
+        unit: of the stamps.
+        rate: samples per second, Hz, where no stamps were recorded.
+    """
+
+    column: str | None = None
+    unit: Literal["s", "ms", "us", "ns"] = "s"
+    rate: float | None = Field(default=None, gt=0.0)
+
+    @model_validator(mode="after")
+    def _either(self) -> Clock:
+        if (self.column is None) == (self.rate is None):
+            raise ValueError("state either the time column or the rate")
+        return self

@@ -1,0 +1,57 @@
+"""What a kind of machine gives: its description, its records, and the machine that the engine diagnoses."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from typing import Any, Generic, Protocol, TypeVar
+
+from sher3_diagnosis.channel import Array
+from sher3_diagnosis.machine import Machine
+
+from sher3_machines.intake.fields import Description
+from sher3_machines.intake.tables import Tables
+
+
+class Record(Protocol):
+    """A run of any kind of machine."""
+
+    @property
+    def name(self) -> str:
+        """Name of the run's file."""
+
+    @property
+    def notes(self) -> Sequence[str]:
+        """What was done to the data, one sentence each, beginning with the run's name."""
+
+
+D = TypeVar("D", bound=Description)
+R = TypeVar("R", bound=Record)
+
+
+class Kind(ABC, Generic[D, R]):
+    """A kind of machine: one folder of this package, found by the `KIND` in its `kind.py`.
+
+    Attributes:
+        name: as the description's field `kind` gives it.
+        description: the model of its description.
+    """
+
+    name: str
+    description: type[D]
+
+    @abstractmethod
+    def read(self, name: str, tables: Tables, description: D) -> R:
+        """Check a data file's columns and return them as a run in SI units; raises MachineError."""
+
+    @abstractmethod
+    def pack(self, run: R) -> Mapping[str, Array]:
+        """Return the arrays of a run as a case stores them."""
+
+    @abstractmethod
+    def unpack(self, name: str, arrays: Tables, notes: Sequence[str]) -> R:
+        """Return the run that a case stores; raises KeyError where an array is missing."""
+
+    @abstractmethod
+    def machine(self, description: D) -> Machine[R, Any]:
+        """Return the machine of a description; raises MachineError where its files cannot be used."""

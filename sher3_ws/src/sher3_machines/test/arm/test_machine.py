@@ -1,0 +1,60 @@
+"""Serial arms: joint zeros found from poses measured from outside."""
+
+import numpy as np
+import pytest
+from arms import ROWS, machine, measured
+from sher3_diagnosis import diagnose
+from sher3_machines import MachineError
+
+OFFSETS = np.array([0.0, 0.008, 0.0, -0.006, 0.0, 0.0])
+
+
+@pytest.fixture(scope="module")
+def verdict():
+    return diagnose(machine(), [measured(OFFSETS)]).verdict
+
+
+def test_a_nominal_arm_has_no_gap():
+    found = diagnose(machine(), [measured(np.zeros(6))]).verdict
+    assert found.status == "no_gap"
+    assert [n.split(":")[0] for n in found.notes[1:]] == ["measurement frames only"]
+
+
+def test_joint_zeros_are_found(verdict):
+    assert verdict.status == "attributed"
+    found = {c.actuator: c.parameters["offset"] for c in verdict.causes if c.effect == "encoder_offset"}
+    assert {name: p.value for name, p in found.items()} == {
+        "j2": pytest.approx(0.008, abs=1e-3),
+        "j4": pytest.approx(-0.006, abs=1e-3),
+    }
+    assert {p.unit for p in found.values()} == {"rad"}
+    assert verdict.closure.stage.value > 0.95 and verdict.closure.tip == verdict.closure.stage
+
+
+def test_the_gap_is_at_the_measured_body(verdict):
+    (where,) = verdict.where
+    assert (where.stage, where.actuator, where.unit, where.regime) == ("mechanism", "tip", "m", "everywhere")
+
+
+def test_notes_tell_the_held_out_error_of_every_layer(verdict):
+    left = [float(n.split("postures ")[1].split(" mm")[0]) for n in verdict.notes if "held-out postures" in n]
+    assert len(left) == 3
+    assert left[1] < 0.25 * left[0] and left[2] <= left[1]
+
+
+def test_orientations_are_judged_where_their_noise_is_stated():
+    """A last joint that reads 8 mrad too much turns the body about its own centre as well."""
+    offsets = np.array([0.0, 0.0, 0.0, 0.008, 0.0, 0.0])
+    found = diagnose(machine(noise=1.0, noise_rotation=1e-4), [measured(offsets, noise=0.0)]).verdict
+    assert found.where[0].unit == "rad"
+
+
+def test_left_out_joint_zeros_leave_the_gap_to_others_or_open():
+    found = diagnose(machine(), [measured(OFFSETS)], without=["encoder_offset", "link_length_error", "rail_tilt"])
+    assert found.verdict.status == "outside_library"
+    assert "mm mean left" in found.verdict.notes[-1]
+
+
+def test_the_wrong_number_of_joints_is_named():
+    with pytest.raises(MachineError, match="do not fit the arm"):
+        diagnose(machine(ROWS[:5]), [measured(np.zeros(6))])

@@ -1,0 +1,80 @@
+"""Published data sets of other machines: the verdicts match what is known of them (needs the shared folder)."""
+
+import os
+from pathlib import Path
+
+import pytest
+from sher3_diagnosis import diagnose
+from sher3_machines import described, import_case, open_case
+
+SHARED = Path(os.environ.get("SHER3_SHARED", Path(__file__).parents[4].parent / "shared"))
+REAL = SHARED / "real"
+pytestmark = [pytest.mark.shared, pytest.mark.skipif(not REAL.is_dir(), reason=f"no data sets in {REAL}")]
+
+
+def verdict_of(name, data, tmp_path):
+    import_case(data, described(Path(name)), tmp_path / name)
+    return diagnose(*open_case(tmp_path / name)).verdict
+
+
+def values(verdict):
+    return {(c.effect, c.actuator, n): p.value for c in verdict.causes for n, p in c.parameters.items()}
+
+
+def share_closed(verdict):
+    note = next(n for n in verdict.notes if "closed in rms" in n)
+    return float(note.split(": ")[-1].split("%")[0])
+
+
+def test_emps(tmp_path):
+    """Janot et al.: M 95.1089 kg, Fv 203.5034, Fc 20.3935, offset -3.1648; closed-loop closure about 94 %."""
+    verdict = verdict_of("emps", [REAL / "emps/DATA_EMPS.mat"], tmp_path)
+    found = values(verdict)
+    assert verdict.status == "attributed"
+    assert {c.effect for c in verdict.causes} == {"coulomb_friction", "viscous_friction", "gravity_load"}
+    assert found["coulomb_friction", "slider", "force"] == pytest.approx(20.3935, rel=0.01)
+    assert found["viscous_friction", "slider", "extra"] == pytest.approx(203.5034, rel=0.01)
+    assert found["gravity_load", "slider", "force"] == pytest.approx(-3.1648, rel=0.01)
+    mass = next(n for n in verdict.notes if "mass identified" in n)
+    assert float(mass.split(" as ")[1].split()[0]) == pytest.approx(95.1089, rel=0.01)
+    assert share_closed(verdict) == pytest.approx(94.1, abs=1.0)
+
+
+def test_rhoban(tmp_path):
+    """Coulomb friction stops the pendulum. Weight times height over the angle fallen gives .182 N m."""
+    verdict = verdict_of("rhoban_mx_drop", [REAL / "rhoban_mx_drop/friction_1.json"], tmp_path)
+    found = values(verdict)
+    assert verdict.status == "attributed"
+    assert {c.effect for c in verdict.causes} == {"coulomb_friction"}
+    assert found["coulomb_friction", "servo", "force"] == pytest.approx(0.182, rel=0.05)
+    assert share_closed(verdict) > 98.0
+
+
+def test_sage(tmp_path):
+    """Weight on Pitch and Elbow, late servos, stiction; no backlash."""
+    folder = REAL / "sage_so101/output/real/so101/custom"
+    verdict = verdict_of("sage_so101", sorted(folder.iterdir()), tmp_path)
+    found = values(verdict)
+    for joint in ("Pitch", "Elbow"):
+        assert abs(found["gravity_load", joint, "force"]) == pytest.approx(0.037, abs=0.005)
+    assert {c.actuator for c in verdict.causes if c.family == "timing"} >= {"Rotation", "Wrist_Roll", "Jaw"}
+    assert {c.actuator for c in verdict.causes if c.effect == "coulomb_friction"} >= {"Rotation", "Pitch", "Elbow"}
+    assert not {"lost_motion"} & {c.family for c in verdict.causes}
+
+
+def test_dfki(tmp_path):
+    """Desired .9 N m pinned, measured .88 to .89."""
+    run = REAL / "dfki_simple_pendulum/results/control_method_pd/1nm_torque_limited_swingup_failure"
+    verdict = verdict_of("dfki_simple_pendulum", [run], tmp_path)
+    assert verdict.status == "attributed"
+    assert [c.effect for c in verdict.causes] == ["force_saturation"]
+    assert values(verdict)["force_saturation", "joint", "limit"] == pytest.approx(0.885, abs=0.01)
+
+
+def test_franka(tmp_path):
+    """Kinematic error: frames only, then joint zeros, then geometry, each smaller on held-out postures."""
+    verdict = verdict_of("franka_fr3_calib", [REAL / "franka_fr3_calib/calib_data_converted.npz"], tmp_path)
+    assert {c.family for c in verdict.causes} == {"geometry"}
+    assert "encoder_offset" in {c.effect for c in verdict.causes}
+    left = [float(n.split("postures ")[1].split(" mm")[0]) for n in verdict.notes if "held-out postures" in n]
+    assert left[0] > 2.5 and left[1] < 0.65 * left[0] and left[2] < left[1]

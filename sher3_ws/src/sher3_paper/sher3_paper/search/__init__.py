@@ -1,0 +1,1 @@
+"""Search for the best design of the delta: conditioning and torsional compliance under the constraints of the paper."""

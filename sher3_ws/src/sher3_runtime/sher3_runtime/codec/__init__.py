@@ -1,0 +1,1 @@
+"""Samples of the topics as CDR bytes and as message objects."""

@@ -1,0 +1,1 @@
+"""How punctual a process is, and what it is measured against."""

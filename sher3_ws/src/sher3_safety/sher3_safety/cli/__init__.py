@@ -1,0 +1,1 @@
+"""The commands `safety`, `safety budget` and `fault`; their bodies are imported when they are called."""

@@ -1,0 +1,1 @@
+"""What the safety matrix breaks: its rows, in stepped time and by processes."""

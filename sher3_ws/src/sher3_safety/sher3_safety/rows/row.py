@@ -1,0 +1,121 @@
+"""The matrix as data: which fault of which component, in which state, and what must come of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+from sher3_description import ACTUATORS
+from sher3_faults.requests import FaultRequest, make_request
+
+Effect = Literal["stops", "goes on", "either", "residual", "ends"]
+DETECTION_LIMIT, STOP_LIMIT = 0.050, 0.100
+"""Longest times [s] from the onset of a fault to the first reaction and to rest. In 50 ms the tip travels the whole
+budget: 250 um at 5 mm/s, 25 um at 0.5 mm/s."""
+
+
+@dataclass(frozen=True)
+class State:
+    """What the robot does when the fault sets in.
+
+    Attributes:
+        speed: of the tip [m/s].
+        force: of the hand along +-z, N; along x or y the moment at the sensor would saturate it first.
+        pedal: travel.
+        budget: largest allowed travel [m].
+        end: the hand has pushed the sliders against the end of their travel, and still pushes.
+    """
+
+    name: str
+    speed: float
+    force: float
+    pedal: float
+    budget: float
+    end: bool = False
+
+
+IDLE = State("idle", 0.0, 0.6, 0.0, 25e-6)
+MOVING = State("moving", 0.5e-3, 0.6, 1.0, 25e-6)
+LIMIT = State("at limit", 5e-3, 6.0, 1.0, 250e-6)
+END = State("at end", 0.0, 6.0, 1.0, 250e-6, end=True)
+STATES = (IDLE, MOVING, LIMIT, END)
+"""Enabled and at rest under a hand; at the speed near tissue; at the speed limit; pushed against the end of the travel,
+as fast as at the speed limit were there no end."""
+STILL = (IDLE.name, END.name)
+"""States in which nothing moves."""
+AT_END = 1e-3
+"""Largest distance from the end of its travel at which an axis counts as at it, as a share of the travel."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """One fault of one component, in every state.
+
+    Attributes:
+        effect: what has to happen. `stops`: the robot stops in time and within the budget, and moves again only when
+            the operator asks for it. `goes on`: it does not stop, and the tip stays within the budget of its
+            undisturbed path. `either`: chance decides between the two. `residual`: no detector can see the fault, so
+            the travel is only stated. `ends`: the emulated robot itself has ended and there is no tip to measure; the
+            fault must be reported, and FAULT entered, in time.
+        duration: of the fault, s; None: until it is taken away.
+        reasons: the first reported reason, or that of the FAULT (`ends`), must be one of these; empty where nobody
+            needs to notice (`goes on`).
+        quiet: states in which the fault need not be noticed, since nothing can move.
+        quick: belongs to the compact set of the default test run.
+        release: the operator releases the pedal as the fault sets in; whatever the fault, the tip has to stop.
+        slow: the fault grows so slowly that its distance counts, not its time: how far the tip is off its undisturbed
+            path, against the budget, whenever that is noticed.
+        budget: travel allowed instead of the budget of the state, m; `why` gives the reason.
+        why: why the robot may go on, a sentence for the report.
+    """
+
+    component: str
+    fault: str
+    parameters: Mapping[str, float] = field(default_factory=dict)
+    effect: Effect = "stops"
+    reasons: tuple[str, ...] = ()
+    duration: float | None = 0.12
+    quiet: tuple[str, ...] = ()
+    quick: bool = False
+    release: bool = False
+    slow: bool = False
+    budget: float | None = None
+    why: str = ""
+
+    @property
+    def name(self) -> str:
+        """Component, fault, parameters, and what the operator does."""
+        parts = [f"{name} {value:g}" for name, value in self.parameters.items()]
+        name = f"{self.component} {self.fault}" + (f" ({', '.join(parts)})" if parts else "")
+        return name + ", pedal released" * self.release
+
+    @property
+    def final(self) -> bool:
+        """Whether the robot is given up afterwards: a process was killed, or runs twice."""
+        return self.component.startswith("process.") and self.fault in ("off", "duplicated")
+
+    def label(self, state: State) -> str:
+        """Return what this row in a state is called in its bag."""
+        return f"{self.name} | {state.name}"
+
+    def request(self, seed: int, label: str) -> FaultRequest:
+        """Return what is sent on `mock/fault`."""
+        return make_request(
+            component=self.component,
+            fault=self.fault,
+            parameters=dict(self.parameters),
+            duration=self.duration,
+            seed=seed,
+            label=label,
+        )
+
+
+def select(rows: tuple[Row, ...], only: str = "", quick: bool = False) -> Iterator[Row]:
+    """Yield the rows of a component (a prefix of its name), or of the compact set."""
+    for row in rows:
+        if row.component.startswith(only) and (row.quick or not quick):
+            yield row
+
+
+AXIS = ACTUATORS[0]

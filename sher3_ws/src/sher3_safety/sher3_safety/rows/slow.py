@@ -1,0 +1,37 @@
+"""The slow faults: axes that creep behind a truthful look, encoders that drift, reports that are late."""
+
+from __future__ import annotations
+
+from sher3_description import ACTUATORS
+
+from sher3_safety.rows.row import LIMIT, Row
+
+AXIS, ROLL, TILT = ACTUATORS[0], ACTUATORS[3], ACTUATORS[4]
+LEFT = ("POSITION_LEFT",)
+CREEPS = (1e-5, 1e-4, 1e-3)
+"""Speeds of a creeping slider [m/s], a decade apart; the slowest takes 0.7 s to its limit of 7 um."""
+LONGEST = 1.5
+"""Duration of the slowest ones [s]: twice the time to the limit."""
+FAST = (LIMIT.name,)
+"""At 5 mm/s the limit is 43 um, which a slow creep does not reach in that time."""
+AT_ITS_LIMIT = "one period at the drive's own speed limit is 24 um at a leg, and it brakes from there"
+STATED = "an even motion leaves no mark on the echo: the report is then v times its age behind, 6 um near tissue"
+
+SLOW = (
+    *(
+        Row(f"{name}.power", "creep", {"speed": sign * speed}, reasons=LEFT, slow=True, quiet=FAST,
+            duration=min(LONGEST, max(0.12, 2e-5 / speed)), quick=name == AXIS and speed == CREEPS[1])
+        for name, sign in ((AXIS, 1.0), (TILT, -1.0))
+        for speed in CREEPS
+    ),
+    *(
+        Row(f"{ROLL}.power", "creep", {"speed": speed}, reasons=LEFT, slow=True, quiet=FAST,
+            duration=min(LONGEST, 1e-3 / speed))
+        for speed in (1e-3, 1e-2, 1e-1)
+    ),
+    Row(f"{AXIS}.power", "creep", {"speed": 0.0122}, slow=True, budget=250e-6, why=AT_ITS_LIMIT),
+    Row(f"{AXIS}.load_encoder", "drift", {"rate": 2e-5}, slow=True, duration=LONGEST),
+    Row(f"{AXIS}.motor_encoder", "drift", {"rate": 2e-5}, slow=True, duration=LONGEST),
+    Row(f"{AXIS}.motor_encoder", "ramp", {"rate": 0.5}, slow=True, effect="either", why=STATED),
+    Row("bus.up", "late", {"items": 3.0}, slow=True, effect="either", why=STATED),
+)  # fmt: skip

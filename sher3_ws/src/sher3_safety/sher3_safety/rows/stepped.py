@@ -1,0 +1,199 @@
+"""The rows of the matrix: every component with every kind of fault that it can have, and what must come of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from sher3_description import ACTUATORS
+
+from sher3_safety.rows.row import STILL, Row
+from sher3_safety.rows.slow import SLOW
+
+AXIS = ACTUATORS[0]
+CURRENT = "the newest sample in time is the one that counts"
+HELD = "a younger sample comes within the age limit; the last one is held until then"
+SAME = "the command does not change, so nothing is lost with it; see the line with the pedal released"
+NO_WITNESS = "one channel, no second witness; the tip stays under the speed cap of its regime"
+STUCK_PEDAL = (
+    "one channel, no second witness: a pedal that stays pressed looks like a foot that does; the hand still decides"
+    " (no force, no motion), and so does whatever stops the robot without this pedal: a second contact is needed"
+)
+CHECKED = (
+    "a garbled frame that happens to enable a drive runs it for 2 ms at the drive's own limit, 24 um; CAN's 15 bit"
+    " checksum lets such a frame through once in some 10^10"
+)
+AT_ONCE = "the drive's own limit, 12.2 mm/s, makes 24 um in the tick before its echo can tell"
+GARBLED = 250e-6
+STALE = ("WRENCH_STALE",)
+NO_PEDAL = ("EMERGENCY_STOP", "PEDAL_INVALID", "PEDAL_STALE")
+LINE_LOST = ("JOINTS_STALE", "DRIVE_SILENT", "DRIVE_HOST_LOST")
+
+FORCE = (
+    Row("force_sensor", "off", reasons=STALE, quick=True),
+    Row("force_sensor", "stuck", reasons=("WRENCH_FROZEN",), quick=True),
+    Row("force_sensor", "garbage", reasons=("WRENCH_OUT_OF_RANGE",)),
+    Row("force_sensor", "wrong", {"offset": 20.0}, reasons=("WRENCH_OUT_OF_RANGE", "WRENCH_SATURATED")),
+    Row("force_sensor", "wrong", {"code": 1.0}, reasons=("WRENCH_NOT_FINITE",)),
+    Row("force_sensor", "wrong", {"scale": 0.8}, effect="either", why=NO_WITNESS),
+    Row("force_sensor", "slow", {"every": 4.0}, effect="goes on", why=HELD),
+    Row("force_sensor", "slow", {"every": 20.0}, reasons=STALE),
+    Row("force_sensor", "delayed", {"delay": 0.1}, reasons=STALE, duration=0.25),
+    Row("force_sensor", "delayed", {"delay": 0.004}, effect="goes on", why=HELD),
+    Row("force_sensor", "intermittent", effect="either", why=HELD),
+    Row("force_sensor", "duplicated", effect="goes on", why=CURRENT, quick=True),
+    Row("force_sensor", "reordered", effect="goes on", why=CURRENT),
+)
+PEDAL = (
+    Row("pedal", "off", reasons=NO_PEDAL, quick=True),
+    Row("pedal", "off", release=True),
+    Row("pedal", "stuck", effect="residual", release=True, why=STUCK_PEDAL),
+    Row("pedal", "garbage", reasons=NO_PEDAL, quick=True),
+    Row("pedal", "wrong", {"offset": 2.0}, reasons=NO_PEDAL),
+    Row("pedal", "slow", {"every": 4.0}, effect="goes on", why=HELD),
+    Row("pedal", "slow", {"every": 4.0}, release=True),
+    Row("pedal", "slow", {"every": 20.0}, reasons=NO_PEDAL),
+    Row("pedal", "delayed", {"delay": 0.1}, reasons=NO_PEDAL, duration=0.25),
+    Row("pedal", "delayed", {"delay": 0.01}, effect="goes on", why=HELD),
+    Row("pedal", "delayed", {"delay": 0.02}, release=True),
+    Row("pedal", "intermittent", effect="either", why=HELD),
+    Row("pedal", "intermittent", release=True),
+    Row("pedal", "duplicated", effect="goes on", why=CURRENT),
+    Row("pedal", "reordered", release=True),
+)
+
+
+def _up(line: str, quick: bool = False) -> Iterator[Row]:
+    """Yield the faults of what the drives say."""
+    yield Row(line, "off", reasons=LINE_LOST, quick=quick)
+    yield Row(line, "stuck", quiet=STILL)
+    yield Row(line, "garbage")
+    yield Row(line, "wrong", quick=quick)
+    yield Row(line, "slow", {"every": 4.0}, effect="either", why=HELD)
+    yield Row(line, "slow", {"every": 20.0}, reasons=LINE_LOST)
+    yield Row(line, "delayed", {"delay": 0.02}, reasons=LINE_LOST)
+    yield Row(line, "intermittent", effect="either", why=HELD)
+    yield Row(line, "duplicated", effect="goes on", why=CURRENT)
+    yield Row(line, "reordered", effect="either", why=HELD)
+
+
+def _down(line: str, quick: bool = False) -> Iterator[Row]:
+    """Yield the faults of what the drives hear."""
+    yield Row(line, "off", release=True, quick=quick)
+    yield Row(line, "stuck", release=True)
+    yield Row(line, "garbage", budget=GARBLED, why=CHECKED)
+    yield Row(line, "wrong", release=True)
+    yield Row(line, "slow", {"every": 4.0}, release=True)
+    yield Row(line, "delayed", {"delay": 0.02}, release=True)
+    yield Row(line, "intermittent", release=True)
+    yield Row(line, "duplicated", effect="goes on", why=CURRENT)
+    yield Row(line, "reordered", release=True)
+
+
+def _both(line: str, quick: bool = False) -> Iterator[Row]:
+    """Yield the faults of a whole line."""
+    yield Row(line, "off", reasons=LINE_LOST, quick=quick)
+    yield Row(line, "stuck", release=True)
+    yield Row(line, "delayed", {"delay": 0.02}, reasons=LINE_LOST)
+    yield Row(line, "intermittent", effect="either", why=HELD)
+    yield Row(line, "duplicated", effect="goes on", why=CURRENT)
+
+
+LINES = (
+    *_both("bus", quick=True),
+    *_up("bus.up"),
+    *_down("bus.down"),
+    *_up("bus0.up"),
+    *_down("bus1.down"),
+    *_both(AXIS),
+    *_up(f"{AXIS}.up"),
+    *_down(f"{AXIS}.down", quick=True),
+)
+
+
+def _encoder(name: str, quick: bool = False) -> Iterator[Row]:
+    """Yield the faults of one encoder of an axis; the other one is its witness."""
+    yield Row(name, "stuck", quiet=STILL, quick=quick)
+    yield Row(name, "garbage")
+    yield Row(name, "wrong", {"offset": 1e-3})
+    yield Row(name, "wrong", {"scale": 0.5})
+    yield Row(name, "slow", {"every": 4.0}, effect="either", why=HELD)
+    yield Row(name, "delayed", {"delay": 0.02}, effect="either", why=HELD)
+    yield Row(name, "intermittent", effect="either", why=HELD)
+    yield Row(name, "reordered", effect="either", why=HELD)
+
+
+ENCODERS = (*_encoder(f"{AXIS}.load_encoder", quick=True), *_encoder(f"{AXIS}.motor_encoder"))
+DRIVE = (
+    Row(f"{AXIS}.demand", "off", release=True),
+    Row(f"{AXIS}.demand", "stuck", release=True, quick=True),
+    Row(f"{AXIS}.demand", "garbage", quiet=STILL, budget=GARBLED, why=AT_ONCE),
+    Row(f"{AXIS}.demand", "wrong", {"scale": -1.0}, quiet=STILL, quick=True),
+    Row(f"{AXIS}.demand", "wrong", {"scale": 0.0}, quiet=STILL),
+    Row(f"{AXIS}.demand", "wrong", {"scale": 2.0}, quiet=STILL),
+    Row(f"{AXIS}.demand", "wrong", {"code": float(0x4210)}, reasons=("DRIVE_OVER_TEMPERATURE",)),
+    Row(f"{AXIS}.demand", "wrong", {"code": float(0x8611)}, reasons=("DRIVE_EMERGENCY",)),
+    Row(f"{AXIS}.demand", "slow", {"every": 4.0}, release=True),
+    Row(f"{AXIS}.demand", "delayed", {"delay": 0.02}, release=True),
+    Row(f"{AXIS}.demand", "intermittent", release=True),
+    Row(f"{AXIS}.demand", "reordered", release=True),
+)
+NODES = ("force_sensor", "pedal", "admittance", "kinematics", "motor_driver", "supervisor")
+BRIEF = "held for a few ms at a time; whoever waits for it judges the age of what it said"
+LOST = {
+    "force_sensor": STALE,
+    "pedal": ("PEDAL_STALE",),
+    "admittance": ("COMMAND_STALE",),
+    "kinematics": ("COMMAND_STALE",),
+    "motor_driver": ("JOINTS_STALE",),
+    "supervisor": ("SUPERVISOR_SILENT", "NOT_ENABLED"),
+}
+"""What is reported first when a process is gone."""
+TWICE = ("PUBLISHED_TWICE", "NOT_ENABLED")
+"""The supervisor counts publishers; a second supervisor says DISABLED."""
+REFUSED = "the second one hears the first on the bus and does not start"
+PROCESSES = (
+    *(
+        Row(f"process.{name}", "stuck", reasons=LOST[name], quick=name in ("admittance", "supervisor"))
+        for name in NODES
+    ),
+    *(Row(f"process.{name}", "stuck", release=True) for name in NODES),
+    *(Row(f"process.{name}", "slow", {"every": 4.0}, effect="either", why=BRIEF) for name in NODES),
+    *(Row(f"process.{name}", "delayed", {"delay": 0.006}, effect="either", why=BRIEF) for name in NODES),
+    *(Row(f"process.{name}", "intermittent", effect="either", why=BRIEF) for name in NODES),
+    *(Row(f"process.{name}", "off", reasons=LOST[name]) for name in NODES),
+    *(
+        Row(f"process.{name}", "duplicated", reasons=TWICE, quick=name == "supervisor")
+        for name in NODES
+        if name != "motor_driver"
+    ),
+    Row("process.motor_driver", "duplicated", effect="goes on", why=REFUSED),
+)
+CLOCKS = ("force_sensor", "pedal", "motor_driver")
+SAMPLES = "it takes the time of a tick from its samples; its own clock only fills in for those that stay away"
+
+
+def _clock(name: str) -> Iterator[Row]:
+    """Yield the faults of the clock of a node that stamps what it publishes; without a tick it does nothing."""
+    yield Row(name, "off")
+    yield Row(name, "stuck")
+    yield Row(name, "garbage")
+    yield Row(name, "slow", {"every": 4.0}, effect="either", why=HELD)
+    yield Row(name, "delayed", {"delay": 0.006}, effect="either", why=HELD)
+    yield Row(name, "intermittent", effect="either", why=HELD)
+    yield Row(name, "duplicated", effect="either", why=CURRENT)
+    yield Row(name, "reordered", effect="either", why=HELD)
+
+
+CLOCK = (
+    # Backwards together cannot be recorded in order, and cannot happen: the offset to the monotonic clock is frozen.
+    Row("clock", "wrong", {"offset": 0.05}, quick=True),
+    *(Row(f"clock.{name}", "wrong", {"offset": offset}) for name in CLOCKS for offset in (0.05, -0.05)),
+    *(row for name in CLOCKS for row in _clock(f"clock.{name}")),
+    *(Row(f"clock.{name}", "wrong", {"offset": 0.05}) for name in ("admittance", "kinematics")),
+    *(
+        Row(f"clock.{name}", "wrong", {"offset": -0.05}, effect="goes on", why=SAMPLES)
+        for name in ("admittance", "kinematics")
+    ),
+)
+ROWS = (*FORCE, *PEDAL, *LINES, *ENCODERS, *DRIVE, *SLOW, *PROCESSES, *CLOCK)
+"""All rows, by component."""

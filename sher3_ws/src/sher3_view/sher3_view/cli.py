@@ -1,0 +1,65 @@
+"""The command of this package: `view`."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated, Optional
+
+import typer
+
+app = typer.Typer(rich_markup_mode="markdown")
+
+
+@app.command(
+    epilog="Examples: `sher3 view bags/trial --html trial.html` · "
+    "`sher3 view` (the running robot) · `sher3 view bags/before --ghost bags/after --exaggerate 50 --html both.html`"
+)
+def view(
+    bag: Annotated[
+        Path | None, typer.Argument(help="Bag folder or .mcap file; without one, the running robot is shown.")
+    ] = None,
+    page: Annotated[Optional[Path], typer.Option("--html", help="File to write; default BAG.html.")] = None,  # noqa: UP045
+    ghost: Annotated[Optional[Path], typer.Option(help="Second bag, drawn as a transparent robot.")] = None,  # noqa: UP045
+    exaggerate: Annotated[
+        float, typer.Option(help="Draw the ghost's distance from the robot this many times as large.", min=1.0)
+    ] = 1.0,
+    robot: Annotated[Optional[Path], typer.Option(help="Robot file; by default the one in the bag.")] = None,  # noqa: UP045
+    port: Annotated[int, typer.Option(help="Port of the live page, on 127.0.0.1 alone.", min=1, max=65535)] = 8080,
+    domain: Annotated[int, typer.Option(help="ROS domain id of the running robot.", min=0, max=232)] = 0,
+    seconds: Annotated[float | None, typer.Option("--for", help="Seconds the live page lasts; until Ctrl-C.")] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of text.")] = False,
+) -> None:
+    """Show a recording, or the running robot, in three dimensions.
+
+    A recording becomes one HTML file that opens in any browser, without network. The running robot is served live on
+    this machine alone; that needs the extra `view`. The view moves nothing; on mocks it can ask for faults.
+    """
+    if bag is None:
+        _live(robot, port, domain, seconds)
+        return
+    from sher3_bags import read_run
+    from sher3_description import load_robot
+
+    from sher3_view.film import film_of
+    from sher3_view.ghost import ghost_of
+    from sher3_view.page import write_page
+
+    model = load_robot(robot) if robot else None
+    film = film_of(read_run(bag, check=False), model)
+    other = None if ghost is None else ghost_of(film, read_run(ghost, check=False), exaggerate, model)
+    target = write_page(film, page or bag.with_name(bag.name + ".html"), other)
+    facts = {"page": str(target), "bytes": target.stat().st_size, "frames": len(film.seconds)}
+    typer.echo(json.dumps(facts) if as_json else f"page {target}: open it in a browser")
+
+
+def _live(robot: Path | None, port: int, domain: int, seconds: float | None) -> None:
+    from sher3_description import load_robot
+    from sher3_kinematics import RobotKinematics
+
+    from sher3_view.live.page import LivePage
+    from sher3_view.live.view_node import run
+
+    page = LivePage(RobotKinematics(load_robot(robot)), port)
+    typer.echo(f"live on {page.url}; Ctrl-C stops")
+    run(page, domain, seconds)

@@ -1,0 +1,164 @@
+"""What the live view knows of the robot at one moment, and how it says it; plain data, without ROS and browser."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+from sher3_common import Sher3Error, parse_json
+from sher3_description import Robot
+
+TOPICS = (
+    "measured_js",
+    "setpoint_js",
+    "drives/setpoint_jv",
+    "drives/measured_js",
+    "measured_cp",
+    "force/measured_cf",
+    "pedal/measured",
+    "supervisor/status",
+    "admittance/status",
+    "admittance/settings",
+    "motion/settings",
+)
+"""What the view listens to."""
+STALE = 0.5
+"""Age [s] from which the newest joint sample is called old."""
+CAPS = {"near_tissue": "near_speed", "free": "free_speed"}
+"""The setting that holds the speed cap of a regime; the bench has none."""
+
+
+@dataclass
+class Snapshot:
+    """The newest sample of each topic.
+
+    Attributes:
+        samples: by topic; a topic that has not been heard is absent.
+        speed: of the tip [m/s], from the last two poses.
+    """
+
+    samples: dict[str, Any]
+    speed: float = 0.0
+
+    @classmethod
+    def empty(cls) -> Snapshot:
+        """Return the snapshot of a robot that has not been heard yet."""
+        return cls({})
+
+    def take(self, newest: Mapping[str, Callable[[], Any]]) -> None:
+        """Take what has come on each topic since the last call."""
+        for topic, take in newest.items():
+            sample = take()
+            if sample is None:
+                continue
+            before = self.samples.get(topic)
+            if topic == "measured_cp" and before is not None and sample.stamp > before.stamp:
+                travel = math.dist(sample.position, before.position)
+                self.speed = travel / ((sample.stamp - before.stamp) * 1e-9)
+            self.samples[topic] = sample
+
+    @property
+    def position(self) -> tuple[float, ...] | None:
+        """Actuator positions (5,), None before the first sample or where they are not finite."""
+        sample = self.samples.get("measured_js")
+        if sample is None or sample.position is None or not all(map(math.isfinite, sample.position)):
+            return None
+        return sample.position
+
+    @property
+    def force(self) -> NDArray[np.float64]:
+        """Force on the tip (3,) [N] in {b}, less the bias of the tare; {f} is parallel to {t}."""
+        wrench, pose = self.samples.get("force/measured_cf"), self.samples.get("measured_cp")
+        if wrench is None or pose is None:
+            return np.zeros(3)
+        bias = self.status("admittance/settings").get("live", {}).get("bias", (0.0,) * 6)
+        return Rotation.from_quat(pose.orientation).apply(np.subtract(wrench.wrench[:3], bias[:3]))
+
+    @property
+    def remote_centre(self) -> tuple[float, ...] | None:
+        """Point (3,) [m] in {b}, or None."""
+        centre = self.status("motion/settings").get("rcm")
+        return None if centre is None else tuple(centre[:3])
+
+    @property
+    def pedal(self) -> float:
+        """Travel of the pedal, 0 to 1."""
+        sample = self.samples.get("pedal/measured")
+        return sample.axes[0] if sample is not None and sample.axes else 0.0
+
+    @property
+    def cap(self) -> float:
+        """Speed cap of the regime in force [m/s], infinite on the bench."""
+        settings = self.status("motion/settings")
+        key = CAPS.get(str(settings.get("regime")))
+        return float(settings["settings"][key]) if key else math.inf
+
+    def tracking(self) -> tuple[str, tuple[float, ...]] | None:
+        """Return which error, `position` or `velocity`, and its value (5,) [m, rad] or [m/s, rad/s]; None if unknown.
+
+        The position in position modes, that is while set-points come with the measurement; else the velocity.
+        """
+        wanted, measured = self.samples.get("setpoint_js"), self.samples.get("measured_js")
+        if wanted and measured and wanted.position and measured.position and self._together(wanted, measured):
+            return "position", tuple(np.subtract(wanted.position, measured.position))
+        wanted, measured = self.samples.get("drives/setpoint_jv"), self.samples.get("drives/measured_js")
+        if wanted and measured and wanted.velocity and measured.velocity:
+            return "velocity", tuple(np.subtract(wanted.velocity, measured.velocity))
+        return None
+
+    @staticmethod
+    def _together(a: Any, b: Any) -> bool:
+        """Whether two samples are less than a tenth of a second apart."""
+        return abs(a.stamp - b.stamp) < 100_000_000
+
+    def status(self, topic: str) -> dict[str, Any]:
+        """Return the object of a status topic, empty where there is none."""
+        sample = self.samples.get(topic)
+        try:
+            data = parse_json(sample.text) if sample is not None else {}
+        except Sher3Error:
+            return {}
+        return data if isinstance(data, dict) else {}
+
+    def text(self, robot: Robot, now: int) -> str:
+        """Return what the side panel says, as Markdown; `now` is the time [ns]."""
+        joints = self.samples.get("measured_js")
+        if joints is None:
+            return "### Waiting for the robot\nStart it with `sher3 up`."
+        supervisor, law = self.status("supervisor/status"), self.status("admittance/status")
+        age = (now - joints.stamp) * 1e-9
+        cap = "no cap" if math.isinf(self.cap) else f"cap {self.cap * 1e3:g}"
+        lines = [
+            f"### {supervisor.get('state', 'state unknown')}",
+            f"**The joints are {age:.1f} s old.**" if age > STALE else str(law.get("text", "")),
+            *([f"**Fault: {supervisor['first_fault'].get('code')}**"] if supervisor.get("first_fault") else []),
+            "",
+            "| | |\n|:--|--:|",
+            f"| Tip speed | {self.speed * 1e3:.2f} mm/s, {cap} |",
+            f"| Force | {float(np.linalg.norm(self.force)):.2f} N |",
+            f"| Pedal | {self.pedal:.0%} |",
+            "",
+        ]
+        return "\n".join([*lines, *self._axes(robot)])
+
+    def _axes(self, robot: Robot) -> list[str]:
+        """Return the table of the axes: position, share of the travel, tracking error."""
+        found = self.tracking()
+        kind, errors = found or ("position", (math.nan,) * 5)
+        rows = [f"| axis | position | travel | {kind} error |", "|:--|--:|--:|--:|"]
+        for actuator, q, error in zip(robot.actuators, self.position or (math.nan,) * 5, errors, strict=True):
+            share = (q - actuator.limits.lower) / (actuator.limits.upper - actuator.limits.lower)
+            per = "" if kind == "position" else "/s"
+            if actuator.kind == "revolute":
+                shown, small = f"{math.degrees(q):.3f}°", f"{error * 1e3:.2f} mrad{per}"
+            else:
+                shown, small = f"{q * 1e3:.3f} mm", f"{error * 1e6:.1f} µm{per}"
+            if found is None:
+                small = "not known"
+            rows.append(f"| {actuator.name} | {shown} | {share:.0%} | {small} |")
+        return rows

@@ -1,0 +1,81 @@
+"""The live view as a node: it listens, and publishes nothing but the faults that are asked for on its page."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import Any
+
+import rclpy
+from rclpy.node import Node
+from rclpy.signals import SignalHandlerOptions
+from sher3_common.samples import TextSample
+from sher3_description import TOPICS as TABLE
+from sher3_faults.requests import FaultRequest
+from sher3_runtime import environment
+from sher3_runtime.ports import NODE_OPTIONS, advertise, clock_of, latest
+from sher3_runtime.process import stop_on_signals
+
+from sher3_view.live.page import LivePage
+from sher3_view.live.snapshot import TOPICS, Snapshot
+
+RATE = 30.0
+"""Moments per second. Between them no sample wakes this process, so the graph does not feel that it is there."""
+LOOK_AROUND = 1.0
+"""Seconds between two looks for a plant with mocks."""
+
+
+class ViewNode(Node):
+    """Holds the newest sample of each topic.
+
+    Attributes:
+        snapshot: what is known of the robot.
+    """
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__("view", **{**NODE_OPTIONS, **options})
+        self.snapshot = Snapshot.empty()
+        self._newest = {topic: latest(self, topic) for topic in TOPICS}
+        self._publish: Callable[[Any], None] | None = None
+
+    def look(self) -> None:
+        """Take what has come."""
+        self.snapshot.take(self._newest)
+
+    def mocks(self) -> bool:
+        """Whether a plant with mocks listens to requests for faults; hardware has none."""
+        ends = self.get_subscriptions_info_by_topic(TABLE["mock/fault"].full_name)
+        return any(end.node_name == "plant" for end in ends)
+
+    def ask(self, request: FaultRequest) -> None:
+        """Ask the plant for a fault; nothing happens where there is no plant."""
+        if not self.mocks():
+            return
+        if self._publish is None:
+            # Not earlier: a view that breaks nothing is no publisher.
+            self._publish = advertise(self, "mock/fault")
+            time.sleep(LOOK_AROUND / 2)
+        self._publish(TextSample(request.to_json()))
+
+
+def run(page: LivePage, domain: int, seconds: float | None) -> None:
+    """Show the robot of a domain until a signal, or for so many seconds."""
+    environment.apply(domain)
+    rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
+    try:
+        signalled = stop_on_signals()
+        node = ViewNode()
+        begin = looked = time.monotonic()
+        mocks = False
+        while not signalled() and (seconds is None or time.monotonic() - begin < seconds):
+            if (now := time.monotonic()) - looked >= LOOK_AROUND:
+                looked, mocks = now, node.mocks()
+            node.look()
+            page.show(node.snapshot, clock_of(node).now(), mocks)
+            for request in page.requests():
+                node.ask(request)
+            time.sleep(max(0.0, 1.0 / RATE - (time.monotonic() - now)))
+        node.destroy_node()
+    finally:
+        page.close()
+        rclpy.try_shutdown()

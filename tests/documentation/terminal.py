@@ -1,0 +1,134 @@
+"""A terminal in a folder of its own, with a second one in which the robot runs."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+from documentation.commands import Command, in_company, shortened
+from processes import child_environment
+from sources import ROOT
+
+LINKS = ("bench", "tests", "tools", "sher3_ws", "docker", "Makefile", "pyproject.toml")
+"""What of the project is seen from the folder."""
+START = 120.0
+"""Seconds until the robot is up at the latest: the kernels of a new machine are compiled first."""
+A_WHILE = 3.0
+"""Seconds that a command which ends at Ctrl-C is given."""
+
+
+class Terminal:
+    """Runs the commands of a page.
+
+    Args:
+        folder: working folder, made ready with links to the project.
+        domain: ROS domain of the robot.
+        takes_domain: full names of the commands with an option `--domain`.
+        limit: seconds that one command may take.
+    """
+
+    def __init__(self, folder: Path, domain: int, takes_domain: set[str], limit: float) -> None:
+        self.folder, self.domain, self.takes_domain, self.limit = folder, domain, takes_domain, limit
+        self.running: list[tuple[subprocess.Popen, Path]] = []
+        self.lent = False
+        folder.mkdir(exist_ok=True)
+        for name in LINKS:
+            if not (folder / name).exists():
+                (folder / name).symlink_to(ROOT / name)
+        (folder / ".venv").symlink_to(sys.prefix)
+        (folder / "home").mkdir()
+
+    def run(self, command: Command) -> None:
+        """Run one command and check its exit code; one that runs until Ctrl-C is started and left running."""
+        if command.interrupts:
+            self.interrupt()
+            return
+        if command.bare.startswith("sher3 up") and command.forever:
+            self.interrupt()
+        elif command.needs_robot and not self.running:
+            self.start("sher3 up --patient")
+            self.lent = True
+        elif self.lent and not command.needs_robot:
+            # The page did not start it: it is up for the commands that need it, and takes no time from the others.
+            self.interrupt()
+        if command.forever:
+            self.start(command.line)
+            return
+        done = subprocess.run(
+            self._words(command.line),
+            cwd=self.folder,
+            env=self._environment(),
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            text=True,
+            timeout=self.limit,
+            check=False,
+        )
+        story = f"{command.line}\n{done.stdout[-3000:]}\n{done.stderr[-3000:]}"
+        assert done.returncode == command.exit_code, f"exit code {done.returncode}: {story}"
+        assert "Traceback" not in done.stderr, story
+
+    def start(self, line: str) -> None:
+        """Start a command that runs until Ctrl-C, and wait until it is ready."""
+        log = self.folder / f"log{len(list(self.folder.glob('log*')))}"
+        with log.open("w") as output:
+            process = subprocess.Popen(
+                self._words(f"exec {line}", own=line),
+                cwd=self.folder,
+                env=self._environment(),
+                stdin=subprocess.DEVNULL,
+                stdout=output,
+                stderr=subprocess.STDOUT,
+            )
+        self.running.append((process, log))
+        if not line.startswith("sher3 up"):
+            time.sleep(A_WHILE)
+            assert process.poll() is None, f"{line} ended by itself: {log.read_text()[-3000:]}"
+            return
+        end = time.monotonic() + START
+        while "ready" not in log.read_text():
+            assert process.poll() is None, f"{line} did not start: {log.read_text()[-3000:]}"
+            assert time.monotonic() < end, f"{line} is not ready: {log.read_text()[-3000:]}"
+            time.sleep(0.1)
+
+    def interrupt(self) -> None:
+        """Press Ctrl-C in every other terminal, the newest first; each command must end as it was asked to."""
+        while self.running:
+            process, log = self.running.pop()
+            process.send_signal(signal.SIGINT)
+            code = process.wait(timeout=60)
+            self.lent = False
+            assert code == 0, f"exit code {code} after Ctrl-C: {log.read_text()[-3000:]}"
+
+    def close(self) -> None:
+        """End what still runs, whatever happened, and remove the folder's large files."""
+        for process, _ in self.running:
+            process.send_signal(signal.SIGINT)
+        for process, _ in self.running:
+            try:
+                process.wait(timeout=30)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                process.wait()
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+    def _words(self, line: str, own: str | None = None) -> list[str]:
+        shown = own or line
+        asked = in_company(shortened(shown), self.domain, self.takes_domain)
+        return ["bash", "-c", f"set -o pipefail; {line.replace(shown, asked)}"]
+
+    def _environment(self) -> dict[str, str]:
+        return child_environment(
+            PATH=f"{Path(sys.executable).parent}:{os.environ['PATH']}",
+            # A page may write to the home folder; the compiled kernels stay where they are.
+            HOME=str(self.folder / "home"),
+            XDG_CACHE_HOME=os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache"),
+            ROS_DOMAIN_ID=str(self.domain),
+            COLUMNS="120",
+            MPLBACKEND="agg",
+        )

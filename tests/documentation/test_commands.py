@@ -1,0 +1,91 @@
+"""Every command that the pages show is run, or at least exists with its options."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+from documentation.commands import Command, commands, words
+from documentation.pages import Unit, blocks, pages, spans, units
+
+NOT_RUN = 20
+"""Blocks that cannot be run here, at most. Each says why, where the reader sees it."""
+
+
+def cases() -> list[object]:
+    slow = [pytest.mark.slow, pytest.mark.timeout(1800)]
+    return [pytest.param(unit, marks=slow if unit.slow else [], id=unit.name) for unit in units("sh")]
+
+
+@pytest.mark.graph
+@pytest.mark.parametrize("unit", cases())
+def test_commands_of_a_page(unit: Unit, terminal, inputs):
+    """Each ends with exit code 0, or with the one that stands beside it."""
+    inputs.put(terminal.folder, "\n".join(_shown(block) for block in unit.blocks))
+    for block in unit.blocks:
+        if block.file:
+            (terminal.folder / block.file).parent.mkdir(exist_ok=True)
+            (terminal.folder / block.file).write_text(block.text)
+            continue
+        for command in commands(block):
+            terminal.run(command)
+    terminal.interrupt()
+
+
+def _shown(block) -> str:
+    return f"file: {block.file}" if block.file else block.text
+
+
+def tables() -> list[str]:
+    """Return every command in a table, once; a name with nothing behind it is only a name."""
+    found = {line for page in pages() for _, in_table, line in spans(page) if in_table}
+    return sorted(line for line in found if len(line.split()) > 2)
+
+
+SLOW_IN_TABLES = ("sher3 benchtop", "sher3 design", "sher3 paper", "sher3 gap", "sher3 safety --", "sher3 demo")
+
+
+@pytest.mark.graph
+@pytest.mark.parametrize(
+    "line",
+    [
+        pytest.param(
+            line, marks=[pytest.mark.slow, pytest.mark.timeout(1800)] if line.startswith(SLOW_IN_TABLES) else []
+        )
+        for line in tables()
+    ],
+)
+def test_commands_in_tables(line, terminal, inputs):
+    inputs.put(terminal.folder, line)
+    terminal.run(Command(line))
+    terminal.interrupt()
+
+
+def test_commands_in_the_text_exist_with_their_options(command_tree):
+    """In running text a command may be cut short: its name and its options must be those of the command line."""
+    groups = {" ".join(name.split()[:n]) for name in command_tree for n in (1, 2)}
+    shown = [(page, number, line) for page in pages() for number, _, line in spans(page)]
+    assert len(shown) > 50
+    for page, number, line in shown:
+        here = f"{page}:{number}: {line}"
+        said = words(line.replace("[", "").replace("]", "").replace("...", ""))
+        name = next((" ".join(said[:n]) for n in (3, 2) if " ".join(said[:n]) in command_tree), None)
+        if name is None:
+            assert " ".join(said[:2]) in groups or said[1].isupper(), here
+            continue
+        known = {option for p in command_tree[name].params for option in [*p.opts, *p.secondary_opts]} | {"--help"}
+        used = {word.split("=")[0] for word in said if re.fullmatch(r"--?[a-z][\w-]*(=.*)?", word)}
+        assert used <= known, f"{here} has {sorted(used - known)}"
+
+
+def test_what_is_not_run_says_why():
+    """A block that cannot be run here gives its reason on the page itself, and such blocks are few."""
+    reasons = {f"{page}:{b.line}": b.not_run for page in pages() for b in blocks(page) if b.not_run is not None}
+    assert all(len(reason) > 10 for reason in reasons.values()), reasons
+    assert len(reasons) <= NOT_RUN, reasons
+
+
+def test_every_shell_block_holds_commands():
+    """The tests above must be able to fail: what they read from the pages is there."""
+    assert sum(len(commands(block)) for unit in units("sh") for block in unit.blocks if not block.file) > 50
+    assert len(tables()) >= 8

@@ -1,0 +1,40 @@
+"""Every Python snippet on the pages runs: those of a page one after the other, in one namespace."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+
+import pytest
+from documentation.pages import blocks, pages
+
+
+def snippets() -> list[object]:
+    found = []
+    for page in pages():
+        here = [b for b in blocks(page) if b.language == "python" and b.not_run is None and not b.file]
+        if here:
+            slow = any(block.tag == "slow" for block in here)
+            found.append(pytest.param(here, id=page, marks=[pytest.mark.slow] if slow else []))
+    return found
+
+
+@pytest.mark.graph
+@pytest.mark.parametrize("here", snippets())
+def test_snippets_of_a_page(here, terminal, inputs):
+    """In an interpreter of their own, in a folder with the recordings they read."""
+    text = "\n".join(block.text for block in here)
+    inputs.put(terminal.folder, text)
+    (terminal.folder / "snippets.py").write_text(text)
+    environment = {**os.environ, "MPLBACKEND": "agg"}
+    done = subprocess.run(
+        [sys.executable, "snippets.py"],
+        cwd=terminal.folder,
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=240,
+        check=False,
+    )
+    assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-3000:]

@@ -1,0 +1,22 @@
+"""Numbers of the recorded-run contract stand in one module."""
+
+import re
+
+import pytest
+from sher3_description import contract
+from sources import FILES
+
+
+@pytest.mark.parametrize(
+    ("pattern", "value"),
+    [
+        (r"\b9\.81\b", contract.GRAVITY),
+        (r"(?i)(temperature|warmth|climate).*\b22\.0\b", contract.REFERENCE_TEMPERATURE),
+        (r"\b0\.002 \* (\w+\.)*rated|hypot\(0\.002", contract.EFFORT_NOISE),
+        (r"\b0\.001 \* (\w+\.)*rated", contract.EFFORT_RESOLUTION),
+    ],
+)
+def test_a_number_of_the_contract_is_written_once(pattern, value):
+    assert value in (9.81, 22.0, 0.002, 0.001)
+    found = [str(path) for path in FILES if path.name != "contract.py" and re.search(pattern, path.read_text())]
+    assert not found
