@@ -25,7 +25,7 @@ from sher3_gap.excitation import excite
 from sher3_gap.simulate.apply import apply_verdict, compare_cases
 from sher3_runtime import Graph
 
-pytestmark = pytest.mark.graph
+pytestmark = [pytest.mark.graph, pytest.mark.flaky(reruns=2)]
 BACKLASH = plants()["backlash"]("tilt", width=6e-5)
 
 

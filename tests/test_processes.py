@@ -17,7 +17,7 @@ from sher3_bags import recover
 from sher3_bags.reading import read_run
 from sher3_bringup.settings.run_settings import MOCK_FORCE_PORT
 
-pytestmark = pytest.mark.graph
+pytestmark = [pytest.mark.graph, pytest.mark.flaky(reruns=2)]
 PATIENCE = 120.0
 """Longest start: a machine that has never compiled the kernels."""
 

@@ -10,7 +10,7 @@ import pytest
 from processes import child_environment, sher3_command
 from sher3_cli.root import main
 
-pytestmark = pytest.mark.graph
+pytestmark = [pytest.mark.graph, pytest.mark.flaky(reruns=2)]
 
 
 @pytest.mark.parametrize(

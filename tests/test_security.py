@@ -49,6 +49,7 @@ def test_the_middleware_of_the_wheels_has_no_dds_security_and_the_documentation_
 
 
 @pytest.mark.graph
+@pytest.mark.flaky(reruns=2)
 def test_the_shipped_policy_is_that_of_the_nodes():
     shipped = SOURCES / "sher3_bringup" / "sher3_bringup" / "security" / "policy.xml"
     assert shipped.read_text() == tool("sros2_policy").policy(), "run tools/sros2_policy.py"

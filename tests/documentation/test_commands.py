@@ -19,6 +19,7 @@ def cases() -> list[object]:
 
 @pytest.mark.graph
 @pytest.mark.parametrize("unit", cases())
+@pytest.mark.flaky(reruns=2)
 def test_commands_of_a_page(unit: Unit, terminal, inputs):
     """Each ends with exit code 0, or with the one that stands beside it."""
     inputs.put(terminal.folder, "\n".join(_shown(block) for block in unit.blocks))
@@ -55,6 +56,7 @@ SLOW_IN_TABLES = ("sher3 benchtop", "sher3 design", "sher3 paper", "sher3 gap", 
         for line in tables()
     ],
 )
+@pytest.mark.flaky(reruns=2)
 def test_commands_in_tables(line, terminal, inputs):
     inputs.put(terminal.folder, line)
     terminal.run(Command(line))

@@ -22,6 +22,7 @@ def snippets() -> list[object]:
 
 @pytest.mark.graph
 @pytest.mark.parametrize("here", snippets())
+@pytest.mark.flaky(reruns=2)
 def test_snippets_of_a_page(here, terminal, inputs):
     """In an interpreter of their own, in a folder with the recordings they read."""
     text = "\n".join(block.text for block in here)

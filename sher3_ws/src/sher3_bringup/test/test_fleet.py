@@ -10,7 +10,7 @@ import pytest
 from sher3_runtime.domains import PROCESSES, claim_domain, release_domain
 from sher3_runtime.environment import child_environment
 
-pytestmark = pytest.mark.graph
+pytestmark = [pytest.mark.graph, pytest.mark.flaky(reruns=2)]
 
 HEAD = """
 import os, signal, sys, time

@@ -12,6 +12,7 @@ from sher3_bringup.processes.only_robot import only_robot
 from sher3_runtime.process import ORPHAN_LIMIT
 
 
+@pytest.mark.flaky(reruns=2)
 def test_a_second_robot_in_a_domain_is_refused_and_named(tmp_path):
     with only_robot(7, tmp_path):
         with (
@@ -41,6 +42,7 @@ time.sleep(60)
 """
 
 
+@pytest.mark.flaky(reruns=2)
 def test_a_process_that_does_not_listen_ends_with_its_parent():
     """It has 100 ms; the process is looked for until then and 0.4 s more, for a busy machine."""
     parent = subprocess.Popen([sys.executable, "-c", ORPHAN.format(before="pass")], stdout=subprocess.PIPE)

@@ -11,7 +11,7 @@ from sher3_runtime.domains import own_domain
 from sher3_runtime.executor import QUIET_NS, RawExecutor
 from std_srvs.srv import Trigger
 
-pytestmark = pytest.mark.graph
+pytestmark = [pytest.mark.graph, pytest.mark.flaky(reruns=2)]
 NAMES = ("pedal/measured", "force/measured_cf", "servo_cv")
 ZERO = (0.0,) * 6
 

@@ -20,7 +20,7 @@ from sher3_runtime.codec.cdr import codec
 from sher3_runtime.ports import UnknownTopic
 from std_srvs.srv import Trigger
 
-pytestmark = pytest.mark.graph
+pytestmark = [pytest.mark.graph, pytest.mark.flaky(reruns=2)]
 
 
 class Source(Node):

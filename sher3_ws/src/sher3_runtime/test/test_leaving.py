@@ -7,6 +7,7 @@ import subprocess
 import sys
 import time
 
+import pytest
 from sher3_runtime import process
 from sher3_runtime.domains import own_domain
 from sher3_runtime.environment import child_environment, graph_environment
@@ -34,6 +35,7 @@ process.run(lambda: [Stuck()])
 """
 
 
+@pytest.mark.flaky(reruns=2)
 def test_a_farewell_that_does_not_end_is_cut_short():
     begin = time.monotonic()
     environment = child_environment(**graph_environment(own_domain()))

@@ -122,6 +122,7 @@ def test_a_missing_library_names_the_extra(monkeypatch):
 
 
 @pytest.mark.skipif(not HAS_VISER, reason="viser is not installed (extra `view`): the live page was not served")
+@pytest.mark.flaky(reruns=2)
 def test_the_page_is_served_on_loopback_alone():
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
