@@ -1,7 +1,7 @@
-"""Building sealed cases: seconds per case and per simulated run of the truth plant.
+"""Building sealed cases: seconds per case and per simulated run of a truth plant.
 
-python bench/challenge.py            # six cases
-python bench/challenge.py --json
+python bench/challenge.py                  # six cases of the lumped plant
+python bench/challenge.py --plant tables --json
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from pathlib import Path
 
 from sher3_challenge.cases.builder import Request, build_case
 from sher3_challenge.cases.plan import draw_plan
-from sher3_challenge.truth.plant import Plant
+from sher3_challenge.plants.registry import plant_names, truth_plant
 from sher3_description import load_robot
 
 
@@ -23,10 +23,11 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--json", action="store_true")
     parser.add_argument("--cases", type=int, default=6)
+    parser.add_argument("--plant", default="lumped", choices=plant_names())
     arguments = parser.parse_args()
     robot = load_robot()
-    plan = draw_plan(robot, 1)
-    plant = Plant(robot, 1, (), plan.climate)
+    plan = draw_plan(robot, 1, truth_plant(arguments.plant))
+    plant = plan.healthy(robot, built=True)
     plant.run(plan.runs[0])  # compiles
     started = time.perf_counter()
     for run in plan.runs:
@@ -36,7 +37,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         for seed in range(arguments.cases):
             started = time.perf_counter()
-            build_case(Request(seed), Path(folder), robot)
+            build_case(Request(seed, plant=arguments.plant), Path(folder), robot)
             seconds.append(time.perf_counter() - started)
     figures = {
         "seconds_per_run": per_run,

@@ -14,7 +14,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from sher3_challenge.cases.builder import Request, build_case
-from sher3_challenge.truth.catalogue import LIBRARY
+from sher3_challenge.plants.registry import truth_plant
 from sher3_description import load_robot
 from sher3_diagnosis.report.words import quantity, share
 from sher3_gap.case.loading import load_case
@@ -24,8 +24,8 @@ GAP = (6.0, 12.0)
 
 
 def kinds() -> dict[str, str]:
-    """Return one kind of fault of the truth plant per effect id."""
-    return {kind.effect: name for name, kind in reversed(LIBRARY.items())}
+    """Return one kind of fault of the lumped plant per effect id."""
+    return {kind.effect: name for name, kind in reversed(truth_plant("lumped").library.items())}
 
 
 def measure(effect: str, kind: str, seed: int) -> dict[str, Any]:

@@ -73,7 +73,7 @@ def test_doors(libraries, doors):
             assert any(fnmatch(here, door) for door in doors), f"{path.relative_to(ROOT)} imports {sorted(used)}"
 
 
-KNOWING = ("truth", "cases", "oracle")
+KNOWING = ("plants", "cases", "oracle")
 """Folders of the challenge that know the truth."""
 ANSWERING = ("answers", "baselines")
 """Folders of the challenge that answer."""
@@ -88,11 +88,25 @@ SEAL = {
 def test_the_challenge_is_sealed(folders, sealed):
     """The truth comes from no code of the diagnosis, and whoever answers cannot look it up; also not at second hand."""
     room = ROOT / "sher3_ws" / "src" / "sher3_challenge" / "sher3_challenge"
-    files = [path for folder in folders for path in sorted((room / folder).glob("*.py"))]
+    files = [path for folder in folders for path in sorted((room / folder).rglob("*.py"))]
     assert len(files) > len(folders)
     for path in files:
         known = {name.removeprefix("sher3_challenge.").split(".")[0] for name in reached(path)}
         assert not known & set(sealed), f"{path.relative_to(ROOT)} reaches {sorted(known & set(sealed))}"
+
+
+PLANTS = ROOT / "sher3_ws" / "src" / "sher3_challenge" / "sher3_challenge" / "plants"
+"""Truth plants, a folder for each."""
+
+
+@pytest.mark.parametrize("plant", sorted(path.name for path in PLANTS.iterdir() if (path / "truth.py").exists()))
+def test_truth_plants_share_no_law(plant):
+    """A truth plant reaches no other one, nor the equations of the robot that are judged with it."""
+    others = {path.name for path in PLANTS.iterdir() if (path / "truth.py").exists()} - {plant}
+    for path in sorted((PLANTS / plant).rglob("*.py")):
+        below = reached(path)
+        used = {name for name in below if name.startswith(tuple(f"sher3_challenge.plants.{o}." for o in others))}
+        assert not used, f"{path.relative_to(ROOT)} reaches {sorted(used)}"
 
 
 def test_the_doors_are_looked_for_where_they_are():

@@ -21,9 +21,9 @@ from sher3_challenge.cases.builder import Request, build_case
 from sher3_challenge.cases.plan import KINDS, TARGETS
 from sher3_challenge.cases.seal import CASES, LABELS, MANIFEST, hashes
 from sher3_challenge.errors import ChallengeError
+from sher3_challenge.plants.registry import plant_names, truth_plant
 from sher3_challenge.score.case import CaseScore, score_case
 from sher3_challenge.score.outcome import SCORES, Outcome
-from sher3_challenge.truth.catalogue import EFFECTS, LIBRARY
 
 VERDICTS = "verdicts"
 MAXIMUM_CASES = 2000
@@ -36,6 +36,7 @@ def requests(
     kinds: Sequence[str] = (),
     without: str | None = None,
     gap: tuple[float, float] = TARGETS,
+    plants: Sequence[str] = (),
 ) -> list[Request]:
     """Return the cases of a seed range.
 
@@ -45,9 +46,10 @@ def requests(
             effect the diagnosis must do without.
         without: an effect: every case has it as its fault, and the diagnosis must do without it.
         gap: range of gap over floor of single faults.
+        plants: names of truth plants, dealt in turn; empty deals all of them. Each plant gets the kinds in turn.
 
     Raises:
-        ChallengeError: empty or too long range, unknown kind or effect.
+        ChallengeError: empty or too long range, unknown kind, effect or plant.
     """
     first, last = seeds
     if not 0 < last - first <= MAXIMUM_CASES:
@@ -55,18 +57,20 @@ def requests(
     unknown = [kind for kind in kinds if kind not in (*KINDS, WITHHELD)]
     if unknown:
         raise ChallengeError("no such kind of case", value=unknown[0], limit=", ".join((*KINDS, WITHHELD)))
-    names = [name for name, kind in LIBRARY.items() if kind.effect == without]
-    if without is not None and not names:
-        raise ChallengeError("no such effect", value=without, limit=", ".join(EFFECTS))
+    dealt = [truth_plant(name) for name in plants or plant_names()]
     made = []
     for n, seed in enumerate(range(first, last)):
-        kind = kinds[n % len(kinds)] if kinds else None
+        turn, truth = n // len(dealt), dealt[n % len(dealt)]
+        kind = kinds[turn % len(kinds)] if kinds else None
         if without is not None:
-            made.append(Request(seed, "single", names[n % len(names)], True, gap))
+            names = [name for name, known in truth.library.items() if known.effect == without]
+            if not names:
+                raise ChallengeError("no such effect", value=without, limit=", ".join(truth.effects))
+            made.append(Request(seed, "single", names[turn % len(names)], True, gap, truth.name))
         elif kind == WITHHELD:
-            made.append(Request(seed, "single", None, True, gap))
+            made.append(Request(seed, "single", None, True, gap, truth.name))
         else:
-            made.append(Request(seed, kind, gap=gap))
+            made.append(Request(seed, kind, gap=gap, plant=truth.name))
     return made
 
 

@@ -11,11 +11,12 @@ from sher3_challenge.cases.plan import KINDS, RECIPES, draw_plan
 from sher3_challenge.cases.seal import CASES, LABELS, MANIFEST, check_seal, hashes
 from sher3_challenge.errors import ChallengeError
 from sher3_challenge.oracle.oracle import oracle
+from sher3_challenge.plants.registry import plant_names, truth_plant
 from sher3_challenge.run import requests
-from sher3_challenge.truth.catalogue import LIBRARY
 from sher3_description import load_robot
 
 ROBOT = load_robot()
+LUMPED = truth_plant("lumped")
 
 
 def essence(plan):
@@ -28,11 +29,15 @@ def essence(plan):
 
 
 def test_a_seed_fixes_the_plan():
-    assert essence(draw_plan(ROBOT, 4)) == essence(draw_plan(ROBOT, 4)) != essence(draw_plan(ROBOT, 5))
+    assert (
+        essence(draw_plan(ROBOT, 4, LUMPED))
+        == essence(draw_plan(ROBOT, 4, LUMPED))
+        != essence(draw_plan(ROBOT, 5, LUMPED))
+    )
 
 
 def test_plans_have_the_shape_of_practice_cases_and_the_mix_asked_for():
-    plans = [draw_plan(ROBOT, seed) for seed in range(70)]
+    plans = [draw_plan(ROBOT, seed, LUMPED) for seed in range(70)]
     counts = {kind: sum(p.kind == kind for p in plans) for kind in KINDS}
     assert counts["healthy"] >= 0.2 * len(plans) and min(counts.values()) > 0
     for p in plans:
@@ -51,20 +56,20 @@ def test_plans_have_the_shape_of_practice_cases_and_the_mix_asked_for():
 
 
 def test_rivals_of_an_under_excited_case_are_of_different_families():
-    family = {kind.effect: kind.family for kind in LIBRARY.values()}
+    family = {kind.effect: kind.family for kind in LUMPED.library.values()}
     assert all(len({family[name] for name in recipe.rivals}) >= 2 for recipe in RECIPES)
 
 
 @pytest.mark.parametrize(("name", "aim"), [("coulomb_friction", 5.0), ("tool_offset", 12.0)])
 def test_calibration_meets_its_aim(name, aim):
-    plan = draw_plan(ROBOT, 21, kind="single", effect=name, gap=(aim, aim * 1.001))
+    plan = draw_plan(ROBOT, 21, LUMPED, kind="single", effect=name, gap=(aim, aim * 1.001))
     done = calibrated(plan, ROBOT)
     assert Calibration(ROBOT, plan).ratio(done.faults[0]) == pytest.approx(aim, rel=0.15)
 
 
 def test_exact_stages_and_healthy_cases_need_no_calibration():
     for kind, effect in (("healthy", None), ("single", "command_delay")):
-        plan = draw_plan(ROBOT, 8, kind=kind, effect=effect)
+        plan = draw_plan(ROBOT, 8, LUMPED, kind=kind, effect=effect)
         assert calibrated(plan, ROBOT) is plan
 
 
@@ -135,11 +140,17 @@ def test_a_broken_seal_is_named(built):
 
 
 def test_requests_deal_kinds_in_turn():
-    dealt = requests((0, 4), ["healthy", "withheld"])
+    dealt = requests((0, 4), ["healthy", "withheld"], plants=["lumped"])
     assert [(r.kind, r.withheld) for r in dealt] == [("healthy", False), ("single", True)] * 2
-    only = requests((0, 3), without="cable_drag")
+    only = requests((0, 3), without="cable_drag", plants=["lumped"])
     assert [r.effect for r in only] == ["cable_drag_axis", "cable_drag_sensor", "cable_drag_axis"]
     assert all(r.withheld for r in only)
+
+
+def test_requests_deal_plants_in_turn_and_each_gets_every_kind():
+    names = plant_names()
+    dealt = requests((0, 2 * len(names)), ["healthy", "outside"])
+    assert {(r.plant, r.kind) for r in dealt} == {(name, kind) for name in names for kind in ("healthy", "outside")}
 
 
 @pytest.mark.parametrize(
@@ -149,8 +160,9 @@ def test_requests_deal_kinds_in_turn():
         (lambda: requests((0, 10**6)), "number of cases"),
         (lambda: requests((0, 2), ["odd"]), "no such kind"),
         (lambda: requests((0, 2), without="gremlins"), "no such effect"),
-        (lambda: draw_plan(ROBOT, 1, kind="odd"), "no such kind"),
-        (lambda: draw_plan(ROBOT, 1, kind="single", effect="gremlins"), "no such single fault"),
+        (lambda: requests((0, 2), plants=["cardboard"]), "no such plant.*lumped"),
+        (lambda: draw_plan(ROBOT, 1, LUMPED, kind="odd"), "no such kind"),
+        (lambda: draw_plan(ROBOT, 1, LUMPED, kind="single", effect="gremlins"), "no such single fault"),
     ],
 )
 def test_bad_requests_are_named(call, words):

@@ -9,10 +9,11 @@ import pytest
 import yaml
 from sher3_bags import read_case
 from sher3_challenge.cases.calibrate import residual_keys
+from sher3_challenge.errors import ChallengeError
 from sher3_challenge.oracle.oracle import excess, stage_residuals
-from sher3_challenge.truth.catalogue import EFFECTS, LIBRARY, OUTSIDE, kind_of
-from sher3_challenge.truth.fault import Fault, FaultError
-from sher3_challenge.truth.plant import Climate, Plant, RunPlan
+from sher3_challenge.plants.kinds import Fault, FaultError
+from sher3_challenge.plants.plant import Climate, RunPlan
+from sher3_challenge.plants.registry import truth_plant
 from sher3_description import ACTUATORS, load_robot
 from sher3_gap.excitation import Excitation, excite
 
@@ -20,7 +21,8 @@ SHARED = Path(os.environ.get("SHER3_SHARED", Path(__file__).resolve().parents[5]
 PRACTICE = SHARED / "contract/practice"
 ROBOT = load_robot()
 WARM = Climate(25.0, 0.0, 100.0, 10**18)
-ALL_KINDS = {**LIBRARY, **OUTSIDE}
+LUMPED = truth_plant("lumped")
+ALL_KINDS = {**LUMPED.library, **LUMPED.outside}
 IDS = """
 command_delay command_jitter dropped_commands drive_lag axis_skew controller_gain torque_constant lead_error
 encoder_scale force_scale force_saturation velocity_deadband coulomb_friction stribeck_friction
@@ -37,8 +39,8 @@ LOADED = {"structural_compliance", "link_compliance", "tool_bending", "transmiss
 
 
 def test_every_effect_of_the_contract_has_a_fault_and_many_have_none():
-    assert set(EFFECTS) == set(IDS.split()) and len(EFFECTS) == 44
-    assert len(OUTSIDE) >= 10 and all(kind.effect == "outside_library" for kind in OUTSIDE.values())
+    assert set(LUMPED.effects) == set(IDS.split()) and len(LUMPED.effects) == 44
+    assert len(LUMPED.outside) >= 10 and all(kind.effect == "outside_library" for kind in LUMPED.outside.values())
 
 
 @cache
@@ -52,7 +54,7 @@ def region(label):
 
 @cache
 def healthy(label):
-    return stage_residuals(Plant(ROBOT, 0, (), WARM, built=False).run(plan(label), ideal=True), ROBOT)
+    return stage_residuals(LUMPED.make(ROBOT, 0, (), WARM, built=False).run(plan(label), ideal=True), ROBOT)
 
 
 def label_for(kind):
@@ -66,7 +68,7 @@ def test_a_fault_shows_in_its_stage_and_not_upstream(name):
     kind = ALL_KINDS[name]
     label = label_for(kind)
     fault = Fault(kind, kind.places[0], 2 * kind.start if kind.most > 2 * kind.start else kind.start, 3)
-    plant = Plant(ROBOT, 0, (fault,), WARM, built=False, region=region(label))
+    plant = LUMPED.make(ROBOT, 0, (fault,), WARM, built=False, region=region(label))
     own = excess([stage_residuals(plant.run(plan(label), ideal=True), ROBOT)], [healthy(label)])
     ratio = {key: np.sqrt(value / FLOOR[key.split("/")[0]]) for key, value in own.items() if not key.startswith("tip")}
     shown = max(ratio[key] for key in residual_keys(fault) if key in ratio)
@@ -83,14 +85,14 @@ def test_a_fault_shows_in_its_stage_and_not_upstream(name):
 
 def test_faults_refuse_places_where_they_cannot_sit():
     with pytest.raises(FaultError, match="cannot sit there"):
-        Plant(ROBOT, 0, (Fault(kind_of("backlash"), "tip", 1e-6, 0),), WARM).parameters()
-    with pytest.raises(FaultError, match="no such fault"):
-        kind_of("gremlins")
+        LUMPED.make(ROBOT, 0, (Fault(LUMPED.kind("backlash"), "tip", 1e-6, 0),), WARM).parameters()
+    with pytest.raises(ChallengeError, match="no such fault"):
+        LUMPED.kind("gremlins")
 
 
 def test_a_fault_is_the_same_in_every_run_and_its_scale_is_bounded():
-    fault = Fault(kind_of("cogging"), "roll", 0.3, 9)
-    plant = Plant(ROBOT, 3, (fault,), WARM)
+    fault = Fault(LUMPED.kind("cogging"), "roll", 0.3, 9)
+    plant = LUMPED.make(ROBOT, 3, (fault,), WARM)
     one, two = plant.rig(1).truth, plant.rig(2).truth
     assert one.motor.cogging_phase[3] == two.motor.cogging_phase[3]
     assert one.motor.weight[3] != two.motor.weight[3]
@@ -109,8 +111,8 @@ def practice_pair(case, kind, number, magnitude, seed=3, actuator=None):
     run = read_case(PRACTICE / case).runs[number]
     effect = yaml.safe_load((PRACTICE / case / "truth.yaml").read_text())["effects"][0]
     assert effect["effect"] == kind
-    fault = Fault(kind_of(kind), actuator or effect["actuator"], magnitude(effect["parameters"]), seed)
-    own = Plant(ROBOT, 0, (fault,), Climate(22.0, 0.0, 1.0, 10**18), built=False).run(recorded(run), ideal=True)
+    fault = Fault(LUMPED.kind(kind), actuator or effect["actuator"], magnitude(effect["parameters"]), seed)
+    own = LUMPED.make(ROBOT, 0, (fault,), Climate(22.0, 0.0, 1.0, 10**18), built=False).run(recorded(run), ideal=True)
     key = residual_keys(fault)[0]
     return stage_residuals(run, ROBOT)[key], stage_residuals(own, ROBOT)[key]
 

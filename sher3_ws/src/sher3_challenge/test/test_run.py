@@ -34,9 +34,10 @@ def test_an_existing_folder_is_left_alone(tmp_path):
         run_challenge(tmp_path, [Request(1)])
 
 
-def kept(folder, *names, first=0):
+def kept(folder, *names, first=0, plant="lumped"):
     """A finished challenge's folder with a right verdict on each named healthy robot."""
-    truth = [{"case": n, "status": "no_gap", "effects": [], "oracle": {}, "tip": None, "rivals": []} for n in names]
+    healthy = {"status": "no_gap", "effects": [], "oracle": {}, "tip": None, "rivals": [], "plant": plant}
+    truth = [{"case": n, **healthy} for n in names]
     scores = score_all(truth, {n: Answers({"status": "no_gap"}, {}) for n in names})
     folder.mkdir()
     outcome = Outcome(scores, 1.0, (first, first + len(names)), {})
@@ -49,6 +50,16 @@ def test_folders_are_scored_together(tmp_path):
     both = merged(folders)
     assert both.seeds == (0, 3) and both.seconds == 2.0
     assert both.summary().rates["false_alarm"].n == 3
+
+
+def test_plants_have_a_column_each_and_the_same_seed_on_two_plants_is_two_cases(tmp_path):
+    outcome = merged([kept(tmp_path / "a", "x", plant="lumped"), kept(tmp_path / "b", "x", plant="tables")])
+    assert outcome.plants == ("lumped", "tables")
+    assert outcome.as_dict()["by_plant"]["tables"]["rates"]["false_alarm"]["n"] == 1
+    console = Console(width=160, record=True, file=StringIO())
+    print_outcome(outcome, console)
+    title = next(line for line in console.export_text().splitlines() if "lumped" in line and "tables" in line)
+    assert "target" in title
 
 
 def test_a_case_counts_once(tmp_path):
@@ -88,7 +99,7 @@ def test_a_whole_challenge(tmp_path):
 
 
 def test_tables_show_targets_intervals_and_errors():
-    truth = {"case": "a", "status": "no_gap", "effects": [], "oracle": {}, "tip": None, "rivals": []}
+    truth = {"case": "a", "status": "no_gap", "effects": [], "oracle": {}, "tip": None, "rivals": [], "plant": "lumped"}
     scores = score_all([truth], {"a": Answers({"status": "no_gap"}, {"best_rmse": {"status": "attributed"}})})
     console = Console(width=100, record=True, file=StringIO())
     print_outcome(Outcome(scores, 2.0, (7, 8), {"b": "CaseError: cut"}), console)

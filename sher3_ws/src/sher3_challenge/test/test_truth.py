@@ -5,10 +5,11 @@ import pytest
 from scipy.integrate import solve_ivp
 from sher3_challenge.oracle import nominal as contract
 from sher3_challenge.oracle.oracle import excess, floors, stage_residuals
-from sher3_challenge.truth.hysteresis import ELEMENTS, REACH, drag_anchors, play_offset, slip_state
-from sher3_challenge.truth.mechanism import link_forces, load_forces, solve_platform, tilt_angle
-from sher3_challenge.truth.plant import Climate, Plant, RunPlan
-from sher3_challenge.truth.robot import nominal
+from sher3_challenge.plants.lumped.hysteresis import ELEMENTS, REACH, drag_anchors, play_offset, slip_state
+from sher3_challenge.plants.lumped.mechanism import link_forces, load_forces, solve_platform, tilt_angle
+from sher3_challenge.plants.lumped.plant import LumpedPlant as Plant
+from sher3_challenge.plants.lumped.robot import nominal
+from sher3_challenge.plants.plant import Climate, RunPlan
 from sher3_description import load_robot
 from sher3_gap.excitation import excite
 
@@ -52,7 +53,7 @@ def test_a_long_link_turns_the_platform():
 
 
 def _links(g, pose):
-    from sher3_challenge.truth.mechanism import rotation
+    from sher3_challenge.plants.lumped.mechanism import rotation
 
     turn = rotation(pose[3:])
     return [pose[:3] + turn @ g.platform_ball[i] - g.rail_ball[i] for i in range(6)]

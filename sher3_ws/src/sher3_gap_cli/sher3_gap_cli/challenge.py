@@ -39,6 +39,9 @@ def challenge(
         str, typer.Option(help="Kinds dealt in turn: healthy,single,compound,outside,under_excited,withheld.")
     ] = "",
     gap: Annotated[str, typer.Option(help="Range of gap over floor of single faults, log-uniform.")] = "0.5:30",
+    plant: Annotated[
+        list[str] | None, typer.Option(help="Truth plant; repeat to deal several in turn. All of them where not given.")
+    ] = None,
     jobs: Annotated[int, typer.Option(min=1, help="Processes.")] = 2,
     without: Annotated[str | None, typer.Option(help="Leave this effect out; every case has it.")] = None,
     out: Annotated[Path | None, typer.Option(help="New folder that keeps cases, labels, verdicts and scores.")] = None,
@@ -48,7 +51,7 @@ def challenge(
     ] = None,
     as_json: Json = False,
 ) -> None:
-    """Build sealed cases from the truth plant, diagnose them blind and score the verdicts."""
+    """Build sealed cases from truth plants, diagnose them blind and score the verdicts."""
     from rich.console import Console
     from sher3_challenge.run import requests, run_challenge
     from sher3_challenge.score.outcome import merged
@@ -59,7 +62,9 @@ def challenge(
         if merge:
             outcome = merged(merge)
         else:
-            wanted = requests(parse_seeds(seeds), [k for k in kinds.split(",") if k], without, parse_gap(gap))
+            wanted = requests(
+                parse_seeds(seeds), [k for k in kinds.split(",") if k], without, parse_gap(gap), plant or ()
+            )
             folder = out or Path(scratch) / "challenge"
             outcome = run_challenge(folder, wanted, jobs=jobs, baselines=baselines, say=console.log)
     if as_json:

@@ -13,20 +13,30 @@ from sher3_description import Robot, load_robot
 from sher3_challenge.cases.calibrate import calibrated, distinct_runs, ideal_residuals, reference_floor, residual_keys
 from sher3_challenge.cases.plan import TARGETS, CasePlan, draw_plan
 from sher3_challenge.oracle.oracle import StageOracle, excess, floors, oracle, stage_residuals
-from sher3_challenge.truth.plant import Plant
+from sher3_challenge.plants.plant import Plant
+from sher3_challenge.plants.registry import truth_plant
 
 STATUS = {"healthy": "no_gap", "outside": "outside_library", "under_excited": "under_excited"}
 
 
 @dataclass(frozen=True)
 class Request:
-    """One case to build: its seed; kind and effect where not drawn; whether the effect is withheld; gap over floor."""
+    """One case to build.
+
+    Attributes:
+        seed: fixes the case.
+        kind, effect: where they are not drawn.
+        withheld: whether the diagnosis has to do without the effect.
+        gap: range of gap over floor.
+        plant: name of the truth plant.
+    """
 
     seed: int
     kind: str | None = None
     effect: str | None = None
     withheld: bool = False
     gap: tuple[float, float] = TARGETS
+    plant: str = "lumped"
 
 
 def build_case(request: Request, cases: Path, robot: Robot | None = None) -> dict[str, Any]:
@@ -38,9 +48,10 @@ def build_case(request: Request, cases: Path, robot: Robot | None = None) -> dic
         robot: nominal robot in force.
     """
     robot = robot or load_robot()
-    drawn = draw_plan(robot, request.seed, kind=request.kind, effect=request.effect, gap=request.gap)
+    truth_of = truth_plant(request.plant)
+    drawn = draw_plan(robot, request.seed, truth_of, kind=request.kind, effect=request.effect, gap=request.gap)
     plan = calibrated(drawn, robot)
-    plant = Plant(robot, plan.seed, plan.faults, plan.climate, plan.tracker, region=plan.region)
+    plant = plan.plant(robot)
     runs = [plant.run(run) for run in plan.runs]
     truth = label(plan, plant, runs)
     if request.withheld:
@@ -83,6 +94,7 @@ def label(plan: CasePlan, plant: Plant, runs: list[Run]) -> dict[str, Any]:
         "tip": {key: value.as_dict() for key, value in tips.items()} if plan.tracker else None,
         "kind": plan.kind,
         "seed": plan.seed,
+        "plant": plan.truth.name,
     }
 
 
@@ -90,14 +102,12 @@ def _oracles(plan: CasePlan, plant: Plant, runs: list[Run]) -> tuple[dict[str, S
     """Return the oracle of the faults' stages (all stages when healthy) and that of the tip."""
     robot = plant.robot
     chosen = distinct_runs(plan)
-    nominal = Plant(robot, 0, (), plan.climate, built=False)
-    built = Plant(robot, plan.seed, (), plan.climate)
-    reference = ideal_residuals(nominal, chosen)
+    reference = ideal_residuals(plan.healthy(robot, built=False), chosen)
     faulty = excess(ideal_residuals(plant, chosen), reference)
-    own = excess(ideal_residuals(built, chosen), reference)
+    own = excess(ideal_residuals(plan.healthy(robot, built=True), chosen), reference)
     measured = floors(runs, [stage_residuals(run, robot) for run in runs], robot)
     # A stage that no repeated excitation shows has the floor of another robot.
-    every = oracle({**reference_floor(robot), **measured}, faulty, own)
+    every = oracle({**reference_floor(robot, plan.truth.name), **measured}, faulty, own)
     tips = {name: every.pop(f"{name}/tip") for name in ("tip", "tip_free")}
     if not plan.faults:
         return every, tips

@@ -13,8 +13,9 @@ from sher3_gap.excitation import excite
 
 from sher3_challenge.cases.plan import RUN_SPACING_NS, CasePlan
 from sher3_challenge.oracle.oracle import Residuals, excess, floors, stage_residuals
-from sher3_challenge.truth.fault import Fault
-from sher3_challenge.truth.plant import Climate, Plant, RunPlan
+from sher3_challenge.plants.kinds import Fault
+from sher3_challenge.plants.plant import Climate, Plant, RunPlan
+from sher3_challenge.plants.registry import truth_plant
 
 ITERATIONS = 4
 CLOSE_ENOUGH = 0.12
@@ -43,10 +44,10 @@ def ideal_residuals(plant: Plant, runs: Sequence[RunPlan]) -> list[Residuals]:
     return [stage_residuals(plant.run(run, ideal=True), plant.robot) for run in runs]
 
 
-@lru_cache(maxsize=4)
-def reference_floor(robot: Robot) -> dict[str, float]:
-    """Return the floor of every stage of one healthy robot, from three repeats of motion, postures and loads."""
-    plant = Plant(robot, REFERENCE_SEED, (), Climate(REFERENCE_TEMPERATURE, 1.0, 200.0, 0))
+@lru_cache(maxsize=8)
+def reference_floor(robot: Robot, name: str) -> dict[str, float]:
+    """Return the floor of every stage of one healthy robot of a truth plant, from repeats of three excitations."""
+    plant = truth_plant(name).make(robot, REFERENCE_SEED, (), Climate(REFERENCE_TEMPERATURE, 1.0, 200.0, 0))
     runs = []
     for n, name in enumerate(("sweep", "postures", "loads")):
         excitation = excite(name, robot, posture="p1")
@@ -64,12 +65,13 @@ class Calibration:
 
     def __post_init__(self) -> None:
         self.runs = distinct_runs(self.plan)
-        self.nominal = ideal_residuals(Plant(self.robot, 0, (), self.plan.climate, built=False), self.runs)
-        self.floor = reference_floor(self.robot)
+        self.nominal = ideal_residuals(self.plan.healthy(self.robot, built=False), self.runs)
+        self.floor = reference_floor(self.robot, self.plan.truth.name)
 
     def ratio(self, fault: Fault) -> float:
         """Return sqrt(D / F): the fault's own part of the gap over the floor, the largest of its residuals."""
-        plant = Plant(self.robot, 0, (fault,), self.plan.climate, built=False, region=self.plan.region)
+        plan = self.plan
+        plant = plan.truth.make(self.robot, 0, (fault,), plan.climate, built=False, region=plan.region)
         own = excess(ideal_residuals(plant, self.runs), self.nominal)
         return max((math.sqrt(own[key] / self.floor[key]) for key in residual_keys(fault) if key in own), default=0.0)
 

@@ -11,9 +11,8 @@ from sher3_description.contract import REFERENCE_TEMPERATURE
 from sher3_gap.excitation import POSTURES, excite
 
 from sher3_challenge.errors import ChallengeError
-from sher3_challenge.truth.catalogue import LIBRARY, OUTSIDE
-from sher3_challenge.truth.fault import Fault, Kind
-from sher3_challenge.truth.plant import Climate, RunPlan
+from sher3_challenge.plants.kinds import Fault, Kind
+from sher3_challenge.plants.plant import Climate, Plant, RunPlan, TruthPlant
 
 KINDS = ("healthy", "single", "compound", "outside", "under_excited")
 MIX = (0.32, 0.36, 0.12, 0.13, 0.07)
@@ -32,6 +31,7 @@ class CasePlan:
         name: folder name.
         kind: one of `KINDS`.
         seed: fixes the case.
+        truth: the truth plant it runs on.
         faults: with the magnitude at which calibration starts; those of exact stages are final.
         targets: per fault, the aim for gap over floor (its own part); 0 where the magnitude is final.
         runs: the nine runs.
@@ -43,12 +43,21 @@ class CasePlan:
     name: str
     kind: str
     seed: int
+    truth: TruthPlant
     faults: tuple[Fault, ...]
     targets: tuple[float, ...]
     runs: tuple[RunPlan, ...]
     climate: Climate
     tracker: bool
     rivals: tuple[str, ...] = ()
+
+    def plant(self, robot: Robot) -> Plant:
+        """Return the plant of the case: the robot as built, with its faults."""
+        return self.truth.make(robot, self.seed, self.faults, self.climate, self.tracker, region=self.region)
+
+    def healthy(self, robot: Robot, *, built: bool) -> Plant:
+        """Return the same robot without the faults: as built, or exactly as its file says."""
+        return self.truth.make(robot, self.seed if built else 0, (), self.climate, built=built)
 
     @property
     def region(self) -> tuple[float, ...]:
@@ -109,6 +118,7 @@ _ALL_PAIRS = tuple(dict.fromkeys(_PAIRS.values()))
 def draw_plan(
     robot: Robot,
     seed: int,
+    truth: TruthPlant,
     *,
     kind: str | None = None,
     effect: str | None = None,
@@ -119,6 +129,7 @@ def draw_plan(
     Args:
         robot: nominal robot of the case.
         seed: fixes everything.
+        truth: the truth plant; the same seed draws other faults from another plant's catalogue.
         kind: one of `KINDS`; drawn where None.
         effect: name of a kind of fault (its catalogue name) for a single or outside case; drawn where None.
         gap: range of the fault's own part of the gap over the floor, of single and outside cases.
@@ -132,7 +143,7 @@ def draw_plan(
     if kind not in KINDS:
         raise ChallengeError("no such kind of case", value=kind, limit=", ".join(KINDS))
     recipe = RECIPES[int(rng.integers(len(RECIPES)))] if kind == "under_excited" else None
-    kinds = _draw_kinds(kind, effect, recipe, rng)
+    kinds = _draw_kinds(truth, kind, effect, recipe, rng)
     faults = tuple(_draw_fault(k, rng) for k in kinds)
     if recipe is not None:
         targets: tuple[float, ...] = tuple(float(rng.uniform(4, 12)) for _ in faults)
@@ -157,16 +168,18 @@ def draw_plan(
         )
     runs = _draw_runs(robot, faults, recipe, origin, rng)
     return CasePlan(
-        f"case_{seed:05d}", kind, seed, faults, targets, runs, climate, tracker, recipe.rivals if recipe else ()
+        f"case_{seed:05d}", kind, seed, truth, faults, targets, runs, climate, tracker, recipe.rivals if recipe else ()
     )
 
 
-def _draw_kinds(kind: str, effect: str | None, recipe: Recipe | None, rng: np.random.Generator) -> list[Kind]:
+def _draw_kinds(
+    truth: TruthPlant, kind: str, effect: str | None, recipe: Recipe | None, rng: np.random.Generator
+) -> list[Kind]:
     if kind == "healthy":
         return []
     if recipe is not None:
-        return [LIBRARY[str(rng.choice(recipe.faults))]]
-    pool = OUTSIDE if kind == "outside" else LIBRARY
+        return [truth.library[str(rng.choice(recipe.faults))]]
+    pool = truth.outside if kind == "outside" else truth.library
     if effect is not None:
         if effect not in pool:
             raise ChallengeError(f"no such {kind} fault", value=effect, limit=", ".join(pool))

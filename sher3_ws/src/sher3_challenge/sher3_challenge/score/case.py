@@ -28,6 +28,7 @@ class CaseScore:
 
     Attributes:
         case: name.
+        plant: name of the truth plant, `-` where the label has none.
         truth: status by the label.
         said: status by the verdict, `missing` without one.
         fault: what is wrong, joined by `+`; `-` when healthy.
@@ -77,6 +78,7 @@ class CaseScore:
     rivals: bool | None = None
     experiment: bool | None = None
     seconds: float | None = None
+    plant: str = "-"
 
 
 def same_place(true: str, said: str | None) -> bool:
@@ -119,6 +121,7 @@ def _names(truth: Truth, given: Verdict, causes: Sequence[Mapping[str, Any]]) ->
     ratios = [o["gap_over_floor"] for o in (truth.get("oracle") or {}).values() if o.get("gap_over_floor")]
     return {
         "case": truth["case"],
+        "plant": truth.get("plant", "-"),
         "truth": status,
         "said": given.get("status", "missing"),
         "fault": "+".join(e.get("fault", e["effect"]) for e in effects) or "-",

@@ -28,9 +28,14 @@ class Outcome:
     seeds: tuple[int, int]
     errors: dict[str, str]
 
-    def summary(self, who: str = "diagnosis", *, least: float = 0.0) -> Summary:
-        """Return the summary of one competitor over cases with a gap over floor of at least `least`."""
-        return summarise(self.scores[who], least=least)
+    @property
+    def plants(self) -> tuple[str, ...]:
+        """Return the names of the truth plants of the cases, sorted."""
+        return tuple(sorted({s.plant for s in self.scores["diagnosis"]}))
+
+    def summary(self, who: str = "diagnosis", *, least: float = 0.0, plant: str | None = None) -> Summary:
+        """Return the summary of one competitor over cases with a gap over floor of at least `least`, of one plant."""
+        return summarise([s for s in self.scores[who] if plant in (None, s.plant)], least=least)
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain data for `--json`."""
@@ -40,12 +45,13 @@ class Outcome:
             "errors": self.errors,
             "all": {who: self.summary(who).as_dict() for who in self.scores},
             "from_3": {who: self.summary(who, least=CLEAR).as_dict() for who in self.scores},
+            "by_plant": {name: self.summary(least=CLEAR, plant=name).as_dict() for name in self.plants},
             "cases": {who: [s.__dict__ for s in rows] for who, rows in self.scores.items()},
         }
 
 
 def merged(folders: Sequence[Path]) -> Outcome:
-    """Return the outcome over finished challenges, whose seeds must not overlap.
+    """Return the outcome over finished challenges, whose seeds must not overlap on one plant.
 
     Raises:
         ChallengeError: a folder without scores, or a case in two of them.
@@ -62,7 +68,7 @@ def merged(folders: Sequence[Path]) -> Outcome:
             seconds, errors, seeds = seconds + kept["seconds"], errors | kept["errors"], seeds + kept["seeds"]
         except (FileError, KeyError, TypeError, AttributeError) as error:
             raise ChallengeError("no scores", value=str(folder), remedy="a folder that --out wrote") from error
-    names = [s.case for s in scores.get("diagnosis", [])]
+    names = [f"{s.plant} {s.case}" for s in scores.get("diagnosis", [])]
     if len(set(names)) < len(names):
         twice = max(names, key=names.count)
         raise ChallengeError("a case is in two folders", value=twice, remedy="give each folder seeds of its own")

@@ -28,6 +28,9 @@ def print_outcome(outcome: Outcome, console: Console) -> None:
     first, last = outcome.seeds
     summaries = {who: outcome.summary(who, least=CLEAR) for who in outcome.scores}
     console.print(rates_table(f"gap/floor of at least {CLEAR:g}, seeds {first}:{last}", summaries))
+    if len(outcome.plants) > 1:
+        title = f"diagnosis by truth plant, gap/floor of at least {CLEAR:g}"
+        console.print(plants_table(title, {p: outcome.summary(least=CLEAR, plant=p) for p in outcome.plants}))
     whole = outcome.summary()
     console.print(rates_table("all cases", {who: outcome.summary(who) for who in outcome.scores}))
     console.print(confusion_table("status (truth down, verdict across)", whole.status_confusion))
@@ -43,13 +46,13 @@ def print_outcome(outcome: Outcome, console: Console) -> None:
 
 def misses_table(outcome: Outcome) -> Table:
     """Return the cases with a gap of at least three floors, or none, whose verdict is wrong, and what they were."""
-    table = Table("case", "truth", "verdict", "gap/floor", "fault", "said", title="misses")
+    table = Table("case", "plant", "truth", "verdict", "gap/floor", "fault", "said", title="misses")
     for s in outcome.scores["diagnosis"]:
         right = (s.said == s.truth, s.stage, s.actuator, s.in_set if s.truth == "attributed" else None)
         if all(x is None or x for x in right) or (s.gap_over_floor or CLEAR) < CLEAR:
             continue
         ratio = "-" if s.gap_over_floor is None else f"{s.gap_over_floor:.1f}"
-        table.add_row(s.case, s.truth, s.said, ratio, s.fault, s.answer)
+        table.add_row(s.case, s.plant, s.truth, s.said, ratio, s.fault, s.answer)
     return table
 
 
@@ -63,6 +66,17 @@ def rates_table(title: str, summaries: dict[str, Summary]) -> Table:
         sign, limit = TARGETS.get(name, ("", 0.0))
         target = f"{sign} {limit:g}" if sign else ""
         table.add_row(name, target, _full(rate), *(_short(other.rates[name]) for other in others))
+    return table
+
+
+def plants_table(title: str, summaries: dict[str, Summary]) -> Table:
+    """Return the table of rates with a column per truth plant, each with number and interval."""
+    table = Table(title=title)
+    for name in ("rate", "target", *summaries):
+        table.add_column(name, no_wrap=name == "rate")
+    for name in next(iter(summaries.values())).rates:
+        sign, limit = TARGETS.get(name, ("", 0.0))
+        table.add_row(name, f"{sign} {limit:g}" if sign else "", *(_full(s.rates[name]) for s in summaries.values()))
     return table
 
 

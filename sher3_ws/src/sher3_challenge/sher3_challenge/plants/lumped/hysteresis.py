@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from sher3_challenge.truth.compiled import compiled
-from sher3_challenge.truth.parameters import Array
+from sher3_challenge.plants.compiled import compiled
+from sher3_challenge.plants.lumped.parameters import Array
 
 REACH = np.array([0.25, 0.7, 1.3, 2.2])
 """Break displacements of the elements over the nominal one."""

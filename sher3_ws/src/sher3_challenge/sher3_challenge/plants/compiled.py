@@ -1,4 +1,4 @@
-"""Flags with which the truth plant's kernels are compiled: IEEE division instead of exceptions."""
+"""Flags with which the kernels of truth plants are compiled: IEEE division instead of exceptions."""
 
 from functools import partial
 

@@ -7,10 +7,10 @@ import math
 import numpy as np
 from sher3_description.contract import GRAVITY
 
-from sher3_challenge.truth.compiled import compiled, compiled_inner
-from sher3_challenge.truth.hysteresis import ELEMENTS, play_offset
-from sher3_challenge.truth.mechanism import arm_pose, link_forces, rotation, solve_platform, tilt_angle
-from sher3_challenge.truth.parameters import Array, Geometry
+from sher3_challenge.plants.compiled import compiled, compiled_inner
+from sher3_challenge.plants.lumped.hysteresis import ELEMENTS, play_offset
+from sher3_challenge.plants.lumped.mechanism import arm_pose, link_forces, rotation, solve_platform, tilt_angle
+from sher3_challenge.plants.lumped.parameters import Array, Geometry
 
 OUTER_HINGE = 0.05
 """Distance from P along the arm at which the outer part of the structural compliance sits [m]."""

@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 from sher3_description import Robot
 
-from sher3_challenge.truth.parameters import (
+from sher3_challenge.plants.lumped.parameters import (
     AXES,
     Array,
     Drive,

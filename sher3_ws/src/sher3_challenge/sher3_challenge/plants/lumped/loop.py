@@ -7,7 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sher3_challenge.truth.axis import (
+from sher3_challenge.plants.compiled import compiled, compiled_inner
+from sher3_challenge.plants.lumped.axis import (
     LOAD_Q,
     LOAD_V,
     STATES,
@@ -19,10 +20,9 @@ from sher3_challenge.truth.axis import (
     motor_force,
     reported_force,
 )
-from sher3_challenge.truth.compiled import compiled, compiled_inner
-from sher3_challenge.truth.hysteresis import ELEMENTS, drag_anchors, play_offset, slip_state
-from sher3_challenge.truth.mechanism import load_forces
-from sher3_challenge.truth.parameters import (
+from sher3_challenge.plants.lumped.hysteresis import ELEMENTS, drag_anchors, play_offset, slip_state
+from sher3_challenge.plants.lumped.mechanism import load_forces
+from sher3_challenge.plants.lumped.parameters import (
     AXES,
     Array,
     Drive,

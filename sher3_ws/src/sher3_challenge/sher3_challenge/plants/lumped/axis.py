@@ -8,9 +8,9 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from sher3_challenge.truth.compiled import compiled_inner
-from sher3_challenge.truth.hysteresis import drag_anchors, slip_state
-from sher3_challenge.truth.parameters import Array, Drive, Motor, Transmission
+from sher3_challenge.plants.compiled import compiled_inner
+from sher3_challenge.plants.lumped.hysteresis import drag_anchors, slip_state
+from sher3_challenge.plants.lumped.parameters import Array, Drive, Motor, Transmission
 
 STEP = 2.0e-4
 TWO_PI = 2 * math.pi

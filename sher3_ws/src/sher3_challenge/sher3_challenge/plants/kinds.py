@@ -1,15 +1,19 @@
-"""Faults: what is wrong with the truth plant in a case, as data that a seed and a magnitude fix completely."""
+"""Faults of a truth plant as data: a kind, a place, and the magnitude and the seed that fix it completely.
+
+A plant registers its kinds in a `Catalogue` of its own. `apply` writes a fault into the plant's own `rig`, of which
+nothing is known here.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from sher3_common import Sher3Error
-from sher3_description import ACTUATORS, Robot
-
-from sher3_challenge.truth.parameters import AXES, Array, TruthParameters
+from sher3_description import ACTUATORS
 
 DELTAS = ACTUATORS[:3]
 SLIDERS = (*DELTAS, "tilt")
@@ -21,18 +25,6 @@ ANGULAR = {"length": 31.4, "force": 0.025, "stiffness": 8e-4, "compliance": 1256
 
 class FaultError(Sher3Error):
     """An unknown fault, or one on an actuator where it cannot sit."""
-
-
-@dataclass
-class Rig:
-    """What a fault may change: parameters and transport. `region` is where the runs work, for local faults."""
-
-    robot: Robot
-    truth: TruthParameters
-    delay: Array = field(default_factory=lambda: np.zeros(AXES))
-    jitter: float = 0.0
-    loss: float = 0.0
-    region: Array = field(default_factory=lambda: np.zeros(AXES))
 
 
 @dataclass(frozen=True)
@@ -65,13 +57,13 @@ class Site:
         """Return +1 or -1."""
         return float(self.rng.choice([-1.0, 1.0]))
 
-    def direction(self, dimensions: int = 3) -> Array:
+    def direction(self, dimensions: int = 3) -> NDArray[np.floating[Any]]:
         """Return a random unit vector."""
         v = self.rng.standard_normal(dimensions)
         return np.asarray(v / np.linalg.norm(v))
 
 
-Apply = Callable[[Rig, Site, float], dict[str, float]]
+Apply = Callable[[Any, Site, float], dict[str, float]]
 
 
 @dataclass(frozen=True)
@@ -124,7 +116,7 @@ class Fault:
     magnitude: float
     seed: int
 
-    def apply(self, rig: Rig) -> dict[str, float]:
+    def apply(self, rig: Any) -> dict[str, float]:
         """Write the fault into a rig; return its parameters."""
         if self.actuator not in self.kind.places:
             limit = ", ".join(self.kind.places)

@@ -7,7 +7,8 @@ import math
 from sher3_description import ACTUATORS
 from sher3_description.contract import GRAVITY
 
-from sher3_challenge.truth.fault import ALL, DELTAS, SLIDERS, Catalogue, Rig, Site
+from sher3_challenge.plants.kinds import ALL, DELTAS, SLIDERS, Catalogue, Site
+from sher3_challenge.plants.lumped.rig import Rig
 
 CATALOGUE = Catalogue()
 add = CATALOGUE.add

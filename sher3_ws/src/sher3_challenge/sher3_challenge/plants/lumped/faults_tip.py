@@ -7,8 +7,9 @@ import math
 import numpy as np
 from sher3_description import ACTUATORS
 
-from sher3_challenge.truth.fault import DELTAS, FORCE_SENSOR, TIP, Catalogue, Rig, Site
-from sher3_challenge.truth.tip import OUTER_HINGE
+from sher3_challenge.plants.kinds import DELTAS, FORCE_SENSOR, TIP, Catalogue, Site
+from sher3_challenge.plants.lumped.rig import Rig
+from sher3_challenge.plants.lumped.tip import OUTER_HINGE
 
 CATALOGUE = Catalogue()
 add = CATALOGUE.add

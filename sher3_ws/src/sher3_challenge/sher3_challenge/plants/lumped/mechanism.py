@@ -10,8 +10,8 @@ import math
 import numpy as np
 from sher3_description.contract import GRAVITY
 
-from sher3_challenge.truth.compiled import compiled
-from sher3_challenge.truth.parameters import Array, Geometry
+from sher3_challenge.plants.compiled import compiled
+from sher3_challenge.plants.lumped.parameters import Array, Geometry
 
 TOLERANCE = 1e-15  # of the squared lengths: 1e-14 m of a link
 

@@ -1,0 +1,68 @@
+"""The motion of the lumped plant over one excitation: signals for the recorder."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from sher3_description import Robot
+from sher3_description.contract import REFERENCE_TEMPERATURE
+from sher3_gap.excitation import Excitation
+
+from sher3_challenge.plants.lumped import sensing
+from sher3_challenge.plants.lumped.loop import Script, run_loop
+from sher3_challenge.plants.lumped.parameters import AXES, Array, TruthParameters
+from sher3_challenge.plants.lumped.tip import follow_tip
+from sher3_challenge.plants.recorder import Signals
+
+
+@dataclass(frozen=True)
+class Timing:
+    """Transport of commands: fixed delay per axis [s], spread of a random one [s], probability of loss."""
+
+    delay: Array = field(default_factory=lambda: np.zeros(AXES))
+    jitter: float = 0.0
+    loss: float = 0.0
+
+    def draw(self, ticks: int, period: float, rng: np.random.Generator) -> Array:
+        """Return (ticks, 5) delays from tick to arrival; inf where the command is lost. Commands never overtake."""
+        common = np.minimum(np.abs(self.jitter * rng.standard_normal(ticks)), 5 * period)
+        arrival = np.arange(ticks)[:, None] * period + common[:, None] + self.delay
+        arrival = np.maximum.accumulate(arrival, axis=0) - np.arange(ticks)[:, None] * period
+        arrival[rng.random(ticks) < self.loss] = np.inf
+        arrival[0] = np.where(np.isinf(arrival[0]), 0.0, arrival[0])
+        return np.asarray(arrival)
+
+
+def signals_of(
+    robot: Robot,
+    p: TruthParameters,
+    timing: Timing,
+    excitation: Excitation,
+    temperature: Array,
+    rng: np.random.Generator,
+) -> Signals:
+    """Run the plant over an excitation at the given temperature (n,) [degC]; return what the sensors would see."""
+    n, period = len(excitation.position), robot.control_period
+    contact = np.ascontiguousarray(excitation.contact_wrench()[:, :3], dtype=np.float64)
+    glitches: Array = (
+        p.host.glitch * (rng.random((n, AXES)) < p.host.glitch_probability) * rng.choice([-1.0, 1.0], (n, AXES))
+    )
+    glitches[:5] = 0.0
+    script = Script(
+        np.ascontiguousarray(excitation.position),
+        np.ascontiguousarray(excitation.velocity),
+        contact,
+        timing.draw(n, period, rng),
+        glitches,
+        np.where(rng.random(AXES) < 0.5, -1.0, 1.0),
+        period,
+    )
+    course = run_loop(p, script)
+    kelvin = temperature - REFERENCE_TEMPERATURE
+    tips, turns = follow_tip(p.geometry, course.load, contact, kelvin, period)
+    wrench = sensing.force_sensor(robot, p.sensors, turns, course.load, contact, kelvin)
+    return Signals(
+        course.command, course.echo, course.motor_reading, course.load_reading, course.force, wrench,
+        tips + p.sensors.tracker_bias, turns, temperature,
+    )  # fmt: skip

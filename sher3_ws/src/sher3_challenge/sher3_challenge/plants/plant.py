@@ -1,0 +1,110 @@
+"""The seam between the challenge and a truth plant: what a run is asked for, what a plant answers, what it is made of.
+
+A folder `sher3_challenge/plants/NAME` with a module `truth.py` that defines `PLANT = TruthPlant(...)` is a plant.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from sher3_bags import Run
+from sher3_description import Robot
+from sher3_gap.excitation import Excitation
+
+from sher3_challenge.errors import ChallengeError
+from sher3_challenge.plants.kinds import Fault, Kind
+
+Array = NDArray[np.floating[Any]]
+AXES = 5
+
+
+@dataclass(frozen=True)
+class RunPlan:
+    """One run of a case: what is driven, under which condition, with which seed."""
+
+    excitation: Excitation
+    repeat: int
+    stamp: int
+    seed: int
+
+
+@dataclass(frozen=True)
+class Climate:
+    """Temperature over a whole case: it warms from `start` by `rise` [K] with a time constant [s]."""
+
+    start: float
+    rise: float
+    constant: float
+    origin: int
+
+    def course(self, stamp: int) -> Callable[[Array], Array]:
+        """Return temperature over a run's own time that starts at `stamp` [ns]."""
+        since = (stamp - self.origin) * 1e-9
+        return lambda t: np.asarray(self.start + self.rise * (1 - np.exp(-(since + t) / self.constant)))
+
+
+@dataclass(frozen=True)
+class Plant(ABC):
+    """One robot of a truth plant with its faults; a base for the plants, which add their laws.
+
+    Attributes:
+        robot: the robot file in force.
+        seed: fixes the individual.
+        faults: what is wrong with it, of kinds of the same truth plant.
+        climate: temperature over the case.
+        tracker: whether the tip is tracked.
+        built: False gives the robot exactly as its file says, with nothing that scatters from run to run.
+        region: (5,) positions about which the runs work, actuator units, for faults in one place of a stroke.
+    """
+
+    robot: Robot
+    seed: int
+    faults: Sequence[Fault]
+    climate: Climate
+    tracker: bool = True
+    built: bool = True
+    region: tuple[float, ...] = (0.0,) * AXES
+
+    @abstractmethod
+    def run(self, plan: RunPlan, *, ideal: bool = False) -> Run:
+        """Run a plan; `ideal` leaves out noise and rounding of the sensors and tracks the tip, all else the same."""
+
+    @abstractmethod
+    def parameters(self) -> list[dict[str, float]]:
+        """Return the parameters of each fault by the contract's names."""
+
+
+@dataclass(frozen=True)
+class TruthPlant:
+    """A truth plant as the challenge sees it.
+
+    Attributes:
+        name: name of its folder.
+        summary: one line that tells it from the others.
+        library: kinds of faults that stand for the effect ids of the contract, all of them, by name.
+        outside: kinds that no catalogue names.
+        make: its class of `Plant`; called with the fields of `Plant`.
+    """
+
+    name: str
+    summary: str
+    library: Mapping[str, Kind]
+    outside: Mapping[str, Kind]
+    make: type[Plant]
+
+    @property
+    def effects(self) -> tuple[str, ...]:
+        """Return the effect ids that some kind stands for, sorted."""
+        return tuple(sorted({kind.effect for kind in self.library.values()}))
+
+    def kind(self, name: str) -> Kind:
+        """Return the kind of that name; raises ChallengeError."""
+        for catalogue in (self.library, self.outside):
+            if name in catalogue:
+                return catalogue[name]
+        raise ChallengeError("no such fault", value=name, limit=", ".join([*self.library, *self.outside]))
