@@ -19,7 +19,7 @@ from test_file_doors import DOORS
 
 ROBOT = load_robot()
 VERDICT = {
-    "schema": "sher3.verdict/1",
+    "schema": "sher3.verdict/2",
     "status": "no_gap",
     "where": [],
     "causes": [],

@@ -13,8 +13,12 @@ from functools import cached_property
 from typing import NamedTuple, Protocol
 
 from sher3_diagnosis.channel import Array, Channel, Floors, Mask
+from sher3_diagnosis.effect import ROTARY
 from sher3_diagnosis.fitting import Fit, Term, fit
 from sher3_diagnosis.whitened import Whitened
+
+TURNS = 3
+"""First component of a pose or a wrench that is a rotation or a torque."""
 
 
 class Motion(NamedTuple):
@@ -74,7 +78,7 @@ class Evidence:
     Attributes:
         excitations: per run, the name of its excitation; runs of one name are repeats.
         data: residuals and floors, whitened.
-        units: channel -> SI unit of its first components; `second_units`: of the last three of six, where stated.
+        units: channel -> SI unit of its first components; the last three of six turn: rad for m, N*m for N.
         places: kind of place -> the sites that are one; effects say on which they may sit.
         rotary: sites that turn.
         counts: actuator -> one count of its encoder, m or rad.
@@ -90,7 +94,6 @@ class Evidence:
     counts: Mapping[str, float] = field(default_factory=dict)
     as_built: Mapping[Channel, Array] = field(default_factory=dict)
     nuisance: tuple[Term, ...] = ()
-    second_units: Mapping[Channel, str] = field(default_factory=dict)
 
     @property
     def views(self) -> list[View]:
@@ -124,9 +127,18 @@ class Evidence:
         """Return one encoder count at a channel; infinite where nobody says where two encoders have their zeros."""
         return self.counts.get(channel.actuator, math.inf)
 
-    def unit(self, channel: Channel, part: int = 0) -> str:
-        """Return the unit of a part of a channel: 0 position or force, 1 rotation or torque."""
-        return self.second_units.get(channel, self.units[channel]) if part else self.units[channel]
+    def unit(self, channel: Channel, component: int = 0) -> str:
+        """Return the unit of a component of a channel: the last three of six are a rotation or a torque."""
+        unit = self.units[channel]
+        return unit if component < TURNS else ROTARY[unit]
+
+    def component(self, channel: Channel, component: int) -> str | None:
+        """Return the name of a component: `x` to `rz` of a pose, `fx` to `tz` of a wrench; None where there is one."""
+        residual = next(r[channel] for r in self.data.residuals if channel in r)
+        if residual.values.shape[1] == 1:
+            return None
+        kinds = ("f", "t") if self.units[channel] == "N" else ("", "r")
+        return kinds[component // TURNS] + "xyz"[component % TURNS]
 
     def samples(self, channel: Channel) -> int:
         """Return the whitened samples of a channel over all runs: its loss at the floor."""

@@ -8,7 +8,9 @@ from typing import Literal
 from pydantic import BaseModel, ConfigDict, Field, field_validator, model_validator
 from sher3_common import read_text
 
-SCHEMA = "sher3.verdict/1"
+SCHEMA = "sher3.verdict/2"
+Schema = Literal["sher3.verdict/1", "sher3.verdict/2"]
+"""Schemas that are read: the second is a superset of the first."""
 Status = Literal["no_gap", "attributed", "under_excited", "outside_library"]
 
 
@@ -31,13 +33,18 @@ class Parameter(Interval):
 
 
 class Where(_Model):
-    """One place of the signal chain at which the robot leaves the simulation."""
+    """One place of the signal chain at which the robot leaves the simulation.
+
+    `gap`, `floor` and `unit` are of one component, the one with the largest ratio, named where there are several:
+    `x y z` [m], `rx ry rz` [rad], `fx fy fz` [N], `tx ty tz` [N m].
+    """
 
     stage: str
     actuator: str
     gap: float = Field(ge=0.0, description="rms of the nominal residual")
     floor: float = Field(ge=0.0, description="rms between repeats")
     unit: str
+    component: str | None = None
     regime: str
     confidence: float = Field(ge=0.0, le=1.0)
 
@@ -69,6 +76,15 @@ class Residual(_Model):
     unit: str
 
 
+class Within(_Model):
+    """A deviation that lies within its tolerance and so is no gap; the tolerance is three standard deviations."""
+
+    quantity: str
+    value: float
+    tolerance: float = Field(gt=0.0)
+    unit: str
+
+
 class Unexplained(_Model):
     """Where a gap lives that no effect of the library explains, and what it looks like."""
 
@@ -89,7 +105,7 @@ class NextExperiment(_Model):
 class Verdict(_Model):
     """What `diagnose` answers for one case."""
 
-    schema_: Literal["sher3.verdict/1"] = Field(default="sher3.verdict/1", alias="schema")
+    schema_: Schema = Field(default="sher3.verdict/2", alias="schema")
     status: Status
     where: list[Where] = []
     causes: list[Cause] = []
@@ -97,6 +113,7 @@ class Verdict(_Model):
     residual: Residual | None = None
     unexplained: Unexplained | None = None
     next_experiment: NextExperiment | None = None
+    within_tolerance: list[Within] = []
     seconds: float = 0.0
     versions: dict[str, str] = {}
     notes: list[str] = []

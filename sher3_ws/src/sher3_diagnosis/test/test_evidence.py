@@ -25,10 +25,12 @@ def test_excess_is_the_loss_above_one_per_sample():
     assert evidence.channels == [AXIS]
 
 
-def test_units_are_of_a_part_of_the_components():
-    tip = Channel("mechanism", "tip")
-    evidence = evidence_of([run("a", 1.0)], units={AXIS: "N", tip: "m"}, second_units={tip: "rad"})
-    assert (evidence.unit(tip), evidence.unit(tip, 1), evidence.unit(AXIS, 1)) == ("m", "rad", "N")
+def test_angles_are_never_in_metres_and_torques_never_in_newtons():
+    tip, sensor = Channel("mechanism", "tip"), Channel("sensing", "force_sensor")
+    evidence = evidence_of([run("a", 1.0)], units={AXIS: "N", tip: "m", sensor: "N"})
+    assert [evidence.unit(tip, i) for i in (0, 2, 3, 5)] == ["m", "m", "rad", "rad"]
+    assert [evidence.unit(sensor, i) for i in (0, 5)] == ["N", "N*m"]
+    assert (evidence.unit(AXIS), evidence.component(AXIS, 0)) == ("N", None)
 
 
 def test_an_unknown_count_is_infinite():

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from sher3_diagnosis.channel import Channel, Residual
 from sher3_diagnosis.evidence import Evidence
-from sher3_diagnosis.localise.gaps import gap_of, localise
+from sher3_diagnosis.localise.gaps import component_rms, gap_of, localise
 from sher3_diagnosis.thresholds import FLOOR_SCATTER, GROUPED, POOLED, ZERO_COUNTS
 from sher3_diagnosis.whitened import Whitened
 from toy import AXIS, ToyRun, evidence_of
@@ -47,13 +47,16 @@ def test_a_channel_at_its_floor_has_no_gap():
     assert gap_of(evidence_of([run("a", [1.0])]), TIP) is None
 
 
-def test_position_and_rotation_are_judged_apart():
-    """Rotation is at 4 floors, position at one: the gap is of the rotation, with its numbers."""
-    values = np.tile([1.0, 1.0, 1.0, 0.4, 0.4, 0.4], (3, 1))
+def test_a_gap_is_of_the_component_with_the_largest_ratio_in_its_own_unit():
+    """Rotation is at 3, 4 and 2 floors, position at one: the gap is that about y, in rad."""
+    values = np.tile([1.0, 1.0, 1.0, 0.3, 0.4, 0.2], (3, 1))
     residual = Residual(values, np.ones(3, dtype=bool))
-    gap = gap_of(of(TIP, [residual, residual], [1.0] * 3 + [0.1] * 3, ["a", "a"]), TIP)
-    assert (gap.part, gap.gap, gap.floor) == (1, pytest.approx(0.4), pytest.approx(0.1))
+    evidence = of(TIP, [residual, residual], [1.0] * 3 + [0.1] * 3, ["a", "a"])
+    gap = gap_of(evidence, TIP)
+    assert (gap.component, gap.gap, gap.floor) == (4, pytest.approx(0.4), pytest.approx(0.1))
     assert gap.ratio == pytest.approx(4.0)
+    assert (evidence.component(TIP, 4), evidence.unit(TIP, gap.component)) == ("ry", "rad")
+    assert component_rms({0: values, 1: 3.0 * values}, 4) == pytest.approx(0.4 * np.sqrt(5.0))
 
 
 def test_a_tolerance_as_built_is_allowed_beside_the_floor():

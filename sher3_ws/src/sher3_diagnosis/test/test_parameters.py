@@ -5,13 +5,13 @@ import pytest
 from sher3_diagnosis.fitting import fit, make_term
 from sher3_diagnosis.quantify.parameters import parameters
 from sher3_diagnosis.thresholds import JACKKNIFE, LAW_UNCERTAINTY, MIN_RUNS
-from toy import OFFSET, ToyRun, evidence_of
+from toy import OFFSET, Column, ToyRun, evidence_of
 
 
-def found(values, rotary=frozenset()):
+def found(values, rotary=frozenset(), effect=OFFSET):
     runs = [ToyRun("a", np.full(2, v), np.zeros(2), np.ones(2)) for v in values]
     evidence = evidence_of(runs, rotary=rotary)
-    return parameters(evidence, fit(evidence.data, [make_term(evidence.data, OFFSET, "axis", {})]), 0)["size"]
+    return parameters(evidence, fit(evidence.data, [make_term(evidence.data, effect, "axis", {})]), 0)["size"]
 
 
 def test_the_interval_is_that_of_the_jackknife_and_of_the_law():
@@ -25,6 +25,10 @@ def test_the_interval_is_that_of_the_jackknife_and_of_the_law():
 
 def test_few_runs_carry_no_interval():
     assert found([1.0] * (MIN_RUNS - 1)).low is None
+
+
+def test_a_choice_has_no_interval():
+    assert found([1.0] * MIN_RUNS, effect=Column("member", "scale", "one", discrete=frozenset({"size"}))).low is None
 
 
 def test_units_turn_with_the_axis():

@@ -29,4 +29,13 @@ def test_a_file_comes_back_as_it_went(tmp_path):
     verdict = Verdict(status="outside_library", where=[PLACE], unexplained=unexplained)
     verdict.write(tmp_path / "verdict.json")
     assert Verdict.read(tmp_path / "verdict.json") == verdict
-    assert '"schema": "sher3.verdict/1"' in verdict.to_json()
+    assert '"schema": "sher3.verdict/2"' in verdict.to_json()
+
+
+def test_a_verdict_of_the_first_version_is_still_read_and_a_foreign_one_refused(tmp_path):
+    path = tmp_path / "verdict.json"
+    path.write_text('{"schema": "sher3.verdict/1", "status": "no_gap", "where": [], "causes": []}')
+    assert Verdict.read(path).schema_ == "sher3.verdict/1"
+    path.write_text('{"schema": "sher3.verdict/3", "status": "no_gap"}')
+    with pytest.raises(ValidationError, match=r"sher3\.verdict/2"):
+        Verdict.read(path)

@@ -52,7 +52,8 @@ def test_a_single_effect_is_found_where_it_is(effect, actuator, parameters, stag
     assert actuator in (cause.actuator, "all", "tip")
     assert verdict.closure.stage.value > 0.9
     for name, value in parameters.items():
-        assert cause.parameters[name].low <= value <= cause.parameters[name].high
+        found = cause.parameters[name]
+        assert found.value == value if found.low is None else found.low <= value <= found.high
 
 
 def test_two_effects_in_two_stages_are_both_found():

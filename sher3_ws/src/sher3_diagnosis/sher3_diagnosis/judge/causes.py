@@ -64,7 +64,8 @@ def _where(finding: Finding, channel: Channel, gap: Gap) -> Where:
         actuator=actuator,
         gap=gap.gap,
         floor=gap.floor,
-        unit=evidence.unit(channel, gap.part),
+        unit=evidence.unit(channel, gap.component),
+        component=evidence.component(channel, gap.component),
         regime=regime(evidence, channel),
         confidence=float(1.0 - np.exp(-gap.power)),
     )

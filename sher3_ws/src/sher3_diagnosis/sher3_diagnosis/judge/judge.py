@@ -13,7 +13,7 @@ from sher3_diagnosis.finding import ExactFinding, Finding
 from sher3_diagnosis.judge.causes import ordered, places_of
 from sher3_diagnosis.judge.next_experiment import next_experiment
 from sher3_diagnosis.judge.remainder import remainder
-from sher3_diagnosis.localise.gaps import Gap, gap_of
+from sher3_diagnosis.localise.gaps import Gap, component_rms
 from sher3_diagnosis.machine import Machine, Policy
 from sher3_diagnosis.quantify.closure import closure, residual_after
 from sher3_diagnosis.thresholds import REPRODUCED, SLIGHT
@@ -78,9 +78,9 @@ def _first(
         channel = next((c for c, g in own.items() if g.gap == size), None)
         if channel is not None:
             evidence, after = finding.evidence, finding.attribution.fit
-            left = gap_of(evidence, channel, residual_after(evidence, after, channel))
-            assert left is not None
-            residual = Residual(gap=left.gap, floor=left.floor, unit=evidence.unit(channel, left.part))
+            gap = own[channel]
+            left = component_rms(residual_after(evidence, after, channel), gap.component)
+            residual = Residual(gap=left, floor=gap.floor, unit=evidence.unit(channel, gap.component))
             return closure(evidence, channel, evidence.null(), after), residual
     return None, None
 

@@ -26,19 +26,23 @@ class Gap:
     Attributes:
         power: mean square over its allowance (floor and as-built tolerance), pooled over all runs and of the worst
             excitation, each over its threshold; the larger of the two. Above 1 there is a gap.
-        ratio: rms gap over rms floor, over all runs, of the worse part.
-        gap, floor: rms of that part, SI units.
-        groups: excitation -> power over its allowance.
-        part: which components these are: 0 position or force, 1 rotation or torque.
+        gap, floor: rms over all runs of one component, SI units: of the worse part (position or rotation, force or
+            torque) the one with the largest ratio.
+        groups: excitation -> power of that part over its allowance.
+        component: index of that component.
     """
 
     channel: Channel
     power: float
-    ratio: float
     gap: float
     floor: float
     groups: Mapping[str, float]
-    part: int = 0
+    component: int = 0
+
+    @property
+    def ratio(self) -> float:
+        """Gap over floor of the component."""
+        return self.gap / max(self.floor, np.finfo(float).tiny)
 
     @property
     def significant(self) -> bool:
@@ -83,28 +87,31 @@ def gap_of(evidence: Evidence, channel: Channel, residual: Mapping[int, Array] |
     if not left:
         return None
     rise = 1.0 + FLOOR_SCATTER / max(evidence.repeats, 1)
-    parts = [_part(channel, i, p, square, floor, allowed, rise) for i, p in enumerate(PARTS[len(base)])]
+    parts = [_part(channel, p, square, floor, allowed, rise) for p in PARTS[len(base)]]
     return _with_zeros(evidence, channel, left, max(parts, key=lambda g: g.power))
 
 
-def _part(
-    channel: Channel, index: int, part: slice, square: Powers, floor: Powers, allowed: Powers, rise: float
-) -> Gap:
+def _part(channel: Channel, part: slice, square: Powers, floor: Powers, allowed: Powers, rise: float) -> Gap:
     """Judge the components that belong together."""
     mean, low, limit = (np.mean(_all(x), axis=0)[part] for x in (square, floor, allowed))
     groups = {e: float(np.mean(np.mean(square[e], axis=0)[part] / np.mean(allowed[e], axis=0)[part])) for e in square}
     grouped = GROUPED_ENCODERS if channel.stage == "transmission" else GROUPED
     pooled = float(np.mean(mean / limit)) / (rise * POOLED[channel.stage])
     worst = max(groups.values()) / (rise * grouped)
+    largest = int(np.argmax(mean / low))
     return Gap(
         channel,
         power=max(pooled, worst),
-        ratio=float(np.sqrt(np.mean(mean / low))),
-        gap=float(np.sqrt(np.mean(mean))),
-        floor=float(np.sqrt(np.mean(low))),
+        gap=float(np.sqrt(mean[largest])),
+        floor=float(np.sqrt(low[largest])),
         groups=groups,
-        part=index,
+        component=part.start + largest,
     )
+
+
+def component_rms(residual: Mapping[int, Array], component: int) -> float:
+    """Return the rms over all runs of one component of a residual, run -> (N, d), SI units."""
+    return float(np.sqrt(np.mean([np.mean(x[:, component] ** 2) for x in residual.values()])))
 
 
 def _all(powers: Powers) -> list[Array]:
@@ -120,4 +127,4 @@ def _with_zeros(evidence: Evidence, channel: Channel, left: Mapping[int, Array],
     mean, limit = float(np.sqrt(np.mean(np.square(means)))), ZERO_COUNTS * evidence.count(channel)
     if (mean / limit) ** 2 <= best.power:
         return best
-    return replace(best, power=(mean / limit) ** 2, gap=mean, floor=limit / 3.0, ratio=3.0 * mean / limit)
+    return replace(best, power=(mean / limit) ** 2, gap=mean, floor=limit / 3.0)

@@ -43,7 +43,7 @@ def parameters(evidence: Evidence, fit: Fit, index: int) -> dict[str, Parameter]
             share = REACH_UNCERTAINTY if name == "displacement" else SHAPE_UNCERTAINTY
             half = max(half, share * abs(x))
         unit = term.effect.unit(name, term.site, term.site in evidence.rotary)
-        bounded = runs >= MIN_RUNS
+        bounded = runs >= MIN_RUNS and name not in term.effect.discrete
         out[name] = Parameter(value=x, low=x - half if bounded else None, high=x + half if bounded else None, unit=unit)
     return out
 

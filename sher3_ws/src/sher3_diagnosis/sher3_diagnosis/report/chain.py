@@ -84,7 +84,7 @@ def _measured(diagnosis: Diagnosis, stage: str, reporter: Reporter) -> list[Cell
 
 
 def _cell(gap: Gap, evidence: Evidence) -> Cell:
-    unit = evidence.unit(gap.channel, gap.part)
+    unit = evidence.unit(gap.channel, gap.component)
     level = GAP if gap.significant else (NEAR if gap.power > CLOSE else AT_FLOOR)
     size, floor = quantity(gap.gap, unit), quantity(gap.floor, unit)
     below = f"{size} over {floor}" if gap.significant else ""

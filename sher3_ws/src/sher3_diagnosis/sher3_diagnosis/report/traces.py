@@ -9,7 +9,6 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from sher3_diagnosis.channel import Array, Channel
-from sher3_diagnosis.effect import ROTARY
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.finding import Finding
 from sher3_diagnosis.flow import Diagnosis
@@ -22,8 +21,6 @@ from sher3_diagnosis.report.words import place, words
 WORST = 3
 """Channels shown of each part of the machine."""
 COMPONENTS = ("x", "y", "z", "about x", "about y", "about z")
-TURNS = 3
-"""Components of a pose or wrench before those about an axis."""
 SCALES = ((1.0, ""), (1e3, "m"), (1e6, "µ"), (1e9, "n"))
 LEAST = 0.5
 """Largest value on an axis of a picture below which the next prefix is taken."""
@@ -114,10 +111,7 @@ def _lines(
 
 
 def _unit(evidence: Evidence, channel: Channel, component: int) -> str:
-    unit = evidence.unit(channel)
-    if component >= TURNS:
-        unit = evidence.second_units.get(channel, ROTARY.get(unit, unit))
-    return unit.replace("*", "·")
+    return evidence.unit(channel, component).replace("*", "·")
 
 
 def _power(evidence: Evidence, run: int, channel: Channel) -> float:

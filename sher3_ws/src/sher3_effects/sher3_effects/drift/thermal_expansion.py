@@ -23,6 +23,7 @@ class ThermalExpansion(Page):
     inputs = ("temperature", "posture", "position")
     best = Best("postures", "the same postures again at another temperature separate drift from offset")
     places = ("tip",)
+    discrete = frozenset({"part"})
     explanation = (
         "The tip wanders with the temperature of the structure, in every pose, in proportion to the warming "
         "since 22 deg C."

@@ -23,6 +23,7 @@ class Cogging(Page):
     inputs = ("position",)
     kinds = ("robot", "axis")
     needs = ("lead",)
+    discrete = frozenset({"periods_per_rev"})
     best = Best("sweep", "constant speeds over several revolutions separate periods")
     explanation = (
         "A force that repeats several times per motor revolution, the same in both directions and at every speed."

@@ -23,6 +23,7 @@ class TransmissionRipple(Page):
     inputs = ("position",)
     kinds = ("robot", "axis", "servo")
     needs = ("load", "lead")
+    discrete = frozenset({"periods_per_rev"})
     best = Best("sweep", "constant speeds over several revolutions separate periods")
     explanation = (
         "The load moves ahead and behind the motor, n times per lead; the load encoder sees it and the tip follows."

@@ -23,6 +23,7 @@ class ForceScale(Page):
     breaks = "force_sensor"
     best = Best("sweep", "long constant-speed strokes separate ratios from offsets")
     places = ("force_sensor",)
+    discrete = frozenset({"axis"})
     explanation = (
         "The force sensor's reading is off by a constant ratio: nothing without load, more the larger the load."
     )

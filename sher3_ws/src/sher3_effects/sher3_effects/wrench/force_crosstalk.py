@@ -25,6 +25,7 @@ class ForceCrosstalk(Page):
     breaks = "force_sensor"
     best = Best("loads", "known loads in several orientations separate bias, weight and cross-talk")
     places = ("force_sensor",)
+    discrete = frozenset({"source", "target"})
     explanation = "A force along one axis of the sensor shows up on another axis, in proportion."
     siblings = {"force_scale": "on the same axis", "tool_gravity": "there without a load on the tip"}
     FORCES = tuple((j, i) for j in range(3) for i in range(3) if i != j)

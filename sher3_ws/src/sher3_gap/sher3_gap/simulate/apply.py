@@ -10,12 +10,13 @@ from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import get_args
 
 import numpy as np
 from sher3_common import FileError, Sher3Error
 from sher3_description import ACTUATORS, Robot
 from sher3_diagnosis.channel import Array, Channel
-from sher3_diagnosis.verdict import Verdict
+from sher3_diagnosis.verdict import Schema, Verdict
 from sher3_effects import save_effects, to_effects
 from sher3_sim import PlantEffect
 
@@ -66,7 +67,7 @@ def read_verdict(path: Path) -> Verdict:
         raise ApplyError(str(error), value=error.value, limit=error.limit, remedy="name a verdict.json") from error
     except ValueError as error:
         reason = str(error).splitlines()[0]
-        raise ApplyError(f"{path}: is not a verdict", value=reason, limit="sher3.verdict/1") from error
+        raise ApplyError(f"{path}: is not a verdict", value=reason, limit=" or ".join(get_args(Schema))) from error
     foreign = [c.actuator for c in found.causes if c.actuator not in PLACES]
     if foreign:
         raise ApplyError(

@@ -71,7 +71,6 @@ def gather_arm(arm: Arm, records: Sequence[ArmData], noise: float, noise_rotatio
         excitations=[view.excitation] * FOLDS,
         data=data,
         units={TIP: "m"},
-        second_units={TIP: "rad"},
         places={"joint": arm.names},
         rotary=frozenset(arm.names),
         nuisance=(make_term(data, Frames(), TIP.actuator, {}),),
