@@ -8,7 +8,7 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 import yaml
-from sher3_common import read_yaml
+from sher3_common import make_folder, read_yaml
 from sher3_description import Robot, load_robot
 
 from sher3_bags.errors import CaseError
@@ -87,7 +87,7 @@ def write_case(path: str | Path, runs: Sequence[Run], robot: Robot) -> Path:
     folder = Path(path)
     if folder.exists():
         raise CaseError("exists already", path=folder, remedy="choose another name")
-    folder.mkdir(parents=True)
+    make_folder(folder)
     (folder / ROBOT_FILE).write_text(robot.to_yaml(), encoding="utf-8")
     entries = []
     for index, run in enumerate(runs):

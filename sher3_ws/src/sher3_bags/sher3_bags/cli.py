@@ -12,11 +12,13 @@ from typing import Annotated, Any
 
 import typer
 from sher3_common import Sher3Error
+from sher3_common.completing import BAG, folders_with
 from sher3_description.topics import NAMESPACE
 
 app = typer.Typer(no_args_is_help=True, help="Record, replay, analyse, compare and recover bags.")
 
-Bag = Annotated[Path, typer.Argument(help="Bag folder or .mcap file.")]
+Bag = Annotated[Path, typer.Argument(help="Bag folder or .mcap file.", autocompletion=folders_with(BAG))]
+Domain = Annotated[int, typer.Option(help="ROS domain id.", min=0, max=232, envvar="ROS_DOMAIN_ID")]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")]
 Topics = Annotated[list[str] | None, typer.Option("--topic", help="Topic relative to /sher3; repeat for more.")]
 Namespace = Annotated[str, typer.Option(help="Namespace of the robot in the bag.")]
@@ -42,17 +44,22 @@ def record(
     seconds: Annotated[float | None, typer.Option(help="Stop after this time; default at Ctrl-C.")] = None,
     topic: Topics = None,
     robot: Annotated[Path | None, typer.Option(help="robot.yaml to attach; default the nominal one.")] = None,
+    domain: Domain = 0,
     as_json: Json = False,
 ) -> None:
-    """Record the running graph into a new bag."""
+    """Record the running graph into a new bag; exit code 1 where no message came."""
     from sher3_description import load_robot
 
+    from sher3_bags.errors import NothingRecorded
     from sher3_bags.recording.recorder_node import run
 
     with _reported(as_json):
         target = output or Path("bags", datetime.now().strftime("%Y%m%d_%H%M%S"))
         typer.echo(f"recording to {target}, Ctrl-C stops", err=True)
-        counts = run(target, load_robot(robot), topics=topic, seconds=seconds)
+        counts = run(target, load_robot(robot), topics=topic, seconds=seconds, domain=domain)
+        if not any(entry["messages"] for name, entry in counts.items() if name != "diagnostics"):
+            remedy = f"start the robot in ROS domain {domain}, or name its domain"
+            raise NothingRecorded("no message of the robot came", path=target, remedy=remedy)
         lines = [f"{name}: {entry['messages']} messages, {entry['dropped']} dropped" for name, entry in counts.items()]
         _print(as_json, {"bag": str(target), "topics": counts}, "\n".join([*lines, f"recorded to {target}"]))
 
@@ -70,6 +77,7 @@ def replay(
     keep_stamps: Annotated[bool, typer.Option("--keep-stamps", help="Leave header stamps as recorded.")] = False,
     wait_for: Annotated[int, typer.Option(help="Subscribers to wait for on every topic.")] = 0,
     namespace: Namespace = NAMESPACE,
+    domain: Domain = 0,
     as_json: Json = False,
 ) -> None:
     """Publish the messages of a bag into the graph, on topics nobody else publishes."""
@@ -79,7 +87,7 @@ def replay(
     with _reported(as_json):
         player = Replay(bag, topic, rate=rate, stamps="keep" if keep_stamps else "shift", namespace=namespace)
         typer.echo(f"replaying {len(player)} messages in {player.duration:.1f} s", err=True)
-        sent = run(player, wait_for)
+        sent = run(player, wait_for, domain)
         data = {"bag": str(bag), "sent": sent, "messages": len(player), "topics": list(player.topics)}
         _print(as_json, data, f"sent {sent} of {len(player)} messages of {len(player.topics)} topics")
 
@@ -121,8 +129,8 @@ def _drawn(draw: Any, picture: Path) -> Path:
 
 @app.command(epilog="Example: sher3 compare bags/before bags/after --topic measured_cp")
 def compare(
-    a: Annotated[Path, typer.Argument(help="Reference bag.")],
-    b: Annotated[Path, typer.Argument(help="Other bag.")],
+    a: Annotated[Path, typer.Argument(help="Reference bag.", autocompletion=folders_with(BAG))],
+    b: Annotated[Path, typer.Argument(help="Other bag.", autocompletion=folders_with(BAG))],
     align: Annotated[str, typer.Option(help="auto, stamp (one clock) or start (both from zero).")] = "auto",
     topic: Topics = None,
     as_json: Json = False,

@@ -28,6 +28,10 @@ class LimitError(BagError):
     """A size in a file exceeds what this reader accepts; carries value and limit in bytes or counts."""
 
 
+class NothingRecorded(BagError):
+    """A recording ended without a single message."""
+
+
 class MissingTopicError(Sher3Error, KeyError):
     """A run lacks a topic; carries `topic` and the topics it has."""
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 from mcap.opcode import Opcode
+from sher3_common import make_folder
 from sher3_description import NAMESPACE, TOPICS, Qos
 
 from sher3_bags.contents import load, parse
@@ -125,7 +126,7 @@ def _drop_unknown(contents: Contents) -> int:
 def _write(contents: Contents, folder: Path, cause: str, messages: dict[str, int]) -> None:
     if folder.exists():
         raise BagError("exists already", path=folder, remedy="choose another name")
-    folder.mkdir(parents=True)
+    make_folder(folder)
     with (folder / f"{folder.name}.mcap").open("xb") as file:
         writer = McapWriter(file)
         for name, entries in contents.metadata.items():

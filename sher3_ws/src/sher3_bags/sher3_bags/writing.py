@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+from sher3_common import make_folder
 from sher3_description import NAMESPACE, TOPICS, Qos
 
 from sher3_bags.codec.encode import encode
@@ -32,7 +33,7 @@ def write_run(path: str | Path, run: Run, *, namespace: str = NAMESPACE, overwri
         shutil.rmtree(target) if target.is_dir() else target.unlink()
     alone = target.suffix == ".mcap"
     mcap = target if alone else target / f"{target.name}.mcap"
-    mcap.parent.mkdir(parents=True, exist_ok=True)
+    make_folder(mcap.parent)
     with mcap.open("xb") as file:
         writer = McapWriter(file)
         writer.add_metadata(RUN_RECORD, run.metadata.to_record())

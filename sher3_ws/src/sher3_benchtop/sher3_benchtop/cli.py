@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Optional
 
 import typer
 from sher3_bringup.errors import ConfigurationError
+from sher3_common import make_folder
 
 if TYPE_CHECKING:
     from sher3_description import Robot
@@ -110,7 +111,7 @@ def _run(
     control = ControlSettings.from_robot(robot, {"motion": {"deflection_compensation": compensate, "regime": "bench"}})
     with tempfile.TemporaryDirectory() as scratch:
         bags = Path(scratch) if out is None else out / "bags"
-        bags.mkdir(parents=True, exist_ok=True)
+        make_folder(bags)
         shots = run_tests(names, robot, plan, effects, bags, control, _say, again, jobs)
     figures = {reading: evaluate(shots, reading) for reading in READINGS}
     title = f"Robot {kind}" + (", deflection compensated" if compensate else "")

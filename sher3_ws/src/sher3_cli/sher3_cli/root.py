@@ -6,11 +6,14 @@ import os
 import signal
 import sys
 from collections.abc import Sequence
+from difflib import get_close_matches
 from importlib import import_module
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import typer
 from sher3_common import Sher3Error
+
+from sher3_cli.completion import completed_words
 
 
 class Entry(NamedTuple):
@@ -44,15 +47,31 @@ COMMANDS: dict[str, Entry] = {
 }
 
 
-def make_app(chosen: str | None = None) -> typer.Typer:
-    """Return the root with command `chosen` imported and the others as mere names; all of them for `"*"`."""
+class UnknownCommand(Sher3Error):
+    """There is no such command of `sher3`."""
+
+    exit_code = 2
+
+    def __init__(self, name: str) -> None:
+        near = get_close_matches(name, COMMANDS, 1, cutoff=0.5)
+        remedy = f"did you mean {near[0]}?" if near else "`sher3 --help` lists them"
+        super().__init__("no such command", value=name, remedy=remedy)
+
+
+def make_app(chosen: str | None = None, completing: bool = False) -> typer.Typer:
+    """Return the root with command `chosen` imported and the others as mere names; all of them for `"*"`.
+
+    `completing`: a shell asks what to offer; only then Typer knows the shells, and only then it has options that write
+    into the user's files.
+    """
     root = typer.Typer(
         name="sher3",
         help="The Steady-Hand Eye Robot 3.0: run it, record it, explain it. `sher3 COMMAND --help` shows examples.",
         no_args_is_help=True,
-        add_completion=False,
+        add_completion=completing,
         rich_markup_mode="markdown",
         pretty_exceptions_enable=False,
+        context_settings={"help_option_names": ["-h", "--help"]},
     )
     root.callback()(_root)
     for name, entry in COMMANDS.items():
@@ -66,19 +85,26 @@ def make_app(chosen: str | None = None) -> typer.Typer:
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command line; every failure is one sentence and an exit code."""
     words = list(sys.argv[1:] if arguments is None else arguments)
-    completing = os.environ.get("COMP_WORDS", "").split()[1:] if "_SHER3_COMPLETE" in os.environ else []
+    completing = completed_words()
     chosen = next((word for word in completing or words if not word.startswith("-")), None)
     try:
-        make_app(chosen)(args=words, prog_name="sher3")
+        if chosen is not None and chosen not in COMMANDS and completing is None:
+            raise UnknownCommand(chosen)
+        make_app(chosen, completing is not None)(args=words, prog_name="sher3")
     except Sher3Error as error:
         print(f"sher3: {error}", file=sys.stderr)
         sys.exit(getattr(error, "exit_code", 1))
-    except KeyboardInterrupt:
-        sys.exit(128 + signal.SIGINT)
     except BrokenPipeError:
         # The reader of our output has gone; there is nobody to tell.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         sys.exit(1)
+    except OSError as error:
+        where = f"{error.filename}: " if error.filename else ""
+        print(f"sher3: {where}{error.strerror or error}", file=sys.stderr)
+        sys.exit(1)
+    except KeyboardInterrupt:
+        print("sher3: interrupted", file=sys.stderr)
+        sys.exit(128 + signal.SIGINT)
 
 
 def _mount(root: typer.Typer, name: str, entry: Entry) -> None:
@@ -94,8 +120,20 @@ def _mount(root: typer.Typer, name: str, entry: Entry) -> None:
     raise LookupError(f"{entry.module} has no command {entry.command}")
 
 
-def _root() -> None:
+def _root(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
+    ] = False,
+) -> None:
     """Keep the root a group even when a single command is imported."""
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        from importlib.metadata import version
+
+        typer.echo(f"sher3 {version('sher3')}")
+        raise typer.Exit
 
 
 def _stub() -> None:

@@ -57,7 +57,7 @@ def test_help_names_every_command_and_imports_none():
         (["up", "--robot", "/nowhere.yaml"], 1, "/nowhere.yaml: no such file"),
         (["teleop", "/nowhere.yaml"], 1, "/nowhere.yaml: no such file"),
         (["demo", "--folder", "/proc/none/bags"], 2, "cannot be written"),
-        (["no-such-command"], 2, "No such command"),
+        (["no-such-command"], 2, "no such command"),
     ],
 )
 def test_a_failure_is_a_sentence_and_an_exit_code(arguments, status, sentence, capsys):
@@ -81,3 +81,28 @@ def test_completion_scripts(shell, capsys):
     with pytest.raises(SystemExit):
         main(["completion", shell])
     assert "_SHER3_COMPLETE" in capsys.readouterr().out
+
+
+def test_version_and_short_help(capsys):
+    for words, expected in ((["--version"], "sher3 "), (["-h"], "Usage: sher3"), (["gap", "-h"], "Usage: sher3 gap")):
+        with pytest.raises(SystemExit) as end:
+            main(words)
+        assert end.value.code == 0
+        assert expected in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(("typed", "meant"), [("uo", "up"), ("demoo", "demo"), ("analyse", "analyze")])
+def test_a_slip_is_answered_with_what_was_meant(typed, meant, capsys):
+    with pytest.raises(SystemExit) as end:
+        main([typed])
+    assert end.value.code == 2
+    assert f"did you mean {meant}?" in capsys.readouterr().err
+
+
+def test_a_place_where_nothing_can_be_written_is_a_sentence(tmp_path):
+    in_the_way = tmp_path / "file"
+    in_the_way.touch()
+    words = ["record", str(in_the_way / "bag"), "--seconds", "0.1"]
+    done = subprocess.run([sys.executable, "-m", "sher3_cli", *words], capture_output=True, text=True, timeout=60)
+    assert done.returncode == 1
+    assert "folder cannot be made" in done.stderr and "Traceback" not in done.stderr

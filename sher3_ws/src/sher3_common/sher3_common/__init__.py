@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from sher3_common.errors import FileError as FileError
     from sher3_common.errors import Sher3Error as Sher3Error
     from sher3_common.files import dump_yaml as dump_yaml
+    from sher3_common.files import make_folder as make_folder
     from sher3_common.files import parse_json as parse_json
     from sher3_common.files import parse_yaml as parse_yaml
     from sher3_common.files import read_bytes as read_bytes
@@ -26,7 +27,16 @@ __getattr__, __dir__ = lazy(
     __name__,
     {
         "errors": ("FileError", "Sher3Error"),
-        "files": ("dump_yaml", "parse_json", "parse_yaml", "read_bytes", "read_json", "read_text", "read_yaml"),
+        "files": (
+            "dump_yaml",
+            "make_folder",
+            "parse_json",
+            "parse_yaml",
+            "read_bytes",
+            "read_json",
+            "read_text",
+            "read_yaml",
+        ),
         "operating_state": ("OperatingState",),
         "reasons": ("Action", "Reason"),
     },

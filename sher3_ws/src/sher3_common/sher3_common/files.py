@@ -1,4 +1,4 @@
-"""The door through which every file is read: regular files of bounded size, as bytes, text, YAML or JSON.
+"""The doors of files: regular files of bounded size read as bytes, text, YAML or JSON; folders made for new ones.
 
 What is read is plain data: no objects are constructed, aliases are refused, and the nesting is bounded. Arrays have a
 door of their own, `array_files`.
@@ -48,6 +48,21 @@ def read_bytes(path: Path | str, max_bytes: int = MAX_CONFIGURATION_BYTES) -> by
         raise FileError("no such file", path=path, remedy="give the path of an existing file") from error
     except OSError as error:
         raise FileError(f"cannot be read: {error.strerror}", path=path, remedy="check path and permissions") from error
+
+
+def make_folder(path: Path | str) -> Path:
+    """Make a folder and those above it; one that exists is left as it is.
+
+    Raises:
+        FileError: it cannot be made: a file is in the way, the place is read-only or full.
+    """
+    path = Path(path)
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        remedy = "choose a place where you may write"
+        raise FileError(f"folder cannot be made: {error.strerror}", path=path, remedy=remedy) from error
+    return path
 
 
 def _require_regular(status: os.stat_result, path: Path) -> None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from sher3_gap_cli.options import Json, Library, RobotFile, VerdictFile, reported
+from sher3_gap_cli.options import Json, Library, RobotFile, VerdictFile, case_argument, reported
 
 if TYPE_CHECKING:
     from sher3_gap.simulate.apply import StageGap
@@ -42,8 +42,11 @@ def apply(
 
 
 def compare(
-    case: Annotated[Path, typer.Argument(help="Case of the robot.")],
-    other: Annotated[Path, typer.Argument(help="Case of the corrected simulator, of the same excitations.")],
+    case: Annotated[Path, case_argument("Case of the robot.")],
+    other: Annotated[
+        Path,
+        case_argument("Case of the corrected simulator, of the same excitations."),
+    ],
     robot: RobotFile = None,
     as_json: Json = False,
 ) -> None:

@@ -8,13 +8,15 @@ from typing import Annotated, Any
 
 import typer
 
-from sher3_gap_cli.options import BAD_INPUT, Json, Library, RobotFile, reported
+from sher3_gap_cli.options import BAD_INPUT, Json, Library, RobotFile, case_argument, effects, reported
 
 
 def diagnose(
-    case: Annotated[list[Path], typer.Argument(help="Case folder; several are diagnosed one by one.")],
+    case: Annotated[list[Path], case_argument("Case folder; several are diagnosed one by one.")],
     robot: RobotFile = None,
-    without: Annotated[list[str] | None, typer.Option(help="Leave this effect out; repeat for more.")] = None,
+    without: Annotated[
+        list[str] | None, typer.Option(help="Leave this effect out; repeat for more.", autocompletion=effects())
+    ] = None,
     out: Annotated[Path | None, typer.Option(help="Folder for verdict.json and report.html; default gap/CASE.")] = None,
     own: Library = None,
     jobs: Annotated[int, typer.Option(min=1, help="Cases at a time on this machine.")] = 1,
@@ -33,8 +35,8 @@ def diagnose(
 
     with reported(as_json):
         add_library(own or [])
-        target, effects = folders(case, out), check_effects(without or [])
-        tasks = [Task(c, robot, effects, report) for c in case]
+        target, left_out = folders(case, out), check_effects(without or [])
+        tasks = [Task(c, robot, left_out, report) for c in case]
         data: list[dict[str, Any]] = []
         with progress(len(tasks)) as (say, done):
             for found in run_on_dask(tasks, dask) if dask else run_here(tasks, jobs, say):

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from sher3_gap_cli.options import Json, RobotFile, VerdictFile, reported
+from sher3_gap_cli.options import Json, RobotFile, VerdictFile, case_argument, reported
 
 if TYPE_CHECKING:
     from sher3_gap.experiments.design import Experiment
@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 def experiment(
     verdict: VerdictFile,
     case: Annotated[
-        Path | None, typer.Argument(help="Its case: actual floors and loads, excitations not again.")
+        Path | None,
+        case_argument("Its case: actual floors and loads, excitations not again."),
     ] = None,
     output: Annotated[Path, typer.Option("--output", "-o", help="Excitation file to write.")] = Path("experiment.yaml"),
     ran: Annotated[

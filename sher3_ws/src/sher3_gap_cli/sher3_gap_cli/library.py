@@ -7,11 +7,13 @@ from typing import Annotated
 
 import typer
 
-from sher3_gap_cli.options import Json, Library, reported
+from sher3_gap_cli.options import Json, Library, effects, reported
 
 
 def library(
-    which: Annotated[str, typer.Argument(help="Effect id or family; all by default.")] = "",
+    which: Annotated[
+        str, typer.Argument(help="Effect id or family; all by default.", autocompletion=effects(families=True))
+    ] = "",
     own: Library = None,
     as_json: Json = False,
 ) -> None:

@@ -6,9 +6,10 @@ import json
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
+from sher3_common.completing import CASE, Completer, folders_with, words
 from sher3_common.errors import Sher3Error
 
 BAD_INPUT = 2
@@ -21,7 +22,24 @@ Library = Annotated[
     typer.Option("--library", help="File or folder with pages of effects of your own; repeat for more."),
 ]
 VerdictFile = Annotated[Path, typer.Argument(help="verdict.json of `sher3 gap diagnose`.")]
-Domain = Annotated[int, typer.Option(min=0, max=232, help="ROS domain id of the graph.")]
+Domain = Annotated[int, typer.Option(min=0, max=232, help="ROS domain id of the graph.", envvar="ROS_DOMAIN_ID")]
+
+
+def effects(families: bool = False) -> Completer:
+    """Return what the tab key offers for an effect."""
+
+    def names() -> set[str]:
+        from sher3_effects import library
+
+        known = library()
+        return set(known) | ({page.family for page in known.values()} if families else set())
+
+    return words(names)
+
+
+def case_argument(text: str) -> Any:
+    """Return the argument for a case folder, with the text of its help."""
+    return typer.Argument(help=text, autocompletion=folders_with(CASE))
 
 
 class RequestError(Sher3Error):

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+from sher3_common import make_folder
 from sher3_kinematics.cli import reported
 
 app = typer.Typer(no_args_is_help=True, help="The SHER 3.0 paper recomputed.")
@@ -84,7 +85,7 @@ def paper(
         if markdown is not None:
             markdown.write_text(as_markdown(sections), encoding="utf-8")
         if out is not None:
-            out.mkdir(parents=True, exist_ok=True)
+            make_folder(out)
             (out / "report.html").write_text(html(sections), encoding="utf-8")
     if as_json:
         typer.echo(json.dumps([section.to_dict() for section in sections], indent=2))

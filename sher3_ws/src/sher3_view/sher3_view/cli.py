@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Annotated, Optional
 
 import typer
+from sher3_common.completing import BAG, folders_with
 
 app = typer.Typer(rich_markup_mode="markdown")
 
@@ -17,16 +18,23 @@ app = typer.Typer(rich_markup_mode="markdown")
 )
 def view(
     bag: Annotated[
-        Path | None, typer.Argument(help="Bag folder or .mcap file; without one, the running robot is shown.")
+        Path | None,
+        typer.Argument(
+            help="Bag folder or .mcap file; without one, the running robot is shown.", autocompletion=folders_with(BAG)
+        ),
     ] = None,
     page: Annotated[Optional[Path], typer.Option("--html", help="File to write; default BAG.html.")] = None,  # noqa: UP045
-    ghost: Annotated[Optional[Path], typer.Option(help="Second bag, drawn as a transparent robot.")] = None,  # noqa: UP045
+    ghost: Annotated[
+        Path | None, typer.Option(help="Second bag, drawn as a transparent robot.", autocompletion=folders_with(BAG))
+    ] = None,
     exaggerate: Annotated[
         float, typer.Option(help="Draw the ghost's distance from the robot this many times as large.", min=1.0)
     ] = 1.0,
     robot: Annotated[Optional[Path], typer.Option(help="Robot file; by default the one in the bag.")] = None,  # noqa: UP045
     port: Annotated[int, typer.Option(help="Port of the live page, on 127.0.0.1 alone.", min=1, max=65535)] = 8080,
-    domain: Annotated[int, typer.Option(help="ROS domain id of the running robot.", min=0, max=232)] = 0,
+    domain: Annotated[
+        int, typer.Option(help="ROS domain id of the running robot.", min=0, max=232, envvar="ROS_DOMAIN_ID")
+    ] = 0,
     seconds: Annotated[float | None, typer.Option("--for", help="Seconds the live page lasts; until Ctrl-C.")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of text.")] = False,
 ) -> None:

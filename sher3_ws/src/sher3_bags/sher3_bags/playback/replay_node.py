@@ -126,13 +126,15 @@ def messages_per_tick(replay: Replay, topic: str, period: float) -> int:
     return half if need <= half else 2 * math.ceil(need)
 
 
-def run(replay: Replay, wait_for: int = 0) -> int:
+def run(replay: Replay, wait_for: int = 0, domain: int | None = None) -> int:
     """Replay in a process of its own until the end or a signal; return the number of messages published.
+
+    `domain`: ROS domain id; that of the environment by default.
 
     Raises:
         TopicError: a topic has a publisher already, or the rate is too fast for it.
     """
-    environment.apply()
+    environment.apply(domain)
     rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
     try:
         stop = stop_on_signals()

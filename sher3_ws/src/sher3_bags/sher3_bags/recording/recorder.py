@@ -15,6 +15,7 @@ from pathlib import Path
 from types import TracebackType
 
 import numpy as np
+from sher3_common import make_folder
 from sher3_common.stamps import SECOND
 from sher3_description import TOPICS, Robot, Topic
 
@@ -61,7 +62,7 @@ class Recorder:
         parameters: settings of the nodes, noted in the provenance.
 
     Raises:
-        BagError: the folder exists.
+        FileError: the folder exists (BagError) or cannot be made.
     """
 
     def __init__(
@@ -73,7 +74,7 @@ class Recorder:
     ) -> None:
         if folder.exists():
             raise BagError("exists already", path=folder, remedy="choose another name")
-        folder.mkdir(parents=True)
+        make_folder(folder)
         self.folder = folder
         self._file = (folder / f"{folder.name}.mcap").open("xb")
         self._writer = McapWriter(self._file)

@@ -191,14 +191,21 @@ class RecorderNode(Node):
 
 
 def run(
-    output: Path, robot: Robot | None = None, *, topics: Iterable[str] | None = None, seconds: float | None = None
+    output: Path,
+    robot: Robot | None = None,
+    *,
+    topics: Iterable[str] | None = None,
+    seconds: float | None = None,
+    domain: int | None = None,
 ) -> dict[str, dict[str, int]]:
     """Record in a process of its own until a signal or for `seconds`; return the counts per topic.
+
+    `domain`: ROS domain id; that of the environment by default.
 
     Raises:
         BagError: the output exists.
     """
-    environment.apply()
+    environment.apply(domain)
     rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
     try:
         stop = stop_on_signals()

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from sher3_bringup.errors import ConfigurationError
+from sher3_common import make_folder
 from sher3_description import Robot, load_robot
 
 from sher3_safety.measurement.recording import Outcome
@@ -67,7 +68,7 @@ class MatrixResult:
 
     def write(self, folder: Path) -> None:
         """Write report.md and report.json."""
-        folder.mkdir(parents=True, exist_ok=True)
+        make_folder(folder)
         text = as_markdown("Faults, and how far the tip travels", self.verdicts, self.notes())
         (folder / "report.md").write_text(text, encoding="utf-8")
         (folder / "report.json").write_text(json.dumps(self.to_dict(), indent=1), encoding="utf-8")

@@ -28,6 +28,7 @@ from sher3_bringup.processes.fleet import Fleet, Member
 from sher3_bringup.processes.nodes import make_nodes
 from sher3_bringup.processes.up import beside, launch_nodes, prepare
 from sher3_bringup.settings.run_settings import RunSettings, checked, parse_processes
+from sher3_common import make_folder
 from sher3_runtime.clock import OFFSET_VARIABLE
 
 from sher3_safety.measurement.recording import STANDS, Outcome, Recording
@@ -109,7 +110,7 @@ def _run(row: Row, state: State, bag: Path, seed: int, domain: int) -> Outcome |
     import shutil
 
     shutil.rmtree(bag, ignore_errors=True)
-    bag.parent.mkdir(parents=True, exist_ok=True)
+    make_folder(bag.parent)
     settings = checked(
         record=bag,
         processes=parse_processes(None, mock=True, record=True),
