@@ -36,6 +36,7 @@ DEFINITIONS: dict[str, str] = {
         "byte level\nstring name\nstring message\nstring hardware_id\nKeyValue[] values"
     ),
     "diagnostic_msgs/DiagnosticArray": "std_msgs/Header header\nDiagnosticStatus[] status",
+    "tf2_msgs/TFMessage": "geometry_msgs/TransformStamped[] transforms",
     "sensor_msgs/Temperature": "std_msgs/Header header\nfloat64 temperature\nfloat64 variance",
 }
 

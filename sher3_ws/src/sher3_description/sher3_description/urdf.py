@@ -2,7 +2,8 @@
 
 URDF knows trees only. The delta stage therefore appears as three translations of the platform, which is what it does,
 beside the three sliders on their rails; the tilt joint is the angle, not the slider. Joint origins and masses come from
-the robot file. The file has no inertias about the centres of mass, so bodies are point masses.
+the robot file. The file has no inertias about the centres of mass, so bodies are point masses. Their shapes for a
+viewer are those of `visuals`; the legs close loops, which no URDF can, and are shown as markers.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ import math
 from xml.etree import ElementTree
 
 from sher3_description.robot import Robot
+from sher3_description.visuals import Shape, shapes
 
 Triple = tuple[float, float, float]
 ZERO: Triple = (0.0, 0.0, 0.0)
@@ -27,6 +29,11 @@ def urdf(robot: Robot) -> str:
     _sliders(root, robot)
     _platform(root, robot)
     _arm(root, robot)
+    for name, bodies in shapes(robot).items():
+        link = root.find(f"link[@name='{name}']")
+        assert link is not None
+        for number, body in enumerate(bodies):
+            _visual(link, f"{name}_{number}", body)
     ElementTree.indent(root)
     return ElementTree.tostring(root, encoding="unicode", xml_declaration=True) + "\n"
 
@@ -89,6 +96,20 @@ def _link(root: ElementTree.Element, name: str, mass: float = 0.0, com: Triple =
         ElementTree.SubElement(inertial, "origin", xyz=_xyz(com))
         ElementTree.SubElement(inertial, "mass", value=repr(mass))
         ElementTree.SubElement(inertial, "inertia", dict.fromkeys(("ixx", "ixy", "ixz", "iyy", "iyz", "izz"), "0.0"))
+
+
+def _visual(link: ElementTree.Element, name: str, shape: Shape) -> None:
+    visual = ElementTree.SubElement(link, "visual")
+    ElementTree.SubElement(visual, "origin", xyz=_xyz(shape.origin), rpy=_xyz(shape.rotation))
+    geometry = ElementTree.SubElement(visual, "geometry")
+    if shape.kind == "box":
+        ElementTree.SubElement(geometry, "box", size=_xyz(shape.size))
+    elif shape.kind == "cylinder":
+        ElementTree.SubElement(geometry, "cylinder", radius=repr(shape.size[0]), length=repr(shape.size[1]))
+    else:
+        ElementTree.SubElement(geometry, "sphere", radius=repr(shape.size[0]))
+    material = ElementTree.SubElement(visual, "material", name=name)
+    ElementTree.SubElement(material, "color", rgba=_xyz((*shape.colour, 1.0)))
 
 
 def _joint(

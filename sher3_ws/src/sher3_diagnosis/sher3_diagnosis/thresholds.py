@@ -1,7 +1,8 @@
 """Every number that decides in the diagnosis, in one place: its meaning, the data it was set on, and how to measure it.
 
 Losses are held-out sums of squares over the floor: a sample at its floor adds one. "Development seeds" are the
-challenge's seeds 0 to 199 of `--plant lumped`; the command beside a number prints the figures it was chosen from. A number set on a plant is not shown by that plant.
+challenge's seeds 0 to 199 of `--plant lumped`; the command beside a number prints the figures it was chosen from. A
+number set on a plant is not shown by that plant.
 """
 
 from __future__ import annotations

@@ -27,6 +27,7 @@ from sher3_bags.mcap.rosbag2 import TopicCount, write_metadata
 from sher3_bags.mcap.writer import CHUNK_LIMIT, McapWriter
 from sher3_bags.provenance import PROVENANCE_RECORD, provenance
 from sher3_bags.reading import ROBOT_FILE, RUN_RECORD
+from sher3_bags.recording.robot_frames import SOURCE, Made, RobotFrames
 from sher3_bags.run import RunMetadata
 
 RECORDING_RECORD = "sher3.recording"
@@ -60,6 +61,7 @@ class Recorder:
         robot: in force; attached to the bag, and the source of the sample periods.
         metadata: the contract's `sher3.run` record.
         parameters: settings of the nodes, noted in the provenance.
+        frames: makes what viewers need beside the streams; None leaves it out.
 
     Raises:
         FileError: the folder exists (BagError) or cannot be made.
@@ -71,6 +73,7 @@ class Recorder:
         robot: Robot,
         metadata: RunMetadata | None = None,
         parameters: Mapping[str, object] | None = None,
+        frames: RobotFrames | None = None,
     ) -> None:
         if folder.exists():
             raise BagError("exists already", path=folder, remedy="choose another name")
@@ -83,6 +86,8 @@ class Recorder:
         self._writer.add_attachment(ROBOT_FILE, "application/yaml", robot.to_yaml().encode())
         self._periods = grid_periods(robot)
         self._sources: dict[str, _Source] = {}
+        self._frames = frames
+        self._made: dict[str, TopicCount] = {}
         self._chunk = _OpenChunk()
         self.closed = False
         self._file.flush()
@@ -112,18 +117,33 @@ class Recorder:
             source.gaps.see(seconds * SECOND + nanoseconds)
         else:
             source.gaps.see(log_time)
+        sent = log_time if publish_time is None else publish_time
+        self._append(source.channel, source.sequence, data, log_time, sent)
+        source.sequence = (source.sequence + 1) & 0xFFFFFFFF
+        if self._frames is not None:
+            made = [] if self._made else self._frames.fixed(log_time)
+            for message in [*made, *(self._frames.follow(data) if topic == SOURCE else [])]:
+                self._add_made(message, log_time)
+
+    def _add_made(self, message: Made, log_time: int) -> None:
+        """Record a message that was made beside the streams."""
+        channel = self._writer.channel(message.topic, message.type, message.qos)
+        known = self._made.get(message.topic)
+        count = 0 if known is None else known.count
+        self._append(channel, count, message.data, log_time, log_time)
+        self._made[message.topic] = TopicCount(message.type, count + 1, message.qos)
+
+    def _append(self, channel: int, sequence: int, data: bytes, log_time: int, sent: int) -> None:
         chunk = self._chunk
         size = RECORD_HEAD + MESSAGE_HEAD + len(data)
         if chunk.body and (len(chunk.body) + size > CHUNK_LIMIT or log_time - chunk.log_time[0] > MAX_AGE_NS):
             self.flush()
             chunk = self._chunk
-        chunk.channel.append(source.channel)
+        chunk.channel.append(channel)
         chunk.log_time.append(log_time)
         chunk.position.append(len(chunk.body))
-        sent = log_time if publish_time is None else publish_time
-        chunk.body += _HEAD.pack(MESSAGE, MESSAGE_HEAD + len(data), source.channel, source.sequence, log_time, sent)
+        chunk.body += _HEAD.pack(MESSAGE, MESSAGE_HEAD + len(data), channel, sequence, log_time, sent)
         chunk.body += data
-        source.sequence = (source.sequence + 1) & 0xFFFFFFFF
 
     def flush(self) -> None:
         """Write what has been recorded so far to the file.
@@ -172,6 +192,7 @@ class Recorder:
             source.topic.full_name: TopicCount(source.topic.type, source.gaps.messages, source.topic.qos)
             for source in self._sources.values()
         }
+        topics |= self._made
         write_metadata(self.folder, f"{self.folder.name}.mcap", self._writer.start, self._writer.end, topics)
         return counts
 

@@ -28,6 +28,7 @@ from sher3_runtime.spinning import spin
 
 from sher3_bags.errors import BagError
 from sher3_bags.recording.recorder import Recorder
+from sher3_bags.recording.robot_frames import RobotFrames
 from sher3_bags.run import RunMetadata
 
 POLL_NS = 5_000_000
@@ -113,7 +114,8 @@ class RecorderNode(Node):
     ) -> None:
         """Take the new folder, robot, topics and metadata; a `required` recording that fails ends the node."""
         super().__init__("recorder", **{**NODE_OPTIONS, **options})
-        self.recorder = Recorder(Path(output), robot or load_robot(), metadata, parameters)
+        robot = robot or load_robot()
+        self.recorder = Recorder(Path(output), robot, metadata, parameters, RobotFrames(robot))
         self.counts: dict[str, dict[str, int]] = {}
         self.failure: BagError | None = None
         self.unrecorded = 0
