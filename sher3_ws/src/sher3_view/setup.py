@@ -12,6 +12,7 @@ setup(
     data_files=[
         ("share/ament_index/resource_index/packages", [f"resource/{NAME}"]),
         (f"share/{NAME}", ["package.xml"]),
+        (f"share/{NAME}/viewers", ["viewers/sher3.rviz", "viewers/foxglove.json"]),
     ],
     install_requires=["setuptools"],
     extras_require={"test": ["pytest"]},

@@ -38,6 +38,7 @@ COMMANDS: dict[str, Entry] = {
     "recover": Entry("sher3_bags.cli", "recover", "Save what can be read of a cut bag."),
     "info": Entry("sher3_bags.cli", "info", "What a bag holds."),
     "view": Entry("sher3_view.cli", "view", "Show a recording or the running robot in three dimensions."),
+    "state": Entry("sher3_view.cli", "state", "Publish the running robot for RViz and Foxglove."),
     "gap": Entry("sher3_gap_cli.app", "", "Find and explain the gap between a robot and its simulation."),
     "design": Entry("sher3_paper.cli", "design", "Recompute the design of the robot."),
     "paper": Entry("sher3_paper.cli", "paper", "Recompute the figures and tables of the paper."),

@@ -71,3 +71,35 @@ def _live(robot: Path | None, port: int, domain: int, seconds: float | None) -> 
     page = LivePage(RobotKinematics(load_robot(robot)), port)
     typer.echo(f"live on {page.url}; Ctrl-C stops")
     run(page, domain, seconds)
+
+
+@app.command(epilog="Examples: `sher3 state` beside `sher3 up` · `sher3 state --urdf sher3.urdf`")
+def state(
+    urdf_file: Annotated[
+        Optional[Path],  # noqa: UP045
+        typer.Option("--urdf", help="Write the robot's description to this file, and publish nothing."),
+    ] = None,
+    robot: Annotated[Optional[Path], typer.Option(help="Robot file; the nominal one by default.")] = None,  # noqa: UP045
+    domain: Annotated[
+        int, typer.Option(help="ROS domain id of the running robot.", min=0, max=232, envvar="ROS_DOMAIN_ID")
+    ] = 0,
+    seconds: Annotated[float | None, typer.Option("--for", help="Seconds it lasts; until Ctrl-C.")] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of text.")] = False,
+) -> None:
+    """Publish the running robot for RViz and Foxglove: description, joint states, transforms and legs.
+
+    Topics: /robot_description, /joint_states, /tf, /tf_static, /sher3/markers, 50 times a second. A recording holds
+    them anyway.
+    """
+    from sher3_description import load_robot
+
+    model = load_robot(robot)
+    if urdf_file is not None:
+        from sher3_description.urdf import urdf
+
+        urdf_file.write_text(urdf(model), encoding="utf-8")
+        typer.echo(json.dumps({"urdf": str(urdf_file)}) if as_json else f"description in {urdf_file}")
+        return
+    from sher3_view.live.state_node import run
+
+    run(model, domain, seconds, lambda line: typer.echo(json.dumps({"note": line}) if as_json else line, err=True))

@@ -8,13 +8,15 @@ from __future__ import annotations
 
 import math
 import struct
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from sher3_common.stamps import SECOND
 from sher3_description import Qos, Robot
 from sher3_description.urdf import urdf
-from sher3_kinematics import RobotKinematics, Unreachable
+from sher3_kinematics import BadInput, RobotKinematics, Unreachable
 from sher3_kinematics.model_joints import MODEL_JOINTS, model_positions
 
 from sher3_bags.codec.cdr import STAMP, read_layout
@@ -80,7 +82,7 @@ class RobotFrames:
     def follow(self, data: bytes) -> list[Made]:
         """Return the state that follows from a message of `measured_js`, 50 times a second; else nothing.
 
-        A position that the legs cannot reach has no state: the bag keeps the position itself.
+        A message of other joints has no state.
         """
         seconds, nanoseconds = _STAMP.unpack_from(data, STAMP)
         stamp = seconds * SECOND + nanoseconds
@@ -91,10 +93,16 @@ class RobotFrames:
         entry, start, count = layout.slots[0]
         if entry.name != "position" or count != len(self._robot.actuators):
             return []
-        q = np.frombuffer(data, layout.order + "f8", count, start)
+        return self.state(stamp, np.frombuffer(data, layout.order + "f8", count, start))
+
+    def state(self, stamp: int, q: Sequence[float] | NDArray[np.float64]) -> list[Made]:
+        """Return joint states, transforms and legs at a stamp [ns] for actuator positions q (5,) [m, m, m, rad, m].
+
+        Positions that the legs cannot reach have none.
+        """
         try:
             positions = model_positions(self._kinematics, q)
-        except Unreachable:
+        except (BadInput, Unreachable):
             return []
         moving = [(*link[:2], *link_transform(link, at)) for link, at in zip(self._links, positions, strict=True)]
         return [
