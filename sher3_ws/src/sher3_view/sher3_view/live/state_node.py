@@ -1,6 +1,6 @@
 """Publish a running robot the way ROS viewers expect it: description, joint states, transforms and legs.
 
-It takes the newest position 50 times a second and wakes nobody. It is no part of the robot: when it ends, nothing stops.
+It takes the newest position 50 times a second and wakes nobody. It is no part of the robot: nothing stops when it ends.
 """
 
 from __future__ import annotations
