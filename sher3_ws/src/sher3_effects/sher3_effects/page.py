@@ -13,6 +13,29 @@ Values = Mapping[str, float]
 """Fitted parameters by name, SI units."""
 
 
+CONSTANTS: Mapping[str, str] = {
+    "coulomb": "friction in motion",
+    "static": "friction at rest",
+    "stribeck": "speed over which the one falls to the other",
+    "viscous": "viscous coefficient",
+    "offset": "constant force against the drive",
+    "weight": "relative change of the weight",
+    "drive": "relative change of the drive's force",
+    "inertia": "mass or inertia on the joint",
+    "delay": "dead time of the command",
+    "lag": "time constant of the drive",
+    "limit": "largest force of the drive",
+    "zero": "reading less true position",
+    "ratio": "relative change of load over motor travel",
+    "backlash": "width of the gap between motor and load",
+    "compliance": "displacement of the load per force",
+    "shift_x": "shift of the joint along x of its frame",
+    "shift_y": "shift of the joint along y of its frame",
+    "shift_z": "shift of the joint along z of its frame",
+}
+"""Constants of the equation of motion of a joint that an effect may change, SI units."""
+
+
 class Part(NamedTuple):
     """One effect of the plant: its id, where it sits, and its parameters by the plant's names."""
 
@@ -29,9 +52,7 @@ class Page(Effect):
             that form. None where the plant has none.
         breaks: which relation of the signal chain the effect breaks, where that is not the one named like its stage:
             "load_encoder", "both_encoders" or "force_sensor", the readings.
-        on_axis: fitted parameter -> constant of the equation of motion of a simulated axis, which it sets. The
-            constants are `coulomb`, `static` and `offset` (N or N m), `stribeck` (m/s or rad/s), `viscous` (N/(m/s) or
-            N m/(rad/s)), `weight` and `drive` (relative change of the weight and of the drive's force).
+        on_axis: fitted parameter -> constant of `CONSTANTS` that it sets, beyond the nominal one.
     """
 
     plant: ClassVar[type[PlantEffect] | None] = None

@@ -11,6 +11,7 @@ from sher3_gap_cli.challenge import challenge
 from sher3_gap_cli.diagnose import diagnose
 from sher3_gap_cli.excite import excite
 from sher3_gap_cli.experiment import experiment
+from sher3_gap_cli.export import export
 from sher3_gap_cli.intake import IMPORT_EXAMPLE, import_data
 from sher3_gap_cli.library import library
 from sher3_gap_cli.monitor import monitor
@@ -21,6 +22,7 @@ EXAMPLES: dict[Callable[..., None], str] = {
     diagnose: "sher3 gap diagnose case_001 · sher3 gap diagnose cases/* --jobs 2 --out verdicts",
     apply: "sher3 gap apply gap/case_001/verdict.json -o corrected.yaml --case case_001",
     compare: "sher3 gap compare case corrected",
+    export: "sher3 gap export gap/case_emps/verdict.json --to mjcf --check case_emps --out emps.xml",
     experiment: "sher3 gap experiment gap/case_001/verdict.json case_001 -o tell_apart.yaml",
     library: "sher3 gap library · sher3 gap library friction · sher3 gap library backlash",
     excite: "sher3 gap excite · sher3 gap excite all -o case · sher3 gap excite sweep --simulate -o case",

@@ -33,6 +33,7 @@ class TransmissionCompliance(Page):
         "transmission_hysteresis": "follows the path, not the force",
     }
     units = {"stiffness": "N/m"}
+    on_axis = {"compliance": "compliance"}
 
     FREQUENCIES = (8.0, 11.0, 14.0, 17.0, 20.0, 24.0, 28.0, 34.0, 40.0, 50.0)
 

@@ -21,6 +21,7 @@ class PreslidingFriction(Page):
     id, family, stage = "presliding_friction", "friction", "motor_mechanics"
     inputs = ("direction",)
     kinds = ("robot", "axis")
+    on_axis = {"force": "coulomb"}
     dry = True
     best = Best("reversals", "reversals of several amplitudes and speeds separate friction laws")
     explanation = (

@@ -53,6 +53,7 @@ class JointOffset(Page):
         "rail_tilt": "about an axis across the joint's",
     }
     units = {"offset": "rad"}
+    on_axis = {"offset": "zero"}
 
     def channels(self, site: str) -> tuple[Channel, ...]:
         """Return the pose of the measured body."""

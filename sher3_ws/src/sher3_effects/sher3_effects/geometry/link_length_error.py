@@ -62,6 +62,7 @@ class JointPlace(Page):
     explanation = "One link of the arm is longer, shorter or bent: a joint sits elsewhere than drawn."
     siblings = {"encoder_offset": "a turn about the joint's axis", "rail_tilt": "a turn across the joint's axis"}
     units = {"x": "m", "y": "m", "z": "m"}
+    on_axis = {"x": "shift_x", "y": "shift_y", "z": "shift_z"}
 
     def channels(self, site: str) -> tuple[Channel, ...]:
         """Return the pose of the measured body."""

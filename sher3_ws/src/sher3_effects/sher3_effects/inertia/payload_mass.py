@@ -65,6 +65,7 @@ class MassOnAxis(PayloadMass):
 
     kinds, places = ("axis",), ("axis",)
     needs = ("mass",)
+    on_axis = {"mass": "inertia"}
 
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
         """Return one shape: there is nothing to search."""

@@ -22,6 +22,7 @@ class ForceSaturation(Page):
     id, family, stage = "force_saturation", "limit", "drive"
     inputs = ("force", "command")
     best = Best("steps", "large and small steps separate limits from lags")
+    on_axis = {"limit": "limit"}
     explanation = "The reported force stops rising at a level below the drive's limit; below it the drive behaves."
     siblings = {"drive_lag": "late at every level"}
     finer = {"limit": (0.9, 0.94, 0.97, 0.985, 1.015, 1.03, 1.06, 1.1)}

@@ -25,6 +25,7 @@ class Backlash(Page):
     needs = ("load",)
     best = Best("loads", "known loads at rest separate a fixed gap from a spring")
     companion = "friction"
+    on_axis = {"width": "backlash"}
     explanation = (
         "After a reversal the motor moves by a fixed amount before the load follows; a load that pushes the "
         "other way takes the load across the gap without the motor moving."

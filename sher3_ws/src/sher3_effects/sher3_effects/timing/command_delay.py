@@ -33,6 +33,7 @@ class ServoDelay(CommandDelay):
     """A position servo that follows its reference a dead time late."""
 
     kinds = ("servo",)
+    on_axis = {"delay": "delay"}
     explanation = "The axis follows its reference a fixed time late."
     siblings = {"drive_lag": "the reference is smoothed as well as late"}
     PERIODS = (0.25, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0)

@@ -60,6 +60,7 @@ class ServoLag(DriveLag):
     """A position servo that follows its reference like a first-order filter: error = reference - filtered reference."""
 
     kinds = ("servo",)
+    on_axis = {"time_constant": "lag"}
     explanation = "The axis follows its reference late, like a first-order filter."
     siblings = {"command_delay": "the whole reference comes late, its shape unchanged"}
     PERIODS = (0.25, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0)

@@ -74,7 +74,7 @@ def read_verdict(path: Path) -> Verdict:
             f"{path}: is a verdict on another machine",
             value=foreign[0],
             limit=", ".join(PLACES),
-            remedy="put its parameters into that machine's own simulator",
+            remedy="write it into a model of that machine: `sher3 gap export`",
         )
     return found
 

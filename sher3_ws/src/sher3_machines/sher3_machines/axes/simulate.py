@@ -56,9 +56,13 @@ class Nominal(NamedTuple):
     hanging: float
 
 
+TAKEN = frozenset({"coulomb", "static", "stribeck", "viscous", "offset", "weight", "drive"})
+"""Constants that the simulated axis takes in."""
+
+
 def simulated() -> dict[str, Mapping[str, str]]:
     """Return the causes that the simulated axis can take in: effect id -> its parameters' constants, see `on_axis`."""
-    return {page.id: page.on_axis for page in pages("axis") if page.on_axis}
+    return {p.id: p.on_axis for p in pages("axis") if p.on_axis and set(p.on_axis.values()) <= TAKEN}
 
 
 def law_of(causes: Sequence[Cause]) -> Law:

@@ -1,0 +1,95 @@
+"""From the causes of a verdict to constants of the equation of motion of a joint, whatever the target calls them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from sher3_diagnosis.verdict import Cause, Parameter
+from sher3_effects import pages
+from sher3_effects.page import CONSTANTS
+
+KINDS = ("axis", "servo", "arm", "robot")
+"""Kinds of machine whose pages say which constant a parameter sets."""
+FORCES = ("coulomb", "static", "offset")
+"""Constants that a servo without a recorded force gives in units of its stiffness, m or rad."""
+
+
+@dataclass(frozen=True)
+class Change:
+    """One constant of one joint that the machine has beyond its model.
+
+    Attributes:
+        joint: name of the joint, or of the place of the cause.
+        constant: of `sher3_effects.page.CONSTANTS`.
+        value, low, high: what it is, and its interval, SI units; None where the verdict has no interval.
+        unit: of the value.
+        effect: the cause it comes from.
+    """
+
+    joint: str
+    constant: str
+    value: float
+    low: float | None
+    high: float | None
+    unit: str
+    effect: str
+
+    @property
+    def over_stiffness(self) -> bool:
+        """Whether a force is given in units of the servo's stiffness."""
+        return self.constant in FORCES and self.unit in ("m", "rad")
+
+    def __str__(self) -> str:
+        return f"{self.effect} on {self.joint}: {CONSTANTS[self.constant]} {self.value:.6g} {self.unit}"
+
+
+@dataclass(frozen=True)
+class Untold:
+    """What a target cannot express.
+
+    Attributes:
+        effect, joint: the cause and its place.
+        constant: of `CONSTANTS`; empty for a cause that is no constant of a joint.
+        value: SI units; None for a whole cause.
+        reason: why, one clause.
+    """
+
+    effect: str
+    joint: str
+    constant: str
+    value: float | None
+    reason: str
+
+    def __str__(self) -> str:
+        what = "" if self.value is None else f" ({CONSTANTS[self.constant]} {self.value:.6g})"
+        return f"{self.effect} on {self.joint}{what}: {self.reason}"
+
+
+def changes_of(causes: Sequence[Cause], joints: Mapping[str, str] | None = None) -> tuple[list[Change], list[Untold]]:
+    """Return the constants that causes set, and the causes that are no constant of a joint.
+
+    Args:
+        causes: of a verdict.
+        joints: axis of the verdict -> joint of the model, where their names differ.
+    """
+    changes: list[Change] = []
+    untold: list[Untold] = []
+    for cause in causes:
+        joint = (joints or {}).get(cause.actuator, cause.actuator)
+        known = constants_of(cause.effect)
+        found = [_change(cause, joint, known[name], p) for name, p in cause.parameters.items() if name in known]
+        changes += found
+        if not found:
+            untold.append(Untold(cause.effect, joint, "", None, "no constant of a joint: no target has a field for it"))
+    return changes, untold
+
+
+def constants_of(effect: str) -> Mapping[str, str]:
+    """Return parameter -> constant of the pages of an effect."""
+    return {name: c for kind in KINDS for page in pages(kind) if page.id == effect for name, c in page.on_axis.items()}
+
+
+def _change(cause: Cause, joint: str, constant: str, p: Parameter) -> Change:
+    low, high = (None if x is None else float(x) for x in (p.low, p.high))
+    return Change(joint, constant, float(p.value), low, high, p.unit, cause.effect)

@@ -1,0 +1,124 @@
+"""The nominal and the exported model on the same recorded commands: position error before and after."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from xml.etree.ElementTree import Element
+
+import numpy as np
+from sher3_diagnosis.channel import Array
+from sher3_diagnosis.quantify.closure import interval_of
+from sher3_diagnosis.verdict import Interval, Verdict
+from sher3_machines import open_case
+from sher3_machines.thresholds import BLOCKS
+
+from sher3_export.check.engine import Engine, compiled, copied, prepared
+from sher3_export.check.model_of import model_of
+from sher3_export.check.recorded import Recorded, recorded
+from sher3_export.targets.mjcf import Mjcf
+from sher3_export.writing import Exported, export
+from sher3_export.xml_file import read_xml, write_xml
+
+LATE = ("delay", "lag", "limit")
+"""Constants that act between command and force."""
+
+
+@dataclass(frozen=True)
+class JointGap:
+    """Position error of one joint over windows that start at recorded states.
+
+    Attributes:
+        joint: its name.
+        before, after: rms of measured less simulated position with the nominal and the exported model, m or rad.
+        closure: of the mean square.
+    """
+
+    joint: str
+    before: float
+    after: float
+    closure: Interval
+
+
+@dataclass(frozen=True)
+class Checked:
+    """An exported model with what is left of the gap of every joint."""
+
+    exported: Exported
+    gaps: Sequence[JointGap]
+
+
+def nominal_model(case: Path, model: Path | None) -> tuple[Element, object, Sequence[object]]:
+    """Return the nominal model, the machine and its runs; without a model, one is made of the description.
+
+    Raises:
+        MachineError, ExportError: the case cannot be read, or no model can be made of it.
+    """
+    machine, runs = open_case(case)
+    if model is not None:
+        return read_xml(model, Mjcf.root_tag), machine, runs
+    recorded(machine, [], {}, False)  # refuses another kind of machine
+    return model_of(machine.gather(runs)), machine, runs
+
+
+def check(verdict: Verdict, case: Path, model: Path | None, joints: Mapping[str, str] | None = None) -> Checked:
+    """Write a verdict into a model and run both models on the recorded commands of a case.
+
+    Args:
+        verdict: of the case.
+        case: folder of a chain of axes.
+        model: MJCF; None: made of the case's description.
+        joints: axis -> joint of the model, where their names differ.
+
+    Raises:
+        MachineError, ExportError: see `nominal_model`; MuJoCo is missing or refuses the model.
+    """
+    bench = bench_of(verdict, case, model, joints or {})
+    exported = export(verdict, "mjcf", copied(bench.original), joints)
+    engines = (bench.nominal, bench.compiled(export(verdict, "mjcf", copied(bench.root), joints).text))
+    errors = [[engine.run(record) for record in bench.records] for engine in engines]
+    return Checked(exported, [gap_of(name, *([x[name] for x in found] for found in errors)) for name in bench.joints])
+
+
+@dataclass(frozen=True)
+class Bench:
+    """A case and the nominal model it is run in.
+
+    Attributes:
+        original: root of the nominal model as it was given.
+        root: the same with a time step that divides the period, and a motor on every joint.
+        nominal: the same, compiled.
+        records: what was recorded.
+        joints: names in the model.
+    """
+
+    original: Element
+    root: Element
+    nominal: Engine
+    records: Sequence[Recorded]
+    joints: Sequence[str]
+
+    def compiled(self, text: str) -> Engine:
+        """Return another model, driven as the nominal one is."""
+        return compiled(text, self.joints, self.nominal.actuator)
+
+
+def bench_of(verdict: Verdict, case: Path, model: Path | None, joints: Mapping[str, str]) -> Bench:
+    """Return the case of a verdict on its nominal model; raises as `check` does."""
+    original, machine, runs = nominal_model(case, model)
+    late = any(c.constant in LATE for c in export(verdict, "yaml").applied)
+    records = recorded(machine, runs, joints, late)
+    names = list(records[0].tracks)
+    root = prepared(original, records[0].period, names)
+    return Bench(original, root, compiled(write_xml(root, ["nominal"]), names), records, names)
+
+
+def gap_of(joint: str, before: Sequence[Array], after: Sequence[Array]) -> JointGap:
+    """Return the gap of one joint from the errors (windows, samples) of each run under both models."""
+    squares = np.column_stack([np.mean(np.concatenate(x) ** 2, axis=1) for x in (before, after)])
+    rows = [
+        [*part.mean(axis=0) / squares[:, 0].mean(), 0.0] for part in np.array_split(squares, min(BLOCKS, len(squares)))
+    ]
+    rms = np.sqrt(squares.mean(axis=0))
+    return JointGap(joint, float(rms[0]), float(rms[1]), interval_of(np.array(rows)))

@@ -1,0 +1,92 @@
+"""What was recorded of each joint, as MuJoCo needs it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from scipy.signal import savgol_filter
+from sher3_diagnosis.channel import Array
+from sher3_machines.axes.description import Axis
+from sher3_machines.axes.machine import Axes
+from sher3_machines.axes.record import AxesRun
+
+from sher3_export.errors import ExportError
+
+SMOOTH = 0.01
+"""Half the time, s, over which a start speed is taken: long against a count, short against a motion."""
+LEAST = 4
+"""Samples of that half at least: a parabola through fewer follows the counts."""
+
+
+@dataclass(frozen=True)
+class Track:
+    """One joint in one run, n samples.
+
+    Attributes:
+        position, velocity: (n,) of the motor's side, smoothed: where a simulation may start.
+        measured: (n,) m or rad, of the load where it has an encoder: what a simulation is held against.
+        behind: (n,) load less motor, m or rad; None with one encoder.
+        drive: (n,) force, N or N m, or reference of a servo, m or rad; None where nothing drives the joint.
+    """
+
+    position: Array
+    velocity: Array
+    measured: Array
+    behind: Array | None
+    drive: Array | None
+
+
+@dataclass(frozen=True)
+class Recorded:
+    """One run: its period, s, and a track for each joint, by the joint's name in the model."""
+
+    period: float
+    tracks: Mapping[str, Track]
+
+
+def recorded(machine: object, runs: Sequence[Any], joints: Mapping[str, str], late: bool) -> list[Recorded]:
+    """Return what was recorded of a chain of axes.
+
+    Args:
+        machine: of the case.
+        runs: of the case.
+        joints: axis -> joint of the model, where their names differ.
+        late: whether a cause acts between command and force, so that the command drives and not the measured effort.
+
+    Raises:
+        ExportError: the case is of another kind.
+    """
+    if not isinstance(machine, Axes):
+        remedy = "check a chain of axes; the SHER's verdicts are checked by `sher3 gap apply --case`"
+        raise ExportError(
+            "records of this kind of machine are not run in MuJoCo", value=type(machine).__name__, remedy=remedy
+        )
+    axes = machine.description.axes
+    return [
+        Recorded(run.period, {joints.get(axis.name, axis.name): track_of(run, axis, late) for axis in axes})
+        for run in runs
+    ]
+
+
+def track_of(run: AxesRun, axis: Axis, late: bool) -> Track:
+    """Return the track of one axis."""
+    signals = run.signals[axis.name]
+    q = signals["position"]
+    half = max(LEAST, round(SMOOTH / run.period))
+    smooth = [savgol_filter(q, 2 * half + 1, 2, deriv=k, delta=run.period) for k in (0, 1)]
+    load = signals.get("load")
+    behind = None if load is None else load - q
+    return Track(smooth[0], smooth[1], q if load is None else load, behind, drive_of(signals, axis, late))
+
+
+def drive_of(signals: Mapping[str, Array], axis: Axis, late: bool) -> Array | None:
+    """Return the force, the servo's reference, or None."""
+    if axis.free:
+        return None
+    if axis.servo:
+        return signals["reference"]
+    if "command" in signals and (late or "effort" not in signals):
+        return axis.command_law.gain * signals["command"]
+    return signals["effort"]

@@ -1,0 +1,79 @@
+"""Ranges for randomisation: where each constant lies with 90 %, rivals included, and what the causes leave."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from sher3_common import dump_yaml
+from sher3_diagnosis.verdict import Cause, Parameter, Verdict
+
+from sher3_export.changes import constants_of
+
+SHARE = 0.90
+"""Probability of a range."""
+NARROWER = 1.645 / 1.960
+"""Half width of a normal distribution's 90 % interval over that of its 95 % interval, which verdicts give."""
+
+
+@dataclass(frozen=True)
+class Ranges:
+    """What a randomised model should cover.
+
+    Attributes:
+        worlds: sets of causes that explain the runs, the verdict's first; one of them is at work.
+        remainder: joint -> force that the causes leave, standard deviation over a quarter of a second, N or N m; empty
+            where it was not measured.
+    """
+
+    worlds: Sequence[Sequence[Cause]]
+    remainder: Mapping[str, float] = field(default_factory=dict)
+
+    def draw(self, rng: np.random.Generator) -> list[Cause]:
+        """Return the causes of one world with parameters drawn from their intervals."""
+        world = self.worlds[int(rng.integers(len(self.worlds)))]
+        return [c.model_copy(update={"parameters": {n: drawn(p, rng) for n, p in c.parameters.items()}}) for c in world]
+
+    def text(self) -> str:
+        """Return the ranges as YAML, `schema: sher3.ranges/1`."""
+        worlds = [[_entry(cause) for cause in world] for world in self.worlds]
+        data = {
+            "schema": "sher3.ranges/1",
+            "share": SHARE,
+            "one_of": worlds,
+            "remainder": {j: float(s) for j, s in self.remainder.items()},
+        }
+        remarks = (
+            "One of these sets of causes is at work; values add to the nominal ones.",
+            "remainder: force that the causes leave, standard deviation, constant for 0.25 s at a time.",
+        )
+        return "".join(f"# {line}\n" for line in remarks) + dump_yaml(data)
+
+
+def worlds_of(verdict: Verdict, others: Sequence[Verdict] = ()) -> list[Sequence[Cause]]:
+    """Return the sets of causes that may be at work: those of a verdict and of verdicts without one of its causes."""
+    return [verdict.causes, *(x.causes for x in others if x.causes)]
+
+
+def interval(p: Parameter) -> tuple[float, float]:
+    """Return the 90 % interval of a parameter; of one without an interval, its value twice."""
+    low = p.value if p.low is None else p.value - NARROWER * (p.value - p.low)
+    high = p.value if p.high is None else p.value + NARROWER * (p.high - p.value)
+    return float(low), float(high)
+
+
+def drawn(p: Parameter, rng: np.random.Generator) -> Parameter:
+    """Return a parameter drawn from its interval as from two half normal distributions."""
+    step = float(rng.standard_normal())
+    side = p.low if step < 0.0 else p.high
+    return p if side is None else p.model_copy(update={"value": p.value + abs(step) * (side - p.value) / 1.960})
+
+
+def _entry(cause: Cause) -> dict[str, object]:
+    known = constants_of(cause.effect)
+    ranges = {
+        known.get(name, name): {"range": list(interval(p)), "value": float(p.value), "unit": p.unit}
+        for name, p in cause.parameters.items()
+    }
+    return {"effect": cause.effect, "joint": cause.actuator, **ranges}

@@ -1,0 +1,232 @@
+"""MuJoCo: joint attributes, a second joint for play and compliance, attributes of the joint's actuators."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from typing import ClassVar
+from xml.etree.ElementTree import Element, SubElement
+
+from sher3_export.changes import Change
+from sher3_export.targets.target import XmlTarget
+from sher3_export.xml_file import elements, number, numbers, parents, written
+
+STEP = 0.002
+"""MuJoCo's own time step where a model states none, s."""
+LIGHT = 1e-3
+"""Armature of a joint that only plays or bends, as a share of that of the motor's side: light enough not to matter,
+heavy enough for the solver."""
+LEAST = 1e-4
+"""Armature that the motor's side is given where the model has none, kg or kg m^2: without inertia of its own the motor
+cannot cross a gap."""
+DUST = 1e-9
+"""Mass and inertia of the motor's own body beside its armature, kg and kg m^2: MuJoCo refuses none at all."""
+PLACE = ("pos", "quat", "euler", "axisangle", "xyaxes", "zaxis")
+"""Attributes of a body that place it in its parent."""
+SPARE = 2
+"""Samples of a delayed actuator beyond delay over time step."""
+ACTUATORS = ("motor", "position", "velocity", "intvelocity", "general", "damper", "dcmotor", "pid")
+"""Elements under <actuator> that may drive a joint."""
+
+
+class Mjcf(XmlTarget):
+    """A MuJoCo model; attributes that come from <default> classes are read there and written at the joint."""
+
+    name, root_tag = "mjcf", "mujoco"
+    refuses: ClassVar[Mapping[str, str]] = {
+        "static": "MuJoCo's frictionloss is the same at rest and in motion; only the sliding level was written",
+        "stribeck": "MuJoCo's frictionloss does not depend on speed",
+        "ratio": "the load encoder is no part of the joint",
+    }
+
+    def all_joints(self) -> Sequence[Element]:
+        """Return hinges and slides of the bodies."""
+        return [x for body in elements(self.root, "body") for x in body.findall("joint")]
+
+    @property
+    def writers(self) -> Mapping[str, Callable[[Change, Element], str]]:
+        """Return what writes each constant."""
+        return {
+            "coulomb": lambda change, joint: self._add(joint, "frictionloss", change.value),
+            "viscous": lambda change, joint: self._add(joint, "damping", change.value),
+            "inertia": lambda change, joint: self._add(joint, "armature", change.value),
+            "offset": self._offset,
+            "weight": self._weight,
+            "drive": self._drive,
+            "delay": self._delay,
+            "lag": self._lag,
+            "limit": self._limit,
+            "zero": self._zero,
+            "backlash": self._backlash,
+            "compliance": self._compliance,
+            "shift_x": self._shift,
+            "shift_y": self._shift,
+            "shift_z": self._shift,
+        }
+
+    def stiffness(self, joint: str) -> float:
+        """Return kp of the position actuator on a joint."""
+        gains = [self._inherited(x, "kp", 1.0) for x in self._actuators(joint) if x.tag == "position"]
+        return gains[0] if gains else 0.0
+
+    def _add(self, joint: Element, attribute: str, change: float) -> str:
+        total = self._inherited(joint, attribute) + change
+        joint.set(attribute, written(max(total, 0.0)))
+        return "" if total >= 0.0 else f"{attribute} would be {total:.4g}; set to zero, the rest is not expressed"
+
+    def _offset(self, change: Change, joint: Element) -> str:
+        """A constant force is an actuator without control: bias -offset."""
+        actuators = self.root.find("actuator")
+        actuators = SubElement(self.root, "actuator") if actuators is None else actuators
+        name = f"{change.joint}_{change.effect}"
+        law = {"gainprm": "0", "biastype": "affine", "biasprm": written(-change.value)}
+        SubElement(actuators, "general", {"name": name, "joint": change.joint, "ctrllimited": "false", **law})
+        return ""
+
+    def _weight(self, change: Change, joint: Element) -> str:
+        """A share of the weight is gravity compensation of the body, where no other joint carries the body's load."""
+        body = parents(self.root)[joint]
+        below = [x for child in body.findall("body") for x in child.iter("joint")]
+        if below or len(body.findall("joint")) > 1:
+            return "the weight behind this joint is carried by other joints too"
+        for part in body.iter("body"):
+            part.set("gravcomp", written(number(part.get("gravcomp")) - change.value))
+        return ""
+
+    def _drive(self, change: Change, joint: Element) -> str:
+        actuators = self._actuators(change.joint)
+        for actuator in actuators:
+            if actuator.tag in ("position", "velocity", "intvelocity"):
+                for gain in ("kp", "kv") if actuator.tag != "velocity" else ("kv",):
+                    default = 0.0 if gain == "kv" and actuator.tag != "velocity" else 1.0
+                    actuator.set(gain, written(self._inherited(actuator, gain, default) * (1.0 + change.value)))
+            else:
+                gear = numbers(actuator.get("gear") or self._class_value(actuator, "gear"), "1")
+                actuator.set("gear", written(gear[0] * (1.0 + change.value), *gear[1:]))
+        return self._needs(actuators)
+
+    def _delay(self, change: Change, joint: Element) -> str:
+        actuators = self._actuators(change.joint)
+        option = self.root.find("option")
+        step = number(None if option is None else option.get("timestep"), STEP)
+        for actuator in actuators:
+            delay = self._inherited(actuator, "delay") + change.value
+            actuator.set("delay", written(delay))
+            actuator.set("nsample", str(math.ceil(delay / step) + SPARE))
+        return self._needs(actuators)
+
+    def _lag(self, change: Change, joint: Element) -> str:
+        """A first-order lag is an activation: `timeconst` of a position servo, a filter on any other force."""
+        actuators = self._actuators(change.joint)
+        for actuator in actuators:
+            if actuator.tag == "position":
+                actuator.set("timeconst", written(self._inherited(actuator, "timeconst") + change.value))
+            elif actuator.tag in ("motor", "general") and actuator.get("dyntype", "none") == "none":
+                actuator.tag = "general"
+                actuator.set("dyntype", "filterexact")
+                actuator.set("dynprm", written(change.value))
+            else:
+                return f"<{actuator.tag}> has a dynamics of its own"
+        return self._needs(actuators)
+
+    def _limit(self, change: Change, joint: Element) -> str:
+        actuators = self._actuators(change.joint)
+        for actuator in actuators:
+            actuator.set("forcerange", written(-change.value, change.value))
+            actuator.set("forcelimited", "true")
+        return self._needs(actuators)
+
+    def _zero(self, change: Change, joint: Element) -> str:
+        """The reading is larger by the offset: at the drawn configuration the joint reads it."""
+        degrees = self._degrees() and joint.get("type", "hinge") == "hinge"
+        joint.set("ref", written(number(joint.get("ref")) + (math.degrees(change.value) if degrees else change.value)))
+        return ""
+
+    def _shift(self, change: Change, joint: Element) -> str:
+        """A joint that sits elsewhere than drawn: the body moves by as much in its own frame."""
+        body = parents(self.root)[joint]
+        if any(name in body.attrib for name in PLACE[1:]):
+            return "the body is turned against its parent; shift its pos along its own axes by hand"
+        place = numbers(body.get("pos"), "0 0 0")
+        place["xyz".index(change.constant[-1])] += change.value
+        body.set("pos", written(*place))
+        return ""
+
+    def _backlash(self, change: Change, joint: Element) -> str:
+        half = change.value / 2.0
+        limit = math.degrees(half) if self._degrees() and joint.get("type", "hinge") == "hinge" else half
+        self._second(change, joint, "play", {"range": written(-limit, limit), "limited": "true"})
+        return ""
+
+    def _compliance(self, change: Change, joint: Element) -> str:
+        if change.value <= 0.0:
+            return "no spring has a compliance of zero or less"
+        option = self.root.find("option")
+        step = number(None if option is None else option.get("timestep"), STEP)
+        stiffness = 1.0 / change.value
+        self._second(change, joint, "spring", {"stiffness": written(stiffness), "damping": written(step * stiffness)})
+        return ""
+
+    def _second(self, change: Change, joint: Element, what: str, law: Mapping[str, str]) -> None:
+        """Part motor from load: a body of the motor's own takes the joint, and the load hangs on it by a second one.
+
+        Two parallel joints of one body would do, but MuJoCo takes the joints of a body that only slides for orthogonal.
+        """
+        motor = self._inherited(joint, "armature") or LEAST
+        joint.set("armature", written(motor))
+        above = parents(self.root)
+        load = above[joint]
+        world = above[load]
+        place = {name: load.attrib.pop(name) for name in PLACE if name in load.attrib}
+        of_class = {"childclass": load.attrib["childclass"]} if "childclass" in load.attrib else {}
+        body = Element("body", {"name": f"{change.joint}_{what}_motor", **place, **of_class})
+        world[list(world).index(load)] = body
+        SubElement(body, "inertial", {"pos": "0 0 0", "mass": written(DUST), "diaginertia": written(*[DUST] * 3)})
+        before = [x for x in load.findall("joint")]
+        for moved in before[: before.index(joint) + 1]:
+            load.remove(moved)
+            body.append(moved)
+        same: dict[str, str] = {
+            str(name): joint.attrib[name] for name in ("type", "axis", "pos", "class") if name in joint.attrib
+        }
+        plain = {"armature": written(LIGHT * motor), "frictionloss": "0", "stiffness": "0", "damping": "0"}
+        load.insert(0, Element("joint", {"name": f"{change.joint}_{what}", **same, **plain, "limited": "false", **law}))
+        body.append(load)
+
+    def _actuators(self, joint: str) -> list[Element]:
+        return [
+            x
+            for block in self.root.findall("actuator")
+            for x in block
+            if x.get("joint") == joint and x.tag in ACTUATORS and x.get("gainprm") != "0"
+        ]
+
+    def _needs(self, actuators: Sequence[Element]) -> str:
+        return "" if actuators else "the model has no actuator on this joint"
+
+    def _degrees(self) -> bool:
+        compiler = self.root.find("compiler")
+        return compiler is None or compiler.get("angle", "degree") == "degree"
+
+    def _inherited(self, element: Element, attribute: str, default: float = 0.0) -> float:
+        """Return an attribute of an element, or what the classes of <default> say of it."""
+        own = element.get(attribute)
+        return number(own if own is not None else self._class_value(element, attribute), default)
+
+    def _class_value(self, element: Element, attribute: str) -> str | None:
+        """Return what the innermost class that states an attribute says, up to the model's top class."""
+        above = parents(self.root)
+        name, at = element.get("class"), element
+        while name is None and at in above:
+            at = above[at]
+            name = at.get("childclass")
+        top = self.root.find("default")
+        if top is None:
+            return None
+        found = next((x for x in top.iter("default") if name is not None and x.get("class") == name), top)
+        while found.tag == "default":
+            stated = next((x.get(attribute) for x in found.findall(element.tag) if attribute in x.attrib), None)
+            if stated is not None or found is top:
+                return stated
+            found = above[found]
+        return None

@@ -1,0 +1,61 @@
+"""SDF: dynamics and effort limit of a joint's axis."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import ClassVar
+from xml.etree.ElementTree import Element
+
+from sher3_export.changes import Change
+from sher3_export.targets.target import XmlTarget
+from sher3_export.targets.urdf import child
+from sher3_export.xml_file import number, written
+
+DRIVE = "an SDF joint has no drive; gain, delay and lag belong to the controller plugin"
+SPRING = "the spring of an SDF joint acts between its links, not between motor and load"
+
+
+class Sdf(XmlTarget):
+    """A model or world of the Simulation Description Format."""
+
+    name, root_tag = "sdf", "sdf"
+    refuses: ClassVar[Mapping[str, str]] = {
+        "static": "SDF friction is the same at rest and in motion; only the sliding level was written",
+        "stribeck": "SDF friction does not depend on speed",
+        "offset": "an SDF joint has no constant force",
+        "weight": "a share of the weight without its inertia is no mass of a link",
+        "inertia": "an SDF joint has no rotor inertia",
+        "drive": DRIVE,
+        "delay": DRIVE,
+        "lag": DRIVE,
+        "zero": "an SDF joint has no offset of its zero; turn the pose of its child by hand",
+        "backlash": "an SDF joint has no play; add a joint by hand or export to mjcf",
+        "compliance": SPRING,
+        "ratio": "the load encoder is no part of the joint",
+        "shift_x": "the pose of the child link belongs to the model's tree; shift it by hand",
+        "shift_y": "the pose of the child link belongs to the model's tree; shift it by hand",
+        "shift_z": "the pose of the child link belongs to the model's tree; shift it by hand",
+    }
+
+    def all_joints(self) -> Sequence[Element]:
+        """Return the joints that move."""
+        return [x for x in self.root.iter("joint") if x.get("type") != "fixed" and x.find("axis") is not None]
+
+    @property
+    def writers(self) -> Mapping[str, Callable[[Change, Element], str]]:
+        """Return what writes each constant."""
+        return {
+            "coulomb": lambda change, joint: self._add(joint, "dynamics", "friction", change.value),
+            "viscous": lambda change, joint: self._add(joint, "dynamics", "damping", change.value),
+            "limit": self._limit,
+        }
+
+    def _add(self, joint: Element, group: str, name: str, change: float) -> str:
+        """Add to a number that stands as an element's text."""
+        value = child(child(child(joint, "axis"), group), name)
+        value.text = written(max(number(value.text) + change, 0.0))
+        return ""
+
+    def _limit(self, change: Change, joint: Element) -> str:
+        child(child(child(joint, "axis"), "limit"), "effort").text = written(change.value)
+        return ""

@@ -1,0 +1,89 @@
+"""What a target is: it takes changes one by one, or says why it cannot, and gives its text."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping, Sequence
+from typing import ClassVar
+from xml.etree.ElementTree import Element
+
+from sher3_export.changes import Change
+from sher3_export.errors import ExportError
+from sher3_export.xml_file import write_xml, written
+
+
+class Target(ABC):
+    """A model or configuration that causes are written into.
+
+    Class attributes:
+        name: as the command line has it.
+        refuses: constant -> why this target has no field for it.
+    """
+
+    name: ClassVar[str]
+    refuses: ClassVar[Mapping[str, str]] = {}
+
+    @abstractmethod
+    def apply(self, change: Change) -> str:
+        """Write a change; return why it cannot be written, or nothing."""
+
+    @abstractmethod
+    def text(self, remarks: Sequence[str]) -> str:
+        """Return the model with remarks as a comment on top."""
+
+
+class XmlTarget(Target):
+    """A model in XML.
+
+    Class attributes:
+        root_tag: name of its root element.
+
+    Attributes:
+        root: of the model, changed in place.
+    """
+
+    root_tag: ClassVar[str]
+
+    def __init__(self, root: Element) -> None:
+        self.root = root
+        self.joints = {x.attrib["name"]: x for x in self.all_joints() if "name" in x.attrib}
+        if not self.joints:
+            remedy = "give the file that holds the joints; files it includes are not followed"
+            raise ExportError("the model has no joint with a name", value="0 joints", remedy=remedy)
+
+    @abstractmethod
+    def all_joints(self) -> Sequence[Element]:
+        """Return the joints of the model."""
+
+    @property
+    @abstractmethod
+    def writers(self) -> Mapping[str, Callable[[Change, Element], str]]:
+        """Return constant -> what writes it at a joint and returns why it cannot, or nothing."""
+
+    def apply(self, change: Change) -> str:
+        """Write a change at its joint; return why it cannot be written, or nothing."""
+        if change.constant not in self.writers:
+            return self.refuses.get(change.constant, f"{self.name} has no field for it")
+        joint = self.joints.get(change.joint)
+        if joint is None:
+            return f"the model has no joint of this name (joints: {', '.join(list(self.joints)[:12])}); see --joint"
+        if change.over_stiffness and not (stiffness := self.stiffness(change.joint)):
+            return "given in units of the servo's stiffness, which the model does not state"
+        elif change.over_stiffness:
+            scaled = {"value": change.value * stiffness, "unit": "N*m" if change.unit == "rad" else "N"}
+            change = Change(**{**change.__dict__, **scaled})
+        return self.writers[change.constant](change, joint)
+
+    def stiffness(self, joint: str) -> float:
+        """Return the stiffness of the servo on a joint, N/m or N m/rad; default 0, not stated."""
+        return 0.0
+
+    def text(self, remarks: Sequence[str]) -> str:
+        """Return the model with remarks as a comment on top."""
+        return write_xml(self.root, remarks)
+
+
+def field(attribute: Element, name: str, value: float) -> str:
+    """Set an attribute to a number; return nothing: it could be written."""
+    attribute.set(name, written(value))
+    return ""

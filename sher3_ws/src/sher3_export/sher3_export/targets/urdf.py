@@ -1,0 +1,84 @@
+"""URDF: friction, damping and limit of a joint, and the place of its zero."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import ClassVar
+from xml.etree.ElementTree import Element, SubElement
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from sher3_export.changes import Change
+from sher3_export.targets.target import XmlTarget, field
+from sher3_export.xml_file import add, numbers, written
+
+DRIVE = "a URDF has no drive: no gain, delay or lag"
+ELASTIC = "a URDF joint has no play and no spring; add a joint by hand or export to mjcf"
+
+
+class Urdf(XmlTarget):
+    """A robot of the Unified Robot Description Format."""
+
+    name, root_tag = "urdf", "robot"
+    refuses: ClassVar[Mapping[str, str]] = {
+        "static": "URDF friction is the same at rest and in motion; only the sliding level was written",
+        "stribeck": "URDF friction does not depend on speed",
+        "offset": "a URDF joint has no constant force",
+        "weight": "a share of the weight without its inertia is no mass of a link",
+        "inertia": "a URDF joint has no rotor inertia, and that of a link would move every joint before it",
+        "drive": DRIVE,
+        "delay": DRIVE,
+        "lag": DRIVE,
+        "backlash": ELASTIC,
+        "compliance": ELASTIC,
+        "ratio": "the load encoder is no part of the joint",
+    }
+
+    def all_joints(self) -> Sequence[Element]:
+        """Return the joints that move."""
+        return [x for x in self.root.findall("joint") if x.get("type") != "fixed"]
+
+    @property
+    def writers(self) -> Mapping[str, Callable[[Change, Element], str]]:
+        """Return what writes each constant."""
+        return {
+            "coulomb": lambda change, joint: self._dynamics(joint, "friction", change.value),
+            "viscous": lambda change, joint: self._dynamics(joint, "damping", change.value),
+            "limit": lambda change, joint: field(child(joint, "limit"), "effort", change.value),
+            "zero": self._zero,
+            "shift_x": self._shift,
+            "shift_y": self._shift,
+            "shift_z": self._shift,
+        }
+
+    def _dynamics(self, joint: Element, attribute: str, change: float) -> str:
+        add(child(joint, "dynamics"), attribute, change)
+        return ""
+
+    def _zero(self, change: Change, joint: Element) -> str:
+        """The reading is larger by the offset: the joint frame turns, or moves, back by as much about its axis."""
+        origin, axis = child(joint, "origin"), joint.find("axis")
+        along = np.array(numbers(None if axis is None else axis.get("xyz"), "1 0 0"))
+        along = along / np.linalg.norm(along)
+        turn = Rotation.from_euler("xyz", numbers(origin.get("rpy"), "0 0 0"))
+        if joint.get("type") == "prismatic":
+            return self._move(origin, turn, -change.value * along)
+        origin.set("rpy", written(*(turn * Rotation.from_rotvec(-change.value * along)).as_euler("xyz")))
+        return ""
+
+    def _shift(self, change: Change, joint: Element) -> str:
+        """A joint that sits elsewhere than drawn, along the axes of its own frame."""
+        origin = child(joint, "origin")
+        turn = Rotation.from_euler("xyz", numbers(origin.get("rpy"), "0 0 0"))
+        return self._move(origin, turn, change.value * np.eye(3)["xyz".index(change.constant[-1])])
+
+    def _move(self, origin: Element, turn: Rotation, step: np.ndarray) -> str:
+        origin.set("xyz", written(*(np.array(numbers(origin.get("xyz"), "0 0 0")) + turn.apply(step))))
+        return ""
+
+
+def child(element: Element, tag: str) -> Element:
+    """Return a child element, made where it is missing."""
+    found = element.find(tag)
+    return SubElement(element, tag) if found is None else found

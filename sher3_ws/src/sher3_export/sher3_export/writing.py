@@ -1,0 +1,96 @@
+"""A verdict written into a model: what was changed, what the target cannot express, and the text of the model."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from xml.etree.ElementTree import Element
+
+from sher3_diagnosis.verdict import Cause, Verdict
+
+from sher3_export.changes import Change, Untold, changes_of
+from sher3_export.errors import ExportError
+from sher3_export.targets.isaac import Isaac
+from sher3_export.targets.mjcf import Mjcf
+from sher3_export.targets.plain import Plain
+from sher3_export.targets.sdf import Sdf
+from sher3_export.targets.target import Target, XmlTarget
+from sher3_export.targets.urdf import Urdf
+from sher3_export.xml_file import read_xml
+
+TARGETS: Mapping[str, type[Target]] = {"mjcf": Mjcf, "urdf": Urdf, "sdf": Sdf, "isaac": Isaac, "yaml": Plain}
+"""Name of a target -> how causes are written into it."""
+
+
+@dataclass(frozen=True)
+class Exported:
+    """A verdict in a model.
+
+    Attributes:
+        text: of the model or configuration.
+        applied: constants that were written.
+        untold: what the target cannot express.
+    """
+
+    text: str
+    applied: Sequence[Change]
+    untold: Sequence[Untold]
+
+
+def export(
+    verdict: Verdict, target: str, model: Path | Element | None = None, joints: Mapping[str, str] | None = None
+) -> Exported:
+    """Write the causes of a verdict into a model.
+
+    Args:
+        verdict: of any machine.
+        target: one of `TARGETS`.
+        model: file of the nominal model, or its root element; those in XML are changed in place of being made anew.
+        joints: axis of the verdict -> joint of the model, where their names differ.
+
+    Raises:
+        ExportError: no such target, the model is needed and missing, or it cannot be read or has none of the joints.
+    """
+    done, text = put(verdict.causes, target, model, joints)
+    return replace(done, text=text(remarks(verdict, done.applied, done.untold)))
+
+
+def put(
+    causes: Sequence[Cause], target: str, model: Path | Element | None, joints: Mapping[str, str] | None
+) -> tuple[Exported, Callable[[Sequence[str]], str]]:
+    """Write causes into a model; return what was done, still without a text, and what makes the text of remarks.
+
+    Raises:
+        ExportError: as `export` does.
+    """
+    if target not in TARGETS:
+        raise ExportError("no such target", value=target, limit=", ".join(TARGETS), remedy="choose one of them")
+    changes, untold = changes_of(causes, joints)
+    writer = opened(TARGETS[target], model)
+    applied: list[Change] = []
+    for change in changes:
+        if reason := writer.apply(change):
+            untold.append(Untold(change.effect, change.joint, change.constant, change.value, reason))
+        else:
+            applied.append(change)
+    return Exported("", applied, untold), writer.text
+
+
+def opened(kind: type[Target], model: Path | Element | None) -> Target:
+    """Return a writer for a target; raises ExportError where the model it needs is missing or wrong."""
+    if not issubclass(kind, XmlTarget):
+        return kind()
+    if model is None:
+        remedy = f"give the nominal model with --model FILE.{kind.name}"
+        raise ExportError(f"{kind.name} needs a model to write into", value="no --model", remedy=remedy)
+    return kind(read_xml(model, kind.root_tag) if isinstance(model, Path) else model)
+
+
+def remarks(verdict: Verdict, applied: Sequence[Change], untold: Sequence[Untold]) -> list[str]:
+    """Return what stands in the comment of a file: what was written, what could not be, and what is not known."""
+    rivals = [f"{c.effect} on {c.actuator} may as well be {', '.join(c.rivals)}" for c in verdict.causes if c.rivals]
+    lines = [f"Causes of a diagnosis with status {verdict.status}, added to the nominal model.", "Written:"]
+    lines += [f"  {change}" for change in applied] or ["  nothing"]
+    lines += ["Not expressed here:", *(f"  {x}" for x in untold)] if untold else []
+    return lines + (["Not told apart:", *(f"  {x}" for x in rivals)] if rivals else [])

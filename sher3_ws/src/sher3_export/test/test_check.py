@@ -1,0 +1,82 @@
+"""The exported model on recorded commands, and the motion that ranges cover."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from sher3_diagnosis import diagnose
+from sher3_export import ExportError
+from sher3_export.check import check as checking
+from sher3_export.check import coverage as covering
+from sher3_export.check import engine
+from sher3_export.check.check import check
+from sher3_export.check.coverage import covered
+from sher3_export.errors import MujocoMissing
+from sher3_export.ranges import Ranges, interval, worlds_of
+from slides import driven, machine, run_of
+from verdicts import cause, verdict
+
+
+@pytest.fixture(scope="module")
+def slide():
+    """A slide with 8 N of friction and 40 N/(m/s), its runs, and what the diagnosis says of it."""
+    runs = [run_of(driven(seconds=8.0, coulomb=8.0, viscous=40.0))]
+    return machine(), runs, diagnose(machine(), runs).verdict
+
+
+@pytest.fixture
+def case(slide, monkeypatch):
+    for module in (checking, covering):
+        monkeypatch.setattr(module, "open_case", lambda path: slide[:2])
+    return slide[2]
+
+
+def test_the_exported_model_follows_the_recorded_motion(case):
+    """Half the square of the time times the missing force over the mass: 8 N on 12 kg are 21 mm in a quarter second."""
+    found = check(case, Path("case"), None)
+    (gap,) = found.gaps
+    assert gap.before > 5e-3 and gap.after < 0.02 * gap.before and gap.closure.value > 0.99
+
+
+def test_numbers_that_were_not_applied_would_show(case):
+    """The check must be able to fail: with other numbers the gap does not shrink."""
+    wrong = verdict(cause("coulomb_friction", force=0.1))
+    (gap,) = check(wrong, Path("case"), None).gaps
+    assert gap.after > 0.9 * gap.before
+
+
+def test_ranges_cover_motion_that_they_were_not_set_on(case):
+    found = covered(case, Path("case"), None, {})
+    assert 0.80 <= found.coverage["slide"] <= 0.99
+
+
+def test_ranges_are_90_percent_of_the_verdicts_95():
+    (entry,) = worlds_of(verdict(cause("coulomb_friction", force=10.0)))
+    low, high = interval(entry[0].parameters["force"])
+    assert low == pytest.approx(10.0 - 1.645 / 1.96) and high == pytest.approx(10.0 + 1.645 / 1.96)
+    draws = [Ranges([entry]).draw(np.random.default_rng(i))[0].parameters["force"].value for i in range(400)]
+    assert np.mean([(low <= x <= high) for x in draws]) == pytest.approx(0.9, abs=0.04)
+
+
+def test_rivals_are_worlds_of_their_own():
+    ranges = Ranges(
+        worlds_of(verdict(cause("coulomb_friction", force=1.0)), [verdict(cause("gravity_load", force=2.0))])
+    )
+    rng = np.random.default_rng(1)
+    assert {ranges.draw(rng)[0].effect for _ in range(40)} == {"coulomb_friction", "gravity_load"}
+    assert "one_of" in ranges.text()
+
+
+def test_without_mujoco_the_extra_is_named(case, monkeypatch):
+    def missing(name):
+        raise ImportError(name)
+
+    monkeypatch.setattr(engine, "import_module", missing)
+    with pytest.raises(MujocoMissing, match="extra"):
+        check(case, Path("case"), None)
+
+
+def test_a_case_of_another_kind_is_refused(case, monkeypatch):
+    monkeypatch.setattr(checking, "open_case", lambda path: (object(), []))
+    with pytest.raises(ExportError, match="this kind of machine"):
+        check(case, Path("case"), None)

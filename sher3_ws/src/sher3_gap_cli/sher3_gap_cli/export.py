@@ -1,0 +1,116 @@
+"""`sher3 gap export`: a verdict written into the model of another simulator, checked there, or as ranges."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from sher3_gap_cli.options import Json, Library, RequestError, VerdictFile, reported
+
+if TYPE_CHECKING:
+    from sher3_export.check.check import JointGap
+    from sher3_export.writing import Exported
+
+
+def export(
+    verdict: VerdictFile,
+    to: Annotated[str, typer.Option(help="Target: mjcf, urdf, sdf, isaac or yaml.")] = "yaml",
+    model: Annotated[Path | None, typer.Option(help="Nominal model that the causes are added to.")] = None,
+    out: Annotated[Path | None, typer.Option(help="File to write; default exported.xml, .urdf, .sdf or .yaml.")] = None,
+    check: Annotated[
+        Path | None, typer.Option(help="Run the MJCF in MuJoCo on this case; without --model it is made of the case.")
+    ] = None,
+    ranges: Annotated[bool, typer.Option("--ranges", help="Write ranges for randomisation, rivals included.")] = False,
+    joint: Annotated[
+        list[str] | None, typer.Option(help="AXIS=JOINT where the model has another name; repeat for more.")
+    ] = None,
+    own: Library = None,
+    as_json: Json = False,
+) -> None:
+    """Write the causes of a verdict into a model, and list what its format cannot express.
+
+    Exit codes: 0 written, 2 a file or option is wrong (one sentence says why).
+    """
+    from sher3_effects import add_library
+    from sher3_export.verdicts import read_verdict
+
+    with reported(as_json):
+        add_library(own or [])
+        given, names = read_verdict(verdict), _names(joint or [])
+        target = out or Path(f"exported.{'yaml' if ranges else _suffix(to)}")
+        data = _ranges(given, check, model, names) if ranges else _model(given, to, check, model, names)
+        _write(target, data.pop("text"))
+        data = {"file": str(target), **data}
+        typer.echo(json.dumps(data) if as_json else _told(data))
+
+
+def _model(given: Any, to: str, check: Path | None, model: Path | None, names: dict[str, str]) -> dict[str, Any]:
+    """Return the exported model with what was written, and the gaps that are left where it was checked."""
+    from sher3_export.check.check import check as checked
+    from sher3_export.writing import export as written
+
+    if check is None:
+        return _exported(written(given, to, model, names), [])
+    if to != "mjcf":
+        raise RequestError("only MJCF is checked in MuJoCo", value=f"--to {to}", limit="mjcf", remedy="use --to mjcf")
+    found = checked(given, check, model, names)
+    return _exported(found.exported, found.gaps)
+
+
+def _exported(done: Exported, gaps: Any) -> dict[str, Any]:
+    return {
+        "text": done.text,
+        "written": [str(change) for change in done.applied],
+        "not_expressed": [str(untold) for untold in done.untold],
+        "gaps": [gap_data(gap) for gap in gaps],
+    }
+
+
+def _ranges(given: Any, check: Path | None, model: Path | None, names: dict[str, str]) -> dict[str, Any]:
+    """Return the ranges, and the share of held-out motion they cover where there is a case."""
+    from sher3_export.check.coverage import covered
+    from sher3_export.ranges import Ranges, worlds_of
+
+    if check is None:
+        return {"text": Ranges(worlds_of(given)).text(), "coverage": {}}
+    found = covered(given, check, model, names)
+    return {"text": found.ranges.text(), "coverage": dict(found.coverage)}
+
+
+def gap_data(gap: JointGap) -> dict[str, Any]:
+    """Return the gap of one joint as plain data."""
+    return {"joint": gap.joint, "before": gap.before, "after": gap.after, "closure": gap.closure.model_dump()}
+
+
+def _told(data: dict[str, Any]) -> str:
+    lines = [data["file"]]
+    lines += [f"  {text}" for text in data.get("written", [])]
+    lines += [f"  not expressed: {text}" for text in data.get("not_expressed", [])]
+    for gap in data.get("gaps", []):
+        closed = f"{gap['closure']['value']:.1%} closed"
+        lines.append(f"  MuJoCo, {gap['joint']}: {gap['before']:.4g} nominal, {gap['after']:.4g} exported, {closed}")
+    for name, share in data.get("coverage", {}).items():
+        lines.append(f"  {name}: {share:.1%} of held-out motion within the 90 % ranges")
+    return "\n".join(lines)
+
+
+def _names(pairs: list[str]) -> dict[str, str]:
+    """Return AXIS=JOINT as a mapping; raises RequestError for any other text."""
+    for pair in pairs:
+        if pair.count("=") != 1 or not all(pair.split("=")):
+            raise RequestError("--joint is no pair", value=pair, limit="AXIS=JOINT", remedy="as in --joint slide=j1")
+    return dict(pair.split("=") for pair in pairs)
+
+
+def _suffix(to: str) -> str:
+    return {"mjcf": "xml", "urdf": "urdf", "sdf": "sdf"}.get(to, "yaml")
+
+
+def _write(path: Path, text: str) -> None:
+    try:
+        path.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise RequestError(f"{path}: cannot be written", value=error.strerror, remedy="choose another --out") from error

@@ -1,0 +1,81 @@
+"""`sher3 gap export` as a user calls it."""
+
+import json
+
+import pytest
+from sher3_gap_cli.app import app
+from typer.testing import CliRunner
+
+VERDICT = {
+    "schema": "sher3.verdict/1",
+    "status": "attributed",
+    "where": [
+        {
+            "stage": "motor_mechanics",
+            "actuator": "a",
+            "gap": 1.0,
+            "floor": 0.1,
+            "unit": "N",
+            "regime": "",
+            "confidence": 1,
+        }
+    ],
+    "causes": [
+        {
+            "effect": "coulomb_friction",
+            "family": "friction",
+            "stage": "motor_mechanics",
+            "actuator": "a",
+            "parameters": {"force": {"value": 2.0, "low": 1.5, "high": 2.5, "unit": "N"}},
+            "closure": {"value": 0.9},
+        },
+        {
+            "effect": "cogging",
+            "family": "periodic",
+            "stage": "motor_mechanics",
+            "actuator": "a",
+            "parameters": {"amplitude": {"value": 0.1, "unit": "N"}},
+            "closure": {"value": 0.1},
+        },
+    ],
+}
+
+
+@pytest.fixture
+def call(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "verdict.json").write_text(json.dumps(VERDICT))
+    (tmp_path / "m.xml").write_text(
+        "<mujoco><worldbody><body><joint name='j'/><geom size='.1'/></body></worldbody></mujoco>"
+    )
+    return lambda *words: CliRunner().invoke(app, ["export", "verdict.json", *words])
+
+
+def test_a_model_is_written_and_what_it_cannot_express_is_listed(call, tmp_path):
+    found = call("--to", "mjcf", "--model", "m.xml", "--joint", "a=j", "--json")
+    assert found.exit_code == 0, found.output
+    data = json.loads(found.stdout)
+    assert len(data["written"]) == 1 and data["not_expressed"][0].startswith("cogging on j")
+    assert 'frictionloss="2"' in (tmp_path / "exported.xml").read_text()
+
+
+def test_ranges_are_written(call, tmp_path):
+    assert call("--ranges", "--out", "r.yaml").exit_code == 0
+    assert "sher3.ranges/1" in (tmp_path / "r.yaml").read_text()
+
+
+@pytest.mark.parametrize(
+    ("words", "named"),
+    [
+        (("--to", "gazebo"), "no such target"),
+        (("--to", "urdf"), "--model"),
+        (("--to", "urdf", "--model", "m.xml"), "another kind of model"),
+        (("--to", "mjcf", "--model", "none.xml"), "none.xml"),
+        (("--to", "yaml", "--check", "."), "--to mjcf"),
+        (("--joint", "a"), "AXIS=JOINT"),
+        (("--out", "no/such/folder"), "--out"),
+    ],
+)
+def test_what_cannot_be_done_is_one_sentence(call, words, named):
+    found = call(*words)
+    assert found.exit_code == 2 and named in found.output and "Traceback" not in found.output
