@@ -12,7 +12,7 @@ from typing import Annotated, Any
 
 import typer
 from sher3_common import Sher3Error
-from sher3_common.completing import BAG, folders_with
+from sher3_common.completing import BAG, CASE, folders_with
 from sher3_description.topics import NAMESPACE
 
 app = typer.Typer(no_args_is_help=True, help="Record, replay, analyse, compare and recover bags.")
@@ -163,9 +163,13 @@ def recover(
 
 @app.command(epilog="Example: sher3 info bags/trial")
 def info(bag: Bag, namespace: Namespace = NAMESPACE, as_json: Json = False) -> None:
-    """Show what a bag holds: topics, metadata, provenance, samples the recorder missed."""
-    from sher3_bags.figures.overview import overview, overview_text
+    """Show what a bag or a case holds: topics, metadata, provenance, samples the recorder missed; runs of a case."""
+    from sher3_bags.figures.overview import case_overview, case_text, overview, overview_text
 
     with _reported(as_json):
+        if (bag / CASE).is_file():
+            runs = case_overview(bag)
+            _print(as_json, runs, case_text(runs))
+            return
         data = overview(bag, namespace)
         _print(as_json, data, overview_text(data))

@@ -44,6 +44,18 @@ def test_force_against_velocity_recovers_the_gain():
     assert fit.samples == 3499
 
 
+def test_a_tare_that_took_the_push_is_said():
+    """The force never changes, so the tare takes all of it; the tip moves nevertheless."""
+    run = cooperative()
+    force = run["force/measured_cf"]
+    still = np.tile([0.3, -0.2, 0.1], (len(force), 1))
+    run.streams["force/measured_cf"] = stream("force/measured_cf", force.stamp, force=still, torque=0 * still)
+    fit = analyse(run).force_velocity
+    assert "the tare took" in fit.doubt
+    assert "do not trust that line" in analysis_text(analyse(run))
+    assert analyse(cooperative()).force_velocity.doubt == ""
+
+
 def test_tip_path():
     n = 1001
     stamp = START + np.arange(n) * T

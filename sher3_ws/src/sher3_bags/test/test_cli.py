@@ -8,8 +8,9 @@ import sys
 import time
 
 import pytest
-from sher3_bags import read_run, write_run
+from sher3_bags import read_run, write_case, write_run
 from sher3_bags.cli import app
+from sher3_description import load_robot
 from sher3_runtime.domains import PROCESSES, claim_domain
 from typer.testing import CliRunner
 
@@ -103,3 +104,19 @@ def test_record_and_replay_in_two_processes(bag, tmp_path):
     run = read_run(target)
     assert len(run["measured_js"]) == 300
     assert run["measured_js"].log_time[0] > run["measured_js"].stamp[0]
+
+
+def test_info_of_a_case_is_a_run_to_a_line(tmp_path, build):
+    case = write_case(tmp_path / "case", [build(200), build(200, seed=2)], load_robot())
+    text = runner.invoke(app, ["info", str(case)]).output
+    assert "a case of 2 runs" in text and "sweep" in text and "run_01" in text
+    data = json.loads(runner.invoke(app, ["info", str(case), "--json"]).output)
+    assert [run["loads"] for run in data["runs"]] == [1, 1]
+    assert data["runs"][0]["duration"] == pytest.approx(0.398)
+
+
+def test_a_comparison_has_a_unit_in_every_row(bag):
+    data = json.loads(runner.invoke(app, ["compare", str(bag), str(bag), "--json"]).output)
+    units = {axis["axis"]: axis["unit"] for axis in data["residuals"]["measured_js"]["position"]}
+    assert units == {"delta_1": "m", "delta_2": "m", "delta_3": "m", "roll": "rad", "tilt": "m"}
+    assert {axis["unit"] for axis in data["residuals"]["force/measured_cf"]["torque"]} == {"N m"}

@@ -42,6 +42,7 @@ class Tick:
             self.due_ns += self.period_ns
             if self._counts:
                 self._statistics.ticks += 1
+                self._count_period(self._clock.now())
 
     def run(self, now: int) -> None:
         """Call the callback for the latest stamp that is due."""
@@ -56,11 +57,14 @@ class Tick:
         statistics.ticks += 1
         statistics.lost_cycles += missed
         statistics.wakeup.add(late)
-        if self._last_start:
-            statistics.period.add(now - self._last_start)
-        self._last_start = now
+        self._count_period(now)
         self.callback(stamp)
         duration = self._clock.now() - now
         self._duration.add(duration)
         if duration > self.period_ns:
             statistics.overruns += 1
+
+    def _count_period(self, now: int) -> None:
+        if self._last_start:
+            self._statistics.period.add(now - self._last_start)
+        self._last_start = now

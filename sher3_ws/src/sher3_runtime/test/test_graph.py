@@ -17,7 +17,7 @@ from sher3_runtime import (
     subscribe_raw,
 )
 from sher3_runtime.codec.cdr import codec
-from sher3_runtime.ports import UnknownTopic
+from sher3_runtime.ports import UnknownTopic, ports
 from std_srvs.srv import Trigger
 
 pytestmark = [pytest.mark.graph, pytest.mark.flaky(reruns=2)]
@@ -184,6 +184,17 @@ def test_a_tick_that_is_done_is_skipped():
         tick.done(due - tick.phase_ns)
         assert tick.due_ns == due + 2_000_000
         assert calls == [stamp]
+
+
+def test_the_period_counts_ticks_however_they_were_done():
+    """A node whose input does the work of most ticks has the period of its work, not that of its rare alarms."""
+    with Graph() as graph:
+        probe = graph.probe()
+        tick = on_tick(probe, lambda _: None)
+        for _ in range(6):
+            stamp = graph.step()
+            tick.done(stamp + 2_000_000)
+        assert ports(probe).statistics.period.maximum == 2_000_000
 
 
 def test_slow_ticks_and_names():

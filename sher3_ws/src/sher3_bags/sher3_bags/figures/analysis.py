@@ -36,12 +36,14 @@ class ForceVelocity:
         correlation: Correlation of force and velocity, -1 to 1.
         samples: Number of samples used.
         max_force: Largest force [N], tared.
+        doubt: Why the figures mean nothing, empty where they do.
     """
 
     gain: float
     correlation: float
     samples: int
     max_force: float
+    doubt: str = ""
 
 
 @dataclass(frozen=True)
@@ -169,6 +171,27 @@ def _force_velocity(run: Run, robot: Robot) -> ForceVelocity | None:
         correlation=product / norm if norm else 0.0,
         samples=len(force),
         max_force=float(size.max()),
+        doubt=_doubt(size, velocity, robot),
+    )
+
+
+MOVES = 1e-4
+"""Speed of the tip [m/s] that a hand below the deadband cannot cause."""
+MOSTLY = 0.5
+"""Share of the samples with the pedal pressed that must contradict the tare before the figures are doubted."""
+
+
+def _doubt(size: NDArray[np.float64], velocity: NDArray[np.float64], robot: Robot) -> str:
+    """Return why force against velocity means nothing: the tip moves and no force is left after the tare."""
+    moving = np.linalg.norm(velocity, axis=1) > MOVES
+    if not moving.any():
+        return ""
+    unexplained = float((size[moving, 0] <= robot.admittance.force_deadband).mean())
+    if unexplained <= MOSTLY:
+        return ""
+    return (
+        f"in {unexplained:.0%} of the motion the force is within the deadband; the recording began under a push, which "
+        "the tare took, or another command moved the robot"
     )
 
 

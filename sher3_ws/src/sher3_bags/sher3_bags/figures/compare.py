@@ -14,6 +14,7 @@ from sher3_common.stamps import seconds
 from sher3_description import ACTUATORS
 
 from sher3_bags.errors import BagError
+from sher3_bags.figures.units import unit_of
 from sher3_bags.messages import TYPES
 from sher3_bags.run import Run, Stream
 
@@ -34,10 +35,11 @@ Alignment = Literal["auto", "stamp", "start"]
 
 @dataclass(frozen=True)
 class AxisResidual:
-    """How one axis of one column of run b differs from the same axis of run a, in the column's unit.
+    """How one axis of one column of run b differs from the same axis of run a.
 
     Attributes:
         axis: Name of the actuator or component.
+        unit: SI unit of `mean`, `rms`, `max` and `rms_aligned`; empty for a pure number.
         lag: Time [s] by which b is later than a: the peak of the normalised cross-correlation with the means removed.
             None when there is no clear peak: the signals are constant, straight lines or unrelated.
         correlation: Correlation coefficient at that lag; without a lag, at zero shift.
@@ -48,6 +50,7 @@ class AxisResidual:
     """
 
     axis: str
+    unit: str
     lag: float | None
     correlation: float | None
     mean: float
@@ -177,7 +180,9 @@ def _compare_streams(a: Stream, b: Stream, shift: int) -> dict[str, tuple[AxisRe
             one, two = _continuous(one), _continuous(two)
             two = two * (np.sign(one[0] @ two[0]) or 1.0)
         axes = [
-            _compare_axis(axis, time_a, one[:, k].astype(float), time_b, two[:, k].astype(float))
+            _compare_axis(
+                axis, unit_of(a.type, name, axis), time_a, one[:, k].astype(float), time_b, two[:, k].astype(float)
+            )
             for k, axis in enumerate(_axes(name, one.shape[1]))
         ]
         result[name] = tuple(axis for axis in axes if axis is not None)
@@ -197,7 +202,7 @@ def _axes(column: str, width: int) -> tuple[str, ...]:
 
 
 def _compare_axis(
-    axis: str, time_a: NDArray[Any], a: NDArray[Any], time_b: NDArray[Any], b: NDArray[Any]
+    axis: str, unit: str, time_a: NDArray[Any], a: NDArray[Any], time_b: NDArray[Any], b: NDArray[Any]
 ) -> AxisResidual | None:
     good_a, good_b = np.isfinite(a), np.isfinite(b)
     time_a, a, time_b, b = time_a[good_a], a[good_a], time_b[good_b], b[good_b]
@@ -210,6 +215,7 @@ def _compare_axis(
     lag, correlation, aligned = _lag(time_a, a, time_b, b)
     return AxisResidual(
         axis,
+        unit,
         lag,
         correlation,
         float(difference.mean()),

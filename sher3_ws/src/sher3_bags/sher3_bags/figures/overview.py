@@ -8,6 +8,7 @@ from typing import Any
 from sher3_common import parse_json
 from sher3_description import NAMESPACE, Robot, load_robot
 
+from sher3_bags.case import read_case
 from sher3_bags.figures.gaps import grid_periods
 from sher3_bags.figures.report import table
 from sher3_bags.figures.timing import topic_timing
@@ -47,6 +48,41 @@ def overview(path: str | Path, namespace: str = NAMESPACE) -> dict[str, Any]:
         "records": {name: entries for name, entries in run.records.items() if name != PROVENANCE_RECORD},
         "robot_digest": robot.digest() if run.robot_yaml else None,
     }
+
+
+def case_overview(path: Path) -> dict[str, Any]:
+    """Return the runs of a case folder: excitation, repeat, amplitude, posture, loads, time and what is tracked.
+
+    Raises:
+        BagError: the case does not read.
+    """
+    case = read_case(path)
+    runs = [
+        {
+            "bag": run.path.name if run.path else "",
+            "excitation": run.metadata.excitation,
+            "repeat": run.metadata.repeat,
+            "amplitude": run.metadata.amplitude,
+            "posture": run.metadata.posture,
+            "loads": len(run.metadata.payload),
+            "duration": (run.end - run.start) * 1e-9,
+            "tracker": "tracker/measured_cp" in run,
+            "origin": run.metadata.origin,
+        }
+        for run in case.runs
+    ]
+    return {"case": str(path), "robot_digest": case.robot.digest(), "runs": runs}
+
+
+def case_text(data: dict[str, Any]) -> str:
+    """Return the overview of a case as a table, a run to a line."""
+    header = ("run", "excitation", "repeat", "amplitude", "posture", "loads", "seconds", "tracker", "origin")
+    rows = [
+        (*(run[key] for key in ("bag", "excitation", "repeat")), f"{run['amplitude']:g}", run["posture"] or "-",
+         run["loads"] or "-", f"{run['duration']:.2f}", "yes" if run["tracker"] else "no", run["origin"])
+        for run in data["runs"]
+    ]  # fmt: skip
+    return f"{data['case']}: a case of {len(rows)} runs\n\n{table(header, rows)}"
 
 
 def _plain(text: str) -> Any:

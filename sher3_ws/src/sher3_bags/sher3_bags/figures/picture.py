@@ -1,4 +1,4 @@
-"""One picture of a run: tip path, force against velocity, tracking, arrival times, drops."""
+"""One picture of a run: tip path, force against velocity, tracking, what happened over time, arrival times, drops."""
 
 from __future__ import annotations
 
@@ -6,12 +6,14 @@ from pathlib import Path
 from typing import Any
 
 import matplotlib as mpl
+import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from sher3_bags.figures.analysis import Analysis, force_and_velocity
 from sher3_bags.figures.report import quantity
 from sher3_bags.figures.statistics import Spread
+from sher3_bags.figures.timeline import draw_timeline
 from sher3_bags.figures.tracking import AxisError, Error, drive_error, position_error, velocity_error
 from sher3_bags.run import Run
 
@@ -21,21 +23,22 @@ _COLOURS = ("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9")
 
 def draw(run: Run, analysis: Analysis, path: str | Path) -> Path:
     """Write the picture of a run in the format of the path's suffix (PNG and others); return the path."""
-    figure = Figure(figsize=(14, 8), layout="constrained")
+    figure = Figure(figsize=(15, 11), layout="constrained")
     FigureCanvasAgg(figure)
     name = run.path.name if run.path else "run"
     figure.suptitle(f"{name}: {analysis.duration:.2f} s, {analysis.dropped} samples dropped", fontsize=13)
-    axes = figure.subplots(2, 3)
+    grid = figure.add_gridspec(3, 3, height_ratios=(1.2, 0.8, 1.0))
     with mpl.rc_context({"font.size": 9}):
-        _tip_path(axes[0, 0], run)
-        _force_velocity(axes[0, 1], run, analysis)
-        if analysis.position_tracking:
-            _tracking(axes[0, 2], run, analysis.position_tracking, position_error(run), "position error")
-        else:
-            _tracking(axes[0, 2], run, analysis.drive_tracking, drive_error(run), "drive error")
-        _tracking(axes[1, 2], run, analysis.velocity_tracking, velocity_error(run), "velocity error")
-        _times(axes[1, 0], analysis)
-        _drops(axes[1, 1], analysis)
+        _tip_path(figure.add_subplot(grid[0, 0], projection="3d"), run)
+        _force_velocity(figure.add_subplot(grid[0, 1]), run, analysis)
+        position = (analysis.position_tracking, position_error(run), "position error")
+        drive = (analysis.drive_tracking, drive_error(run), "drive error")
+        _tracking(figure.add_subplot(grid[0, 2]), run, *(position if analysis.position_tracking else drive))
+        draw_timeline(figure.add_subplot(grid[1, :]), run)
+        _times(figure.add_subplot(grid[2, 0]), analysis)
+        _drops(figure.add_subplot(grid[2, 1]), analysis)
+        velocity = (analysis.velocity_tracking, velocity_error(run), "velocity error")
+        _tracking(figure.add_subplot(grid[2, 2]), run, *velocity)
     target = Path(path)
     figure.savefig(target, dpi=110)
     return target
@@ -53,19 +56,20 @@ def _thin(n: int) -> slice:
 
 
 def _tip_path(axis: Any, run: Run) -> None:
+    axis.set_title("tip path from its start, {b} [mm]")
     if "measured_cp" not in run:
-        return _absent(axis, "tip path", "no measured_cp")
+        axis.text2D(0.5, 0.5, "no measured_cp", ha="center", transform=axis.transAxes, color="0.5")
+        return
     position = (run["measured_cp"].position - run["measured_cp"].position[0]) * 1e3
     thin = position[_thin(len(position))]
-    for column, label, colour in ((1, "x-y", _COLOURS[0]), (2, "x-z", _COLOURS[1])):
-        axis.plot(thin[:, 0], thin[:, column], lw=0.9, color=colour, label=label)
-    axis.plot(0, 0, "ko", ms=4)
-    axis.set_title("tip path from its start, {b}")
-    axis.set_xlabel("x [mm]")
-    axis.set_ylabel("y, z [mm]")
-    axis.set_aspect("equal", adjustable="datalim")
-    axis.legend(loc="best", frameon=False)
-    return None
+    axis.plot(thin[:, 0], thin[:, 1], thin[:, 2], lw=0.9, color=_COLOURS[0])
+    axis.plot([0], [0], [0], "ko", ms=4)
+    reach = max(float(np.ptp(thin, axis=0).max()), 1e-3) / 2
+    middle = (thin.max(axis=0) + thin.min(axis=0)) / 2
+    for name, centre in zip("xyz", middle, strict=True):
+        getattr(axis, f"set_{name}lim")(centre - reach, centre + reach)
+        getattr(axis, f"set_{name}label")(name)
+    axis.set_box_aspect((1, 1, 1))
 
 
 def _force_velocity(axis: Any, run: Run, analysis: Analysis) -> None:

@@ -9,6 +9,8 @@ from sher3_bags.figures.compare import Comparison
 from sher3_bags.figures.statistics import Spread
 from sher3_bags.figures.tracking import AxisError
 
+SMALLEST = 1e-15
+"""Magnitude below which a difference is rounding and shown as 0: a thousandth of a picometre."""
 _PREFIXES = ((1.0, ""), (1e-3, "m"), (1e-6, "u"), (1e-9, "n"))
 
 
@@ -16,8 +18,10 @@ def quantity(value: float | None, unit: str) -> str:
     """Return a number with three digits and an SI prefix, `-` for None."""
     if value is None:
         return "-"
-    if value == 0:
-        return f"0 {unit}"
+    if abs(value) < SMALLEST:
+        return f"0 {unit}".rstrip()
+    if not unit:
+        return f"{value:.3g}"
     for scale, prefix in _PREFIXES:
         if abs(value) >= scale:
             return f"{value / scale:.3g} {prefix}{unit}"
@@ -62,6 +66,8 @@ def analysis_text(analysis: Analysis) -> str:
             f"force against velocity: {1e3 * fit.gain:.3g} (mm/s)/N, correlation {fit.correlation:.3f}, "
             f"largest force {fit.max_force:.3g} N, {fit.samples} samples with the pedal pressed"
         )
+        if fit.doubt:
+            parts.append(f"do not trust that line: {fit.doubt}")
     return "\n\n".join(parts)
 
 
@@ -101,10 +107,7 @@ def comparison_text(comparison: Comparison) -> str:
             f"{topic} {column} {axis.axis}" if len(axes) > 1 else f"{topic} {column}",
             quantity(axis.lag, "s"),
             "-" if axis.correlation is None else f"{axis.correlation:.4f}",
-            f"{axis.mean:.3g}",
-            f"{axis.rms:.3g}",
-            f"{axis.max:.3g}",
-            "-" if axis.rms_aligned is None else f"{axis.rms_aligned:.3g}",
+            *(quantity(value, axis.unit) for value in (axis.mean, axis.rms, axis.max, axis.rms_aligned)),
         )
         for topic, columns in comparison.residuals.items()
         for column, axes in columns.items()
@@ -113,7 +116,7 @@ def comparison_text(comparison: Comparison) -> str:
     head = f"b: {comparison.b}\na: {comparison.a}\n"
     head += f"aligned by {comparison.alignment}, {comparison.overlap:.3f} s in common, "
     head += f"b is later by {quantity(comparison.lag, 's')} (median)"
-    parts = [head, table(("b - a, SI units", "lag", "correlation", "mean", "rms", "max", "rms aligned"), rows)]
+    parts = [head, table(("b - a", "lag", "correlation", "mean", "rms", "max", "rms aligned"), rows)]
     for name, only in (("a", comparison.only_in_a), ("b", comparison.only_in_b)):
         if only:
             parts.append(f"only in {name}: {', '.join(only)}")
