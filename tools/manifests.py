@@ -35,6 +35,7 @@ KEYS = {
     "pydantic": "python3-pydantic",
     "pydantic_core": "python3-pydantic",
     "rich": "python3-rich",
+    "rosbags": "python3-rosbags-pip",
     "scipy": "python3-scipy",
     "typer": "python3-typer",
     "typing_extensions": "python3-typing-extensions",

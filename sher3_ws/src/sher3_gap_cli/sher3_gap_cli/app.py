@@ -12,7 +12,7 @@ from sher3_gap_cli.diagnose import diagnose
 from sher3_gap_cli.excite import excite
 from sher3_gap_cli.experiment import experiment
 from sher3_gap_cli.export import export
-from sher3_gap_cli.intake import IMPORT_EXAMPLE, import_data
+from sher3_gap_cli.intake import IMPORT_EXAMPLE, case, describe, import_data
 from sher3_gap_cli.library import library
 from sher3_gap_cli.monitor import monitor
 
@@ -27,6 +27,8 @@ EXAMPLES: dict[Callable[..., None], str] = {
     library: "sher3 gap library · sher3 gap library friction · sher3 gap library backlash",
     excite: "sher3 gap excite · sher3 gap excite all -o case · sher3 gap excite sweep --simulate -o case",
     monitor: "sher3 gap monitor --effects effects.yaml --json",
+    describe: "sher3 gap describe slide.csv --out slide.yaml",
+    case: "sher3 gap case bags/a bags/b --out case",
     challenge: "sher3 gap challenge --seeds 0:40 --json",
 }
 """Every command whose function bears its name, with an example."""

@@ -1,4 +1,4 @@
-"""`sher3 gap import`: data of another machine and its description become a case that `sher3 gap diagnose` answers."""
+"""`sher3 gap import`, `case` and `describe`: records become a case that `sher3 gap diagnose` answers."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from sher3_gap_cli.options import Json, reported
+from sher3_gap_cli.options import Json, RequestError, RobotFile, reported
 
 IMPORT_EXAMPLE = "sher3 gap import DATA_EMPS.mat emps.yaml --out cases/emps"
 
@@ -16,7 +16,7 @@ IMPORT_EXAMPLE = "sher3 gap import DATA_EMPS.mat emps.yaml --out cases/emps"
 def import_data(
     paths: Annotated[
         list[Path],
-        typer.Argument(help="Data files (csv, mat, npz, json) or folders, one a run; then the description."),
+        typer.Argument(help="Data files (csv, mat, npz, json, bags) or folders, one a run; then the description."),
     ],
     out: Annotated[Path, typer.Option(help="Case folder to write.")],
     as_json: Json = False,
@@ -37,3 +37,52 @@ def import_data(
             typer.echo(json.dumps({"case": str(out), "runs": len(paths) - 1, "notes": notes}))
         else:
             typer.echo("\n".join([f"{out}: {len(paths) - 1} run{'s' * (len(paths) > 2)}", *notes]))
+
+
+def describe(
+    file: Annotated[Path, typer.Argument(help="Data file, folder of files, or bag.")],
+    out: Annotated[Path | None, typer.Option(help="YAML file to write; default: print it.")] = None,
+    as_json: Json = False,
+) -> None:
+    """Draft a machine description from a file and say what was guessed; check it before you import with it.
+
+    Exit codes: 0 drafted, 2 the file cannot be read or nothing in it looks like a position.
+    """
+    from sher3_machines.intake.draft import draft
+
+    with reported(as_json):
+        found = draft(file)
+        if out is not None:
+            _write(out, found.text)
+        if as_json:
+            typer.echo(json.dumps({"description": found.text, "guesses": found.guesses}))
+        elif out is None:
+            typer.echo(found.text, nl=False)
+        else:
+            typer.echo("\n".join([str(out), *(f"  guessed: {guess}" for guess in found.guesses)]))
+
+
+def case(
+    bags: Annotated[list[Path], typer.Argument(help="Recordings of the SHER, one a run.")],
+    out: Annotated[Path, typer.Option(help="New case folder to write.")],
+    robot: RobotFile = None,
+    as_json: Json = False,
+) -> None:
+    """Make a case of recordings of the SHER; runs of one excitation become repeats of it.
+
+    Exit codes: 0 written, 2 a bag is none, or `out` exists.
+    """
+    from sher3_gap.case.assembling import assemble
+
+    with reported(as_json):
+        runs = assemble(bags, out, robot)
+        data = [{"excitation": run.excitation, "repeat": run.repeat, "bag": str(run.bag)} for run in runs]
+        lines = [f"  {x['excitation']} {x['repeat']}: {x['bag']}" for x in data]
+        typer.echo(json.dumps({"case": str(out), "runs": data}) if as_json else "\n".join([f"{out}", *lines]))
+
+
+def _write(path: Path, text: str) -> None:
+    try:
+        path.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise RequestError(f"{path}: cannot be written", value=error.strerror, remedy="choose another --out") from error

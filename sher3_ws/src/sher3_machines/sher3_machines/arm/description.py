@@ -7,6 +7,7 @@ from typing import Literal
 from pydantic import Field, model_validator
 
 from sher3_machines.intake.fields import Column, Description, Strict
+from sher3_machines.intake.poses import Pose
 
 
 class Joint(Strict):
@@ -24,7 +25,7 @@ class ArmDescription(Description):
 
     Attributes:
         joint_positions: (n, joints) of a table.
-        poses: (n, 4, 4) of the measured body in the measuring frame.
+        poses: (n, 4, 4) of the measured body in the measuring frame, or its position with quaternion or Euler angles.
         noise: standard deviation of a measured position, m.
         noise_rotation: the same of an orientation, rad; None: orientations only find the frames, positions are judged.
         joints: rows of the DH table.
@@ -34,7 +35,7 @@ class ArmDescription(Description):
 
     kind: Literal["arm"]
     joint_positions: Column
-    poses: Column
+    poses: Column | Pose
     noise: float = Field(gt=0.0)
     noise_rotation: float | None = Field(default=None, gt=0.0)
     joints: tuple[Joint, ...] = ()

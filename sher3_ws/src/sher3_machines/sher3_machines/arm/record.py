@@ -11,6 +11,7 @@ from sher3_diagnosis.channel import Array
 from sher3_machines.arm.description import ArmDescription
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.columns import pick
+from sher3_machines.intake.poses import poses_of
 from sher3_machines.intake.tables import Tables
 
 MIN_POSTURES = 20
@@ -48,14 +49,13 @@ def arm_data(name: str, tables: Tables, machine: ArmDescription) -> ArmData:
             rotation.
     """
     joints = pick(machine.joint_positions, tables, name)
-    poses = pick(machine.poses.model_copy(update={"unit": "1", "factor": 1.0}), tables, name).copy()
+    poses = poses_of(machine.poses, tables, name)
     if poses.shape != (len(joints), 4, 4) or joints.ndim != 2:
         raise MachineError(
             f"{name}: poses are not (n, 4, 4)", value=poses.shape, limit=(len(joints), 4, 4), remedy="reshape them"
         )
     if len(joints) < MIN_POSTURES:
         raise MachineError(f"{name}: too few postures", value=len(joints), limit=MIN_POSTURES, remedy="record more")
-    poses[:, :3, 3] *= machine.poses.scale
     _check_units(name, joints, poses)
     turn = poses[:, :3, :3]
     off = float(np.abs(turn @ np.swapaxes(turn, 1, 2) - np.eye(3)).max())

@@ -91,7 +91,9 @@ def _clock(found: list[Stamped], clock: Clock, run: str) -> tuple[Array, float, 
     start, end = max(t[0] for t in stamps), min(t[-1] for t in stamps)
     if end - start < MIN_SAMPLES * period:
         raise MachineError(
-            f"{run}: the signals hardly overlap", value=f"{end - start:.3g} s", remedy="check the time unit"
+            f"{run}: the signals hardly overlap",
+            value=f"{end - start:.3g} s",
+            remedy="check the time unit, or state `offsets` of the clock",
         )
     uneven = max(float(np.max(np.abs(np.diff(t) - period))) for t in stamps) / period
     note = f"{run}: stamps are off the grid by up to {uneven:.2g} periods; resampled every {period:.4g} s"

@@ -2,26 +2,33 @@
 
 from __future__ import annotations
 
+import re
+from difflib import get_close_matches
+
 import numpy as np
 from sher3_diagnosis.channel import Array
 
 from sher3_machines.errors import MachineError
-from sher3_machines.intake.fields import Clock, Column
+from sher3_machines.intake.fields import UNITS, Clock, Column
 from sher3_machines.intake.tables import Tables
+
+IN_HEADER = re.compile(r"(?P<name>.*?)\s*[\[(](?P<unit>[^\])]+)[\])]")
+"""A column's header with its unit: `q [mm]`, `current (A)`."""
+SPELLINGS = {"µm": "um", "μm": "um", "°": "deg", "degrees": "deg", "Nm": "N*m", "N m": "N*m", "sec": "s", "-": "1"}
+"""Spellings of units in headers -> as descriptions have them."""
+NEAR = 5
+"""Columns of similar names that a refusal lists."""
 
 
 def pick(column: Column, tables: Tables, run: str) -> Array:
     """Return the samples of a column in SI units, (n,) or (n, ...).
 
     Raises:
-        MachineError: the column or its entry is missing, or a sample is not finite.
+        MachineError: the column or its entry is missing, its unit is not stated or another than its header's, or a
+            sample is not finite.
     """
-    if column.column not in tables:
-        have = ", ".join(sorted(tables)) or "none"
-        raise MachineError(
-            f"{run}: no column {column.column!r}", limit=f"columns: {have}", remedy="name it as the data do"
-        )
-    x = tables[column.column]
+    name = find(column.column, tables, run)
+    x = tables[name]
     if column.index is not None:
         if x.ndim < 2 or not 0 <= column.index < x.shape[1]:
             width = x.shape[1] if x.ndim > 1 else 1
@@ -36,13 +43,53 @@ def pick(column: Column, tables: Tables, run: str) -> Array:
             value=f"{int(bad.sum())} of {len(x)} samples",
             remedy="cut the record before or after",
         )
-    return x * column.scale
+    return x * scale(column, name, run)
+
+
+def find(name: str, tables: Tables, run: str) -> str:
+    """Return the column of a name, or the one that has it with a unit behind; raises MachineError without one."""
+    if name in tables:
+        return name
+    units = [x for x in tables if (match := IN_HEADER.fullmatch(x)) and match["name"] == name]
+    if len(units) == 1:
+        return units[0]
+    near = get_close_matches(name, tables, NEAR, 0.3) or sorted(tables)[:NEAR]
+    have = ", ".join(near) + (f" and {len(tables) - len(near)} more" if len(tables) > len(near) else "")
+    raise MachineError(
+        f"{run}: no column {name!r}", limit=f"columns: {have or 'none'}", remedy="name it as the data do"
+    )
+
+
+def scale(column: Column, header: str, run: str) -> float:
+    """Return the factor from recorded numbers to SI; raises MachineError where no unit is stated, or two are."""
+    match = IN_HEADER.fullmatch(header)
+    words = match["unit"].strip() if match else ""
+    said = SPELLINGS.get(words, words)
+    if column.unit is None and said not in UNITS:
+        raise MachineError(
+            f"{run}: the unit of {column.column} is not stated",
+            value=said or "none",
+            limit=", ".join(UNITS),
+            remedy="give `unit` in the description",
+        )
+    if column.unit is not None and said in UNITS and UNITS[said] != UNITS[column.unit]:
+        remedy = "correct `unit` in the description, or leave it out"
+        raise MachineError(f"{run}: {column.column} is in another unit", value=said, limit=column.unit, remedy=remedy)
+    return column.factor * UNITS[column.unit or said]
 
 
 def stamps_of(column: Column, tables: Tables, clock: Clock, run: str) -> Array | None:
-    """Return the stamps (n,) in s of the table a column is in; None where the clock is a rate."""
+    """Return the stamps (n,) in s of the table a column is in; None where the clock is a rate.
+
+    A table of another clock has its offset added; the offset of the longest name that fits counts.
+    """
     if clock.column is None:
         return None
     table = column.column.rsplit("/", 1)[0] + "/" if "/" in column.column else ""
-    name = table + clock.column if table + clock.column in tables else clock.column
-    return pick(Column(column=name, unit=clock.unit), tables, run)
+    try:
+        name = find(table + clock.column, tables, run)
+    except MachineError:
+        name = clock.column
+    stamps = pick(Column(column=name, unit=clock.unit), tables, run)
+    known = [x for x in clock.offsets if table.startswith(x.rstrip("/") + "/")]
+    return stamps + (clock.offsets[max(known, key=len)] if known else 0.0)

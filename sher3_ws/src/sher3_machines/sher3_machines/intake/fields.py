@@ -31,6 +31,7 @@ UNITS: Mapping[str, float] = {
     "A": 1.0,
     "mA": 1e-3,
     "1": 1.0,
+    "count": 1.0,
     "s": 1.0,
     "ms": 1e-3,
     "us": 1e-6,
@@ -66,26 +67,29 @@ class Column(Strict):
 
     Attributes:
         column: its name in the data; `table/name` where a run is a folder of tables.
-        unit: of the recorded numbers.
-        factor: turns the SI value of that unit into what the signal stands for, such as N m per A of a current.
+        unit: of the recorded numbers; left out where the column's header states it, as in `q [mm]`.
+        factor: turns the SI value of that unit into what the signal stands for, such as N m per A of a current, or rad
+            per count of an encoder.
         index: entry to pick where each sample is a list.
     """
 
     column: str
-    unit: str
+    unit: str | None = None
     factor: float = 1.0
     index: int | None = None
 
     @model_validator(mode="after")
     def _known(self) -> Column:
-        if self.unit not in UNITS:
+        if self.unit is not None and self.unit not in UNITS:
             raise ValueError(f"unit {self.unit!r} is not known; units are {', '.join(UNITS)}")
+        if self.unit == "count" and self.factor == 1.0:
+            raise ValueError("a count needs its `factor`: m or rad per count, as 2 pi over the counts of a turn")
         return self
 
     @property
     def scale(self) -> float:
-        """Factor from recorded numbers to SI."""
-        return self.factor * UNITS[self.unit]
+        """Factor from recorded numbers to SI, where the description states the unit."""
+        return self.factor * UNITS[self.unit or "1"]
 
 
 class Clock(Strict):
@@ -95,11 +99,13 @@ class Clock(Strict):
         column: of the stamps, of the same name in every table.
         unit: of the stamps.
         rate: samples per second, Hz, where no stamps were recorded.
+        offsets: table -> what is added to its stamps, s, where its clock is another one: that of a second bag.
     """
 
     column: str | None = None
     unit: Literal["s", "ms", "us", "ns"] = "s"
     rate: float | None = Field(default=None, gt=0.0)
+    offsets: Mapping[str, float] = {}
 
     @model_validator(mode="after")
     def _either(self) -> Clock:

@@ -1,0 +1,117 @@
+"""MATLAB files to version 7, read in a child process: the reader is native code that a bad file can crash."""
+
+from __future__ import annotations
+
+import math
+import os
+import subprocess
+import sys
+import tempfile
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from sher3_common import read_bytes
+from sher3_common.array_files import read_arrays
+from sher3_diagnosis.channel import Array
+
+MAX_MEMORY = 4_000_000_000
+"""Address space of the child, bytes: twice the largest file that is read."""
+MAX_SECONDS = 120.0
+"""Time the child may take; 2 GB from a slow disk take a minute."""
+MAX_BYTES = 2_000_000_000
+"""Largest arrays of a file together, bytes."""
+MAX_DEPTH = 8
+"""Structs within structs that are opened."""
+HDF5 = b"MATLAB 7.3"
+"""How files of version 7.3 begin."""
+
+
+def read_mat(path: Path) -> dict[str, Array]:
+    """Return the numeric arrays of a file; fields of structs are `struct/field`, rows of struct arrays stacked.
+
+    Raises:
+        ValueError: the file is of version 7.3, or its reader ended without an answer.
+    """
+    raw = read_bytes(path, MAX_BYTES)
+    if raw.startswith(HDF5):
+        raise ValueError("it is of version 7.3; save it in MATLAB with the option -v7")
+    with tempfile.TemporaryDirectory() as folder:
+        out = Path(folder) / "arrays.npz"
+        command = [sys.executable, "-m", __name__, str(MAX_BYTES), str(out)]
+        limits = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
+        try:
+            done = subprocess.run(
+                command, input=raw, env={**os.environ, **limits}, capture_output=True, timeout=MAX_SECONDS, check=False
+            )
+        except subprocess.TimeoutExpired as error:
+            raise ValueError(f"its reader took more than {MAX_SECONDS:g} s") from error
+        if done.returncode != 0 or not out.is_file():
+            said = done.stderr.decode(errors="replace").strip().splitlines()
+            raise ValueError(said[-1] if done.returncode == 1 and said else f"its reader crashed ({done.returncode})")
+        return {name.replace("\\", "/"): x for name, x in read_arrays(out, max_bytes=MAX_BYTES).items()}
+
+
+def flatten(name: str, value: Any, depth: int = 0) -> dict[str, Array]:
+    """Return the numeric arrays in a value of `scipy.io.loadmat`, by path; class objects and text are left out."""
+    x = np.asarray(value)
+    if depth > MAX_DEPTH:
+        return {}
+    if x.dtype.names:
+        parts = [{n: flatten(n, row[n], depth + 1) for n in x.dtype.names} for row in x.ravel()]
+        merged: dict[str, list[Array]] = {}
+        for part in parts:
+            for found in part.values():
+                for key, array in found.items():
+                    merged.setdefault(f"{name}\\{key}" if name else key, []).append(array)
+        return {key: stacked(arrays) for key, arrays in merged.items() if len(arrays) == len(parts)}
+    if x.dtype == object and x.size == 1:
+        return flatten(name, x.ravel()[0], depth + 1)
+    if x.dtype.kind in "fiub" and x.ndim and x.size:
+        x = np.asarray(x, dtype=float)
+        return {name: x.ravel() if x.ndim == 2 and 1 in x.shape else x}
+    return {}
+
+
+def stacked(arrays: list[Array]) -> Array:
+    """Return the one array of a struct, or those of a struct array one after the other."""
+    if len(arrays) == 1:
+        return arrays[0]
+    if len({x.shape for x in arrays}) == 1:
+        return np.stack([x[0] if x.shape == (1,) else x for x in arrays])
+    return np.concatenate([x.ravel() for x in arrays])
+
+
+def main(limit: int, target: str) -> int:
+    """Read a file from standard input in this process, with limits, and write its arrays; return the exit code.
+
+    Args:
+        limit: largest arrays together, bytes.
+        target: path of the npz file to write.
+    """
+    import resource
+
+    import scipy.io
+
+    resource.setrlimit(resource.RLIMIT_AS, (MAX_MEMORY, MAX_MEMORY))
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    raw = BytesIO(sys.stdin.buffer.read())
+    try:
+        declared = sum(8 * math.prod(shape) for _, shape, _ in scipy.io.whosmat(raw))
+        if declared > limit:
+            raise ValueError(f"unpacks to too much: {declared} bytes, limit {limit}")
+        raw.seek(0)
+        found: dict[str, Array] = {}
+        for name, value in scipy.io.loadmat(raw, verify_compressed_data_integrity=True).items():
+            if not name.startswith("__"):
+                found |= flatten(name, value)
+    except Exception as error:  # whatever the reader makes of a bad file: the parent turns it into a typed error
+        print(f"{type(error).__name__}: {error}".replace("\n", " ")[:200], file=sys.stderr)
+        return 1
+    np.savez(target, **found)  # type: ignore[arg-type]
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(int(sys.argv[1]), sys.argv[2]))

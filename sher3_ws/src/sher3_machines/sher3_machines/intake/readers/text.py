@@ -1,0 +1,101 @@
+"""Tables as text: commas, semicolons, tabs or blanks; decimal points or commas; ISO times; units in the header."""
+
+from __future__ import annotations
+
+import csv
+import re
+from datetime import datetime, timezone
+from pathlib import Path
+
+import numpy as np
+from sher3_common import parse_json, read_text
+from sher3_diagnosis.channel import Array
+
+MAX_BYTES = 500_000_000
+"""Largest text that is read."""
+SEPARATORS = ";\t,"
+"""Tried in this order: where semicolons or tabs part the cells, a comma is a decimal mark."""
+COMMENTS = ("#", "%")
+"""What lines of a preamble begin with; the last of them may be the header."""
+DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+([eE][+-]?\d+)?")
+ISO_TIME = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d(:\d\d([.,]\d+)?)?(Z|[+-]\d\d:?\d\d)?")
+
+
+def read_table(path: Path) -> dict[str, Array]:
+    """Return the numeric columns of a text file; without a header columns are c0, c1, ...
+
+    ISO times become seconds since 1970, UTC where no zone is given. Columns of text are left out; empty cells are nan.
+    """
+    lines = [line for line in read_text(path, MAX_BYTES, "utf-8-sig").splitlines() if line.strip()]
+    preamble = 0
+    while preamble < len(lines) and lines[preamble].lstrip().startswith(COMMENTS):
+        preamble += 1
+    body = lines[preamble:]
+    if not body:
+        raise ValueError("no rows")
+    mark = separator(body[-1])
+    rows = list(csv.reader(body, delimiter=mark)) if mark else [line.split() for line in body]
+    comma = mark in (";", "\t", None) and any(DECIMAL_COMMA.fullmatch(c.strip()) for r in rows[:50] for c in r)
+    first = [value_of(cell, comma) for cell in rows[0]]
+    if all(value is not None for value in first):
+        header = _names(lines[preamble - 1], mark, len(rows[0])) if preamble else None
+        header = header or [f"c{i}" for i in range(len(rows[0]))]
+    else:
+        header, rows = [cell.strip() for cell in rows[0]], rows[1:]
+    if len(set(header)) < len(header):
+        twice = next(name for name in header if header.count(name) > 1)
+        raise ValueError(f"column {twice!r} is there twice")
+    found = {name: _column([r[i] if i < len(r) else "" for r in rows], comma) for i, name in enumerate(header)}
+    return {name: x for name, x in found.items() if x is not None}
+
+
+def separator(line: str) -> str | None:
+    """Return what parts the cells of a line; None: blanks."""
+    outside = re.sub(r'"[^"]*"', "", line)
+    return next((m for m in SEPARATORS if m in outside), None)
+
+
+def _names(line: str, mark: str | None, width: int) -> list[str] | None:
+    """Names in the last line of a preamble; None where it is no header."""
+    bare = line.lstrip().lstrip("".join(COMMENTS)).strip()
+    names = [x.strip() for x in (bare.split(mark) if mark else bare.split())]
+    return names if len(names) == width else None
+
+
+def value_of(cell: str, comma: bool) -> float | list[object] | None:
+    """Return a cell as a number, seconds of an ISO time, or a list; None for text, nan for nothing."""
+    text = cell.strip()
+    if not text:
+        return float("nan")
+    if text.startswith("["):
+        found = parse_json(text.replace("nan", "NaN"))
+        return found if isinstance(found, list) else None
+    try:
+        return float(text.replace(",", ".") if comma else text)
+    except ValueError:
+        return seconds(text)
+
+
+def seconds(text: str) -> float | None:
+    """Return an ISO time as seconds since 1970; None for any other text."""
+    if not ISO_TIME.fullmatch(text):
+        return None
+    text = text.replace(",", ".").replace("Z", "+00:00")
+    if match := re.search(r"\.(\d+)", text):  # before 3.11 Python takes three or six digits only
+        text = text.replace(match[0], "." + match[1][:6].ljust(6, "0"))
+    try:
+        moment = datetime.fromisoformat(text)
+    except ValueError:
+        return None
+    return (moment if moment.tzinfo else moment.replace(tzinfo=timezone.utc)).timestamp()
+
+
+def _column(cells: list[str], comma: bool) -> Array | None:
+    """Cells as (n,) or, where they hold lists, (n, k); None where one of them is text."""
+    values = [value_of(cell, comma) for cell in cells]
+    if any(value is None for value in values):
+        return None
+    try:
+        return np.array(values, dtype=float)
+    except (TypeError, ValueError):
+        return None

@@ -1,0 +1,44 @@
+"""A description drafted from a file, and what is guessed for it."""
+
+import numpy as np
+import pytest
+from sher3_machines import MachineError, import_case, load_description, open_case
+from sher3_machines.intake.draft import draft
+
+TIME = np.arange(0.0, 4.0, 0.002)
+
+
+def written(tmp_path, header, *columns):
+    np.savetxt(tmp_path / "a.csv", np.column_stack(columns), delimiter=",", header=header, comments="")
+    return draft(tmp_path / "a.csv")
+
+
+def test_the_draft_of_a_slide_can_be_imported(tmp_path):
+    q = np.round(np.sin(TIME) / 1e-4) * 1e-4
+    header = "time_ms,slide_pos [mm],slide_ref [mm],slide_current [A]"
+    found = written(tmp_path, header, 1e3 * TIME, 1e3 * q, 1e3 * np.sin(TIME), np.cos(TIME))
+    (tmp_path / "a.yaml").write_text(found.text)
+    (axis,) = load_description(tmp_path / "a.yaml").axes
+    assert axis.motion == "linear" and axis.encoder_resolution == pytest.approx(1e-4, rel=1e-3)
+    assert set(axis.signals.model_dump(exclude_none=True)) == {"position", "reference", "effort"}
+    import_case([tmp_path / "a.csv"], tmp_path / "a.yaml", tmp_path / "case")
+    assert open_case(tmp_path / "case")[1][0].period == pytest.approx(0.002)
+
+
+def test_every_guess_is_said(tmp_path):
+    found = written(tmp_path, "t,joint1_position,joint2_position", TIME, np.sin(TIME), 90.0 * np.sin(TIME))
+    assert any("joint2: position in deg, because values reach 90" in x for x in found.guesses)
+    assert any("joint1: position in rad" in x for x in found.guesses)
+    assert all(f"# guessed: {guess}\n" in found.text for guess in found.guesses)
+
+
+def test_counts_are_seen(tmp_path):
+    found = written(tmp_path, "t,enc", TIME, np.round(5000.0 * np.sin(TIME)))
+    assert "unit: count" in found.text and any("placeholder" in x for x in found.guesses)
+
+
+def test_without_a_clock_or_a_position_it_says_what_is_missing(tmp_path):
+    with pytest.raises(MachineError, match=r"looks like a time.*rate"):
+        written(tmp_path, "a,b", np.sin(TIME), np.sin(TIME))
+    with pytest.raises(MachineError, match=r"looks like a position.*by hand"):
+        written(tmp_path, "t,temperature", TIME, np.sin(TIME))

@@ -1,0 +1,78 @@
+"""MATLAB files: structs, class objects, and files that would take their reader down."""
+
+import subprocess
+
+import numpy as np
+import pytest
+import scipy.io
+from sher3_machines import MachineError
+from sher3_machines.intake.readers import mat
+from sher3_machines.intake.tables import read_tables
+
+
+def test_structs_are_paths(tmp_path):
+    run = {"t": np.arange(3.0), "q": {"motor": np.ones((3, 1)), "note": "text"}, "n": 7.0}
+    scipy.io.savemat(tmp_path / "a.mat", {"run": run, "top": np.eye(3)})
+    found = read_tables(tmp_path / "a.mat")
+    assert {name: x.shape for name, x in found.items()} == {
+        "run/t": (3,),
+        "run/q/motor": (3,),
+        "run/n": (1,),
+        "top": (3, 3),
+    }
+
+
+def test_rows_of_a_struct_array_are_stacked(tmp_path):
+    rows = np.array([(1.0, np.arange(2.0)), (2.0, np.arange(2.0))], dtype=[("t", object), ("q", object)])
+    scipy.io.savemat(tmp_path / "a.mat", {"rows": rows})
+    found = read_tables(tmp_path / "a.mat")
+    assert found["rows/t"].ravel().tolist() == [1.0, 2.0] and found["rows/q"].shape == (2, 2)
+
+
+@pytest.mark.parametrize(
+    "text", [b"", b"MATLAB 7.3 MAT-file, Platform", b"MATLAB 5.0 MAT-file" + bytes(200), bytes(500)]
+)
+def test_what_is_no_mat_file_is_refused(tmp_path, text):
+    (tmp_path / "a.mat").write_bytes(text)
+    with pytest.raises(MachineError, match=r"a\.mat"):
+        read_tables(tmp_path / "a.mat")
+
+
+def test_a_newer_format_says_how_to_save(tmp_path):
+    (tmp_path / "a.mat").write_bytes(b"MATLAB 7.3 MAT-file, Platform: GLNXA64" + bytes(200))
+    with pytest.raises(MachineError, match="-v7"):
+        read_tables(tmp_path / "a.mat")
+
+
+@pytest.mark.parametrize("code", [-11, -9, -6])
+def test_a_reader_that_crashes_takes_nobody_with_it(tmp_path, monkeypatch, code):
+    """Segmentation fault, killed for its memory, aborted: the child ends, and a sentence says so."""
+    scipy.io.savemat(tmp_path / "a.mat", {"q": np.arange(3.0)})
+    monkeypatch.setattr(subprocess, "run", lambda command, **_: subprocess.CompletedProcess(command, code, b"", b""))
+    with pytest.raises(MachineError, match=f"crashed .{code}"):
+        read_tables(tmp_path / "a.mat")
+
+
+def test_a_reader_that_hangs_is_ended(tmp_path, monkeypatch):
+    scipy.io.savemat(tmp_path / "a.mat", {"q": np.arange(3.0)})
+    monkeypatch.setattr(mat, "MAX_SECONDS", 0.01)
+    with pytest.raises(MachineError, match=r"more than 0\.01 s"):
+        read_tables(tmp_path / "a.mat")
+
+
+def test_a_file_that_claims_more_memory_than_allowed_is_refused(tmp_path):
+    """A compressed file of zeros unpacks to 6 GB."""
+    import struct
+    import zlib
+
+    rows = 800_000_000
+    flags = struct.pack("<IIII", 6, 8, 6, 0)
+    dims = struct.pack("<IIii", 5, 8, rows, 1)
+    name = struct.pack("<HH4s", 1, 1, b"q")
+    body = flags + dims + name + struct.pack("<II", 9, 0xFFFFFFF8)
+    packed = zlib.compress(struct.pack("<II", 14, 0xFFFFFFF0) + body)
+    (tmp_path / "a.mat").write_bytes(
+        b"MATLAB 5.0 MAT-file".ljust(124) + b"\x00\x01IM" + struct.pack("<II", 15, len(packed)) + packed
+    )
+    with pytest.raises(MachineError):
+        read_tables(tmp_path / "a.mat")

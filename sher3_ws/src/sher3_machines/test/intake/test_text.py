@@ -1,0 +1,64 @@
+"""Text as spreadsheets and loggers write it."""
+
+import numpy as np
+import pytest
+from sher3_machines import MachineError
+from sher3_machines.intake.columns import pick
+from sher3_machines.intake.fields import Column
+from sher3_machines.intake.tables import read_tables
+
+
+def tables(tmp_path, text):
+    (tmp_path / "a.csv").write_text(text, encoding="utf-8")
+    return read_tables(tmp_path / "a.csv")
+
+
+def test_a_decimal_comma(tmp_path):
+    found = tables(tmp_path, "t;q\n0,00;1,5\n0,01;-2,5e-1\n")
+    assert found["t"].tolist() == [0.0, 0.01] and found["q"].tolist() == [1.5, -0.25]
+
+
+def test_points_stay_points_where_semicolons_part(tmp_path):
+    assert tables(tmp_path, "t;q\n0.0;1.5\n0.1;2.5\n")["q"].tolist() == [1.5, 2.5]
+
+
+def test_iso_times_are_seconds(tmp_path):
+    found = tables(
+        tmp_path, "time,q\n2024-03-01T12:00:00.250Z,1\n2024-03-01T13:00:00.260+01:00,2\n2024-03-01 12:00:00.27,3\n"
+    )
+    assert np.diff(found["time"]) == pytest.approx([0.01, 0.01], abs=1e-6)
+    assert found["time"][0] == pytest.approx(1709294400.25)
+
+
+def test_units_in_the_header(tmp_path):
+    found = tables(tmp_path, "t [s],q [mm],i (mA),w [furlong]\n0,1,5,1\n1,2,6,2\n")
+    assert pick(Column(column="q"), found, "a").tolist() == pytest.approx([1e-3, 2e-3])
+    assert pick(Column(column="i", factor=2.0), found, "a").tolist() == pytest.approx([0.010, 0.012])
+    assert pick(Column(column="q [mm]", unit="mm"), found, "a").tolist() == pytest.approx([1e-3, 2e-3])
+    with pytest.raises(MachineError, match=r"another unit; value mm; limit deg"):
+        pick(Column(column="q", unit="deg"), found, "a")
+    with pytest.raises(MachineError, match=r"not stated; value furlong"):
+        pick(Column(column="w"), found, "a")
+
+
+def test_counts_need_their_size():
+    with pytest.raises(ValueError, match="m or rad per count"):
+        Column(column="q", unit="count")
+    column = Column(column="q", unit="count", factor=1e-3)
+    assert pick(column, {"q": np.array([0.0, 1500.0])}, "a").tolist() == [0.0, 1.5]
+
+
+def test_preambles_headers_in_comments_and_blank_lines(tmp_path):
+    found = tables(tmp_path, "# made by a logger\n# t q\n\n0.0 1.5\n0.1 2.5\n")
+    assert found["q"].tolist() == [1.5, 2.5]
+
+
+@pytest.mark.parametrize(("text", "said"), [("", "no rows"), ("t,q,q\n1,2,3\n", "'q' is there twice")])
+def test_tables_that_are_none_say_why(tmp_path, text, said):
+    with pytest.raises(MachineError, match=said):
+        tables(tmp_path, text)
+
+
+def test_a_missing_column_names_its_neighbours():
+    with pytest.raises(MachineError, match=r"no column 'positon'.*position.*name it as the data do"):
+        pick(Column(column="positon", unit="m"), {"position": np.zeros(3), "time": np.zeros(3)}, "a")
