@@ -27,7 +27,7 @@ def page() -> str:
 
 
 def _effect(effect: dict) -> str:
-    sites = ", ".join(f"`{site}`" for site in effect["sites"])
+    sites = ", ".join(f"`{site}`" for site in effect["sites"] or effect["places"])
     stage = effect["stage"].replace("_", " ")
     text = f"### {effect['effect']}\n\nStage {stage}, on {sites}. {effect['explanation']}\n\n"
     text += f"- Law: {effect['law']}\n- In the simulator: {effect['simulated']}\n"

@@ -33,6 +33,15 @@ def library() -> Mapping[str, Page]:
     return {e.id: e for e in pages("robot")}
 
 
+def every() -> Mapping[str, Page]:
+    """Return a page for each effect of any kind of machine by id, alphabetically; the robot's form where it has one."""
+    found: dict[str, Page] = {}
+    for page in _pages(os.environ.get(VARIABLE, "")):
+        if page.id not in found or "robot" in page.kinds:
+            found[page.id] = page
+    return {i: found[i] for i in sorted(found)}
+
+
 def plants() -> Mapping[str, type[PlantEffect]]:
     """Return the effects' forms in the plant by effect id, in alphabetical order."""
     return {e.id: e.plant for e in pages("robot") if e.plant is not None}
@@ -42,7 +51,7 @@ def pages(kind: str, facts: Collection[str] | None = None) -> list[Page]:
     """Return the pages written for a kind of machine, in alphabetical order of their ids.
 
     Args:
-        kind: "robot", "axis", "servo" or "arm"; see `Effect.kinds`.
+        kind: "robot", "axis", "servo", "joint" or "arm"; see `Effect.kinds`.
         facts: what is known, see `Effect.needs`; pages that need more are left out. None: everything is known.
 
     Raises:

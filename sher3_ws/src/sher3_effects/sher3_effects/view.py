@@ -100,6 +100,18 @@ class AxisView(Protocol):
         """(g,) True where a load acts."""
 
 
+class ArmMotionView(AxisView, Protocol):
+    """A run of a serial arm whose model is known: what an effect that several joints feel needs."""
+
+    def payload(self, link: str, centre: tuple[float, float, float]) -> dict[str, Array]:
+        """Return joint -> (g, 4) force per kg at the joint of a link, and per kg m of its centre along x, y and z.
+
+        Args:
+            link: that carries the payload.
+            centre: at which its inertia is reckoned, m, in the frame of the link's joint.
+        """
+
+
 class RobotView(AxisView, Protocol):
     """A run of the robot with its geometry: what an effect between the encoders and the tip needs."""
 

@@ -9,7 +9,8 @@ from sher3_diagnosis.effect import INPUTS, ROTARY
 from sher3_effects import library, load_effects, pages, plants, save_effects
 from sher3_sim.effect import REVOLUTE, SITES
 
-KINDS = ("robot", "axis", "servo", "arm")
+KINDS = ("robot", "axis", "servo", "joint", "arm")
+KNOWN = {page.id for kind in KINDS for page in pages(kind)}
 EVERY = [pytest.param(page, id=f"{kind}-{page.id}") for kind in KINDS for page in pages(kind)]
 ROBOT_PAGES = [pytest.param(page, id=page.id) for page in library().values()]
 CONSTANT = {"force_bias"}
@@ -25,13 +26,13 @@ def test_the_data_sheet_is_complete(page):
     assert set(page.inputs) <= set(INPUTS) and (page.inputs or page.id in CONSTANT or page.kinds == ("arm",))
     assert set(page.needs) <= {"lead", "load", "mass", "drive"}
     assert page.breaks in RELATIONS
-    assert set(page.extends) <= library().keys()
+    assert set(page.extends) <= KNOWN
     assert type(page).__doc__
 
 
 @pytest.mark.parametrize("page", EVERY)
 def test_siblings_exist_and_say_what_differs(page):
-    assert page.siblings and page.siblings.keys() <= library().keys()
+    assert page.siblings and page.siblings.keys() <= KNOWN
     assert page.id not in page.siblings
     assert all(why and not why.endswith(".") for why in page.siblings.values())
 

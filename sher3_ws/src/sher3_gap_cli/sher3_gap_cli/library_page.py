@@ -8,13 +8,19 @@ from difflib import get_close_matches
 from typing import Any
 
 from sher3_diagnosis.effect import INPUTS
-from sher3_effects import Page, library
+from sher3_effects import Page, every
 
 from sher3_gap_cli.options import RequestError
 
 WIDTH = 80
 """Columns of a page: what every terminal shows."""
-KINDS = {"robot": "the robot", "axis": "an axis", "servo": "a position servo", "arm": "a serial arm"}
+KINDS = {
+    "robot": "the robot",
+    "axis": "an axis",
+    "servo": "a position servo",
+    "joint": "a joint of a serial arm in motion",
+    "arm": "the geometry of a serial arm",
+}
 """Kind of machine -> plain words."""
 NEEDS = {
     "lead": "its travel per motor revolution",
@@ -31,7 +37,7 @@ def library_data(which: str = "") -> list[dict[str, Any]]:
     Raises:
         RequestError: it is neither.
     """
-    known = library()
+    known = every()
     chosen = [page for page in known.values() if which in ("", page.id, page.family)]
     if not chosen:
         names = [*sorted({page.family for page in known.values()}), *known]

@@ -59,3 +59,27 @@ Measure: `pytest sher3_ws/src/sher3_machines/test/test_arm.py`."""
 
 WORST = 20
 """One posture in so many is among the worst, of which the notes tell the share of the error: 5 %."""
+
+# -- channels that say nothing -------------------------------------------------------------------------------------
+
+DEAD = 0.5
+"""Share of the samples in motion at one and the same reading from which a channel is dead. Between a live effort of few
+bits (0.02) and the dead ones of a published arm (0.88). Set on: `tiago_dynamics`.
+Measure: `pytest sher3_ws/src/sher3_machines/test/axes/test_health.py`."""
+
+FOLLOWS = 0.01
+"""Share of the axis' travel that a second encoder must at least show: less is its noise. Set by that argument."""
+
+# -- a serial arm in motion ----------------------------------------------------------------------------------------
+
+CAUSES_OF_JOINT = 5
+"""Causes named of one joint at most: dry and viscous friction, a constant force, the drive's gain, and one more.
+Set by that count."""
+
+CONFOUNDED = 0.1
+"""Singular value of the stacked columns, each of length one, below which a combination of quantities cannot be seen: a
+change of 10 % of one quantity then hides behind 1 % in power. Set by that argument.
+Measure: `pytest sher3_ws/src/sher3_machines/test/manipulator/test_confounding.py`."""
+
+TAKES_PART = 0.3
+"""Part of a quantity in such a combination from which it is named. Set and measured as `CONFOUNDED`."""

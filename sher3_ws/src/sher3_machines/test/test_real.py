@@ -71,6 +71,23 @@ def test_dfki(tmp_path):
     assert values(verdict)["force_saturation", "joint", "limit"] == pytest.approx(0.885, abs=0.01)
 
 
+def test_tiago(tmp_path):
+    """Torso and seven joints at once: three efforts are dead, friction dominates arm 1 to 4, the gain is not known.
+
+    Own fits of the source: effort rms without and with friction, arm 1 .187 to .062, arm 2 .212 to .112, arm 3 .247 to
+    .090, arm 4 .207 to .070.
+    """
+    verdict = verdict_of("tiago_dynamics", [REAL / "tiago_dynamics"], tmp_path)
+    rubbing = {c.actuator for c in verdict.causes if c.family == "friction"}
+    assert rubbing == {"torso_lift_joint", *(f"arm_{i}_joint" for i in (1, 2, 3, 4))}
+    assert {c.family for c in verdict.causes} <= {"friction", "inertia"}
+    told = " ".join(verdict.notes)
+    for i in (5, 6, 7):
+        assert f"arm_{i}_joint.effort reads 0" in told
+    assert "drive gain, weight and payload are confounded" in told
+    assert "arm_3_joint, arm_4_joint: effort recorded with the opposite sign" in told
+
+
 def test_franka(tmp_path):
     """Kinematic error: frames only, then joint zeros, then geometry, each smaller on held-out postures."""
     verdict = verdict_of("franka_fr3_calib", [REAL / "franka_fr3_calib/calib_data_converted.npz"], tmp_path)

@@ -29,24 +29,25 @@ Left = Callable[[Fit], dict[Channel, float]]
 """Gaps that are left under a fit: channel -> excess loss."""
 
 
-def attribute(candidates: Candidates, left_over: Left, say: Say) -> Attribution:
+def attribute(candidates: Candidates, left_over: Left, say: Say, causes: int = MAX_CAUSES) -> Attribution:
     """Select causes until no gap is left that an effect explains.
 
     Args:
         candidates: the evidence and the effects that may explain it.
         left_over: says which gaps are left under a fit.
         say: progress.
+        causes: named at most.
     """
     evidence = candidates.evidence
     current = evidence.null()
     chosen = list(current.terms)
-    most = len(evidence.nuisance) + MAX_CAUSES
+    most = len(evidence.nuisance) + causes
     while len(chosen) < most:
         left = left_over(current)
         if not left:
             break
         say(f"explaining {', '.join(map(str, sorted(left)))}")
-        step = _step(candidates, current, chosen, left)
+        step = _step(candidates, current, chosen, left, most)
         if step is None:
             break
         current = step
@@ -67,13 +68,15 @@ def _gain(before: Fit, after: Fit, left: dict[Channel, float]) -> float:
     return best
 
 
-def _step(candidates: Candidates, current: Fit, chosen: list[Term], left: dict[Channel, float]) -> Fit | None:
+def _step(
+    candidates: Candidates, current: Fit, chosen: list[Term], left: dict[Channel, float], most: int
+) -> Fit | None:
     found = candidates.search(left, chosen)
     if not found:
         return None
     best = found[0]
     gain = _gain(current, best, left)
-    if gain < COMPLETE and len(chosen) + 2 <= len(candidates.evidence.nuisance) + MAX_CAUSES:
+    if gain < COMPLETE and len(chosen) + 2 <= most:
         pair = _pair(candidates, current, chosen, found[:RANKED], left)
         if pair is not None and _gain(current, pair, left) > max(gain + PAIR_GAIN, PAIR_WORTH):
             return pair

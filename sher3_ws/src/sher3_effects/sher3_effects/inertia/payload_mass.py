@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from sher3_description import ACTUATORS
@@ -16,7 +16,7 @@ from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.inertia.carried import carried_mass
 from sher3_effects.page import Page
-from sher3_effects.view import AxisView, RobotView
+from sher3_effects.view import ArmMotionView, AxisView, RobotView
 
 
 class PayloadMass(Page):
@@ -79,6 +79,53 @@ class MassOnAxis(PayloadMass):
 
     def unlikely(self, shape: Shape, coefficients: Array) -> bool:
         """Return False: a description may state too large a mass as well as too small a one."""
+        return False
+
+
+class PayloadOnLink(PayloadMass):
+    """A body on a link of a serial arm, moving with it: F = mass * (column of its mass) + mass * centre * (columns).
+
+    The rigid bodies' equations are linear in mass and mass times centre; the inertia of the payload is reckoned as that
+    of a point at its centre, which is found first and put into the shape.
+    """
+
+    kinds, places = ("joint",), ("link",)
+    units = {"mass": "kg", "x": "m", "y": "m", "z": "m"}
+    explanation = "A body on a link that the model does not know: weight and inertia on every joint that carries it."
+    siblings = {
+        "gravity_load": "one joint alone, and no inertia",
+        "torque_constant": "all forces of one joint are scaled, those of the other joints are right",
+    }
+    FURTHEST = 1.0
+    """Distance of the centre from the joint of its link, m, from which it is no payload."""
+
+    def channels(self, site: str) -> tuple[Channel, ...]:
+        """Return the link: which joints carry it only the view knows."""
+        return (Channel(self.stage, site),)
+
+    def shapes(self, views: Sequence[Any], site: str) -> list[Shape]:
+        """Return a payload at the joint of its link, from which the search for its centre starts."""
+        return [{}]
+
+    def signature(self, view: Any, site: str, shape: Shape) -> Signature:
+        """Return four columns on every joint: per kg, and per kg m along x, y and z of the link's joint."""
+        arm: ArmMotionView = view
+        forces = arm.payload(site, (shape.get("x", 0.0), shape.get("y", 0.0), shape.get("z", 0.0)))
+        return Signature({Channel(self.stage, joint): x[:, None, :] for joint, x in forces.items()})
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Return the mass and its centre."""
+        mass = float(coefficients[0])
+        centre = coefficients[1:] / mass if mass else np.zeros(3)
+        return {"mass": mass, **{name: float(c) for name, c in zip("xyz", centre, strict=True)}}
+
+    def admissible(self, shape: Shape, coefficients: Array) -> bool:
+        """Return whether mass is added, near the link that carries it."""
+        mass = float(coefficients[0])
+        return mass > 0.0 and bool(np.linalg.norm(coefficients[1:]) < self.FURTHEST * mass)
+
+    def unlikely(self, shape: Shape, coefficients: Array) -> bool:
+        """Return False: a mass below zero is not admissible at all."""
         return False
 
 

@@ -13,13 +13,19 @@ from sher3_machines.intake.fields import Clock, Column, Description, Strict
 
 
 class Signals(Strict):
-    """Recorded signals of an axis; `position` must be there."""
+    """Signals of an axis, recorded or computed by the user; `position` must be there.
+
+    `nominal_effort` takes the place of mass, weight and coupling of the axis' own model, and comes on top of what the
+    description states; `applied` is a disturbance that is known.
+    """
 
     position: Column
     reference: Column | None = None
     command: Column | None = None
     effort: Column | None = None
     load: Column | None = Field(default=None, description="position of a second encoder at the load")
+    nominal_effort: Column | None = Field(default=None, description="force that the user's own model asks for")
+    applied: Column | None = Field(default=None, description="known force on the axis, positive along its motion")
 
 
 class CommandLaw(Strict):

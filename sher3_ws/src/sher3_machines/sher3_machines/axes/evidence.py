@@ -48,7 +48,7 @@ def gather_axis(runs: Sequence[AxesRun], axis: Axis, repeats: bool) -> AxisEvide
     """
     signals = [signals_of(run, axis, "repeats" if repeats else run.name) for run in runs]
     mass, interval = (axis.mass, None) if isinstance(axis.mass, float) else (0.0, None)
-    if axis.mass == "unknown":
+    if axis.mass == "unknown" and all(s.effort is not None for s in signals):
         mass, interval = identify_mass([AxisView(s, axis, 0.0) for s in signals])
     records = [AxisView(s, axis, mass) for s in signals]
     found = [residuals_of(view) for view in records]
@@ -88,7 +88,7 @@ def residuals_of(view: AxisView) -> Residuals:
     if axis.servo:
         assert run.reference is not None
         out[Channel("motor_mechanics", axis.name)] = Residual(run.to_grid(run.reference - run.motor), run.inner)
-    elif axis.mass is not None and run.effort is not None:
+    elif (axis.mass is not None or axis.signals.nominal_effort is not None) and run.effort is not None:
         balance = run.to_grid(run.effort) - view.inertial
         out[Channel("motor_mechanics", axis.name)] = Residual(balance, view.in_motion)
     if run.load is not None:

@@ -8,6 +8,7 @@ import numpy as np
 from sher3_diagnosis.channel import Array, Channel, Floors, Residual, Residuals
 from sher3_diagnosis.localise.floors import repeat_floors
 
+from sher3_machines.axes.signals import AxisSignals
 from sher3_machines.axes.view import AxisView
 
 GAUSSIAN = 1.4826
@@ -34,8 +35,19 @@ def floors_of(records: Sequence[AxisView], found: Sequence[Residuals], repeats: 
     out = []
     for view, residuals in zip(records, found, strict=True):
         least = resolution_floors(view)
-        out.append({c: np.maximum(pooled.get(c, innovation(x)), least[c]) for c, x in residuals.items()})
+        told = foresight(view.run)
+        out.append({c: np.maximum(pooled.get(c, innovation(x) / told), least[c]) for c, x in residuals.items()})
     return out
+
+
+def foresight(run: AxisSignals) -> float:
+    """Return the innovation of white noise after the filter of the residuals over its standard deviation, 0.7 to 1.
+
+    The filter makes neighbours alike, so that a part of what is noise could be foreseen from them.
+    """
+    noise = np.random.default_rng(0).normal(size=(max(run.ticks, NOISE_SAMPLES), 1))
+    seen = run.filtered(noise)[:: run.stride]
+    return float(innovation(Residual(seen, np.ones(len(seen), dtype=bool)))[0] / seen.std())
 
 
 def resolution_floors(view: AxisView) -> Floors:

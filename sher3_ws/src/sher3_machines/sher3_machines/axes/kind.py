@@ -26,21 +26,31 @@ class AxesKind(Kind[AxesDescription, AxesRun]):
 
     def pack(self, run: AxesRun) -> Mapping[str, Array]:
         """Return the period and every signal."""
-        signals = {f"{axis}/{k}": x for axis, found in run.signals.items() for k, x in found.items()}
-        return {"period": np.array([run.period]), **signals}
+        return packed(run)
 
     def unpack(self, name: str, arrays: Tables, notes: Sequence[str]) -> AxesRun:
         """Return the run that a case stores; raises KeyError without a period."""
-        signals: dict[str, dict[str, Array]] = {}
-        for key, x in arrays.items():
-            if key != "period":
-                axis, signal = key.rsplit("/", 1)
-                signals.setdefault(axis, {})[signal] = x
-        return AxesRun(name, float(arrays["period"][0]), signals, notes)
+        return unpacked(name, arrays, notes)
 
     def machine(self, description: AxesDescription) -> Axes:
         """Return the chain."""
         return Axes(description)
+
+
+def packed(run: AxesRun) -> Mapping[str, Array]:
+    """Return the arrays of a run as a case stores them: `period` and `AXIS/SIGNAL`."""
+    signals = {f"{axis}/{k}": x for axis, found in run.signals.items() for k, x in found.items()}
+    return {"period": np.array([run.period]), **signals}
+
+
+def unpacked(name: str, arrays: Tables, notes: Sequence[str]) -> AxesRun:
+    """Return the run that a case stores; raises KeyError without a period."""
+    signals: dict[str, dict[str, Array]] = {}
+    for key, x in arrays.items():
+        if key != "period":
+            axis, signal = key.rsplit("/", 1)
+            signals.setdefault(axis, {})[signal] = x
+    return AxesRun(name, float(arrays["period"][0]), signals, notes)
 
 
 KIND = AxesKind()

@@ -17,12 +17,14 @@ from sher3_effects import library, pages
 
 from sher3_machines.axes.description import AxesDescription, Axis
 from sher3_machines.axes.evidence import AxisEvidence, gather_axis
+from sher3_machines.axes.health import dead_channels, without_dead
 from sher3_machines.axes.limits import EFFECT as LIMIT
 from sher3_machines.axes.limits import limit_finding
 from sher3_machines.axes.record import AxesRun
 from sher3_machines.axes.refine import refine_free
 from sher3_machines.axes.replay import replay
 from sher3_machines.axes.search import causes_of_axis
+from sher3_machines.errors import MachineError
 
 if TYPE_CHECKING:
     from sher3_machines.axes.reporter import AxesReporter
@@ -59,11 +61,20 @@ class Axes(Machine[AxesRun, AxisEvidence]):
     def audit(self, runs: Sequence[AxesRun]) -> list[str]:
         """Return what was done to the data, and whether floors are known from repeats."""
         notes = [note for run in runs for note in run.notes]
+        for run in runs:
+            notes += [said for axis in self.description.axes for said in dead_channels(run, axis).values()]
         return notes if self._repeats(runs) else [*notes, NO_REPEATS]
 
     def gather(self, runs: Sequence[AxesRun]) -> Sequence[AxisEvidence]:
         """Compute residuals and floors of every axis; raises MachineError where an unknown mass cannot be found."""
-        return [gather_axis(runs, axis, self._repeats(runs)) for axis in self.description.axes]
+        parts = []
+        for axis in self.description.axes:
+            heard = [without_dead(run, axis) for run in runs]
+            if all("position" in run.signals[axis.name] for run in heard):
+                parts.append(gather_axis(heard, axis, self._repeats(runs)))
+        if not parts:
+            raise MachineError("no axis can be judged", value="every position is dead", remedy="connect the encoders")
+        return parts
 
     def exact(
         self, runs: Sequence[AxesRun], evidence: Sequence[AxisEvidence], without: Collection[str]

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from sher3_diagnosis.channel import Array
 
-from sher3_machines.axes.description import AxesDescription, Axis
+from sher3_machines.axes.description import Axis
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.columns import pick, stamps_of
 from sher3_machines.intake.fields import Clock
@@ -30,7 +31,7 @@ BEYOND = 0.1
 """Share of the range by which a position may leave it: stated ranges are rounded."""
 COUNTS_MOVED = 100.0
 """Travel in counts from which two signals of one axis can be compared in size."""
-SIGNALS = ("position", "reference", "command", "effort", "load")
+SIGNALS = ("position", "reference", "command", "effort", "load", "nominal_effort", "applied")
 """Signals of an axis, as the description names them."""
 
 Stamped = tuple[Array | None, Array]
@@ -54,7 +55,19 @@ class AxesRun:
     notes: Sequence[str] = ()
 
 
-def axes_run(name: str, tables: Tables, machine: AxesDescription) -> AxesRun:
+class Chain(Protocol):
+    """What the description of a machine says of the axes that were recorded."""
+
+    @property
+    def time(self) -> Clock:
+        """The clock of the samples."""
+
+    @property
+    def axes(self) -> Sequence[Axis]:
+        """Every axis, with its signals."""
+
+
+def axes_run(name: str, tables: Tables, machine: Chain) -> AxesRun:
     """Bring one record onto a uniform clock.
 
     Raises:

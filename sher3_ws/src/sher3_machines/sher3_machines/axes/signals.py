@@ -30,6 +30,7 @@ class AxisSignals:
         effort: measured force, or the force the command asks for.
         reference, command: as recorded.
         load: position of the second encoder.
+        nominal: force that the user's own model asks for, less what is known to be applied from outside.
         bandwidth: cut-off of the low-pass, Hz.
     """
 
@@ -41,6 +42,7 @@ class AxisSignals:
     reference: Array | None = None
     command: Array | None = None
     load: Array | None = None
+    nominal: Array | None = None
     bandwidth: float = BANDWIDTH
 
     @property
@@ -123,6 +125,7 @@ def signals_of(run: AxesRun, axis: Axis, excitation: str) -> AxisSignals:
         reference=found.get("reference"),
         command=found.get("command"),
         load=found.get("load"),
+        nominal=_nominal(found),
         bandwidth=min(BANDWIDTH, NYQUIST_SHARE * 0.5 / run.period),
     )
 
@@ -135,6 +138,12 @@ def _effort(found: dict[str, Array], axis: Axis) -> Array | None:
     if "command" in found:
         return law.gain * (held_mean(found["command"]) if law.held else found["command"])
     return np.zeros_like(found["position"]) if axis.free else None
+
+
+def _nominal(found: dict[str, Array]) -> Array | None:
+    """The force (n, 1) that the user's model asks of the drive, which need not give what is applied from outside."""
+    parts = [sign * found[name] for name, sign in (("nominal_effort", 1.0), ("applied", -1.0)) if name in found]
+    return np.sum(parts, axis=0) if parts else None
 
 
 def held_mean(command: Array) -> Array:

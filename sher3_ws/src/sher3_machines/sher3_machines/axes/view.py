@@ -94,9 +94,10 @@ class AxisView:
 
     @cached_property
     def inertial(self) -> Array:
-        """Nominal force that the measured motion needs, (g, 1): mass * a + viscous * v + weight."""
-        viscous = max(self.described.viscous, SLIP)
-        return self.run.to_grid(self.mass * self.run.acceleration + viscous * self.run.velocity) + self.path.gravity
+        """Nominal force that the motion needs, (g, 1): mass * a + viscous * v + weight + the user's own model."""
+        run, viscous = self.run, max(self.described.viscous, SLIP)
+        needed = run.to_grid(self.mass * run.acceleration + viscous * run.velocity) + self.path.gravity
+        return needed if run.nominal is None else needed + run.to_grid(run.nominal)
 
     # which samples can be judged
 

@@ -28,7 +28,7 @@ def is_machine_case(path: Path) -> bool:
 def described(path: Path) -> Path:
     """Return a description's path; a bare name is one of the descriptions that come with the project."""
     known = Path(__file__).parents[1] / "descriptions" / f"{path.name}.yaml"
-    return known if path.suffix == "" and not path.exists() and known.is_file() else path
+    return known if path.suffix == "" and not path.is_file() and known.is_file() else path
 
 
 def import_case(data: Sequence[Path], description: Path, out: Path) -> list[str]:
@@ -57,7 +57,7 @@ def import_case(data: Sequence[Path], description: Path, out: Path) -> list[str]
         stale.unlink()
     for run in runs:
         np.savez_compressed(out / RUNS / f"{run.name}.npz", **kind.pack(run))  # type: ignore[arg-type]
-    (out / MACHINE).write_text(_resolved(description, machine), encoding="utf-8")
+    (out / MACHINE).write_text(_resolved(description, machine, data), encoding="utf-8")
     record = {"data": [str(path) for path in data], "notes": notes}
     (out / IMPORT).write_text(json.dumps(record, indent=1), encoding="utf-8")
     return notes
@@ -99,9 +99,14 @@ def _notes(path: Path) -> list[str]:
         return []
 
 
-def _resolved(path: Path, description: Description) -> str:
-    """The description as written, the files it names by their absolute path: the case may lie anywhere."""
+def _resolved(path: Path, description: Description, data: Sequence[Path]) -> str:
+    """The description as written, the files it names by their absolute path: the case may lie anywhere.
+
+    A file is looked for beside the description, then in or beside the data.
+    """
     text = read_text(path)
     for name in description.named_files():
-        text = text.replace(name, str((path.parent / name).resolve()))
+        places = [path.parent, *(x if x.is_dir() else x.parent for x in data)]
+        found = next((p / name for p in places if (p / name).is_file()), path.parent / name)
+        text = text.replace(name, str(found.resolve()))
     return text

@@ -36,7 +36,7 @@ def test_held_out_errors_are_a_little_larger_than_those_fitted(evidence):
 
 def test_orientations_are_judged_only_where_their_noise_is_stated(evidence):
     assert evidence.floors[0][TIP][3] == 1e3
-    assert evidence.unit(TIP) == "m" and evidence.unit(TIP, 1) == "rad"
+    assert evidence.unit(TIP) == "m" and evidence.unit(TIP, 3) == "rad"
     assert gather_arm(machine().arm, [measured(np.zeros(6))], NOISE, 1e-3).floors[0][TIP][3] == 1e-3
 
 

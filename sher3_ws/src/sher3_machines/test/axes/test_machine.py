@@ -130,10 +130,33 @@ def test_two_axes_are_judged_each_by_itself(rubbed):
 def test_notes_say_what_cannot_be_told():
     assert machine().audit([run_of(driven(1.0))]) == [NO_REPEATS]
     repeated = Axes(described().model_copy(update={"repeats": True}))
-    runs = [AxesRun(name, PERIOD, {}, [f"{name}: resampled"]) for name in "ab"]
+    signals = run_of(driven(1.0)).signals
+    runs = [AxesRun(name, PERIOD, signals, [f"{name}: resampled"]) for name in "ab"]
     assert repeated.audit(runs) == ["a: resampled", "b: resampled"]
 
 
 def test_facts_are_what_the_description_states():
     assert facts_of(axis_of()) == {"mass", "drive"}
     assert facts_of(axis_of(lead=0.005, mass="unknown", command_law={"kind": "none"})) == {"lead"}
+
+
+def test_the_force_of_the_user_s_own_model_takes_the_place_of_mass_and_weight(rubbed):
+    """Weight and coupling that no description of an axis could state, given as a column: friction is what is left."""
+    q, _, u = rubbed.T
+    coupling = 30.0 * np.sin(40.0 * q) + 12.0
+    own = MASS * np.gradient(np.gradient(q, PERIOD), PERIOD) + coupling
+    signals = {**columns("position"), **columns("effort", "nominal_effort", unit="N")}
+    run = AxesRun("run", PERIOD, {"slide": {"position": q, "effort": u + coupling, "nominal_effort": own}})
+    law = {"kind": "force"}
+    verdict = diagnose(machine(signals=signals, mass=None, command_law=law), [run]).verdict
+    assert set(effects(verdict)) == {"coulomb_friction", "viscous_friction"}
+
+
+def test_a_known_disturbance_is_no_cause(rubbed):
+    """7 N pushed along for the second half: declared, it is neither a constant force nor a change of friction."""
+    q, r, u = rubbed.T
+    applied = np.where(np.arange(len(q)) > len(q) // 2, 7.0, 0.0)
+    signals = {**columns("position", "reference"), **columns("command", "applied", unit="N")}
+    run = AxesRun("run", PERIOD, {"slide": {"position": q, "reference": r, "command": u - applied, "applied": applied}})
+    verdict = diagnose(machine(signals=signals), [run]).verdict
+    assert set(effects(verdict)) == {"coulomb_friction", "viscous_friction"}

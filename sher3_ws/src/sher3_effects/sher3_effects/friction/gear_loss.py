@@ -1,0 +1,53 @@
+"""Gear loss: friction in proportion to the load on the gear."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.effect import Best, Shape, Signature, column
+
+from sher3_effects.page import Page
+from sher3_effects.view import AxisView
+
+
+class GearLoss(Page):
+    """F = z (force + share * |nominal force|), z the direction of motion."""
+
+    id, family, stage = "gear_loss", "friction", "motor_mechanics"
+    inputs = ("direction", "force")
+    kinds = ("joint",)
+    dry = True
+    best = Best("reversals", "reversals of several amplitudes and speeds separate friction laws")
+    extends = ("coulomb_friction",)
+    explanation = (
+        "The teeth rub the more the heavier they are loaded: the step at a reversal grows with the force that the "
+        "joint carries there."
+    )
+    siblings = {
+        "coulomb_friction": "the same step in every posture",
+        "torque_constant": "all forces are scaled, at rest and in both directions alike",
+    }
+    units = {"force": "N", "share": "1"}
+    DISPLACEMENT = 2.5e-3
+    """Over which the direction reverses, in motor revolutions: the middle one of Coulomb friction."""
+
+    def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
+        """Return without (0) and with (1) friction that is there without load."""
+        return [{"dry": 0.0}, {"dry": 1.0}]
+
+    def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
+        """Return the direction times the force that the joint carries, and the direction alone."""
+        row = view.row(site)
+        z = view.run.to_grid(view.sliding(row, self.DISPLACEMENT * view.lead(site))[:, None])[:, 0]
+        lost = z * np.abs(view.inertial[:, row])
+        return Signature({Channel(self.stage, site): column(lost, z) if shape["dry"] else column(lost)})
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Return the share of the load that is lost, and the friction without load."""
+        return {"share": float(coefficients[0]), "force": float(coefficients[1]) if shape["dry"] else 0.0}
+
+    def admissible(self, shape: Shape, coefficients: Array) -> bool:
+        """Return whether less than all of the load is lost, and friction resists."""
+        return bool(0.0 < coefficients[0] < 1.0 and (not shape["dry"] or coefficients[1] > 0.0))

@@ -1,0 +1,1 @@
+"""Forces that follow the position: springs and cables."""

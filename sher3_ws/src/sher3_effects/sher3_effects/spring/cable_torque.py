@@ -1,0 +1,47 @@
+"""Cable torque: a force that is some function of the position."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.effect import Best, Shape, Signature, column
+
+from sher3_effects.page import Page
+from sher3_effects.view import AxisView
+
+
+class CableTorque(Page):
+    """F = a + b x + c x^2 + d x^3 with x the position over its travel, -1..1."""
+
+    id, family, stage = "cable_torque", "spring", "motor_mechanics"
+    inputs = ("position",)
+    kinds = ("joint",)
+    best = Best("sweep", "long constant-speed strokes separate ratios from offsets")
+    extends = ("gravity_load", "spring_torque")
+    explanation = (
+        "A cable or hose that is led along the joint pulls at it: a force that depends on the position alone, the same "
+        "going and coming, stiffer towards the ends of the travel."
+    )
+    siblings = {
+        "gravity_load": "follows the sine of the posture, or is constant",
+        "position_friction": "the sign follows the direction of motion",
+    }
+    units = {"middle": "m", "half_travel": "m", "constant": "N", "linear": "N", "square": "N", "cubic": "N"}
+
+    def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
+        """Return the middle and half of the travel over all runs."""
+        ends = [f(v.position[:, v.row(site)]) for v in views for f in (np.min, np.max)]
+        low, high = min(ends), max(ends)
+        return [{"middle": 0.5 * (low + high), "half_travel": 0.5 * (high - low)}] if high > low else []
+
+    def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
+        """Return four columns: the powers of the position over its travel."""
+        x = (view.position[:, view.row(site)] - shape["middle"]) / shape["half_travel"]
+        return Signature({Channel(self.stage, site): column(np.ones_like(x), x, x**2, x**3)})
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Return the travel and the force of each power at its end."""
+        names = ("constant", "linear", "square", "cubic")
+        return {**shape, **{name: float(c) for name, c in zip(names, coefficients, strict=True)}}

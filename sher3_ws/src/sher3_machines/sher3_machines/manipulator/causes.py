@@ -1,0 +1,163 @@
+"""How the causes of a serial arm are looked for: joint by joint, without and with a payload that all joints carry.
+
+What a joint does alone is a matter of its own force balance. A payload shows on several joints at once; it is taken
+where it and what the joints then still need are cheaper than what the joints need without it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
+
+from sher3_diagnosis.attribute.candidates import Candidates, cost, price
+from sher3_diagnosis.attribute.rivals import Attribution, without_term
+from sher3_diagnosis.attribute.search import Say, attribute
+from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.effect import Effect
+from sher3_diagnosis.fitting import Fit, Term, fit
+from sher3_diagnosis.judge.left_over import down_to_floor
+from sher3_diagnosis.thresholds import NEEDED, PARSIMONY, RIVAL
+from sher3_effects.friction.coulomb_friction import CoulombFriction
+from sher3_effects.friction.viscous_friction import ViscousFriction
+from sher3_effects.inertia.payload_mass import PayloadOnLink
+
+from sher3_machines.manipulator.evidence import ArmMotionEvidence, channel_of, of_joint
+from sher3_machines.thresholds import CAUSES_OF_JOINT
+
+CENTRE_ROUNDS = 3
+"""Rounds on the centre of a payload: its inertia is that of a point there, and small beside its weight."""
+
+
+@dataclass(frozen=True)
+class Explained:
+    """One set of causes of the whole arm.
+
+    Attributes:
+        fit: all terms together; the payload first where there is one.
+        alone: joint -> what the engine's search said of it alone.
+    """
+
+    fit: Fit
+    alone: dict[str, Attribution]
+
+    @property
+    def cost(self) -> float:
+        """Held-out loss and the price of every number."""
+        return self.fit.total + sum(price(t) for t in self.fit.terms)
+
+
+def causes_of_arm(evidence: ArmMotionEvidence, candidates: Candidates, say: Say) -> Attribution:
+    """Choose the causes of an arm in motion, with their rivals."""
+    found = _explained(evidence, candidates, None, say)
+    loaded = _payload(evidence, candidates)
+    if loaded is None:
+        return _with_rivals(evidence, candidates, found, None)
+    other = _explained(evidence, candidates, loaded, say)
+    best, second = (other, found) if other.cost < found.cost else (found, other)
+    return _with_rivals(evidence, candidates, best, second)
+
+
+def _explained(evidence: ArmMotionEvidence, candidates: Candidates, payload: Fit | None, say: Say) -> Explained:
+    """Search every joint for causes beside a payload, and fit all of them together."""
+    effects = [e for e in candidates.effects if e.places == ("axis",)]
+    beside = _added(evidence, payload) if payload is not None else ()
+    alone: dict[str, Attribution] = {}
+    for joint in evidence.judged:
+        own = of_joint(evidence, joint, beside)
+        left = partial(down_to_floor, [channel_of(joint)], own)
+        if left(own.null()):
+            say(f"{joint}{' beside a payload' if payload is not None else ''}")
+            alone[joint] = attribute(Candidates(own, effects), left, say, CAUSES_OF_JOINT)
+    terms = [payload.terms[-1]] if payload is not None else []
+    for found in alone.values():
+        terms += [candidates.term(t.effect, t.site, t.shape) for t in found.fit.terms]
+    return Explained(fit(evidence.data, terms), alone)
+
+
+def _payload(evidence: ArmMotionEvidence, candidates: Candidates) -> Fit | None:
+    """Return the fit of a payload at the link that needs it most, beside plain friction; None where none is needed."""
+    page = next((e for e in candidates.effects if isinstance(e, PayloadOnLink)), None)
+    if page is None:
+        return None
+    plain = [candidates.term(e, j, _middle(e, evidence, j)) for j in evidence.judged for e in _plain(candidates)]
+    base, null = fit(evidence.data, plain), evidence.null().total
+    trials = [t for link in evidence.places["link"] if (t := _at(evidence, candidates, page, link, plain)) is not None]
+    if not trials:
+        return None
+    best = min(trials, key=cost)
+    worth = NEEDED * best.terms[-1].width + PARSIMONY * (null - base.total)
+    return best if base.total - best.total > worth else None
+
+
+def _plain(candidates: Candidates) -> list[Effect]:
+    ids = (CoulombFriction.id, ViscousFriction.id)
+    return [e for e in candidates.effects if e.id in ids]
+
+
+def _middle(effect: Effect, evidence: ArmMotionEvidence, joint: str) -> dict[str, float]:
+    shapes = effect.shapes(evidence.views, joint)
+    return dict(shapes[len(shapes) // 2])
+
+
+def _at(
+    evidence: ArmMotionEvidence, candidates: Candidates, page: Effect, link: str, plain: Sequence[Term]
+) -> Fit | None:
+    """Fit a payload at a link, its inertia about the centre found in the round before."""
+    shape: dict[str, float] = {}
+    for _ in range(CENTRE_ROUNDS):
+        trial = fit(evidence.data, [*plain, candidates.term(page, link, shape)])
+        if not page.admissible(shape, trial.of(len(plain))):
+            return None
+        found = page.parameters(shape, trial.of(len(plain)))
+        shape = {name: round(found[name], 4) for name in "xyz"}
+    return trial
+
+
+def _added(evidence: ArmMotionEvidence, loaded: Fit) -> list[dict[Channel, Array]]:
+    """Return what the last term of a fit adds to the residuals of every block, (g, 1) in SI units."""
+    term, coefficients = loaded.terms[-1], loaded.of(len(loaded.terms) - 1)
+    seen: dict[int, dict[Channel, Array]] = {}
+    for view in evidence.views:
+        if id(view) not in seen:
+            columns = term.effect.signature(view, term.site, term.shape).columns
+            seen[id(view)] = {c: x @ coefficients for c, x in columns.items()}
+    return [seen[id(view)] for view in evidence.views]
+
+
+def _with_rivals(
+    evidence: ArmMotionEvidence, candidates: Candidates, best: Explained, second: Explained | None
+) -> Attribution:
+    """Add to every cause what would explain as much: rivals at its joint, and for a payload what takes its place."""
+    terms, rivals, ranking = best.fit.terms, [], []
+    alike = second is not None and _alike(evidence, best, second)
+    of_joints = {t.key: i for found in best.alone.values() for i, t in enumerate(found.fit.terms)}
+    for i, term in enumerate(terms):
+        others = [t for j, t in enumerate(terms) if j != i]
+        if term.key in of_joints:
+            found, k = best.alone[term.site], of_joints[term.key]
+            own = [f.terms[-1] for f in found.rivals[k]]
+            ranking.append(found.ranking[k])
+        else:
+            own = []
+            ranking.append(())
+        trials = [fit(evidence.data, [*others, candidates.term(t.effect, t.site, t.shape)]) for t in own]
+        if alike and second is not None:
+            taken = {t.key for t in terms}
+            new = [t for t in second.fit.terms if t.key not in taken]
+            kept = {t.key for t in second.fit.terms}
+            if term.key not in kept:
+                trials += [fit(evidence.data, [*others, t]) for t in new]
+        rivals.append(tuple(trials))
+    explained = tuple(without_term(evidence, best.fit, i).total - best.fit.total for i in range(len(terms)))
+    return Attribution(best.fit, tuple(rivals), explained, tuple(ranking), len(evidence.nuisance))
+
+
+def _alike(evidence: ArmMotionEvidence, best: Explained, second: Explained) -> bool:
+    """Whether a second set of causes explains as much as the best one, but for the share that a rival may leave.
+
+    The share is of what those causes explain that the second set does not have.
+    """
+    kept = {t.key for t in second.fit.terms}
+    without = fit(evidence.data, [t for t in best.fit.terms if t.key in kept])
+    return second.fit.total - best.fit.total < max(NEEDED, RIVAL * (without.total - best.fit.total))

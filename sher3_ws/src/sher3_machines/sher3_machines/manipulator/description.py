@@ -1,0 +1,74 @@
+"""The description of a serial arm in motion; lengths are in m, angles in rad, forces in N, torques in N m."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field, model_validator
+
+from sher3_machines.axes.description import Axis, CommandLaw
+from sher3_machines.intake.fields import Clock, Description
+
+Row = tuple[float, ...]
+
+
+class Joint(Axis):
+    """One joint that was recorded; its name is that of the model.
+
+    Attributes:
+        gain: N, or N m, per unit of the recorded effort or command; `unknown`: the effort is recorded in units of its
+            own, such as a motor current, and the model's inertias tell how many of them a newton metre is.
+    """
+
+    command_law: CommandLaw = CommandLaw(kind="force")
+    gain: float | Literal["unknown"] = 1.0
+
+    @model_validator(mode="after")
+    def _drives(self) -> Joint:
+        if self.command_law.kind != "force":
+            raise ValueError(f"joint {self.name}: its force must be recorded; use kind: axes for a position servo")
+        return self
+
+
+class ManipulatorDescription(Description):
+    """A serial arm whose joints move together.
+
+    Attributes:
+        model: URDF or MJCF file with masses and inertias; joints of it that are not listed stay at rest at zero.
+        inertias: `nominal`: those of the model are compared with the robot; `identified`: they are found from the data.
+        time: of the samples.
+        joints: those recorded, in any order.
+        coupling: motor travel = coupling * joint travel, one row for each joint of the list; without it every motor
+            moves its own joint.
+        effort_of: whether the efforts are those of the joints or of the motors behind the coupling.
+        repeats: whether the data files are repeats of one motion.
+        gravity: at the base of the model, m/s^2; None: that of the model.
+    """
+
+    kind: Literal["manipulator"]
+    model: str
+    inertias: Literal["nominal", "identified"] = "nominal"
+    time: Clock
+    joints: tuple[Joint, ...] = Field(min_length=1)
+    coupling: tuple[Row, ...] | None = None
+    effort_of: Literal["joints", "motors"] = "joints"
+    repeats: bool = False
+    gravity: tuple[float, float, float] | None = None
+
+    @model_validator(mode="after")
+    def _consistent(self) -> ManipulatorDescription:
+        names, n = [j.name for j in self.joints], len(self.joints)
+        if len(set(names)) < n:
+            raise ValueError(f"joint names repeat: {', '.join(names)}")
+        if self.coupling is not None and [len(row) for row in self.coupling] != [n] * n:
+            raise ValueError(f"coupling: a matrix of {n} rows and {n} columns is needed, one for each joint")
+        return self
+
+    @property
+    def axes(self) -> tuple[Joint, ...]:
+        """The joints: they are recorded like axes."""
+        return self.joints
+
+    def named_files(self) -> tuple[str, ...]:
+        """Return the file of the model."""
+        return (self.model,)

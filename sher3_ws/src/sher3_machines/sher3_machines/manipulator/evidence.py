@@ -1,0 +1,162 @@
+"""Residuals and floors of a serial arm in motion: what every joint is given beyond what its model says it needs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from sher3_diagnosis.channel import Array, Channel, Floors, Residual, Residuals
+from sher3_diagnosis.evidence import Evidence
+from sher3_diagnosis.localise.floors import repeat_floors
+from sher3_diagnosis.whitened import Whitened
+
+from sher3_machines.axes.evidence import blocks_of
+from sher3_machines.axes.floors import NOTHING, UNIFORM, foresight, innovation
+from sher3_machines.axes.record import AxesRun
+from sher3_machines.errors import MachineError
+from sher3_machines.manipulator.description import ManipulatorDescription
+from sher3_machines.manipulator.gains import Share, share_of
+from sher3_machines.manipulator.identify import with_identified_inertias
+from sher3_machines.manipulator.model import ArmModel
+from sher3_machines.manipulator.signals import joint_signals
+from sher3_machines.manipulator.view import MotionView
+from sher3_machines.thresholds import BLOCKS
+
+RECORDED = "recorded unit"
+"""Unit of a force whose gain nobody stated."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ArmMotionEvidence(Evidence):
+    """The engine's evidence for an arm in motion; a block of a record is a run.
+
+    Attributes:
+        described: the arm.
+        runs: records as imported.
+        records: views of the arm, one for each record; blocks of one record share theirs.
+        judged: joints whose force balance is looked at.
+        shares: joint -> units of its recorded effort per newton metre, where its gain was found from the data.
+        turned: joints whose effort was recorded with the opposite sign, and was turned.
+    """
+
+    described: ManipulatorDescription
+    runs: Sequence[AxesRun]
+    records: Sequence[MotionView]
+    judged: Sequence[str]
+    shares: Mapping[str, Share] = field(default_factory=dict)
+    turned: Sequence[str] = ()
+
+
+def channel_of(joint: str) -> Channel:
+    """Return the force balance of a joint."""
+    return Channel("motor_mechanics", joint)
+
+
+def gather_arm_motion(
+    runs: Sequence[AxesRun], described: ManipulatorDescription, model: ArmModel, judged: Sequence[str]
+) -> ArmMotionEvidence:
+    """Compute residuals and floors of every joint and cut them into blocks of time.
+
+    Args:
+        runs: records.
+        described: the arm.
+        model: of it.
+        judged: joints whose effort was recorded; the others only move.
+
+    Raises:
+        MachineError: no joint can be judged.
+    """
+    repeats = described.repeats and len(runs) > 1
+    n = len(described.joints)
+    coupling = np.asarray(described.coupling if described.coupling is not None else np.eye(n), dtype=float)
+    signals = [joint_signals(run, described, "repeats" if repeats else run.name) for run in runs]
+    plain = [MotionView(s, described.joints, model, coupling, np.ones(n)) for s in signals]
+    found = {name: share_of(plain, name) for name in judged}
+    turned = tuple(name for name in judged if found[name].backwards)
+    if turned:
+        signs = np.array([-1.0 if j.name in turned else 1.0 for j in described.joints])
+        signals = [replace(s, effort=s.effort * signs) for s in signals if s.effort is not None]
+        plain = [MotionView(s, described.joints, model, coupling, np.ones(n)) for s in signals]
+    if described.inertias == "identified":
+        model = with_identified_inertias(plain, model, judged)
+        plain = [MotionView(s, described.joints, model, coupling, np.ones(n)) for s in signals]
+    unknown = [j.name for j in described.joints if j.gain == "unknown" and j.name in judged]
+    shares = {name: found[name].turned() for name in unknown}
+    factors = np.array([shares[j.name].value if j.name in shares else 1.0 for j in described.joints])
+    views = [MotionView(s, described.joints, model, coupling, factors) for s in signals]
+    residuals = [_residuals(view, judged) for view in views]
+    if not any(residuals):
+        raise MachineError("no joint can be judged", value="0 joints", remedy="record efforts while the joints move")
+    floors = _floors(views, residuals, repeats)
+    per_record = -(-BLOCKS // len(views))
+    blocks = [(r, block) for r, x in enumerate(residuals) for block in blocks_of(x, per_record)]
+    seen = tuple(j for j in judged if any(channel_of(j) in x for x in residuals))
+    return ArmMotionEvidence(
+        excitations=[views[r].excitation for r, _ in blocks],
+        data=Whitened([views[r] for r, _ in blocks], [b for _, b in blocks], [floors[r] for r, _ in blocks]),
+        units={channel_of(j.name): unit_of_force(j.gain == "unknown", j.motion) for j in described.joints},
+        places={"axis": seen, "link": model.links},
+        rotary=frozenset(j.name for j in described.joints if j.motion == "rotary"),
+        described=described,
+        runs=list(runs),
+        records=views,
+        judged=seen,
+        shares=shares,
+        turned=turned,
+    )
+
+
+def unit_of_force(own: bool, motion: str) -> str:
+    """Return the unit of a joint's force; its `own` where the gain is not known."""
+    return RECORDED if own else ("N" if motion == "linear" else "N*m")
+
+
+def of_joint(evidence: ArmMotionEvidence, joint: str, beside: Sequence[Mapping[Channel, Array]] = ()) -> Evidence:
+    """Return the evidence for one joint alone.
+
+    Args:
+        evidence: of the arm.
+        joint: to be looked at.
+        beside: per block, what causes of the whole arm add to the residuals, (g, 1) in SI units; taken off.
+    """
+    channel, data = channel_of(joint), evidence.data
+    residuals: list[Residuals] = []
+    for r, found in enumerate(data.residuals):
+        own = found.get(channel)
+        known = beside[r].get(channel) if beside else None
+        if own is not None and known is not None:
+            own = replace(own, values=own.values - known)
+        residuals.append({} if own is None else {channel: own})
+    floors = [{channel: f[channel]} if channel in f else {} for f in data.floors]
+    return Evidence(
+        excitations=evidence.excitations,
+        data=Whitened(data.views, residuals, floors),
+        units=evidence.units,
+        places={"axis": (joint,)},
+        rotary=evidence.rotary,
+    )
+
+
+def _residuals(view: MotionView, judged: Sequence[str]) -> Residuals:
+    run, out = view.run, Residuals()
+    assert run.effort is not None
+    left = run.to_grid(run.effort) - view.inertial
+    for joint in judged:
+        row = view.row(joint)
+        out[channel_of(joint)] = Residual(left[:, [row]], view.in_motion(row))
+    return {channel: x for channel, x in out.items() if x.ok.sum() >= BLOCKS}
+
+
+def _floors(views: Sequence[MotionView], found: Sequence[Residuals], repeats: bool) -> list[Floors]:
+    """Floor per record and channel: between repeats, else what cannot be foreseen; never below a step of the effort."""
+    pooled = repeat_floors([view.excitation for view in views], found) if repeats else {}
+    out = []
+    for view, residuals in zip(views, found, strict=True):
+        floors: Floors = {}
+        told = foresight(view.run)
+        for channel, x in residuals.items():
+            step = view.joints[view.row(channel.actuator)].effort_resolution / UNIFORM
+            floors[channel] = np.maximum(pooled.get(channel, innovation(x) / told), max(step, NOTHING))
+        out.append(floors)
+    return out

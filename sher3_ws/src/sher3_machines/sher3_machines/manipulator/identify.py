@@ -1,0 +1,49 @@
+"""Inertial parameters found from the data, beside the usual friction of every joint.
+
+Inverse-dynamics identification (Gautier and Khalil; Janot et al.): efforts = regressor * parameters + friction, all
+joints together. What the motion does not tell stays as the model has it: the step from the model's parameters is the
+shortest one that explains the efforts, which changes base parameters alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from sher3_machines.manipulator.gains import friction_columns
+from sher3_machines.manipulator.model import ArmModel
+from sher3_machines.manipulator.view import MotionView
+
+UNSEEN = 1e-3
+"""Singular value over the largest below which a combination of parameters is not told by the motion."""
+
+
+def with_identified_inertias(views: Sequence[MotionView], model: ArmModel, judged: Sequence[str]) -> ArmModel:
+    """Return the model with the inertial parameters that explain the efforts of all joints best.
+
+    Args:
+        views: of all records.
+        model: nominal.
+        judged: joints whose effort was recorded.
+    """
+    rows, target = [], []
+    for view in views:
+        assert view.run.effort is not None
+        effort = view.run.to_grid(view.run.effort)
+        for place, joint in enumerate(judged):
+            row = view.row(joint)
+            ok = view.in_motion(row)
+            friction = friction_columns(view, joint)[ok, :2]  # a constant force would take the weight
+            own = np.zeros((int(ok.sum()), len(judged) * friction.shape[1]))
+            own[:, place * friction.shape[1] : (place + 1) * friction.shape[1]] = friction
+            scale = max(float(np.std(effort[ok, row])), np.finfo(float).tiny)
+            rows.append(np.hstack([view.regressor[ok, row], own]) / scale)
+            target.append((effort[ok, row] - view.rigid[ok, row]) / scale)
+    x, y = np.concatenate(rows), np.concatenate(target)
+    length = np.linalg.norm(x, axis=0)
+    alive = length > 0.0
+    step = np.zeros(x.shape[1])
+    step[alive] = np.linalg.lstsq(x[:, alive] / length[alive], y, rcond=UNSEEN)[0] / length[alive]
+    return replace(model, parameters=model.inertial + step[: len(model.inertial)])

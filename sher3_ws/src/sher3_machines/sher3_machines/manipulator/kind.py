@@ -1,0 +1,43 @@
+"""The kind `manipulator`: a serial arm in motion in a case folder."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from sher3_diagnosis.channel import Array
+
+from sher3_machines.axes.kind import packed, unpacked
+from sher3_machines.axes.record import AxesRun, axes_run
+from sher3_machines.intake.kind import Kind
+from sher3_machines.intake.tables import Tables
+from sher3_machines.manipulator.description import ManipulatorDescription
+from sher3_machines.manipulator.machine import Manipulator
+from sher3_machines.manipulator.model import load_model
+
+
+class ManipulatorKind(Kind[ManipulatorDescription, AxesRun]):
+    """Serial arms in motion; a case stores `period` and an array `JOINT/SIGNAL` for each signal."""
+
+    name = "manipulator"
+    description = ManipulatorDescription
+
+    def read(self, name: str, tables: Tables, description: ManipulatorDescription) -> AxesRun:
+        """Bring a data file onto a uniform clock; raises MachineError."""
+        return axes_run(name, tables, description)
+
+    def pack(self, run: AxesRun) -> Mapping[str, Array]:
+        """Return the period and every signal."""
+        return packed(run)
+
+    def unpack(self, name: str, arrays: Tables, notes: Sequence[str]) -> AxesRun:
+        """Return the run that a case stores; raises KeyError without a period."""
+        return unpacked(name, arrays, notes)
+
+    def machine(self, description: ManipulatorDescription) -> Manipulator:
+        """Return the arm; raises MachineError for a model that cannot be read or has no such joint."""
+        names = [j.name for j in description.joints]
+        return Manipulator(description, load_model(Path(description.model), names, description.gravity))
+
+
+KIND = ManipulatorKind()

@@ -1,0 +1,154 @@
+"""A serial arm in motion as a machine of the diagnosis."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from sher3_diagnosis.attribute.candidates import Candidates
+from sher3_diagnosis.attribute.rivals import Attribution
+from sher3_diagnosis.attribute.search import Left, Say
+from sher3_diagnosis.effect import Effect
+from sher3_diagnosis.finding import Finding
+from sher3_diagnosis.machine import Machine, Policy
+from sher3_diagnosis.verdict import Cause
+from sher3_effects import pages
+from sher3_effects.inertia.payload_mass import PayloadOnLink
+from sher3_effects.scale.torque_constant import TorqueConstant
+
+from sher3_machines.axes.health import dead_channels
+from sher3_machines.axes.machine import NO_REPEATS
+from sher3_machines.axes.record import AxesRun
+from sher3_machines.manipulator.causes import causes_of_arm
+from sher3_machines.manipulator.confounding import SAME, confounding_notes
+from sher3_machines.manipulator.description import ManipulatorDescription
+from sher3_machines.manipulator.evidence import RECORDED, ArmMotionEvidence, gather_arm_motion
+from sher3_machines.manipulator.model import ArmModel
+
+if TYPE_CHECKING:
+    from sher3_machines.manipulator.reporter import ManipulatorReporter
+
+
+IN_INERTIAS = (TorqueConstant.id, PayloadOnLink.id)
+"""Effects that gain or inertias found from the data contain."""
+
+
+@dataclass(frozen=True)
+class Manipulator(Machine[AxesRun, ArmMotionEvidence]):
+    """A serial arm whose joints move together; its model says what force each of them needs.
+
+    Attributes:
+        described: the arm.
+        model: of its rigid bodies.
+    """
+
+    described: ManipulatorDescription
+    model: ArmModel
+    policy = Policy(down_to_floor=True, constancy=False, spill_over=False)
+
+    def library(self) -> Sequence[Effect]:
+        """Return the pages of an axis and those of a joint of an arm."""
+        return of_joints()
+
+    def effects(self, evidence: ArmMotionEvidence) -> Sequence[Effect]:
+        """Return the pages that the recorded signals can show."""
+        facts = {"drive"}
+        if all(j.lead is not None for j in self.described.joints):
+            facts.add("lead")
+        known = of_joints(facts)
+        if evidence.shares or self.described.inertias == "identified":
+            known = [e for e in known if e.id not in IN_INERTIAS]
+        return known
+
+    def audit(self, runs: Sequence[AxesRun]) -> list[str]:
+        """Return what was done to the data, which channels are dead, and whether floors are known from repeats."""
+        notes = [note for run in runs for note in run.notes]
+        for run in runs:
+            notes += [note for joint in self.described.joints for note in dead_channels(run, joint).values()]
+        return notes if self.described.repeats and len(runs) > 1 else [*notes, NO_REPEATS]
+
+    def gather(self, runs: Sequence[AxesRun]) -> Sequence[ArmMotionEvidence]:
+        """Return the arm as one part; joints without an effort only move."""
+        dead = {
+            j.name
+            for j in self.described.joints
+            for run in runs
+            if {"effort", "position"} & dead_channels(run, j).keys()
+        }
+        judged = [j.name for j in self.described.joints if j.name not in dead]
+        return [gather_arm_motion(runs, self.described, self.model, judged)]
+
+    def attribute(self, evidence: ArmMotionEvidence, candidates: Candidates, left_over: Left, say: Say) -> Attribution:
+        """Choose the causes joint by joint, without and with a payload."""
+        return causes_of_arm(evidence, candidates, say)
+
+    def refine(self, evidence: ArmMotionEvidence, causes: list[Cause]) -> tuple[ArmMotionEvidence, list[Cause]]:
+        """Return forces of a joint with unknown gain in the unit that was recorded, with what hides in that gain."""
+        return evidence, [with_hidden(in_own_unit(c)) if c.actuator in evidence.shares else c for c in causes]
+
+    def remarks(self, finding: Finding[ArmMotionEvidence]) -> list[str]:
+        """Say what cannot be told apart, which gains were found, and which joints were not judged."""
+        evidence = finding.evidence
+        silent = [j.name for j in self.described.joints if j.name not in evidence.judged]
+        notes = [f"not judged, no usable effort or no motion: {', '.join(silent)}"] if silent else []
+        turned = ", ".join(evidence.turned)
+        if turned:
+            notes.append(f"{turned}: effort recorded with the opposite sign: friction would give energy; it was turned")
+        if self.described.inertias == "identified":
+            notes.append(
+                "inertias identified from the data: drive gain, weight and payload are in them, cannot be told apart "
+                "and are not looked for"
+            )
+        return [*notes, *gain_notes(evidence), *confounding_notes(evidence)]
+
+    def reporter(self) -> ManipulatorReporter:
+        """Return the part of this machine in a report."""
+        from sher3_machines.manipulator.reporter import ManipulatorReporter
+
+        return ManipulatorReporter()
+
+
+def of_joints(facts: set[str] | None = None) -> list[Effect]:
+    """Return the pages for a joint of an arm: its own, and those of an axis that it does not replace."""
+    own = pages("joint", facts)
+    taken = {e.id for e in own}
+    return [*own, *(e for e in pages("axis", facts) if e.id not in taken)]
+
+
+def gain_notes(evidence: ArmMotionEvidence) -> list[str]:
+    """Return what was found of gains that nobody stated."""
+    if not evidence.shares:
+        return []
+    notes = [
+        f"{', '.join(evidence.shares)}: drive gain not stated: forces are in the recorded unit; drive gain, weight and "
+        "payload are confounded unless the model's inertias are right, and no payload is looked for"
+    ]
+    for joint, share in evidence.shares.items():
+        if share.told:
+            low, high = share.interval
+            text = f"{joint}: {share.value:.3g} recorded units per N m ({low:.3g} .. {high:.3g}), inertias as modelled"
+            notes.append(text)
+        else:
+            notes.append(f"{joint}: the motion does not tell the drive gain; weight and inertia are left in the force")
+    return notes
+
+
+def with_hidden(cause: Cause) -> Cause:
+    """Return a cause with the rivals that it can by no motion be told from while the drive gain is not known."""
+    if cause.effect not in SAME.values():
+        return cause
+    hidden = [e for e in SAME.values() if e != cause.effect and e not in cause.rivals]
+    return cause.model_copy(update={"rivals": [*cause.rivals, *hidden]})
+
+
+def in_own_unit(cause: Cause) -> Cause:
+    """Return a cause whose forces are in the unit that was recorded."""
+    changed = {
+        name: p.model_copy(update={"unit": p.unit.replace("N*m", RECORDED).replace("N/", f"{RECORDED}/")})
+        if p.unit.startswith("N")
+        else p
+        for name, p in cause.parameters.items()
+    }
+    changed = {n: p.model_copy(update={"unit": RECORDED}) if p.unit == "N" else p for n, p in changed.items()}
+    return cause.model_copy(update={"parameters": changed})

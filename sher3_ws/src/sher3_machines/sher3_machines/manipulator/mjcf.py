@@ -1,0 +1,73 @@
+"""MJCF by MuJoCo's own loader (an extra): defaults, includes and mesh inertias are resolved as MuJoCo does."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pinocchio as pin
+from sher3_diagnosis.channel import Array
+
+from sher3_machines.errors import MachineError
+
+SLIDE, HINGE = 2, 3
+"""MuJoCo's numbers for the kinds of joint that are read (mjtJoint)."""
+
+
+def model_from_mjcf(path: Path) -> pin.Model:
+    """Return the rigid bodies and joints of an MJCF file as a Pinocchio model.
+
+    Raises:
+        MachineError: MuJoCo is not installed, or a joint neither turns nor slides.
+        ValueError: MuJoCo cannot read the file.
+    """
+    try:
+        api = import_module("mujoco")
+    except ImportError as error:
+        raise MachineError(f"{path}: MJCF needs MuJoCo", remedy="install the extra `mujoco` of this project") from error
+    source = api.MjModel.from_xml_path(str(path))
+    model = pin.Model()
+    model.gravity.linear = np.array(source.opt.gravity)
+    carrier: list[tuple[int, pin.SE3]] = [(0, pin.SE3.Identity())]
+    armature: list[float] = []
+    for body in range(1, source.nbody):
+        parent, placed = carrier[source.body_parentid[body]]
+        pose = placed * _pose(source.body_pos[body], source.body_quat[body])
+        first, count = source.body_jntadr[body], source.body_jntnum[body]
+        for joint in range(first, first + count):
+            parent, pose = _add(model, source, joint, parent, pose, path)
+            armature.append(float(source.dof_armature[source.jnt_dofadr[joint]]))
+        carrier.append((parent, pose))
+        inertia = _inertia(source, body).se3Action(pose)
+        model.appendBodyToJoint(parent, inertia, pin.SE3.Identity())
+        name = source.body(body).name or f"body{body}"
+        model.addFrame(pin.Frame(name, parent, 0, pose, pin.FrameType.BODY, pin.Inertia.Zero()))
+    model.armature = np.array(armature)
+    return model
+
+
+def _add(model: pin.Model, source: Any, joint: int, parent: int, pose: pin.SE3, path: Path) -> tuple[int, pin.SE3]:
+    """Add a joint; its frame sits at its anchor. Return it, and the body's pose in that frame."""
+    kinds = {SLIDE: pin.JointModelPrismaticUnaligned, HINGE: pin.JointModelRevoluteUnaligned}
+    kind, name = int(source.jnt_type[joint]), source.joint(joint).name or f"joint{joint}"
+    if kind not in kinds:
+        raise MachineError(
+            f"{path}: joint {name} neither turns nor slides", value=f"mjtJoint {kind}", remedy="fix the arm's base"
+        )
+    anchor = pin.SE3(np.eye(3), np.array(source.jnt_pos[joint]))
+    made = model.addJoint(parent, kinds[kind](np.array(source.jnt_axis[joint])), pose * anchor, name)
+    return made, anchor.inverse()
+
+
+def _inertia(source: Any, body: int) -> pin.Inertia:
+    turn = _pose(source.body_ipos[body], source.body_iquat[body])
+    principal = np.diag(source.body_inertia[body])
+    return pin.Inertia(float(source.body_mass[body]), np.zeros(3), principal).se3Action(turn)
+
+
+def _pose(position: Array, quaternion: Array) -> pin.SE3:
+    """Transform of a position and a quaternion (w, x, y, z)."""
+    w, x, y, z = map(float, quaternion)
+    return pin.SE3(pin.Quaternion(w, x, y, z).toRotationMatrix(), np.array(position))

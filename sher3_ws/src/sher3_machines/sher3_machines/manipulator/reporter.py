@@ -1,0 +1,39 @@
+"""What a report shows that only a serial arm in motion knows."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from sher3_diagnosis.channel import Channel
+from sher3_diagnosis.report.reporter import Output, Reporter
+
+from sher3_machines.axes.reporter import samples_of
+from sher3_machines.manipulator.evidence import ArmMotionEvidence
+
+
+class ManipulatorReporter(Reporter[ArmMotionEvidence]):
+    """The part of an arm in motion in a report: measured, nominal and corrected effort over time."""
+
+    held_out = "blocks"
+
+    def data(self, parts: Sequence[ArmMotionEvidence]) -> str:
+        """Return records, joints, and how long was recorded in all."""
+        evidence = parts[0]
+        seconds = sum(run.period * len(samples_of(run.signals)) for run in evidence.runs)
+        joints = len(evidence.described.joints)
+        return f"{len(evidence.runs)} record{'s' * (len(evidence.runs) != 1)}, {seconds:.0f} s of {joints} joints"
+
+    def run_name(self, evidence: ArmMotionEvidence, run: int) -> str:
+        """Return the name of the record that a block belongs to."""
+        return f"Record {evidence.runs[evidence.records.index(evidence.data.views[run])].name}"
+
+    def together(self, evidence: ArmMotionEvidence, run: int) -> Sequence[int]:
+        """Return the blocks of the same record."""
+        views = evidence.data.views
+        return [k for k, view in enumerate(views) if view is views[run]]
+
+    def output(self, evidence: ArmMotionEvidence, run: int, channel: Channel) -> Output:
+        """Return the effort of a joint."""
+        view = evidence.records[evidence.records.index(evidence.data.views[run])]
+        assert view.run.effort is not None
+        return Output("effort", view.run.to_grid(view.run.effort)[:, view.row(channel.actuator)])

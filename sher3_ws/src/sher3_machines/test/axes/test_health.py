@@ -1,0 +1,56 @@
+"""Channels that say nothing are named and left out."""
+
+import numpy as np
+import pytest
+from sher3_diagnosis import diagnose
+from sher3_machines.axes.health import dead_channels, stuck
+from slides import axis_of, columns, driven, machine, run_of
+
+LOADED = {"signals": {**columns("position", "reference", "load"), **columns("command", unit="N")}}
+
+
+@pytest.fixture(scope="module")
+def rows():
+    return driven(seconds=8.0, coulomb=5.0)
+
+
+def test_a_reading_that_stays_while_the_axis_moves():
+    moving = np.ones(100, dtype=bool)
+    live = np.sin(np.arange(100.0))
+    assert stuck(live, moving) is None
+    assert "reads 0 in 100%" in stuck(np.zeros(100), moving)
+    assert "reads 0 in 60%" in stuck(np.where(np.arange(100) % 5 < 3, 0.0, live), moving)
+    assert stuck(np.where(live > 0.0, live.max(), live), moving) is None, "a limit is no dead channel"
+
+
+def test_an_encoder_that_is_not_connected_is_no_lead_error(rows):
+    verdict = diagnose(machine(**LOADED), [run_of(rows, load=np.zeros(len(rows)))]).verdict
+    assert {c.effect for c in verdict.causes} == {"coulomb_friction"}
+    assert any("slide.load reads 0 in 100%" in n for n in verdict.notes)
+
+
+def test_an_encoder_that_only_shows_noise_is_dead(rows):
+    noise = 1e-6 * np.random.default_rng(0).normal(size=len(rows))
+    dead = dead_channels(run_of(rows, load=noise), axis_of(**LOADED))
+    assert "moves by" in dead["load"]
+
+
+def test_an_effort_of_zero_is_no_mass_problem(rows):
+    signals = {**columns("position", "reference"), **columns("effort", unit="N")}
+    run = run_of(rows, effort=np.zeros(len(rows)))
+    del run.signals["slide"]["command"]
+    verdict = diagnose(machine(signals=signals, mass="unknown"), [run]).verdict
+    assert verdict.status == "no_gap" and not verdict.causes
+    assert any("slide.effort reads 0 in 100%" in n for n in verdict.notes)
+
+
+def test_a_position_that_never_moves_is_named(rows):
+    still = rows.copy()
+    still[:, 0] = 0.0
+    assert "reads 0 throughout while reference moves" in dead_channels(run_of(still), axis_of())["position"]
+
+
+def test_an_axis_at_rest_is_not_dead(rows):
+    still = rows.copy()
+    still[:] = 0.01
+    assert dead_channels(run_of(still, load=np.zeros(len(rows))), axis_of(**LOADED)) == {}

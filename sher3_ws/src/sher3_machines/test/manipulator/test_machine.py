@@ -1,0 +1,114 @@
+"""A lift with a pendulum, both joints moving at once: what the engine says of it."""
+
+import numpy as np
+import pytest
+from lifts import L, described, friction, machine, motion, needed, run_of, values
+from sher3_diagnosis import diagnose
+from sher3_machines import MachineError
+
+Q, V, A = motion()
+
+
+def verdict(path, effort, **changes):
+    return diagnose(machine(path, **changes), [run_of(Q, effort)]).verdict
+
+
+@pytest.fixture
+def path(tmp_path):
+    return tmp_path / "lift.urdf"
+
+
+def test_a_healthy_arm_has_no_gap(path):
+    assert verdict(path, needed(Q, V, A)).status == "no_gap"
+
+
+def test_friction_of_both_joints_under_weight_and_coupling(path):
+    found = verdict(path, needed(Q, V, A) + friction(V, (8.0, 0.5), (20.0, 0.4)))
+    value = values(found)
+    assert found.status == "attributed"
+    assert {(c.effect, c.actuator) for c in found.causes} == {
+        (effect, joint) for effect in ("coulomb_friction", "viscous_friction") for joint in ("lift", "swing")
+    }
+    assert value["coulomb_friction", "lift", "force"] == pytest.approx(8.0, rel=0.06)
+    assert value["viscous_friction", "lift", "extra"] == pytest.approx(20.0, rel=0.06)
+    assert value["coulomb_friction", "swing", "force"] == pytest.approx(0.5, rel=0.06)
+    assert value["viscous_friction", "swing", "extra"] == pytest.approx(0.4, rel=0.06)
+
+
+def test_a_payload_on_the_pendulum_is_one_cause_of_both_joints(path):
+    """0.5 kg at the height of the pendulum's own centre, 5 cm in front of it."""
+    found = verdict(path, needed(Q, V, A, 0.5, 0.05, -L) + friction(V, (8.0, 0.5)))
+    value = values(found)
+    assert {c.effect for c in found.causes} == {"payload_mass", "coulomb_friction"}
+    assert value["payload_mass", "pendulum", "mass"] == pytest.approx(0.5, rel=0.03)
+    assert value["payload_mass", "pendulum", "x"] == pytest.approx(0.05, abs=0.01)
+    assert value["payload_mass", "pendulum", "z"] == pytest.approx(-L, abs=0.02)
+
+
+def test_a_spring_and_a_gear_loss(path):
+    """10 N/m on the lift; a tenth of the torque lost in the gear of the swing."""
+    nominal = needed(Q, V, A)
+    effort = nominal + np.stack([10.0 * (Q[:, 0] - 0.1), 0.1 * np.abs(nominal[:, 1]) * np.tanh(V[:, 1] / 1e-3)], axis=1)
+    value = values(verdict(path, effort))
+    assert value["spring_torque", "lift", "stiffness"] == pytest.approx(10.0, rel=0.05)
+    assert value["spring_torque", "lift", "rest"] == pytest.approx(0.1, abs=0.03)
+    assert value["gear_loss", "swing", "share"] == pytest.approx(0.1, rel=0.1)
+
+
+def test_a_drive_gain_and_a_rotor(path):
+    nominal = needed(Q, V, A)
+    effort = np.stack([nominal[:, 0] / 1.1, nominal[:, 1] + 0.05 * A[:, 1]], axis=1)
+    value = values(verdict(path, effort))
+    assert value["torque_constant", "lift", "relative"] == pytest.approx(0.1, rel=0.05)
+    assert value["rotor_inertia", "swing", "inertia"] == pytest.approx(0.05, rel=0.05)
+
+
+def test_an_unknown_gain_is_found_and_what_hides_in_it_is_said(path):
+    """2.5 N m an ampere on the swing, whose effort was recorded with the opposite sign."""
+    effort = (needed(Q, V, A) + friction(V, (0.0, 0.5))) / np.array([1.0, -2.5])
+    found = verdict(path, effort, joint={"swing": {"gain": "unknown"}})
+    cause = next(c for c in found.causes if c.actuator == "swing")
+    assert cause.effect == "coulomb_friction"
+    assert cause.parameters["force"].value == pytest.approx(0.2, rel=0.06)
+    assert cause.parameters["force"].unit == "recorded unit"
+    told = " ".join(found.notes)
+    assert "swing: effort recorded with the opposite sign" in told
+    assert "gain, weight and payload are confounded" in told
+    share = next(n for n in found.notes if "per N m" in n)
+    assert float(share.split()[1]) == pytest.approx(0.4, rel=0.01)
+
+
+def test_a_dead_effort_is_named_and_the_other_joint_judged(path):
+    effort = needed(Q, V, A) + friction(V, (8.0, 0.0))
+    run = run_of(Q, effort)
+    run.signals["swing"]["effort"][:] = 0.0
+    found = diagnose(machine(path), [run]).verdict
+    assert {(c.effect, c.actuator) for c in found.causes} == {("coulomb_friction", "lift")}
+    assert any("swing.effort reads 0 in 100%" in n for n in found.notes)
+    assert any(n.startswith("not judged") and "swing" in n for n in found.notes)
+
+
+def test_an_arm_of_which_nothing_can_be_judged_is_refused(path):
+    run = run_of(Q, 0.0 * Q, noise=0.0)
+    with pytest.raises(MachineError, match="no joint can be judged"):
+        diagnose(machine(path), [run])
+
+
+def test_friction_behind_a_coupling_belongs_to_the_motor(path):
+    """The second motor moves with both joints: its friction would be booked on the wrong joint without the coupling."""
+    travel = np.array([[1.0, 0.0], [1.0, 0.5]])
+    motors = needed(Q, V, A) @ np.linalg.inv(travel)  # tau_joint = R^T tau_motor
+    motors = motors + friction(V @ travel.T, (0.0, 3.0))
+    found = verdict(path, motors @ travel, coupling=travel.tolist(), joint={"swing": {"motion": "linear"}})
+    assert {(c.effect, c.actuator) for c in found.causes} == {("coulomb_friction", "swing")}
+    assert values(found)["coulomb_friction", "swing", "force"] == pytest.approx(3.0, rel=0.06)
+
+
+def test_identified_inertias_leave_the_friction(path):
+    """The model's pendulum is 30 % too light: with inertias free, what is left is friction alone."""
+    text = described(path).model and path.read_text().replace('mass value="2.0"', 'mass value="1.4"')
+    effort = needed(Q, V, A) + friction(V, (8.0, 0.5))
+    found = verdict(path, effort, text=text, inertias="identified")
+    assert {c.effect for c in found.causes} == {"coulomb_friction"}
+    assert values(found)["coulomb_friction", "lift", "force"] == pytest.approx(8.0, rel=0.06)
+    assert any("not looked for" in n for n in found.notes)
