@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from sher3_description.robot import NOMINAL_ROBOT as NOMINAL_ROBOT
     from sher3_description.robot import Robot as Robot
     from sher3_description.robot import load_robot as load_robot
+    from sher3_description.tolerances import Tolerances as Tolerances
     from sher3_description.topics import NAMESPACE as NAMESPACE
     from sher3_description.topics import TOPICS as TOPICS
     from sher3_description.topics import Qos as Qos
@@ -28,6 +29,7 @@ __getattr__, __dir__ = lazy(
         "equipment": ("Actuator", "ForceSensor"),
         "invalid_robot": ("InvalidRobot",),
         "robot": ("NOMINAL_ROBOT", "Robot", "load_robot"),
+        "tolerances": ("Tolerances",),
         "topics": ("NAMESPACE", "Qos", "TOPICS", "Topic"),
     },
 )

@@ -20,12 +20,17 @@ from sher3_description.equipment import Actuator, Admittance, ForceSensor, Track
 from sher3_description.fields import NonNegative, Part, Positive
 from sher3_description.invalid_robot import InvalidRobot
 from sher3_description.mechanism import ArmParameters, DeltaParameters, TiltLinkageParameters, refuse
+from sher3_description.tolerances import Tolerances
 
 NOMINAL_ROBOT = Path(__file__).with_name("robot.yaml")
 
 
 class Robot(Part):
-    """All numbers of one robot; `robot.delta.link_length` is the key `link_length` under `delta` of the file."""
+    """All numbers of one robot; `robot.delta.link_length` is the key `link_length` under `delta` of the file.
+
+    `tolerances` are optional: what the robot may deviate by from these numbers. They are no part of the model, so that
+    they neither change its digest nor are written where the file does not state them.
+    """
 
     schema_id: Literal["sher3.robot/1"] = Field(alias="schema")
     control_period: Annotated[Positive, Field(le=0.1)]
@@ -37,6 +42,7 @@ class Robot(Part):
     tracker: Tracker
     actuators: tuple[Actuator, Actuator, Actuator, Actuator, Actuator]
     admittance: Admittance
+    tolerances: Tolerances = Tolerances()
 
     @model_validator(mode="before")
     @classmethod
@@ -87,7 +93,8 @@ class Robot(Part):
 
     def to_dict(self) -> dict[str, Any]:
         """Return the robot as plain data with the keys of the file in their order."""
-        return self.model_dump(mode="json", by_alias=True)
+        silent = None if "tolerances" in self.model_fields_set else {"tolerances"}
+        return self.model_dump(mode="json", by_alias=True, exclude=silent)
 
     def to_yaml(self) -> str:
         """Return text that `from_yaml` reads back to an equal robot (floats in full precision, no comments)."""
@@ -95,7 +102,8 @@ class Robot(Part):
 
     def digest(self) -> str:
         """Return the SHA-256 of the values, independent of layout and comments (64 hexadecimal digits)."""
-        return hashlib.sha256(json.dumps(self.to_dict(), sort_keys=True).encode()).hexdigest()
+        values = {key: value for key, value in self.to_dict().items() if key != "tolerances"}
+        return hashlib.sha256(json.dumps(values, sort_keys=True).encode()).hexdigest()
 
     def replace(self, values: Mapping[str, Any]) -> Self:
         """Return a validated copy with the values at the given paths changed.

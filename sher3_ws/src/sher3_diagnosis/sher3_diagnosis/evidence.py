@@ -82,7 +82,6 @@ class Evidence:
         places: kind of place -> the sites that are one; effects say on which they may sit.
         rotary: sites that turn.
         counts: actuator -> one count of its encoder, m or rad.
-        as_built: channel -> (d,) what a healthy machine may deviate from its drawing, which no repeat shows.
         nuisance: terms that every fit carries, so that no effect is blamed for what they explain.
     """
 
@@ -92,7 +91,6 @@ class Evidence:
     places: Mapping[str, Sequence[str]]
     rotary: frozenset[str] = frozenset()
     counts: Mapping[str, float] = field(default_factory=dict)
-    as_built: Mapping[Channel, Array] = field(default_factory=dict)
     nuisance: tuple[Term, ...] = ()
 
     @property

@@ -2,68 +2,23 @@
 
 For a given shape an effect is linear in its coefficients. Leaving a run out of the normal equations is then a
 subtraction, and the loss of every run under the coefficients of all others costs a small solve. No score of a fit
-here was seen by that fit.
+here was seen by that fit. Terms that share no channel do not see each other and are solved apart.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
 from sher3_diagnosis.channel import Array, Channel
-from sher3_diagnosis.effect import Effect, Shape, Signature
+from sher3_diagnosis.gram import products
+from sher3_diagnosis.solving import RIDGE, solve, solve_within
+from sher3_diagnosis.term import Term, make_term
 from sher3_diagnosis.whitened import Whitened
 
-RIDGE = 1e-9
-"""Relative ridge on the normal equations: keeps collinear columns solvable without moving well-posed fits."""
-
-
-@dataclass(frozen=True)
-class Term:
-    """An effect at a site with a shape, evaluated on every run.
-
-    Attributes:
-        columns: per run and channel (N, p) whitened.
-        fixed: per run and channel (N,) whitened.
-        width: number of coefficients p.
-    """
-
-    effect: Effect
-    site: str
-    shape: Shape
-    columns: list[dict[Channel, Array]]
-    fixed: list[dict[Channel, Array]]
-    width: int
-
-    @property
-    def key(self) -> tuple[str, str]:
-        """Effect id and site."""
-        return self.effect.id, self.site
-
-    @cached_property
-    def channels(self) -> frozenset[Channel]:
-        """Channels the term touches."""
-        return frozenset(c for part in (self.columns, self.fixed) for run in part for c in run)
-
-
-def make_term(data: Whitened, effect: Effect, site: str, shape: Shape) -> Term:
-    """Evaluate an effect's signature on every run."""
-    columns: list[dict[Channel, Array]] = []
-    fixed: list[dict[Channel, Array]] = []
-    width = 0
-    seen: dict[int, Signature] = {}  # blocks of one record share its view
-    for r, view in enumerate(data.views):
-        present = data.target[r].keys()
-        if id(view) not in seen:
-            seen[id(view)] = effect.signature(view, site, shape)
-        signature = seen[id(view)]
-        columns.append({c: data.flat(r, c, x) for c, x in signature.columns.items() if c in present})
-        fixed.append({c: data.flat(r, c, x) for c, x in signature.fixed.items() if c in present})
-        width = max([width, *(x.shape[1] for x in columns[-1].values())])
-    return Term(effect, site, shape, columns, fixed, width)
+__all__ = ["RIDGE", "Fit", "Term", "fit", "make_term", "solve"]
 
 
 @dataclass(frozen=True)
@@ -73,7 +28,6 @@ class Fit:
     Attributes:
         coefficients: (p,) of all terms in order; `loro_coefficients`: (runs, p), each without its run.
         loss: per run and channel, sum of squares under the coefficients of the other runs (held out).
-        covariance: (p, p) run-clustered (jackknife) covariance of the coefficients.
     """
 
     terms: tuple[Term, ...]
@@ -81,15 +35,17 @@ class Fit:
     loro_coefficients: Array
     loss: dict[tuple[int, Channel], float]
 
+    def _columns(self, index: int) -> slice:
+        start = sum(t.width for t in self.terms[:index])
+        return slice(start, start + self.terms[index].width)
+
     def of(self, index: int) -> Array:
         """Coefficients of one term."""
-        start = sum(t.width for t in self.terms[:index])
-        return self.coefficients[start : start + self.terms[index].width]
+        return self.coefficients[self._columns(index)]
 
     def loro_of(self, index: int) -> Array:
         """Leave-one-run-out coefficients of one term, (runs, p)."""
-        start = sum(t.width for t in self.terms[:index])
-        return self.loro_coefficients[:, start : start + self.terms[index].width]
+        return self.loro_coefficients[:, self._columns(index)]
 
     @property
     def total(self) -> float:
@@ -102,47 +58,80 @@ class Fit:
         return all(t.effect.admissible(t.shape, self.of(i)) for i, t in enumerate(self.terms))
 
 
+@dataclass(frozen=True)
+class _Part:
+    """The fit of terms that share channels."""
+
+    terms: tuple[Term, ...]
+    coefficients: Array
+    held_out: Array
+    loss: dict[tuple[int, Channel], float]
+
+
 def fit(data: Whitened, terms: Sequence[Term]) -> Fit:
     """Fit all terms together and score every run with the coefficients of the others."""
     runs = len(data.target)
-    offsets = np.cumsum([0, *(t.width for t in terms)])
-    p = int(offsets[-1])
-    touched = {c for t in terms for c in t.channels}
-    normal, right = np.zeros((runs, p, p)), np.zeros((runs, p))
-    pieces: dict[tuple[int, Channel], tuple[Array, Array, float]] = {}
-    for r in range(runs):
-        for c in touched & data.target[r].keys():
-            y = data.target[r][c]
-            for t in terms:
-                if c in t.fixed[r]:
-                    y = y - t.fixed[r][c]
-            x = np.zeros((len(y), p))
-            for t, start in zip(terms, offsets[:-1], strict=True):
-                if c in t.columns[r]:
-                    x[:, start : start + t.columns[r][c].shape[1]] = t.columns[r][c]
-            a, b, energy = x.T @ x, x.T @ y, float(y @ y)
-            pieces[r, c] = (a, b, energy)
-            normal[r] += a
-            right[r] += b
-    total, all_right = normal.sum(axis=0), right.sum(axis=0)
-    beta = solve(total, all_right)
-    held_out = np.array([solve(total - normal[r], all_right - right[r]) for r in range(runs)]).reshape(runs, p)
+    starts = np.cumsum([0, *(t.width for t in terms)])
+    coefficients, held_out = np.zeros(int(starts[-1])), np.zeros((runs, int(starts[-1])))
     loss = dict(data.null_loss)
-    for (r, c), (a, b, energy) in pieces.items():
-        h = held_out[r]
-        loss[r, c] = max(0.0, energy - 2.0 * h @ b + h @ a @ h)
-    return Fit(tuple(terms), beta, held_out, loss)
+    for members in connected(terms):
+        part = _part(data, tuple(terms[i] for i in members))
+        columns = np.concatenate([np.arange(starts[i], starts[i + 1]) for i in members]).astype(int)
+        coefficients[columns], held_out[:, columns] = part.coefficients, part.held_out
+        loss.update(part.loss)
+    return Fit(tuple(terms), coefficients, held_out, loss)
 
 
-def solve(normal: Array, right: Array) -> Array:
-    """Solve normal equations scaled to unit diagonal, with a tiny ridge; columns without data get zero."""
-    if len(right) == 0:
-        return np.zeros(0)
-    scale = np.sqrt(np.diag(normal))
-    alive = scale > 1e-12 * max(scale.max(), 1e-300)
-    out = np.zeros(len(right))
-    if alive.any():
-        s = scale[alive]
-        a = normal[np.ix_(alive, alive)] / np.outer(s, s)
-        out[alive] = np.linalg.solve(a + RIDGE * np.eye(len(s)), right[alive] / s) / s
+def connected(terms: Sequence[Term]) -> list[list[int]]:
+    """Return the indices of terms in groups that share channels."""
+    groups: list[tuple[set[Channel], list[int]]] = []
+    for i, term in enumerate(terms):
+        touching = [g for g in groups if g[0] & term.channels]
+        channels = set(term.channels).union(*(g[0] for g in touching))
+        members = sorted([i, *(k for g in touching for k in g[1])])
+        groups = [g for g in groups if g not in touching] + [(channels, members)]
+    return [members for _, members in groups]
+
+
+def _part(data: Whitened, terms: tuple[Term, ...]) -> _Part:
+    """Fit terms that share channels; the same terms are fitted once."""
+    key = tuple(id(t) for t in terms)
+    if key not in data.fits:
+        data.fits[key] = _fit_part(data, terms)
+    found: _Part = data.fits[key]
+    return found
+
+
+def _fit_part(data: Whitened, terms: tuple[Term, ...]) -> _Part:
+    channels = sorted({c for t in terms for c in t.channels})
+    pieces = {c: products(data, terms, c) for c in channels}
+    runs, p = len(data.target), sum(t.width for t in terms)
+    normal = sum((n for n, _, _ in pieces.values()), np.zeros((runs, p, p)))
+    right = sum((b for _, b, _ in pieces.values()), np.zeros((runs, p)))
+    limit = np.repeat([t.limit for t in terms], [t.width for t in terms])
+    prior = np.diag(np.isfinite(limit).astype(float))
+    total, all_right = normal.sum(axis=0), right.sum(axis=0)
+    left_out = np.concatenate([(total + prior)[None], total - normal + prior])
+    solved = solve_within(left_out, np.concatenate([all_right[None], all_right - right]), limit)
+    held_out = _with_deviations(solved[1:], total + prior, all_right, limit)
+    loss: dict[tuple[int, Channel], float] = {}
+    for c, (a, b, energy) in pieces.items():
+        held = energy - 2.0 * np.einsum("rp,rp->r", held_out, b) + np.einsum("rp,rpq,rq->r", held_out, a, held_out)
+        loss |= {(r, c): max(0.0, float(held[r])) for r in range(runs) if (r, c) in data.null_loss}
+    return _Part(terms, solved[0], held_out, loss)
+
+
+def _with_deviations(held_out: Array, normal: Array, right: Array, limit: Array) -> Array:
+    """Replace the limited coefficients (runs, p) by those that fit all runs best beside the held-out causes.
+
+    A machine's deviations within tolerance are as much its own in the run left out: they are noise that repeats, known
+    up to their prior, and no claim that a run must confirm.
+    """
+    own = np.isfinite(limit)
+    if not own.any() or own.all():
+        return held_out if not own.any() else np.broadcast_to(solve_within(normal, right, limit), held_out.shape)
+    rest = right[own] - held_out[:, ~own] @ normal[np.ix_(~own, own)]
+    stacked = np.broadcast_to(normal[np.ix_(own, own)], (len(held_out), own.sum(), own.sum()))
+    out = held_out.copy()
+    out[:, own] = solve_within(stacked, rest, limit[own])
     return out

@@ -17,7 +17,8 @@ from sher3_diagnosis.attribute.search import Left, Say, attribute
 from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.finding import ExactFinding, Finding
-from sher3_diagnosis.verdict import Cause, Interval
+from sher3_diagnosis.tolerance import within
+from sher3_diagnosis.verdict import Cause, Interval, Within
 
 if TYPE_CHECKING:
     from sher3_diagnosis.report.reporter import Reporter
@@ -85,6 +86,10 @@ class Machine(ABC, Generic[R, E]):
         Default: both as they are.
         """
         return evidence, causes
+
+    def within(self, finding: Finding[E]) -> list[Within]:
+        """Return what one part deviates by within its tolerances; default what the terms that are no causes say."""
+        return within(finding.evidence.data, finding.attribution.fit)
 
     def remarks(self, finding: Finding[E]) -> list[str]:
         """Return notes on one part; default none."""

@@ -7,6 +7,15 @@ number set on a plant is not shown by that plant.
 
 from __future__ import annotations
 
+# -- tolerances: what is no gap? -----------------------------------------------------------------------------------
+
+VISIBLE = 1.0
+"""Loss that a deviation of one standard deviation must add over all runs for the data to see its direction.
+Set by that argument: what adds less than a sample's own scatter moves nothing."""
+
+WITHIN = 2.0
+"""Uncertainties from which a deviation within its tolerance is told in a verdict: 95 %. Set by that argument."""
+
 # -- localise: is there a gap? -------------------------------------------------------------------------------------
 
 POOLED = {
@@ -45,11 +54,6 @@ MAX_CAUSES = 3
 PRICE = 12.0
 """Held-out loss that each coefficient or shape parameter must buy: four standard deviations of a chi-square with
 eight repeats' worth of searching. Set on: development seeds. Measure: `sher3 gap challenge --seeds 0:40`."""
-
-AS_BUILT_PRICE = 0.05
-"""Loss per sample that a coefficient must buy in addition at the tip: the robot as built deviates from its drawing by a
-fraction of the floor, and every coefficient takes its part of that.
-Set on: healthy development seeds with a tracker. Measure: `sher3 gap challenge --kinds healthy`."""
 
 UNLIKELY = 3.0 * PRICE
 """Loss that an effect must buy in addition where the sign of its parameters speaks for another effect.

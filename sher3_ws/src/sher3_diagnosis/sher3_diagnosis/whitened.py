@@ -16,12 +16,14 @@ class Whitened:
         views: per run, what effects see of it.
         residuals, floors: per run and channel.
         target: `target[r][c]` is the (N,) vector of channel c in run r: samples that count, components in turn.
+        fits: kept by `sher3_diagnosis.fitting`.
     """
 
     def __init__(self, views: Sequence[Any], residuals: Sequence[Residuals], floors: Sequence[Floors]) -> None:
         self.views = list(views)
         self.residuals = list(residuals)
         self.floors = list(floors)
+        self.fits: dict[tuple[int, ...], Any] = {}
         self.target: list[dict[Channel, Array]] = [
             {c: self.flat(r, c, x.values) for c, x in res.items() if x.ok.any()} for r, res in enumerate(self.residuals)
         ]

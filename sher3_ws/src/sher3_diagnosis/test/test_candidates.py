@@ -1,7 +1,7 @@
 """The search over effects and shapes, and what an extension must be worth."""
 
 import numpy as np
-from sher3_diagnosis.attribute.candidates import Candidates, complexity, cost, price, samples_at_tip
+from sher3_diagnosis.attribute.candidates import Candidates, complexity, cost, price
 from sher3_diagnosis.thresholds import PRICE
 from toy import AXIS, DIRECTION, OFFSET, SPEED, Column, ToyRun, case, evidence_of
 
@@ -63,8 +63,7 @@ def test_an_idle_extension_is_left_out_and_a_worthy_one_stays():
     assert "speedy" in names
 
 
-def test_a_number_costs_its_price_and_more_at_the_tip():
+def test_a_number_costs_its_price():
     evidence = evidence_of(case(5.0))
     term = Candidates(evidence, [DIRECTION]).term(DIRECTION, "axis", {})
-    assert samples_at_tip(term) == 0
     assert price(term) == PRICE

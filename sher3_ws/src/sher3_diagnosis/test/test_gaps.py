@@ -59,15 +59,6 @@ def test_a_gap_is_of_the_component_with_the_largest_ratio_in_its_own_unit():
     assert component_rms({0: values, 1: 3.0 * values}, 4) == pytest.approx(0.4 * np.sqrt(5.0))
 
 
-def test_a_tolerance_as_built_is_allowed_beside_the_floor():
-    """Floor 1 and tolerance sqrt(3): the allowance is 4, so a gap of 2 floors has power one before its threshold."""
-    residual = Residual(np.full((4, 1), 2.0), np.ones(4, dtype=bool))
-    free = of(AXIS, [residual, residual], [1.0], ["a", "a"])
-    built = of(AXIS, [residual, residual], [1.0], ["a", "a"], as_built={AXIS: np.array([np.sqrt(3.0)])})
-    assert gap_of(free, AXIS).significant
-    assert gap_of(built, AXIS).power == pytest.approx(1.0 / (1.5 * POOLED["motor_mechanics"]))
-
-
 def test_the_zeros_of_two_encoders_may_differ_by_a_share_of_a_count():
     """Means of 1 count, 0.96 of it taken off: what is left would be no gap, the mean itself is 1 / ZERO_COUNTS."""
     residual = Residual(np.full((50, 1), 1.0), np.ones(50, dtype=bool), free_mean=0.96)

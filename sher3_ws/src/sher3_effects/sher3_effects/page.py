@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import ClassVar, NamedTuple
 
 from sher3_description import Robot
-from sher3_diagnosis.effect import ROTARY, Effect
+from sher3_diagnosis.effect import ROTARY, Effect, Shape
 from sher3_sim.effect import Parameter, PlantEffect
 
 Values = Mapping[str, float]
@@ -44,6 +44,18 @@ class Part(NamedTuple):
     parameters: dict[str, float]
 
 
+class Tolerated(NamedTuple):
+    """How a page's effect may show on a healthy robot: in one shape, by so much for each coefficient.
+
+    Attributes:
+        shape: of the effect.
+        limits: quantity as it is printed -> tolerance of its coefficient and unit, in the order of the columns.
+    """
+
+    shape: Shape
+    limits: Mapping[str, tuple[float, str]]
+
+
 class Page(Effect):
     """One effect in a file of its own.
 
@@ -58,6 +70,10 @@ class Page(Effect):
     plant: ClassVar[type[PlantEffect] | None] = None
     breaks: ClassVar[str] = ""
     on_axis: ClassVar[Mapping[str, str]] = {}
+
+    def tolerated(self, robot: Robot, site: str) -> Sequence[Tolerated]:
+        """Return how the effect may show at a site of a healthy robot, from its table of tolerances; default not."""
+        return ()
 
     def to_simulator(self, actuator: str, values: Values, robot: Robot) -> list[Part]:
         """Return the effects of the plant that a fitted cause stands for; default this one with the same parameters.

@@ -2,22 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from sher3_description import ACTUATORS, Robot
 from sher3_diagnosis.channel import Array, Channel, Floors, Residual, Residuals
 from sher3_diagnosis.evidence import Evidence
+from sher3_diagnosis.tolerance import Tolerance, as_built, tolerance
 from sher3_diagnosis.whitened import Whitened
+from sher3_effects import library
 
 from sher3_gap.case.signals import RunSignals
 from sher3_gap.simulate.twin import driven_as, followed
-from sher3_gap.stages.floors import floors
+from sher3_gap.stages.floors import floors, with_load
 from sher3_gap.stages.geometry import Geometry
 from sher3_gap.stages.residuals import Demand, all_residuals, motor_residual
 from sher3_gap.stages.timing import Timing, demand_in_force, timing_of
-from sher3_gap.stages.units import AS_BUILT, PLACES, ROTARY_AXES, unit_of
+from sher3_gap.stages.units import PLACES, ROTARY_AXES, unit_of
 from sher3_gap.stages.view import SherView
 
 
@@ -60,6 +62,7 @@ def gather(runs: Sequence[RunSignals], robot: Robot) -> SherEvidence:
     residuals = [all_residuals(run, robot, geometry, d) for run, d in zip(runs, demands, strict=True)]
     simulated = [[own_residuals(run, robot, shift) for shift in SHIFTS] for run in runs]
     own = floors(runs, residuals, simulated, robot)
+    own = [with_load(f, run, robot, geometry) for f, run in zip(own, runs, strict=True)]
     views = [SherView(run, robot, geometry) for run in runs]
     largest = largest_force(runs)
     residuals = [
@@ -74,11 +77,19 @@ def gather(runs: Sequence[RunSignals], robot: Robot) -> SherEvidence:
         places=PLACES,
         rotary=ROTARY_AXES,
         counts={a: x.motor_encoder for a, x in zip(ACTUATORS, robot.actuators, strict=True)},
-        as_built=AS_BUILT,
+        nuisance=as_built(data, list(tolerated(data, robot))),
         runs=list(runs),
         robot=robot,
         timing=timing,
     )
+
+
+def tolerated(data: Whitened, robot: Robot) -> Iterator[Tolerance]:
+    """Return what the robot may deviate by from its drawing, as its pages say."""
+    for page in library().values():
+        for site in (s for place in page.places for s in PLACES[place]):
+            for found in page.tolerated(robot, site):
+                yield tolerance(data, page, site, found.shape, dict(found.limits))
 
 
 def largest_force(runs: Sequence[RunSignals]) -> Array | None:

@@ -90,6 +90,22 @@ def test_mixed_parameters_are_refused(healthy, tmp_path):
         load_case(tmp_path / "case")
 
 
+def toleranced(**tolerances):
+    return Robot.from_dict({**ROBOT.to_dict(), "tolerances": tolerances})
+
+
+def test_a_table_of_tolerances_that_contradicts_itself_is_refused(healthy, tmp_path):
+    other = replace(healthy[1], robot_yaml=toleranced(mass=0.03).to_yaml())
+    write_case(tmp_path / "two", [healthy[0], other], toleranced(mass=0.02))
+    with pytest.raises(CaseError, match=r"two tolerances\.mass.*0\.03.*0\.02"):
+        load_case(tmp_path / "two")
+
+
+def test_a_case_may_state_tolerances_that_its_runs_do_not(healthy, tmp_path):
+    write_case(tmp_path / "one", healthy, toleranced(mass=0.02))
+    assert load_case(tmp_path / "one")[1].tolerances.mass == 0.02
+
+
 def stamps_changed(run, change):
     streams = {}
     for topic, s in run.streams.items():
@@ -110,9 +126,20 @@ def test_clock_jumps_are_refused(healthy, change, words):
         signals([stamps_changed(healthy[0], change)])
 
 
-@pytest.mark.parametrize("topic", ["drives/measured_js", "measured_js", "force/measured_cf"])
-def test_not_a_number_is_refused(healthy, topic):
-    column = "force" if topic.startswith("force") else "position"
+@pytest.mark.parametrize(
+    ("topic", "column"),
+    [
+        ("drives/measured_js", "position"),
+        ("drives/measured_js", "effort"),
+        ("drives/setpoint_jv", "velocity"),
+        ("measured_js", "position"),
+        ("force/measured_cf", "force"),
+        ("force/measured_cf", "torque"),
+        ("tracker/measured_cp", "position"),
+        ("tracker/measured_cp", "orientation"),
+    ],
+)
+def test_not_a_number_in_one_channel_alone_is_refused(healthy, topic, column):
     broken = np.array(healthy[0][topic].columns[column], copy=True)
     broken[17, 1] = np.nan
     columns = {**healthy[0][topic].columns, column: broken}

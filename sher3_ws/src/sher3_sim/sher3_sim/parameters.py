@@ -58,6 +58,7 @@ BODY = np.dtype(
         ("link_difference", "f8", 3),
         ("link_law", "f8"),
         ("link_exponent", "f8"),
+        ("link_weight", "f8"),  # of the platform, where the links carry it [N]
         ("platform_balls", "f8", (6, 3)),
         ("lumped_fraction", "f8"),
         ("bending", "f8"),

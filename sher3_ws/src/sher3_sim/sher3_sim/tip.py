@@ -56,7 +56,9 @@ def add_growth(p: KernelParameters, growth: float, q: Array, jacobian: Array, sh
 
 @compiled
 def add_links(p: KernelParameters, b: Any, q: Array, arm: Array, wrench: Array, twist: Array) -> None:
-    """Add the platform twist of six single links, which are unequal in a pair and elastic under a wrench at the tip.
+    """Add the platform twist of six single links, which are unequal in a pair and elastic.
+
+    They carry the wrench at the tip and, where told so, the weight of the platform.
 
     Gamma has the columns (direction of link; its moment about P). Gamma f = w gives the link forces, and the link
     lengths change by dl = scale a |f|^b plus or minus half the difference of the pair. Gamma^T (dP; rotation) = dl is
@@ -75,6 +77,7 @@ def add_links(p: KernelParameters, b: Any, q: Array, arm: Array, wrench: Array, 
     about = np.empty(6)
     about[:3] = wrench[:3]
     about[3:] = wrench[3:] + cross(arm, wrench[:3])
+    about[2] -= b.link_weight
     longer = np.linalg.solve(gamma, about)
     for j in range(6):
         stiff = (longer[j] * longer[j] + LINK_FORCE * LINK_FORCE) ** (0.5 * (b.link_exponent - 1.0))

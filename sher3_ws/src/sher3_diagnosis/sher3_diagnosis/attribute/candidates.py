@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 
-from sher3_diagnosis.channel import AT_TIP, Channel
+from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.effect import Effect, Shape
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fitting import Fit, Term, fit, make_term
-from sher3_diagnosis.thresholds import AS_BUILT_PRICE, NEEDED, PARSIMONY, PRICE, UNLIKELY
+from sher3_diagnosis.thresholds import NEEDED, PARSIMONY, PRICE, UNLIKELY
 
 ROUNDS = 3
 """Rounds of the search over shapes: the effect's own, then twice around the best so far."""
@@ -110,9 +110,4 @@ def cost(trial: Fit) -> float:
 
 def price(term: Term) -> float:
     """Return the held-out loss that a term's numbers must buy."""
-    return PRICE * complexity(term) + AS_BUILT_PRICE * samples_at_tip(term) * term.width
-
-
-def samples_at_tip(term: Term) -> int:
-    """Return the whitened samples of the tip on which a term shows."""
-    return sum(len(x) for run in term.columns for c, x in run.items() if c.stage in AT_TIP)
+    return PRICE * complexity(term)

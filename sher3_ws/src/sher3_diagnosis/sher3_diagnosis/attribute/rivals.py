@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from sher3_diagnosis.attribute.candidates import Candidates, samples_at_tip
+from sher3_diagnosis.attribute.candidates import Candidates
 from sher3_diagnosis.channel import AT_TIP
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fitting import Fit, fit
-from sher3_diagnosis.thresholds import AS_BUILT_PRICE, NEEDED, RIVAL
+from sher3_diagnosis.thresholds import NEEDED, RIVAL
 
 RANKED = 6
 """Effects kept in the ranking of a cause, and tried in pairs."""
@@ -51,23 +51,18 @@ def with_rivals(candidates: Candidates, current: Fit) -> Attribution:
         worth = fit(evidence.data, others).total - current.total
         ranked = candidates.search(term.channels, others) if i >= len(evidence.nuisance) else []
         ranking.append(tuple(ranked[:RANKED]))
-        alike = [f for f in ranked if _alike(f, current, worth)]
+        alike = [f for f in ranked if unlikeness(f, current, worth) < 1.0]
         rivals.append(tuple(f for f in alike if f.terms[-1].effect.id != term.effect.id))
         explained.append(worth)
     return Attribution(current, tuple(rivals), tuple(explained), tuple(ranking), len(evidence.nuisance))
 
 
-def _alike(rival: Fit, chosen: Fit, worth: float) -> bool:
-    """Whether a rival explains as much: all but a share, and at the tip but for what the robot as built deviates by.
+def unlikeness(rival: Fit, chosen: Fit, worth: float) -> float:
+    """Return how far a rival is from explaining as much as the chosen effect; below 1 it does, all but a share.
 
-    The share is of the gap with its floor: rounding repeats, so that a small part of the floor is no evidence. Each
-    coefficient takes its part of the deviations as built, so that a rival with fewer of them may leave more.
+    The share is of the gap with its floor: rounding repeats, so that a small part of the floor is no evidence. At the
+    tip there is none.
     """
     floor = sum(len(x) for run in rival.terms[-1].columns for c, x in run.items() if c.stage not in AT_TIP)
     margin = max(NEEDED, RIVAL * (worth + floor))
-    built = AS_BUILT_PRICE * max(samples_at_tip(rival.terms[-1]), *(samples_at_tip(t) for t in chosen.terms), 0)
-    apart = {k: rival.loss[k] - x for k, x in chosen.loss.items()}
-    tip = sum(x for (_, c), x in apart.items() if c.stage in AT_TIP)
-    missing = max(0, max(t.width for t in chosen.terms) - rival.terms[-1].width)
-    widest = 2.0 * built * (2 + missing)
-    return tip < max(NEEDED, min(margin, widest), built) and sum(apart.values()) - tip < margin
+    return (rival.total - chosen.total) / margin

@@ -14,6 +14,7 @@ from sher3_diagnosis.localise.gaps import Gap
 from sher3_diagnosis.localise.regimes import regime
 from sher3_diagnosis.quantify.closure import closure
 from sher3_diagnosis.quantify.parameters import parameters
+from sher3_diagnosis.tolerance import NUISANCE
 from sher3_diagnosis.verdict import Cause, Where
 
 
@@ -69,10 +70,6 @@ def _where(finding: Finding, channel: Channel, gap: Gap) -> Where:
         regime=regime(evidence, channel),
         confidence=float(1.0 - np.exp(-gap.power)),
     )
-
-
-NUISANCE = "nuisance"
-"""Family of terms that are no causes, such as the frames of a measuring system."""
 
 
 def ordered(causes: list[Cause], findings: list[Finding]) -> list[Cause]:

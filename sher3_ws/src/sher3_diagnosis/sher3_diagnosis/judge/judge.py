@@ -26,9 +26,10 @@ def judge(machine: Machine, findings: Sequence[Finding], exact: Sequence[ExactFi
     """Build the verdict of a machine from what was found on its parts and in its exact stages."""
     causes = [c for f in exact for c in f.causes] + [c for f in findings for c in f.causes]
     explained = bool(causes or exact)
+    within = [w for f in findings for w in machine.within(f)]
     gaps = [_own_gaps(machine.policy, f, explained) for f in findings]
     if not any(gaps) and not exact:
-        return Verdict(status="no_gap", notes=notes)
+        return Verdict(status="no_gap", notes=notes, within_tolerance=within)
     causes = ordered(causes, list(findings))
     fitted = [w for f in findings for w in places_of(f, f.significant)]
     where = [f.where for f in exact] + (fitted if len(findings) == 1 else sorted(fitted, key=lambda w: -_ratio(w)))
@@ -49,6 +50,7 @@ def judge(machine: Machine, findings: Sequence[Finding], exact: Sequence[ExactFi
         residual=residual,
         unexplained=unexplained,
         next_experiment=proposals[0] if proposals else None,
+        within_tolerance=within,
         notes=notes,
     )
 

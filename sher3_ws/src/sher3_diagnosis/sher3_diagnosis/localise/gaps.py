@@ -24,11 +24,11 @@ class Gap:
     """Gap and floor of one channel.
 
     Attributes:
-        power: mean square over its allowance (floor and as-built tolerance), pooled over all runs and of the worst
-            excitation, each over its threshold; the larger of the two. Above 1 there is a gap.
+        power: mean square over its floor, pooled over all runs and of the worst excitation, each over its threshold;
+            the larger of the two. Above 1 there is a gap.
         gap, floor: rms over all runs of one component, SI units: of the worse part (position or rotation, force or
             torque) the one with the largest ratio.
-        groups: excitation -> power of that part over its allowance.
+        groups: excitation -> power of that part over its floor.
         component: index of that component.
     """
 
@@ -70,10 +70,8 @@ def gap_of(evidence: Evidence, channel: Channel, residual: Mapping[int, Array] |
         channel: to judge.
         residual: run -> (N, d) samples that count, relieved of their free mean; default the nominal residual.
     """
-    tolerance = evidence.as_built.get(channel)
     left: dict[int, Array] = {}
     square: dict[str, list[Array]] = defaultdict(list)
-    allowed: dict[str, list[Array]] = defaultdict(list)
     floor: dict[str, list[Array]] = defaultdict(list)
     for r, excitation in enumerate(evidence.excitations):
         found = evidence.data.residuals[r].get(channel)
@@ -83,20 +81,19 @@ def gap_of(evidence: Evidence, channel: Channel, residual: Mapping[int, Array] |
         base = evidence.floors[r][channel] ** 2
         square[excitation].append(np.mean(left[r] ** 2, axis=0))
         floor[excitation].append(base)
-        allowed[excitation].append(base + (tolerance**2 if tolerance is not None else 0.0))
     if not left:
         return None
     rise = 1.0 + FLOOR_SCATTER / max(evidence.repeats, 1)
-    parts = [_part(channel, p, square, floor, allowed, rise) for p in PARTS[len(base)]]
+    parts = [_part(channel, p, square, floor, rise) for p in PARTS[len(base)]]
     return _with_zeros(evidence, channel, left, max(parts, key=lambda g: g.power))
 
 
-def _part(channel: Channel, part: slice, square: Powers, floor: Powers, allowed: Powers, rise: float) -> Gap:
+def _part(channel: Channel, part: slice, square: Powers, floor: Powers, rise: float) -> Gap:
     """Judge the components that belong together."""
-    mean, low, limit = (np.mean(_all(x), axis=0)[part] for x in (square, floor, allowed))
-    groups = {e: float(np.mean(np.mean(square[e], axis=0)[part] / np.mean(allowed[e], axis=0)[part])) for e in square}
+    mean, low = (np.mean(_all(x), axis=0)[part] for x in (square, floor))
+    groups = {e: float(np.mean(np.mean(square[e], axis=0)[part] / np.mean(floor[e], axis=0)[part])) for e in square}
     grouped = GROUPED_ENCODERS if channel.stage == "transmission" else GROUPED
-    pooled = float(np.mean(mean / limit)) / (rise * POOLED[channel.stage])
+    pooled = float(np.mean(mean / low)) / (rise * POOLED[channel.stage])
     worst = max(groups.values()) / (rise * grouped)
     largest = int(np.argmax(mean / low))
     return Gap(

@@ -6,13 +6,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from sher3_description import Robot
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Best, Shape, Signature
 from sher3_kinematics.tip_deflection import ArmCompliance
 from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
-from sher3_effects.page import Page
+from sher3_effects.page import Page, Tolerated
 from sher3_effects.view import RobotView
 
 _ARM = ArmCompliance()
@@ -59,6 +60,10 @@ class StructuralCompliance(Page):
         lumped = parts @ np.array(self.LUMPED)
         columns = parts if shape["free"] else lumped[:, :, None]
         return Signature({Channel("structure", "tip"): columns} if view.run.tracker_position is not None else {})
+
+    def tolerated(self, robot: Robot, site: str) -> Sequence[Tolerated]:
+        """Return the share of the lumped model."""
+        return (Tolerated({"free": 0.0}, {"structural compliance": (robot.tolerances.compliance, "1")}),)
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Share of the paper's compliance; the three springs where they were free."""

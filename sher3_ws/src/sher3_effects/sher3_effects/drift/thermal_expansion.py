@@ -6,13 +6,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from sher3_description import ACTUATORS
+from sher3_description import ACTUATORS, Robot
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Best, Shape, Signature
 from sher3_sim.effect import SLIDERS, PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
-from sher3_effects.page import Page
+from sher3_effects.page import Page, Tolerated
 from sher3_effects.view import RobotView
 
 
@@ -60,6 +60,10 @@ class ThermalExpansion(Page):
         """One column: growth per unit of strain, times the warmth."""
         growth = self._growth(view, int(shape["part"])) * view.warmth[:, None]
         return Signature(view.at_tip(growth[:, :, None]))
+
+    def tolerated(self, robot: Robot, site: str) -> Sequence[Tolerated]:
+        """Return the growth of everything."""
+        return (Tolerated({"part": 0.0}, {"expansion": (robot.tolerances.expansion, "1/K")}),)
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Coefficient of expansion and what grows."""

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
+from sher3_description import ACTUATORS, Robot
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Best, Shape, Signature, column
 from sher3_sim.effect import PlantEffect, parameter
@@ -14,7 +15,7 @@ from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.friction.bristle import deflection, soften
 from sher3_effects.operators import held_lag, play
-from sher3_effects.page import Page
+from sher3_effects.page import Page, Tolerated
 from sher3_effects.view import AxisView
 
 
@@ -48,6 +49,12 @@ class CoulombFriction(Page):
         """One column: the Dahl state."""
         z = view.run.to_grid(view.sliding(view.row(site), shape["displacement"]))
         return Signature({Channel(self.stage, site): column(z)})
+
+    def tolerated(self, robot: Robot, site: str) -> Sequence[Tolerated]:
+        """Return the friction of the axis beyond the nominal one."""
+        axis = robot.actuators[ACTUATORS.index(site)]
+        limit, unit = robot.tolerances.friction * axis.drive.rated, self.unit("force", site, site == "roll")
+        return (Tolerated({"displacement": self.DISPLACEMENTS[1] * axis.lead}, {f"friction of {site}": (limit, unit)}),)
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Force and displacement."""

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
+from sher3_description import ACTUATORS, Robot
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Best, Shape, Signature, column
 from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
-from sher3_effects.page import Page
+from sher3_effects.page import Page, Tolerated
 from sher3_effects.view import AxisView
 
 
@@ -33,6 +35,12 @@ class ViscousFriction(Page):
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
         """One column: the motor velocity."""
         return Signature({Channel(self.stage, site): column(view.velocity[:, view.row(site)])})
+
+    def tolerated(self, robot: Robot, site: str) -> Sequence[Tolerated]:
+        """Return the viscous coefficient of the axis."""
+        limit = robot.tolerances.viscous * robot.actuators[ACTUATORS.index(site)].viscous
+        unit = self.unit("extra", site, site == "roll")
+        return (Tolerated({}, {f"viscous coefficient of {site}": (limit, unit)}),)
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Coefficient over the nominal one."""

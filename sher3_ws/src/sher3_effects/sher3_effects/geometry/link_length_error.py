@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from sher3_description import Robot
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Best, Shape, Signature
 from sher3_sim.effect import PlantEffect
 from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.geometry.drawing import metres, shift
-from sher3_effects.page import Page
+from sher3_effects.page import Page, Tolerated
 from sher3_effects.view import ArmView, RobotView
 
 
@@ -48,6 +50,13 @@ class LinkLengthError(Page):
         both = view.link_changes[:, :, a] + view.link_changes[:, :, b]
         apart = view.link_changes[:, :, a] - view.link_changes[:, :, b]
         return Signature(view.at_tip(np.stack([both, apart] if shape["apart"] else [both], axis=-1)))
+
+    def tolerated(self, robot: Robot, site: str) -> Sequence[Tolerated]:
+        """Return both links of the leg, each on its own; a ball's height shows as the length of its link."""
+        limits = robot.tolerances
+        limit = (math.hypot(limits.link_length, limits.ball_centre, limits.ball_centre) / math.sqrt(2.0), "m")
+        names = (f"link length of {site}", f"difference of the links of {site}")
+        return (Tolerated({"apart": 1.0}, dict.fromkeys(names, limit)),)
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Mean length error of the two links and half their difference."""

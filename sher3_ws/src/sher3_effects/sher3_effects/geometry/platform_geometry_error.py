@@ -14,7 +14,7 @@ from sher3_sim.effect import SLIDERS, PlantEffect
 from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.geometry.drawing import direction, metres, shift
-from sher3_effects.page import Page, Part, Values
+from sher3_effects.page import Page, Part, Tolerated, Values
 from sher3_effects.view import RobotView
 
 
@@ -58,6 +58,14 @@ class PlatformGeometryError(Page):
                 apart = view.link_changes[:, :, [first]] - view.link_changes[:, :, [first + 1]]
                 change = np.concatenate([change, apart], axis=2)
         return Signature(view.at_tip(-change))
+
+    def tolerated(self, robot: Robot, site: str) -> Sequence[Tolerated]:
+        """Return both balls of both ends of the leg, sideways."""
+        if site == "tip":
+            return ()
+        limit = (math.sqrt(2.0) * robot.tolerances.ball_centre, "m")
+        names = {b: {f"ball centres {b:.0f} of {site}, {a}": limit for a in "xy"} for b in (1.0, 2.0)}
+        return [Tolerated({"ball": b}, limits) for b, limits in names.items()]
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Offsets of the platform's joint."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,7 +14,7 @@ from sher3_sim.effect import PlantEffect
 from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.geometry.drawing import radians, shift
-from sher3_effects.page import Page, Part, Values
+from sher3_effects.page import Page, Part, Tolerated, Values
 from sher3_effects.view import ArmView, RobotView
 
 
@@ -36,6 +37,10 @@ class RailTilt(Page):
         """Two columns: leaning along x and along y of the base."""
         change = [view.geometry.pose_change(view.run, 1e-4, **{f"rail_{site[-1]}{a}": 1.0}) for a in "xy"]
         return Signature(view.at_tip(np.stack(change, axis=-1)))
+
+    def tolerated(self, robot: Robot, site: str) -> Sequence[Tolerated]:
+        """Return the lean of the rail along x and y."""
+        return (Tolerated({}, {f"rail of {site}, {a}": (robot.tolerances.rail, "rad") for a in "xy"}),)
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Angle and its components."""

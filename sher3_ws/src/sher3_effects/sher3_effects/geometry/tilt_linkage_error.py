@@ -15,7 +15,7 @@ from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.geometry.drawing import metres, shift
 from sher3_effects.geometry.encoder_offset import EncoderOffset
-from sher3_effects.page import Page, Part, Values
+from sher3_effects.page import Page, Part, Tolerated, Values
 from sher3_effects.view import RobotView
 
 
@@ -56,6 +56,14 @@ class TiltLinkageError(Page):
         slope = {"crank": p.offset - p.crank, "coupler": p.coupler, "offset": p.crank - p.offset}[member] / reach
         change = view.geometry.pose_change(view.run, 1e-5, **{member: 1.0, "zero_5": -shape["drawn_zero"] * slope})
         return Signature(view.at_tip(change[:, :, None]))
+
+    def tolerated(self, robot: Robot, site: str) -> Sequence[Tolerated]:
+        """Return the lengths of the members."""
+        limit = (robot.tolerances.four_bar, "m")
+        return [
+            Tolerated({"member": float(i), "drawn_zero": 0.0}, {f"{member} of the tilt linkage": limit})
+            for i, member in enumerate(self.MEMBERS)
+        ]
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Length error and the member it is of."""

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from sher3_description import Robot
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Best, Shape, Signature
 from sher3_sim.effect import PlantEffect
 from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.geometry.drawing import metres, shift
-from sher3_effects.page import Page
+from sher3_effects.page import Page, Tolerated
 from sher3_effects.view import RobotView
 
 
@@ -41,6 +43,10 @@ class ToolOffset(Page):
         columns = np.zeros((len(view.run.grid), 6, 3))
         columns[:, :3] = view.path.rotation
         return Signature(view.at_tip(columns))
+
+    def tolerated(self, robot: Robot, site: str) -> Sequence[Tolerated]:
+        """Return where the tip is in the tool's frame."""
+        return (Tolerated({}, {f"tool length, {a}": (robot.tolerances.tool, "m") for a in "xyz"}),)
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Offset in the tool frame."""

@@ -15,7 +15,7 @@ from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.inertia.carried import carried_mass
-from sher3_effects.page import Page, Part, Values
+from sher3_effects.page import Page, Part, Tolerated, Values
 from sher3_effects.view import AxisView
 
 
@@ -44,6 +44,10 @@ class GravityLoad(Page):
         """One column: the modelled gravity force, or one."""
         gravity = view.path.gravity[:, view.row(site)]
         return Signature({Channel(self.stage, site): column(np.ones_like(gravity) if shape["constant"] else gravity)})
+
+    def tolerated(self, robot: Robot, site: str) -> Sequence[Tolerated]:
+        """Return the weight that the axis carries."""
+        return (Tolerated({"constant": 0.0}, {f"gravity load of {site}": (robot.tolerances.gravity_load, "1")}),)
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Ratio of the extra weight to the modelled one, or the extra force."""

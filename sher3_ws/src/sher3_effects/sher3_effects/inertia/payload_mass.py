@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
-from sher3_description import ACTUATORS
+from sher3_description import ACTUATORS, Robot
 from sher3_description.contract import GRAVITY
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Best, Shape, Signature, column
@@ -15,7 +15,7 @@ from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.inertia.carried import carried_mass
-from sher3_effects.page import Page
+from sher3_effects.page import Page, Tolerated
 from sher3_effects.view import ArmMotionView, AxisView, RobotView
 
 
@@ -50,6 +50,13 @@ class PayloadMass(Page):
         return Signature(
             {Channel(self.stage, site): column(inertia + shape["weight"] * view.path.gravity[:, axis] / scale)}
         )
+
+    def tolerated(self, robot: Robot, site: str) -> Sequence[Tolerated]:
+        """Return the mass of the axis."""
+        if site not in ACTUATORS:
+            return ()
+        limit = robot.tolerances.mass * robot.actuators[ACTUATORS.index(site)].mass
+        return (Tolerated({"weight": 0.0}, {f"mass of {site}": (limit, self.unit("mass", site, site == "roll"))}),)
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Extra mass (inertia on roll)."""

@@ -6,12 +6,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from sher3_description import Robot
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Best, Shape, Signature, column
 from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
-from sher3_effects.page import Page
+from sher3_effects.page import Page, Tolerated
 from sher3_effects.periodic.phase import phase_at_zero
 from sher3_effects.view import AxisView
 
@@ -51,6 +52,13 @@ class TransmissionRipple(Page):
         orders = [shape["periods_per_rev"], *([shape["side"]] if shape["side"] else [])]
         waves = [view.run.to_grid(f(n * turn)) for n in orders for f in (np.sin, np.cos)]
         return Signature({Channel(self.stage, site): column(*waves)})
+
+    def tolerated(self, robot: Robot, site: str) -> Sequence[Tolerated]:
+        """Return the ripple once per revolution, its quadratures."""
+        rotary = site == "roll"
+        limit = (robot.tolerances.ripple_roll if rotary else robot.tolerances.ripple, "rad" if rotary else "m")
+        waves = {f"ripple of {site}, {wave}": limit for wave in ("sine", "cosine")}
+        return (Tolerated({"periods_per_rev": 1.0, "side": 0.0}, waves),)
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Amplitude, order and phase."""

@@ -6,13 +6,17 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from sher3_description import Robot
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Best, Shape, Signature
 from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
-from sher3_effects.page import Page
+from sher3_effects.page import Page, Tolerated
 from sher3_effects.view import AxisView
+
+COMPONENTS = ("fx", "fy", "fz", "tx", "ty", "tz")
+"""Components of a wrench."""
 
 
 class ForceScale(Page):
@@ -43,6 +47,11 @@ class ForceScale(Page):
         if keep is None:
             keep = np.eye(6)[int(shape["axis"])]
         return Signature({Channel("sensing", site): (view.path.nominal_wrench * keep)[:, :, None]})
+
+    def tolerated(self, robot: Robot, site: str) -> Sequence[Tolerated]:
+        """Return the gain of every component: the diagonal of the sensor's matrix."""
+        limit = (robot.tolerances.force_matrix, "1")
+        return [Tolerated({"axis": float(i)}, {f"force sensor matrix, {n}": limit}) for i, n in enumerate(COMPONENTS)]
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Ratio error and the axis it is of."""

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
+from sher3_description import Robot
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Best, Shape, Signature, column
 from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
-from sher3_effects.page import Page
+from sher3_effects.page import Page, Tolerated
 from sher3_effects.view import AxisView
 
 
@@ -34,6 +36,10 @@ class LeadError(Page):
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
         """One column: the motor position."""
         return Signature({Channel(self.stage, site): column(view.position[:, view.row(site)])})
+
+    def tolerated(self, robot: Robot, site: str) -> Sequence[Tolerated]:
+        """Return the ratio of motor to load."""
+        return (Tolerated({}, {f"ratio of {site}": (robot.tolerances.ratio, "1")}),)
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Ratio error."""

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
+from sher3_description import Robot
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Best, Shape, Signature, column
 from sher3_sim.effect import EVERYWHERE, PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
-from sher3_effects.page import Page
+from sher3_effects.page import Page, Tolerated
 from sher3_effects.view import AxisView
 
 
@@ -32,6 +34,10 @@ class TorqueConstant(Page):
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
         """One column: the force the motion needs. reported - needed = -relative / (1 + relative) * needed."""
         return Signature({Channel(self.stage, site): column(-view.inertial[:, view.row(site)])})
+
+    def tolerated(self, robot: Robot, site: str) -> Sequence[Tolerated]:
+        """Return the torque constant of the axis."""
+        return (Tolerated({}, {f"torque constant of {site}": (robot.tolerances.torque_constant, "1")}),)
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Force over reported effort, minus one."""

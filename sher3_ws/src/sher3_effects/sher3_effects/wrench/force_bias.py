@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from sher3_description import Robot
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Best, Shape, Signature
 from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
-from sher3_effects.page import Page
+from sher3_effects.page import Page, Tolerated
 from sher3_effects.view import AxisView
 
 
@@ -31,6 +33,14 @@ class ForceBias(Page):
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
         """Six columns of ones."""
         return Signature({Channel("sensing", site): np.tile(np.eye(6), (len(view.run.grid), 1, 1))})
+
+    def tolerated(self, robot: Robot, site: str) -> Sequence[Tolerated]:
+        """Return the bias of every component."""
+        limits = robot.tolerances
+        force = {f"force sensor bias, {n}": (limits.force_bias, "N") for n in ("fx", "fy", "fz")}
+        return (
+            Tolerated({}, force | {f"force sensor bias, {n}": (limits.torque_bias, "N*m") for n in ("tx", "ty", "tz")}),
+        )
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Bias per component."""

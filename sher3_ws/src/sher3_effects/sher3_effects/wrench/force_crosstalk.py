@@ -13,12 +13,12 @@ from sher3_diagnosis.effect import Best, Shape, Signature
 from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
-from sher3_effects.page import Page, Part, Values
+from sher3_effects.page import Page, Part, Tolerated, Values
 from sher3_effects.view import AxisView
 
 
 class ForceCrosstalk(Page):
-    """reading_i += coefficient * wrench_j, i != j: one pair of forces, or all pairs."""
+    """reading_i += coefficient * wrench_j, i != j: one pair of forces, all of them, or all of forces and moments."""
 
     id, family, stage = "force_crosstalk", "wrench", "sensing"
     inputs = ("load",)
@@ -30,6 +30,8 @@ class ForceCrosstalk(Page):
     siblings = {"force_scale": "on the same axis", "tool_gravity": "there without a load on the tip"}
     FORCES = tuple((j, i) for j in range(3) for i in range(3) if i != j)
     PAIRS = tuple("xyz"[i] + "xyz"[j] for j, i in FORCES)
+    EVERY = FORCES + tuple((j, i) for j in range(6) for i in range(6) if i != j and max(i, j) > 2)
+    """Pairs (source, target) of forces, then those with moments."""
     units = {"coefficient": "1", "source": "1", "target": "1", **dict.fromkeys(PAIRS, "1")}
 
     def channels(self, site: str) -> tuple[Channel, ...]:
@@ -37,24 +39,40 @@ class ForceCrosstalk(Page):
         return (Channel("sensing", "force_sensor"),)
 
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
-        """A pair (source, target), or every pair of forces (-1)."""
-        return [{"source": -1.0, "target": -1.0}, *({"source": float(j), "target": float(i)} for j, i in self.FORCES)]
+        """A pair (source, target), every pair of forces (-1), or every pair of forces and moments (-2)."""
+        pairs: list[Shape] = [{"source": float(j), "target": float(i)} for j, i in self.FORCES]
+        return [{"source": n, "target": n} for n in (-1.0, -2.0)] + pairs
+
+    def _pairs(self, shape: Shape) -> Sequence[tuple[int, int]]:
+        several = {-1.0: self.FORCES, -2.0: self.EVERY}
+        return several.get(shape["source"], ((int(shape["source"]), int(shape["target"])),))
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
         """One column per pair: the source's nominal reading on the target."""
-        pairs = self.FORCES if shape["source"] < 0 else ((int(shape["source"]), int(shape["target"])),)
+        pairs = self._pairs(shape)
         columns = np.zeros((len(view.run.grid), 6, len(pairs)))
         for k, (j, i) in enumerate(pairs):
             columns[:, i, k] = view.path.nominal_wrench[:, j]
         return Signature({Channel("sensing", site): columns})
 
+    def tolerated(self, robot: Robot, site: str) -> Sequence[Tolerated]:
+        """Return the matrix off its diagonal; force from moment and the reverse in proportion to the ranges."""
+        sensor, names = robot.force_sensor, ("fx", "fy", "fz", "tx", "ty", "tz")
+        ranges = (*sensor.range_force, *sensor.range_torque)
+        units = {(False, False): "1", (True, True): "1", (True, False): "1/m", (False, True): "m"}
+        limits = {}
+        for j, i in self.EVERY:
+            limit = robot.tolerances.force_matrix * (1.0 if (i > 2) == (j > 2) else ranges[i] / ranges[j])
+            limits[f"force sensor matrix, {names[i]} from {names[j]}"] = (limit, units[j > 2, i > 2])
+        return (Tolerated({"source": -2.0, "target": -2.0}, limits),)
+
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Largest coefficient and its pair; where all were free, each: the axis that reads, then the loaded one."""
-        k = int(np.argmax(np.abs(coefficients)))
+        """Largest pair of forces; where all were free, each of them: the axis that reads, then the loaded one."""
+        k = int(np.argmax(np.abs(coefficients[: len(self.FORCES)])))
         j, i = self.FORCES[k] if len(coefficients) > 1 else (shape["source"], shape["target"])
         out = {"coefficient": float(coefficients[k]), "source": float(j), "target": float(i)}
         if len(coefficients) > 1:
-            out |= {pair: float(c) for pair, c in zip(self.PAIRS, coefficients, strict=True)}
+            out |= {pair: float(c) for pair, c in zip(self.PAIRS, coefficients, strict=False)}
         return out
 
     def to_simulator(self, actuator: str, values: Values, robot: Robot) -> list[Part]:

@@ -12,7 +12,7 @@ from sher3_diagnosis.effect import Best, Shape, Signature
 from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
-from sher3_effects.page import Page, Part, Values
+from sher3_effects.page import Page, Part, Tolerated, Values
 from sher3_effects.view import RobotView
 
 
@@ -48,6 +48,10 @@ class ToolGravity(Page):
         for a in range(3):
             columns[:, 3:, 1 + a] = np.cross(np.eye(3)[a], unit[:, :3])
         return Signature({Channel("sensing", site): columns})
+
+    def tolerated(self, robot: Robot, site: str) -> Sequence[Tolerated]:
+        """Return the mass of the tool."""
+        return (Tolerated({"free_com": 0.0}, {"tool mass": (robot.tolerances.tool_mass, "kg")}),)
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Extra mass; with a free centre the extra first moment."""

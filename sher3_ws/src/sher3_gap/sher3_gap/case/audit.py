@@ -39,7 +39,8 @@ def check_parameters(case: Case) -> None:
     """Refuse runs that were recorded with other parameters than the case states.
 
     Raises:
-        CaseError: the robot.yaml attached to a run is not that of the case, or cannot be read.
+        CaseError: the robot.yaml attached to a run is not that of the case, states another tolerance, or cannot be
+            read.
     """
     wanted = case.robot.digest()
     for index, run in enumerate(case.runs):
@@ -55,6 +56,22 @@ def check_parameters(case: Case) -> None:
                 f"{name}: recorded with other parameters than the case's robot.yaml",
                 value=_difference(found, case.robot),
                 remedy="put runs of different parameters into different cases",
+            )
+        _check_tolerances(name, found, case.robot)
+
+
+def _check_tolerances(name: str, run: Robot, case: Robot) -> None:
+    """Refuse a run whose file states another tolerance than the case's; a file that states none agrees with any."""
+    if "tolerances" not in run.model_fields_set or "tolerances" not in case.model_fields_set:
+        return
+    for quantity in run.tolerances.model_fields_set & case.tolerances.model_fields_set:
+        here, there = getattr(run.tolerances, quantity), getattr(case.tolerances, quantity)
+        if here != there:
+            raise CaseError(
+                f"{name}: its robot.yaml and the case's state two tolerances.{quantity}",
+                value=here,
+                limit=there,
+                remedy="keep the one that was measured",
             )
 
 

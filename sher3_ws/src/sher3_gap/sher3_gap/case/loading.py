@@ -16,7 +16,7 @@ from sher3_diagnosis.filter import low_pass
 
 from sher3_gap.case.audit import check_parameters
 from sher3_gap.case.signals import RunSignals
-from sher3_gap.case.ticks import Gap, in_order, is_live, on_grid, tick_grid
+from sher3_gap.case.ticks import Gap, check_finite, in_order, is_live, on_grid, tick_grid
 from sher3_gap.errors import CaseError
 from sher3_gap.stages.exact import with_lateness
 
@@ -64,7 +64,7 @@ def signals_of(run: Run, robot: Robot, label: str = "run") -> RunSignals:
 
     wrench = column("force/measured_cf", "force", "torque", counts=False)
     contact, known = _contact(run, wrench, stamps, period)
-    tracker = _tracker(run, stamps, period)
+    tracker = _tracker(run, stamps, period, name)
     motor = column("drives/measured_js", "position")
     if motor is None:
         raise CaseError(f"{name}: drives/measured_js carries no position", remedy="record the motor encoders")
@@ -84,7 +84,7 @@ def signals_of(run: Run, robot: Robot, label: str = "run") -> RunSignals:
         wrench=wrench,
         contact=contact,
         contact_known=known,
-        temperature=_temperature(run, stamps),
+        temperature=_temperature(run, stamps, name),
         payload=run.metadata.payload,
         start=int(stamps[0]),
         lost=lost if lost.any() else None,
@@ -140,12 +140,11 @@ def _unloaded(wrench: Array, doubtful: np.ndarray, period: float, smallest: floa
     return (rate < quiet) & (level < spread)
 
 
-def _tracker(run: Run, ticks: np.ndarray, period: float) -> dict[str, np.ndarray]:
+def _tracker(run: Run, ticks: np.ndarray, period: float, name: str) -> dict[str, np.ndarray]:
     if "tracker/measured_cp" not in run:
         return {}
     stream = run["tracker/measured_cp"]
-    if not (np.isfinite(stream.position).all() and np.isfinite(stream.orientation).all()):
-        raise CaseError("tracker/measured_cp: not a finite number", remedy="drop this run")
+    check_finite(f"{name}: tracker/measured_cp", np.hstack([stream.position, stream.orientation]))
     index = np.clip(np.searchsorted(ticks, stream.stamp - int(0.5e9 * period)), 0, len(ticks) - 1)
     near = np.abs(ticks[index] - stream.stamp) < 0.5e9 * period
     return {
@@ -155,12 +154,11 @@ def _tracker(run: Run, ticks: np.ndarray, period: float) -> dict[str, np.ndarray
     }
 
 
-def _temperature(run: Run, ticks: np.ndarray) -> Array | None:
+def _temperature(run: Run, ticks: np.ndarray, name: str) -> Array | None:
     if "temperature" not in run or len(run["temperature"]) == 0:
         return None
     stream = run["temperature"]
-    if not np.isfinite(stream.temperature).all():
-        raise CaseError("temperature: not a finite number", remedy="drop this run")
+    check_finite(f"{name}: temperature", np.asarray(stream.temperature)[:, None])
     clock, reading = (stream.stamp - ticks[0]) * 1e-9, np.asarray(stream.temperature, dtype=float)
     degree = 1 if len(reading) >= 3 else 0
     slope = np.polynomial.Polynomial.fit(clock, reading, degree)

@@ -101,9 +101,7 @@ def on_grid(stamps: Stamps, values: Array, ticks: Stamps, what: str, gap: Gap = 
     Raises:
         CaseError: a value is not finite, or too many samples are missing.
     """
-    if not np.isfinite(values).all():
-        at = int(np.argmax(~np.isfinite(values).all(axis=1)))
-        raise CaseError(f"{what}: not a finite number in sample {at}", value=str(values[at]), remedy="drop this run")
+    check_finite(what, values)
     if len(stamps) == len(ticks) and (stamps == ticks).all():
         return np.ascontiguousarray(values), np.zeros(len(ticks), dtype=bool)
     last = np.clip(np.searchsorted(stamps, ticks, side="right") - 1, 0, len(stamps) - 1)
@@ -117,3 +115,11 @@ def on_grid(stamps: Stamps, values: Array, ticks: Stamps, what: str, gap: Gap = 
         return np.ascontiguousarray(values[after]), missing
     filled = np.stack([np.interp(ticks - ticks[0], stamps - ticks[0], column) for column in values.T], axis=1)
     return filled, missing
+
+
+def check_finite(what: str, values: Array) -> None:
+    """Refuse (n, k) values that are not finite numbers; raises CaseError naming the first such sample."""
+    bad = ~np.isfinite(values).all(axis=1)
+    if bad.any():
+        at = int(np.argmax(bad))
+        raise CaseError(f"{what}: not a finite number in sample {at}", value=str(values[at]), remedy="drop this run")

@@ -16,6 +16,7 @@ from sher3_diagnosis.filter import BANDWIDTH
 from sher3_diagnosis.localise.floors import relieved_rms, repeat_floors
 
 from sher3_gap.case.signals import RunSignals
+from sher3_gap.stages.geometry import Geometry
 
 CHATTER_RATE = 12.0
 """Toggles per second of a reading at rest on the edge of a count."""
@@ -78,7 +79,10 @@ def averaged(run: RunSignals, robot: Robot, channel: Channel) -> bool:
 
 
 def floors(
-    runs: Sequence[RunSignals], residuals: Sequence[Residuals], simulated: Sequence[Sequence[Residuals]], robot: Robot
+    runs: Sequence[RunSignals],
+    residuals: Sequence[Residuals],
+    simulated: Sequence[Sequence[Residuals]],
+    robot: Robot,
 ) -> list[Floors]:
     """Per run the largest of the repeat floor, the resolution floor and the pipeline's own.
 
@@ -97,3 +101,15 @@ def floors(
         base = {c: np.maximum(repeats.get(c, least[c]), np.hypot(known[c], chatter.get(c, 0.0))) for c in found}
         out.append({c: np.max([b, *(relieved_rms(t[c]) for t in twins if c in t)], axis=0) for c, b in base.items()})
     return out
+
+
+def with_load(floor: Floors, run: RunSignals, robot: Robot, geometry: Geometry) -> Floors:
+    """Add the scatter of the stated tip load, known to a tolerance of three standard deviations from run to run."""
+    path, share = geometry.path(run), robot.tolerances.known_load / 3.0
+    ok = run.inner & run.loaded_ok
+    if not (path.loaded & ok).any():
+        return floor
+    wrench, force = (share * np.sqrt(np.mean(x[ok] ** 2, axis=0)) for x in (path.contact_wrench, path.contact_force))
+    load = {Channel("sensing", "force_sensor"): wrench}
+    load |= {Channel("motor_mechanics", a): force[[i]] for i, a in enumerate(ACTUATORS)}
+    return {c: np.hypot(x, load.get(c, 0.0)) for c, x in floor.items()}

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-import numpy as np
-from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.effect import ROTARY
 from sher3_sim.effect import SITES
 
@@ -26,8 +25,6 @@ PLACES: Mapping[str, tuple[str, ...]] = SITES
 """Kind of place -> sites of the robot."""
 FORCE_SENSOR = Channel("sensing", "force_sensor")
 TIP, LOADED_TIP = Channel("mechanism", "tip"), Channel("structure", "tip")
-AS_BUILT: Mapping[Channel, Array] = {FORCE_SENSOR: np.array([1.0e-3] * 3 + [1.2e-5] * 3)}
-"""What a healthy force sensor may deviate from its drawing, which no repeat shows: N and N m."""
 
 
 def unit_of(channel: Channel) -> str:
