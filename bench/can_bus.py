@@ -256,10 +256,12 @@ def budget_rows() -> list[dict[str, float]]:
     for rate in (200.0, 500.0, 1000.0):
         for drives in (1, 2, 3, 5):
             b, cyclic = channel_budget(drives, rate, 200.0 + 20.0 * drives), channel_budget(drives, rate)
+            checked = channel_budget(drives, rate, protected=True)
             rows.append({
                 "rate": rate, "drives": drives, "load_percent": 100 * cyclic.load,
                 "with_heartbeats_percent": 100 * b.load, "unstuffed_percent": 100 * cyclic.load_unstuffed,
                 "feedback_us": 1e6 * b.feedback, "slack_us": 1e6 * b.slack,
+                "protected_percent": 100 * checked.load, "protected_slack_us": 1e6 * checked.slack,
             })  # fmt: skip
     return rows
 

@@ -34,7 +34,7 @@ from sher3_drivers.units import AxisScale
 
 ROBOT = load_robot().replace({"admittance.force_deadband": 0.0})
 T = 2_000_000
-SETTINGS = default_settings().model_copy(update={"brake_time": 0.003, "missing_limit": 2})
+SETTINGS = default_settings(protected=False).model_copy(update={"brake_time": 0.003, "missing_limit": 2})
 CONTROL = ControlSettings.from_robot(ROBOT)
 LAW = law_parameters(ROBOT, CONTROL)
 SCALES = [AxisScale.from_actuator(actuator) for actuator in ROBOT.actuators]

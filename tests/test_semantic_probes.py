@@ -24,6 +24,7 @@ from sher3_description import TOPICS, load_robot
 from sher3_drivers.bus.frame import FRAME_SIZE, pack_frame
 from sher3_drivers.bus.link import open_link
 from sher3_drivers.canopen import objects as od
+from sher3_drivers.canopen.configuration import required_writes
 from sher3_drivers.mock.rig import LockstepRig
 from sher3_drivers.pedal.joystick import JS_EVENT, JoystickPedal
 from sher3_drivers.sensor.netft import NetFtScale
@@ -178,7 +179,7 @@ def _angles(q):
 
 def wire_rig():
     number = next(_numbers)
-    return LockstepRig(ROBOT, default_settings(), lambda i: open_link(f"virtual:wire{number}-{i}"))
+    return LockstepRig(ROBOT, default_settings(protected=False), lambda i: open_link(f"virtual:wire{number}-{i}"))
 
 
 def host_frames(rig, command):
@@ -274,7 +275,7 @@ def test_motor_counts_velocity_and_effort_of_a_forged_frame():
 
 def test_heartbeat_times_are_milliseconds():
     """Kills: seconds or us in objects 1016 and 1017: 30 ms of node 127, 50 ms."""
-    writes = dict(od.required_writes(1, AxisScale.from_actuator(ROBOT.actuators[0]), default_settings()))
+    writes = dict(required_writes(1, AxisScale.from_actuator(ROBOT.actuators[0]), default_settings()))
     assert writes[od.HOST_HEARTBEAT] == 0x007F001E and writes[od.DRIVE_HEARTBEAT] == 50
 
 

@@ -32,6 +32,7 @@ class Reason(IntEnum):
     MOVED_DISABLED = 38
     FEEDBACK_STALE = 39
     FEEDBACK_SWAPPED = 43
+    FEEDBACK_GARBLED = 44
     CLOCK = 40
     CPU_STARVED = 41
     OVERRUN = 42
@@ -55,6 +56,11 @@ class Reason(IntEnum):
     BUS_OFF = 80
     BUS_PASSIVE = 81
     LINK_LOST = 82
+    OTHER_HOST = 83
+    DRIVE_TWICE = 84
+    DRIVE_UNWILLING = 85
+    SAFE_TORQUE_OFF = 86
+    DRIVE_UNLIMITED = 87
     SUPERVISOR_SILENT = 90
     SUPERVISOR_FAULT = 91
     STOP_NOT_OBEYED = 92
@@ -109,6 +115,7 @@ TEXT: dict[Reason, str] = {
     _R.MOVED_DISABLED: "an axis moves though the robot is disabled",
     _R.FEEDBACK_STALE: "a drive's report is older than its tick",
     _R.FEEDBACK_SWAPPED: "a drive's report is that of another axis",
+    _R.FEEDBACK_GARBLED: "a drive's report fails its check",
     _R.CLOCK: "time went backwards or jumped",
     _R.CPU_STARVED: "the control loop was held up",
     _R.OVERRUN: "the control loop overran its period too often",
@@ -132,6 +139,11 @@ TEXT: dict[Reason, str] = {
     _R.BUS_OFF: "a CAN controller is off the bus",
     _R.BUS_PASSIVE: "a CAN controller is error passive",
     _R.LINK_LOST: "a CAN link cannot be used",
+    _R.OTHER_HOST: "another host speaks to the drives",
+    _R.DRIVE_TWICE: "a drive speaks twice, or on a channel that is not its own",
+    _R.DRIVE_UNWILLING: "a drive says that it does not do as it is told",
+    _R.SAFE_TORQUE_OFF: "safe torque off has taken the torque from a motor",
+    _R.DRIVE_UNLIMITED: "a drive does not have the speed limit of its regime",
     _R.SUPERVISOR_SILENT: "the supervisor is silent",
     _R.SUPERVISOR_FAULT: "the supervisor asked for the stop",
     _R.STOP_NOT_OBEYED: "an axis still moves after a quick stop",
@@ -149,6 +161,7 @@ ACTION: dict[Reason, Action] = {
     **dict.fromkeys((_R.EMERGENCY_STOP, _R.DRIVE_OVER_TEMPERATURE, _R.STOP_NOT_OBEYED), Action.POWER_OFF),
     **dict.fromkeys((_R.ENCODERS_DISAGREE, _R.ENCODER_FROZEN, _R.FOLLOWING_ERROR, _R.DRIVE_DISOBEYS), Action.POWER_OFF),
     **dict.fromkeys((_R.POSITION_LEFT, _R.MOVED_DISABLED), Action.POWER_OFF),
+    **dict.fromkeys((_R.OTHER_HOST, _R.SAFE_TORQUE_OFF), Action.POWER_OFF),
 }
 """What the supervisor or the motor driver does for each reason; the control law itself answers every one with ZERO."""
 

@@ -12,6 +12,7 @@ from sher3_drivers.bus.load import ChannelBudget, check_budget
 from sher3_drivers.errors import DriverSettingsError
 
 Seconds = Annotated[float, Field(gt=0.0, le=10.0, allow_inf_nan=False)]
+Number = Annotated[int, Field(ge=0, le=2**32 - 1)]
 Length = Annotated[float, Field(gt=0.0, le=0.01, allow_inf_nan=False)]
 Angle = Annotated[float, Field(gt=0.0, le=0.2, allow_inf_nan=False)]
 
@@ -32,12 +33,28 @@ class ChannelSettings(_Part):
     drives: tuple[str, ...]
 
 
+class DriveIdentity(_Part):
+    """The name plate of a drive (object 0x1018), as it must be found.
+
+    Attributes:
+        drive: actuator.
+        vendor, product, serial: vendor id, product code and serial number.
+    """
+
+    drive: str
+    vendor: Number
+    product: Number
+    serial: Number
+
+
 class MotorDriverSettings(_Part):
     """Everything the motor driver can be told.
 
     Attributes:
         channels: CAN channels; together they hold every actuator once.
         period: control period and SYNC period, s.
+        protected: commands and reports carry a check (`canopen.protection`), which the drives must have.
+        identities: name plates of drives that must be no other ones; those of drives not named are not looked at.
         host_id: CANopen node id of this computer, for its heartbeat.
         host_heartbeat: period of the host's heartbeat, s. The control loop itself sends it, so that a loop that hangs
             falls silent.
@@ -48,6 +65,9 @@ class MotorDriverSettings(_Part):
         feedback_limit: longest wait for the TPDOs of a tick, as a share of the period.
         missing_limit: consecutive ticks with a missing TPDO after which the driver stops the robot. Motion ends
             before: such ticks are not published, the controller falls silent, and `zero_age` acts.
+        report_limit: reports of a drive in a row that fail their check, or come twice in one tick and differ, after
+            which the robot stops; none of them is believed.
+        status_reports: statuswords in a row that say that an enabled drive does not follow; one may while it begins to.
         zero_age: age of the newest command after which zero velocity is sent, in periods.
         stop_age: age after which the drives are quick-stopped, in periods; wide, since zero is being sent by then.
         supervisor_limit: silence of the supervisor's heartbeat (every 10 ms) after which the driver stops, s.
@@ -88,6 +108,8 @@ class MotorDriverSettings(_Part):
 
     channels: tuple[ChannelSettings, ...]
     period: Annotated[float, Field(ge=0.0005, le=0.1)] = 0.002
+    protected: bool = False
+    identities: tuple[DriveIdentity, ...] = ()
     host_id: Annotated[int, Field(ge=1, le=127)] = 127
     host_heartbeat: Seconds = 0.005
     host_heartbeat_limit: Seconds = 0.030
@@ -95,6 +117,8 @@ class MotorDriverSettings(_Part):
     drive_heartbeat_limit: Seconds = 0.200
     feedback_limit: Annotated[float, Field(gt=0.0, lt=1.0)] = 0.8
     missing_limit: Annotated[int, Field(ge=1, le=1000)] = 10
+    report_limit: Annotated[int, Field(ge=1, le=1000)] = 3
+    status_reports: Annotated[int, Field(ge=1, le=1000)] = 3
     zero_age: Annotated[int, Field(ge=1, le=1000)] = 4
     stop_age: Annotated[int, Field(ge=1, le=1000)] = 50
     supervisor_limit: Seconds = 0.030
@@ -134,6 +158,9 @@ class MotorDriverSettings(_Part):
         named = [drive for channel in self.channels for drive in channel.drives]
         if sorted(named) != sorted(ACTUATORS):
             raise ValueError(f"channels hold the drives {named}; every one of {list(ACTUATORS)} must be there once")
+        plates = [identity.drive for identity in self.identities]
+        if len(set(plates)) < len(plates) or not set(plates) <= set(ACTUATORS):
+            raise ValueError(f"identities name the drives {plates}; each of {list(ACTUATORS)} may be there once")
         if self.host_id <= len(ACTUATORS):
             raise ValueError(f"host_id {self.host_id} is a drive's node id; limit > {len(ACTUATORS)}")
         for name in ("host_heartbeat", "drive_heartbeat"):
@@ -160,23 +187,36 @@ class MotorDriverSettings(_Part):
     def budgets(self) -> list[ChannelBudget]:
         """Return the bus-load budget of every channel; raise BusLoadError when one is overloaded."""
         heartbeats = 1.0 / self.host_heartbeat + max(len(c.drives) for c in self.channels) / self.drive_heartbeat
-        return check_budget([len(channel.drives) for channel in self.channels], 1.0 / self.period, heartbeats)
+        drives = [len(channel.drives) for channel in self.channels]
+        return check_budget(drives, 1.0 / self.period, heartbeats, self.protected)
+
+
+_MOCKS = ("local:", "virtual:")
+"""Links that no real drive is on."""
 
 
 def default_settings(
-    period: float = 0.002, links: Sequence[str] | None = None, kind: str = "local"
+    period: float = 0.002,
+    links: Sequence[str] | None = None,
+    kind: str = "local",
+    protected: bool | None = None,
 ) -> MotorDriverSettings:
-    """Return the layout the bus-load budget asks for: two channels (3, 2), or three (2, 2, 1) above 600 Hz.
+    """Return the layout the bus-load budget asks for: two channels (3, 2); above 600 Hz five, or unprotected three.
 
     Args:
         period: control period, s.
         links: one link specification per channel; by default `<kind>:drives/0`, `<kind>:drives/1`, ...
         kind: kind of the default links.
+        protected: commands and reports carry a check; by default where all drives are mocks, which can.
     """
-    layout = (ACTUATORS[:3], ACTUATORS[3:]) if period >= 1.0 / 600.0 else (ACTUATORS[:2], ACTUATORS[2:4], ACTUATORS[4:])
+    if protected is None:
+        protected = all(name.startswith(_MOCKS) for name in links or [f"{kind}:"])
+    layout: tuple[tuple[str, ...], ...] = (ACTUATORS[:3], ACTUATORS[3:])
+    if period < 1.0 / 600.0:
+        layout = tuple((name,) for name in ACTUATORS) if protected else (ACTUATORS[:2], ACTUATORS[2:4], ACTUATORS[4:])
     names = tuple(links) if links is not None else tuple(f"{kind}:drives/{i}" for i in range(len(layout)))
     if len(names) != len(layout):
         remedy = "name one link per channel or configure the channels"
         raise DriverSettingsError("number of links", value=len(names), limit=len(layout), remedy=remedy)
     channels = [{"link": name, "drives": drives} for name, drives in zip(names, layout, strict=True)]
-    return MotorDriverSettings.checked(channels=channels, period=period)
+    return MotorDriverSettings.checked(channels=channels, period=period, protected=protected)

@@ -23,6 +23,8 @@ ENCODER_REVOLUTIONS = 100
 Over a hundred revolutions every encoder of the robot has a whole number of increments.
 """
 
+_SPARE = 0.05
+"""What the drive's own position limits leave beyond the ends of travel, as a share of it."""
 _INT32 = 2**31 - 1
 _INT16 = 2**15 - 1
 _WHOLE = 1e-6
@@ -45,6 +47,9 @@ class AxisScale:
         rated_milli: rated force or torque, mN or mN m.
         max_motor_speed: the drive's own speed limit, rpm: the velocity limit rounded up.
         stop_deceleration: deceleration of a quick stop, rpm/s: the acceleration limit.
+        position_limits: lowest and highest position the drive allows, counts of the motor encoder: the ends of travel
+            and a twentieth of it more, since the host brakes before them.
+        max_torque: largest torque the drive gives, thousandths of the rated one.
         hold: force with which the drive's integral holds the axis against a departure, ki, N/m or N m/rad.
         settling: time in which it does so, kp / ki, s.
         revolute: the axis turns: its unit is rad, not m.
@@ -61,6 +66,8 @@ class AxisScale:
     rated_milli: int
     max_motor_speed: int
     stop_deceleration: int
+    position_limits: tuple[int, int]
+    max_torque: int
     hold: float
     settling: float
     revolute: bool = False
@@ -79,6 +86,7 @@ class AxisScale:
                 not fit 32 bits.
         """
         rpm = 60.0 / actuator.lead
+        spare = _SPARE * (actuator.limits.upper - actuator.limits.lower)
         scale = cls(
             name=actuator.name,
             motor_encoder=actuator.motor_encoder,
@@ -91,6 +99,11 @@ class AxisScale:
             rated_milli=round(actuator.drive.rated * 1000.0),
             max_motor_speed=math.ceil(actuator.limits.velocity * rpm - _WHOLE),
             stop_deceleration=round(actuator.limits.acceleration * rpm),
+            position_limits=(
+                math.floor((actuator.limits.lower - spare) / actuator.motor_encoder),
+                math.ceil((actuator.limits.upper + spare) / actuator.motor_encoder),
+            ),
+            max_torque=round(1000.0 * actuator.drive.limit / actuator.drive.rated),
             hold=actuator.drive.ki,
             settling=actuator.drive.kp / actuator.drive.ki,
             revolute=actuator.kind == "revolute",

@@ -56,4 +56,4 @@ def test_an_overloaded_layout_is_refused_with_its_budget(layout, rate):
     with pytest.raises(BusLoadError) as caught:
         check_budget(layout, rate)
     text = str(caught.value)
-    assert "channel 0" in text and "limit 90 %" in text and "spread the drives" in text
+    assert "channel 0" in text and "limit 90 %" in text and "more channels" in text

@@ -12,7 +12,7 @@ from sher3_description import load_robot
 from sher3_drivers.bus.frame import ERROR_FLAG, Frame, mark, pack_frames
 from sher3_drivers.bus.link import open_link
 from sher3_drivers.bus.local import LocalCable
-from sher3_drivers.canopen.tpdo import TPDO_BASES
+from sher3_drivers.canopen.objects import NODE_IDS
 from sher3_drivers.mock.rig import LockstepRig
 from sher3_drivers.pedal.local import LocalPedal
 from sher3_drivers.sensor.device import WrenchRecord
@@ -120,13 +120,14 @@ def test_an_enabled_robot_under_garbage_stays_within_its_limits(seed):
 @relaxed
 @given(bursts, st.integers(0, 1))
 def test_what_has_another_length_or_address_is_counted_or_foreign(disabled, frames, channel):
-    """A TPDO cut short is a misfit; the collector takes nothing of it into the feedback."""
+    """A TPDO cut short on its drive's channel is a misfit; the collector takes nothing of it into the feedback."""
     rig, intruders = disabled
     rig.tick()
     before = rig.driver.wire.collector.misfits
-    tpdos = {base + node for base in TPDO_BASES for node in range(1, 6)}
-    heads = [frames[k : k + 5] for k in range(0, len(frames), 16)]
-    cut = sum(head[4] != 8 and int.from_bytes(head[:4], "little") in tpdos for head in heads)
+    nodes = [NODE_IDS[name] for name in rig.settings.channels[channel].drives]
+    lengths = {base + node: length for base, length in ((0x180, 8), (0x280, 8), (0x380, 2)) for node in nodes}
+    heads = [(int.from_bytes(frames[k : k + 4], "little"), frames[k + 4]) for k in range(0, len(frames), 16)]
+    cut = sum(length != lengths.get(can_id, length) for can_id, length in heads)
     intruders[channel].send_frames(frames)
     rig.tick()
     rig.tick()

@@ -8,6 +8,7 @@ from sher3_description import ACTUATORS, load_robot
 from sher3_drivers.bus.condition import BusCondition, error_frame
 from sher3_drivers.bus.frame import iter_frames, pack_frame, pack_frames
 from sher3_drivers.canopen import objects as od
+from sher3_drivers.canopen.protection import check_of
 from sher3_drivers.mock import drive as mock_drive
 
 ROBOT = load_robot()
@@ -142,9 +143,11 @@ def test_frames_to_the_drives_can_be_held_back(rig):
 def test_the_drives_hold_their_own_speed_limit(rig):
     """A target the driver would refuse, put on the bus by somebody else."""
     rig.tick(SLOW)
-    frame = pack_frame(od.RPDO_BASE + 1, struct.pack("<Hi", 0x0F, 2_000_000_000))
     rig.mock.poll()
-    rig.mock.drives["delta_1"].receive(od.RPDO_BASE + 1, frame[8:14], rig.now)
+    drive = rig.mock.drives["delta_1"]
+    command = struct.pack("<Hi", 0x0F, 2_000_000_000)
+    check = struct.pack("<H", check_of(command, drive.node_id, drive.counter))
+    drive.receive(od.RPDO_BASE + 1, command + check, rig.now)
     demand = rig.tick(SLOW).velocity_demand[0]
     assert demand == pytest.approx(ROBOT.actuators[0].limits.velocity, rel=1e-9)
     assert rig.mock.drives["delta_1"].statusword & 0x0800

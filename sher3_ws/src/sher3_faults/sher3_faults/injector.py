@@ -5,7 +5,6 @@ Seams are closed while nothing is wrong, so a healthy run costs nothing.
 
 from __future__ import annotations
 
-import struct
 from collections.abc import Callable
 from functools import partial
 from random import Random
@@ -24,8 +23,10 @@ from sher3_faults.items import BusFrames, DriveFrames, Numbers, PedalStates, Wre
 from sher3_faults.kinds import KINDS, OFF, OK, Kind
 from sher3_faults.requests import DEVICES, FaultRequest, parse_request
 
-_RPDO = struct.Struct("<IB3xHi2x")
 _UP, _DOWN = "up", "down"
+_TORQUE = "safe_torque_off"
+_NO_LINES = ("force_sensor", "pedal", _TORQUE)
+"""Components without frames."""
 
 
 class ForceEnd(Protocol):
@@ -102,6 +103,8 @@ class FaultInjector:
         """End the faults whose time is over; switch drives on and off, which is no change of a stream."""
         for name, drive in self._drives.drives.items():
             self._act_on_drive(name, drive, now)
+        line = self.active.get(_TORQUE)
+        self._drives.safe_torque_off(line is not None and line.acts(now))
         over = [name for name, active in self.active.items() if active.end is not None and now >= active.end]
         for name in over:
             del self.active[name]
@@ -131,19 +134,19 @@ class FaultInjector:
     def _kinds(self, request: FaultRequest) -> dict[str, Kind]:
         """Return the fault, one object for each direction of a line."""
         unit, _, part = request.component.partition(".")
-        ways = (part,) if part or unit in ("force_sensor", "pedal") else (_UP, _DOWN)
+        ways = (part,) if part or unit in _NO_LINES else (_UP, _DOWN)
         make, items = KINDS[request.fault], self._items(unit, part)
         return {way: make(items, request.parameters, Random(f"{request.seed} {way}")) for way in ways}
 
     def _items(self, unit: str, part: str) -> Any:
         if unit == "force_sensor":
             return WrenchRecords()
-        if unit == "pedal":
+        if unit in ("pedal", _TORQUE):
             return PedalStates()
         if part in ("", _UP, _DOWN):
             return BusFrames() if unit.startswith("bus") else DriveFrames()
         scale = self._drives.drives[unit].scale
-        if part == "power":
+        if part in ("power", "echo"):
             return Numbers(scale.velocity_limit)
         return Numbers(scale.velocity_limit / scale.velocity if part == "demand" else 0.05)
 
@@ -155,12 +158,13 @@ class FaultInjector:
         self._force.tamper = self._samples("force_sensor") if "force_sensor" in names else None
         self._pedal.tamper = self._samples("pedal") if "pedal" in names else None
         for name, drive in self._drives.drives.items():
-            wanted = {f"{name}.load_encoder", f"{name}.motor_encoder"} & names.keys()
+            wanted = {f"{name}.load_encoder", f"{name}.motor_encoder", f"{name}.echo"} & names.keys()
             drive.tamper = self._feedback(name) if wanted else None
+            drive.mistake = partial(self._demand, name) if f"{name}.demand" in names else None
             drive.stray = partial(self._number, name, "power") if f"{name}.power" in names else None
-        parts = [name.partition(".")[::2] for name in names if name not in ("force_sensor", "pedal")]
+        parts = [name.partition(".")[::2] for name in names if name not in _NO_LINES]
         up = any(part in ("", _UP) for _, part in parts)
-        down = any(part in ("", _DOWN, "demand") for _, part in parts)
+        down = any(part in ("", _DOWN) for _, part in parts)
         self._drives.tamper_frames = self._frames(_UP) if up else None
         self._drives.tamper_received = self._frames(_DOWN) if down else None
 
@@ -175,7 +179,7 @@ class FaultInjector:
         return tamper
 
     def _feedback(self, name: str) -> Callable[[AxisReading], AxisReading]:
-        fields = {"motor_encoder": "motor_position", "load_encoder": "load_position"}
+        fields = {"motor_encoder": "motor_position", "load_encoder": "load_position", "echo": "velocity_demand"}
 
         def tamper(feedback: AxisReading) -> AxisReading:
             for part, field in fields.items():
@@ -184,6 +188,10 @@ class FaultInjector:
             return feedback
 
         return tamper
+
+    def _demand(self, name: str, counts: float) -> float:
+        limit = 2**31 - 1
+        return max(-limit, min(limit, self._number(name, "demand", counts)))
 
     def _number(self, name: str, part: str, value: float) -> float:
         """Return a number as a fault leaves it; a number that the fault drops keeps its last value."""
@@ -199,12 +207,10 @@ class FaultInjector:
         def tamper(channel: int, frames: bytes, now: int) -> bytes:
             items = [frames[i : i + FRAME_SIZE] for i in range(0, len(frames), FRAME_SIZE)]
             for component, active in list(self.active.items()):
-                unit, _, part = component.partition(".")
-                if unit in ("force_sensor", "pedal") or not active.acts(now):
+                unit = component.partition(".")[0]
+                if unit in _NO_LINES or not active.acts(now):
                     continue
-                if part == "demand" and way == _DOWN:
-                    items = [self._demand(unit, item) for item in items]
-                elif way in active.faults and unit in ("bus", f"bus{channel}"):
+                if way in active.faults and unit in ("bus", f"bus{channel}"):
                     items = self._of_bus(active, way, channel, items, now)
                 elif way in active.faults and unit in ACTUATORS:
                     items = self._of_drive(unit, channel, active.faults[way], items, now)
@@ -231,16 +237,6 @@ class FaultInjector:
         for item in items:
             passed += fault([item], now) if _concerns(item, drive) else [item]
         return passed + fault([], now)
-
-    def _demand(self, name: str, item: bytes) -> bytes:
-        """Return a frame with the velocity demand as the fault leaves it; other frames stay as they are."""
-        node = self._drives.drives[name].node_id
-        if int.from_bytes(item[:4], "little") != od.RPDO_BASE + node:
-            return item
-        can_id, length, word, velocity = _RPDO.unpack(item)
-        limit = 2**31 - 1
-        changed = max(-limit, min(limit, round(self._number(name, "demand", velocity))))
-        return _RPDO.pack(can_id, length, word, changed)
 
 
 def _of_channel(active: Active, way: str, channel: int) -> Kind:

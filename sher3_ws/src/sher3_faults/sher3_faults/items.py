@@ -6,6 +6,7 @@ import math
 import struct
 from collections.abc import Hashable
 from random import Random
+from typing import Any
 
 from sher3_drivers.bus.frame import ERROR_FLAG
 from sher3_drivers.pedal.device import PedalState
@@ -29,6 +30,11 @@ class BusFrames:
         """Return random data under the same identifier and length."""
         return item[:8] + random.randbytes(8)
 
+    def exchanged(self, item: bytes) -> bytes:
+        """Return a frame of node 1 as one of node 2, and the other way round; other frames stay."""
+        can_id, length, data = _FRAME.unpack(item)
+        return _FRAME.pack(can_id ^ 3, length, data) if can_id & 0x7F in (1, 2) else item
+
     def wrong(self, item: bytes, parameters: Parameters) -> bytes:
         """Return an error frame, "error passive"."""
         return _ERROR_PASSIVE
@@ -43,12 +49,20 @@ class DriveFrames(BusFrames):
         return _FRAME.pack(can_id + 1, length, data)
 
 
-class WrenchRecords:
-    """Records of the force sensor. Wrong: scaled, offset along every axis of force [N], with a status word `code`."""
+class OneSource:
+    """Items that all come from one source."""
 
-    def key(self, item: WrenchRecord) -> Hashable:
-        """Return one source: all records come from one sensor."""
+    def key(self, item: Any) -> Hashable:
+        """Return the one source."""
         return None
+
+    def exchanged(self, item: Any) -> Any:
+        """Return the item: there is no other source."""
+        return item
+
+
+class WrenchRecords(OneSource):
+    """Records of the force sensor. Wrong: scaled, offset along every axis of force [N], with a status word `code`."""
 
     def garbage(self, item: WrenchRecord, random: Random) -> WrenchRecord:
         """Draw each component from the whole range of 32 bit counts: up to 2147 N and 2.1 N m."""
@@ -63,12 +77,8 @@ class WrenchRecords:
         return item._replace(wrench=wrench, status=int(parameters["code"]))
 
 
-class PedalStates:
+class PedalStates(OneSource):
     """States of the pedal. Wrong: the travel is scaled and offset."""
-
-    def key(self, item: PedalState) -> Hashable:
-        """Return one source: all states come from one pedal."""
-        return None
 
     def garbage(self, item: PedalState, random: Random) -> PedalState:
         """Draw a travel, also outside 0 to 1."""
@@ -79,12 +89,8 @@ class PedalStates:
         return item._replace(travel=parameters["scale"] * item.travel + parameters["offset"])
 
 
-class Stamps:
+class Stamps(OneSource):
     """Stamps of the ticks of one node [ns]: its clock. Wrong: offset [s]; garbage: up to a tenth of a second off."""
-
-    def key(self, item: int) -> Hashable:
-        """Return one source: the stream has no others."""
-        return None
 
     def garbage(self, item: int, random: Random) -> int:
         """Draw a stamp evenly around the true one."""
@@ -95,7 +101,7 @@ class Stamps:
         return item + round(parameters["offset"] * 1e9)
 
 
-class Numbers:
+class Numbers(OneSource):
     """One number per tick: an encoder [m, rad] or a velocity demand [counts].
 
     Args:
@@ -104,10 +110,6 @@ class Numbers:
 
     def __init__(self, spread: float) -> None:
         self._spread = spread
-
-    def key(self, item: float) -> Hashable:
-        """Return one source: the stream has no others."""
-        return None
 
     def garbage(self, item: float, random: Random) -> float:
         """Draw a number evenly between plus and minus `spread`."""

@@ -1,8 +1,8 @@
 """The kinds of faults, each one small class that acts on a stream: items in, items out, told the time.
 
 The names follow PX4's failure injection (off, stuck, garbage, wrong, slow, delayed, intermittent) with duplicated,
-reordered and the slow ones (creep, drift, ramp, late) added. What an item is (a CAN frame, a force record, a pedal
-state, one number) is told by `Items`, so that each kind exists once.
+reordered and the slow ones (creep, drift, ramp, late, swap) added. What an item is (a CAN frame, a force record, a
+pedal state, one number) is told by `Items`, so that each kind exists once.
 """
 
 from __future__ import annotations
@@ -26,6 +26,9 @@ class Items(Protocol):
 
     def wrong(self, item: Any, parameters: Parameters) -> Any:
         """Return a well-formed item with a false content."""
+
+    def exchanged(self, item: Any) -> Any:
+        """Return an item of one of two sources under the name of the other; where there is one source, the item."""
 
 
 class Bounds(NamedTuple):
@@ -248,6 +251,14 @@ class Late(Kind):
         return kept.popleft() if len(kept) > int(self.parameters["items"]) else kept[0]
 
 
+class Swap(Kind):
+    """What two sources say is exchanged: each bears the name of the other."""
+
+    def __call__(self, items: list[Any], now: int) -> list[Any]:
+        """Return the items with their sources exchanged."""
+        return [self.items.exchanged(item) for item in items]
+
+
 KINDS: dict[str, Callable[[Items, Parameters, Random], Kind]] = {
     "off": Off,
     "stuck": Stuck,
@@ -262,6 +273,7 @@ KINDS: dict[str, Callable[[Items, Parameters, Random], Kind]] = {
     "drift": Drift,
     "ramp": Ramp,
     "late": Late,
+    "swap": Swap,
 }
 """Every kind by its name."""
 

@@ -11,19 +11,21 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from sher3_description import ACTUATORS
 
 from sher3_faults.errors import FaultRefused
-from sher3_faults.kinds import KINDS, OK, bounds_of
+from sher3_faults.kinds import KINDS, OFF, OK, bounds_of
 
 Seconds = Annotated[float, Field(ge=0.0, le=3600.0, allow_inf_nan=False)]
 
-LINES = ("bus", *(f"bus{i}" for i in range(3)), *ACTUATORS)
+LINES = ("bus", *(f"bus{i}" for i in range(5)), *ACTUATORS)
 """Where frames run: all channels, one of them, or one drive's share of its channel."""
 DEVICES = (
     "force_sensor",
     "pedal",
+    "safe_torque_off",
     *(name + way for name in LINES for way in ("", ".up", ".down")),
-    *(f"{name}.{part}" for name in ACTUATORS for part in ("load_encoder", "motor_encoder", "demand", "power")),
+    *(f"{name}.{part}" for name in ACTUATORS for part in ("load_encoder", "motor_encoder", "demand", "power", "echo")),
 )
-"""What the plant process can break: `.up` is towards the host, `.down` towards the drives; without either, both."""
+"""What the plant process can break: `.up` is towards the host, `.down` towards the drives; without either, both.
+`safe_torque_off` is the line that takes the torque from all motors: `off`."""
 PROCESSES = ("force_sensor", "pedal", "admittance", "kinematics", "motor_driver", "supervisor", "plant", "recorder")
 OTHERS = ("all", "clock", *(f"clock.{name}" for name in PROCESSES), *(f"process.{name}" for name in PROCESSES))
 """`all` goes with `ok`; clock and processes are broken from outside, by `sher3 safety`: the plant only notes them."""
@@ -91,6 +93,8 @@ def checked(request: FaultRequest) -> FaultRequest:
         raise FaultRefused(component, fault, "no such component", value=component, limit=known)
     if fault not in KINDS and fault != OK:
         raise FaultRefused(component, fault, "no such fault", value=fault, limit=", ".join((*KINDS, OK)))
+    if component == "safe_torque_off" and fault not in (OFF, OK):
+        raise FaultRefused(component, fault, "a line is open or whole", value=fault, limit=f"{OFF}, {OK}")
     if component == "all" and fault != OK:
         raise FaultRefused(component, fault, "only ok goes with all", remedy="name one component")
     bounds = bounds_of(fault) if component in DEVICES else {}

@@ -18,6 +18,8 @@ RPDO_BYTES = 6
 """Controlword and target velocity (`canopen.objects.RPDO1`)."""
 TPDO_BYTES = (8, 8)
 """The two TPDOs of a drive (`canopen.objects.TPDO1`, `TPDO2`)."""
+CHECK_BYTES = 2
+"""What protection adds to a command, and the third TPDO of a protected drive (`canopen.objects.TPDO3`)."""
 LOAD_LIMIT = 0.90
 """Share of the bus for cyclic traffic and heartbeats in the worst case; the rest is for SDO, EMCY and repeats."""
 
@@ -69,29 +71,41 @@ class ChannelBudget:
         )
 
 
-def channel_budget(drives: int, rate: float, heartbeat_rate: float = 0.0, bit_rate: int = BIT_RATE) -> ChannelBudget:
+def channel_budget(
+    drives: int, rate: float, heartbeat_rate: float = 0.0, bit_rate: int = BIT_RATE, protected: bool = False
+) -> ChannelBudget:
     """Return the budget of one channel: SYNC, and per drive one RPDO and two TPDOs a cycle; heartbeats beside them.
+
+    Protection adds a counter to SYNC, a check to the RPDO, and a third TPDO, for which the control loop waits.
 
     Args:
         drives: number of drives on the channel.
         rate: SYNC rate, Hz.
         heartbeat_rate: heartbeats of all participants, 1/s.
         bit_rate: bit/s.
+        protected: with end-to-end protection.
     """
+    reports = (*TPDO_BYTES, CHECK_BYTES) if protected else TPDO_BYTES
+    sync, command = (1, RPDO_BYTES + CHECK_BYTES) if protected else (0, RPDO_BYTES)
 
     def load(stuffed: bool) -> float:
-        per_drive = frame_bits(RPDO_BYTES, stuffed) + sum(frame_bits(n, stuffed) for n in TPDO_BYTES)
-        cycle = frame_bits(0, stuffed) + drives * per_drive
+        per_drive = frame_bits(command, stuffed) + sum(frame_bits(n, stuffed) for n in reports)
+        cycle = frame_bits(sync, stuffed) + drives * per_drive
         return (cycle * rate + heartbeat_rate * frame_bits(1, stuffed)) / bit_rate
 
-    feedback = (frame_bits(0) + drives * frame_bits(TPDO_BYTES[0])) / bit_rate
-    blocking = frame_bits(TPDO_BYTES[1]) / bit_rate
-    commands = drives * frame_bits(RPDO_BYTES) / bit_rate
+    awaited = reports if protected else TPDO_BYTES[:1]
+    feedback = (frame_bits(sync) + drives * sum(map(frame_bits, awaited))) / bit_rate
+    blocking = 0.0 if protected else frame_bits(TPDO_BYTES[1]) / bit_rate
+    commands = drives * frame_bits(command) / bit_rate
     return ChannelBudget(drives, rate, load(True), load(False), feedback, 1.0 / rate - feedback - blocking - commands)
 
 
 def check_budget(
-    drives_per_channel: Sequence[int], rate: float, heartbeat_rate: float = 0.0, limit: float = LOAD_LIMIT
+    drives_per_channel: Sequence[int],
+    rate: float,
+    heartbeat_rate: float = 0.0,
+    protected: bool = False,
+    limit: float = LOAD_LIMIT,
 ) -> list[ChannelBudget]:
     """Return the budget of every channel.
 
@@ -99,12 +113,13 @@ def check_budget(
         drives_per_channel: number of drives on every channel.
         rate: SYNC rate, Hz.
         heartbeat_rate: heartbeats of all participants of a channel, 1/s.
+        protected: with end-to-end protection.
         limit: share of the bus that may be taken.
 
     Raises:
         BusLoadError: the worst-case load of a channel exceeds `limit`; the error prints the whole budget.
     """
-    budgets = [channel_budget(drives, rate, heartbeat_rate) for drives in drives_per_channel]
+    budgets = [channel_budget(drives, rate, heartbeat_rate, protected=protected) for drives in drives_per_channel]
     worst = max(budgets, key=lambda budget: budget.load)
     if worst.load > limit:
         lines = "\n".join(f"  channel {index}: {budget}" for index, budget in enumerate(budgets))
@@ -113,6 +128,6 @@ def check_budget(
             budget=lines,
             value=f"{100 * worst.load:.1f} %",
             limit=f"{100 * limit:.0f} %",
-            remedy="spread the drives over more channels (two at 500 Hz, three at 1 kHz) or lower the rate",
+            remedy="spread them over more channels (two at 500 Hz; three, protected five, at 1 kHz) or lower the rate",
         )
     return budgets

@@ -7,12 +7,14 @@ from collections.abc import Callable
 
 import canopen
 from canopen.node import LocalNode
+from canopen.sdo import SdoAbortedError
 
 from sher3_drivers.bus.frame import pack_frame
 from sher3_drivers.canopen.dictionary import drive_dictionary
 from sher3_drivers.canopen.objects import OBJECTS, Address
 
 _SIGNED = {"i8", "i16", "i32"}
+_NO_OBJECT = 0x06020000
 
 
 class _PolledTask:
@@ -60,6 +62,7 @@ class CanopenDevice:
         values: every object as it is now.
         factory: every object as it is after a reset.
         operational: whether PDOs are served.
+        missing: objects that this node does not have.
     """
 
     OPERATIONAL = "OPERATIONAL"
@@ -74,6 +77,7 @@ class CanopenDevice:
     ) -> None:
         self.values = dict(factory)
         self.operational = False
+        self.missing: frozenset[Address] = frozenset()
         self.factory = dict(factory)
         self._on_write, self._on_reset = on_write, on_reset
         self._network = _NodeNetwork(send)
@@ -93,11 +97,18 @@ class CanopenDevice:
 
     def _read(self, index: int, subindex: int, od: object) -> int:
         del od
-        return self.values[Address(index, subindex)]
+        return self.values[self._address(index, subindex)]
+
+    def _address(self, index: int, subindex: int) -> Address:
+        """Return the address of an object that is there."""
+        address = Address(index, subindex)
+        if address in self.missing:
+            raise SdoAbortedError(_NO_OBJECT)
+        return address
 
     def _write(self, index: int, subindex: int, od: object, data: bytes) -> None:
         del od
-        address = Address(index, subindex)
+        address = self._address(index, subindex)
         value = int.from_bytes(data, "little", signed=OBJECTS[address].kind in _SIGNED)
         self._on_write(address, value)
         self.values[address] = value

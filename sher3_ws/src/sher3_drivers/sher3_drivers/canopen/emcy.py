@@ -12,6 +12,11 @@ from sher3_drivers.errors import FrameError
 EMCY = struct.Struct("<HB5s")
 """Error code, error register (object 0x1001), five bytes of the manufacturer (CiA 301, emergency object)."""
 
+SAFE_TORQUE_OFF = 0x5441
+"""Code of a drive whose safe torque off has taken the torque from its motor."""
+COMMAND_LOST, COMMAND_GARBLED = 0x8250, 0xFF02
+"""Codes of a drive that has had no command for the event time of its RPDO, and of one whose commands fail their check.
+"""
 HOST_LOST = 0x8130
 """Code of a drive that misses the host's heartbeat (CiA 301, life guard or heartbeat error)."""
 
@@ -26,7 +31,7 @@ CODES: dict[int, str] = {
     0x4210: "over-temperature of the device",
     0x4310: "over-temperature of the drive",
     0x5113: "low 5 V supply",
-    0x5441: "enable input missing (safe torque off)",
+    SAFE_TORQUE_OFF: "enable input missing (safe torque off)",
     0x6100: "internal software error",
     0x6320: "parameter error",
     0x7121: "motor blocked",
@@ -40,10 +45,11 @@ CODES: dict[int, str] = {
     0x8210: "PDO not processed: too short",
     0x8220: "PDO longer than mapped",
     0x8240: "unexpected SYNC length",
-    0x8250: "RPDO timeout",
+    COMMAND_LOST: "RPDO timeout",
     0x8400: "velocity following error",
     0x8611: "position following error",
     0x8612: "reference limit",
+    COMMAND_GARBLED: "manufacturer: commands fail their check",
     0xFF01: "manufacturer: set-point out of range",
 }
 
@@ -115,8 +121,15 @@ _TEMPERATURE = 0x4
 """High digit of every code about temperature."""
 
 
+_REASONS = {
+    SAFE_TORQUE_OFF: Reason.SAFE_TORQUE_OFF,
+    HOST_LOST: Reason.DRIVE_HOST_LOST,
+    COMMAND_LOST: Reason.DRIVE_HOST_LOST,
+}
+
+
 def reason_of(code: int) -> Reason:
-    """Return the reason an emergency code stands for: temperature (0x4xxx), lost host (0x8130), or any other."""
+    """Return the reason an emergency code stands for: temperature (0x4xxx), one of `_REASONS`, or any other."""
     if code >> 12 == _TEMPERATURE:
         return Reason.DRIVE_OVER_TEMPERATURE
-    return Reason.DRIVE_HOST_LOST if code == HOST_LOST else Reason.DRIVE_EMERGENCY
+    return _REASONS.get(code, Reason.DRIVE_EMERGENCY)

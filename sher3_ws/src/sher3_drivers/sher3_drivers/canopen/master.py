@@ -16,6 +16,7 @@ from canopen.sdo import SdoAbortedError, SdoClient, SdoCommunicationError
 
 from sher3_drivers.bus.frame import ERROR_FLAG, REMOTE_FLAG, iter_frames, pack_frame
 from sher3_drivers.bus.link import CanLink, wait_frames
+from sher3_drivers.canopen.configuration import holds
 from sher3_drivers.canopen.dictionary import drive_dictionary
 from sher3_drivers.canopen.objects import (
     BOOT_UP,
@@ -30,6 +31,8 @@ from sher3_drivers.errors import DriveMismatch, DriveSilent
 
 _SIGNED = {"i8", "i16", "i32"}
 _CHECK = "check power, node id, bit rate and the channel it is configured on"
+NO_OBJECT, NO_SUB_INDEX, READ_ONLY = 0x06020000, 0x06090011, 0x06010002
+"""SDO abort codes of CiA 301: there is no such object, no such sub-index, and it cannot be written."""
 REPEAT = 0.1
 """Seconds after which an NMT command is repeated while its effect does not show.
 
@@ -99,8 +102,8 @@ class CanopenMaster:
             self._nmt[name].add_heartbeat_callback(partial(self._heard.__setitem__, name))
             self._network.subscribe(HEARTBEAT_BASE + node_id, self._nmt[name].on_heartbeat)
 
-    def read(self, drive: str, address: Address) -> int:
-        """Return the value of an object.
+    def read(self, drive: str, address: Address) -> int | None:
+        """Return the value of an object; None for an optional object that the drive does not have.
 
         Raises:
             DriveSilent: no answer in time, or the drive does not have the object.
@@ -108,11 +111,13 @@ class CanopenMaster:
         try:
             data = self._clients[drive].upload(address.main, address.sub)
         except (SdoCommunicationError, SdoAbortedError) as error:
+            if _is_missing(error) and OBJECTS[address].optional:
+                return None
             raise _silent(drive, f"cannot read {address} ({OBJECTS[address].name}): {error}") from error
         return int.from_bytes(data, "little", signed=OBJECTS[address].kind in _SIGNED)
 
     def write(self, drive: str, address: Address, value: int) -> None:
-        """Write the value of an object.
+        """Write the value of an object; one that is optional may be missing or read only, and is judged by its value.
 
         Raises:
             DriveSilent: no answer in time, or the drive refuses.
@@ -122,6 +127,8 @@ class CanopenMaster:
         try:
             self._clients[drive].download(address.main, address.sub, data)
         except (SdoCommunicationError, SdoAbortedError) as error:
+            if _is_missing(error, READ_ONLY) and OBJECTS[address].optional:
+                return
             raise _silent(drive, f"cannot write {address} ({OBJECTS[address].name}): {error}") from error
 
     def command(self, drive: str, state: str) -> None:
@@ -172,8 +179,13 @@ class CanopenMaster:
         while self._not_in(wanted, names) and self._network.pump(until - time.monotonic()):
             pass
 
-    def configure(self, drive: str, writes: list[tuple[Address, int]], required: dict[Address, int]) -> None:
+    def configure(
+        self, drive: str, writes: list[tuple[Address, int]], required: dict[Address, int]
+    ) -> tuple[Address, ...]:
         """Bring a drive to PRE-OPERATIONAL, write its objects and read every required one back.
+
+        Returns:
+            The optional objects that the drive does not have.
 
         Raises:
             DriveSilent: the drive does not answer.
@@ -182,10 +194,10 @@ class CanopenMaster:
         self.command(drive, "PRE-OPERATIONAL")
         for address, value in writes:
             self.write(drive, address, value)
-        self.verify(drive, required)
+        return self.verify(drive, required)
 
-    def verify(self, drive: str, required: dict[Address, int]) -> None:
-        """Read every required object.
+    def verify(self, drive: str, required: dict[Address, int]) -> tuple[Address, ...]:
+        """Read every required object; return the optional ones that the drive does not have.
 
         Raises:
             DriveSilent: the drive does not answer.
@@ -193,12 +205,18 @@ class CanopenMaster:
         """
         found = {address: self.read(drive, address) for address in required}
         wrong: list[tuple[str, object, object]] = [
-            (f"{address} ({OBJECTS[address].name})", _shown(value), _shown(found[address]))
-            for address, value in required.items()
-            if found[address] != value
+            (f"{address} ({OBJECTS[address].name})", _shown(required[address]), _shown(value))
+            for address, value in found.items()
+            if value is not None and not holds(address, value, required[address])
         ]
         if wrong:
             raise DriveMismatch(drive, wrong)
+        return tuple([address for address, value in found.items() if value is None])
+
+
+def _is_missing(error: Exception, *others: int) -> bool:
+    """Return whether a drive says that it does not have an object, or refuses it for one of `others` (abort codes)."""
+    return isinstance(error, SdoAbortedError) and error.code in (NO_OBJECT, NO_SUB_INDEX, *others)
 
 
 def _shown(value: int) -> str:

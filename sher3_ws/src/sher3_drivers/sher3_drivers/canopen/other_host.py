@@ -9,7 +9,7 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 
-from sher3_drivers.bus.frame import ERROR_FLAG, iter_frames, unbundle
+from sher3_drivers.bus.frame import ERROR_FLAG, EXTENDED_FLAG, REMOTE_FLAG, iter_frames, unbundle
 from sher3_drivers.bus.group import LinkGroup
 from sher3_drivers.bus.link import CanLink
 from sher3_drivers.canopen.objects import HEARTBEAT_BASE, NMT_ID, NODE_MASK, RPDO_BASE, SDO_REQUEST_BASE, SYNC_ID
@@ -38,14 +38,16 @@ def refuse_other_host(links: Sequence[CanLink], host_id: int, seconds: float = L
             return
         for link, part in zip(links, unbundle(frames, len(links)), strict=True):
             for frame in iter_frames(part):
-                if said := _said(frame.can_id, host_id):
+                if said := said_by_a_host(frame.can_id, host_id):
                     raise OtherHost(link.name, said)
 
 
-def _said(can_id: int, host_id: int) -> str | None:
+def said_by_a_host(can_id: int, host_id: int) -> str | None:
     """Return what a host says with this identifier; None for identifiers that others use too."""
     if can_id & ERROR_FLAG:
         return None
+    if can_id & (EXTENDED_FLAG | REMOTE_FLAG):
+        return "extended frame" if can_id & EXTENDED_FLAG else "remote request"
     whole = {NMT_ID: "NMT command", SYNC_ID: "SYNC", HEARTBEAT_BASE + host_id: f"heartbeat of node {host_id}"}
     services = {RPDO_BASE: "RPDO", SDO_REQUEST_BASE: "SDO request"}
     return whole.get(can_id) or services.get(can_id & ~NODE_MASK)

@@ -50,6 +50,7 @@ class MotorDriver:
         wire: frames in and out.
         gate: the check of commands, and their age.
         watches: whatever may stop the robot.
+        absent: optional objects that each drive does not have, by its name.
         counters: ticks and commands that were lost, refused or replaced, by name.
 
     Raises:
@@ -68,10 +69,11 @@ class MotorDriver:
         health = [DriveHealth(name) for name in ACTUATORS]
         self.settings, self.clock = settings, clock
         self.scales = tuple(AxisScale.from_actuator(actuator) for actuator in robot.actuators)
-        self.session = DriveSession(health)
+        self.session = DriveSession(health, settings.report_limit, settings.status_reports)
         self.wire = DriveWire(links, settings, self.scales)
         self.gate = CommandGate(self.scales, settings)
         self.watches = StopWatches(health, self.scales, settings)
+        self.absent: dict[str, tuple[str, ...]] = {}
         self.counters = dict.fromkeys(("incomplete", "refused", "ignored", "held"), 0)
         self._braking_time = max(a.limits.velocity / a.limits.acceleration for a in robot.actuators)
 
@@ -113,7 +115,7 @@ class MotorDriver:
             DriveSilent: a drive does not answer.
             DriveMismatch: a drive does not hold what it must. Nothing is enabled, no drive becomes OPERATIONAL.
         """
-        set_up_drives(self.wire.links, self.settings, self.scales, patience)
+        self.absent = set_up_drives(self.wire.links, self.settings, self.scales, patience)
 
     def enable(self) -> None:
         """Take the drives to OPERATION ENABLED, over the next ticks.
@@ -175,7 +177,6 @@ class MotorDriver:
                 break
         if self.session.may_set_up:
             self._set_up_again()
-        self.wire.collector.begin()
         self.gate.stamp = stamp
         now = self.clock()
         late = self.watches.loop.tick(stamp, now)
@@ -197,6 +198,9 @@ class MotorDriver:
         """
         collector, session = self.wire.collector, self.session
         complete = self._collect(collector.all_mask)
+        if collector.end():
+            for trip in session.unbelievable(collector.invalid):
+                self.stop_for(trip)
         now = self.clock()
         if not complete or session.is_news(collector.statuswords):
             self._judge_drives(complete, now)
@@ -295,6 +299,8 @@ class MotorDriver:
             self.stop_for(trip)
         if session.goal is Goal.ENABLED:
             self._stop_if(self.watches.loop.supervisor(now))
+            for trip in session.objections():
+                self.stop_for(trip)
             self._watch_commands()
 
     def _watch_commands(self) -> None:

@@ -49,6 +49,10 @@ def _conditions(driver: MotorDriver) -> Values:
     for drive in driver.session.drives:
         values.append((f"{drive.name}.state", drive.state.name if drive.state else "unknown"))
         values.append((f"{drive.name}.missing_tpdos", str(drive.missing_total)))
+        if drive.warns:
+            values.append((f"{drive.name}.warning", "bit 7 of its statusword"))
+        if absent := driver.absent.get(drive.name):
+            values.append((f"{drive.name}.absent", " ".join(absent)))
         if drive.active:
             values.append((f"{drive.name}.emergency", str(drive.active[-1])))
     return values

@@ -12,6 +12,7 @@ from collections.abc import Iterator, Sequence
 from sher3_common.reasons import Action
 
 from sher3_drivers.canopen.cia402 import Controlword, DriveState, Goal, next_command
+from sher3_drivers.canopen.tpdo import Invalid
 from sher3_drivers.errors import CommandRefused
 from sher3_drivers.watches.drives import FAULTY, DriveHealth
 from sher3_drivers.watches.trips import StopLog, Trip
@@ -31,7 +32,8 @@ class DriveSession:
         cut: numbers of the drives that lose their power at once, since they do not do what they are told.
     """
 
-    def __init__(self, drives: Sequence[DriveHealth]) -> None:
+    def __init__(self, drives: Sequence[DriveHealth], report_limit: int = 3, status_limit: int = 3) -> None:
+        self._report_limit, self._status_limit = report_limit, status_limit
         self.drives = tuple(drives)
         self.goal = Goal.DISABLED
         self.stop = StopLog()
@@ -165,6 +167,20 @@ class DriveSession:
             self._restart_transitions(now)
         self.all_enabled = all([drive.state is DriveState.OPERATION_ENABLED for drive in self.drives])
         self._judged_words = [] if missing else list(words)
+
+    def unbelievable(self, invalid: Sequence[Invalid | None]) -> Iterator[Trip]:
+        """Yield what is to be said against drives of which too many reports in a row were not believed."""
+        for axis, (drive, report) in enumerate(zip(self.drives, invalid, strict=True)):
+            if report is not None and report.times >= self._report_limit and not drive.setup_due:
+                text = f"{drive.name}: {report.text}"
+                yield Trip(report.reason, text, report.times, self._report_limit, "reports", (axis,))
+
+    def objections(self) -> Iterator[Trip]:
+        """Yield what the statuswords of drives that are to be enabled say against them; call it once a tick."""
+        for drive in self.drives:
+            trip = drive.objection(self.all_enabled, self._status_limit)
+            if trip is not None:
+                yield trip
 
     def next_words(self) -> list[Controlword]:
         """Return the controlword that takes every drive one step towards the goal.

@@ -11,6 +11,7 @@ from sher3_drivers.bus.group import LinkGroup
 from sher3_drivers.bus.link import CanLink
 from sher3_drivers.canopen.cia402 import Controlword
 from sher3_drivers.canopen.objects import HEARTBEAT_BASE, NODE_IDS, OPERATIONAL, SYNC_ID
+from sher3_drivers.canopen.protection import COUNTS, count_after
 from sher3_drivers.canopen.rpdo import RpdoPacker
 from sher3_drivers.canopen.tpdo import TpdoCollector
 from sher3_drivers.errors import LinkError
@@ -31,12 +32,15 @@ class DriveWire:
     def __init__(self, links: Sequence[CanLink], settings: MotorDriverSettings, scales: Sequence[AxisScale]) -> None:
         node_ids = [NODE_IDS[name] for name in ACTUATORS]
         axes = [[ACTUATORS.index(name) for name in channel.drives] for channel in settings.channels]
-        self.collector = TpdoCollector(scales, node_ids, settings.period)
+        where = [next(n for n, part in enumerate(settings.channels) if name in part.drives) for name in ACTUATORS]
+        self.collector = TpdoCollector(scales, node_ids, settings.period, where, settings.protected)
         self._group = LinkGroup(links)
-        self._rpdos = RpdoPacker(axes, node_ids)
+        self._rpdos = RpdoPacker(axes, node_ids, settings.protected)
         heartbeat = pack_frame(HEARTBEAT_BASE + settings.host_id, bytes([OPERATIONAL]))
         self._heartbeat = bundle([heartbeat] * len(links))
-        self._sync = bundle([pack_frame(SYNC_ID)] * len(links))
+        counters = range(1, COUNTS + 1) if settings.protected else ()
+        self._syncs = [bundle([pack_frame(SYNC_ID)] * len(links))]
+        self._syncs += [bundle([pack_frame(SYNC_ID, bytes([counter]))] * len(links)) for counter in counters]
         self._heartbeat_ns = round(settings.host_heartbeat * 1e9)
         self._feedback_ns = round(settings.feedback_limit * settings.period * 1e9)
         self._heartbeat_at = self._synced_at = 0
@@ -62,12 +66,14 @@ class DriveWire:
         return self._group.failures
 
     def sync(self, now: int, audible: bool) -> Failures:
-        """Send SYNC, behind the host's heartbeat when that is due and the host is to be `audible`.
+        """Begin a tick with SYNC, behind the host's heartbeat when that is due and the host is to be `audible`.
 
         The heartbeat has no timer of its own. When the loop that calls this hangs, it falls silent and the drives stop
         by themselves (CiA 301, consumer heartbeat time, object 0x1016).
         """
-        frames = self._sync
+        counter = count_after(self.collector.counter) if len(self._syncs) > 1 else 0
+        self.collector.begin(counter)
+        frames = self._syncs[counter]
         if audible and now >= self._heartbeat_at:
             self._heartbeat_at = now + self._heartbeat_ns
             frames = self._heartbeat + frames
@@ -89,7 +95,7 @@ class DriveWire:
 
     def send(self, words: Sequence[Controlword], velocity_counts: Sequence[int]) -> Failures:
         """Send every drive its controlword and its target velocity in counts, both (5,)."""
-        return self._group.send(self._rpdos.frames(words, velocity_counts))
+        return self._group.send(self._rpdos.frames(words, velocity_counts, self.collector.counter))
 
     def close(self) -> None:
         """Leave the bus."""

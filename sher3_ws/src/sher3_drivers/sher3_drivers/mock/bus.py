@@ -83,6 +83,8 @@ class _Channel:
         elif can_id == SYNC_ID:
             self.synced = self.live = True
             self.synced_at = now
+            for drive in self.drives:
+                drive.counter = data[0] if data else 0
         else:
             for drive in self._by_node.get(can_id & NODE_MASK, self.drives):
                 drive.receive(can_id, data, now)
@@ -159,6 +161,11 @@ class MockDriveBus:
     def on_channel(self, channel: int) -> Sequence[MockDrive]:
         """Return the drives of a channel."""
         return self._channels[channel].drives
+
+    def safe_torque_off(self, off: bool) -> None:
+        """Open or close the line that takes the torque from all motors: the emergency stop's own circuit."""
+        for drive in self._in_order:
+            drive.take_torque(off)
 
     def _send_on(self, channel: int, frames: bytes) -> None:
         self._send(mark(frames, channel))

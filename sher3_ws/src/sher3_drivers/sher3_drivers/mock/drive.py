@@ -12,18 +12,23 @@ from collections.abc import Callable, Sequence
 from operator import itemgetter
 from typing import Any, NamedTuple
 
-from sher3_drivers.bus.frame import HEADER_FORMAT, pack_frame
+from sher3_drivers.bus.frame import FRAME_SIZE, HEADER_FORMAT, pack_frame
 from sher3_drivers.canopen import objects as od
 from sher3_drivers.canopen.cia402 import CYCLIC_SYNCHRONOUS_VELOCITY
+from sher3_drivers.canopen.configuration import factory_values
 from sher3_drivers.canopen.device import CanopenDevice
-from sher3_drivers.canopen.emcy import EMCY, HOST_LOST
+from sher3_drivers.canopen.emcy import COMMAND_GARBLED, COMMAND_LOST, EMCY, HOST_LOST, SAFE_TORQUE_OFF
 from sher3_drivers.canopen.objects import Address
+from sher3_drivers.canopen.protection import OLDEST_COMMAND, check_of, count_before
 from sher3_drivers.units import SI_UNIT_VELOCITY, AxisScale
 
 NOT_READY, SWITCH_ON_DISABLED, READY, SWITCHED_ON, ENABLED = 0x00, 0x40, 0x21, 0x23, 0x27
 QUICK_STOP, FAULT_REACTION, FAULT = 0x07, 0x0F, 0x08
-_VOLTAGE_REMOTE, _LIMIT_ACTIVE, _FOLLOWS = 0x0210, 0x0800, 0x1000
+_CHECK = struct.Struct("<H6x")
+_REMOTE, _VOLTAGE, _LIMIT_ACTIVE, _FOLLOWS = 0x0200, 0x0010, 0x0800, 0x1000
 _PDO_TOO_SHORT = 0x8210
+_GARBLED_LIMIT = 3
+"""Commands in a row that fail their check, after which a drive stops by itself."""
 _GO_ON = 0x0F
 """Controlword that keeps an enabled drive enabled."""
 _FORMATS = {"u8": "B", "i8": "b", "u16": "H", "i16": "h", "u32": "I", "i32": "i"}
@@ -67,6 +72,7 @@ class _Pdo:
         self.length = struct.calcsize("<" + layout)
         self.exists = not self.can_id & od.INVALID and len(layout) == len(entries) > 0 and self.length <= 8
         self.layout = layout
+        self.checked = self.addresses[-1:] == [od.COMMAND_CHECK]
         self.controlword = self.addresses.index(od.CONTROLWORD) if od.CONTROLWORD in self.addresses else None
         self.data = struct.Struct("<" + layout)
 
@@ -118,7 +124,10 @@ class MockDrive:
         state: CiA 402 state, one of this module's constants.
         due: time at which `watch` is to be called next, ns.
         powered: False makes it silent and deaf.
+        counter: counter of the newest SYNC.
+        torque_off: its safe torque off input is open, so that its motor has no torque.
         tamper: replaces the reading before it is reported. The seam for stuck, wrong, delayed and garbage values.
+        mistake: replaces the target velocity [counts] of a command that has arrived whole.
         stray: replaces the velocity that the power stage executes, as long as it has power; the echo does not show it.
     """
 
@@ -129,7 +138,11 @@ class MockDrive:
         self.state = SWITCH_ON_DISABLED
         self.powered = True
         self.tamper: Callable[[AxisReading], AxisReading] | None = None
+        self.mistake: Callable[[float], float] | None = None
         self.stray: Callable[[float], float] | None = None
+        self.counter = 0
+        self.torque_off = False
+        self._garbled, self._commanded = 0, 0
         self._astray = 0.0
         self._send_frames = send
         self._demand = 0
@@ -137,7 +150,7 @@ class MockDrive:
         self._heard_host: int | None = None
         self._limited = False
         self._readings: tuple[int, ...] = ()
-        factory = od.factory_values(node_id, scale)
+        factory = factory_values(node_id, scale)
         self.node = CanopenDevice(node_id, self._send, factory, self._on_write, self._on_reset)
         self._compile()
         self._read_settings()
@@ -151,7 +164,11 @@ class MockDrive:
         rpdos = [_Pdo(values, c, m) for c, m in ((0x1400, 0x1600), (0x1401, 0x1601))]
         tpdos = [_Pdo(values, c, m) for c, m in ((0x1800, 0x1A00), (0x1801, 0x1A01), (0x1802, 0x1A02))]
         self._rpdos = {pdo.can_id: pdo for pdo in rpdos if pdo.exists}
-        self._tpdos = _Tpdos([pdo for pdo in tpdos if pdo.exists and 1 <= pdo.transmission <= 240], self._channel)
+        sent = [pdo for pdo in tpdos if pdo.exists and 1 <= pdo.transmission <= 240]
+        checks = [pdo for pdo in sent if pdo.addresses == [od.REPORT_CHECK]]
+        self._tpdos = _Tpdos([pdo for pdo in sent if pdo not in checks], self._channel)
+        headers = [struct.pack(f"<{HEADER_FORMAT}", pdo.can_id, pdo.length, self._channel) for pdo in checks]
+        self._check_header = headers[0] if headers else None
 
     def _read_settings(self) -> None:
         """Take over what the dictionary says of velocities; called after every access to it."""
@@ -163,6 +180,7 @@ class MockDrive:
     def _on_reset(self) -> None:
         self.state = SWITCH_ON_DISABLED
         self._demand, self._previous_word, self._heard_host = 0, 0, None
+        self._garbled = self._commanded = 0
 
     def _on_write(self, address: Address, value: int) -> None:
         if address == od.CONTROLWORD:
@@ -177,7 +195,7 @@ class MockDrive:
         if not self.powered:
             return
         if self.node.operational and can_id in self._rpdos:
-            self._on_rpdo(self._rpdos[can_id], data)
+            self._on_rpdo(self._rpdos[can_id], data, now)
             return
         self.due = 0
         if can_id == od.NMT_ID or can_id == 0x600 + self.node_id:
@@ -189,14 +207,28 @@ class MockDrive:
         elif can_id == od.HEARTBEAT_BASE + (self.node.values[od.HOST_HEARTBEAT] >> 16 & 0x7F):
             self._heard_host = now
 
-    def _on_rpdo(self, pdo: _Pdo, data: bytes) -> None:
+    def _on_rpdo(self, pdo: _Pdo, data: bytes, now: int) -> None:
         if len(data) < pdo.length:
             self.emergency(_PDO_TOO_SHORT)
             return
+        if pdo.checked and not self._is_whole(data[: pdo.length]):
+            self._garbled += 1
+            if self._garbled == _GARBLED_LIMIT:
+                self.fault(COMMAND_GARBLED)
+            return
+        self._garbled, self._commanded = 0, now
         received = pdo.data.unpack_from(data)
         self.node.values.update(zip(pdo.addresses, received, strict=True))
+        if self.mistake is not None:
+            self.node.values[od.TARGET_VELOCITY] = round(self.mistake(self.node.values[od.TARGET_VELOCITY]))
         if pdo.controlword is not None:
             self._on_controlword(received[pdo.controlword])
+
+    def _is_whole(self, data: bytes) -> bool:
+        """Return whether a command bears the check of this drive and of one of the newest SYNCs."""
+        command, check = data[:-2], int.from_bytes(data[-2:], "little")
+        counters = [count_before(self.counter, age) for age in range(OLDEST_COMMAND + 1)]
+        return any(check == check_of(command, self.node_id, counter) for counter in counters)
 
     def _on_controlword(self, word: int) -> None:
         before = self.state
@@ -204,9 +236,13 @@ class MockDrive:
             return
         self.state = next_state(self.state, word, self._previous_word)
         self._previous_word = word
+        if self.torque_off and self.state != FAULT:
+            self.state = SWITCH_ON_DISABLED
         if before == FAULT and self.state != FAULT:
             self.node.values[od.ERROR_REGISTER] = 0
             self.emergency(0)
+            if self.torque_off:
+                self.emergency(SAFE_TORQUE_OFF)
 
     # Faults.
 
@@ -223,14 +259,27 @@ class MockDrive:
             self.state = FAULT_REACTION
             self.emergency(code)
 
+    def take_torque(self, off: bool) -> None:
+        """Open the safe torque off input, or close it: the motor has no torque at once, and the drive says so."""
+        if off and not self.torque_off:
+            self.state, self._demand = FAULT, 0
+            self.node.values[od.ERROR_REGISTER] = 1
+            self.emergency(SAFE_TORQUE_OFF)
+        self.torque_off = off
+
     def watch(self, now: int) -> None:
         """Look after both heartbeats, the host's and its own."""
         self.check_host(now)
         due, limit = self.node.poll(now), (self.node.values[od.HOST_HEARTBEAT] & 0xFFFF) * 1_000_000
         self.due = min(due, self._heard_host + limit + 1) if limit and self._heard_host is not None else due
+        if self.state == ENABLED:
+            self.due = min(self.due, self._commanded + self.node.values[od.RPDO_TIMEOUT] * 1_000_000 + 1)
 
     def check_host(self, now: int) -> None:
-        """Watch the host's heartbeat, once it has been heard and while the dictionary asks for it."""
+        """Watch the host's heartbeat, and its commands to a drive that is enabled, while the dictionary asks for it."""
+        patience = self.node.values[od.RPDO_TIMEOUT] * 1_000_000
+        if patience and self.state == ENABLED and now - self._commanded > patience:
+            self.fault(COMMAND_LOST)
         limit_ms = self.node.values[od.HOST_HEARTBEAT] & 0xFFFF
         if limit_ms and self._heard_host is not None and now - self._heard_host > limit_ms * 1_000_000:
             self._heard_host = None
@@ -274,10 +323,16 @@ class MockDrive:
         )
         if not (self.powered and self.node.operational):
             return b""
-        return self._tpdos.frames(readings, self.node.values)
+        frames = self._tpdos.frames(readings, self.node.values)
+        if self._check_header is None:
+            return frames
+        said = b"".join([frames[start + 8 : start + FRAME_SIZE] for start in range(0, len(frames), FRAME_SIZE)])
+        return frames + self._check_header + _CHECK.pack(check_of(said, self.node_id, self.counter))
 
     @property
     def statusword(self) -> int:
         """The statusword of this moment."""
         enabled = self.state == ENABLED
-        return self.state | _VOLTAGE_REMOTE | _FOLLOWS * enabled | _LIMIT_ACTIVE * self._limited
+        return (
+            self.state | _REMOTE | _VOLTAGE * (not self.torque_off) | _FOLLOWS * enabled | _LIMIT_ACTIVE * self._limited
+        )

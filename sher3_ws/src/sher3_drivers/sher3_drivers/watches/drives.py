@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from sher3_common.reasons import Reason
 
-from sher3_drivers.canopen.cia402 import DriveState, Goal, decode_status
+from sher3_drivers.canopen.cia402 import DriveState, Goal, StatusBit, decode_status
 from sher3_drivers.canopen.emcy import Emergency, decode_emergency, reason_of
 from sher3_drivers.canopen.objects import OPERATIONAL
 from sher3_drivers.errors import FrameError, UnknownStatusword
@@ -17,6 +17,17 @@ from sher3_drivers.watches.trips import Trip
 _SETTLED = {Goal.ENABLED: DriveState.OPERATION_ENABLED, Goal.DISABLED: DriveState.SWITCH_ON_DISABLED}
 FAULTY = (DriveState.FAULT, DriveState.FAULT_REACTION_ACTIVE)
 """States of a drive that has found a fault."""
+_MEANINGS = (
+    (StatusBit.REMOTE, 1, "does not take commands from the bus (bit 9, remote)"),
+    (StatusBit.VOLTAGE_ENABLED, 1, "has no supply for its motor (bit 4, voltage enabled)"),
+    (StatusBit.INTERNAL_LIMIT, 0, "limits its motion by itself (bit 11, internal limit active)"),
+    (StatusBit.FOLLOWS_COMMAND, 1, "does not follow its command (bit 12)"),
+)
+"""Bits of a statusword, what they are in a drive that does as it is told, and what they say when they are not."""
+_ALWAYS = (StatusBit.REMOTE,)
+"""Bits that mean the same in every state of a drive."""
+_BITS = sum(1 << bit for bit, _, _ in _MEANINGS)
+_OBEYS = sum(right << bit for bit, right, _ in _MEANINGS)
 _KEPT = 100
 """Emergency messages kept per drive: enough for the story of a fault, little enough for a drive that repeats itself."""
 _LOOK_NS = 5_000_000
@@ -42,6 +53,7 @@ class DriveHealth:
         restarted: it said that it is not OPERATIONAL, so it has lost its configuration or was stopped.
         silent: its TPDOs stay away for as long as is allowed.
         resetting: a recovery holds `fault reset` until the drive leaves FAULT.
+        doubtful: statuswords in a row that say that it does not do as it is told.
         setup_due: a recovery has still to configure it again; until then its silence is no news.
     """
 
@@ -57,6 +69,7 @@ class DriveHealth:
     restarted: bool = False
     silent: bool = False
     resetting: bool = False
+    doubtful: int = 0
     setup_due: bool = False
 
     def recover(self) -> None:
@@ -87,6 +100,26 @@ class DriveHealth:
             self.state, self.state_since = state, now
             self.resetting = self.resetting and state in FAULTY
         return None
+
+    @property
+    def warns(self) -> bool:
+        """Whether its statusword bears a warning."""
+        return self.word is not None and bool(self.word >> StatusBit.WARNING & 1)
+
+    def objection(self, following: bool, limit: int) -> Trip | None:
+        """Object to a drive that is to be enabled and says, `limit` ticks in a row, that it does not do as it is told.
+
+        `following`: every drive is in OPERATION ENABLED, so the bits of that state mean something.
+        """
+        word = self.word
+        if word is None or word & _BITS == _OBEYS or self.setup_due:
+            self.doubtful = 0
+            return None
+        says = [text for bit, right, text in _MEANINGS if word >> bit & 1 != right and (following or bit in _ALWAYS)]
+        self.doubtful = self.doubtful + 1 if says else 0
+        if self.doubtful < limit:
+            return None
+        return Trip(Reason.DRIVE_UNWILLING, f"{self.name}: {' and '.join(says)}", self.doubtful, limit, "ticks")
 
     def on_heartbeat(self, data: bytes, now: int) -> Trip | None:
         """Take a heartbeat; object when the drive is not OPERATIONAL."""

@@ -26,6 +26,6 @@ class StopWatches:
         self, health: Sequence[DriveHealth], scales: Sequence[AxisScale], settings: MotorDriverSettings
     ) -> None:
         self.loop = LoopWatch(settings)
-        self.bus = BusWatch(health, [channel.link for channel in settings.channels])
+        self.bus = BusWatch(health, settings)
         self.drives = DrivesWatch(health, settings)
         self.motion = MotionWatch(scales, settings)

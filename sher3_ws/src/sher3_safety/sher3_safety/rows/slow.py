@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from sher3_description import ACTUATORS
 
-from sher3_safety.rows.row import LIMIT, Row
+from sher3_safety.rows.row import LIMIT, STILL, Row
 
 AXIS, ROLL, TILT = ACTUATORS[0], ACTUATORS[3], ACTUATORS[4]
 LEFT = ("POSITION_LEFT",)
@@ -15,7 +15,7 @@ LONGEST = 1.5
 FAST = (LIMIT.name,)
 """At 5 mm/s the limit is 43 um, which a slow creep does not reach in that time."""
 AT_ITS_LIMIT = "one period at the drive's own speed limit is 24 um at a leg, and it brakes from there"
-STATED = "an even motion leaves no mark on the echo: the report is then v times its age behind, 6 um near tissue"
+STATED = "in the middle of the travel a scale changes nothing; elsewhere the encoders part"
 
 SLOW = (
     *(
@@ -33,5 +33,7 @@ SLOW = (
     Row(f"{AXIS}.load_encoder", "drift", {"rate": 2e-5}, slow=True, duration=LONGEST),
     Row(f"{AXIS}.motor_encoder", "drift", {"rate": 2e-5}, slow=True, duration=LONGEST),
     Row(f"{AXIS}.motor_encoder", "ramp", {"rate": 0.5}, slow=True, effect="either", why=STATED),
-    Row("bus.up", "late", {"items": 3.0}, slow=True, effect="either", why=STATED),
+    *(Row("bus.up", "late", {"items": age}, reasons=("FEEDBACK_STALE",)) for age in (1.0, 3.0)),
+    Row("bus0.up", "swap", reasons=("FEEDBACK_SWAPPED",), quick=True),
+    Row(f"{AXIS}.echo", "wrong", {"scale": 0.0}, reasons=("DRIVE_DISOBEYS",), quiet=STILL),
 )  # fmt: skip
