@@ -9,7 +9,7 @@ from sher3_diagnosis.verdict import Cause, Parameter
 from sher3_effects import pages
 from sher3_effects.page import CONSTANTS
 
-KINDS = ("axis", "servo", "arm", "robot")
+KINDS = ("axis", "servo", "joint", "arm", "table", "robot")
 """Kinds of machine whose pages say which constant a parameter sets."""
 FORCES = ("coulomb", "static", "offset")
 """Constants that a servo without a recorded force gives in units of its stiffness, m or rad."""

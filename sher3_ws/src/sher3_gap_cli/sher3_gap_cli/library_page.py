@@ -20,6 +20,8 @@ KINDS = {
     "servo": "a position servo",
     "joint": "a joint of a serial arm in motion",
     "arm": "the geometry of a serial arm",
+    "table": "an axis in a positioning test",
+    "circle": "two axes on a circle",
 }
 """Kind of machine -> plain words."""
 NEEDS = {

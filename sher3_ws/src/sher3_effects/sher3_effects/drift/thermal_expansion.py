@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from sher3_description import ACTUATORS, Robot
 from sher3_diagnosis.channel import Array, Channel
-from sher3_diagnosis.effect import Best, Shape, Signature
+from sher3_diagnosis.effect import Best, Shape, Signature, column
 from sher3_sim.effect import SLIDERS, PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.page import Page, Tolerated
+from sher3_effects.table_view import TableView
 from sher3_effects.view import RobotView
 
 
@@ -68,6 +70,29 @@ class ThermalExpansion(Page):
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Coefficient of expansion and what grows."""
         return {"coefficient": float(coefficients[0]), "part": shape["part"]}
+
+
+class TableExpansion(Page):
+    """A positioning table that grows with its own temperature: deviation = coefficient * (T - reference) * target."""
+
+    id, family, best = ThermalExpansion.id, ThermalExpansion.family, ThermalExpansion.best
+    stage, kinds, places = "transmission", ("table",), ("axis",)
+    inputs = ("temperature", "position")
+    units = {"coefficient": "1/K"}
+    explanation = "The table moves too far by a share of its travel that follows its temperature."
+    siblings = {"lead_error": "the same share at every temperature"}
+
+    def shapes(self, views: Sequence[Any], site: str) -> list[Shape]:
+        """Return one shape, where a temperature was recorded and is not the reference throughout."""
+        return [{}] if any(v.warmth.any() for v in views) else []
+
+    def signature(self, view: TableView, site: str, shape: Shape) -> Signature:
+        """Return one column: the target times what the table is warmer than the reference."""
+        return Signature({Channel(self.stage, site): column(view.target * view.warmth)})
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Return the coefficient of expansion beyond that of the reading."""
+        return {"coefficient": float(coefficients[0])}
 
 
 @dataclass(frozen=True)

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any, ClassVar
 
 import numpy as np
 from sher3_diagnosis.channel import Array, Channel
-from sher3_diagnosis.effect import Best, Shape, Signature
+from sher3_diagnosis.effect import Best, Shape, Signature, column
 from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
@@ -80,6 +81,54 @@ def resting_force(views: Sequence[AxisView], site: str) -> float:
         extra = view.run.to_grid(view.run.effort)[:, axis] - view.inertial[:, axis]
         held.append((extra * np.sign(view.velocity[:, axis]))[moving & view.run.loaded_ok])
     return max(0.0, float(np.median(np.concatenate(held)))) if held and sum(map(len, held)) > 50 else 0.0
+
+
+class TableReversal(Page):
+    """Reversal error of a positioning table: it stops short of its target, from either side, by half the width."""
+
+    id, family, stage, best = Backlash.id, Backlash.family, Backlash.stage, Backlash.best
+    kinds: ClassVar[tuple[str, ...]] = ("table",)
+    inputs, on_axis = Backlash.inputs, Backlash.on_axis
+    explanation = "The table stops at another place when it comes from the other side."
+    siblings = {"transmission_hysteresis": "the lag builds up over a stroke much longer than itself"}
+    units = {"width": "m"}
+
+    def shapes(self, views: Sequence[Any], site: str) -> list[Shape]:
+        """Return one shape, where the targets were reached from both sides."""
+        return [{}] if any(np.ptp(v.direction) > 0.0 for v in views) else []
+
+    def signature(self, view: Any, site: str, shape: Shape) -> Signature:
+        """Return one column: minus half the direction of approach of a `TableView`."""
+        return Signature({Channel(self.stage, site): column(-0.5 * view.direction)})
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Return the width, of which a table stops half short on either side; negative where it overshoots."""
+        return {"width": float(coefficients[0])}
+
+
+class CircleReversal(TableReversal):
+    """Reversal error of one of two axes that move on a circle: a step at the poles where that axis turns round."""
+
+    kinds, places = ("circle",), ("axis",)
+    explanation = "One axis lags behind after it turns round: the circle has a step on both of its poles."
+    siblings = {"transmission_ripple": "a wave over the whole circle, not a step"}
+
+    def channels(self, site: str) -> tuple[Channel, ...]:
+        """Return the radius of the plane."""
+        return (Channel("mechanism", site.partition(".")[0]),)
+
+    def shapes(self, views: Sequence[Any], site: str) -> list[Shape]:
+        """Return one shape: a circle turns both axes round."""
+        return [{}]
+
+    def signature(self, view: Any, site: str, shape: Shape) -> Signature:
+        """Return one column: what half a width, against the motion of an axis of a `CircleView`, does to the radius."""
+        across = view.across(site)
+        return Signature({self.channels(site)[0]: column(-0.5 * view.moving(site) * across)})
+
+    def stage_at(self, channel: Channel) -> str:
+        """Return the transmission: the lost motion is there, though the radius shows it."""
+        return self.stage
 
 
 @dataclass(frozen=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from sher3_description import Robot
@@ -14,6 +15,7 @@ from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.page import Page, Tolerated
 from sher3_effects.periodic.phase import phase_at_zero
+from sher3_effects.table_view import TableView
 from sher3_effects.view import AxisView
 
 
@@ -67,6 +69,34 @@ class TransmissionRipple(Page):
             "periods_per_rev": shape["periods_per_rev"],
             "phase": float(np.arctan2(coefficients[1], coefficients[0])),
         }
+
+
+class TableRipple(Page):
+    """A wave of a positioning table over its target, with a whole number of periods for each turn of the screw."""
+
+    id, family, stage = TransmissionRipple.id, TransmissionRipple.family, TransmissionRipple.stage
+    best, explanation = TransmissionRipple.best, TransmissionRipple.explanation
+    kinds, needs, inputs = ("table",), ("lead",), ("position",)
+    discrete = frozenset({"periods_per_rev"})
+    units = {"amplitude": "m"}
+    siblings = {"lead_error": "in proportion to the travel, no wave"}
+    ORDERS = (1, 2, 4)
+    """Periods per lead that targets, a few to the lead at best, can show."""
+
+    def shapes(self, views: Sequence[Any], site: str) -> list[Shape]:
+        """Return periods per lead."""
+        return [{"periods_per_rev": float(n)} for n in self.ORDERS]
+
+    def signature(self, view: TableView, site: str, shape: Shape) -> Signature:
+        """Return two columns: the quadratures of a wave over the target."""
+        assert view.lead is not None
+        turn = 2.0 * np.pi * shape["periods_per_rev"] * view.target / view.lead
+        return Signature({Channel(self.stage, site): column(np.sin(turn), np.cos(turn))})
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Return amplitude, order and phase."""
+        amplitude, phase = np.hypot(*coefficients), np.arctan2(coefficients[1], coefficients[0])
+        return {"amplitude": float(amplitude), "phase": float(phase), "periods_per_rev": shape["periods_per_rev"]}
 
 
 @dataclass(frozen=True)

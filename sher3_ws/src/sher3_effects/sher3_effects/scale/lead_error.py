@@ -12,6 +12,7 @@ from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.page import Page, Tolerated
+from sher3_effects.table_view import TableView
 from sher3_effects.view import AxisView
 
 
@@ -43,6 +44,24 @@ class LeadError(Page):
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Ratio error."""
+        return {"relative": float(coefficients[0])}
+
+
+class TableScale(Page):
+    """A positioning table that moves a little more or less than its target: deviation = relative * target."""
+
+    id, family, stage, best = LeadError.id, LeadError.family, LeadError.stage, LeadError.best
+    kinds, inputs = ("table",), LeadError.inputs
+    on_axis = LeadError.on_axis
+    explanation = "The table moves too far or too little in proportion to its travel, at every temperature."
+    siblings = {"thermal_expansion": "grows with temperature"}
+
+    def signature(self, view: TableView, site: str, shape: Shape) -> Signature:
+        """Return one column: the target."""
+        return Signature({Channel(self.stage, site): column(view.target)})
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Return the ratio error."""
         return {"relative": float(coefficients[0])}
 
 

@@ -34,6 +34,12 @@ COARSE = 400.0
 """Position beyond which the unit is hardly degrees either, but counts."""
 STEPS = 1e-3
 """Share of the travel below which the smallest step of a signal counts as that of its encoder."""
+WIDEST = 12
+"""Entries of an array column that may be axes: a humanoid's arms; wider ones are matrices."""
+FEWEST_STEPS = 10
+"""Steps from which the smallest one tells an encoder's count."""
+WHOLE, WHOLE_SHARE = 0.05, 0.9
+"""How near to a whole multiple of the count a step must be, and the share of steps that must be."""
 TIME_UNITS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
 USUAL_RATES = (5.0, 20_000.0)
 """Rates, Hz, between which a clock is believed: of servo loops, and of slow loggers."""
@@ -59,7 +65,7 @@ def draft(path: Path) -> Draft:
     groups: dict[str, dict[str, Any]] = {}
     for name, x in tables.items():
         if len(x) == len(time) and name != clock and not name.endswith(CLOCKS[-1]):
-            for index in range(x.shape[1]) if x.ndim == 2 and x.shape[1] <= 12 else [None]:
+            for index in range(x.shape[1]) if x.ndim == 2 and x.shape[1] <= WIDEST else [None]:
                 _place(name, index, groups)
     axes = [_axis(axis, signals, tables, guesses) for axis, signals in groups.items() if "position" in signals]
     if not axes:
@@ -185,12 +191,12 @@ def _count(x: Array) -> float | None:
     """Return the smallest step of a signal where it is one of an encoder: most steps are whole multiples of it."""
     steps = np.abs(np.diff(x))
     steps = steps[steps > 1e-12 * max(1.0, float(np.abs(x).max()))]
-    if len(steps) < 10:
+    if len(steps) < FEWEST_STEPS:
         return None
     least = float(np.quantile(steps, 0.01))
     multiples = steps / least
-    whole = np.mean(np.abs(multiples - np.round(multiples)) < 0.05)
-    return least if whole > 0.9 and least > STEPS * 1e-3 * float(np.ptp(x)) else None
+    whole = np.mean(np.abs(multiples - np.round(multiples)) < WHOLE)
+    return least if whole > WHOLE_SHARE and least > STEPS * 1e-3 * float(np.ptp(x)) else None
 
 
 def _time_unit(clock: str, period: float, guesses: list[str]) -> str:

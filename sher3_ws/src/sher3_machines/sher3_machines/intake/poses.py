@@ -14,6 +14,8 @@ from sher3_machines.intake.columns import pick
 from sher3_machines.intake.fields import Column, Strict
 from sher3_machines.intake.tables import Tables
 
+FLAT = 16
+"""Entries of a matrix (4, 4) in one row."""
 UNIT_NORM = 1e-2
 """How far the norm of a recorded quaternion may be from one: rounding to two digits."""
 
@@ -54,7 +56,7 @@ def poses_of(pose: Column | Pose, tables: Tables, run: str) -> Array:
     """
     if isinstance(pose, Column):
         found = pick(pose.model_copy(update={"unit": "1", "factor": 1.0}), tables, run).copy()
-        if found.ndim == 2 and found.shape[1] == 16:
+        if found.ndim == 2 and found.shape[1] == FLAT:
             found = found.reshape(-1, 4, 4)
         if found.ndim != 3 or found.shape[1:] != (4, 4):
             remedy = "give (n, 4, 4), (n, 16), or a position with a quaternion or Euler angles"

@@ -19,6 +19,8 @@ from sher3_diagnosis.channel import Array
 
 MAX_MESSAGES = 20_000_000
 """Messages of a bag: ten hours of 500 Hz."""
+LONGEST = 64
+"""Entries of an array field that become columns: joints and covariances, not images or scans."""
 NANO = 1e-9
 JOINTS = ("position", "velocity", "effort")
 
@@ -77,7 +79,7 @@ def _leaves(name: str, value: Any) -> Iterator[tuple[str, Any]]:
             yield from _leaves(f"{name}.{key}" if name else key, part)
     elif isinstance(value, bool | int | float | np.number):
         yield name, float(value)
-    elif isinstance(value, np.ndarray) and value.dtype.kind in "fiub" and 0 < value.size <= 64:
+    elif isinstance(value, np.ndarray) and value.dtype.kind in "fiub" and 0 < value.size <= LONGEST:
         yield name, value.astype(float)
 
 

@@ -1,0 +1,84 @@
+"""The description of positioning tests; lengths are in m, angles in rad, temperatures in degrees Celsius."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field, model_validator
+
+from sher3_machines.intake.fields import Column, Description, Strict
+
+REFERENCE = 20.0
+"""Temperature, deg C, at which lengths are stated (ISO 1)."""
+
+
+class AxisTest(Strict):
+    """A positioning test of one axis: a row for each target that was reached.
+
+    Attributes:
+        name: of the axis.
+        motion: linear or rotary.
+        target: where the axis was sent.
+        reading: where the reference found it; or `deviation`, reading less target.
+        direction: number whose sign says from where the target was reached; left out: from the order of the rows.
+        cycle: number of the cycle; left out: counted, a cycle ends where a target is reached again from the same side.
+        temperature: of the table or its scale, deg C, where it was recorded.
+        reference_temperature: deg C.
+        noise: standard deviation of a reading; needed where there is one cycle only.
+        lead: travel per motor revolution: without it no period is named.
+    """
+
+    name: str = Field(min_length=1, pattern=r"^[^./]+$")
+    motion: Literal["linear", "rotary"] = "linear"
+    target: Column
+    reading: Column | None = None
+    deviation: Column | None = None
+    direction: Column | None = None
+    cycle: Column | None = None
+    temperature: Column | None = None
+    reference_temperature: float = REFERENCE
+    noise: float | None = Field(default=None, gt=0.0)
+    lead: float | None = Field(default=None, gt=0.0)
+
+    @model_validator(mode="after")
+    def _either(self) -> AxisTest:
+        if (self.reading is None) == (self.deviation is None):
+            raise ValueError("state either `reading` or `deviation`")
+        return self
+
+
+class CircleTest(Strict):
+    """A circle that two axes moved on: a row for each point, in the order of the motion.
+
+    Attributes:
+        name: of the plane.
+        x, y: position of each point, of any centre.
+        radius: nominal, m.
+        noise: standard deviation of a radius.
+    """
+
+    name: str = Field(min_length=1, pattern=r"^[^./]+$")
+    x: Column
+    y: Column
+    radius: float = Field(gt=0.0)
+    noise: float | None = Field(default=None, gt=0.0)
+
+
+class PositioningDescription(Description):
+    """Positioning tests of a machine.
+
+    Attributes:
+        axes: tests of single axes.
+        planes: circles of two axes.
+    """
+
+    kind: Literal["positioning"]
+    axes: tuple[AxisTest, ...] = ()
+    planes: tuple[CircleTest, ...] = ()
+
+    @model_validator(mode="after")
+    def _some(self) -> PositioningDescription:
+        names = [test.name for test in self.axes] + [test.name for test in self.planes]
+        if not names or len(set(names)) < len(names):
+            raise ValueError("state `axes` or `planes`, each with a name of its own")
+        return self

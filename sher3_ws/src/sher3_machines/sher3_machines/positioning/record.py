@@ -1,0 +1,146 @@
+"""Records of positioning tests, with the checks that refuse tables no answer could rest on."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from sher3_diagnosis.channel import Array
+
+from sher3_machines.errors import MachineError
+from sher3_machines.intake.columns import pick
+from sher3_machines.intake.fields import Column
+from sher3_machines.intake.tables import Tables
+from sher3_machines.positioning.description import AxisTest, CircleTest, PositioningDescription
+
+LEAST_ROWS = 20
+"""Rows that a test must have: five targets, from both sides, twice."""
+LEAST_TARGETS = 3
+"""Targets that a test must have: two tell no more than a line."""
+LIKELY_SLIP = 0.1
+"""Deviation, as a share of the travel, beyond which reading and target are taken for different units."""
+
+
+@dataclass(frozen=True)
+class Tests:
+    """The tests of one file.
+
+    Attributes:
+        name: of the file.
+        axes: axis -> `target`, `deviation`, `direction`, `cycle`, and `temperature` where recorded; (n,) each, SI.
+        planes: plane -> `x` and `y`, (n,), m.
+        notes: what was done to the data.
+    """
+
+    name: str
+    axes: Mapping[str, Mapping[str, Array]]
+    planes: Mapping[str, Mapping[str, Array]]
+    notes: Sequence[str] = field(default_factory=tuple)
+
+
+def read_tests(name: str, tables: Tables, machine: PositioningDescription) -> Tests:
+    """Check the columns of a file and bring them to SI units.
+
+    Raises:
+        MachineError: a column is missing, rows or targets are too few, or units differ.
+    """
+    notes: list[str] = []
+    axes = {test.name: axis_rows(name, tables, test, notes) for test in machine.axes}
+    planes = {test.name: circle_rows(name, tables, test) for test in machine.planes}
+    return Tests(name, axes, planes, notes)
+
+
+def axis_rows(run: str, tables: Tables, test: AxisTest, notes: list[str]) -> dict[str, Array]:
+    """Return the rows of one axis; raises MachineError."""
+    target = pick(test.target, tables, run)
+    _enough(run, test.name, len(target))
+    if len(targets := np.unique(target)) < LEAST_TARGETS:
+        raise MachineError(
+            f"{run}: {test.name}: too few targets",
+            value=len(targets),
+            limit=LEAST_TARGETS,
+            remedy="measure more targets",
+        )
+    column = test.reading or test.deviation
+    assert column is not None
+    value = _like(target, column, tables, run)
+    deviation = value - target if test.reading is not None else value
+    worst = int(np.argmax(np.abs(deviation)))
+    if abs(deviation[worst]) > LIKELY_SLIP * np.ptp(target):
+        raise MachineError(
+            f"{run}: {test.name}: {column.column} deviates by more than its travel allows at row {worst + 1}",
+            value=f"{deviation[worst]:.4g}",
+            limit=f"{LIKELY_SLIP * np.ptp(target):.4g}",
+            remedy="correct the units of target and reading in the description",
+        )
+    rows = {"target": target, "deviation": deviation}
+    if test.direction is not None:
+        rows["direction"] = np.sign(_like(target, test.direction, tables, run))
+        if not rows["direction"].all():
+            remedy = "give numbers above and below zero, or leave `direction` out"
+            at = int(np.argmin(np.abs(rows["direction"]))) + 1
+            raise MachineError(f"{run}: {test.direction.column} has no sign at row {at}", value=0, remedy=remedy)
+    else:
+        rows["direction"] = directions(target)
+        notes.append(f"{run}: {test.name}: directions of approach are taken from the order of the rows")
+    if test.cycle is not None:
+        rows["cycle"] = np.unique(_like(target, test.cycle, tables, run), return_inverse=True)[1].astype(float)
+    else:
+        rows["cycle"] = cycles(target, rows["direction"])
+        notes.append(f"{run}: {test.name}: {int(rows['cycle'].max()) + 1} cycles counted from repeated targets")
+    if test.temperature is not None:
+        rows["temperature"] = _like(target, test.temperature, tables, run)
+    return rows
+
+
+def directions(target: Array) -> Array:
+    """Return +1 or -1 (n,) from the order of the targets; one met twice in a row is then met from behind."""
+    step = np.sign(np.diff(target))
+    out = np.empty(len(target))
+    out[0] = step[np.flatnonzero(step)[0]]
+    for i, s in enumerate(step, start=1):
+        out[i] = s if s else -out[i - 1]
+    return out
+
+
+def cycles(target: Array, direction: Array) -> Array:
+    """Return how often each row's target was met from the same side before, (n,)."""
+    seen: dict[tuple[float, float], int] = {}
+    out = np.empty(len(target))
+    for i, key in enumerate(zip(target, direction, strict=True)):
+        out[i] = seen[key] = seen.get(key, -1) + 1
+    return out
+
+
+def circle_rows(run: str, tables: Tables, test: CircleTest) -> dict[str, Array]:
+    """Return the points of one circle; raises MachineError."""
+    x = pick(test.x, tables, run)
+    y = _like(x, test.y, tables, run)
+    _enough(run, test.name, len(x))
+    size = float(np.hypot(x - x.mean(), y - y.mean()).mean())
+    if not 0.5 < size / test.radius < 2.0:
+        raise MachineError(
+            f"{run}: {test.name}: the points are no circle of the stated radius",
+            value=f"{size:.4g}",
+            limit=f"{test.radius:g} m",
+            remedy="correct `radius` or the units of x and y",
+        )
+    return {"x": x, "y": y}
+
+
+def _like(first: Array, column: Column, tables: Tables, run: str) -> Array:
+    """Return a column as long as the first one; raises MachineError otherwise."""
+    found = pick(column, tables, run)
+    if found.shape != first.shape:
+        remedy = "name columns of one table"
+        raise MachineError(
+            f"{run}: {column.column} has other rows", value=found.shape, limit=first.shape, remedy=remedy
+        )
+    return found
+
+
+def _enough(run: str, name: str, rows: int) -> None:
+    if rows < LEAST_ROWS:
+        remedy = "measure more cycles: five targets from both sides, twice, are enough"
+        raise MachineError(f"{run}: {name}: too few rows", value=rows, limit=LEAST_ROWS, remedy=remedy)
