@@ -9,8 +9,10 @@ from generators.table import table
 INTRODUCTION = """# Topics
 
 Every topic of the graph, from `sher3_description.topics.TOPICS`, where publishers and subscribers take type, frame and
-quality of service from. Names are relative to `/sher3`, but for `/diagnostics`. *Latched*: a late subscriber gets the
-last message. *Depth* is the length of the queue in messages.
+quality of service from. Names are relative to `/sher3`, but for `/diagnostics`. *In the graph*: the name on the wire,
+where it is not that of recordings; there CRTK's rules hold: commands of the user are at the root, and no stream of
+the robot's own bears the name of a command. *Latched*: a late subscriber gets the last message. *Depth* is the length
+of the queue in messages.
 
 """
 
@@ -20,6 +22,7 @@ def page() -> str:
     rows = [
         (
             f"`{topic.name}`",
+            f"`{topic.graph}`" if topic.graph else "",
             topic.content,
             f"`{topic.type.split('/')[-1]}`",
             f"`{topic.frame_id}`" if topic.frame_id else "",
@@ -29,4 +32,4 @@ def page() -> str:
         )
         for topic in TOPICS.values()
     ]
-    return INTRODUCTION + table(("topic", "content", "type", "frame", "", "reliability", "depth"), rows)
+    return INTRODUCTION + table(("topic", "in the graph", "content", "type", "frame", "", "reliability", "depth"), rows)

@@ -62,7 +62,7 @@ def test_independent_readers_open_a_recording(tmp_path, run):
     with AnyReader([tmp_path / "bag"]) as reader:
         found = {topic: info.msgcount for topic, info in reader.topics.items()}
         messages = {c.topic: reader.deserialize(raw, c.msgtype) for c, _, raw in reader.messages()}
-    assert found == {TOPICS[name].full_name: entry["messages"] for name, entry in counts.items()}
+    assert found == {TOPICS[name].recorded_name: entry["messages"] for name, entry in counts.items()}
     assert messages["/diagnostics"].status == []
     assert messages["/sher3/operating_state"].data == "ENABLED, größer"
     with (tmp_path / "bag" / "bag.mcap").open("rb") as file:

@@ -28,11 +28,14 @@ class Topic:
     """One topic.
 
     Attributes:
-        name: Name relative to `NAMESPACE`, as in `measured_js`; the key of `TOPICS`.
+        name: Name in recordings relative to `NAMESPACE`, as in `measured_js`; the key of `TOPICS`. It is that of the
+            recorded-run contract, section 4.
         type: ROS interface, as in `sensor_msgs/msg/JointState`.
         frame_id: `header.frame_id` of every message; empty where the message belongs to no frame.
         qos: Quality of service of publishers and subscribers alike.
         content: What the topic carries, for `--help` and the docs.
+        graph: Name in the graph relative to `NAMESPACE`, where it is not `name`. There CRTK's rules hold: commands of
+            the user are at the root, and no stream of the robot's own bears the name of a command.
     """
 
     name: str
@@ -40,11 +43,21 @@ class Topic:
     frame_id: str
     qos: Qos
     content: str
+    graph: str = ""
 
     @property
     def full_name(self) -> str:
-        """The absolute name; `diagnostics` is the only topic outside the namespace (ROS convention)."""
-        return f"/{self.name}" if self.name == "diagnostics" else f"{NAMESPACE}/{self.name}"
+        """The absolute name in the graph; `diagnostics` alone is outside the namespace (ROS convention)."""
+        return self._absolute(self.graph or self.name)
+
+    @property
+    def recorded_name(self) -> str:
+        """The absolute name in recordings."""
+        return self._absolute(self.name)
+
+    @staticmethod
+    def _absolute(name: str) -> str:
+        return f"/{name}" if name == "diagnostics" else f"{NAMESPACE}/{name}"
 
     @property
     def subscriber_qos(self) -> Qos:
@@ -71,8 +84,8 @@ _TEXT = "std_msgs/msg/String"
 _TABLE = (
     # The robot's streams, recorded-run contract version 1, section 4.
     Topic("setpoint_js", _JOINT, "", STREAM, "reference position and velocity, position modes only"),
-    Topic("servo_cv", _TWIST, "b", STREAM, "commanded tip twist in {b}, cooperative mode only"),
-    Topic("servo_jv", _JOINT, "", STREAM, "commanded actuator velocity"),
+    Topic("servo_cv", _TWIST, "b", STREAM, "commanded tip twist in {b}, cooperative mode only", graph="setpoint_cv"),
+    Topic("servo_jv", _JOINT, "", STREAM, "commanded actuator velocity", graph="drives/command_jv"),
     Topic("drives/setpoint_jv", _JOINT, "", STREAM, "velocity demand executed in the interval that ends at the stamp"),
     Topic("drives/measured_js", _JOINT, "", STREAM, "motor encoder position, motor velocity, effort"),
     Topic("measured_js", _JOINT, "", STREAM, "load encoder position"),
@@ -83,14 +96,26 @@ _TABLE = (
     Topic("temperature", "sensor_msgs/msg/Temperature", "", STREAM, "structure temperature [deg C]"),
     Topic("operating_state", _TEXT, "", LATCHED, "CRTK operating state; why and since when is in supervisor/status"),
     # CRTK commands of the user.
-    Topic("command/servo_cv", _TWIST, "b", STREAM, "tip twist in {b}"),
-    Topic("command/servo_jv", _JOINT, "", STREAM, "actuator velocity"),
-    Topic("command/servo_jp", _JOINT, "", AHEAD, "actuator position for the tick of its stamp; may be early"),
-    Topic("command/move_jp", _JOINT, "", STREAM, "actuator position to go to and stop at"),
-    Topic("command/servo_cp", _POSE, "b", STREAM, "tip pose in {b} for now"),
-    Topic("command/move_cp", _POSE, "b", STREAM, "tip pose in {b} to go to and stop at"),
+    Topic("command/servo_cv", _TWIST, "b", STREAM, "tip twist in {b}", graph="servo_cv"),
+    Topic("command/servo_jv", _JOINT, "", STREAM, "actuator velocity", graph="servo_jv"),
     Topic(
-        "command/state_command", _TEXT, "", STREAM, "CRTK state command: enable, disable, pause, resume, home, unhome"
+        "command/servo_jp",
+        _JOINT,
+        "",
+        AHEAD,
+        "actuator position for the tick of its stamp; may be early",
+        graph="servo_jp",
+    ),
+    Topic("command/move_jp", _JOINT, "", STREAM, "actuator position to go to and stop at", graph="move_jp"),
+    Topic("command/servo_cp", _POSE, "b", STREAM, "tip pose in {b} for now", graph="servo_cp"),
+    Topic("command/move_cp", _POSE, "b", STREAM, "tip pose in {b} to go to and stop at", graph="move_cp"),
+    Topic(
+        "command/state_command",
+        _TEXT,
+        "",
+        STREAM,
+        "CRTK state command: enable, disable, pause, resume, home, unhome",
+        graph="state_command",
     ),
     Topic("command/admittance", _TEXT, "", STREAM, "live parameter of the cooperative mode: `name value`"),
     Topic("command/rcm", _TEXT, "", STREAM, "remote centre: `here DEPTH` or `X Y Z` [m] in {b}, or `off`"),

@@ -71,7 +71,7 @@ def test_the_layouts_of_the_viewers_name_topics_that_exist():
 
     folder = Path(__file__).parents[1] / "viewers"
     made = {"/robot_description", "/sher3/markers"}
-    known = made | {topic.full_name for topic in TOPICS.values()}
+    known = made | {topic.recorded_name for topic in TOPICS.values()}
     rviz = read_yaml(folder / "sher3.rviz")
     shown = [d.get("Topic", d.get("Description Topic")) for d in rviz["Visualization Manager"]["Displays"]]
     assert {topic["Value"] for topic in shown if topic} <= known

@@ -189,7 +189,7 @@ class Recorder:
         except OSError as error:
             raise self._unwritable(error) from error
         topics = {
-            source.topic.full_name: TopicCount(source.topic.type, source.gaps.messages, source.topic.qos)
+            source.topic.recorded_name: TopicCount(source.topic.type, source.gaps.messages, source.topic.qos)
             for source in self._sources.values()
         }
         topics |= self._made
@@ -200,7 +200,7 @@ class Recorder:
         if name not in TOPICS:
             raise TopicError("no such topic in the table", topic=name, remedy="use a name relative to /sher3")
         topic = TOPICS[name]
-        channel = self._writer.channel(topic.full_name, topic.type, topic.qos)
+        channel = self._writer.channel(topic.recorded_name, topic.type, topic.qos)
         self._sources[name] = _Source(topic, channel, GapCounter(self._periods.get(name), is_stamped(name)))
         return self._sources[name]
 

@@ -18,7 +18,7 @@ from sher3_common.reasons import TEXT, Reason
 from sher3_common.samples import DiagnosticSample, JointSample, PoseSample, TextSample, TwistSample, WrenchSample
 from sher3_common.stamps import NO_STAMP
 from sher3_common.vectors import ZERO_TWIST
-from sher3_description import ACTUATORS, Robot
+from sher3_description import ACTUATORS, TOPICS, Robot
 from sher3_kinematics.direct import direct
 from sher3_kinematics.kernel import kernel_parameters
 from sher3_runtime.on_demand import advertise_on_demand
@@ -172,7 +172,7 @@ class KinematicsNode(Node):
         self._tick_count += 1
 
     def _command(self, mode: Mode) -> Callable[[Any], None]:
-        topic = f"/sher3/command/{mode.value}"
+        topic = TOPICS[f"command/{mode.value}"].full_name
 
         def on_command(sample: Any) -> None:
             try:
