@@ -70,6 +70,12 @@ Measure: `pytest sher3_ws/src/sher3_machines/test/axes/test_health.py`."""
 FOLLOWS = 0.01
 """Share of the axis' travel that a second encoder must at least show: less is its noise. Set by that argument."""
 
+SCALED = 0.2
+"""Ratio of two encoders, less one, from which it is their scale and no error of the machine. Set by that argument."""
+
+ALIKE = 0.99
+"""Correlation with the axis from which a second encoder follows it, in whatever scale. Set by that argument."""
+
 # -- a serial arm in motion ----------------------------------------------------------------------------------------
 
 CAUSES_OF_JOINT = 5

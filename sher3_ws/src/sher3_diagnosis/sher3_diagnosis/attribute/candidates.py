@@ -51,12 +51,16 @@ class Candidates:
             before = found
             for shape in shapes:
                 trial = fit(self.evidence.data, [*given, self.term(effect, site, shape)])
-                if possible(trial) and (found is None or cost(trial) < cost(found)):
+                if self.possible(trial) and (found is None or cost(trial) < cost(found)):
                     found = trial
             if found is None or found is before:
                 break
             shapes = effect.refine(found.terms[-1].shape)
         return found
+
+    def possible(self, trial: Fit) -> bool:
+        """Return whether a fit may be an answer; default that its last term is."""
+        return possible(trial)
 
     def search(self, channels: Collection[Channel], given: Sequence[Term] = ()) -> list[Fit]:
         """Fit every effect that shows on any of `channels`, best first.

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import ClassVar
 
 import numpy as np
 from sher3_description import ACTUATORS, Robot
@@ -24,7 +23,6 @@ class CoulombFriction(Page):
 
     id, family, stage = "coulomb_friction", "friction", "motor_mechanics"
     inputs = ("direction",)
-    kinds: ClassVar[tuple[str, ...]] = ("robot", "axis")
     dry = True
     best = Best("reversals", "reversals of several amplitudes and speeds separate friction laws")
     explanation = (
@@ -38,7 +36,7 @@ class CoulombFriction(Page):
         "viscous_friction": "the force grows with speed",
     }
     on_axis = {"force": "coulomb"}
-    DISPLACEMENTS = (1.0e-3, 2.5e-3, 5.0e-3)
+    DISPLACEMENTS: tuple[float, ...] = (1.0e-3, 2.5e-3, 5.0e-3)
     """In motor revolutions: 2, 5 and 10 um on a 2 mm lead."""
 
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
@@ -63,6 +61,14 @@ class CoulombFriction(Page):
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
         """Friction resists."""
         return bool(coefficients[0] > 0.0)
+
+
+class CoulombOnAxis(CoulombFriction):
+    """The same on one axis of any machine, whose encoder may be finer than any that was foreseen."""
+
+    kinds = ("axis",)
+    DISPLACEMENTS = (1.0e-4, 3.0e-4, 1.0e-3, 2.5e-3, 5.0e-3)
+    """In motor revolutions, or shares of what stands for one: too long a one reverses the force too late."""
 
 
 class ServoStiction(CoulombFriction):

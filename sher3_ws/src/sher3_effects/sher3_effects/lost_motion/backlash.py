@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+<<<<<<< HEAD
 from typing import Any, ClassVar
+=======
+from typing import ClassVar
+>>>>>>> d4bbbc2 (A late reading is a cause of its own; wrong scales and wrapped angles named)
 
 import numpy as np
 from sher3_diagnosis.channel import Array, Channel
@@ -22,7 +26,7 @@ class Backlash(Page):
 
     id, family, stage = "backlash", "lost_motion", "transmission"
     inputs = ("position", "direction", "load", "weight")
-    kinds = ("robot", "axis", "servo")
+    kinds: ClassVar[tuple[str, ...]] = ("robot",)
     needs = ("load",)
     best = Best("loads", "known loads at rest separate a fixed gap from a spring")
     companion = "friction"
@@ -41,7 +45,11 @@ class Backlash(Page):
     DRIFTS = ((np.inf, 0.0), (1000.0, 0.0), (200.0, 0.0), (1000.0, 1.0), (200.0, 1.0))
     """How the load moves in the gap: viscous drag in units of the nominal coefficient over 60, and whether the friction
     of the axis holds it until the pull on it is larger."""
-    finer = {"width": (0.94, 0.97, 1.03, 1.06), "damping": (0.5, 2.0), "stick": (0.8, 1.2)}
+    finer: ClassVar[Mapping[str, tuple[float, ...]]] = {
+        "width": (0.94, 0.97, 1.03, 1.06),
+        "damping": (0.5, 2.0),
+        "stick": (0.8, 1.2),
+    }
 
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
         """Width around the span of the residual, and how freely the load moves in the gap."""
@@ -68,6 +76,25 @@ class Backlash(Page):
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Width of the gap."""
         return {"width": shape["width"]}
+
+
+class BacklashOnAxis(Backlash):
+    """The same on one axis of any machine, where something else may make most of the encoders' difference."""
+
+    kinds = ("axis", "servo")
+    SMALLER = (0.06, 0.12, 0.25, 0.45)
+    """Widths in spans of the residual that are tried for a load that stays put in the gap."""
+    finer: ClassVar[Mapping[str, tuple[float, ...]]] = {
+        "width": (0.7, 0.85, 0.94, 0.97, 1.03, 1.06, 1.2, 1.4),
+        "damping": (0.5, 2.0),
+        "stick": (0.8, 1.2),
+    }
+
+    def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
+        """Return the widths around the span, and smaller ones."""
+        found = super().shapes(views, site)
+        span = found[0]["width"] / self.WIDTHS[0] if found else 0.0
+        return [*found, *({"width": w * span, "damping": np.inf, "stick": 0.0} for w in self.SMALLER if span)]
 
 
 def resting_force(views: Sequence[AxisView], site: str) -> float:

@@ -34,6 +34,9 @@ class LeadError(Page):
         "thermal_expansion": "grows with temperature",
     }
 
+    LARGEST = 0.2
+    """Ratio error from which it is no lead error: four times the largest that the plant takes."""
+
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
         """One column: the motor position."""
         return Signature({Channel(self.stage, site): column(view.position[:, view.row(site)])})
@@ -45,6 +48,10 @@ class LeadError(Page):
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Ratio error."""
         return {"relative": float(coefficients[0])}
+
+    def admissible(self, shape: Shape, coefficients: Array) -> bool:
+        """Return whether it is an error of a lead; more is a wrong scale, or an encoder that does not follow."""
+        return bool(abs(coefficients[0]) < self.LARGEST)
 
 
 class TableScale(Page):

@@ -1,4 +1,4 @@
-"""Channels that say nothing: an encoder that reads 0.0, an effort that stays at one value while the axis moves.
+"""Channels that say nothing or in a wrong scale: an encoder that reads 0.0, an effort that stays at one value.
 
 A channel that is not connected must not become a cause. It is named and left out; the other channels are judged.
 """
@@ -12,7 +12,7 @@ from sher3_diagnosis.channel import Array, Mask
 
 from sher3_machines.axes.description import Axis
 from sher3_machines.axes.record import COUNTS_MOVED, AxesRun
-from sher3_machines.thresholds import DEAD, FOLLOWS
+from sher3_machines.thresholds import ALIKE, DEAD, FOLLOWS, SCALED
 
 ANSWERS = ("effort", "load")
 """Signals that must change while the axis moves; a reference or a command may well be constant."""
@@ -41,7 +41,8 @@ def dead_channels(run: AxesRun, axis: Axis) -> Mapping[str, str]:
         if name in found and moving.any():
             what: str | None = stuck(found[name], moving)
             if what is None and name == "load" and np.ptp(found[name]) < FOLLOWS * travel:
-                what = f"moves by {np.ptp(found[name]):.3g} while the axis moves by {travel:.3g}"
+                what = f"moves by {np.ptp(found[name]):.3g} while the axis moves by {travel:.3g}: a dead channel"
+            what = wrong_scale(found[name], position) if what is None and name == "load" else what
             if what is not None:
                 out[name] = _sentence(run, axis, name, what, "it is left out")
     return out
@@ -55,7 +56,17 @@ def stuck(signal: Array, moving: Mask) -> str | None:
     limit = len(values) > 1 and abs(common) > AT_THE_END * float(np.abs(signal).max())
     if share < DEAD or limit:
         return None
-    return f"reads {common:.6g} in {share:.0%} of the samples in which the axis moves"
+    return f"reads {common:.6g} in {share:.0%} of the samples in which the axis moves: a dead channel"
+
+
+def wrong_scale(load: Array, position: Array) -> str | None:
+    """Return by how much another scale a second encoder moves with the axis, (n,) each; None where it is the same."""
+    about = position - position.mean()
+    ratio = float(about @ load / (about @ about))
+    alike = abs(float(np.corrcoef(load, position)[0, 1])) > ALIKE
+    if not alike or abs(ratio - 1.0) < SCALED:
+        return None
+    return f"moves {ratio:.4g} times as far as the axis: state its `factor`"
 
 
 def without_dead(run: AxesRun, axis: Axis) -> AxesRun:
@@ -68,4 +79,4 @@ def without_dead(run: AxesRun, axis: Axis) -> AxesRun:
 
 
 def _sentence(run: AxesRun, axis: Axis, signal: str, what: str, so: str) -> str:
-    return f"{run.name}: {axis.name}.{signal} {what}: a dead channel; {so}"
+    return f"{run.name}: {axis.name}.{signal} {what}; {so}"

@@ -34,6 +34,11 @@ COUNTS_MOVED = 100.0
 SIGNALS = ("position", "reference", "command", "effort", "load", "nominal_effort", "applied")
 """Signals of an axis, as the description names them."""
 
+POSITIONS = ("position", "reference", "load")
+"""Signals that are places."""
+WRAP = 0.1
+"""Share of a turn by which a jump between two samples may differ from a whole turn that was wrapped."""
+
 Stamped = tuple[Array | None, Array]
 """Stamps in s, where there are any, and the samples."""
 
@@ -81,11 +86,25 @@ def axes_run(name: str, tables: Tables, machine: Chain) -> AxesRun:
             for which, column in columns.items()
             if column is not None
         }
+    unwrapped = [note for axis in machine.axes for note in _unwrap(axis, raw[axis.name], name)]
     clock, period, notes = _clock([s for a in raw.values() for s in a.values()], machine.time, name)
     signals = {a: {k: _onto(clock, t, x) for k, (t, x) in found.items()} for a, found in raw.items()}
     for axis in machine.axes:
         check_units(axis, signals[axis.name], name)
-    return AxesRun(name, period, signals, notes)
+    return AxesRun(name, period, signals, [*unwrapped, *notes])
+
+
+def _unwrap(axis: Axis, raw: dict[str, Stamped], run: str) -> list[str]:
+    """Join the turns of angles that were recorded within one turn; return a note for each such signal."""
+    notes = []
+    for which in POSITIONS if axis.motion == "rotary" else ():
+        if which in raw:
+            stamps, x = raw[which]
+            jumps = np.abs(np.abs(np.diff(x)) - 2.0 * np.pi) < WRAP * 2.0 * np.pi
+            if jumps.any():
+                raw[which] = stamps, np.unwrap(x)
+                notes.append(f"{run}: {axis.name}.{which} wraps {int(jumps.sum())} times within a turn; turns joined")
+    return notes
 
 
 def _clock(found: list[Stamped], clock: Clock, run: str) -> tuple[Array, float, list[str]]:

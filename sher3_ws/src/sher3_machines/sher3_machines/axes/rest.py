@@ -47,7 +47,15 @@ def _left(view: AxisView, fit: Fit, channel: Channel) -> Array:
     return left
 
 
-class DryFirst(Candidates):
+class Bounded(Candidates):
+    """Candidates of which a new cause may not push another one beyond what is physically possible."""
+
+    def possible(self, trial: Fit) -> bool:
+        """Return whether the new cause is possible, and all others still are."""
+        return super().possible(trial) and trial.admissible
+
+
+class DryFirst(Bounded):
     """Candidates of which a friction that holds an axis at rest is the first cause."""
 
     def search(self, channels: Collection[Channel], given: Sequence[Term] = ()) -> list[Fit]:

@@ -22,6 +22,7 @@ from sher3_effects.friction.coulomb_friction import CoulombFriction
 from sher3_effects.friction.viscous_friction import ViscousFriction
 from sher3_effects.inertia.payload_mass import PayloadOnLink
 
+from sher3_machines.axes.rest import Bounded
 from sher3_machines.manipulator.evidence import ArmMotionEvidence, channel_of, of_joint
 from sher3_machines.thresholds import CAUSES_OF_JOINT
 
@@ -68,7 +69,7 @@ def _explained(evidence: ArmMotionEvidence, candidates: Candidates, payload: Fit
         left = partial(down_to_floor, [channel_of(joint)], own)
         if left(own.null()):
             say(f"{joint}{' beside a payload' if payload is not None else ''}")
-            alone[joint] = attribute(Candidates(own, effects), left, say, CAUSES_OF_JOINT)
+            alone[joint] = attribute(Bounded(own, effects), left, say, CAUSES_OF_JOINT)
     terms = [payload.terms[-1]] if payload is not None else []
     for found in alone.values():
         terms += [candidates.term(t.effect, t.site, t.shape) for t in found.fit.terms]

@@ -1,6 +1,7 @@
 """Shapes searched again beside the other causes, which keep their order."""
 
 from sher3_diagnosis.attribute.candidates import Candidates
+from sher3_diagnosis.attribute.rivals import Attribution
 from sher3_diagnosis.fitting import fit
 from sher3_effects import pages
 from sher3_machines.axes.evidence import gather_axis
@@ -22,7 +23,7 @@ def test_a_shape_is_searched_again_beside_the_others():
             candidates.term(effects["viscous_friction"], "slide", {}),
         ],
     )
-    found = polished(candidates, worst)
+    found = polished(candidates, Attribution(worst, ((), ()), (0.0, 0.0)))
     assert found.total < worst.total
     assert [t.key for t in found.terms] == [t.key for t in worst.terms]
     assert found.terms[0].shape in shapes

@@ -1,0 +1,87 @@
+"""Sensor delay: a reading that comes late."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.effect import Best, Shape, Signature, column
+
+from sher3_effects.page import Page
+from sher3_effects.view import AxisView
+
+
+class SensorDelay(Page):
+    """reading(t) = truth(t - delay), of the second encoder or of the effort; below zero the position is the late one.
+
+    To first order a late encoder is off by delay times velocity and a late effort by delay times its slope. The delay
+    that is searched is exact, and one coefficient takes up what is left of it.
+    """
+
+    id, family, stage = "sensor_delay", "timing", "sensing"
+    inputs = ("velocity", "force")
+    kinds = ("axis", "servo")
+    best = Best("sweep", "several speeds tell a lag in time from one in travel")
+    explanation = (
+        "One reading comes a fixed time after the others: two encoders differ in proportion to the speed, whatever the "
+        "direction, and agree at rest."
+    )
+    siblings = {
+        "backlash": "a fixed width at any speed, also just after a reversal at a creep",
+        "transmission_hysteresis": "a fixed width at any speed, which builds up over a stroke",
+        "viscous_friction": "needs force; both encoders agree",
+        "command_delay": "the command is late, all readings agree",
+    }
+    units = {"load_delay": "s", "effort_delay": "s"}
+    PERIODS = (0.5, 1.0, 2.0, 3.0, 5.0, 8.0, 13.0, 21.0)
+    """Delays that are tried, in periods of the record, either way."""
+    finer = {"delay": (0.85, 0.95, 1.05, 1.2)}
+    REST = (-0.5, 1.0)
+    """Share of a searched delay that its coefficient may add; a finer delay is searched for what lies beyond."""
+    LONGEST = 0.25
+    """Delay, s, beyond which two recordings are not of the same moment at all."""
+
+    def channels(self, site: str) -> tuple[Channel, ...]:
+        """Return the difference of the encoders, and the force balance."""
+        return (Channel("transmission", site), Channel("motor_mechanics", site))
+
+    def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
+        """Return delays of the load encoder (0) and of the effort (1), s."""
+        row, run = views[0].row(site), views[0].run
+        late = [s * n * run.period for n in self.PERIODS for s in (1.0, -1.0) if n * run.period <= self.LONGEST]
+        which = [float(k) for k, x in enumerate((run.load, run.effort)) if x is not None and np.any(x[:, row])]
+        return [{"delay": t, "of_effort": k} for k in which for t in late]
+
+    def refine(self, shape: Shape) -> list[Shape]:
+        """Return neighbours of a delay; which reading is late has none."""
+        return [{**shape, "delay": shape["delay"] * factor} for factor in self.finer["delay"]]
+
+    def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
+        """Return what a late reading leaves, and one column for the rest of the delay: its slope."""
+        row, run = view.row(site), view.run
+        if shape["of_effort"]:
+            assert run.effort is not None
+            channel, truth = Channel("motor_mechanics", site), run.effort[:, row]
+            moved = truth - shifted(truth, run.stage_clock, -shape["delay"])
+            slope = -np.gradient(shifted(truth, run.stage_clock, -shape["delay"]), run.period)
+        else:
+            channel, truth = Channel("transmission", site), run.motor[:, row]
+            moved = shifted(truth, run.stage_clock, shape["delay"]) - truth
+            slope = -np.gradient(shifted(run.smooth[:, row], run.stage_clock, shape["delay"]), run.period)
+        fixed = run.to_grid(moved[:, None])
+        return Signature({channel: column(run.to_grid(slope[:, None])[:, 0])}, {channel: fixed})
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Return the delay, named after the reading that is late."""
+        name = "effort_delay" if shape["of_effort"] else "load_delay"
+        return {name: shape["delay"] + float(coefficients[0])}
+
+    def admissible(self, shape: Shape, coefficients: Array) -> bool:
+        """Return whether the coefficient takes up a rest: neither most of the delay, nor more than another one."""
+        return bool(self.REST[0] < coefficients[0] / shape["delay"] < self.REST[1])
+
+
+def shifted(x: Array, clock: Array, delay: float) -> Array:
+    """Return x (n,) as it was `delay` ago, s; its ends stay as they are."""
+    return np.interp(clock - delay, clock, x)
