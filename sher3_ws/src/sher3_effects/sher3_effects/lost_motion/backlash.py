@@ -4,11 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-<<<<<<< HEAD
 from typing import Any, ClassVar
-=======
-from typing import ClassVar
->>>>>>> d4bbbc2 (A late reading is a cause of its own; wrong scales and wrapped angles named)
 
 import numpy as np
 from sher3_diagnosis.channel import Array, Channel
