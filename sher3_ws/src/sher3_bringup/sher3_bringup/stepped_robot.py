@@ -55,7 +55,7 @@ class SteppedRobot:
         control = control or ControlSettings.from_robot(robot, {"motion": {"regime": "bench"}})
         self.graph, self.robot, self.control = graph, robot, control
         self.force, self.pedal_device = InProcessForceSensor(), InProcessPedal(clock=graph.clock.now)
-        settings = drives or drives_in(control.motion.regime, default_settings(robot.control_period))
+        settings = drives or drives_in(robot, control.motion, default_settings(robot.control_period))
         channel = f"stepped{next(_numbers)}"
         count = len(settings.channels)
         device_ends, host_ends = ([open_link(f"virtual:{channel}-{i}") for i in range(count)] for _ in range(2))

@@ -8,7 +8,8 @@ from sher3_bringup.settings.patience import BENCH, CONTROL, DRIVES, drives_in
 from sher3_bringup.settings.run_settings import NODES, checked, parse_processes
 from sher3_cli.root import make_app
 from sher3_common import Sher3Error
-from sher3_control.settings import ControlSettings
+from sher3_control.settings import ControlSettings, MotionSettings
+from sher3_description import load_robot
 from sher3_drivers.settings import default_settings
 from sher3_faults.budget import BudgetExceeded
 from typer.testing import CliRunner
@@ -103,9 +104,15 @@ def test_the_bench_is_the_default_of_mocks_alone_and_has_limits_of_its_own():
     assert checked(**REAL).control().motion.regime == "free"
     strict, bench = (checked(**REAL, regime=regime).drives().model_dump() for regime in ("free", "bench"))
     changed = {name for name in strict if bench[name] != strict[name]}
-    assert changed == set(BENCH) and all(bench[name] > strict[name] for name in changed)
+    assert changed == {*BENCH, "regime"} and all(bench[name] > strict[name] for name in BENCH)
     assert checked(regime="free").drives().encoder_distance == strict["encoder_distance"]
-    assert drives_in("near_tissue", default_settings()) == drives_in("free", default_settings()) == default_settings()
+    robot, drives = load_robot(), default_settings()
+    near, free = (drives_in(robot, MotionSettings(regime=name), drives) for name in ("near_tissue", "free"))
+    assert near.model_copy(update={"regime": "free"}) == free
+    assert free.model_copy(update={"regime": drives.regime, "caps": ()}) == drives
+    caps = {row.regime: row.caps for row in near.caps}
+    assert caps["near_tissue"] == pytest.approx((2e-3, 2e-3, 2e-3, 0.03, 0.9e-3))
+    assert caps["free"] == pytest.approx((12.2e-3, 12.2e-3, 12.2e-3, 0.3, 9e-3))
 
 
 def test_the_budget_is_printed_and_its_exit_code_says_whether_it_is_kept():

@@ -26,7 +26,7 @@ from sher3_control.law.position_controller import position_commands
 from sher3_control.motion.cooperative import RESTING, VelocityModes
 from sher3_control.motion.ownership import MODE_CODES, Mode
 from sher3_control.motion.rcm import NO_HOLD
-from sher3_control.motion.speed_cap import Regime, speed_cap
+from sher3_control.motion.speed_cap import Regime, axis_caps, speed_cap
 from sher3_control.settings import MotionSettings
 from sher3_control.tick_records import AdmittanceRecord, MotionRecord, admittance_record, motion_record
 
@@ -201,7 +201,10 @@ class _Modes:
             mode.centre = None if data["rcm"] is None else np.array(data["rcm"])
             # Recordings made before there were regimes had no cap.
             regime = Regime(data.get("regime", Regime.BENCH.value))
-            mode.cap = speed_cap(MotionSettings(**data["settings"]), regime)
+            settings = MotionSettings(**data["settings"])
+            mode.cap = speed_cap(settings, regime)
+            if "leg_share" in data["settings"]:  # nor a cap of the actuators
+                mode.axis_caps = axis_caps(settings, mode.cap, mode.axis_caps)
             self._by_version[version] = mode
 
     def velocity(self, q: Array, twist: Array, previous: tuple[float, ...], version: int) -> Array:

@@ -134,6 +134,11 @@ class MotionSettings(Settings):
         regime: speed regime at the start, see `sher3_control.motion.speed_cap`.
         free_speed, free_turning: caps of the tip in the regime `free` [m/s], [rad/s].
         near_speed, near_turning: caps of the tip in the regime `near_tissue` [m/s], [rad/s].
+        leg_share: cap of a leg in multiples of the tip's: 2 mm/s near tissue, so that a leg that runs at it moves the
+            tip by 40 um at most. Fast turns about a tip far off the centre need more, and are slower.
+        tilt_arm: cap of the tilt's slider per rate of turning [m/rad]: 1.05 times the most that a turn needs.
+        regime_delay: time that the motor driver has for raising the drives' own limits before a faster regime begins
+            [s]: 25 periods at 500 Hz; two SDO transfers a drive take 14 ms.
         free_travel, near_travel: farthest the tip may travel after a fault in each of the two regimes [m]: the
             thickness of a retina, and the error that a needle in it may have.
         deflection_compensation: correct pose commands by the deflection modelled from the measured wrench.
@@ -160,6 +165,9 @@ class MotionSettings(Settings):
     free_turning: Annotated[Number, Field(gt=0.0, le=3.0)] = 0.3
     near_speed: Annotated[Number, Field(gt=0.0, le=0.05)] = 0.0005
     near_turning: Annotated[Number, Field(gt=0.0, le=3.0)] = 0.03
+    leg_share: Annotated[Number, Field(ge=1.0, le=100.0)] = 4.0
+    tilt_arm: Annotated[Number, Field(ge=0.01, le=1.0)] = 0.03
+    regime_delay: Seconds = 0.050
     free_travel: Annotated[Number, Field(gt=0.0, le=0.01)] = 250e-6
     near_travel: Annotated[Number, Field(gt=0.0, le=0.01)] = 25e-6
     deflection_compensation: bool = False

@@ -12,6 +12,7 @@ from sher3_drivers.bus.load import ChannelBudget, check_budget
 from sher3_drivers.errors import DriverSettingsError
 
 Seconds = Annotated[float, Field(gt=0.0, le=10.0, allow_inf_nan=False)]
+Speed = Annotated[float, Field(gt=0.0, le=100.0, allow_inf_nan=False)]
 Number = Annotated[int, Field(ge=0, le=2**32 - 1)]
 Length = Annotated[float, Field(gt=0.0, le=0.01, allow_inf_nan=False)]
 Angle = Annotated[float, Field(gt=0.0, le=0.2, allow_inf_nan=False)]
@@ -47,6 +48,13 @@ class DriveIdentity(_Part):
     serial: Number
 
 
+class RegimeCaps(_Part):
+    """Largest speeds of the five actuators in one speed regime, m/s and rad/s."""
+
+    regime: str
+    caps: tuple[Speed, Speed, Speed, Speed, Speed]
+
+
 class MotorDriverSettings(_Part):
     """Everything the motor driver can be told.
 
@@ -55,6 +63,8 @@ class MotorDriverSettings(_Part):
         period: control period and SYNC period, s.
         protected: commands and reports carry a check (`canopen.protection`), which the drives must have.
         identities: name plates of drives that must be no other ones; those of drives not named are not looked at.
+        regime: speed regime at the start.
+        caps: speed caps of the actuators by regime, which the drives get too; without them the velocity limits hold.
         host_id: CANopen node id of this computer, for its heartbeat.
         host_heartbeat: period of the host's heartbeat, s. The control loop itself sends it, so that a loop that hangs
             falls silent.
@@ -110,6 +120,8 @@ class MotorDriverSettings(_Part):
     period: Annotated[float, Field(ge=0.0005, le=0.1)] = 0.002
     protected: bool = False
     identities: tuple[DriveIdentity, ...] = ()
+    regime: str = "bench"
+    caps: tuple[RegimeCaps, ...] = ()
     host_id: Annotated[int, Field(ge=1, le=127)] = 127
     host_heartbeat: Seconds = 0.005
     host_heartbeat_limit: Seconds = 0.030

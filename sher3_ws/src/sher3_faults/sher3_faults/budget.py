@@ -11,7 +11,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 from sher3_common import Sher3Error
-from sher3_control.motion.speed_cap import Regime, SpeedCap, speed_cap
+from sher3_common.vectors import Vector
+from sher3_control.motion.speed_cap import Regime, SpeedCap, axis_caps, speed_cap
 from sher3_control.settings import ControlSettings
 from sher3_description import ACTUATORS, Robot
 from sher3_drivers.settings import MotorDriverSettings
@@ -66,7 +67,8 @@ class TravelBudget:
 
     Attributes:
         rows: every fault in every regime.
-        runaway: tip travel [m] per axis when its drive disobeys at its own speed limit; stated, not limited.
+        runaway: tip travel [m] per regime and axis when its drive does not obey and runs at its own speed limit, which
+            is the cap of the regime.
     """
 
     def __init__(self, robot: Robot, control: ControlSettings, drives: MotorDriverSettings) -> None:
@@ -74,13 +76,18 @@ class TravelBudget:
         self._control, self._drives = control, drives
         self._classes = fault_classes(control, drives)
         self.rows = [row for regime in Regime for row in self._rows(regime, self._cap(regime))]
-        self.runaway = _runaway(self._braking, drives, control.motion.free_speed)
+        self.runaway = {regime.value: self._runaway(regime) for regime in Regime}
 
     def _cap(self, regime: Regime) -> SpeedCap:
         cap = speed_cap(self._control.motion, regime)
         if regime is Regime.BENCH:
             return SpeedCap(self._braking.top_speed(), float(self._braking.velocity[3]))
         return cap
+
+    def _runaway(self, regime: Regime) -> dict[str, float]:
+        cap = self._cap(regime)
+        caps = axis_caps(self._control.motion, speed_cap(self._control.motion, regime), self._braking.velocity.tolist())
+        return _runaway(self._braking, self._drives, caps, cap)
 
     def _rows(self, regime: Regime, cap: SpeedCap) -> list[BudgetRow]:
         motion = self._control.motion
@@ -146,8 +153,10 @@ class TravelBudget:
                 f"{row.travel * 1e6:8.1f} um{'  OVER' if row.travel > row.budget else ''}"
                 for row in rows
             ]
-        away = ", ".join(f"{name} {way * 1e6:.0f} um" for name, way in self.runaway.items())
-        return "\n".join([*parts, f"a drive that disobeys at its own speed limit (stated, not limited): {away}"])
+        for regime in Regime:
+            away = ", ".join(f"{name} {way * 1e6:.0f} um" for name, way in self.runaway[regime.value].items())
+            parts.append(f"an axis that runs at its drive's own limit, {regime.value}: {away}")
+        return "\n".join(parts)
 
 
 def _row(
@@ -170,10 +179,14 @@ def _per_axis(distance: float, angle: float) -> NDArray[np.float64]:
     return np.array([distance] * 3 + [angle, distance])
 
 
-def _runaway(braking: Braking, drives: MotorDriverSettings, speed: float) -> dict[str, float]:
-    """Return the tip's travel [m] per axis that runs at its limit whatever its demand: error, latency and ramp."""
-    v, a, lag = braking.velocity, braking.deceleration, braking.lag
-    astray = _per_axis(drives.position_distance, drives.position_angle)
-    noticed = astray + drives.position_lag * speed + 2.0 * v * drives.period
-    way = braking.reach() * (noticed + v * v / (2.0 * a) + v * lag)
+def _runaway(braking: Braking, drives: MotorDriverSettings, caps: Vector, cap: SpeedCap) -> dict[str, float]:
+    """Return the tip's travel [m] per axis that runs as fast as its drive lets it, `caps` (5,), whatever it is told.
+
+    It is noticed when it has left its commands by the limit at the speeds that the regime allows, and two periods
+    later; then it brakes on its ramp.
+    """
+    v, a, lag = np.array(caps), braking.deceleration, braking.lag
+    allowed = _per_axis(drives.position_distance, drives.position_angle)
+    allowed = allowed + drives.position_lag * np.minimum(braking.axis_speeds(cap.linear, cap.angular), v)
+    way = braking.reach() * (allowed + 2.0 * v * drives.period + v * v / (2.0 * a) + v * lag)
     return dict(zip(ACTUATORS, way.tolist(), strict=True))

@@ -10,6 +10,9 @@ from __future__ import annotations
 
 from typing import Any, Literal
 
+from sher3_control.motion.speed_cap import Regime, axis_caps, speed_cap
+from sher3_control.settings import MotionSettings
+from sher3_description import Robot
 from sher3_drivers.settings import MotorDriverSettings
 
 Patience = Literal["strict", "patient"]
@@ -60,9 +63,15 @@ lag and wrong scales, and must not be stopped for them; strict: 7 um, 0.4 mrad, 
 a patient there is no bench."""
 
 
-def drives_in(regime: str, drives: MotorDriverSettings) -> MotorDriverSettings:
-    """Return the motor driver's settings with the limits of a speed regime: those of `BENCH` on the bench."""
-    return MotorDriverSettings.checked(**{**drives.model_dump(), **BENCH}) if regime == "bench" else drives
+def drives_in(robot: Robot, motion: MotionSettings, drives: MotorDriverSettings) -> MotorDriverSettings:
+    """Return the motor driver's settings for the speed regimes of `motion`: their caps, and on the bench its limits."""
+    limits = [actuator.limits.velocity for actuator in robot.actuators]
+    caps = [
+        {"regime": regime.value, "caps": axis_caps(motion, speed_cap(motion, regime), limits)}
+        for regime in (Regime.NEAR_TISSUE, Regime.FREE)
+    ]
+    bench = BENCH if motion.regime == Regime.BENCH.value else {}
+    return MotorDriverSettings.checked(**{**drives.model_dump(), "regime": motion.regime, "caps": caps, **bench})
 
 
 PEDAL_AGE = {"strict": 0.02, "patient": 0.6}

@@ -160,7 +160,7 @@ class RunSettings(BaseModel):
         if not self.links:
             links = tuple(f"local:{self.mock_name()}/{i}" for i in range(len(settings.channels)))
             settings = default_settings(1.0 / self.rate, links)
-        settings = drives_in(self.start_regime, settings)
+        settings = drives_in(self.robot(), self.control().motion, settings)
         patient = DRIVES if self.patience != "strict" else {}
         return MotorDriverSettings.checked(**{**settings.model_dump(), **patient})
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
+import numpy as np
 from sher3_common.reasons import Reason
 from sher3_common.stamps import judge_age, nanoseconds
 from sher3_common.vectors import Vector
@@ -21,7 +22,7 @@ from sher3_control.motion.move_modes import MoveJoints, MoveTip
 from sher3_control.motion.ownership import Mode, Ownership
 from sher3_control.motion.pose import tool_axis
 from sher3_control.motion.servo_modes import ServoJointVelocity, ServoPose, ServoPosition, ServoTwist
-from sher3_control.motion.speed_cap import Regime, speed_cap
+from sher3_control.motion.speed_cap import Regime, axis_caps, speed_cap
 from sher3_control.settings import MotionSettings
 
 POSE_MODES = (Mode.SERVO_CP, Mode.MOVE_CP)
@@ -109,9 +110,11 @@ class MotionController:
     def set_regime(self, regime: Regime) -> None:
         """Change the speed regime; its caps act from the next tick on, and on moves planned after it."""
         self.regime = regime
-        self.velocity_modes.cap = speed_cap(self._settings, regime)
+        cap = speed_cap(self._settings, regime)
+        caps = axis_caps(self._settings, cap, self._limits)
+        self.velocity_modes.cap, self.velocity_modes.axis_caps = cap, caps
         for move in self._moves:
-            move.cap = self.velocity_modes.cap
+            move.cap, move.axis_caps = cap, np.array(caps)
 
     def _inverse(self, pose: PoseCommand) -> Vector:
         return tuple(self._kinematics.inverse(pose.position, tool_axis(pose.orientation)).tolist())

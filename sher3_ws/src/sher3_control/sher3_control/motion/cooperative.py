@@ -61,12 +61,14 @@ class VelocityModes:
         centre: the remote centre (3,) [m] in {b}, or None.
         hold: the law's memory while the robot moves about the centre, see `rcm`.
         cap: speed caps of the tip.
+        axis_caps: speed caps of the actuators (5,).
     """
 
     def __init__(self, kinematics: RobotKinematics, gain: float, integral: float = 0.0) -> None:
         self.kinematics = kinematics
         self.centre: Array | None = None
         self.cap = SpeedCap(math.inf, math.inf)
+        self.axis_caps: Vector = tuple(kinematics.velocity.tolist())
         self._gain, self._integral = gain, integral
         self.hold: Hold = NO_HOLD
         self._inverse = InverseVelocity(kinematics)
@@ -151,7 +153,13 @@ class VelocityModes:
 
     def cap_factor(self, q: Vector, velocity: Vector) -> float:
         """Return the factor, 1 or less, that brings an actuator velocity (5,) at `q` (5,) within the speed caps."""
-        return 1.0 if math.isinf(self.cap.linear) else self._cap_factor(self._parameters, q, velocity, self.cap)
+        if math.isinf(self.cap.linear):
+            return 1.0
+        factor = self._cap_factor(self._parameters, q, velocity, self.cap)
+        for value, cap in zip(velocity, self.axis_caps, strict=True):
+            if abs(value) * factor > cap:
+                factor = cap / abs(value)
+        return factor
 
     def _capped(self, q: Vector, wanted: Velocity) -> Velocity:
         """Return the velocity scaled as a whole to the speed caps, so that the tip keeps its direction."""

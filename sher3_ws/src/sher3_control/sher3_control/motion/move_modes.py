@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Protocol
 
 import numpy as np
@@ -15,7 +16,7 @@ from sher3_control.errors import CommandRejected
 from sher3_control.motion.commands import JointCommand, PoseCommand
 from sher3_control.motion.modes import Step, require_finite, require_timely
 from sher3_control.motion.pose import tool_axis
-from sher3_control.motion.speed_cap import PLANNED, Regime, planned_share, speed_cap
+from sher3_control.motion.speed_cap import PLANNED, Regime, axis_caps, planned_share, speed_cap
 from sher3_control.motion.tip_move import plan_tip_move
 from sher3_control.motion.trajectory import plan_joint_move
 from sher3_control.settings import MotionSettings
@@ -44,7 +45,7 @@ class _Move:
     Attributes:
         name: CRTK name of the command.
         busy: a move is going on.
-        cap: speed caps that the next move is planned with.
+        cap, axis_caps: speed caps of tip and actuators (5,) that the next move is planned with.
     """
 
     def __init__(self, name: str, robot: Robot, kinematics: RobotKinematics, settings: MotionSettings) -> None:
@@ -53,10 +54,11 @@ class _Move:
         self._kinematics = kinematics
         self._settings = settings
         acceleration = settings.acceleration * kinematics.acceleration
-        self._caps = (settings.speed * kinematics.velocity, acceleration, acceleration / settings.ramp_time)
+        self._change = (acceleration, acceleration / settings.ramp_time)
         self._tolerance = settings.settle_factor * np.array([a.load_encoder for a in robot.actuators])
         self._timely = nanoseconds(settings.ahead_limit)
         self.cap = speed_cap(settings, Regime(settings.regime))
+        self.axis_caps = np.array(axis_caps(settings, self.cap, kinematics.velocity.tolist()))
         self._plan: TimedPath | None = None
         self._start = 0
 
@@ -64,6 +66,12 @@ class _Move:
         require_timely(self.name, stamp, now, self._timely, self._timely)
         if self.busy:
             raise CommandRejected(self.name, "busy with a former goal", remedy="wait until it is reached, or disable")
+
+    @property
+    def _velocity(self) -> Array:
+        """Largest planned speed of the actuators (5,): a share of their limits, and `PLANNED` of their caps."""
+        share = 1.0 if math.isinf(self.cap.linear) else PLANNED
+        return np.asarray(np.minimum(self._settings.speed * self._kinematics.velocity, share * self.axis_caps))
 
     def _begin(self, plan: TimedPath, now: int) -> None:
         self._plan, self._start, self.busy = plan, now, True
@@ -103,9 +111,9 @@ class MoveJoints(_Move):
         self._check(command.stamp, now)
         goal = np.array(require_finite(self.name, command.position, 5, "positions"))
         self._kinematics.require_within_limits(goal)
-        velocity, *rest = self._caps
+        velocity = self._velocity
         share = planned_share(self._kinematics, np.array(q), goal, velocity, self.cap)
-        plan = plan_joint_move(np.array(q), goal, share * velocity, *rest)
+        plan = plan_joint_move(np.array(q), goal, share * velocity, *self._change)
         for s in np.linspace(0.0, 1.0, PLACES_CHECKED):
             self._kinematics.delta.require(self._kinematics.delta.forward(plan.start[:3] + s * (goal - plan.start)[:3]))
         self._begin(plan, now)
@@ -130,4 +138,5 @@ class MoveTip(_Move):
         axis = tool_axis(require_finite(self.name, command.orientation, 4, "quaternion components"), self.name)
         settings, cap = self._settings, self.cap
         speeds = (min(settings.linear_speed, PLANNED * cap.linear), min(settings.angular_speed, PLANNED * cap.angular))
-        self._begin(plan_tip_move(self._kinematics, np.array(q), position, axis, self._caps, *speeds), now)
+        caps = (self._velocity, *self._change)
+        self._begin(plan_tip_move(self._kinematics, np.array(q), position, axis, caps, *speeds), now)

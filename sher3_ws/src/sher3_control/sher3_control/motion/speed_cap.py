@@ -8,12 +8,14 @@ excitations and calibration, and is chosen at the start, never while the robot r
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from enum import Enum
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from sher3_common.compiled import compiled
+from sher3_common.vectors import Vector
 from sher3_kinematics import RobotKinematics
 from sher3_kinematics.arrays import unpack
 from sher3_kinematics.kernel import tip_jacobian_into
@@ -54,6 +56,20 @@ def speed_cap(settings: MotionSettings, regime: Regime) -> SpeedCap:
     if regime is Regime.FREE:
         return SpeedCap(settings.free_speed, settings.free_turning)
     return SpeedCap(settings.near_speed, settings.near_turning)
+
+
+def axis_caps(settings: MotionSettings, cap: SpeedCap, limits: Sequence[float]) -> Vector:
+    """Return the largest speed of every actuator (5,) [m/s, rad/s] under the caps of the tip, at most its own limit.
+
+    The drives hold these caps too (object 0x6080), so that one which does not obey is no faster than its regime.
+
+    Args:
+        settings: how fast an actuator may be for a speed of the tip.
+        cap: caps of the tip; infinite on the bench.
+        limits: velocity limits of the actuators (5,).
+    """
+    leg, tilt = settings.leg_share * cap.linear, settings.tilt_arm * cap.angular
+    return tuple(map(min, limits, (leg, leg, leg, cap.angular, tilt)))
 
 
 @compiled

@@ -16,7 +16,7 @@ from rclpy.node import Node
 from sher3_common import Sher3Error
 from sher3_common.reasons import TEXT, Reason
 from sher3_common.samples import DiagnosticSample, JointSample, PoseSample, TextSample, TwistSample, WrenchSample
-from sher3_common.stamps import NO_STAMP
+from sher3_common.stamps import NO_STAMP, nanoseconds
 from sher3_common.vectors import ZERO_TWIST
 from sher3_description import ACTUATORS, TOPICS, Robot
 from sher3_kinematics.direct import direct
@@ -31,7 +31,7 @@ from sher3_control.motion.deflection import DeflectionCompensation
 from sher3_control.motion.ownership import MODE_CODES, Mode
 from sher3_control.motion.pose import tip_pose_sample
 from sher3_control.motion.rcm_command import apply_rcm_command
-from sher3_control.motion.speed_cap import parse_regime
+from sher3_control.motion.speed_cap import Regime, parse_regime
 from sher3_control.nodes.heard import HeardState, status_of
 from sher3_control.nodes.input_report import motion_readings
 from sher3_control.settings import ControlSettings
@@ -71,6 +71,7 @@ class KinematicsNode(Node):
         self.heard = HeardState(self.settings.supervisor.heartbeat_limit)
         self._tick_count, self._last, self._version = 0, -1, 0
         self._shown: tuple[Any, ...] = ()
+        self._next_regime: int | None = None
         self._refused: dict[str, Any] | None = None
         # Compiled now, for the types of every tick, and not in the first tick.
         self._tip_pose = direct(tip_pose_sample, self._kernel, RESTING)
@@ -153,6 +154,7 @@ class KinematicsNode(Node):
             return
         self._last = stamp
         self._late.done(stamp)
+        self._begin_regime(stamp)
         # In the cooperative mode the twist comes last, and nothing can be done before it.
         self._joints_topic.wakes = self.motion.ownership.owner not in (None, Mode.COOPERATIVE)
         state = self._input(stamp)
@@ -186,8 +188,26 @@ class KinematicsNode(Node):
         self._change_settings(lambda: apply_rcm_command(self.motion, sample.text, self._joints.position or ()))
 
     def _on_regime(self, sample: TextSample) -> None:
+        """Take a slower regime at once; announce a faster one, since the drives' own limits have to be raised first."""
         busy = self.motion.ownership.owner is not None
-        self._change_settings(lambda: self.motion.set_regime(parse_regime(sample.text, self.motion.regime, busy)))
+
+        def change() -> None:
+            regime = parse_regime(sample.text, self.motion.regime, busy)
+            if regime is Regime.FREE and self.motion.regime is not Regime.FREE:
+                self._next_regime = self._now() + nanoseconds(self.settings.motion.regime_delay)
+            else:
+                self._next_regime = None
+                self.motion.set_regime(regime)
+
+        self._change_settings(change)
+
+    def _begin_regime(self, stamp: int) -> None:
+        """Begin the regime that was announced, unless the robot has come into use meanwhile."""
+        if self._next_regime is None or stamp < self._next_regime:
+            return
+        self._next_regime = None
+        busy, name = self.motion.ownership.owner is not None, Regime.FREE.value
+        self._change_settings(lambda: self.motion.set_regime(parse_regime(name, self.motion.regime, busy)))
 
     def _change_settings(self, change: Callable[[], None]) -> None:
         """Carry out a change and publish the settings under a new version, or show why it is refused."""
@@ -229,7 +249,9 @@ class KinematicsNode(Node):
         centre = self.motion.velocity_modes.centre
         rcm = None if centre is None else centre.tolist()
         regime = self.motion.regime.value
-        data = {"version": self._version, "rcm": rcm, "regime": regime, "settings": self.settings.motion.model_dump()}
+        coming = Regime.FREE.value if self._next_regime is not None else regime
+        data = {"version": self._version, "rcm": rcm, "regime": regime, "coming": coming}
+        data["settings"] = self.settings.motion.model_dump()
         self._publish_settings(TextSample(json.dumps(data)))
 
     def _report(self, output: MotionOutput) -> None:

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from sher3_common.reasons import Reason
+from sher3_common.vectors import Vector
 
 from sher3_drivers.errors import CommandRefused
 from sher3_drivers.settings import MotorDriverSettings
@@ -24,12 +25,14 @@ class CommandGate:
 
     Attributes:
         stamp: the present tick, ns.
+        caps: largest speeds that pass (5,) [m/s, rad/s].
         following: whether the drives have been following commands since they were enabled.
     """
 
     def __init__(self, scales: Sequence[AxisScale], settings: MotorDriverSettings) -> None:
         self.stamp = 0
         self.following = False
+        self.caps: Vector = tuple([scale.velocity_limit for scale in scales])
         self._scales, self._settings = tuple(scales), settings
         self._period_ns = round(settings.period * 1e9)
         self._zero_ns = settings.zero_age * self._period_ns
@@ -62,7 +65,7 @@ class CommandGate:
             limit = f"less than {self._settings.zero_age * self._settings.period * 1e3:g} ms either way"
             what = "age of the command"
             raise CommandRefused(what, value=f"{age * 1e-6:g} ms", limit=limit, remedy="check its sender")
-        return velocity_counts(self._scales, velocity)
+        return velocity_counts(self._scales, velocity, self.caps)
 
     def refuse(self) -> None:
         """Note that a command was refused; one that waits for its tick is forgotten too."""
@@ -99,20 +102,20 @@ class CommandGate:
         return Trip(reason, f"no command for {ticks} ticks (limit {limit})", ticks, limit, "ticks")
 
 
-def velocity_counts(scales: Sequence[AxisScale], velocity: Sequence[float]) -> list[int]:
-    """Return a velocity command (5,) [m/s, rad/s] in the drives' counts.
+def velocity_counts(scales: Sequence[AxisScale], velocity: Sequence[float], caps: Vector) -> list[int]:
+    """Return a velocity command (5,) [m/s, rad/s] within `caps` (5,) in the drives' counts.
 
     Raises:
-        CommandRefused: not five values, not finite, or beyond a velocity limit.
+        CommandRefused: not five values, not finite, or beyond a cap.
     """
     if len(velocity) != len(scales):
         what = "number of velocities"
         raise CommandRefused(what, value=len(velocity), limit=len(scales), remedy="send five")
     counts = []
-    for scale, value in zip(scales, velocity, strict=True):
-        if not abs(value) <= scale.velocity_limit * (1.0 + _ROUNDING):  # a NaN compares false
+    for scale, value, cap in zip(scales, velocity, caps, strict=True):
+        if not abs(value) <= cap * (1.0 + _ROUNDING):  # a NaN compares false
             what, remedy = f"{scale.name}: velocity command", "limit it at its source"
-            raise CommandRefused(what, value=value, limit=scale.velocity_limit, remedy=remedy)
+            raise CommandRefused(what, value=value, limit=cap, remedy=remedy)
         # A value within the limit fits its object: `AxisScale` has made sure of that.
         counts.append(round(value / scale.velocity))
     return counts

@@ -21,6 +21,7 @@ from sher3_drivers.canopen.tpdo import DriveFeedback
 from sher3_drivers.drive.command_gate import CommandGate
 from sher3_drivers.drive.session import DriveSession
 from sher3_drivers.drive.setup import set_up_drives
+from sher3_drivers.drive.speed_limits import SpeedLimits
 from sher3_drivers.drive.wire import DriveWire, Failures
 from sher3_drivers.errors import CommandRefused, DriverError
 from sher3_drivers.settings import MotorDriverSettings
@@ -48,6 +49,7 @@ class MotorDriver:
         scales: scales of the five axes.
         session: goal, stop and recovery.
         wire: frames in and out.
+        limits: speed caps of the regime, in the gate and in the drives.
         gate: the check of commands, and their age.
         watches: whatever may stop the robot.
         absent: optional objects that each drive does not have, by its name.
@@ -72,6 +74,7 @@ class MotorDriver:
         self.session = DriveSession(health, settings.report_limit, settings.status_reports)
         self.wire = DriveWire(links, settings, self.scales)
         self.gate = CommandGate(self.scales, settings)
+        self.limits = SpeedLimits(self.scales, settings)
         self.watches = StopWatches(health, self.scales, settings)
         self.absent: dict[str, tuple[str, ...]] = {}
         self.counters = dict.fromkeys(("incomplete", "refused", "ignored", "held"), 0)
@@ -115,7 +118,7 @@ class MotorDriver:
             DriveSilent: a drive does not answer.
             DriveMismatch: a drive does not hold what it must. Nothing is enabled, no drive becomes OPERATIONAL.
         """
-        self.absent = set_up_drives(self.wire.links, self.settings, self.scales, patience)
+        self.absent = set_up_drives(self.wire.links, self.settings, self.limits.scales(), patience)
 
     def enable(self) -> None:
         """Take the drives to OPERATION ENABLED, over the next ticks.
@@ -155,6 +158,7 @@ class MotorDriver:
             CommandRefused: there is nothing to reset.
         """
         self.session.reset(self.clock())
+        self.limits.recover(self.clock())
 
     def close(self) -> None:
         """Brake if the drives are enabled, take the power off and leave the bus; safe at any time, twice too."""
@@ -165,6 +169,10 @@ class MotorDriver:
         self.wire.close()
 
     # One tick.
+
+    def hear_regime(self, text: str) -> None:
+        """Take the settings of the motion modes, which name the speed regime."""
+        self.limits.hear(text, self.clock())
 
     def hear_supervisor(self) -> None:
         """Take note of a heartbeat of the supervisor: without them an enabled robot stops."""
@@ -185,6 +193,15 @@ class MotorDriver:
         self.watches.drives.begin(now)
         self.watches.motion.sync()
         self._note_failures(self.wire.sync(now, audible=not self.watches.motion.deaf(self.stop)))
+        self._limit_speeds(now)
+
+    def _limit_speeds(self, now: int) -> None:
+        """Go on with giving the drives the caps of their regime."""
+        requests = self.limits.frames(now)
+        if requests:
+            self._note_failures(self.wire.ask(requests))
+        self._stop_if(self.limits.overdue(now))
+        self.gate.caps = self.limits.caps
 
     def collect_positions(self) -> Vector | None:
         """Return the load encoder positions (5,) [m, rad] of this tick as soon as they are in; None without one."""
@@ -258,6 +275,7 @@ class MotorDriver:
         bus = self.watches.bus
         others = self.wire.receive(timeout)
         for channel, can_id, data in others or ():
+            self._stop_if(self.limits.answer(channel, can_id, data))
             self._stop_if(bus.hear(channel, can_id, data, self.clock()))
         broken = self.wire.broken
         if broken and bus.more_broken(len(broken)):

@@ -74,6 +74,7 @@ class MotorDriverNode(Node):
         self._sent = statistics_of(self).trace("sent servo_jv")
         subscribe(self, "servo_jv", self._on_command)
         subscribe(self, "operating_state", lambda sample: self._supervisor.obey(sample.text))
+        subscribe(self, "motion/settings", lambda sample: self.driver.hear_regime(sample.text))
         self._take_heartbeat = latest(self, "supervisor/heartbeat")
         on_tick(self, self._tick)
         on_tick(self, self._report, 0.5 * settings.period, max(1, round(REPORT_PERIOD / settings.period)))

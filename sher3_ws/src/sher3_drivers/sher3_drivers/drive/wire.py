@@ -97,6 +97,10 @@ class DriveWire:
         """Send every drive its controlword and its target velocity in counts, both (5,)."""
         return self._group.send(self._rpdos.frames(words, velocity_counts, self.collector.counter))
 
+    def ask(self, requests: bytes) -> Failures:
+        """Send a bundle of SDO requests."""
+        return self._group.send(requests)
+
     def close(self) -> None:
         """Leave the bus."""
         self._group.close()
