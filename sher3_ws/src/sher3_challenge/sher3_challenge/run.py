@@ -21,7 +21,7 @@ from sher3_challenge.cases.builder import Request, build_case
 from sher3_challenge.cases.plan import KINDS, TARGETS
 from sher3_challenge.cases.seal import CASES, LABELS, MANIFEST, hashes
 from sher3_challenge.errors import ChallengeError
-from sher3_challenge.plants.registry import plant_names, truth_plant
+from sher3_challenge.plants.registry import truth_plant, truth_plants
 from sher3_challenge.score.case import CaseScore, score_case
 from sher3_challenge.score.outcome import SCORES, Outcome
 
@@ -37,6 +37,7 @@ def requests(
     without: str | None = None,
     gap: tuple[float, float] = TARGETS,
     plants: Sequence[str] = (),
+    say: Callable[[str], None] = lambda _: None,
 ) -> list[Request]:
     """Return the cases of a seed range.
 
@@ -46,7 +47,9 @@ def requests(
             effect the diagnosis must do without.
         without: an effect: every case has it as its fault, and the diagnosis must do without it.
         gap: range of gap over floor of single faults.
-        plants: names of truth plants, dealt in turn; empty deals all of them. Each plant gets the kinds in turn.
+        plants: names of truth plants, dealt in turn; empty deals all that are installed. Each plant gets the kinds in
+            turn.
+        say: is told of plants that are left out.
 
     Raises:
         ChallengeError: empty or too long range, unknown kind, effect or plant.
@@ -57,7 +60,7 @@ def requests(
     unknown = [kind for kind in kinds if kind not in (*KINDS, WITHHELD)]
     if unknown:
         raise ChallengeError("no such kind of case", value=unknown[0], limit=", ".join((*KINDS, WITHHELD)))
-    dealt = [truth_plant(name) for name in plants or plant_names()]
+    dealt = [truth_plant(name) for name in plants] if plants else truth_plants(say)
     made = []
     for n, seed in enumerate(range(first, last)):
         turn, truth = n // len(dealt), dealt[n % len(dealt)]

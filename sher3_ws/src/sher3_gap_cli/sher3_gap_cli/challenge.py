@@ -62,9 +62,8 @@ def challenge(
         if merge:
             outcome = merged(merge)
         else:
-            wanted = requests(
-                parse_seeds(seeds), [k for k in kinds.split(",") if k], without, parse_gap(gap), plant or ()
-            )
+            chosen = [k for k in kinds.split(",") if k]
+            wanted = requests(parse_seeds(seeds), chosen, without, parse_gap(gap), plant or (), console.log)
             folder = out or Path(scratch) / "challenge"
             outcome = run_challenge(folder, wanted, jobs=jobs, baselines=baselines, say=console.log)
     if as_json:

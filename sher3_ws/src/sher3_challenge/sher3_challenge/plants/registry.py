@@ -4,10 +4,24 @@ from __future__ import annotations
 
 import importlib
 import pkgutil
+from collections.abc import Callable
 
 import sher3_challenge.plants as room
 from sher3_challenge.errors import ChallengeError
 from sher3_challenge.plants.plant import TruthPlant
+
+EXTRAS = {"mujoco": "sher3[mujoco]"}
+"""Libraries that only a plant needs, and what installs them."""
+
+
+class MissingLibraryError(ChallengeError):
+    """A truth plant needs a library that is not installed; carries `plant` and `library`."""
+
+    def __init__(self, plant: str, library: str) -> None:
+        wanted = f"install the extra: pip install '{EXTRAS[library]}'" if library in EXTRAS else f"install {library}"
+        remedy = f"{wanted}, or name other plants with --plant"
+        super().__init__("a plant needs a library", value=f"{plant}: {library}", remedy=remedy)
+        self.plant, self.library = plant, library
 
 
 def plant_names() -> tuple[str, ...]:
@@ -28,7 +42,17 @@ def truth_plant(name: str) -> TruthPlant:
     except ModuleNotFoundError as error:
         if (error.name or "").startswith("sher3_"):
             raise
-        remedy = f"install {error.name}, or name other plants with --plant"
-        raise ChallengeError("a plant needs a library", value=f"{name}: {error.name}", remedy=remedy) from error
+        raise MissingLibraryError(name, error.name or "") from error
     plant: TruthPlant = module.PLANT
     return plant
+
+
+def truth_plants(say: Callable[[str], None]) -> list[TruthPlant]:
+    """Return every truth plant whose libraries are installed; `say` is told what is left out and why."""
+    found = []
+    for name in plant_names():
+        try:
+            found.append(truth_plant(name))
+        except MissingLibraryError as error:
+            say(f"without plant {error.plant}: {error}")
+    return found

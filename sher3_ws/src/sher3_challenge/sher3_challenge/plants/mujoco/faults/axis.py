@@ -1,0 +1,176 @@
+"""Faults of motor mechanics and transmission: bodies, springs, tendons and friction on an axis."""
+
+from __future__ import annotations
+
+import math
+
+from sher3_description import ACTUATORS
+
+from sher3_challenge.plants.kinds import DELTAS, SLIDERS, Catalogue, Site
+from sher3_challenge.plants.mujoco.axes.laws import Film, Grease, Guide, Poles
+from sher3_challenge.plants.mujoco.axes.parts import ELEMENTS, Axis, Bristle
+from sher3_challenge.plants.mujoco.axes.wheels import Eccentric
+from sher3_challenge.plants.mujoco.rig import Rig
+
+CATALOGUE = Catalogue()
+add = CATALOGUE.add
+FRICTION_COMPANY = ("coulomb_friction", "presliding_friction")
+
+
+def bristles(force: float, reach: float) -> tuple[Bristle, ...]:
+    """Return the two bristles of a friction that builds up over `reach`."""
+    return tuple(Bristle(share * force, part * reach) for share, part in ELEMENTS)
+
+
+def phase(site: Site) -> float:
+    """Return a phase between 0 and 2 pi."""
+    return float(site.rng.uniform(0, 2 * math.pi))
+
+
+def axis_of(rig: Rig, site: Site) -> Axis:
+    """Return the axis on which the fault sits."""
+    return rig.axes[site.index]
+
+
+@add("scale", "motor_mechanics", ACTUATORS, 0.05, 0.002, 0.5)
+def torque_constant(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """Real force over reported effort is not one."""
+    relative = site.sign() * x
+    axis_of(rig, site).torque_gain *= 1 + relative
+    return {"relative": relative}
+
+
+@add("scale", "transmission", ACTUATORS, 5e-4, 1e-5, 0.02)
+def lead_error(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """The load travels more or less than the motor."""
+    relative = site.sign() * x
+    axis_of(rig, site).lead_error += relative
+    return {"relative": relative}
+
+
+@add("friction", "motor_mechanics", ACTUATORS, 0.3, 0.01, 8.0, company=("presliding_friction",))
+def coulomb_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """MuJoCo's dry friction on the motor's joint."""
+    force = site.scaled(x, "force")
+    axis_of(rig, site).coulomb += force
+    return {"force": force}
+
+
+@add("friction", "motor_mechanics", ACTUATORS, 0.4, 0.01, 8.0, company=FRICTION_COMPANY)
+def stribeck_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """Dry friction less what the film carries, which falls with the square of speed and not as a Gaussian."""
+    static, level = site.scaled(x, "force"), float(site.rng.uniform(0.1, 0.4))
+    velocity = site.scaled(float(site.rng.uniform(4e-4, 1.6e-3)), "speed")
+    axis = axis_of(rig, site)
+    axis.coulomb += level * static
+    # where a Gaussian has fallen to 1/e, the film's law has too
+    axis.levels += (Film((1 - level) * static, velocity / math.sqrt(math.e - 1)),)
+    return {"static": static, "force": level * static, "velocity": velocity}
+
+
+@add("friction", "motor_mechanics", ACTUATORS, 60.0, 2.0, 1500.0)
+def viscous_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """More damping of the motor's joint."""
+    extra = site.scaled(x, "stiffness")
+    axis_of(rig, site).viscous += extra
+    return {"extra": extra}
+
+
+@add("friction", "motor_mechanics", ACTUATORS, 0.3, 0.01, 8.0, company=("coulomb_friction",))
+def presliding_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """Springs that drag light bodies over rough ground: straight flanks with two corners, no exponential."""
+    force, reach = site.scaled(x, "force"), site.scaled(float(site.rng.uniform(25e-6, 110e-6)), "length")
+    axis_of(rig, site).bristles += bristles(force, reach)
+    return {"force": force, "displacement": reach}
+
+
+@add("friction", "motor_mechanics", ACTUATORS, 0.4, 0.01, 8.0, company=FRICTION_COMPANY)
+def position_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """Friction along a wavy guide with crests narrower than its hollows."""
+    force, period = site.scaled(x, "force"), site.scaled(float(site.rng.uniform(0.8e-3, 2.6e-3)), "length")
+    guide = Guide(force, period, phase(site))
+    axis_of(rig, site).levels += (guide,)
+    return {"force": guide.mean, "amplitude": guide.mean, "period": period}
+
+
+@add("friction", "motor_mechanics", ACTUATORS, 0.5, 0.01, 8.0, company=FRICTION_COMPANY)
+def friction_drift(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """Grease that runs in at two rates."""
+    force, time = site.scaled(x, "force"), float(site.rng.uniform(0.8, 3.0))
+    axis_of(rig, site).levels += (Grease(force, time),)
+    return {"force": force, "time_constant": time}
+
+
+@add("inertia", "motor_mechanics", ACTUATORS, 0.2, 0.01, 10.0, company=("gravity_load",))
+def payload_mass(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """A body on the slider, which MuJoCo's gravity pulls down the vertical rails; or a mass on the platform."""
+    mass, axis = site.scaled(x, "inertia"), axis_of(rig, site)
+    if site.actuator in DELTAS and site.rng.random() < 0.5:
+        axis.mass += mass
+        axis.gravity_gain += mass / rig.robot.delta.moving_mass
+    else:
+        axis.payload += mass
+    return {"mass": mass}
+
+
+@add("inertia", "motor_mechanics", SLIDERS, 0.05, 0.002, 3.0, company=("payload_mass",))
+def gravity_load(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """Weight without inertia, in the pattern of the axis's own."""
+    mass = site.sign() * x
+    carried = rig.robot.arm.tilt_mass if site.actuator == "tilt" else rig.robot.delta.moving_mass
+    axis_of(rig, site).gravity_gain += mass / carried
+    return {"mass": mass}
+
+
+@add("periodic", "motor_mechanics", ACTUATORS, 0.3, 0.01, 8.0)
+def cogging(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """Force of the motor's poles, with a third harmonic."""
+    amplitude, order = site.scaled(x, "force"), float(site.rng.choice([2, 3, 4, 6, 7, 8]))
+    axis = axis_of(rig, site)
+    axis.pushes += (Poles(amplitude, axis.lead / order, phase(site)),)
+    return {"amplitude": amplitude, "periods_per_rev": order}
+
+
+@add("periodic", "transmission", ACTUATORS, 2e-6, 5e-8, 5e-5)
+def transmission_ripple(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """An eccentric wheel between motor and load."""
+    amplitude, order = site.scaled(x, "length"), float(site.rng.choice([1, 2, 3, 4]))
+    axis = axis_of(rig, site)
+    axis.ripples += (Eccentric(amplitude, axis.lead / order, phase(site)),)
+    return {"amplitude": amplitude, "periods_per_rev": order}
+
+
+@add("lost_motion", "transmission", ACTUATORS, 3e-6, 1e-7, 1e-4, company=FRICTION_COMPANY)
+def backlash(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """The load's guide is pushed from one side of a gap to the other, against MuJoCo's own soft contact."""
+    width = site.scaled(x, "length")
+    axis_of(rig, site).gap += width
+    return {"width": width}
+
+
+@add("lost_motion", "transmission", ACTUATORS, 2e-6, 1e-7, 1e-4, company=FRICTION_COMPANY)
+def transmission_hysteresis(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """Friction in the nut winds the transmission up: the load stays back by what its bristles are bent."""
+    half, reach = site.scaled(x, "length"), site.scaled(float(site.rng.uniform(40e-6, 200e-6)), "length")
+    axis = axis_of(rig, site)
+    axis.windup, axis.windup_reach = half, reach
+    return {"width": 2 * half, "displacement": reach}
+
+
+@add("compliance", "transmission", ACTUATORS, 1e-6, 5e-8, 1.2e-5, company=("backlash",))
+def transmission_compliance(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """A spring between motor and load, which carries its share of the mass and swings on it."""
+    compliance, axis = site.scaled(x, "compliance"), axis_of(rig, site)
+    axis.compliance, axis.load_share = compliance, float(site.rng.uniform(0.1, 0.35))
+    return {"compliance": compliance, "stiffness": 1 / compliance}
+
+
+@add("wrench", "motor_mechanics", ACTUATORS, 0.3, 0.01, 8.0)
+def cable_drag_axis(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """A tendon pulls an axis back and drags bodies over rough ground; `x` is its pull one millimetre away."""
+    force, stroke = site.scaled(x, "force"), site.scaled(1e-3, "length")
+    axis = axis_of(rig, site)
+    axis.spring += force / stroke
+    axis.spring_rest = float(site.rng.uniform(-0.5, 0.5)) * stroke
+    axis.bristles += bristles(0.6 * force, 0.3 * stroke)
+    return {"stiffness": force / stroke, "force": 0.6 * force, "displacement": 0.3 * stroke}

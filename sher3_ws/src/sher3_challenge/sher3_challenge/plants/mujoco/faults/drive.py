@@ -1,0 +1,103 @@
+"""Faults of host, transport, drive and encoders."""
+
+from __future__ import annotations
+
+import math
+
+from sher3_description import ACTUATORS
+
+from sher3_challenge.plants.kinds import ALL, Catalogue, Site
+from sher3_challenge.plants.mujoco.axes.parts import Drive
+from sher3_challenge.plants.mujoco.axes.wheels import Eccentric
+from sher3_challenge.plants.mujoco.rig import Rig
+
+CATALOGUE = Catalogue()
+add = CATALOGUE.add
+ENCODER = ("transmission",)
+
+
+@add("timing", "transport", ALL, 1e-3, 5e-5, 8e-3, company=("command_jitter",))
+def command_delay(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """Every command arrives later."""
+    rig.host.delay = rig.host.delay + x
+    return {"delay": x}
+
+
+@add("timing", "transport", ALL, 3e-4, 2e-5, 1.5e-3, company=("command_delay",))
+def command_jitter(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """Commands arrive late by a half-normal time."""
+    rig.host.jitter = x
+    return {"sigma": x}
+
+
+@add("timing", "transport", ALL, 0.02, 0.004, 0.3)
+def dropped_commands(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """Some commands never arrive; the drive holds the one before."""
+    rig.host.loss = x
+    return {"probability": x}
+
+
+@add("timing", "transport", ACTUATORS, 1e-3, 5e-5, 6e-3, company=("command_delay",))
+def axis_skew(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """Commands of one axis arrive later than those of the others."""
+    rig.host.delay = rig.host.delay.copy()
+    rig.host.delay[site.index] += x
+    return {"skew": x}
+
+
+@add("timing", "drive", ACTUATORS, 1e-3, 5e-5, 8e-3)
+def drive_lag(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """The force follows through two poles that together delay slow changes by `x`."""
+    rig.axes[site.index].drive = Drive(math.inf, lag=x)
+    return {"time_constant": x}
+
+
+@add("scale", "controller", (*ACTUATORS, "all"), 0.1, 0.01, 0.6)
+def controller_gain(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """The host works with another position gain."""
+    relative = site.sign() * x
+    rig.host.gain = rig.host.gain.copy()
+    rig.host.gain[site.rows] *= 1 + relative
+    return {"relative": relative}
+
+
+@add("limit", "drive", ACTUATORS, 0.3, 0.02, 1.35)
+def force_saturation(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """The force ends at 12 N / (1 + x), 0.3 N m / (1 + x) on roll."""
+    limit = site.scaled(12.0, "force") / (1 + x)
+    rig.axes[site.index].drive = Drive(limit)
+    return {"limit": limit}
+
+
+@add("limit", "drive", ACTUATORS, 8e-5, 4e-6, 1.5e-3)
+def velocity_deadband(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """Demands below a width do nothing."""
+    width = site.scaled(x, "speed")
+    rig.axes[site.index].deadband = width
+    return {"width": width}
+
+
+@add("scale", "sensing", ACTUATORS, 5e-4, 1e-5, 0.02, also=ENCODER)
+def encoder_scale(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """The load encoder's ratio is off."""
+    relative = site.sign() * x
+    rig.host.encoder_scale = rig.host.encoder_scale.copy()
+    rig.host.encoder_scale[site.rows] += relative
+    return {"relative": relative}
+
+
+@add("periodic", "sensing", ACTUATORS, 2e-6, 5e-8, 5e-5, also=ENCODER)
+def encoder_eccentricity(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """The encoder's disc turns off its centre; the load does not move."""
+    amplitude, lead = site.scaled(x, "length"), rig.axes[site.index].lead
+    rig.host.discs[site.index] = Eccentric(amplitude, lead, float(site.rng.uniform(0, 2 * math.pi)))
+    return {"amplitude": amplitude}
+
+
+@add("geometry", "mechanism", ACTUATORS, 8e-6, 2e-7, 4e-4)
+def encoder_offset(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """The axis was homed wrongly: both encoders read too much or too little."""
+    offset = site.sign() * site.scaled(x, "length")
+    rig.host.offset = rig.host.offset.copy()
+    rig.host.offset[site.rows] += offset
+    return {"offset": offset}

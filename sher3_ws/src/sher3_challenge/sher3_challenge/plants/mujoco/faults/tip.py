@@ -1,0 +1,170 @@
+"""Faults behind the load encoders: geometry, play, compliance, drift, force sensor."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from sher3_challenge.plants.kinds import DELTAS, FORCE_SENSOR, TIP, Catalogue, Site
+from sher3_challenge.plants.mujoco.faults.axis import bristles
+from sher3_challenge.plants.mujoco.rig import Rig, Spring
+from sher3_challenge.plants.mujoco.tip import ALONG_X, PITCH, YAW
+
+CATALOGUE = Catalogue()
+add = CATALOGUE.add
+RUBBING = 0.015
+"""Friction of a spring of the structure, as a share of what one newton at its usual lever does."""
+
+
+@add("lost_motion", "mechanism", (*DELTAS, "tilt"), 8e-6, 5e-7, 3e-4, also=("structure",))
+def joint_clearance(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """Play behind the load encoder: what the slider moves is pushed from one side to the other."""
+    rig.axes[site.index].leg_gap += x
+    return {"clearance": x}
+
+
+@add("compliance", "structure", TIP, 0.1, 0.005, 3.0)
+def structural_compliance(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """Springs at P that carry a mass and rub; `x` is the fraction of the measured compliance."""
+    springs = (
+        Spring("x", x * ALONG_X, 55.0, rub=RUBBING), Spring("turn_y", x / PITCH, 38.0, rub=0.2 * RUBBING),
+        Spring("turn_z", x / YAW, 42.0, rub=0.2 * RUBBING),
+    )  # fmt: skip
+    rig.yielding.springs += springs
+    return {"fraction": x}
+
+
+@add("compliance", "structure", TIP, 0.3, 0.01, 5.0)
+def link_compliance(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """The six links give way by their published law, seated by a preload; `x` is the fraction of it."""
+    rig.yielding.links += x
+    return {"fraction": x}
+
+
+@add("compliance", "structure", TIP, 1e-5, 5e-7, 4e-4)
+def tool_bending(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """The tool bends across its axis, on a mass that swings."""
+    rig.yielding.springs += (Spring("across_x", x, 60.0, rub=RUBBING), Spring("across_y", x, 60.0, rub=RUBBING))
+    rig.yielding.slope = 1.5 / abs(rig.robot.arm.tool[2])
+    return {"compliance": x}
+
+
+@add("compliance", "structure", TIP, 0.5, 0.02, 6.0, also=("mechanism",))
+def structural_vibration(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """A mass on a spring rings, and rubs, when the tip accelerates in y or z."""
+    frequency, damping = float(site.rng.uniform(8.0, 22.0)), float(site.rng.uniform(0.02, 0.08))
+    way = str(site.rng.choice(["mode_y", "mode_z"]))
+    omega = 2 * math.pi * frequency
+    rig.yielding.springs += (Spring(way, x / omega**2, frequency, damping, rub=2e-3),)
+    return {"frequency": frequency, "damping": damping, "amplitude": x}
+
+
+@add("geometry", "mechanism", DELTAS, 5e-6, 2e-7, 3e-4)
+def link_length_error(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """Both links of a leg are longer or shorter, not quite alike."""
+    length, unlike = site.sign() * x, float(site.rng.uniform(-0.1, 0.1))
+    rig.mechanism.link[2 * site.index] += (1 + unlike) * length
+    rig.mechanism.link[2 * site.index + 1] += (1 - unlike) * length
+    return {"length": length}
+
+
+@add("geometry", "mechanism", DELTAS, 8e-6, 2e-7, 4e-4)
+def platform_geometry_error(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """The balls of a leg on the platform are displaced together in its plane."""
+    angle = float(site.rng.uniform(0, 2 * math.pi))
+    offset = x * np.array([math.cos(angle), math.sin(angle), 0.0])
+    rig.mechanism.platform_ball[2 * site.index : 2 * site.index + 2] += offset
+    return {"x": offset[0], "y": offset[1]}
+
+
+@add("geometry", "mechanism", DELTAS, 2e-3, 5e-5, 5e-2)
+def rail_tilt(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """A rail leans; its scale goes with it."""
+    angle = float(site.rng.uniform(0, 2 * math.pi))
+    lean = np.array([x * math.cos(angle), x * math.sin(angle), 0.0])
+    rail = rig.mechanism.rail[site.index] + lean
+    rig.mechanism.rail[site.index] = rail / np.linalg.norm(rail)
+    return {"x": lean[0], "y": lean[1], "angle": x}
+
+
+@add("geometry", "mechanism", TIP, 4e-5, 1e-6, 2e-3)
+def base_tilt(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """The base leans against the tracker."""
+    angle = float(site.rng.uniform(0, 2 * math.pi))
+    lean = np.array([x * math.cos(angle), x * math.sin(angle), 0.0])
+    rig.mechanism.base_turn = rig.mechanism.base_turn + lean
+    return {"x": lean[0], "y": lean[1], "angle": x}
+
+
+@add("geometry", "mechanism", ("tilt",), 3e-5, 1e-6, 2e-3)
+def tilt_linkage_error(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """Crank, coupler or offset of the tilt linkage differs; the axis is homed at zero tilt."""
+    which, length = int(site.rng.integers(3)), site.sign() * x
+    rig.mechanism.linkage[which] += length
+    return {("crank", "coupler", "offset")[which]: length, "length": length}
+
+
+@add("geometry", "mechanism", TIP, 6e-6, 2e-7, 4e-4)
+def tool_offset(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """The tool's tip is elsewhere."""
+    offset = x * site.direction()
+    rig.mechanism.arm[3:] += offset
+    return dict(zip("xyz", offset.tolist(), strict=True))
+
+
+@add("drift", "mechanism", TIP, 3e-5, 2e-6, 3e-3)
+def thermal_expansion(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """The structure grows with its temperature, some seconds behind the thermometer."""
+    rig.mechanism.expansion += x
+    return {"coefficient": x}
+
+
+@add("drift", "sensing", FORCE_SENSOR, 0.005, 2e-4, 0.5, company=("force_bias",))
+def force_drift(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """The force sensor's zero moves with temperature."""
+    drift = x * site.direction()
+    rig.sensor.drift = np.array([*drift, 0.0, 0.0, 0.0])
+    return dict(zip(("fx", "fy", "fz"), drift.tolist(), strict=True))
+
+
+@add("wrench", "sensing", FORCE_SENSOR, 0.01, 4e-4, 1.0)
+def force_bias(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """The force sensor's zero is off, of forces and moments."""
+    bias = x * site.direction()
+    rig.sensor.bias = rig.sensor.bias + np.array([*bias, *(0.01 * x * site.direction())])
+    return dict(zip(("fx", "fy", "fz"), bias.tolist(), strict=True))
+
+
+@add("wrench", "sensing", FORCE_SENSOR, 0.002, 5e-5, 0.1)
+def tool_gravity(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """The tool on the sensor is heavier or lighter than its data."""
+    mass = site.sign() * min(x, 0.015) if x > 0.015 else site.sign() * x
+    rig.sensor.tool_mass += mass
+    return {"mass": mass}
+
+
+@add("scale", "sensing", FORCE_SENSOR, 0.03, 1e-3, 0.4)
+def force_scale(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """The force sensor's gain is off."""
+    relative = site.sign() * x
+    rig.sensor.matrix = (1 + relative) * rig.sensor.matrix
+    return {"relative": relative}
+
+
+@add("wrench", "sensing", FORCE_SENSOR, 0.03, 1e-3, 0.4)
+def force_crosstalk(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """A force along one axis of the sensor shows on another."""
+    row, column = site.rng.choice(3, 2, replace=False)
+    coefficient = site.sign() * x
+    rig.sensor.matrix = rig.sensor.matrix.copy()
+    rig.sensor.matrix[row, column] += coefficient
+    return {"coefficient": coefficient}
+
+
+@add("wrench", "sensing", FORCE_SENSOR, 0.03, 1e-3, 1.0)
+def cable_drag_sensor(rig: Rig, site: Site, x: float) -> dict[str, float]:
+    """A cable pulls at the sensor as roll and tilt turn, and drags in roll; `x` is N per rad."""
+    rig.sensor.cable = np.array([x, 0.7 * x])
+    rig.sensor.cable_bristles = bristles(0.08 * x, 0.05)
+    return {"stiffness": x, "force": 0.08 * x, "displacement": 0.05}

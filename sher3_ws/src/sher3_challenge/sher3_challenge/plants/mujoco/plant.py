@@ -1,0 +1,74 @@
+"""The MuJoCo plant ready to run: one robot as built, its faults, and its runs, recorded or ideal."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from sher3_bags import Run
+from sher3_description.contract import REFERENCE_TEMPERATURE
+
+from sher3_challenge.plants.mujoco.axes.field import field_along
+from sher3_challenge.plants.mujoco.axes.loop import Script, run_loop
+from sher3_challenge.plants.mujoco.axes.parts import AXES
+from sher3_challenge.plants.mujoco.axes.transport import arrivals
+from sher3_challenge.plants.mujoco.built import as_drawn, deviate, on_the_day
+from sher3_challenge.plants.mujoco.mechanism import tilt_angle
+from sher3_challenge.plants.mujoco.rig import Rig
+from sher3_challenge.plants.mujoco.sensing import force_reading
+from sher3_challenge.plants.mujoco.tip import follow
+from sher3_challenge.plants.plant import Plant, RunPlan
+from sher3_challenge.plants.recorder import Signals, recorded
+
+SOAK = 4.0
+"""Seconds by which the mechanism is behind the thermometer."""
+
+
+@dataclass(frozen=True)
+class MujocoPlant(Plant):
+    """The truth plant whose axes and structure are moved by MuJoCo."""
+
+    def rig(self) -> Rig:
+        """Return the robot with its faults, as it is between the runs."""
+        return self._faulty()[0]
+
+    def _faulty(self) -> tuple[Rig, list[dict[str, float]]]:
+        rig = as_drawn(self.robot)
+        rig.region = np.array(self.region)
+        if self.built:
+            deviate(rig, np.random.default_rng(self.seed))
+        return rig, [fault.apply(rig) for fault in self.faults]
+
+    def parameters(self) -> list[dict[str, float]]:
+        """Return the parameters of each fault by the contract's names."""
+        return self._faulty()[1]
+
+    def run(self, plan: RunPlan, *, ideal: bool = False) -> Run:
+        """Run a plan; `ideal` leaves out noise and rounding of the sensors, all else being the same."""
+        rig = self.rig()
+        if self.built:
+            on_the_day(rig, np.random.default_rng((self.seed, plan.seed)))
+        if ideal:
+            rig.host.motor_resolution = rig.host.load_resolution = np.zeros(AXES)
+        rng = np.random.default_rng(plan.seed)
+        signals = self._signals(rig, plan, rng)
+        return recorded(self.robot, plan, signals, rng, tracker=self.tracker or ideal, ideal=ideal)
+
+    def _signals(self, rig: Rig, plan: RunPlan, rng: np.random.Generator) -> Signals:
+        e, period = plan.excitation, self.robot.control_period
+        contact = np.asarray(rig.known_load * e.contact_wrench()[:, :3], dtype=np.float64)
+        arrival = arrivals(len(e.position), period, rig.host.delay, rig.host.jitter, rig.host.loss, rng)
+        side = np.where(rng.random(AXES) < 0.5, -1.0, 1.0)
+        field = field_along(self.robot, e.position, contact)
+        course = run_loop(rig.axes, rig.host, Script(e.position, e.velocity, field, arrival, side, period))
+        warmth = self.climate.course(plan.stamp)
+        temperature = warmth(e.time)
+        soaked = warmth(e.time - SOAK) - REFERENCE_TEMPERATURE
+        tip, turn = follow(self.robot, rig.mechanism, rig.yielding, course.leg, contact, soaked)
+        angle = tilt_angle(rig.mechanism, course.leg[:, 4])
+        kelvin = temperature - REFERENCE_TEMPERATURE
+        wrench = force_reading(self.robot, rig.sensor, turn, course.load[:, 3], angle, contact, kelvin)
+        return Signals(
+            course.command, course.echo, course.motor_reading, course.load_reading, course.force, wrench, tip,
+            turn.as_matrix(), temperature,
+        )  # fmt: skip

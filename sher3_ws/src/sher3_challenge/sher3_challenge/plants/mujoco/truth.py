@@ -1,0 +1,15 @@
+"""The MuJoCo plant as the challenge sees it."""
+
+from __future__ import annotations
+
+from sher3_challenge.plants.mujoco.faults import axis, drive, outside, tip
+from sher3_challenge.plants.mujoco.plant import MujocoPlant
+from sher3_challenge.plants.plant import TruthPlant
+
+PLANT = TruthPlant(
+    name="mujoco",
+    summary="bodies, tendons, springs and contacts moved by MuJoCo's solver; dry friction on a creeping contact",
+    library={**drive.CATALOGUE, **axis.CATALOGUE, **tip.CATALOGUE},
+    outside=dict(outside.CATALOGUE),
+    make=MujocoPlant,
+)
