@@ -89,6 +89,7 @@ class Effect:
         companion: family of another effect on the same axis without which this one does not show.
         dry: whether it is a friction that holds an axis at rest.
         best: the excitation that shows it best.
+        condition: under which alone it acts, where runs were recorded under several; None: in all runs.
     """
 
     id: ClassVar[str]
@@ -108,6 +109,7 @@ class Effect:
     companion: ClassVar[str] = ""
     dry: ClassVar[bool] = False
     best: ClassVar[Best]
+    condition: str | None = None
 
     def channels(self, site: str) -> tuple[Channel, ...]:
         """Return the channels in which the effect must show to be looked for at a site."""

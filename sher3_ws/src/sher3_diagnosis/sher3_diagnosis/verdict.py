@@ -50,7 +50,10 @@ class Where(_Model):
 
 
 class Cause(_Model):
-    """An effect that explains a gap, with the effects that could not be told apart from it."""
+    """An effect that explains a gap, with the effects that could not be told apart from it.
+
+    `condition`: under which alone it acts, where runs were recorded under several; its parameters are then the change.
+    """
 
     effect: str
     family: str
@@ -59,6 +62,7 @@ class Cause(_Model):
     parameters: dict[str, Parameter]
     closure: Interval
     rivals: list[str] = []
+    condition: str | None = None
 
 
 class Closure(_Model):

@@ -89,3 +89,8 @@ Measure: `pytest sher3_ws/src/sher3_machines/test/manipulator/test_confounding.p
 
 TAKES_PART = 0.3
 """Part of a quantity in such a combination from which it is named. Set and measured as `CONFOUNDED`."""
+
+# -- conditions contrasted -----------------------------------------------------------------------------------------
+
+CHANGES = 3
+"""Changes between conditions named at most: as many as causes of one part. Set by that argument."""

@@ -38,6 +38,7 @@ def _cause(evidence: Evidence, attribution: Attribution, index: int) -> Cause:
         parameters=parameters(evidence, found, index),
         closure=closure(evidence, channel, without, found),
         rivals=list(dict.fromkeys(rivals)),
+        condition=term.effect.condition,
     )
 
 

@@ -9,7 +9,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from sher3_machines.intake.fields import Clock, Column, Description, Strict
+from sher3_machines.contrast.conditions import Tagged
+from sher3_machines.intake.fields import Clock, Column, Strict
 
 
 class Signals(Strict):
@@ -124,7 +125,7 @@ class Axis(Strict):
         return "N" if self.motion == "linear" else "N*m"
 
 
-class AxesDescription(Description):
+class AxesDescription(Tagged):
     """A chain of axes, each moved by its own drive.
 
     Attributes:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING
 
 from sher3_diagnosis.attribute.candidates import Candidates
@@ -11,6 +12,7 @@ from sher3_diagnosis.attribute.rivals import Attribution
 from sher3_diagnosis.attribute.search import Left, Say
 from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.finding import ExactFinding, Finding
+from sher3_diagnosis.judge.left_over import down_to_floor
 from sher3_diagnosis.machine import Machine, Policy
 from sher3_diagnosis.verdict import Cause, Interval
 from sher3_effects import library, pages
@@ -24,6 +26,8 @@ from sher3_machines.axes.record import AxesRun
 from sher3_machines.axes.refine import refine_free
 from sher3_machines.axes.replay import replay
 from sher3_machines.axes.search import causes_of_axis
+from sher3_machines.contrast.changes import change_notes, contrasted, of_runs
+from sher3_machines.contrast.conditions import Condition, conditions_of, reference_runs, told_together
 from sher3_machines.errors import MachineError
 
 if TYPE_CHECKING:
@@ -60,7 +64,7 @@ class Axes(Machine[AxesRun, AxisEvidence]):
 
     def audit(self, runs: Sequence[AxesRun]) -> list[str]:
         """Return what was done to the data, and whether floors are known from repeats."""
-        notes = [note for run in runs for note in run.notes]
+        notes = [note for run in runs for note in run.notes] + told_together(self._conditions(runs))
         for run in runs:
             notes += [said for axis in self.description.axes for said in dead_channels(run, axis).values()]
         return notes if self._repeats(runs) else [*notes, NO_REPEATS]
@@ -86,8 +90,17 @@ class Axes(Machine[AxesRun, AxisEvidence]):
         return [limit for limit in found if limit is not None]
 
     def attribute(self, evidence: AxisEvidence, candidates: Candidates, left_over: Left, say: Say) -> Attribution:
-        """Choose the causes of one axis; what it does at rest counts too."""
-        return causes_of_axis(evidence, candidates, left_over, say)
+        """Choose the causes of one axis, and what changed between conditions; what it does at rest counts too."""
+        conditions = self._conditions(evidence.runs)
+        if not conditions:
+            return causes_of_axis(evidence, candidates, left_over, say)
+        kept = reference_runs(conditions, [run.name for run in evidence.runs])
+        reference = of_runs(evidence, views_of(evidence, kept))
+        left = partial(down_to_floor, reference.channels, reference)
+        common = causes_of_axis(reference, Candidates(reference, candidates.effects), left, say)
+        say("contrasting conditions")
+        each = [(c, views_of(evidence, c.runs)) for c in conditions]
+        return contrasted(evidence, common, candidates.effects, each)
 
     def refine(self, evidence: AxisEvidence, causes: list[Cause]) -> tuple[AxisEvidence, list[Cause]]:
         """Refine mass and forces of a free axis on its simulated motion."""
@@ -96,7 +109,13 @@ class Axes(Machine[AxesRun, AxisEvidence]):
     def remarks(self, finding: Finding[AxisEvidence]) -> list[str]:
         """Say which mass was found, what the recorded signals cannot tell, and how the axis runs again."""
         again = replay(finding.evidence, finding.causes) if finding.significant else None
-        return [*mass_notes(finding.evidence), *blind_spots(finding.evidence.axis), *([again.note] if again else [])]
+        changes = change_notes(finding.attribution, self._conditions(finding.evidence.runs))
+        return [
+            *changes,
+            *mass_notes(finding.evidence),
+            *blind_spots(finding.evidence.axis),
+            *([again.note] if again else []),
+        ]
 
     def reporter(self) -> AxesReporter:
         """Return the part of this machine in a report."""
@@ -109,8 +128,16 @@ class Axes(Machine[AxesRun, AxisEvidence]):
         runs_again = (replay(f.evidence, f.causes) for f in findings if f.significant)
         return next((again.closure for again in runs_again if again is not None), None)
 
+    def _conditions(self, runs: Sequence[AxesRun]) -> list[Condition]:
+        return conditions_of(self.description.conditions, [run.name for run in runs])
+
     def _repeats(self, runs: Sequence[AxesRun]) -> bool:
         return self.description.repeats and len(runs) > 1
+
+
+def views_of(evidence: AxisEvidence, runs: Collection[str]) -> frozenset[int]:
+    """Return the identities of the views of some runs."""
+    return frozenset(id(v) for v, run in zip(evidence.records, evidence.runs, strict=True) if run.name in runs)
 
 
 def kind_of(axis: Axis) -> str:

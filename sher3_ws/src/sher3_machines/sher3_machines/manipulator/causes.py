@@ -104,15 +104,23 @@ def _middle(effect: Effect, evidence: ArmMotionEvidence, joint: str) -> dict[str
 def _at(
     evidence: ArmMotionEvidence, candidates: Candidates, page: Effect, link: str, plain: Sequence[Term]
 ) -> Fit | None:
-    """Fit a payload at a link, its inertia about the centre found in the round before."""
-    shape: dict[str, float] = {}
-    for _ in range(CENTRE_ROUNDS):
-        trial = fit(evidence.data, [*plain, candidates.term(page, link, shape)])
-        if not page.admissible(shape, trial.of(len(plain))):
-            return None
-        found = page.parameters(shape, trial.of(len(plain)))
-        shape = {name: round(found[name], 4) for name in "xyz"}
-    return trial
+    """Fit a payload at a link."""
+    trial = fit(evidence.data, [*plain, candidates.term(page, link, {})])
+    return centred(candidates, trial) if trial.admissible else None
+
+
+def centred(candidates: Candidates, found: Fit) -> Fit:
+    """Return a fit with the inertia of its last term, where that is a payload, about the centre of the round before."""
+    last = len(found.terms) - 1
+    page, link = found.terms[last].effect, found.terms[last].site
+    for _ in range(CENTRE_ROUNDS if page.id == PayloadOnLink.id else 0):
+        values = page.parameters({}, found.of(last))
+        shape = {name: round(values[name], 4) for name in "xyz"}
+        trial = fit(candidates.evidence.data, [*found.terms[:last], candidates.term(page, link, shape)])
+        if not trial.admissible:
+            break
+        found = trial
+    return found
 
 
 def _added(evidence: ArmMotionEvidence, loaded: Fit) -> list[dict[Channel, Array]]:

@@ -7,7 +7,8 @@ from typing import Literal
 from pydantic import Field, model_validator
 
 from sher3_machines.axes.description import Axis, CommandLaw
-from sher3_machines.intake.fields import Clock, Description
+from sher3_machines.contrast.conditions import Tagged
+from sher3_machines.intake.fields import Clock
 
 Row = tuple[float, ...]
 
@@ -30,7 +31,7 @@ class Joint(Axis):
         return self
 
 
-class ManipulatorDescription(Description):
+class ManipulatorDescription(Tagged):
     """A serial arm whose joints move together.
 
     Attributes:

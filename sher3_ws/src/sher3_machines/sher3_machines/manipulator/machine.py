@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -20,7 +20,9 @@ from sher3_effects.scale.torque_constant import TorqueConstant
 from sher3_machines.axes.health import dead_channels
 from sher3_machines.axes.machine import NO_REPEATS
 from sher3_machines.axes.record import AxesRun
-from sher3_machines.manipulator.causes import causes_of_arm
+from sher3_machines.contrast.changes import change_notes, contrasted, of_runs
+from sher3_machines.contrast.conditions import Condition, conditions_of, reference_runs, told_together
+from sher3_machines.manipulator.causes import causes_of_arm, centred
 from sher3_machines.manipulator.confounding import SAME, confounding_notes
 from sher3_machines.manipulator.description import ManipulatorDescription
 from sher3_machines.manipulator.evidence import RECORDED, ArmMotionEvidence, gather_arm_motion
@@ -63,7 +65,7 @@ class Manipulator(Machine[AxesRun, ArmMotionEvidence]):
 
     def audit(self, runs: Sequence[AxesRun]) -> list[str]:
         """Return what was done to the data, which channels are dead, and whether floors are known from repeats."""
-        notes = [note for run in runs for note in run.notes]
+        notes = [note for run in runs for note in run.notes] + told_together(self._conditions(runs))
         for run in runs:
             notes += [note for joint in self.described.joints for note in dead_channels(run, joint).values()]
         return notes if self.described.repeats and len(runs) > 1 else [*notes, NO_REPEATS]
@@ -80,8 +82,19 @@ class Manipulator(Machine[AxesRun, ArmMotionEvidence]):
         return [gather_arm_motion(runs, self.described, self.model, judged)]
 
     def attribute(self, evidence: ArmMotionEvidence, candidates: Candidates, left_over: Left, say: Say) -> Attribution:
-        """Choose the causes joint by joint, without and with a payload."""
-        return causes_of_arm(evidence, candidates, say)
+        """Choose the causes joint by joint, without and with a payload, and what changed between conditions."""
+        conditions = self._conditions(evidence.runs)
+        if not conditions:
+            return causes_of_arm(evidence, candidates, say)
+        kept = reference_runs(conditions, [run.name for run in evidence.runs])
+        reference = of_runs(evidence, views_of(evidence, kept))
+        common = causes_of_arm(reference, Candidates(reference, candidates.effects), say)
+        say("contrasting conditions")
+        each = [(c, views_of(evidence, c.runs)) for c in conditions]
+        return contrasted(evidence, common, candidates.effects, each, centred)
+
+    def _conditions(self, runs: Sequence[AxesRun]) -> list[Condition]:
+        return conditions_of(self.described.conditions, [run.name for run in runs])
 
     def refine(self, evidence: ArmMotionEvidence, causes: list[Cause]) -> tuple[ArmMotionEvidence, list[Cause]]:
         """Return forces of a joint with unknown gain in the unit that was recorded, with what hides in that gain."""
@@ -100,6 +113,7 @@ class Manipulator(Machine[AxesRun, ArmMotionEvidence]):
                 "inertias identified from the data: drive gain, weight and payload are in them, cannot be told apart "
                 "and are not looked for"
             )
+        notes += change_notes(finding.attribution, self._conditions(evidence.runs))
         return [*notes, *gain_notes(evidence), *confounding_notes(evidence)]
 
     def reporter(self) -> ManipulatorReporter:
@@ -107,6 +121,11 @@ class Manipulator(Machine[AxesRun, ArmMotionEvidence]):
         from sher3_machines.manipulator.reporter import ManipulatorReporter
 
         return ManipulatorReporter()
+
+
+def views_of(evidence: ArmMotionEvidence, runs: Collection[str]) -> frozenset[int]:
+    """Return the identities of the views of some runs."""
+    return frozenset(id(v) for v, run in zip(evidence.records, evidence.runs, strict=True) if run.name in runs)
 
 
 def of_joints(facts: set[str] | None = None) -> list[Effect]:

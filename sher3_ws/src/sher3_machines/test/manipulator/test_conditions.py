@@ -1,0 +1,82 @@
+"""The lift under several conditions: what changed is named, what is common is held common."""
+
+import numpy as np
+import pytest
+from lifts import L, friction, machine, motion, needed, run_of
+from sher3_diagnosis import diagnose
+from sher3_machines import MachineError
+
+FRICTION = {"coulomb": (8.0, 0.5), "viscous": (20.0, 0.4)}
+
+
+def recorded(name, seed, extra=0.0, **changed):
+    q, v, a = motion(12.0, seed=seed)
+    return run_of(q, needed(q, v, a, extra, 0.05, -L) + friction(v, **{**FRICTION, **changed}), name=name)
+
+
+def changes(verdict):
+    return {(c.effect, c.actuator): c for c in verdict.causes if c.condition}
+
+
+def test_a_payload_between_two_runs_is_named_with_mass_and_centre(tmp_path):
+    arm = machine(tmp_path / "lift.urdf", conditions={"a": {"payload": "none"}, "b": {"payload": "cup"}})
+    verdict = diagnose(arm, [recorded("a", 0.0), recorded("b", 0.7, extra=0.5)]).verdict
+    found = changes(verdict)
+    assert set(found) == {("payload_mass", "pendulum")}
+    cause = found["payload_mass", "pendulum"]
+    assert cause.condition == "payload cup"
+    assert cause.parameters["mass"].value == pytest.approx(0.5, rel=0.05)
+    assert cause.parameters["x"].value == pytest.approx(0.05, abs=0.01)
+    assert cause.parameters["z"].value == pytest.approx(-L, abs=0.03)
+    common = {(c.effect, c.actuator): c.parameters for c in verdict.causes if not c.condition}
+    assert common["coulomb_friction", "lift"]["force"].value == pytest.approx(8.0, rel=0.06)
+    assert any("payload cup against none, all else held common: payload_mass" in n for n in verdict.notes)
+
+
+def test_a_repaired_joint_has_less_friction_than_before(tmp_path):
+    """The gear of the swing is repaired: 0.3 of its 0.5 N m of friction are gone, below nothing is refused."""
+    arm = machine(tmp_path / "lift.urdf", conditions={"a": {"day": "Monday"}, "b": {"day": "Friday"}})
+    verdict = diagnose(arm, [recorded("a", 0.0), recorded("b", 0.7, coulomb=(8.0, 0.2))]).verdict
+    found = changes(verdict)
+    assert set(found) == {("coulomb_friction", "swing")}
+    assert found["coulomb_friction", "swing"].parameters["force"].value == pytest.approx(-0.3, rel=0.1)
+
+
+def test_nothing_changed_is_said(tmp_path):
+    arm = machine(tmp_path / "lift.urdf", conditions={"a": {"day": "Monday"}, "b": {"day": "Friday"}})
+    verdict = diagnose(arm, [recorded("a", 0.0), recorded("b", 0.7)]).verdict
+    assert not changes(verdict)
+    assert any("day Friday against Monday, all else held common: nothing changed" in n for n in verdict.notes)
+
+
+def test_conditions_that_come_together_are_said(tmp_path):
+    tags = {"a": {"day": "1", "payload": "none"}, "b": {"day": "2", "payload": "cup"}}
+    arm = machine(tmp_path / "lift.urdf", conditions=tags)
+    notes = arm.audit([recorded("a", 0.0), recorded("b", 0.7)])
+    assert any("nothing tells them apart" in n for n in notes)
+
+
+@pytest.mark.parametrize(
+    ("tags", "words"),
+    [({"c": {"day": "1"}}, "no run 'c'"), ({"a": {"day": "1"}}, "run 'b' has no day")],
+)
+def test_conditions_that_fit_no_run_are_named(tmp_path, tags, words):
+    arm = machine(tmp_path / "lift.urdf", conditions=tags)
+    with pytest.raises(MachineError, match=words):
+        arm.audit([recorded("a", 0.0), recorded("b", 0.7)])
+
+
+def test_the_change_of_an_axis_beside_its_common_friction():
+    from slides import driven
+    from slides import machine as slide
+    from slides import run_of as record
+
+    runs = [record(driven(8.0, coulomb=5.0, offset=x)) for x in (0.0, 3.0)]
+    runs = [type(r)(name, r.period, r.signals) for name, r in zip("ab", runs, strict=True)]
+    axes = slide()
+    tagged = axes.description.model_copy(update={"conditions": {"a": {"posture": "flat"}, "b": {"posture": "tilted"}}})
+    verdict = diagnose(type(axes)(tagged), runs).verdict
+    found = changes(verdict)
+    assert set(found) == {("gravity_load", "slide")}
+    assert found["gravity_load", "slide"].parameters["force"].value == pytest.approx(3.0, rel=0.06)
+    assert np.isclose(next(c for c in verdict.causes if not c.condition).parameters["force"].value, 5.0, rtol=0.06)
