@@ -57,6 +57,8 @@ def up(
     ] = "",
     near_speed: Annotated[Optional[float], typer.Option(help="Speed cap near tissue [m/s].")] = None,  # noqa: UP045
     free_speed: Annotated[Optional[float], typer.Option(help="Speed cap elsewhere [m/s].")] = None,  # noqa: UP045
+    view: Annotated[bool, typer.Option("--view", help="Also show the robot in the browser (extra `view`).")] = False,
+    view_port: Annotated[int, typer.Option(help="Port of the view, on 127.0.0.1 alone.", min=1, max=65535)] = 8080,
     domain: Domain = 0,
     other_hosts: Annotated[
         bool, typer.Option("--other-hosts", help="Also talk to other machines; loopback by default.")
@@ -71,6 +73,7 @@ def up(
     Exit codes: 0 stopped as asked, 2 wrong option, 1 bad file, 3 not started (a device is missing), 4 a process died,
     5 a process had to be killed.
     """
+    from sher3_bringup.processes.onlooker import onlooker
     from sher3_bringup.processes.up import run_graph
     from sher3_bringup.settings.run_settings import checked, parse_processes
 
@@ -95,7 +98,8 @@ def up(
         domain=domain,
         other_hosts=other_hosts,
     )
-    run_graph(settings, say=_say(as_json))
+    with onlooker(view, domain, view_port):
+        run_graph(settings, say=_say(as_json))
 
 
 @app.command(
@@ -129,12 +133,16 @@ def demo(
     effects: Annotated[Optional[Path], typer.Option(help="Effects for the plant.")] = None,  # noqa: UP045
     script: Annotated[Optional[Path], typer.Option(help="Script of the surgeon.")] = None,  # noqa: UP045
     folder: Annotated[Path, typer.Option(help="Where the run's folder is made.")] = Path("bags"),
+    view: Annotated[bool, typer.Option("--view", help="Also show the robot in the browser (extra `view`).")] = False,
+    view_port: Annotated[int, typer.Option(help="Port of the view, on 127.0.0.1 alone.", min=1, max=65535)] = 8080,
     as_json: Json = False,
 ) -> None:
     """Run every node on mocks with a scripted surgeon, record it, analyse the recording, show figures and a picture."""
-    from sher3_bringup.demo.session import run_demo
+    from sher3_bringup.demo.session import DOMAIN, run_demo
+    from sher3_bringup.processes.onlooker import onlooker
 
-    result = run_demo(rate, effects, script, folder, say=_say(as_json))
+    with onlooker(view, DOMAIN, view_port):
+        result = run_demo(rate, effects, script, folder, say=_say(as_json))
     if as_json:
         typer.echo(json.dumps(result))
 

@@ -62,15 +62,9 @@ def view(
 
 
 def _live(robot: Path | None, port: int, domain: int, seconds: float | None) -> None:
-    from sher3_description import load_robot
-    from sher3_kinematics import RobotKinematics
+    from sher3_view.live.alone import show
 
-    from sher3_view.live.page import LivePage
-    from sher3_view.live.view_node import run
-
-    page = LivePage(RobotKinematics(load_robot(robot)), port)
-    typer.echo(f"live on {page.url}; Ctrl-C stops")
-    run(page, domain, seconds)
+    show(robot, port, domain, seconds)
 
 
 @app.command(epilog="Examples: `sher3 state` beside `sher3 up` · `sher3 state --urdf sher3.urdf`")

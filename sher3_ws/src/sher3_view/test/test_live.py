@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import json
 import math
 import socket
@@ -24,7 +23,6 @@ from sher3_view.scene import RobotState, Scene
 ROBOT = load_robot()
 KINEMATICS = RobotKinematics(ROBOT)
 MS = 1_000_000
-HAS_VISER = importlib.util.find_spec("viser") is not None
 
 
 def heard(**more):
@@ -121,7 +119,6 @@ def test_a_missing_library_names_the_extra(monkeypatch):
     assert caught.value.module == "viser" and caught.value.exit_code == 3
 
 
-@pytest.mark.skipif(not HAS_VISER, reason="viser is not installed (extra `view`): the live page was not served")
 @pytest.mark.flaky(reruns=2)
 def test_the_page_is_served_on_loopback_alone():
     with socket.socket() as free:

@@ -16,6 +16,7 @@ from sher3_faults.requests import FaultRequest, make_request
 from sher3_kinematics import RobotKinematics
 
 from sher3_view.errors import ExtraMissing
+from sher3_view.live.hand import COMMANDS, MOST_FORCE, Hand
 from sher3_view.live.plot import WINDOW, plot_svg
 from sher3_view.live.snapshot import Snapshot
 from sher3_view.scene import Primitive, RobotState, Scene
@@ -66,6 +67,7 @@ class LivePage:
 
     Attributes:
         url: where it is served.
+        hand: hand and foot of the visitor, for mocks.
     """
 
     def __init__(self, kinematics: RobotKinematics, port: int) -> None:
@@ -95,7 +97,8 @@ class LivePage:
         self._panel = self._server.gui.add_markdown("### Waiting for the robot")
         self._plots = [self._server.gui.add_html("") for _ in PLOTS]
         self._requests: SimpleQueue[FaultRequest] = SimpleQueue()
-        self._faults = self._add_buttons()
+        self.hand = Hand()
+        self._mocks = [self._add_hand(), self._add_buttons()]
         self._slow = 0.0
 
     def requests(self) -> list[FaultRequest]:
@@ -121,7 +124,8 @@ class LivePage:
             if slowly:
                 self._slow = seconds
                 self._panel.content = snapshot.text(self._robot, now)
-                self._faults.visible = mocks
+                for folder in self._mocks:
+                    folder.visible = mocks
                 self._draw_history()
 
     def close(self) -> None:
@@ -183,6 +187,28 @@ class LivePage:
         size = (*part.size, max(length, 1e-5))
         if part.kind != "bar" and not np.allclose(handle.scale, size, rtol=0.0, atol=STEP):
             handle.scale = size
+
+    def _add_hand(self) -> Any:
+        """Add pedal, push and state buttons; what they say is in `hand`."""
+        gui = self._server.gui
+        folder = gui.add_folder("Hand and foot on the mock", expand_by_default=False, visible=False)
+        with folder:
+            for command in COMMANDS:
+                gui.add_button(command.capitalize()).on_click(lambda _, command=command: self._ask(command=command))
+            pedal = gui.add_checkbox("Pedal", initial_value=False)
+            pedal.on_update(lambda _: self._ask(pedal=pedal.value))
+            pushes = [
+                gui.add_slider(f"Push {name} [N]", -MOST_FORCE, MOST_FORCE, step=0.1, initial_value=0.0)
+                for name in "xyz"
+            ]
+            for push in pushes:
+                push.on_update(lambda _: self._ask(force=tuple(p.value for p in pushes)))
+        return folder
+
+    def _ask(self, **wanted: Any) -> None:
+        self.hand.touched = True
+        for name, value in wanted.items():
+            setattr(self.hand, name, value)
 
     def _add_buttons(self) -> Any:
         folder = self._server.gui.add_folder("Break a mock", expand_by_default=False, visible=False)

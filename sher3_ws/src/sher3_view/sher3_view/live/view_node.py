@@ -1,4 +1,4 @@
-"""The live view as a node: it listens, and publishes nothing but the faults that are asked for on its page."""
+"""The live view as a node: it listens. To mocks it also hands on what is asked for on its page: hand, foot, faults."""
 
 from __future__ import annotations
 
@@ -9,13 +9,14 @@ from typing import Any
 import rclpy
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
-from sher3_common.samples import TextSample
+from sher3_common.samples import JoySample, TextSample, WrenchSample
 from sher3_description import TOPICS as TABLE
 from sher3_faults.requests import FaultRequest
 from sher3_runtime import environment
 from sher3_runtime.ports import NODE_OPTIONS, advertise, clock_of, latest
 from sher3_runtime.process import stop_on_signals
 
+from sher3_view.live.hand import Hand
 from sher3_view.live.page import LivePage
 from sher3_view.live.snapshot import TOPICS, Snapshot
 
@@ -36,7 +37,7 @@ class ViewNode(Node):
         super().__init__("view", **{**NODE_OPTIONS, **options})
         self.snapshot = Snapshot.empty()
         self._newest = {topic: latest(self, topic) for topic in TOPICS}
-        self._publish: Callable[[Any], None] | None = None
+        self._publish: dict[str, Callable[[Any], None]] = {}
 
     def look(self) -> None:
         """Take what has come."""
@@ -49,13 +50,25 @@ class ViewNode(Node):
 
     def ask(self, request: FaultRequest) -> None:
         """Ask the plant for a fault; nothing happens where there is no plant."""
-        if not self.mocks():
+        if self.mocks():
+            self._send("mock/fault", TextSample(request.to_json()))
+
+    def act(self, hand: Hand) -> None:
+        """Let the mocks feel a hand that somebody has used; whoever calls makes sure that there are mocks."""
+        if not hand.touched:
             return
-        if self._publish is None:
-            # Not earlier: a view that breaks nothing is no publisher.
-            self._publish = advertise(self, "mock/fault")
+        if command := hand.taken():
+            self._send("command/state_command", TextSample(command))
+        stamp = clock_of(self).now()
+        self._send("mock/pedal", JoySample(stamp, (float(hand.pedal),), (0,)))
+        self._send("mock/contact_wrench", WrenchSample(stamp, (*hand.force, 0.0, 0.0, 0.0)))
+
+    def _send(self, topic: str, sample: Any) -> None:
+        if topic not in self._publish:
+            # Not earlier: a view on which nothing is asked for is no publisher.
+            self._publish[topic] = advertise(self, topic)
             time.sleep(LOOK_AROUND / 2)
-        self._publish(TextSample(request.to_json()))
+        self._publish[topic](sample)
 
 
 def run(page: LivePage, domain: int, seconds: float | None) -> None:
@@ -74,6 +87,8 @@ def run(page: LivePage, domain: int, seconds: float | None) -> None:
             page.show(node.snapshot, clock_of(node).now(), mocks)
             for request in page.requests():
                 node.ask(request)
+            if mocks:
+                node.act(page.hand)
             time.sleep(max(0.0, 1.0 / RATE - (time.monotonic() - now)))
         node.destroy_node()
     finally:
