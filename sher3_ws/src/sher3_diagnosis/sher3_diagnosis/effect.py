@@ -75,7 +75,8 @@ class Effect:
         kinds: kinds of machine this form of the effect is written for: "robot" the SHER; "axis" one axis of any
             machine; "servo" a position servo whose force was not recorded; "joint" a joint of a serial arm in motion,
             which has the pages of an axis too; "arm" the geometry of a serial arm;
-            "table" an axis in a positioning test without a clock, "circle" two axes on a circle.
+            "table" an axis in a positioning test without a clock, "circle" two axes on a circle, "sensor"
+            a force sensor by itself.
         needs: facts that must be known of an axis before the effect can be looked for: "lead" its travel per motor
             revolution, "load" a second encoder behind the transmission, "mass" its mass, "drive" the force it is
             driven with.

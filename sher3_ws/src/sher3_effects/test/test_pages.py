@@ -9,7 +9,7 @@ from sher3_diagnosis.effect import INPUTS, ROTARY
 from sher3_effects import library, load_effects, pages, plants, save_effects
 from sher3_sim.effect import REVOLUTE, SITES
 
-KINDS = ("robot", "axis", "servo", "joint", "arm", "table", "circle")
+KINDS = ("robot", "axis", "servo", "joint", "arm", "table", "circle", "sensor")
 KNOWN = {page.id for kind in KINDS for page in pages(kind)}
 EVERY = [pytest.param(page, id=f"{kind}-{page.id}") for kind in KINDS for page in pages(kind)]
 ROBOT_PAGES = [pytest.param(page, id=page.id) for page in library().values()]

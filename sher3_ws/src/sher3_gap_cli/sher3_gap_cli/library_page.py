@@ -22,6 +22,7 @@ KINDS = {
     "arm": "the geometry of a serial arm",
     "table": "an axis in a positioning test",
     "circle": "two axes on a circle",
+    "sensor": "a force sensor by itself",
 }
 """Kind of machine -> plain words."""
 NEEDS = {

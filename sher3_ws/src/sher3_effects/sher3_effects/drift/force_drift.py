@@ -54,6 +54,34 @@ def drift(axis: str, default: float) -> Any:
     return parameter("N/K", default, -5.0, 5.0, f"drift of the reading along {axis} of {{f}}")
 
 
+class SensorDrift(Page):
+    """A force sensor whose zero wanders with its temperature, or with time where that was not recorded."""
+
+    id, family, stage, best = ForceDrift.id, ForceDrift.family, ForceDrift.stage, ForceDrift.best
+    kinds, places = ("sensor",), ForceDrift.places
+    inputs = ("temperature", "time")
+    explanation = "The zero of the force sensor wanders during the test, in every orientation alike."
+    siblings = {"force_bias": "does not wander"}
+    discrete = frozenset({"with_time"})
+    units = {n: "N" for n in ("fx", "fy", "fz")} | {n: "N*m" for n in ("tx", "ty", "tz")}
+
+    def shapes(self, views: Sequence[Any], site: str) -> list[Shape]:
+        """Return time (1) and, where it was recorded and changes, temperature (0)."""
+        known = any(np.ptp(v.warmth) > 0.0 for v in views)
+        return [{"with_time": 1.0}, *([{"with_time": 0.0}] if known else [])]
+
+    def signature(self, view: Any, site: str, shape: Shape) -> Signature:
+        """Return six columns: the share of the test that has passed, or of the warming."""
+        span = float(np.ptp(view.warmth)) or 1.0
+        share = view.elapsed if shape["with_time"] else (view.warmth - view.warmth.min()) / span
+        return Signature({Channel(self.stage, site): share[:, None, None] * np.eye(6)})
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Return the drift over the whole test by component."""
+        names = ("fx", "fy", "fz", "tx", "ty", "tz")
+        return {**{n: float(c) for n, c in zip(names, coefficients, strict=True)}, "with_time": shape["with_time"]}
+
+
 @dataclass(frozen=True)
 class ForceDriftInPlant(PlantEffect, page=ForceDrift):
     """The force sensor's zero follows the temperature."""

@@ -25,6 +25,7 @@ class ForceScale(Page):
     id, family, stage = "force_scale", "scale", "sensing"
     inputs = ("load",)
     breaks = "force_sensor"
+    kinds = ("robot", "sensor")
     best = Best("sweep", "long constant-speed strokes separate ratios from offsets")
     places = ("force_sensor",)
     discrete = frozenset({"axis"})
@@ -52,6 +53,10 @@ class ForceScale(Page):
         """Return the gain of every component: the diagonal of the sensor's matrix."""
         limit = (robot.tolerances.force_matrix, "1")
         return [Tolerated({"axis": float(i)}, {f"force sensor matrix, {n}": limit}) for i, n in enumerate(COMPONENTS)]
+
+    def admissible(self, shape: Shape, coefficients: Array) -> bool:
+        """A gain keeps its sign."""
+        return bool(coefficients[0] > -1.0)
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Ratio error and the axis it is of."""

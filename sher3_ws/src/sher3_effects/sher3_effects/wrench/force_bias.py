@@ -21,6 +21,7 @@ class ForceBias(Page):
 
     id, family, stage = "force_bias", "wrench", "sensing"
     breaks = "force_sensor"
+    kinds = ("robot", "sensor")
     best = Best("loads", "known loads in several orientations separate bias, weight and cross-talk")
     places = ("force_sensor",)
     explanation = "The force sensor is off by a constant in its own frame, in every pose and under every load."

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from sher3_description import Robot
@@ -21,6 +21,7 @@ class ForceCrosstalk(Page):
     """reading_i += coefficient * wrench_j, i != j: one pair of forces, all of them, or all of forces and moments."""
 
     id, family, stage = "force_crosstalk", "wrench", "sensing"
+    kinds: ClassVar[tuple[str, ...]] = ("robot",)
     inputs = ("load",)
     breaks = "force_sensor"
     best = Best("loads", "known loads in several orientations separate bias, weight and cross-talk")
@@ -80,6 +81,20 @@ class ForceCrosstalk(Page):
         free = {name: value for name, value in values.items() if name in self.PAIRS}
         pair = "xyz"[int(values["target"])] + "xyz"[int(values["source"])]
         return [Part(self.id, actuator, free or {pair: values["coefficient"]})]
+
+
+class SensorCrosstalk(ForceCrosstalk):
+    """Crosstalk of forces in any sensor under one load.
+
+    Its moments are a fixed lever times its forces, so that what moments do to forces cannot be told from the forces.
+    """
+
+    kinds = ("sensor",)
+
+    def shapes(self, views: Sequence[Any], site: str) -> list[Shape]:
+        """Return each pair of forces, and all of them (-1)."""
+        pairs: list[Shape] = [{"source": float(j), "target": float(i)} for j, i in self.FORCES]
+        return [{"source": -1.0, "target": -1.0}, *pairs]
 
 
 def coupling(pair: str, default: float = 0.0) -> Any:

@@ -13,6 +13,7 @@ from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.page import Page, Part, Tolerated, Values
+from sher3_effects.sensor_view import SensorView
 from sher3_effects.view import RobotView
 
 
@@ -63,6 +64,36 @@ class ToolGravity(Page):
         mass = robot.force_sensor.tool_mass + values["mass"]
         shift = {a: values.get(f"com_{a}", 0.0) / mass for a in "xyz"} if mass > 0.0 else {}
         return [Part(self.id, actuator, {"mass": values["mass"], **shift})]
+
+
+class SensorLoad(Page):
+    """A load on any force sensor: reading += mass * g turned into the sensor, at its centre of mass."""
+
+    id, family, stage, best = ToolGravity.id, ToolGravity.family, ToolGravity.stage, ToolGravity.best
+    kinds, places = ("sensor",), ToolGravity.places
+    inputs, explanation = ToolGravity.inputs, "What hangs on the sensor weighs more, or elsewhere, than stated."
+    siblings = {"force_bias": "does not turn", "force_scale": "in proportion to everything the sensor reads"}
+    units = {"mass": "kg", **ToolGravity.units}
+
+    def shapes(self, views: Sequence[SensorView], site: str) -> list[Shape]:
+        """Return one shape: it holds the stated mass, kg, which bounds what may be missing."""
+        return [{"stated": views[0].mass}]
+
+    def admissible(self, shape: Shape, coefficients: Array) -> bool:
+        """Return whether a load is left: no mass is below zero."""
+        return bool(shape["stated"] + coefficients[0] >= 0.0)
+
+    def signature(self, view: SensorView, site: str, shape: Shape) -> Signature:
+        """Return four columns: the weight per kilogram, and its moment per kilogram and metre along each axis."""
+        columns = np.zeros((len(view.gravity), 6, 4))
+        columns[:, :3, 0] = view.gravity
+        for i, axis in enumerate(np.eye(3)):
+            columns[:, 3:, 1 + i] = np.cross(axis, view.gravity)
+        return Signature({Channel(self.stage, site): columns})
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Return the extra mass and its extra first moment."""
+        return dict(zip(("mass", "com_x", "com_y", "com_z"), map(float, coefficients), strict=True))
 
 
 @dataclass(frozen=True)

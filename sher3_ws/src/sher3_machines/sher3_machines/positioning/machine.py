@@ -6,6 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from sher3_diagnosis.attribute.candidates import Candidates
+from sher3_diagnosis.attribute.rivals import Attribution
+from sher3_diagnosis.attribute.search import Left, Say, attribute
 from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.finding import Finding
 from sher3_diagnosis.machine import Machine, Policy
@@ -18,6 +21,10 @@ from sher3_machines.positioning.record import Tests
 
 if TYPE_CHECKING:
     from sher3_machines.positioning.reporter import PositioningReporter
+
+
+MOST = 6
+"""Causes named at most: a table may have one of each page."""
 
 
 @dataclass(frozen=True)
@@ -49,6 +56,10 @@ class Positioning(Machine[Tests, TableEvidence]):
         """Return every test as a part; raises MachineError where nothing tells what repeats."""
         axes = [gather_axis_test(test, runs) for test in self.description.axes]
         return [*axes, *(gather_circle(test, runs) for test in self.description.planes)]
+
+    def attribute(self, evidence: TableEvidence, candidates: Candidates, left_over: Left, say: Say) -> Attribution:
+        """Search for up to six causes: a table may have one of each page."""
+        return attribute(candidates, left_over, say, MOST)
 
     def remarks(self, finding: Finding[TableEvidence]) -> list[str]:
         """Return the contribution ranking."""

@@ -78,6 +78,11 @@ def test_several_errors_are_ranked_in_the_standards_figures():
     assert float(values["E"]) == pytest.approx(26.0, abs=1.0) and float(values["A"]) > float(values["E"])
 
 
+def test_four_errors_at_once():
+    verdict = verdict_of(table(scale=40e-6, reversal=6e-6, drift=5e-6, bump=5e-6))
+    assert set(found(verdict)) == {"lead_error", "backlash", "position_drift", "position_error_map"}
+
+
 def test_twenty_rows_are_enough():
     small = table(cycles=2, targets=np.linspace(0.0, 0.5, 5), reversal=6e-6)
     assert len(small["target"]) == 20

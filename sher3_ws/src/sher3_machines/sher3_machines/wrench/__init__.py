@@ -1,0 +1,1 @@
+"""A force sensor by itself: readings under a load in known orientations."""
