@@ -83,8 +83,8 @@ def test_closed_loop_agrees_with_an_adaptive_integration(jumping, axis):
         y = solve_ivp(rates, (0, period), y, "LSODA", args=(demand, weight[k], slope), rtol=1e-10, atol=1e-13).y[:, -1]
     rated, count = drive.rated, actuator.load_encoder
     assert np.abs(command[:400]).max() > 0.1 * actuator.limits.velocity
-    assert np.sqrt(np.mean((jumping["drives/measured_js"].effort[:400, axis] - efforts) ** 2)) < 3e-4 * rated
-    np.testing.assert_allclose(motor[:400, axis], positions, atol=1.2 * count)
+    assert np.sqrt(np.mean((jumping["drives/measured_js"].effort[:400, axis] - efforts) ** 2)) < 2e-5 * rated
+    np.testing.assert_allclose(motor[:400, axis], positions, atol=0.1 * count)
 
 
 def test_start_is_at_rest_and_exact_stages_are_exact(jumping):
