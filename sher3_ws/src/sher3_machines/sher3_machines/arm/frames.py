@@ -94,7 +94,8 @@ def hand_eye(tip: Array, poses: Array) -> tuple[Array, Array]:
         np.hstack([np.kron(b, np.eye(3)), -np.kron(np.eye(3), a.T)])
         for a, b in zip(tip[:, :3, :3], poses[:, :3, :3], strict=True)
     ]
-    values, null = np.linalg.svd(np.concatenate(rows))[1:]
+    # Of the 9n rows only the directions of the 18 unknowns are asked for: all others cost n^2 in time and memory.
+    values, null = np.linalg.svd(np.concatenate(rows), full_matrices=False)[1:]
     if values[-2] < AMBIGUOUS * values[0]:
         raise MachineError("the postures do not tell the frames", value=f"{values[-2]:.3g}", remedy="turn the tip more")
     y, r = (_nearest(null[-1, k : k + 9].reshape(3, 3)) for k in (0, 9))
