@@ -37,6 +37,7 @@ KEYS = {
     "rich": "python3-rich",
     "rosbags": "python3-rosbags-pip",
     "scipy": "python3-scipy",
+    "sklearn": "python3-sklearn",
     "typer": "python3-typer",
     "typing_extensions": "python3-typing-extensions",
     "yaml": "python3-yaml",

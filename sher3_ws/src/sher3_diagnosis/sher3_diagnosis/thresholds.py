@@ -224,3 +224,21 @@ LINE_SHARE = 0.15
 
 PERIOD_SHARE = 0.2
 """Share of a remainder that a period over a motor revolution must explain to be told."""
+
+# -- discover: what may a formula claim? ---------------------------------------------------------------------------
+
+TERMS = 5
+"""Terms of a discovered formula at most, for each component: more is no explanation.
+Set by that argument. Measure: `python bench/gap_discover.py`."""
+
+TERM_WORTH = 0.02
+"""Share of a gap that each term must take off runs left out: less is not worth a clause in a sentence.
+Set by that argument. Measure: `python bench/gap_discover.py`."""
+
+PLAIN = 0.002
+"""Share of a gap that each further number or law of a term must be worth: of two formulas that fit alike, the plainer.
+Set on and measured as `TERM_WORTH`."""
+
+LEAST_COMPONENT = 0.03
+"""Share of the largest component's gap from which a formula is looked for in a component too.
+Set on and measured as `TERM_WORTH`."""

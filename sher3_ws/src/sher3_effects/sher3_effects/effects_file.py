@@ -1,7 +1,11 @@
-"""Effects as YAML: `schema: sher3.effects/1`, `effects: [{effect, actuator, parameters: {name: value}}]`."""
+"""Effects as YAML: `schema: sher3.effects/1`, `effects: [{effect, actuator, parameters: {name: value}}]`.
+
+`library: [path]` names the files of discovered effects among them, from the folder of the effects file.
+"""
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
 from pathlib import Path
@@ -11,7 +15,7 @@ from sher3_common import FileError, dump_yaml, read_yaml
 from sher3_sim.effect import PlantEffect
 from sher3_sim.errors import EffectError
 
-from sher3_effects.registry import plants
+from sher3_effects.registry import add_library, library, plants
 
 SCHEMA = "sher3.effects/1"
 
@@ -55,6 +59,10 @@ def load_effects(path: Path | str) -> list[PlantEffect]:
     schema = data.get("schema")
     if schema != SCHEMA:
         raise FileError("is not an effects file", path=path, value=schema, limit=SCHEMA, remedy="set schema")
+    pages = data.get("library", [])
+    if not isinstance(pages, list) or not all(isinstance(p, str) for p in pages):
+        raise FileError("library is not a list of paths", path=path)
+    add_library([Path(path).parent / p for p in pages])
     entries = data.get("effects")
     if not isinstance(entries, list) or not all(isinstance(entry, Mapping) for entry in entries):
         raise FileError("effects is not a list of mappings", path=path)
@@ -63,5 +71,10 @@ def load_effects(path: Path | str) -> list[PlantEffect]:
 
 def save_effects(path: Path | str, effects: Iterable[PlantEffect]) -> None:
     """Write an effects file that `load_effects` reads back to equal effects."""
-    content = {"schema": SCHEMA, "effects": [effect_to_dict(effect) for effect in effects]}
+    entries = list(effects)
+    content: dict[str, Any] = {"schema": SCHEMA, "effects": [effect_to_dict(effect) for effect in entries]}
+    known = library()
+    sources = {str(known[e.id].source) for e in entries if e.id in known and known[e.id].source is not None}
+    if sources:
+        content["library"] = [os.path.relpath(source, Path(path).resolve().parent) for source in sorted(sources)]
     Path(path).write_text(dump_yaml(content), encoding="utf-8")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import ClassVar, NamedTuple
 
 from sher3_description import Robot
@@ -62,12 +63,14 @@ class Page(Effect):
     Class attributes:
         plant: its form in the plant, which states unit, default and bounds of every parameter the plant takes; set by
             that form. None where the plant has none.
+        source: the file of a discovered effect, which an effects file must name.
         breaks: which relation of the signal chain the effect breaks, where that is not the one named like its stage:
             "load_encoder", "both_encoders" or "force_sensor", the readings.
         on_axis: fitted parameter -> constant of `CONSTANTS` that it sets, beyond the nominal one.
     """
 
     plant: ClassVar[type[PlantEffect] | None] = None
+    source: ClassVar[Path | None] = None
     breaks: ClassVar[str] = ""
     on_axis: ClassVar[Mapping[str, str]] = {}
 

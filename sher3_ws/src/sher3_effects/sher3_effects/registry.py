@@ -2,8 +2,8 @@
 
 Every class that derives from `Page` and has an id is a page. A file of the user's own needs no registration: its path,
 or that of its folder, stands in the environment variable SHER3_LIBRARY (paths parted like those of PATH) or in the
-option `--library`. A page of the user's takes the place of one with the same id. Every process that reads the variable
-knows the same pages, those that `sher3 up` starts too.
+option `--library`. A discovered effect is a YAML file, named by itself. A page of the user's takes the place of one
+with the same id. Every process that reads the variable knows the same pages, those that `sher3 up` starts too.
 """
 
 from __future__ import annotations
@@ -76,15 +76,24 @@ def add_library(paths: Sequence[Path]) -> None:
 @lru_cache(maxsize=8)
 def _pages(named: str) -> tuple[Page, ...]:
     own = [x for x in pkgutil.walk_packages(sher3_effects.__path__, f"{sher3_effects.__name__}.") if not x.ispkg]
-    modules = [importlib.import_module(x.name) for x in own]
-    modules += [_loaded(file) for path in named.split(os.pathsep) if path for file in _files(Path(path))]
-    return tuple(page for module in modules for page in _defined_in(module))
+    found = [page for x in own for page in _defined_in(importlib.import_module(x.name))]
+    files = [file for path in named.split(os.pathsep) if path for file in _files(Path(path))]
+    return (*found, *(page for file in files for page in _pages_of(file)))
 
 
 def _files(path: Path) -> Iterator[Path]:
     if not path.exists():
         raise FileError("is not there", path=path, remedy="name a file or folder with pages of effects")
     yield from sorted(path.rglob("*.py")) if path.is_dir() else [path]
+
+
+def _pages_of(file: Path) -> list[Page]:
+    """Return the pages of a file of the user's: of Python, or one that was discovered."""
+    if file.suffix in (".yaml", ".yml"):
+        from sher3_effects.found_page import read_found
+
+        return [read_found(file)]
+    return _defined_in(_loaded(file))
 
 
 def _loaded(file: Path) -> ModuleType:

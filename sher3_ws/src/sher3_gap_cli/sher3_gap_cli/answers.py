@@ -47,7 +47,7 @@ def answer(task: Task, say: Say = lambda _: None) -> Answer:
     from sher3_diagnosis.report.summary import five_lines
 
     try:
-        found = _diagnosed(task, say)
+        found = diagnosed(task, say)
     except Sher3Error as error:
         return Answer(task, error=error)
     lines = five_lines(found.verdict, found.machine.reporter().simulated)
@@ -59,7 +59,7 @@ def answer(task: Task, say: Say = lambda _: None) -> Answer:
     return Answer(task, found.verdict, lines, render(found, task.case.resolve().name))
 
 
-def _diagnosed(task: Task, say: Say) -> Diagnosis[Any]:
+def diagnosed(task: Task, say: Say) -> Diagnosis[Any]:
     """Diagnose the case of the SHER or of another machine."""
     from sher3_machines import is_machine_case
 

@@ -9,6 +9,7 @@ import typer
 from sher3_gap_cli.apply import apply, compare
 from sher3_gap_cli.challenge import challenge
 from sher3_gap_cli.diagnose import diagnose
+from sher3_gap_cli.discover import discover
 from sher3_gap_cli.excite import excite
 from sher3_gap_cli.experiment import experiment
 from sher3_gap_cli.export import export
@@ -20,6 +21,7 @@ app = typer.Typer(no_args_is_help=True, help="Find and explain the gap between a
 
 EXAMPLES: dict[Callable[..., None], str] = {
     diagnose: "sher3 gap diagnose case_001 · sher3 gap diagnose cases/* --jobs 2 --out verdicts",
+    discover: "sher3 gap discover case_002 · sher3 gap discover case_002 --save found.yaml --out gap/case_002",
     apply: "sher3 gap apply gap/case_001/verdict.json -o corrected.yaml --case case_001",
     compare: "sher3 gap compare case corrected",
     export: "sher3 gap export gap/case_emps/verdict.json --to mjcf --check case_emps --out emps.xml",

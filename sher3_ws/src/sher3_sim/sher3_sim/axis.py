@@ -16,7 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import expm
 from sher3_common.compiled import compiled
+from sher3_common.laws import MOST_FACTORS
 
+from sher3_sim.found import AXIS_QUANTITIES, AXIS_TERMS, DEMAND, DRIVE, EFFORT, MOTOR, POSITION, VELOCITY, total
 from sher3_sim.parameters import Records
 
 PENDING = 64
@@ -29,6 +31,10 @@ AXIS_STATE = np.dtype(
         *((name, "f8") for name in ("position", "velocity", "integral", "force", "demand", "echo")),
         *((name, "f8") for name in ("bristle", "cable", "base", "hysteresis", "load", "effort_load")),
         ("disturbance", "f8"),
+        ("found_inputs", "f8", len(AXIS_QUANTITIES)),
+        ("found_last", "f8", (AXIS_TERMS, MOST_FACTORS)),
+        ("found_memory", "f8", (AXIS_TERMS, MOST_FACTORS)),
+        *((name, "f8") for name in ("found_effort", "found_velocity")),
         ("pending", "i8"),
         ("pending_time", "f8", PENDING),
         ("pending_value", "f8", PENDING),
@@ -127,8 +133,18 @@ def bristle_step(z: float, distance: float, scale: float) -> float:
 def drive_force(a: Any, s: Any) -> float:
     """Force the drive exerts now [N], before a new demand acts; what it reports as effort, without noise."""
     if a.lag > 0.0:
-        return s.force
-    return min(max(a.kp * (dead_zone(a, s.demand) - s.velocity) + s.integral, -a.limit), a.limit)
+        return s.force + s.found_effort
+    return min(max(a.kp * (dead_zone(a, s.demand) - s.velocity) + s.integral, -a.limit), a.limit) + s.found_effort
+
+
+@compiled
+def _found_force(a: Any, s: Any, position: float, velocity: float, demand: float, h: float) -> float:
+    """Return what discovered formulas resist with over a step [N]; what they add to the drive's effort is kept."""
+    x = s.found_inputs
+    x[POSITION], x[VELOCITY], x[DEMAND] = position, velocity, demand
+    x[EFFORT] = drive_force(a, s)
+    s.found_effort = total(a.found, DRIVE, x, s.found_last, s.found_memory, h)
+    return total(a.found, MOTOR, x, s.found_last, s.found_memory, h) - a.torque_scale * s.found_effort
 
 
 @compiled
@@ -196,6 +212,8 @@ def advance(a: Any, s: Any, step_maps: Any, load: float, time: float, period: fl
         if a.cable_displacement > 0.0:
             s.cable = bristle_step(s.cable, h * v, a.cable_displacement)
             other += a.cable_stiffness * middle + a.cable_force * s.cable / a.cable_displacement
+        if a.found_any:
+            other += _found_force(a, s, middle, v, acted, h)
 
         begins = abs(a.kp * (acted - v) + integral) > a.limit
         moved, v_end, i_end, f_end = linear_step(a, step_maps[0], v, integral, force, acted, other, h)

@@ -7,11 +7,14 @@ from typing import Any
 
 import numpy as np
 from sher3_common.compiled import compiled
+from sher3_common.laws import MOST_FACTORS
 from sher3_description.contract import GRAVITY, REFERENCE_TEMPERATURE
 from sher3_kinematics.arrays import unpack
 from sher3_kinematics.kernel import KernelParameters, gravity_load_into, tip_jacobian_into
 
 from sher3_sim.axis import advance, drive_force, send
+from sher3_sim.found import BODY_QUANTITIES, BODY_TERMS, SENSOR, add_body
+from sher3_sim.looking import look_at_axes
 from sher3_sim.noise import DISTURBANCE, DROP, EFFORT, FORCE, JITTER, TRACKER, normal, uniform
 from sher3_sim.tip import cross, quaternion, true_tip
 from sher3_sim.transmission import encode_load, place, to_count, transmit
@@ -31,6 +34,9 @@ BODY_STATE = np.dtype(
         ("cable", "f8", 3),
         ("cable_start", "f8", 3),
         ("cable_last", "f8", 3),
+        ("found_inputs", "f8", len(BODY_QUANTITIES)),
+        ("found_last", "f8", (BODY_TERMS, MOST_FACTORS)),
+        ("found_memory", "f8", (BODY_TERMS, MOST_FACTORS)),
     ]
 )
 
@@ -85,7 +91,7 @@ def read_sensors(axis: Any, b: Any, p: KernelParameters, state: Any, s: Any, r: 
         r.demand[i] = x.echo
         for j in range(3):
             tip_rate[j] += s.jacobian[j, i] * x.velocity
-    true_tip(p, axis, b, s, q, s.load, s.wrench, tip_rate, s.jacobian, r.tip_rotation, r.tip_position)
+    true_tip(p, axis, b, s, state, q, s.load, s.wrench, tip_rate, s.jacobian, r.tip_rotation, r.tip_position)
     _read_wrench(b, s, r)
     _read_tracker(b, s, r)
 
@@ -116,8 +122,11 @@ def _read_wrench(b: Any, s: Any, r: Any) -> None:
             moment[i] += rotation[j, i] * s.wrench[3 + j]
     moment += cross(b.tool_com, weight) - cross(b.sensor_position, force)
     force += weight
+    more = np.zeros(6)
+    if b.found_any:
+        add_body(b.found, SENSOR, s, b.period, more)
     for i in range(6):
-        value = b.wrench_bias[i] + b.wrench_drift[i] * (b.temperature - REFERENCE_TEMPERATURE)
+        value = more[i] + b.wrench_bias[i] + b.wrench_drift[i] * (b.temperature - REFERENCE_TEMPERATURE)
         for j in range(3):
             value += b.wrench_matrix[i, j] * force[j] + b.wrench_matrix[i, 3 + j] * moment[j]
         value += b.wrench_noise[i] * normal(s.seed, FORCE + i, s.tick)
@@ -168,6 +177,7 @@ def start(axis: Any, b: Any, p: KernelParameters, state: Any, s: Any, r: Any, q_
         other += a.cable_stiffness * x.position
         x.integral = min(max(other / a.torque_scale, -a.limit), a.limit)
         x.force = x.integral
+    look_at_axes(axis, b, state, s)
     read_sensors(axis, b, p, state, s, r)
 
 
@@ -204,6 +214,7 @@ def step(
         mean[i] = 0.5 * (s.wrench[i] + wrench[i])
         s.wrench[i] = wrench[i]
     _loads(p, axis, state, s, mean, 0.5 * b.period)
+    look_at_axes(axis, b, state, s)
     for i in range(5):
         a, x = axis[i], state[i]
         late = a.jitter * abs(normal(s.seed, JITTER, s.tick)) if a.jitter > 0.0 else 0.0
@@ -214,7 +225,7 @@ def step(
             fresh = math.sqrt(1.0 - kept * kept) * a.disturbance * normal(s.seed, DISTURBANCE + i, s.tick)
             x.disturbance = kept * x.disturbance + fresh
         advance(a, x, maps[i], s.load[i] + x.disturbance, s.tick * b.period, b.period, substeps)
-        transmit(a, x, s.load[i])
+        transmit(a, x, s.load[i], b.period)
     s.tick += 1
     read_sensors(axis, b, p, state, s, r)
 

@@ -15,6 +15,8 @@ from sher3_description import Robot
 from sher3_description.contract import EFFORT_NOISE, EFFORT_RESOLUTION, REFERENCE_TEMPERATURE
 from sher3_kinematics.kernel import KernelParameters, kernel_parameters
 
+from sher3_sim.found import AXIS_TERMS, BODY_TERMS, ROW
+
 Records = NDArray[Any]
 
 AXIS = np.dtype(
@@ -45,6 +47,9 @@ AXIS = np.dtype(
         # sensing
         *((name, "f8") for name in ("encoder_scale", "eccentricity", "eccentricity_phase", "encoder_offset")),
         ("load_zero", "f8"),
+        # discovered formulas: rows of numbers, and whether there are any
+        ("found_any", "?"),
+        ("found", "f8", (AXIS_TERMS, ROW)),
     ]
 )
 
@@ -84,6 +89,8 @@ BODY = np.dtype(
         ("wrench_range", "f8", 6),
         ("tracker_period", "f8"),
         ("tracker_noise", "f8", 2),
+        ("found_any", "?"),
+        ("found", "f8", (BODY_TERMS, ROW)),
     ]
 )
 

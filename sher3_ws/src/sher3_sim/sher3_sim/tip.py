@@ -12,6 +12,9 @@ from sher3_kinematics.kernel import KernelParameters, tip_pose_into
 from sher3_kinematics.kernel.delta import leg_vectors
 from sher3_kinematics.tip_deflection import ArmCompliance
 
+from sher3_sim.found import TIP, add_body
+from sher3_sim.looking import look_at_tip
+
 Array = np.ndarray
 _ARM = ArmCompliance()
 YAW_STIFFNESS, PITCH_STIFFNESS, AXIAL_COMPLIANCE = _ARM.yaw, _ARM.pitch, _ARM.along_x
@@ -124,11 +127,25 @@ def vibrate(b: Any, s: Any, acceleration: Array, shift: Array) -> None:
 
 
 @compiled
+def _add_found(
+    b: Any, s: Any, state: Any, wrench: Array, tip_rate: Array, rotation: Array, position: Array, shift: Array
+) -> None:
+    """Look at what discovered formulas depend on, and add theirs to the shift [m] and to the rotation."""
+    look_at_tip(b, s, state, wrench, tip_rate, rotation, position)
+    twist = np.zeros(6)
+    add_body(b.found, TIP, s, b.period, twist)
+    shift += twist[:3]
+    for k in range(3):
+        rotation[:, k] += cross(twist[3:], rotation[:, k])
+
+
+@compiled
 def true_tip(
     p: KernelParameters,
     axis: Any,
     b: Any,
     s: Any,
+    state: Any,
     q: Array,
     load: Array,
     wrench: Array,
@@ -144,6 +161,7 @@ def true_tip(
         axis: AXIS records.
         b: BODY record.
         s: BODY_STATE record, changed in place.
+        state: AXIS_STATE records.
         q: (5,) true load positions; the slides' growth is added in place.
         load: (5,) load on the axes [N, N m].
         wrench: (6,) contact wrench at the tip in {b}.
@@ -177,6 +195,8 @@ def true_tip(
         centre, _, _, _ = leg_vectors(p, q[0], q[1], q[2])
         for i in range(3):
             shift[i] += b.arm_expansion * warmth * (position[i] - centre[i])
+    if b.found_any:
+        _add_found(b, s, state, wrench, tip_rate, rotation, position, shift)
     growth = b.expansion * warmth
     for i in range(3):
         s.tip_rate[i] = tip_rate[i]

@@ -13,6 +13,7 @@ import numpy as np
 from sher3_common.compiled import compiled
 
 from sher3_sim.axis import TWO_PI, bristle_step
+from sher3_sim.found import POSITION, TRANSMISSION, VELOCITY, total
 
 
 @compiled
@@ -26,9 +27,12 @@ def elastic_output(a: Any, motor: float, load: float) -> float:
 
 
 @compiled
-def transmit(a: Any, s: Any, load: float) -> None:
+def transmit(a: Any, s: Any, load: float, period: float) -> None:
     """Move the load with the motor: hysteresis is a bristle and backlash a play; both depend on the path so far."""
     base = elastic_output(a, s.position, load)
+    if a.found_any:
+        s.found_inputs[POSITION], s.found_inputs[VELOCITY] = s.position, s.velocity
+        base += total(a.found, TRANSMISSION, s.found_inputs, s.found_last, s.found_memory, period)
     moved = base - s.base
     s.base = base
     if a.hysteresis > 0.0:
@@ -77,7 +81,7 @@ def place(a: Any, s: Any, reading: float) -> None:
 
 
 @compiled
-def follow(a: Any, s: Any, motor: Any, load: Any) -> Any:
+def follow(a: Any, s: Any, motor: Any, load: Any, period: float) -> Any:
     """Return load positions (n,) for a recorded motor path: the transmission stage alone, given its input.
 
     Args:
@@ -85,6 +89,7 @@ def follow(a: Any, s: Any, motor: Any, load: Any) -> Any:
         s: AXIS_STATE record, fresh; changed in place.
         motor: Motor positions (n,) [m or rad].
         load: Load on the axis, gravity less contact (n,) [N or N m].
+        period: Time between two positions [s].
     """
     out = np.empty(len(motor))
     for k in range(len(motor)):
@@ -92,6 +97,6 @@ def follow(a: Any, s: Any, motor: Any, load: Any) -> Any:
         if k == 0:
             s.base = elastic_output(a, motor[0], load[0])
             s.load = s.base - math.copysign(0.5 * a.backlash, load[0])
-        transmit(a, s, load[k])
+        transmit(a, s, load[k], period)
         out[k] = encode_load(a, s.load)
     return out

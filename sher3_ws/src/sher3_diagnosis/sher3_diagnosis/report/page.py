@@ -5,12 +5,14 @@ from __future__ import annotations
 import jinja2
 from matplotlib import rc_context
 
+from sher3_diagnosis.discover.formula import Discovery
 from sher3_diagnosis.flow import Diagnosis
 from sher3_diagnosis.report.causes import cause_cards
 from sher3_diagnosis.report.chain import chain
 from sher3_diagnosis.report.closures import closure_bars
 from sher3_diagnosis.report.drawing import STYLE
 from sher3_diagnosis.report.experiment_card import experiment_card
+from sher3_diagnosis.report.found import closures, found_rows
 from sher3_diagnosis.report.regimes import regimes
 from sher3_diagnosis.report.reporter import Isolability
 from sher3_diagnosis.report.summary import five_lines, headline
@@ -20,12 +22,14 @@ from sher3_diagnosis.report.words import place, words
 TEMPLATE = "template.html"
 
 
-def render(diagnosis: Diagnosis, title: str) -> str:
-    """Return the report of a diagnosis as one HTML page without external resources."""
+def render(diagnosis: Diagnosis, title: str, found: Discovery | None = None) -> str:
+    """Return the report of a diagnosis, with a discovered formula if one was looked for, as one HTML page without
+    external resources.
+    """
     loader = jinja2.PackageLoader("sher3_diagnosis", "report")
     environment = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True)
     with rc_context(STYLE):
-        return environment.get_template(TEMPLATE).render(**_sections(diagnosis, title))
+        return environment.get_template(TEMPLATE).render(found=_formula(found), **_sections(diagnosis, title))
 
 
 def _sections(diagnosis: Diagnosis, title: str) -> dict[str, object]:
@@ -50,6 +54,15 @@ def _sections(diagnosis: Diagnosis, title: str) -> dict[str, object]:
         words=words,
         place=place,
     )
+
+
+def _formula(found: Discovery | None) -> dict[str, object] | None:
+    """Return a discovery as the page shows it; None where none was looked for."""
+    if found is None:
+        return None
+    where = "" if not found.channels else f"{words(found.channel.stage)}, {place(found.channel.actuator)}"
+    rows = found_rows(found) if found.claimed else []
+    return {"where": where, "rows": rows, "closes": closures(found) if rows else "", "note": found.note}
 
 
 def _in_words(found: Isolability) -> dict[str, list]:

@@ -8,6 +8,7 @@ import numpy as np
 from sher3_description import ACTUATORS, Robot
 from sher3_description.contract import REFERENCE_TEMPERATURE
 from sher3_diagnosis.channel import Array, Channel, Mask
+from sher3_diagnosis.discover.feature import Quantities
 from sher3_diagnosis.evidence import Motion
 from sher3_diagnosis.filter import DECIMATED_RATE
 from sher3_effects.operators import dahl
@@ -15,6 +16,7 @@ from sher3_effects.view import NominalAxis
 
 from sher3_gap.case.signals import RunSignals
 from sher3_gap.stages.geometry import Geometry, Path
+from sher3_gap.stages.recorded import recorded_at
 from sher3_gap.stages.residuals import drive_law
 
 
@@ -167,3 +169,18 @@ class SherView:
         velocity = self.velocity[:, i]
         direction = np.sign(np.round(velocity, 5))
         return np.column_stack([self.position[:, i], velocity, direction, self.path.contact_force[:, i]])
+
+    # what discovery reads
+
+    @property
+    def step(self) -> float:
+        """Time between two ticks, s."""
+        return self.run.period
+
+    def recorded(self, channel: Channel) -> Quantities:
+        """Return what was recorded that the law of a gap in a channel might depend on, at every tick."""
+        return recorded_at(self, channel)
+
+    def at_residuals(self, x: Array) -> Array:
+        """Low-pass values of the ticks and sample them on the residual grid."""
+        return self.run.to_grid(x)

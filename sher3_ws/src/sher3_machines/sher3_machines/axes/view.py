@@ -6,7 +6,8 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from sher3_diagnosis.channel import Array, Mask
+from sher3_diagnosis.channel import Array, Channel, Mask
+from sher3_diagnosis.discover.feature import Quantities, Quantity
 from sher3_diagnosis.evidence import Motion
 from sher3_diagnosis.filter import settled
 from sher3_effects.operators import dahl
@@ -180,3 +181,30 @@ class AxisView:
         """Return (g, 3): position, velocity, and direction of the motion, 0 at rest."""
         velocity = self.velocity[:, 0]
         return np.column_stack([self.position[:, 0], velocity, np.sign(velocity) * self.moving])
+
+    # what discovery reads
+
+    @property
+    def step(self) -> float:
+        """Time between two samples of the record, s."""
+        return self.run.period
+
+    def recorded(self, channel: Channel) -> Quantities:
+        """Return what was recorded that the law of a gap might depend on; not the effort, which is the output."""
+        run, unit = self.run, "rad" if self.described.motion == "rotary" else "m"
+        newton = "N*m" if unit == "rad" else "N"
+        weight = np.interp(run.stage_clock, run.stage_clock[run.grid], self.path.gravity[:, 0])
+        acceleration = np.gradient(run.velocity[:, 0], run.period)
+        force = self.mass * acceleration + self.described.viscous * run.velocity[:, 0] + weight
+        return {
+            "position": Quantity(run.smooth[:, 0], unit, "the position", "place"),
+            "velocity": Quantity(run.velocity[:, 0], f"{unit}/s", "the velocity", "speed"),
+            "acceleration": Quantity(acceleration, f"{unit}/s^2", "the acceleration", "state"),
+            "force": Quantity(force, newton, "the force that the motion needs", "force"),
+            "load": Quantity(weight, newton, "the weight on the axis", "force"),
+            "time": Quantity(run.stage_clock, "s", "the time since the run began", "clock"),
+        }
+
+    def at_residuals(self, x: Array) -> Array:
+        """Low-pass values of the record and sample them on the residual grid."""
+        return self.run.to_grid(x)

@@ -1,0 +1,126 @@
+"""Laws of one quantity, the words of a discovered formula: the diagnosis fits with them, the simulator runs on them.
+
+A law takes a quantity x, the distance x moved since the last look, and what it remembers. `walk` is the same law along
+a recorded signal. Direction is no sign function: `sliding` builds up over a displacement, as friction does, so that
+noise of a reading at rest makes no direction.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sher3_common.compiled import compiled
+
+Array = NDArray[np.float64]
+
+
+class Law(NamedTuple):
+    """One law.
+
+    Attributes:
+        code: its number in compiled code.
+        shapes: names of its shape parameters, at most two.
+        power: unit of its value is that of x to this power; 0 where it has none.
+        shape_power: the same for each shape parameter; None for a time.
+        words: what it is, `{x}` the quantity and `{0}`, `{1}` the shape parameters.
+    """
+
+    code: int
+    shapes: tuple[str, ...]
+    power: int
+    shape_power: tuple[int | None, ...]
+    words: str
+
+
+LAWS: dict[str, Law] = {
+    "itself": Law(0, (), 1, (), "{x}"),
+    "size": Law(1, (), 1, (), "the size of {x}"),
+    "square": Law(2, (), 2, (), "the square of {x}"),
+    "signed_square": Law(3, (), 2, (), "the square of {x}, with its sign"),
+    "rising": Law(4, (), 1, (), "{x}, forward only"),
+    "falling": Law(5, (), 1, (), "{x}, backward only"),
+    "rising_square": Law(6, (), 2, (), "the square of {x}, forward only"),
+    "falling_square": Law(7, (), 2, (), "the square of {x}, backward only"),
+    "sine": Law(8, ("period",), 0, (1,), "a sine of {x} with a period of {0}"),
+    "cosine": Law(9, ("period",), 0, (1,), "a cosine of {x} with a period of {0}"),
+    "bump": Law(10, ("centre", "width"), 0, (1, 1), "a hump over {x} around {0}, {1} wide"),
+    "beyond": Law(11, ("threshold",), 1, (1,), "{x} beyond {0}"),
+    "fading": Law(12, ("scale",), 0, (1,), "a share that fades as {x} exceeds {0}"),
+    "decaying": Law(13, ("scale",), 0, (1,), "a share that decays with {x} over {0}"),
+    "sliding": Law(14, ("displacement",), 0, (1,), "the direction in which {x} changes, built up over {0}"),
+    "play": Law(15, ("width",), 1, (1,), "the lag of {x} behind a gap of {0}"),
+    "late": Law(16, ("time_constant",), 1, (None,), "the lag of {x} by a time constant of {0}"),
+    "rate": Law(17, ("time_constant",), 1, (None,), "the rate of change of {x}, smoothed over {0}"),
+}
+"""Every law by name. `late` is the lagged quantity less the quantity, `play` the follower less what it follows, and
+`rate` its smoothed derivative."""
+MOST_FACTORS = 3
+"""Factors of one term that the simulator can hold."""
+
+
+@compiled
+def law_value(code: int, a: float, b: float, x: float, moved: float, z: float, period: float) -> tuple[float, float]:
+    """Return the value of a law and what it remembers afterwards.
+
+    Args:
+        code: of `LAWS`.
+        a: first shape parameter.
+        b: second one.
+        x: the quantity.
+        moved: its change since the last call.
+        z: what the law remembered.
+        period: time since the last call, s.
+    """
+    if code == 0:
+        return x, z
+    if code == 1:
+        return abs(x), z
+    if code == 2:
+        return x * x, z
+    if code == 3:
+        return x * abs(x), z
+    if code == 4:
+        return max(x, 0.0), z
+    if code == 5:
+        return min(x, 0.0), z
+    if code == 6:
+        return max(x, 0.0) ** 2, z
+    if code == 7:
+        return min(x, 0.0) ** 2, z
+    if code == 8:
+        return math.sin(2.0 * math.pi * x / a), z
+    if code == 9:
+        return math.cos(2.0 * math.pi * x / a), z
+    if code == 10:
+        return math.exp(-(((x - a) / b) ** 2)), z
+    if code == 11:
+        return math.copysign(max(abs(x) - a, 0.0), x), z
+    if code == 12:
+        return math.exp(-((x / a) ** 2)), z
+    if code == 13:
+        return math.exp(-x / a), z
+    if code == 14:
+        end = math.copysign(1.0, moved)
+        z = end + (z - end) * math.exp(-abs(moved) / a)
+        return z, z
+    if code == 15:
+        z = min(max(z - moved, -0.5 * a), 0.5 * a)
+        return z, z
+    keep = math.exp(-period / a)
+    z = keep * (z - moved) if code == 16 else keep * z + (1.0 - keep) * moved / period
+    return z, z
+
+
+@compiled
+def walk(code: int, a: float, b: float, x: Array, period: float) -> Array:
+    """Return a law along a signal x (n,) whose samples are `period` apart, (n,); it begins at rest."""
+    out = np.empty(len(x))
+    z = 0.0
+    for k in range(len(x)):
+        moved = x[k] - x[k - 1] if k > 0 else 0.0
+        out[k], z = law_value(code, a, b, x[k], moved, z, period)
+    return out

@@ -1,0 +1,1 @@
+"""Discovery: a sparse formula, with units, for a gap that no effect of the library explains."""

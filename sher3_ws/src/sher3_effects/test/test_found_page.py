@@ -1,0 +1,81 @@
+"""Discovered effects as pages: read, refused, fitted again, and in the plant."""
+
+import pytest
+from sher3_common import FileError
+from sher3_description import load_robot
+from sher3_effects import add_library, library, load_effects, plants, save_effects
+from sher3_effects.found_page import read_found
+from sher3_effects.registry import VARIABLE
+from sher3_sim import EffectError, with_effects
+
+PAGE = """
+schema: sher3.found/1
+effect: found_drag
+stage: motor_mechanics
+sites: [delta_1]
+explanation: an extra force on delta 1 in proportion to the square of the velocity
+terms:
+- {component: 0, feature: signed_square(velocity), coefficient: 2.0e4, unit: N/(m/s)^2}
+- {component: 0, feature: "sine(position, 0.0015)", coefficient: 0.5, unit: N}
+- {component: 0, feature: "cosine(position, 0.0015)", coefficient: 0.1, unit: N}
+"""
+
+
+@pytest.fixture
+def page(tmp_path, monkeypatch):
+    monkeypatch.setenv(VARIABLE, "")
+    (tmp_path / "drag.yaml").write_text(PAGE)
+    add_library([tmp_path / "drag.yaml"])
+    return tmp_path / "drag.yaml"
+
+
+def test_a_file_is_a_page_with_units_and_shapes(page):
+    found = library()["found_drag"]
+    assert found.shape == {"period_1": 0.0015} and found.unit("period_1", "delta_1", False) == "m"
+    assert found.unit("coefficient_1", "delta_1", False) == "N/(m/s)^2"
+    assert found.channels("delta_2") == () and len(found.channels("delta_1")) == 1
+    assert found.inputs == ("velocity", "position")
+    moved = found.reshaped(found.terms[1].feature, {"period_1": 0.002})
+    assert str(moved) == "sine(position, 0.002)"
+
+
+def test_its_form_in_the_plant_goes_through_an_effects_file(page, monkeypatch):
+    effect = plants()["found_drag"]("delta_1", coefficient_1=1e4)
+    assert effect.parameters == {"coefficient_1": 1e4, "coefficient_2": 0.5, "coefficient_3": 0.1, "period_1": 0.0015}
+    save_effects(page.parent / "effects.yaml", [effect])
+    monkeypatch.setenv(VARIABLE, "")
+    assert "found_drag" not in library()
+    assert [e.parameters for e in load_effects(page.parent / "effects.yaml")] == [effect.parameters]
+    rows = with_effects(load_robot(), [effect]).axis["found"][0]
+    assert (rows[:, 0] != 0).sum() == 3 and rows[0, 2] == 1e4
+
+
+def test_it_sits_where_it_was_found(page):
+    with pytest.raises(EffectError, match="cannot sit"):
+        plants()["found_drag"]("delta_2")
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("sher3.found/1", "sher3.effects/1"),
+        ("motor_mechanics", "moon"),
+        ("delta_1]", "moon]"),
+        ("signed_square", "cube"),
+        ("2.0e4", ".nan"),
+        ("component: 0, feature: signed", "component: 3, feature: signed"),
+        ("terms:", "words:"),
+    ],
+)
+def test_a_file_that_is_no_page_is_refused(tmp_path, old, new):
+    (tmp_path / "wrong.yaml").write_text(PAGE.replace(old, new, 1))
+    with pytest.raises(FileError, match="is not a discovered effect"):
+        read_found(tmp_path / "wrong.yaml")
+
+
+def test_a_stage_without_a_place_in_the_plant_is_refused_there(tmp_path, monkeypatch):
+    monkeypatch.setenv(VARIABLE, "")
+    (tmp_path / "late.yaml").write_text(PAGE.replace("motor_mechanics", "transport"))
+    effect = read_found(tmp_path / "late.yaml").plant("delta_1")
+    with pytest.raises(EffectError, match="cannot express"):
+        with_effects(load_robot(), [effect])
