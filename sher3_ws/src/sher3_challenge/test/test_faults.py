@@ -22,7 +22,8 @@ PRACTICE = SHARED / "contract/practice"
 ROBOT = load_robot()
 WARM = Climate(25.0, 0.0, 100.0, 10**18)
 LUMPED = truth_plant("lumped")
-ALL_KINDS = {**LUMPED.library, **LUMPED.outside}
+PLANTS = {name: truth_plant(name) for name in ("lumped", "tables")}
+ALL_KINDS = [(name, kind) for name, plant in PLANTS.items() for kind in {**plant.library, **plant.outside}]
 IDS = """
 command_delay command_jitter dropped_commands drive_lag axis_skew controller_gain torque_constant lead_error
 encoder_scale force_scale force_saturation velocity_deadband coulomb_friction stribeck_friction
@@ -35,12 +36,19 @@ thermal_expansion force_drift force_bias tool_gravity force_crosstalk cable_drag
 # mean-square floors of a slider, as measured on healthy robots
 FLOOR = {"drive": 4e-3, "motor_mechanics": 4.5e-3, "transmission": 8.8e-14, "mechanism": 1.2e-11, "structure": 1.2e-11,
          "sensing": 3e-5, "transport": 1e-10, "controller": 1e-10}  # fmt: skip
-LOADED = {"structural_compliance", "link_compliance", "tool_bending", "transmission_compliance"}
+LOADED = {"structural_compliance", "link_compliance", "tool_bending", "transmission_compliance", "slipping_tool"}
+SHAKEN = {"structural_vibration", "warm_winding"}
 
 
-def test_every_effect_of_the_contract_has_a_fault_and_many_have_none():
-    assert set(LUMPED.effects) == set(IDS.split()) and len(LUMPED.effects) == 44
-    assert len(LUMPED.outside) >= 10 and all(kind.effect == "outside_library" for kind in LUMPED.outside.values())
+@pytest.mark.parametrize("truth", PLANTS.values(), ids=PLANTS)
+def test_every_effect_of_the_contract_has_a_fault_and_many_have_none(truth):
+    assert set(truth.effects) == set(IDS.split()) and len(truth.effects) == 44
+    assert len(truth.outside) >= 12 and all(kind.effect == "outside_library" for kind in truth.outside.values())
+
+
+def test_plants_have_outside_faults_of_their_own():
+    names = [name for plant in PLANTS.values() for name in plant.outside]
+    assert len(set(names)) == len(names)
 
 
 @cache
@@ -53,23 +61,23 @@ def region(label):
 
 
 @cache
-def healthy(label):
-    return stage_residuals(LUMPED.make(ROBOT, 0, (), WARM, built=False).run(plan(label), ideal=True), ROBOT)
+def healthy(name, label):
+    return stage_residuals(PLANTS[name].make(ROBOT, 0, (), WARM, built=False).run(plan(label), ideal=True), ROBOT)
 
 
 def label_for(kind):
     if kind.name in LOADED or kind.places == ("force_sensor",):
         return "loads"
-    return "steps" if kind.stage == "drive" or kind.name == "structural_vibration" else "sweep"
+    return "steps" if kind.stage == "drive" or kind.name in SHAKEN else "sweep"
 
 
-@pytest.mark.parametrize("name", ALL_KINDS)
-def test_a_fault_shows_in_its_stage_and_not_upstream(name):
-    kind = ALL_KINDS[name]
+@pytest.mark.parametrize(("truth", "name"), ALL_KINDS)
+def test_a_fault_shows_in_its_stage_and_not_upstream(truth, name):
+    kind = PLANTS[truth].kind(name)
     label = label_for(kind)
     fault = Fault(kind, kind.places[0], 2 * kind.start if kind.most > 2 * kind.start else kind.start, 3)
-    plant = LUMPED.make(ROBOT, 0, (fault,), WARM, built=False, region=region(label))
-    own = excess([stage_residuals(plant.run(plan(label), ideal=True), ROBOT)], [healthy(label)])
+    plant = PLANTS[truth].make(ROBOT, 0, (fault,), WARM, built=False, region=region(label))
+    own = excess([stage_residuals(plant.run(plan(label), ideal=True), ROBOT)], [healthy(truth, label)])
     ratio = {key: np.sqrt(value / FLOOR[key.split("/")[0]]) for key, value in own.items() if not key.startswith("tip")}
     shown = max(ratio[key] for key in residual_keys(fault) if key in ratio)
     assert shown > (0.05 if name == "tilt_linkage_error" else 0.3), ratio

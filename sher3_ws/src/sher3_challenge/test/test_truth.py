@@ -1,4 +1,4 @@
-"""The truth plant without faults is the nominal robot of the contract, and repeats scatter below the floor."""
+"""A truth plant without faults is the nominal robot of the contract, and repeats scatter below the floor."""
 
 import numpy as np
 import pytest
@@ -10,21 +10,24 @@ from sher3_challenge.plants.lumped.mechanism import link_forces, load_forces, so
 from sher3_challenge.plants.lumped.plant import LumpedPlant as Plant
 from sher3_challenge.plants.lumped.robot import nominal
 from sher3_challenge.plants.plant import Climate, RunPlan
+from sher3_challenge.plants.registry import truth_plant
 from sher3_description import load_robot
 from sher3_gap.excitation import excite
 
 ROBOT = load_robot()
 CLIMATE = Climate(22.0, 0.0, 100.0, 10**18)
 EXACT = Plant(ROBOT, 0, (), CLIMATE, built=False)
+PLANTS = {name: truth_plant(name) for name in ("lumped", "tables")}
 
 
 def plan(label, seed=1, **kwargs):
     return RunPlan(excite(label, ROBOT, **kwargs), 0, 10**18, seed)
 
 
-@pytest.fixture(scope="module")
-def jumping():
-    return EXACT.run(plan("steps", posture="p1", duration=2.0, set_point_jumps=True), ideal=True)
+@pytest.fixture(scope="module", params=PLANTS)
+def jumping(request):
+    exact = PLANTS[request.param].make(ROBOT, 0, (), CLIMATE, built=False)
+    return exact.run(plan("steps", posture="p1", duration=2.0, set_point_jumps=True), ideal=True)
 
 
 def test_mechanism_agrees_with_the_closed_form():
@@ -96,7 +99,7 @@ def test_closed_loop_agrees_with_an_independent_integration(jumping):
         positions.append(y[0])
         efforts.append(drive.kp * (demand - y[1]) + drive.ki * y[2])
     assert np.abs(command[:400]).max() > 2e-3
-    np.testing.assert_allclose(motor[:401, j], positions, atol=2e-9)
+    np.testing.assert_allclose(motor[:401, j], positions, atol=6e-9)
     np.testing.assert_allclose(jumping["drives/measured_js"].effort[:401, j], efforts, atol=2e-3)
 
 
@@ -112,12 +115,13 @@ def test_start_is_at_rest_and_exact_stages_are_exact(jumping):
     assert np.abs(residuals["mechanism/tip"]).max() < 1e-12
 
 
-def test_agrees_with_the_simulator():
+@pytest.mark.parametrize("name", PLANTS)
+def test_agrees_with_the_simulator(name):
     """Two plants written independently from the contract differ by less than its noise."""
     from sher3_sim import simulate
 
     e = excite("steps", ROBOT, posture="p2", duration=3.0, set_point_jumps=True)
-    mine = EXACT.run(RunPlan(e, 0, 10**18, 1), ideal=True)
+    mine = PLANTS[name].make(ROBOT, 0, (), CLIMATE, built=False).run(RunPlan(e, 0, 10**18, 1), ideal=True)
     theirs = simulate(ROBOT, e.position, setpoint_velocity=e.velocity)
     count = np.array([a.motor_encoder for a in ROBOT.actuators])
     noise = 0.002 * np.array([a.drive.rated for a in ROBOT.actuators])
@@ -128,20 +132,24 @@ def test_agrees_with_the_simulator():
     assert np.all(force.std(axis=0) < 1.5 * noise)
 
 
-@pytest.mark.parametrize("seed", [11, 12])
-def test_healthy_robots_stay_near_the_floor(seed):
+@pytest.mark.parametrize(("name", "seed"), [("lumped", 11), ("lumped", 12), ("tables", 11), ("tables", 12)])
+def test_healthy_robots_stay_near_the_floor(name, seed):
+    """The encoders of `tables` start anywhere within a count in each run, which is most of its transmission's floor."""
+    make = PLANTS[name].make
     climate = Climate(21.8, 1.5, 150.0, 10**18)
-    healthy = Plant(ROBOT, seed, (), climate)
+    healthy = make(ROBOT, seed, (), climate)
     plans = [plan(label, s) for label in ("sweep", "loads") for s in (1, 2, 3)]
     runs = [healthy.run(p) for p in plans]
     floor = floors(runs, [stage_residuals(run, ROBOT) for run in runs], ROBOT)
     ideal = [
         [stage_residuals(p.run(r, ideal=True), ROBOT) for r in (plans[0], plans[3])]
-        for p in (healthy, Plant(ROBOT, 0, (), climate, built=False))
+        for p in (healthy, make(ROBOT, 0, (), climate, built=False))
     ]
     own = excess(*ideal)
     ratios = {k: np.sqrt(1 + own[k] / floor[k]) for k in own if floor.get(k) and not k.startswith("tip")}
-    assert max(ratios.values()) < 1.3, ratios
+    edge = 2.0 if name == "tables" else 1.3
+    assert max(r for k, r in ratios.items() if not k.startswith("transmission")) < 1.3, ratios
+    assert max(r for k, r in ratios.items() if k.startswith("transmission")) < edge, ratios
     assert 0.002 < floor["drive/delta_1"] < 0.008  # N^2, as in the recorded practice
     assert 1.0e-11 < floor["mechanism/tip"] < 1.6e-11
     assert floor["transport/delta_1"] == floor["controller/delta_1"] == 0.0
