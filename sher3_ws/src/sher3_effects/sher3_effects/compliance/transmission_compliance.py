@@ -21,8 +21,7 @@ class TransmissionCompliance(Page):
 
     id, family, stage = "transmission_compliance", "compliance", "transmission"
     inputs = ("force", "weight", "load", "acceleration")
-    kinds = ("robot", "axis")
-    needs = ("load", "lead")
+    needs = ("load",)
     best = Best("loads", "known loads in several postures separate springs")
     companion = "friction"
     explanation = (
@@ -75,6 +74,42 @@ class TransmissionCompliance(Page):
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
         """A spring."""
         return bool(coefficients[0] > 0.0)
+
+
+class ComplianceOnAxis(TransmissionCompliance):
+    """load = motor - force / stiffness on one axis of any machine; the force as modelled or as the drive recorded it.
+
+    Without a recorded force a ringing load tells its frequency, and its stiffness only with its share of the mass.
+    """
+
+    kinds = ("axis", "servo")
+    units = {"stiffness": "N/m", "compliance": "m/N", "frequency": "Hz"}
+
+    def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
+        """Return the shapes of a modelled force, and one of the recorded one where there is one."""
+        recorded = any(v.run.effort is not None and v.run.effort.any() for v in views)
+        held: Shape = {"load_mass": 0.0, "frequency": 0.0, "damping": 0.0, "recorded": 1.0}
+        modelled: list[Shape] = [{**held, "recorded": 0.0}]
+        if views[0].axis(site).mass > 0.0:
+            modelled = super().shapes(views, site)
+        return [*modelled, held] if recorded else modelled
+
+    def refine(self, shape: Shape) -> list[Shape]:
+        """Return neighbours of a modelled force; a recorded one has none."""
+        return [] if "recorded" in shape else super().refine(shape)
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Return stiffness and compliance, and the frequency of a load that rings."""
+        ringing = {"frequency": shape["frequency"]} if shape["frequency"] else {}
+        return {**super().parameters(shape, coefficients), **ringing}
+
+    def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
+        """Return minus the force on the spring: as modelled, or all that the drive gave."""
+        if not shape.get("recorded"):
+            return super().signature(view, site, shape)
+        effort = view.run.effort
+        assert effort is not None
+        return Signature({Channel(self.stage, site): column(-view.run.to_grid(effort)[:, view.row(site)])})
 
 
 @dataclass(frozen=True)

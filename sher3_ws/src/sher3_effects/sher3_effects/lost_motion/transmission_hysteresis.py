@@ -20,7 +20,7 @@ class TransmissionHysteresis(Page):
     id, family, stage = "transmission_hysteresis", "lost_motion", "transmission"
     inputs = ("direction",)
     kinds = ("robot", "axis", "servo")
-    needs = ("load", "lead")
+    needs = ("load",)
     best = Best("loads", "known loads at rest separate a fixed gap from a spring")
     companion = "friction"
     explanation = (

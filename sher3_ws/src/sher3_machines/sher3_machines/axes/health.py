@@ -30,6 +30,8 @@ def dead_channels(run: AxesRun, axis: Axis) -> Mapping[str, str]:
     least = COUNTS_MOVED * axis.encoder_resolution
     if travel == 0.0:
         moved = [k for k in OTHERS if k in found and np.ptp(found[k]) > least]
+        if moved == ["load"] and ("applied" in found or "reference" in found):
+            moved = []  # a held axis rests while a load moves what is behind it
         if moved:
             still = f"reads {position[0]:.6g} throughout while {moved[0]} moves by {np.ptp(found[moved[0]]):.3g}"
             out["position"] = _sentence(run, axis, "position", still, "nothing is judged")

@@ -31,6 +31,7 @@ class AxisSignals:
         reference, command: as recorded.
         load: position of the second encoder.
         nominal: force that the user's own model asks for, less what is known to be applied from outside.
+        applied: known force from outside, positive along the motion.
         bandwidth: cut-off of the low-pass, Hz.
     """
 
@@ -43,6 +44,7 @@ class AxisSignals:
     command: Array | None = None
     load: Array | None = None
     nominal: Array | None = None
+    applied: Array | None = None
     bandwidth: float = BANDWIDTH
 
     @property
@@ -126,6 +128,7 @@ def signals_of(run: AxesRun, axis: Axis, excitation: str) -> AxisSignals:
         command=found.get("command"),
         load=found.get("load"),
         nominal=_nominal(found),
+        applied=found.get("applied"),
         bandwidth=min(BANDWIDTH, NYQUIST_SHARE * 0.5 / run.period),
     )
 

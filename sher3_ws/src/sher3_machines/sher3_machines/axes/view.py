@@ -30,7 +30,7 @@ class Loads(NamedTuple):
 
     Attributes:
         gravity: weight on the axis.
-        contact_force: of a contact; none acts on these axes.
+        contact_force: known force from outside, positive along the motion; zero where none was recorded.
     """
 
     gravity: Array
@@ -78,10 +78,11 @@ class AxisView:
 
     @cached_property
     def path(self) -> Loads:
-        """Nominal weight along the motion; no contact."""
+        """Nominal weight along the motion, and the known force from outside."""
         law = self.described.gravity
         weight = law.constant + law.arm * np.sin(self.position - law.hanging)
-        return Loads(weight, np.zeros_like(weight))
+        applied = self.run.applied
+        return Loads(weight, np.zeros_like(weight) if applied is None else self.run.to_grid(applied))
 
     @cached_property
     def position(self) -> Array:
@@ -160,8 +161,8 @@ class AxisView:
 
     @property
     def loaded(self) -> Mask:
-        """(g,) False: no load acts but the axis' own weight."""
-        return np.zeros(len(self.run.grid), dtype=bool)
+        """(g,) True where a known force from outside acts."""
+        return np.abs(self.path.contact_force[:, 0]) > 0.0
 
     @property
     def warmth(self) -> Array:
