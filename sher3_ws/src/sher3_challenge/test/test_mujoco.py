@@ -137,6 +137,9 @@ def test_deviations_keep_to_the_tolerances_of_the_amendment():
             assert axis.coulomb <= 3e-4 * actuator.drive.rated
         assert np.abs(rig.mechanism.link - drawn.mechanism.link).max() < 0.2501e-6
         assert np.abs(rig.mechanism.rail - drawn.mechanism.rail).max() < 50.01e-6
+        # a newton may make 1e-3 of itself in force and of 0.01 N m in torque, the ranges being 12 N and 0.12 N m
+        off = np.abs(rig.sensor.matrix - np.eye(6))
+        assert off[:3, :2].max() < 1.5e-3 and off[3:, :3].max() < 1.1e-5 and off[:3, 3:].max() < 0.15
         assert np.abs(rig.sensor.bias[:3]).max() < 6.001e-4 and abs(rig.sensor.tool_mass - 0.020) < 1.0001e-4
 
 

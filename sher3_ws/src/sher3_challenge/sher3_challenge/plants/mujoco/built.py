@@ -87,7 +87,7 @@ def deviate(rig: Rig, rng: np.random.Generator) -> None:
     rig.yielding.healthy = float(abs(within(rng, YIELDING)))
     s, sensor = rig.sensor, rig.robot.force_sensor
     reach = np.array([*sensor.range_force, *sensor.range_torque])
-    s.matrix = s.matrix + within(rng, MATRIX, (6, 6)) * np.outer(1 / reach, reach)
+    s.matrix = s.matrix + within(rng, MATRIX, (6, 6)) * np.outer(reach, 1 / reach)
     s.bias = s.bias + within(rng, BIAS, 6)
     s.tool_mass += float(within(rng, TOOL_MASS))
 
