@@ -9,6 +9,9 @@ from scipy.signal import lfilter
 from sher3_common.compiled import compiled
 from sher3_diagnosis.channel import Array
 
+NEAR_LIMIT = 0.95
+"""Share of a force limit from which a reported force may be clamped by it: the noise of the report is a few percent."""
+
 
 @compiled
 def dahl(x: Array, displacement: float) -> Array:
@@ -88,31 +91,42 @@ def first_order(start: Array, end: Array, time_constant: float, period: float) -
 
 
 @compiled
-def clamped_law(
-    demand: Array, position: Array, kp: float, ki: float, limit: float, start: float, period: float
-) -> tuple[Array, Array]:
-    """PI force with and without a clamp, (n,) each, of the measured motion and the demand held over each past interval.
+def frozen_integral(
+    force: Array, law: Array, step: Array, load: Array, travel: Array, axis: tuple[float, float, float, float, float]
+) -> Array:
+    """Velocity error (n,) [m or rad] that the integrator of a clamped PI law has not summed up until each tick.
 
-    The integrator starts at `start` / ki. It does not move while the force is clamped and the error would drive it
-    further into the clamp.
+    A demand that steps at a tick lifts the force at once; the velocity then takes it down again, within the period as
+    often as not. While it is clamped the axis accelerates evenly, so the time in the clamp follows from how far the
+    force would go: from the force reported, or from the law where that is clamped itself.
+
+    Args:
+        force: (n,) reported just before the demand steps.
+        law: (n,) that a drive without a clamp would give there.
+        step: (n,) by how much the step of the demand lifts the force: gain times the change.
+        load: (n,) force that holds the velocity.
+        travel: (n,) integral of the velocity error over the period ahead of each tick.
+        axis: gain and integral gain of the drive, mass, limit of the force, period [s].
     """
-    clamped, free = np.empty(len(demand)), np.empty(len(demand))
-    xi = start / ki
-    xi_free = xi
-    for k in range(len(demand)):
-        j = max(k - 1, 0)
-        step = demand[k] * period - (position[k] - position[j])
-        xi_free += step
-        a, b = max(k - 1, 0), min(k + 1, len(demand) - 1)
-        velocity = (position[b] - position[a]) / ((b - a) * period)
-        raw = kp * (demand[k] - velocity) + ki * (xi + step)
-        if abs(raw) > limit and raw * step > 0.0:
-            raw = kp * (demand[k] - velocity) + ki * xi
-        else:
-            xi += step
-        clamped[k] = min(max(raw, -limit), limit)
-        free[k] = kp * (demand[k] - velocity) + ki * xi_free
-    return clamped, free
+    gain, integral, mass, limit, period = axis
+    out = np.zeros(len(force))
+    total = 0.0
+    for k in range(len(force) - 1):
+        now = force[k]
+        free = law[k] - integral * total
+        if abs(now) > NEAR_LIMIT * limit and abs(free) > limit and now * free > 0.0:
+            now = free
+        wanted = now + step[k]
+        side = 1.0 if wanted > 0.0 else -1.0
+        over, room = side * wanted - limit, limit - side * load[k]
+        if over > 0.0 and room > 0.0:
+            time = mass * over / (gain * room)
+            if time >= period:
+                total += travel[k]
+            else:
+                total += side * ((side * wanted - side * load[k]) / gain * time - 0.5 * room / mass * time * time)
+        out[k + 1] = total
+    return out
 
 
 def held_lag(x: Array, time_constant: float, period: float) -> Array:

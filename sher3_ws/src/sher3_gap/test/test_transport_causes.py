@@ -75,6 +75,22 @@ def test_latencies_that_scatter_are_jitter_with_their_rms():
     assert cause.parameters["sigma"].low < 0.3 * PERIOD < cause.parameters["sigma"].high
 
 
+def test_the_far_tail_of_a_jitter_is_not_taken_for_drops():
+    """A hundredth of the ticks late by whole periods carries most of the energy, but most odd ticks are in between."""
+    rng = np.random.default_rng(1)
+    samples = np.concatenate([rng.gamma(1.7, 0.14, 980), np.ones(10), np.full(10, 2.0)])
+    facts = {"samples": samples, "drops": 0.02, "scatter": 0.2, "latency": np.full(5, 0.2)}
+    assert [c.effect for c in found(constant=0.4, per_tick=0.0, **facts).causes] == ["command_jitter"]
+
+
+def test_drops_on_one_axis_are_no_skew_of_it():
+    """The best constant latency of an axis whose commands are dropped now and then is the mean of its holds."""
+    samples = np.concatenate([np.zeros(480), np.ones(20)])
+    facts = {"latency": np.array([0.0, 0.0, 0.0, 0.04, 0.0]), "samples": samples, "drops": 0.04}
+    causes = found(shared=1.0, constant=0.9, per_tick=0.0, **facts).causes
+    assert [c.effect for c in causes] == ["dropped_commands"]
+
+
 def test_a_single_late_axis_is_where_its_lateness_sits():
     facts = {"alone": 4, "latency": np.array([0.0, 0.0, 0.0, 0.0, 0.6]), "samples": np.full(500, 0.6)}
     result = found(constant=0.0, per_tick=0.0, **facts)

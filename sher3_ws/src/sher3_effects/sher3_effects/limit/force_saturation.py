@@ -11,13 +11,13 @@ from sher3_diagnosis.effect import Best, Shape, Signature
 from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
-from sher3_effects.operators import clamped_law
+from sher3_effects.operators import frozen_integral
 from sher3_effects.page import Page
-from sher3_effects.view import RobotView
+from sher3_effects.view import RecordedRun, RobotView
 
 
 class ForceSaturation(Page):
-    """F = clamp(PI law, +-limit), integrator frozen while clamped."""
+    """F = clamp(PI law, +-limit), integrator frozen while clamped, also between two ticks."""
 
     id, family, stage = "force_saturation", "limit", "drive"
     inputs = ("force", "command")
@@ -25,25 +25,41 @@ class ForceSaturation(Page):
     on_axis = {"limit": "limit"}
     explanation = "The reported force stops rising at a level below the drive's limit; below it the drive behaves."
     siblings = {"drive_lag": "late at every level"}
-    finer = {"limit": (0.9, 0.94, 0.97, 0.985, 1.015, 1.03, 1.06, 1.1)}
+    finer = {"limit": (0.9, 0.94, 0.97, 0.985, 0.993, 1.007, 1.015, 1.03, 1.06, 1.1)}
+    LEVELS = 12
+    """Limits tried between the largest force that was reported and the largest that was asked for."""
 
     def shapes(self, views: Sequence[RobotView], site: str) -> list[Shape]:
-        """Levels among the largest reported forces."""
+        """Levels from the largest force that was reported, which no limit is below, to the largest asked for."""
         axis = views[0].row(site)
-        largest = np.concatenate([np.abs(v.run.effort[:, axis]) for v in views if v.run.effort is not None])
-        levels = np.quantile(largest, [0.9, 0.95, 0.97, 0.98, 0.99, 0.995, 0.999])
-        return [{"limit": float(x)} for x in np.unique(levels) if x > 0.0]
+        runs = [v.run for v in views if v.run.effort is not None and v.run.echo is not None]
+        if not runs:
+            return []
+        reported = np.quantile(np.concatenate([np.abs(r.effort[:, axis]) for r in runs]), 0.9999)
+        asked = max(float(np.max(np.abs(r.effort[:, axis] + self._step(views[0], r, axis)))) for r in runs)
+        if reported <= 0.0:
+            return []
+        return [{"limit": float(x)} for x in np.geomspace(0.98 * reported, max(asked, reported), self.LEVELS)]
+
+    def _step(self, view: RobotView, run: RecordedRun, axis: int) -> Array:
+        """By how much the force steps with the demand at each tick, (n,)."""
+        assert run.echo is not None
+        return view.robot.actuators[axis].drive.kp * np.diff(run.echo[:, axis], append=run.echo[-1, axis])
 
     def signature(self, view: RobotView, site: str, shape: Shape) -> Signature:
         """No coefficient: clamped law minus law."""
-        run, axis = view.run, view.row(site)
-        assert run.echo is not None
-        drive = view.robot.actuators[axis].drive
-        start = float(view.path.gravity[0, axis] - view.path.contact_force[0, axis])
-        clamped, free = clamped_law(
-            run.echo[:, axis], run.smooth[:, axis], drive.kp, drive.ki, shape["limit"], start, run.period
-        )
-        return Signature({}, {Channel(self.stage, site): run.to_grid(clamped - free)[:, None]})
+        run, axis, limit = view.run, view.row(site), shape["limit"]
+        if run.echo is None or run.effort is None:
+            return Signature()
+        robot, clock = view.robot.actuators[axis], run.stage_clock
+        held = np.interp(clock, clock[run.grid], view.path.gravity[:, axis] - view.path.contact_force[:, axis])
+        ahead = np.append(run.echo[1:, axis] * run.period - np.diff(run.motor[:, axis]), 0.0)
+        load = held + robot.viscous * run.velocity[:, axis]
+        law, step = view.law[:, axis] + held[0], self._step(view, run, axis)
+        constants = (robot.drive.kp, robot.drive.ki, robot.mass, limit, run.period)
+        lost = frozen_integral(run.effort[:, axis], law, step, load, ahead, constants)
+        clamped = np.clip(law - robot.drive.ki * lost, -limit, limit)
+        return Signature({}, {Channel(self.stage, site): run.to_grid(clamped - law)[:, None]})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Limit."""

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from sher3_diagnosis.channel import Array, Channel
-from sher3_diagnosis.effect import Best, Shape, Signature, column
+from sher3_diagnosis.effect import Best, Shape, Signature
 from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
@@ -16,7 +17,7 @@ from sher3_effects.view import AxisView, RobotView
 
 
 class EncoderEccentricity(Page):
-    """reading = load + A sin(2 pi q / lead + phase)."""
+    """reading = load + A sin(2 pi q / lead + phase), and the same of twice the order where the code is tilted too."""
 
     id, family, stage = "encoder_eccentricity", "periodic", "sensing"
     inputs = ("position",)
@@ -29,19 +30,26 @@ class EncoderEccentricity(Page):
         """Return the difference of the two encoders."""
         return (Channel("transmission", site),)
 
+    def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
+        """Once per lead, alone (0) or with a second harmonic (2)."""
+        return [{"side": 0.0}, {"side": 2.0}]
+
+    def _waves(self, view: AxisView, site: str, shape: Shape) -> Array:
+        """Quadratures at every tick, (n, p)."""
+        turn = 2.0 * np.pi * view.run.smooth[:, view.row(site)] / view.lead(site)
+        orders = (1.0, shape["side"]) if shape["side"] else (1.0,)
+        return np.stack([f(n * turn) for n in orders for f in (np.sin, np.cos)], axis=-1)
+
     def signature(self, view: RobotView, site: str, shape: Shape) -> Signature:
         """The quadratures, and at the tip the motion that did not happen."""
-        axis = view.row(site)
-        phase = 2.0 * np.pi * view.run.smooth[:, axis] / view.lead(site)
-        waves = np.stack([view.run.to_grid(np.sin(phase)), view.run.to_grid(np.cos(phase))], axis=-1)
-        raw = np.stack([np.sin(phase), np.cos(phase)], axis=-1)[view.run.grid]
-        tip = -view.path.jacobian[:, :, [axis]] * raw[:, None, :]
-        return Signature({Channel("transmission", site): waves[:, None, :], **view.at_tip(tip)})
+        waves = self._waves(view, site, shape)
+        tip = -view.path.jacobian[:, :, [view.row(site)]] * waves[view.run.grid][:, None, :]
+        return Signature({Channel("transmission", site): view.run.to_grid(waves)[:, None, :], **view.at_tip(tip)})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Amplitude and phase."""
         return {
-            "amplitude": float(np.hypot(*coefficients)),
+            "amplitude": float(np.hypot(coefficients[0], coefficients[1])),
             "phase": float(np.arctan2(coefficients[1], coefficients[0])),
         }
 
@@ -54,9 +62,8 @@ class EccentricityOnAxis(EncoderEccentricity):
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
         """Return the quadratures of the reading."""
-        phase = 2.0 * np.pi * view.run.smooth[:, view.row(site)] / view.lead(site)
-        waves = column(view.run.to_grid(np.sin(phase)), view.run.to_grid(np.cos(phase)))
-        return Signature({Channel("transmission", site): waves})
+        waves = view.run.to_grid(self._waves(view, site, shape))
+        return Signature({Channel("transmission", site): waves[:, None, :]})
 
 
 @dataclass(frozen=True)

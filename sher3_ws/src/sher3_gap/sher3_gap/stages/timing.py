@@ -24,6 +24,8 @@ TELLING_STEP = 1e-3
 """Change of the command, as a share of the velocity limit, from which a tick tells its latency."""
 QUIET = 1e-12
 """Energy of the scaled echo error below which commands arrive on time."""
+HELD = 20
+"""Longest hold that is looked for, in periods beyond the usual latency: drops come in bursts."""
 WHOLE = 0.75
 """Lateness beyond the median, in periods, from which a tick's command was held for a whole period."""
 UNEXPLAINED = 1e-10
@@ -97,7 +99,7 @@ def tick_latency(command: Array, echo: Array, around: Array) -> tuple[Array, Arr
     error = echo - np.column_stack([shifted(command[:, [i]], a)[:, 0] for i, a in enumerate(around)])
     left = np.sum(error**2, axis=1)
     base = int(np.floor(np.median(around) + 1e-6))
-    for whole in sorted(range(max(0, base - 3), base + 5), key=lambda n: abs(n - base)):
+    for whole in sorted(range(max(0, base - 3), base + HELD), key=lambda n: abs(n - base)):
         new, old = delayed(command, 1 + whole), delayed(command, 2 + whole)
         step = new - old
         energy = np.sum(step**2, axis=1)

@@ -27,7 +27,7 @@ from sher3_effects.timing.dropped_commands import DroppedCommands
 from sher3_gap.case.signals import RunSignals
 from sher3_gap.stages.exact import EXACT, ROUNDING
 from sher3_gap.stages.exact_findings import exact_cause, exact_finding, exact_place
-from sher3_gap.stages.timing import WHOLE, Timing
+from sher3_gap.stages.timing import Timing
 
 LEAST_SPREAD = 0.01
 """Least half width of a latency's interval, periods: the resolution of the echo's mean."""
@@ -118,7 +118,7 @@ def _causes(late: Lateness, without: Collection[str]) -> tuple[list[Cause], floa
     if _delayed(late) and CommandDelay.id not in without:
         closure = late.constant
         causes.append(exact_cause(CommandDelay.id, "all", late.constant, delay=late.seconds(late.held)))
-    if late.odd and AxisSkew.id not in without:
+    if late.odd and late.constant > late.random_share and AxisSkew.id not in without:
         closure = max(closure, late.constant)
         for i in late.odd:
             skew = late.seconds(late.timing.latency[i] - late.usual)
@@ -140,13 +140,18 @@ def _delayed(late: Lateness) -> bool:
 
 
 def _dropping(late: Lateness) -> bool:
-    """Whether some commands are held for whole periods, and these make most of the random error."""
+    """Whether commands are held for whole periods: drops leave a lattice of latencies, jitter a continuum.
+
+    Most of the ticks that are not on time must stand on the lattice. By number, not by energy: the far tail of a jitter
+    looks like holds.
+    """
     t = late.timing
     if t.drops <= DROPS_SEEN or late.random_share <= RANDOM_SHARE:
         return False
     deviation = t.samples - float(np.median(t.samples))
-    total = float(np.sum(deviation**2))
-    return total > 0.0 and float(np.sum(deviation[deviation > WHOLE] ** 2)) / total > MOSTLY_DROPS
+    odd = deviation[np.abs(deviation) > SKEW]
+    on_lattice = np.abs(odd - np.rint(odd)) < SKEW
+    return len(odd) > 0 and float(np.mean(on_lattice)) > MOSTLY_DROPS
 
 
 def _probability(t: Timing) -> Parameter:
