@@ -87,6 +87,7 @@ class Effect:
         siblings: effect id -> what tells it from this one.
         extends: ids of simpler effects that this one contains; it must explain markedly more than they do.
         finer: shape value -> factors by which the best value is multiplied in the finer search.
+        polished: shape values beside those of `finer` that are no choice: polished once the search is over.
         companion: family of another effect on the same axis without which this one does not show.
         dry: whether it is a friction that holds an axis at rest.
         best: the excitation that shows it best.
@@ -107,6 +108,7 @@ class Effect:
     siblings: ClassVar[Mapping[str, str]] = {}
     extends: ClassVar[tuple[str, ...]] = ()
     finer: ClassVar[Mapping[str, tuple[float, ...]]] = {}
+    polished: ClassVar[tuple[str, ...]] = ()
     companion: ClassVar[str] = ""
     dry: ClassVar[bool] = False
     best: ClassVar[Best]

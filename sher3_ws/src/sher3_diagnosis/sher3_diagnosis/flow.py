@@ -20,6 +20,7 @@ from sher3_diagnosis.judge.left_over import down_to_floor, left_over
 from sher3_diagnosis.localise.gaps import localise
 from sher3_diagnosis.machine import Machine
 from sher3_diagnosis.quantify.closure import residual_after
+from sher3_diagnosis.quantify.polish import polished
 
 R = TypeVar("R")
 E = TypeVar("E", bound=Evidence)
@@ -75,6 +76,7 @@ def find(machine: Machine[R, E], evidence: E, without: Collection[str], say: Say
     rule = down_to_floor if machine.policy.down_to_floor else left_over
     attribution = machine.attribute(evidence, candidates, partial(rule, significant, evidence), say)
     say("quantifying")
+    attribution = polished(evidence, attribution)
     refined, causes = machine.refine(evidence, causes_of(evidence, attribution))
     left = left_over(significant, evidence, attribution.fit)
     finding = Finding(refined, gaps, attribution, causes, left)

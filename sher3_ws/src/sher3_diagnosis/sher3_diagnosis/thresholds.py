@@ -163,28 +163,17 @@ Set on: development seeds with `controller_gain`. Measure: `sher3 gap challenge 
 MIN_RUNS = 5
 """Fewer runs than this carry no interval: a resample of four runs has too few distinct ones."""
 
+PIECES = 4
+"""Pieces of a run whose fits are compared for the intervals of parameters: enough that each excitation gives several,
+few enough that each holds several strokes. Repeats share their pieces: a law errs alike in them. Set by that argument.
+Measure: `sher3 gap challenge --seeds 0:40` (coverage of the parameters)."""
+
 FLOOR_UNCERTAINTY = 0.05
 """Relative standard error of the floor's power with a handful of repeats.
 Set on: development seeds. Measure: `sher3 gap challenge --seeds 0:40` (coverage of the closure)."""
 
-SHAPE_UNCERTAINTY = 0.25
-"""Relative uncertainty of a nonlinear parameter: the step of its search and what it means in another form of the law.
-Set on: development seeds. Measure: `sher3 gap challenge --seeds 0:40` (coverage of the parameters)."""
-
-REACH_UNCERTAINTY = 0.4
-"""The same of a displacement over which a force or a lag builds up: laws differ most in the form of that.
-Set on and measured as `SHAPE_UNCERTAINTY`."""
-
-LAW_UNCERTAINTY = 0.06
-"""Relative uncertainty of any parameter that comes from the law being an idealisation.
-Set on and measured as `SHAPE_UNCERTAINTY`."""
-
 JACKKNIFE = 2.3
 """Half width of a 95 % interval in standard errors of a jackknife over about nine runs (Student's t, 8 degrees)."""
-
-AS_BUILT_SHARE = 0.5
-"""Systematic residual of a healthy robot at tip and force sensor, over the floor. Set on: healthy development seeds.
-Measure: `sher3 gap challenge --kinds healthy`."""
 
 AS_BUILT_CLOSURE = 0.02
 """Closure that a healthy robot's own deviations may take or give. Set on and measured as `FLOOR_UNCERTAINTY`."""

@@ -35,6 +35,7 @@ class RecordedRun(Protocol):
     effort: Array | None
     reference: Array | None
     command: Array | None
+    echo: Array | None
     load: Array | None
 
     @property

@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 from sher3_diagnosis.attribute.candidates import Candidates
+from sher3_diagnosis.attribute.rivals import Attribution
 from sher3_diagnosis.fitting import make_term
+from sher3_diagnosis.quantify.polish import polished
 from sher3_effects import library
 from sher3_gap.evidence import gather
 from sher3_gap.excitation import excite
@@ -50,6 +52,8 @@ RECOVERED = [
     ("force_bias", "force_sensor", {"fx": 0.2}),
     ("force_crosstalk", "force_sensor", {"xz": 0.05}),
     ("drive_lag", "delta_1", {"time_constant": 6e-3}),
+    ("encoder_eccentricity", "delta_3", {"amplitude": 1e-5}),
+    ("link_compliance", "tip", {"fraction": 0.8, "own_weight": 1.0}),
 ]
 
 
@@ -64,6 +68,34 @@ def test_a_fit_finds_what_the_form_in_the_plant_did(effect, site, truth):
     found = Candidates(evidence, [page]).best(page, site)
     assert found is not None
     assert set(page.channels(site)) & found.terms[0].channels
+    found = polished(evidence, Attribution(found, ((),), (1.0,))).fit
     (part,) = page.to_simulator(site, page.parameters(found.terms[0].shape, found.of(0)), ROBOT)
     for name, value in truth.items():
         assert part.parameters[name] == pytest.approx(value, rel=0.05), part
+
+
+def polished_on_steps(effect, site, **truth):
+    """The page's fit to two step runs of a robot with the effect, its shape polished."""
+    page = library()[effect]
+    wanted = [(excite("steps", ROBOT), repeat) for repeat in range(2)]
+    evidence = gather(signals(rehearse(ROBOT, wanted, [page.plant(site, **truth)], seed=1, scatter=QUIET)), ROBOT)
+    found = Candidates(evidence, [page]).best(page, site)
+    assert found is not None
+    after = polished(evidence, Attribution(found, ((),), (1.0,))).fit
+    return page.parameters(after.terms[0].shape, after.of(0))
+
+
+def test_a_vibration_in_one_direction_is_one_mode_and_polished():
+    """Frequency within 1 % and damping within 5 %: the grid of the search alone is 2 % and 20 % away."""
+    truth = {"frequency": 13.0, "damping": 0.05, "x": 0.8, "y": 0.0, "z": 0.6, "single": 1.0}
+    found = polished_on_steps("structural_vibration", "tip", **truth)
+    assert found["single"] == 1.0
+    assert found["frequency"] == pytest.approx(13.0, rel=0.01)
+    assert found["damping"] == pytest.approx(0.05, rel=0.05)
+    assert (found["x"], found["y"], found["z"]) == pytest.approx((0.8, 0.0, 0.6), abs=0.02)
+
+
+@pytest.mark.parametrize("limit", [5.0, 3.5])
+def test_a_force_limit_is_found_whether_it_shows_between_ticks_or_at_them(limit):
+    """A demand that steps lifts the force at once; below 5 N it has left the limit again when it is reported."""
+    assert polished_on_steps("force_saturation", "tilt", limit=limit)["limit"] == pytest.approx(limit, rel=0.08)

@@ -69,7 +69,7 @@ BODY = np.dtype(
         ("bending", "f8"),
         ("mode_frequency", "f8"),
         ("mode_damping", "f8"),
-        ("mode_gain", "f8", 3),  # along x, y, z of {b}
+        ("mode_gain", "f8", (3, 3)),  # shift per static shift under an acceleration, axes of {b}
         # mechanism, beyond the geometry: growth [1/K] of everything, of the links, of the arm
         ("expansion", "f8"),
         ("link_expansion", "f8"),

@@ -118,7 +118,9 @@ def vibrate(b: Any, s: Any, acceleration: Array, shift: Array) -> None:
     damped = w * math.sqrt(1.0 - zeta * zeta)
     decay, c, sn = math.exp(-zeta * w * h), math.cos(damped * h), math.sin(damped * h)
     for i in range(3):
-        rest = -b.mode_gain[i] * acceleration[i] / (w * w)
+        rest = 0.0
+        for j in range(3):
+            rest -= b.mode_gain[i, j] * acceleration[j] / (w * w)
         x, v = s.mode_shift[i] - rest, s.mode_rate[i]
         side = (v + zeta * w * x) / damped
         s.mode_shift[i] = rest + decay * (x * c + side * sn)

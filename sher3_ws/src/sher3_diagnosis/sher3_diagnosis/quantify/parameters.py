@@ -1,63 +1,67 @@
-"""Parameters of a cause with their intervals.
+"""Parameters of a cause with their intervals, measured from how its fit scatters over pieces of the data.
 
-An interval adds up from the jackknife over runs, what the robot's as-built deviations can move a coefficient by, how
-coarsely a shape was searched, and the law being an idealisation. The last two dominate where noise averages out.
+Where noise averages out, what is left is the law being an idealisation: it wants another size in each piece. Deviations
+of the machine within tolerance move a parameter too, and are known up to their prior.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
-from sher3_diagnosis.channel import AT_TIP, Array
+from sher3_diagnosis.channel import Array
 from sher3_diagnosis.evidence import Evidence
-from sher3_diagnosis.fitting import Fit, Term
-from sher3_diagnosis.thresholds import (
-    AS_BUILT_SHARE,
-    JACKKNIFE,
-    LAW_UNCERTAINTY,
-    MIN_RUNS,
-    REACH_UNCERTAINTY,
-    SHAPE_UNCERTAINTY,
-)
+from sher3_diagnosis.fitting import Fit
+from sher3_diagnosis.quantify.local import Local, local
+from sher3_diagnosis.term import Term
+from sher3_diagnosis.thresholds import MIN_RUNS
 from sher3_diagnosis.verdict import Parameter
 
-UNSEEN_BY_REPEATS = (*AT_TIP, "sensing")
-"""Stages at which a healthy robot deviates from its drawing by something that repeats and no repeat shows."""
+STEP = 1e-4
+"""Relative step of the derivative of a parameter with respect to what was fitted."""
 
 
 def parameters(evidence: Evidence, fit: Fit, index: int) -> dict[str, Parameter]:
-    """Return the parameters of one cause with 95 % intervals; without them where the runs are too few."""
-    term = fit.terms[index]
-    best = fit.of(index)
-    value = term.effect.parameters(term.shape, best)
-    runs = len(fit.loro_coefficients)
-    draws = [term.effect.parameters(term.shape, c) for c in fit.loro_of(index)]
-    moved = [term.effect.parameters(term.shape, best + step) for step in np.diag(_as_built_steps(term))]
+    """Return the parameters of one cause with 95 % intervals.
+
+    Without an interval where the runs are too few, and where the parameter is a choice or was searched on a grid alone.
+    """
+    term, best = fit.terms[index], fit.of(index)
+    bounded = len(fit.loro_coefficients) >= MIN_RUNS
+    around = local(evidence, fit, index) if bounded else None
     out: dict[str, Parameter] = {}
-    for name, x in value.items():
-        spread = np.array([d[name] for d in draws])
-        jackknife = float(np.sqrt((runs - 1) / runs * np.sum((spread - spread.mean()) ** 2)))
-        built = float(np.sqrt(sum((m[name] - x) ** 2 for m in moved)))
-        half = JACKKNIFE * jackknife + built + LAW_UNCERTAINTY * abs(x)
-        if name in term.shape or term.width == 0:
-            share = REACH_UNCERTAINTY if name == "displacement" else SHAPE_UNCERTAINTY
-            half = max(half, share * abs(x))
+    for name, x in term.effect.parameters(term.shape, best).items():
+        half = None if around is None or name in term.effect.discrete else _half_width(term, best, around, name)
         unit = term.effect.unit(name, term.site, term.site in evidence.rotary)
-        bounded = runs >= MIN_RUNS and name not in term.effect.discrete
-        out[name] = Parameter(value=x, low=x - half if bounded else None, high=x + half if bounded else None, unit=unit)
+        low, high = (None, None) if half is None else (x - half, x + half)
+        out[name] = Parameter(value=x, low=low, high=high, unit=unit)
     return out
 
 
-def _as_built_steps(term: Term) -> Array:
-    """Change of each coefficient that a systematic residual of `AS_BUILT_SHARE` of the floor could cause at tip and
-    sensor, (p,).
-    """
-    energy, count = np.zeros(term.width), np.zeros(term.width)
-    for run in term.columns:
-        for channel, x in run.items():
-            if channel.stage in UNSEEN_BY_REPEATS:
-                used = np.any(x != 0.0, axis=1)
-                energy[: x.shape[1]] += np.sum(x**2, axis=0)
-                count[: x.shape[1]] += used.sum()
-    rms = np.sqrt(energy / np.maximum(count, 1.0))
-    return np.where(rms > 0.0, AS_BUILT_SHARE / np.where(rms > 0.0, rms, 1.0), 0.0)
+def _half_width(term: Term, best: Array, around: Local, name: str) -> float | None:
+    """Half width of a parameter's interval; None where nothing that was fitted moves it."""
+    gradient = _gradient(term, best, around.names, name)
+    if not gradient.any():
+        return None
+    return around.half_width(gradient)
+
+
+def _gradient(term: Term, best: Array, names: tuple[str, ...], name: str) -> Array:
+    """Derivative of a parameter with respect to the coefficients and the shape parameters `names`."""
+    size = float(np.abs(best).max()) if len(best) else 0.0
+
+    def at(shape: Mapping[str, float], coefficients: Array) -> float:
+        return term.effect.parameters(shape, coefficients)[name]
+
+    out = []
+    for k in range(len(best)):
+        step = np.zeros(len(best))
+        step[k] = STEP * max(abs(best[k]), 1e-3 * size, 1e-300)
+        out.append((at(term.shape, best + step) - at(term.shape, best - step)) / (2.0 * step[k]))
+    for n in names:
+        by = STEP * term.shape[n]
+        ends = (at({**term.shape, n: term.shape[n] + s}, best) for s in (by, -by))
+        high, low = ends
+        out.append((high - low) / (2.0 * by))
+    return np.array(out)

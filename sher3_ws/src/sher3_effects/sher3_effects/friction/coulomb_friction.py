@@ -36,6 +36,7 @@ class CoulombFriction(Page):
         "viscous_friction": "the force grows with speed",
     }
     on_axis = {"force": "coulomb"}
+    polished = ("displacement",)
     DISPLACEMENTS: tuple[float, ...] = (1.0e-3, 2.5e-3, 5.0e-3)
     """In motor revolutions: 2, 5 and 10 um on a 2 mm lead."""
 

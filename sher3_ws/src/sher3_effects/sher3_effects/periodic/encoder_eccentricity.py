@@ -53,6 +53,10 @@ class EncoderEccentricity(Page):
             "phase": float(np.arctan2(coefficients[1], coefficients[0])),
         }
 
+    def admissible(self, shape: Shape, coefficients: Array) -> bool:
+        """Return whether once per lead is the larger of the two waves: the second is that of a code tilted as well."""
+        return len(coefficients) < 4 or bool(np.hypot(*coefficients[:2]) > np.hypot(*coefficients[2:]))
+
 
 class EccentricityOnAxis(EncoderEccentricity):
     """The same on one axis of any machine, whose tip nobody sees."""

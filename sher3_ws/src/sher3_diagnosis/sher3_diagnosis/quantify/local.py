@@ -1,0 +1,141 @@
+"""A fit seen as linear around its best point: coefficients, shape parameters and deviations within tolerance together.
+
+One step of Gauss and Newton from there polishes a shape beyond the grid of its search. How the gradient scatters over
+pieces of the data gives the covariance of all parameters (White 1982; Liang and Zeger 1986). There are two ways to cut,
+and the wider answer is taken: by parts of the motion, which repeats share, since a law that is an idealisation wants
+another size in each of them; and by runs, since the machine itself differs from run to run.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.stats import t as student
+
+from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.evidence import Evidence
+from sher3_diagnosis.fitting import Fit
+from sher3_diagnosis.term import Term, make_term
+from sher3_diagnosis.thresholds import PIECES
+
+STEP = 0.01
+"""Relative step of the derivative with respect to a shape parameter."""
+
+
+@dataclass(frozen=True)
+class Local:
+    """The linear model around one term of a fit.
+
+    Attributes:
+        names: continuous shape parameters of the term, which follow its coefficients.
+        own: columns of the term's coefficients, then of those shape parameters.
+        information: (p, p) normal matrix of all columns, `prior`: (p,) precision known beforehand.
+        scores: for each way to cut the data, (pieces, p) gradient of each piece.
+    """
+
+    names: tuple[str, ...]
+    own: slice
+    information: Array
+    prior: Array
+    scores: tuple[Array, ...]
+
+    @cached_property
+    def _inverse(self) -> Array:
+        total = self.information + np.diag(self.prior)
+        scale = np.sqrt(np.maximum(np.diag(total), 1e-300))
+        return np.linalg.pinv(total / np.outer(scale, scale), rcond=1e-10, hermitian=True) / np.outer(scale, scale)
+
+    @property
+    def step(self) -> dict[str, float]:
+        """Change of each shape parameter that one step of Gauss and Newton asks for."""
+        change = self._inverse @ self.scores[0].sum(axis=0)
+        start = self.own.stop - len(self.names)
+        return dict(zip(self.names, map(float, change[start : self.own.stop]), strict=True))
+
+    def half_width(self, gradient: Array) -> float:
+        """Return the half width of the 95 % interval of a parameter with this gradient (p_own,)."""
+        direction = self._inverse[:, self.own] @ gradient
+        known = float(direction @ (self.prior * direction))
+        widest = 0.0
+        for scores in self.scores:
+            told = (scores @ direction) ** 2
+            pieces = len(scores)
+            freedom = max(1.0, float(told.sum() ** 2 / max((told**2).sum(), 1e-300)) - 1.0)
+            variance = float(told.sum()) * pieces / max(pieces - 1, 1) + known
+            widest = max(widest, float(student.ppf(0.975, freedom) * np.sqrt(variance)))
+        return widest
+
+
+def local(evidence: Evidence, fit: Fit, index: int) -> Local:
+    """Return the linear model around one term of a fit, on the channels it shows on."""
+    data, term = evidence.data, fit.terms[index]
+    members = [i for i, t in enumerate(fit.terms) if t.channels & term.channels]
+    slopes = {name: _slope(evidence, fit, index, name) for name in _continuous(term)}
+    widths = {i: fit.terms[i].width for i in members}
+    order = [i for i in members if i != index]
+    p = sum(widths.values()) + len(slopes)
+    own = slice(p - widths[index] - len(slopes), p)
+    information = np.zeros((p, p))
+    parts: dict[tuple[str, int], Array] = defaultdict(lambda: np.zeros(p))
+    runs: dict[int, Array] = defaultdict(lambda: np.zeros(p))
+    for r, excitation in enumerate(evidence.excitations):
+        for channel in sorted(term.channels & data.target[r].keys()):
+            left, columns = data.target[r][channel].copy(), []
+            for i in [*order, index]:
+                x = _columns(fit.terms[i], r, channel, len(left))
+                left -= x @ fit.of(i) + fit.terms[i].fixed[r].get(channel, 0.0)
+                columns.append(x)
+            columns += [s[r].get(channel, np.zeros(len(left)))[:, None] for s in slopes.values()]
+            jacobian = np.hstack(columns)
+            information += jacobian.T @ jacobian
+            piece = _pieces(evidence, r, channel)
+            for k in np.unique(piece):
+                at = piece == k
+                gradient = jacobian[at].T @ left[at]
+                parts[excitation, int(k)] += gradient
+                runs[r] += gradient
+    limited = [np.full(widths[i], float(np.isfinite(fit.terms[i].limit))) for i in [*order, index]]
+    prior = np.concatenate([*limited, np.zeros(len(slopes))])
+    scores = tuple(np.array(list(cut.values())) for cut in (parts, runs))
+    return Local(tuple(slopes), own, information, prior, scores)
+
+
+def _continuous(term: Term) -> list[str]:
+    """Shape parameters that are no choice; one that is zero or infinite stays so."""
+    names = [*term.effect.finer, *term.effect.polished]
+    return [n for n in names if term.shape.get(n) and np.isfinite(term.shape[n])]
+
+
+def _columns(term: Term, run: int, channel: Channel, samples: int) -> Array:
+    out = np.zeros((samples, term.width))
+    x = term.columns[run].get(channel)
+    if x is not None:
+        out[:, : x.shape[1]] = x
+    return out
+
+
+def _slope(evidence: Evidence, fit: Fit, index: int, name: str) -> list[dict[Channel, Array]]:
+    """Derivative of what a term predicts with respect to a shape parameter, per run and channel."""
+    term = fit.terms[index]
+    step = STEP * term.shape[name]
+    shapes = [{**term.shape, name: term.shape[name] + by} for by in (-step, step)]
+    low, high = (make_term(evidence.data, term.effect, term.site, shape) for shape in shapes)
+    out: list[dict[Channel, Array]] = []
+    for r in range(len(evidence.data.target)):
+        run = {}
+        for channel in term.channels & evidence.data.target[r].keys():
+            n = len(evidence.data.target[r][channel])
+            ends = [_columns(t, r, channel, n) @ fit.of(index) + t.fixed[r].get(channel, 0.0) for t in (low, high)]
+            run[channel] = (ends[1] - ends[0]) / (2.0 * step)
+        out.append(run)
+    return out
+
+
+def _pieces(evidence: Evidence, run: int, channel: Channel) -> Array:
+    """Piece of its excitation that each whitened sample of a run lies in, (N,): repeats share them."""
+    ok = evidence.data.residuals[run][channel].ok
+    piece = (np.flatnonzero(ok) * PIECES) // len(ok)
+    return np.repeat(piece, len(evidence.floors[run][channel]))
