@@ -25,7 +25,7 @@ ROLL = {"drive": 6.25e-4, "motor_mechanics": 6.25e-4, "transmission": 986, "tran
 LOADED = {"structural_compliance", "link_compliance", "tool_bending", "transmission_compliance", "tool_clamp_slip",
           "rubber_coupling"}  # fmt: skip
 FAST = {"structural_vibration", "loose_read_head", "loose_counterweight", "hot_motor"}
-FAINT = {("tilt_linkage_error", "tilt"), ("payload_mass", "tilt"), ("hot_motor", "tilt")}
+FAINT = {("tilt_linkage_error", "tilt"), ("torque_constant", "tilt"), ("payload_mass", "tilt"), ("hot_motor", "tilt")}
 """Kinds that barely show at the magnitude at which calibration starts; its bounds reach further."""
 
 
@@ -124,3 +124,18 @@ def test_what_a_bristle_holds_does_not_slip_back():
     run = MUJOCO.make(ROBOT, 0, (fault,), WARM, built=False).run(RunPlan(e, 0, 10**18, 1), ideal=True)
     lost = (run["measured_js"].position - run["drives/measured_js"].position)[-250:, 4]
     assert np.abs(lost).min() > 3e-6 and np.ptp(lost) < 5e-7
+
+
+def test_faults_on_one_axis_do_not_undo_each_other():
+    """A drive that is late and clamped; a force of the motor's poles before a spring that carries the load."""
+    late, clamped = (Fault(MUJOCO.kind(name), "tilt", 1e-3, 3) for name in ("drive_lag", "force_saturation"))
+    drive = MUJOCO.make(ROBOT, 0, (late, clamped), WARM, built=False).rig().axes[4].drive
+    assert drive.lag == 1e-3 and drive.limit == pytest.approx(12.0, rel=2e-3)
+    poles, spring = (
+        Fault(MUJOCO.kind("cogging"), "delta_1", 0.3, 3),
+        Fault(MUJOCO.kind("transmission_compliance"), "delta_1", 1e-6, 3),
+    )
+    run = MUJOCO.make(ROBOT, 0, (poles, spring), WARM, built=False).run(plan("sweep"), ideal=True)
+    plain = MUJOCO.make(ROBOT, 0, (), WARM, built=False).run(plan("sweep"), ideal=True)
+    extra = (run["drives/measured_js"].effort - plain["drives/measured_js"].effort)[:, 0]
+    assert 0.2 < np.abs(extra).max() < 0.5

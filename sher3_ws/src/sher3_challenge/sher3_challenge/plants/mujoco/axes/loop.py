@@ -88,8 +88,6 @@ class Loop:
         """Stand at rest with the load encoders at the first set-point, plays at one side, and the drives holding."""
         m, d, target = self.machine, self.data, self.script.position[0] + self.host.start - self.host.offset
         q = np.zeros(self.model.nq)
-        for address, at in m.start:
-            q[address] = at
         x, load = target.copy(), target.copy()
         for _ in range(6):  # the encoders' own errors are small against what they read
             self._place(q, x)

@@ -25,7 +25,6 @@ class Machine:
         read: (5, nq) what the load encoder sees on top.
         middle: joint between the two springs of a rubber coupling, by axis.
         follows: joints that start where the load is, by axis.
-        start: other joints that do not start at zero.
     """
 
     model: Any
@@ -37,7 +36,6 @@ class Machine:
     read: Array
     middle: dict[int, int] = field(default_factory=dict)
     follows: list[list[int]] = field(default_factory=list)
-    start: list[tuple[int, float]] = field(default_factory=list)
 
 
 def machine(axes: list[Axis], period: float) -> Machine:
@@ -68,11 +66,9 @@ def machine(axes: list[Axis], period: float) -> Machine:
             for name, part in rider.read:
                 read[j, address[name]] += part
         m.follows.append([a for n, a in address.items() if n in _followers(j, axis)])
-        m.start += [(address[n], x) for rider in axis.riders for n, x in rider.start]
     return m
 
 
 def _followers(j: int, axis: Axis) -> set[str]:
     count = len(axis.bristles) + (len(ELEMENTS) if axis.windup > 0.0 else 0)
-    names = {f"l{j}", f"r{j}", f"g{j}", *(f"b{j}_{i}" for i in range(count))}
-    return names.union(*(rider.follows for rider in axis.riders))
+    return {f"l{j}", f"r{j}", f"g{j}", *(f"b{j}_{i}" for i in range(count))}

@@ -5,6 +5,7 @@ Values are in the unit of the actuator: m, N, kg on the sliders; rad, N m, kg m^
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
@@ -47,16 +48,12 @@ class Rider:
         carried: elements inside the slider's body.
         ground: elements of the world.
         tendons: elements of the section `tendon`.
-        start: joint positions at the start.
-        follows: joints on the ground that start at the slider's position.
         read: joints whose position the load encoder sees on top, with their share.
     """
 
     carried: str = ""
     ground: str = ""
     tendons: str = ""
-    start: tuple[tuple[str, float], ...] = ()
-    follows: tuple[str, ...] = ()
     read: tuple[tuple[str, float], ...] = ()
 
 
@@ -72,7 +69,7 @@ class Drive:
         rated: force whose square heats by one.
     """
 
-    limit: float
+    limit: float = math.inf
     lag: float = 0.0
     droop: float = 0.0
     cooling: float = 2.0
@@ -81,7 +78,29 @@ class Drive:
 
 @dataclass
 class Axis:
-    """One axis: motor side, transmission, load side."""
+    """One axis: motor side, transmission, load side.
+
+    Attributes:
+        kind: `prismatic` or `revolute`.
+        mass, viscous, kp, ki, rated, lead: of the robot's description, as built.
+        torque_gain, gravity_gain: real force over reported, real weight over modelled.
+        constant: force against the positive direction.
+        coulomb: dry friction of the motor's joint.
+        levels: friction on top of it, by position, velocity and time.
+        pushes: forces by position, velocity and time.
+        payload: mass of a body on the slider; where it `hangs` its weight pulls along the slider.
+        bristles: friction that builds up gradually.
+        spring, spring_rest: stiffness of a tendon to the ground and where it is slack.
+        drive: a law of its own; None is the contract's.
+        deadband: demands below it do nothing.
+        lead_error, ripples: load over motor less one; wheels off their centre between them.
+        gap: width of the play between motor and load.
+        windup, windup_reach: half width of lost motion that builds up, and over which travel.
+        compliance, load_share: of the spring between motor and load, and the share of the mass behind it.
+        rubber, rubber_time: compliance of a coupling that creeps, and its time constant.
+        leg_gap: width of the play behind the load encoder.
+        riders: what else is mounted.
+    """
 
     kind: str
     mass: float
@@ -102,7 +121,6 @@ class Axis:
     spring: float = 0.0
     spring_rest: float = 0.0
     drive: Drive | None = None
-    demand_lag: float = 0.0
     deadband: float = 0.0
     lead_error: float = 0.0
     ripples: tuple[Eccentric, ...] = ()
@@ -134,7 +152,18 @@ class Axis:
 
 @dataclass
 class Host:
-    """Host, transport and encoders; arrays are (5,)."""
+    """Host, transport and encoders; arrays are (5,).
+
+    Attributes:
+        gain, velocity_limit: of the position loop.
+        motor_resolution, load_resolution: counts of the encoders; zeros are exact.
+        offset: what both encoders read too much; `start`: how far from the first set-point a run begins.
+        edge: where the edges of the encoders' counts are, in counts.
+        encoder_scale, discs: ratio error and eccentric discs of load encoders, by axis.
+        delay, jitter, loss: lateness of commands [s], its half-normal spread [s], probability of a loss.
+        smoothing: time constant of a filter on the commands [s].
+        hold: ticks from one demand that the drive takes to the next.
+    """
 
     gain: Array
     velocity_limit: Array

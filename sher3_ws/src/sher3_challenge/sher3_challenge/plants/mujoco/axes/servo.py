@@ -76,6 +76,7 @@ class Servos:
                 d.ctrl[self.proportional] = d.ctrl[self.integral] = demand[i, self.own]
                 self._substep(demand[i], loads, time + i * self.step)
                 mujoco.mj_step(self.model, d)
+            d.qfrc_applied[:] = loads
         self.demand = demand[-1].copy()
 
     def _substep(self, demand: Array, loads: Array, time: float) -> None:

@@ -44,9 +44,7 @@ class Transport:
         self.next = [0] * AXES
         self.steady = True
         self.deadband = np.array([axis.deadband for axis in axes])
-        self.lag = np.array([axis.demand_lag for axis in axes])
-        self.dead, self.lags = bool(self.deadband.any()), bool(self.lag.any())
-        self.lagged = np.zeros(AXES)
+        self.dead = bool(self.deadband.any())
         self.demand = np.zeros((SUBSTEPS, AXES))
 
     def take(self, k: int, command: Array) -> Array:
@@ -63,9 +61,6 @@ class Transport:
             mean = self.demand.mean(axis=0)
         if self.dead:
             self.demand[np.abs(self.demand) <= self.deadband] = 0.0
-        if self.lags:
-            self._lag()
-            self.steady = False
         return mean
 
     def _take_axis(self, k: int, j: int, command: Array) -> None:
@@ -82,9 +77,3 @@ class Transport:
                 row[whole] += (1 - place + whole) * (new - row[whole])
                 row[whole + 1 :] = self.held[j] = new
             self.next[j] += 1
-
-    def _lag(self) -> None:
-        keep = np.exp(-self.step / np.maximum(self.lag, 1e-12))
-        for i in range(SUBSTEPS):
-            self.lagged = self.demand[i] + keep * (self.lagged - self.demand[i])
-            self.demand[i] = self.lagged

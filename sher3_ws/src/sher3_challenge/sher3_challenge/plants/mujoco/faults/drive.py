@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 from sher3_description import ACTUATORS
 
@@ -48,7 +49,8 @@ def axis_skew(rig: Rig, site: Site, x: float) -> dict[str, float]:
 @add("timing", "drive", ACTUATORS, 1e-3, 5e-5, 8e-3)
 def drive_lag(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The force follows through two poles that together delay slow changes by `x`."""
-    rig.axes[site.index].drive = Drive(math.inf, lag=x)
+    axis = rig.axes[site.index]
+    axis.drive = replace(axis.drive or Drive(), lag=x)
     return {"time_constant": x}
 
 
@@ -65,7 +67,8 @@ def controller_gain(rig: Rig, site: Site, x: float) -> dict[str, float]:
 def force_saturation(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The force ends at 12 N / (1 + x), 0.3 N m / (1 + x) on roll."""
     limit = site.scaled(12.0, "force") / (1 + x)
-    rig.axes[site.index].drive = Drive(limit)
+    axis = rig.axes[site.index]
+    axis.drive = replace(axis.drive or Drive(), limit=limit)
     return {"limit": limit}
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 from sher3_description import ACTUATORS
 from sher3_description.contract import GRAVITY
@@ -117,7 +118,8 @@ def hot_motor(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The motor heats with the square of its force and loses force as it does; the drive does not know."""
     cooling = float(site.rng.uniform(1.0, 3.0))
     rated = 0.5 if site.actuator == "roll" else 4.0
-    rig.axes[site.index].drive = Drive(math.inf, droop=x, cooling=cooling, rated=rated)
+    axis = rig.axes[site.index]
+    axis.drive = replace(axis.drive or Drive(), droop=x, cooling=cooling, rated=rated)
     return {"droop": x, "time_constant": cooling}
 
 
