@@ -27,7 +27,7 @@ def main() -> None:
     arguments = parser.parse_args()
     robot = load_robot()
     plan = draw_plan(robot, 1, truth_plant(arguments.plant))
-    plant = plan.healthy(robot, built=True)
+    plant = plan.healthy(robot)
     plant.run(plan.runs[0])  # compiles
     started = time.perf_counter()
     for run in plan.runs:

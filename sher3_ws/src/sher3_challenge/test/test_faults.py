@@ -46,11 +46,6 @@ def test_every_effect_of_the_contract_has_a_fault_and_many_have_none(truth):
     assert len(truth.outside) >= 12 and all(kind.effect == "outside_library" for kind in truth.outside.values())
 
 
-def test_plants_have_outside_faults_of_their_own():
-    names = [name for plant in PLANTS.values() for name in plant.outside]
-    assert len(set(names)) == len(names)
-
-
 @cache
 def plan(label):
     return RunPlan(excite(label, ROBOT, posture="p1", duration=2.4, set_point_jumps=True), 0, 10**18, 1)

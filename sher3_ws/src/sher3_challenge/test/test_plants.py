@@ -17,6 +17,11 @@ def test_every_plant_stands_for_the_whole_catalogue_and_for_kinds_outside_it(nam
     assert not set(plant.library) & set(plant.outside)
 
 
+def test_no_two_plants_share_a_kind_outside_the_catalogue():
+    names = [name for plant in plant_names() for name in truth_plant(plant).outside]
+    assert len(set(names)) == len(names) >= 3 * 12
+
+
 def test_a_plant_that_lacks_its_library_says_so(monkeypatch):
     def no_such(name):
         raise ModuleNotFoundError("No module named 'hydra'", name="hydra")

@@ -10,7 +10,14 @@ from typing import Any
 from sher3_bags import Run, write_case
 from sher3_description import Robot, load_robot
 
-from sher3_challenge.cases.calibrate import calibrated, distinct_runs, ideal_residuals, reference_floor, residual_keys
+from sher3_challenge.cases.calibrate import (
+    calibrated,
+    distinct_runs,
+    ideal_residuals,
+    nominal_residuals,
+    reference_floor,
+    residual_keys,
+)
 from sher3_challenge.cases.plan import TARGETS, CasePlan, draw_plan
 from sher3_challenge.oracle.oracle import StageOracle, excess, floors, oracle, stage_residuals
 from sher3_challenge.plants.plant import Plant
@@ -102,9 +109,9 @@ def _oracles(plan: CasePlan, plant: Plant, runs: list[Run]) -> tuple[dict[str, S
     """Return the oracle of the faults' stages (all stages when healthy) and that of the tip."""
     robot = plant.robot
     chosen = distinct_runs(plan)
-    reference = ideal_residuals(plan.healthy(robot, built=False), chosen)
+    reference = nominal_residuals(robot, plan.truth.name, plan.climate, chosen)
     faulty = excess(ideal_residuals(plant, chosen), reference)
-    own = excess(ideal_residuals(plan.healthy(robot, built=True), chosen), reference)
+    own = excess(ideal_residuals(plan.healthy(robot), chosen), reference)
     measured = floors(runs, [stage_residuals(run, robot) for run in runs], robot)
     # A stage that no repeated excitation shows has the floor of another robot.
     every = oracle({**reference_floor(robot, plan.truth.name), **measured}, faulty, own)

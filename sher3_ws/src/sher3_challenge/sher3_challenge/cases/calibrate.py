@@ -44,13 +44,19 @@ def ideal_residuals(plant: Plant, runs: Sequence[RunPlan]) -> list[Residuals]:
     return [stage_residuals(plant.run(run, ideal=True), plant.robot) for run in runs]
 
 
+@lru_cache(maxsize=2)
+def nominal_residuals(robot: Robot, name: str, climate: Climate, runs: tuple[RunPlan, ...]) -> list[Residuals]:
+    """Return the residuals of ideal runs of a truth plant's robot exactly as its file says; kept for the oracle."""
+    return ideal_residuals(truth_plant(name).make(robot, 0, (), climate, built=False), runs)
+
+
 @lru_cache(maxsize=8)
 def reference_floor(robot: Robot, name: str) -> dict[str, float]:
     """Return the floor of every stage of one healthy robot of a truth plant, from repeats of three excitations."""
     plant = truth_plant(name).make(robot, REFERENCE_SEED, (), Climate(REFERENCE_TEMPERATURE, 1.0, 200.0, 0))
     runs = []
-    for n, name in enumerate(("sweep", "postures", "loads")):
-        excitation = excite(name, robot, posture="p1")
+    for n, label in enumerate(("sweep", "postures", "loads")):
+        excitation = excite(label, robot, posture="p1")
         repeats = (RunPlan(excitation, k, (3 * n + k) * RUN_SPACING_NS, REFERENCE_SEED + 3 * n + k) for k in range(3))
         runs += [plant.run(repeat) for repeat in repeats]
     return floors(runs, [stage_residuals(run, robot) for run in runs], robot)
@@ -65,7 +71,7 @@ class Calibration:
 
     def __post_init__(self) -> None:
         self.runs = distinct_runs(self.plan)
-        self.nominal = ideal_residuals(self.plan.healthy(self.robot, built=False), self.runs)
+        self.nominal = nominal_residuals(self.robot, self.plan.truth.name, self.plan.climate, self.runs)
         self.floor = reference_floor(self.robot, self.plan.truth.name)
 
     def ratio(self, fault: Fault) -> float:

@@ -55,9 +55,9 @@ class CasePlan:
         """Return the plant of the case: the robot as built, with its faults."""
         return self.truth.make(robot, self.seed, self.faults, self.climate, self.tracker, region=self.region)
 
-    def healthy(self, robot: Robot, *, built: bool) -> Plant:
-        """Return the same robot without the faults: as built, or exactly as its file says."""
-        return self.truth.make(robot, self.seed if built else 0, (), self.climate, built=built)
+    def healthy(self, robot: Robot) -> Plant:
+        """Return the same robot as built, without the faults."""
+        return self.truth.make(robot, self.seed, (), self.climate)
 
     @property
     def region(self) -> tuple[float, ...]:
