@@ -91,6 +91,7 @@ class Effect:
         companion: family of another effect on the same axis without which this one does not show.
         dry: whether it is a friction that holds an axis at rest.
         best: the excitation that shows it best.
+        leaves_out: what a real machine adds to the idealised law, in words; empty where nothing is known.
         condition: under which alone it acts, where runs were recorded under several; None: in all runs.
     """
 
@@ -112,6 +113,7 @@ class Effect:
     companion: ClassVar[str] = ""
     dry: ClassVar[bool] = False
     best: ClassVar[Best]
+    leaves_out: ClassVar[str] = ""
     condition: str | None = None
 
     def channels(self, site: str) -> tuple[Channel, ...]:

@@ -10,7 +10,7 @@ from sher3_diagnosis.report.chain import AT_FLOOR, GAP, chain
 from sher3_diagnosis.report.page import render
 from sher3_diagnosis.report.reporter import Isolability, Reporter, counted
 from sher3_diagnosis.report.traces import scale_of
-from toy import DIRECTION, SPEED, Toy, case
+from toy import DIRECTION, OFFSET, SPEED, Column, Toy, case
 
 
 @pytest.fixture(scope="module")
@@ -25,8 +25,9 @@ def healthy():
 
 def test_the_page_stands_alone_and_answers_first(rubbing):
     page = render(rubbing, "toy")
-    assert "<h1>Direction on axis explains the gap." in page
-    assert not re.findall(r'(?:src|href)="(?!#)[^"]+"', page) and "<script" not in page
+    assert "<h1>Direction on axis, 3" in page and "of the gap" in page
+    assert not re.findall(r'(?:src|href)="(?!#)[^"]+"', page) and "<script src" not in page
+    assert page.count('class="zoom"') == page.count("<nav>") > 0  # every curve can be zoomed
     for heading in ("Where the gap is", "What causes it", "How far the gap shrinks", "Real, nominal, corrected"):
         assert f"<h2>{heading}</h2>" in page
     assert "What these topics can tell apart" not in page  # the machine does not say
@@ -63,6 +64,13 @@ def test_a_card_says_what_came_close(rubbing):
 def test_what_tells_two_apart_is_read_from_either_page():
     assert separates(DIRECTION, SPEED) == "Direction: grows with speed"
     assert separates(SPEED, DIRECTION) == "Direction: grows with speed"
+
+
+def test_no_rival_is_without_a_reason():
+    assert separates(OFFSET, DIRECTION) == "the same inputs, another law: `steps`, since steps show it"
+    assert separates(SPEED, SPEED) == "the same effect at another place: its own axis moves it"
+    warm = Column("warm", "drift", "warmth", inputs=("temperature",))
+    assert separates(SPEED, warm) == "Warm depends on temperature, speed on nothing"
 
 
 def test_groups_and_the_invisible():

@@ -1,7 +1,7 @@
 """The answer in words, for each status."""
 
 import pytest
-from sher3_diagnosis.report.summary import cause_text, closure_text, five_lines, headline
+from sher3_diagnosis.report.summary import cause_text, closure_text, command, five_lines, headline
 from sher3_diagnosis.verdict import (
     Cause,
     Closure,
@@ -46,10 +46,10 @@ def verdict(status, **more):
     ("answer", "text"),
     [
         (Verdict(status="no_gap"), "No gap: the machine does what its model says, to within its own repeatability."),
-        (verdict("attributed", causes=[FRICTION]), "Coulomb friction on delta 2 explains the gap."),
+        (verdict("attributed", causes=[FRICTION]), "Coulomb friction on delta 2, 300 mN: 98 % of the gap."),
         (
             verdict("attributed", causes=[BACKLASH, FRICTION]),
-            "Backlash on tilt and Coulomb friction on delta 2 explain the gap.",
+            "Backlash on tilt and Coulomb friction on delta 2, 300 mN: 98 % of the gap.",
         ),
         (
             verdict("under_excited", causes=[FRICTION, BACKLASH], next_experiment=TELLS),
@@ -82,6 +82,28 @@ def test_commands_are_named_for_a_simulated_machine_only():
     open_one = verdict("under_excited", causes=[BACKLASH], next_experiment=TELLS)
     assert dict(five_lines(open_one, simulated=False))["next"] == "loads tells backlash / cogging apart"
     assert "`sher3 gap experiment" in dict(five_lines(open_one, simulated=True))["next"]
+
+
+def test_a_parameter_that_may_be_zero_is_not_told():
+    unsure = Parameter(value=2.5e-6, low=-78e-6, high=83e-6, unit="m")
+    sure = Parameter(value=-9.9e-3, low=-10.1e-3, high=-9.7e-3, unit="m")
+    cause = FRICTION.model_copy(update={"effect": "tool_offset", "parameters": {"x": unsure, "y": sure, "z": sure}})
+    assert cause_text(cause).count("-9.9 mm") == 2 and "2.5" not in cause_text(cause)
+    assert headline(verdict("attributed", causes=[cause])) == "Tool offset on delta 2, -9.9 mm: 98 % of the gap."
+
+
+def test_the_headline_says_what_the_rest_is():
+    closed = {"closure": Closure(stage=Interval(value=0.95)), "residual": Residual(gap=4e-6, floor=2e-6, unit="m")}
+    answer = verdict("attributed", causes=[BACKLASH], **closed)
+    assert headline(answer) == "Backlash on tilt: 95 % of the gap; the rest is what its law leaves out."
+    rests = {"backlash": "the elasticity of its contact"}
+    assert headline(answer, rests).endswith("the rest is the elasticity of its contact.")
+
+
+def test_the_command_goes_on_from_the_verdict():
+    assert command(verdict("attributed", causes=[FRICTION]), True, "c")[0].startswith("sher3 gap apply gap/c/")
+    assert command(verdict("outside_library", unexplained=LEFT), True, "c")[0].startswith("sher3 gap discover c ")
+    assert command(Verdict(status="no_gap"), True, "c") is None
 
 
 def test_rivals_stand_behind_the_cause():

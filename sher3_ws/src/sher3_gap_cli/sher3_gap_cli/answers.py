@@ -50,7 +50,8 @@ def answer(task: Task, say: Say = lambda _: None) -> Answer:
         found = diagnosed(task, say)
     except Sher3Error as error:
         return Answer(task, error=error)
-    lines = five_lines(found.verdict, found.machine.reporter().simulated)
+    rests = {e.id: e.leaves_out for e in found.machine.library() if e.leaves_out}
+    lines = five_lines(found.verdict, found.machine.reporter().simulated, rests)
     if not task.report:
         return Answer(task, found.verdict, lines)
     from sher3_diagnosis.report.page import render

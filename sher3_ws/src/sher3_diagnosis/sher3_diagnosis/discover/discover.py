@@ -45,6 +45,7 @@ def discover(diagnosis: Findings, channel: Channel | None = None, say: Say = lam
     if channel is None:
         why = "there is no gap" if diagnosis.verdict.status == "no_gap" else "every gap has a cause in the library"
         return Discovery([], note=f"nothing to discover: {why}")
+    channel = _shown_at(diagnosis, channel)
     known = sorted({str(c) for f in diagnosis.findings for c in f.evidence.channels})
     finding = next((f for f in diagnosis.findings if channel in f.evidence.channels), None)
     if finding is None:
@@ -55,6 +56,13 @@ def discover(diagnosis: Findings, channel: Channel | None = None, say: Say = lam
     if not all(isinstance(v, Recorded) for v in finding.evidence.views):
         raise FormulaError("this kind of machine does not tell what a law could depend on", value=str(channel))
     return discover_at(finding.evidence, channel, say)
+
+
+def _shown_at(diagnosis: Findings, place: Channel) -> Channel:
+    """Return the channel that shows a place: a leg of the mechanism shows at the tip."""
+    every = {c for f in diagnosis.findings for c in f.evidence.channels}
+    same = [c for c in every if c.stage == place.stage]
+    return same[0] if place not in every and len(same) == 1 else place
 
 
 def discover_at(evidence: Evidence, channel: Channel, say: Say = lambda _: None) -> Discovery:

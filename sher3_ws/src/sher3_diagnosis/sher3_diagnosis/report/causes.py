@@ -11,8 +11,9 @@ from sher3_diagnosis.finding import Finding
 from sher3_diagnosis.flow import Diagnosis
 from sher3_diagnosis.localise.pattern import Pattern, pattern_of
 from sher3_diagnosis.report.reporter import Isolability
-from sher3_diagnosis.report.words import place, quantity, range_text, share, words
-from sher3_diagnosis.verdict import Cause
+from sher3_diagnosis.report.summary import significant
+from sher3_diagnosis.report.words import listed, place, quantity, range_text, share, words
+from sher3_diagnosis.verdict import Cause, Parameter
 
 NO_LOSS = 1e-9
 """Explained loss below which a share of it means nothing."""
@@ -92,13 +93,18 @@ def _card(
         closure=share(cause.closure.value),
         interval="interval: too few runs" if low is None else f"95 %: {share(low)} … {share(high)}",
         parameters=[
-            (name.replace("_", " "), quantity(p.value, p.unit), range_text(p.low, p.high, p.unit))
-            for name, p in cause.parameters.items()
+            (name.replace("_", " "), quantity(p.value, p.unit), _interval(p))
+            for name, p in sorted(cause.parameters.items(), key=lambda x: not significant(x[1]))
         ],
         rivals=rivals,
         alike=sorted(words(e) for e in alike),
         pattern=pattern,
     )
+
+
+def _interval(p: Parameter) -> str:
+    """Return a parameter's interval, and whether it holds zero."""
+    return range_text(p.low, p.high, p.unit) + ("" if significant(p) else ", not told from zero")
 
 
 def _term_of(cause: Cause, diagnosis: Diagnosis) -> tuple[Finding, int] | None:
@@ -139,11 +145,20 @@ def _rivals(cause: Cause, attribution: Attribution, index: int) -> list[RivalRow
 
 
 def separates(cause: Effect, rival: Effect) -> str:
-    """Return what tells a rival from a cause, from either side's siblings; empty when neither page says."""
+    """Return what tells a rival from a cause: from either side's siblings, else stage, inputs or shape of the laws."""
     if rival.id in cause.siblings:
         return f"{words(rival.id)}: {cause.siblings[rival.id]}"
     if cause.id in rival.siblings:
         return f"{words(cause.id)}: {rival.siblings[cause.id]}"
     if cause.stage != rival.stage:
         return f"shows at another stage ({words(rival.stage).lower()})"
-    return ""
+    if rival.id == cause.id:
+        return "the same effect at another place: its own axis moves it"
+    if set(rival.inputs) != set(cause.inputs):
+        return f"{words(rival.id)} depends on {_inputs(rival)}, {words(cause.id).lower()} on {_inputs(cause)}"
+    return f"the same inputs, another law: `{rival.best.excitation}`, since {rival.best.why}"
+
+
+def _inputs(effect: Effect) -> str:
+    """Return what the law of an effect depends on."""
+    return listed(list(effect.inputs), len(effect.inputs)) if effect.inputs else "nothing"

@@ -15,7 +15,7 @@ from sher3_diagnosis.report.experiment_card import experiment_card
 from sher3_diagnosis.report.found import closures, found_rows
 from sher3_diagnosis.report.regimes import regimes
 from sher3_diagnosis.report.reporter import Isolability
-from sher3_diagnosis.report.summary import five_lines, headline
+from sher3_diagnosis.report.summary import command, five_lines, headline
 from sher3_diagnosis.report.traces import traces
 from sher3_diagnosis.report.words import place, words
 
@@ -36,11 +36,14 @@ def _sections(diagnosis: Diagnosis, title: str) -> dict[str, object]:
     verdict, reporter = diagnosis.verdict, diagnosis.machine.reporter()
     parts = [f.evidence for f in diagnosis.findings]
     isolability = reporter.isolability(parts)
+    rests = {e.id: e.leaves_out for e in diagnosis.machine.library() if e.leaves_out}
     return dict(
         title=title,
         verdict=verdict,
-        headline=headline(verdict),
-        lines=five_lines(verdict, reporter.simulated),
+        headline=headline(verdict, rests),
+        lines=five_lines(verdict, reporter.simulated, rests),
+        picture=reporter.picture(diagnosis),
+        command=command(verdict, reporter.simulated, title),
         data=reporter.data(parts),
         held_out=reporter.held_out,
         simulated=reporter.simulated,

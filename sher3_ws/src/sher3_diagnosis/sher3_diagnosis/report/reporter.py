@@ -127,6 +127,10 @@ class Reporter(Generic[E]):
         """Return what a stage puts out in a run; default its deviation from the model."""
         return Output("measured − nominal")
 
+    def picture(self, diagnosis: Findings[E]) -> str:
+        """Return the machine as a drawing (SVG) with the places of its gaps lit; empty when there is none."""
+        return ""
+
     def first_traces(self, diagnosis: Findings[E]) -> list[Trace]:
         """Return pictures of the machine's own that come first, of exact stages for example."""
         return []

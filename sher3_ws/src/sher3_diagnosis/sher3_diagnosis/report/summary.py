@@ -2,17 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from types import MappingProxyType
+
 from sher3_diagnosis.report.words import listed, place, quantity, range_text, ratio_text, share, words
-from sher3_diagnosis.verdict import Cause, Interval, Verdict
+from sher3_diagnosis.verdict import Cause, Interval, Parameter, Verdict
+
+LEFT_OVER = 1.2
+"""Rms that is left, over the floor, from which the headline says what it is. A convention of the words."""
 
 
-def headline(verdict: Verdict) -> str:
-    """Return the answer as one sentence."""
+def headline(verdict: Verdict, rests: Mapping[str, str] = MappingProxyType({})) -> str:
+    """Return the answer as one sentence: the finding, its size, and how much of the gap it is.
+
+    Args:
+        verdict: of any machine.
+        rests: effect id -> what its law leaves out, where its page says so.
+    """
     names = [_name(c) for c in verdict.causes]
     if verdict.status == "no_gap":
         return "No gap: the machine does what its model says, to within its own repeatability."
     if verdict.status == "attributed":
-        return _sentence(f"{listed(names)} explain{'s' * (len(names) == 1)} the gap.")
+        return _sentence(f"{_finding(verdict)}: {_share(verdict)}{_rest(verdict, rests)}.")
     if verdict.status == "under_excited":
         open_ones = [f"{_name(c)} or {listed([_lower(r) for r in c.rivals])}" for c in verdict.causes if c.rivals]
         return _sentence(f"{listed(open_ones or names)}: these runs cannot tell.")
@@ -21,15 +32,18 @@ def headline(verdict: Verdict) -> str:
     return f"No effect of the library explains the gap{where}."
 
 
-def five_lines(verdict: Verdict, simulated: bool) -> list[tuple[str, str]]:
+def five_lines(
+    verdict: Verdict, simulated: bool, rests: Mapping[str, str] = MappingProxyType({})
+) -> list[tuple[str, str]]:
     """Return (label, text) of the five lines: verdict, where, cause, closure, next.
 
     Args:
         verdict: of any machine.
         simulated: whether `sher3 gap apply` and `sher3 gap experiment` know the machine's simulator.
+        rests: as in `headline`.
     """
     return [
-        ("verdict", f"{verdict.status}: {headline(verdict)}"),
+        ("verdict", f"{verdict.status}: {headline(verdict, rests)}"),
         ("where", _where(verdict)),
         ("cause", "; ".join(cause_text(c) for c in verdict.causes) or _unknown(verdict)),
         ("closure", _closure(verdict)),
@@ -38,14 +52,20 @@ def five_lines(verdict: Verdict, simulated: bool) -> list[tuple[str, str]]:
 
 
 def cause_text(cause: Cause) -> str:
-    """Return a cause with its first parameter and its rivals."""
+    """Return a cause with every parameter that differs from zero, and its rivals."""
     text = f"{words(cause.effect)} on {place(cause.actuator)}"
-    if cause.parameters:
-        name, p = next(iter(cause.parameters.items()))
-        text += f", {name.replace('_', ' ')} {quantity(p.value, p.unit)}"
-        if p.low is not None:
-            text += f" ({range_text(p.low, p.high, p.unit)})"
+    for name, p in cause.parameters.items():
+        if significant(p):
+            text += f", {name.replace('_', ' ')} {quantity(p.value, p.unit)}"
+            text += "" if p.low is None else f" ({range_text(p.low, p.high, p.unit)})"
     return text + (f" [or {', '.join(words(r).lower() for r in cause.rivals)}]" if cause.rivals else "")
+
+
+def significant(parameter: Parameter) -> bool:
+    """Return whether a parameter differs from zero: its interval does not hold it, or it has none."""
+    if parameter.low is None or parameter.high is None:
+        return True
+    return not parameter.low <= 0.0 <= parameter.high
 
 
 def closure_text(value: Interval) -> str:
@@ -66,6 +86,35 @@ def _lower(identifier: str) -> str:
 
 def _name(cause: Cause) -> str:
     return f"{_lower(cause.effect)} on {place(cause.actuator)}"
+
+
+def _sized(cause: Cause) -> str:
+    """Return a cause with the first of its parameters that differs from zero."""
+    first = next((p for p in cause.parameters.values() if significant(p)), None)
+    size = "" if first is None or first.unit == "1" else f", {quantity(first.value, first.unit)}"
+    return f"{_name(cause)}{size}"
+
+
+def _finding(verdict: Verdict) -> str:
+    """Return the causes with their sizes; a comma keeps a size to its cause."""
+    sized = [_sized(c) for c in verdict.causes]
+    return listed([s + "," * (i == len(sized) - 2 and "," in s) for i, s in enumerate(sized)])
+
+
+def _share(verdict: Verdict) -> str:
+    """Return how much of the gap the causes are."""
+    found = verdict.closure.stage or verdict.causes[0].closure
+    return f"{share(found.value)} of the gap"
+
+
+def _rest(verdict: Verdict, rests: Mapping[str, str]) -> str:
+    """Return what the rest is, where one is left."""
+    left = verdict.residual
+    if left is None or left.gap <= LEFT_OVER * left.floor:
+        return ""
+    if len(verdict.causes) > 1:
+        return "; the rest is what their laws leave out"
+    return f"; the rest is {rests.get(verdict.causes[0].effect) or 'what its law leaves out'}"
 
 
 def _sentence(text: str) -> str:
@@ -92,12 +141,33 @@ def _unknown(verdict: Verdict) -> str:
 def _closure(verdict: Verdict) -> str:
     parts = []
     for name, value in (("stage", verdict.closure.stage), ("tip", verdict.closure.tip)):
-        if value is not None:
+        if value is not None and verdict.causes:
             parts.append(f"{name} {closure_text(value)}")
     if verdict.residual is not None and verdict.causes:
         r = verdict.residual
         parts.append(f"left {quantity(r.gap, r.unit)} over a floor of {quantity(r.floor, r.unit)}")
-    return ", ".join(parts) or "nothing to close"
+    return ", ".join(parts) or ("nothing to close" if verdict.status == "no_gap" else "nothing, without a cause")
+
+
+def command(verdict: Verdict, simulated: bool, case: str) -> tuple[str, str] | None:
+    """Return the command that goes on from a verdict and what it does; None where there is none.
+
+    Args:
+        verdict: of the case.
+        simulated: as in `five_lines`.
+        case: name of its folder.
+    """
+    file = f"gap/{case}/verdict.json"
+    if verdict.status == "attributed" and simulated:
+        line = f"sher3 gap apply {file} -o corrected.yaml --case {case}"
+        return line, "puts the causes into the simulator and prints the gap that is left"
+    if verdict.status == "attributed":
+        return f"sher3 gap export {file} --to yaml", "writes the parameters for your own simulator"
+    if verdict.status == "under_excited" and simulated:
+        return f"sher3 gap experiment {file} {case}", "designs the motion that tells the rivals apart"
+    if verdict.status == "outside_library":
+        return f"sher3 gap discover {case} --save found.yaml", "looks for a formula that explains it"
+    return None
 
 
 def _next(verdict: Verdict, simulated: bool) -> str:
@@ -110,5 +180,5 @@ def _next(verdict: Verdict, simulated: bool) -> str:
             return "`sher3 gap apply verdict.json` puts the causes into the simulator"
         return "put the parameters into this machine's own simulator"
     if verdict.unexplained is not None:
-        return "a sensor nearer to that place, or an effect of your own: the signature says what it must do"
+        return "`sher3 gap discover CASE` looks for a formula; else a sensor nearer to that place"
     return "none"

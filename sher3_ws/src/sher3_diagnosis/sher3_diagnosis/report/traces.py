@@ -24,6 +24,8 @@ COMPONENTS = ("x", "y", "z", "about x", "about y", "about z")
 SCALES = ((1.0, ""), (1e3, "m"), (1e6, "µ"), (1e9, "n"))
 LEAST = 0.5
 """Largest value on an axis of a picture below which the next prefix is taken."""
+SEEN = 1e-3
+"""Difference of two curves, in floors, below which they are one: whitening and back rounds."""
 HOLE = 2.5
 """Sample steps without a sample at which a line breaks."""
 
@@ -49,7 +51,7 @@ class _Lines:
     @property
     def changed(self) -> bool:
         """Whether a cause acts on what is drawn."""
-        return not np.array_equal(self.nominal, self.corrected)
+        return bool(np.any(np.abs(self.nominal - self.corrected) > SEEN * self.floor))
 
 
 def traces(diagnosis: Diagnosis, reporter: Reporter) -> list[Trace]:
@@ -79,8 +81,16 @@ def _channel(finding: Finding, channel: Channel, reporter: Reporter) -> Trace | 
         title += f", {COMPONENTS[best]}"
     caption = reporter.run_name(evidence, run)
     caption += f", held out: the correction was fitted to the other {reporter.held_out}." if lines.changed else ""
-    caption += "" if lines.changed else "; no cause acts here."
+    if not lines.changed:
+        caption += f": real and nominal model alone, {_why_uncorrected(finding, channel)}."
     return Trace(title, caption, _draw(lines, title, reporter.abscissa))
+
+
+def _why_uncorrected(finding: Finding, channel: Channel) -> str:
+    """Return why no corrected curve is drawn."""
+    if channel not in finding.significant:
+        return "since they differ by no more than repeats do"
+    return "since no effect of the library explains what is left here"
 
 
 def _lines(

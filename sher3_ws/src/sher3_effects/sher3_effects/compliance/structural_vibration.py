@@ -23,6 +23,7 @@ class StructuralVibration(Page):
     inputs = ("acceleration",)
     best = Best("loads", "known loads in several postures separate springs")
     places = ("tip",)
+    leaves_out = "further modes"
     explanation = "After each acceleration the tip rings at one frequency while the encoders are still."
     siblings = {"structural_compliance": "follows a static load without ringing"}
     FREQUENCIES = (4.0, 5.0, 6.3, 8.0, 10.0, 12.5, 15.0, 17.5, 20.0, 22.5, 25.0, 28.0, 31.0, 34.0, 38.0, 42.0, 46.0)

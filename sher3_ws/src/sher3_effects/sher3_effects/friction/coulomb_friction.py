@@ -25,6 +25,7 @@ class CoulombFriction(Page):
     inputs = ("direction",)
     dry = True
     best = Best("reversals", "reversals of several amplitudes and speeds separate friction laws")
+    leaves_out = "how its level varies over the stroke"
     explanation = (
         "The axis needs a constant extra force whose sign follows the direction of motion: a step at every "
         "reversal, the same "

@@ -26,6 +26,7 @@ class PositionFriction(Page):
     needs = ("lead",)
     best = Best("reversals", "reversals of several amplitudes and speeds separate friction laws")
     extends = ("coulomb_friction",)
+    leaves_out = "the shape of its peaks"
     explanation = (
         "Friction changes along the stroke (seal, guide, ball return): at the same place the extra force has "
         "the opposite sign in the other direction."

@@ -27,6 +27,7 @@ class Backlash(Page):
     best = Best("loads", "known loads at rest separate a fixed gap from a spring")
     companion = "friction"
     on_axis = {"width": "backlash"}
+    leaves_out = "the elasticity of its contact"
     explanation = (
         "After a reversal the motor moves by a fixed amount before the load follows; a load that pushes the "
         "other way takes the load across the gap without the motor moving."

@@ -25,6 +25,7 @@ class Cogging(Page):
     needs = ("lead",)
     discrete = frozenset({"periods_per_rev"})
     best = Best("sweep", "constant speeds over several revolutions separate periods")
+    leaves_out = "further harmonics"
     explanation = (
         "A force that repeats several times per motor revolution, the same in both directions and at every speed."
     )

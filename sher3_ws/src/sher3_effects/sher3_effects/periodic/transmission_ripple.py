@@ -28,6 +28,7 @@ class TransmissionRipple(Page):
     needs = ("load", "lead")
     discrete = frozenset({"periods_per_rev"})
     best = Best("sweep", "constant speeds over several revolutions separate periods")
+    leaves_out = "further harmonics"
     explanation = (
         "The load moves ahead and behind the motor, n times per lead; the load encoder sees it and the tip follows."
     )

@@ -23,6 +23,7 @@ class TorqueConstant(Page):
     kinds = ("robot", "axis")
     needs = ("drive",)
     best = Best("sweep", "long constant-speed strokes separate ratios from offsets")
+    leaves_out = "its bend at large forces"
     explanation = "Every force on the axis is off by the same ratio: gravity, acceleration and external load alike."
     siblings = {
         "viscous_friction": "only the part in proportion to speed",

@@ -11,6 +11,7 @@ from sher3_diagnosis.report.reporter import FLOWS, Isolability, Output, Reporter
 
 from sher3_gap.evidence import SherEvidence
 from sher3_gap.excitation import catalogue
+from sher3_gap.report.drawing import robot_drawing
 from sher3_gap.report.topics import data_text, exact_stages, isolability_of
 from sher3_gap.stages.residuals import mean_force
 from sher3_gap.stages.timing import demand_in_force
@@ -67,6 +68,14 @@ class SherReporter(Reporter[SherEvidence]):
         demand = demand_in_force(signals, evidence.robot, evidence.timing)
         force = mean_force(signals, evidence.robot, demand)[:, [axis]]
         return Output("motor force", signals.to_grid(force)[:, 0])
+
+    def picture(self, diagnosis: Findings[SherEvidence]) -> str:
+        """Return the robot with the places of the verdict lit: of its causes, or where the gap is."""
+        verdict = diagnosis.verdict
+        lit = {c.actuator for c in verdict.causes} or {w.actuator for w in verdict.where[:1]}
+        if verdict.unexplained is not None:
+            lit |= {verdict.unexplained.actuator}
+        return robot_drawing(diagnosis.findings[0].evidence.robot, lit)
 
     def first_traces(self, diagnosis: Findings[SherEvidence]) -> list[Trace]:
         """Return the picture of the transport stage where it failed."""
