@@ -57,7 +57,7 @@ def challenge(
     from sher3_challenge.score.outcome import merged
     from sher3_challenge.score.tables import print_outcome
 
-    console = Console(stderr=True)
+    console = Console(stderr=True, markup=False)
     with reported(as_json), tempfile.TemporaryDirectory() as scratch:
         if merge:
             outcome = merged(merge)

@@ -1,6 +1,7 @@
 """`sher3 gap challenge`: ranges, and tables over finished folders."""
 
 import json
+import sys
 
 import pytest
 from sher3_challenge.errors import ChallengeError
@@ -37,3 +38,14 @@ def test_finished_folders_are_printed_together(tmp_path):
         arguments += ["--merge", str(tmp_path / name)]
     result = CliRunner().invoke(app, ["challenge", *arguments])
     assert result.exit_code == 0 and "2 cases in 2 s" in result.output
+
+
+def test_plants_that_are_left_out_are_told_with_the_extra_that_brings_them(monkeypatch):
+    for name in [name for name in sys.modules if name.startswith("sher3_challenge.plants.mujoco")]:
+        monkeypatch.delitem(sys.modules, name)
+    monkeypatch.setitem(sys.modules, "mujoco", None)
+    result = CliRunner(env={"COLUMNS": "300"}).invoke(app, ["challenge", "--without", "gremlins"])
+    assert result.exit_code == 2 and "no such effect" in result.output
+    assert "without plant mujoco" in result.output and "sher3[mujoco]" in result.output
+    result = CliRunner().invoke(app, ["challenge", "--plant", "mujoco"])
+    assert result.exit_code == 2 and "sher3[mujoco]" in result.output
