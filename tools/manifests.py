@@ -38,6 +38,7 @@ KEYS = {
     "rosbags": "python3-rosbags-pip",
     "scipy": "python3-scipy",
     "sklearn": "python3-sklearn",
+    "threadpoolctl": "python3-threadpoolctl",
     "typer": "python3-typer",
     "typing_extensions": "python3-typing-extensions",
     "yaml": "python3-yaml",

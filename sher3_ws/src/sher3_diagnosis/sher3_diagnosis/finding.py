@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Generic, TypeVar
+from typing import TYPE_CHECKING, Generic, TypeVar
 
 from sher3_diagnosis.attribute.rivals import Attribution
 from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.localise.gaps import Gap
-from sher3_diagnosis.verdict import Cause, Interval, Residual, Verdict, Where
+from sher3_diagnosis.verdict import Cause, Imitation, Interval, Residual, Verdict, Where
+
+if TYPE_CHECKING:
+    from sher3_diagnosis.judge.probabilities import Judged
 
 E = TypeVar("E", bound=Evidence)
 
@@ -45,6 +48,9 @@ class Finding(Generic[E]):
         causes: quantified, in the order of the attribution.
         left: gaps that remain with the causes: channel -> excess loss.
         notes: what the machine says of the part.
+        judged: causes and gaps with their probabilities, where the judgement is calibrated.
+        imitations: effects that fit a gap although they are hardly its cause.
+        dismissed: channels whose gap is none of its own.
     """
 
     evidence: E
@@ -53,11 +59,14 @@ class Finding(Generic[E]):
     causes: Sequence[Cause]
     left: dict[Channel, float]
     notes: Sequence[str] = field(default_factory=tuple)
+    judged: Sequence[Judged] = ()
+    imitations: Sequence[Imitation] = ()
+    dismissed: frozenset[Channel] = frozenset()
 
     @property
     def significant(self) -> dict[Channel, Gap]:
         """Channels with a gap, most significant first."""
-        return {g.channel: g for g in self.gaps if g.significant}
+        return {g.channel: g for g in self.gaps if g.significant and g.channel not in self.dismissed}
 
 
 @dataclass(frozen=True)

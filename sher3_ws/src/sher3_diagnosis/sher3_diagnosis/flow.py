@@ -14,9 +14,11 @@ from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.errors import UnknownEffect
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.finding import Finding, Findings
+from sher3_diagnosis.judge.calibration.calibration import in_force
 from sher3_diagnosis.judge.causes import causes_of
 from sher3_diagnosis.judge.judge import judge
 from sher3_diagnosis.judge.left_over import down_to_floor, left_over
+from sher3_diagnosis.judge.weigh import weighed
 from sher3_diagnosis.localise.gaps import localise
 from sher3_diagnosis.machine import Machine
 from sher3_diagnosis.quantify.closure import residual_after
@@ -62,6 +64,8 @@ def diagnose(
     findings = [find(machine, part, without, say) for part in parts]
     notes += [n for f in findings for n in f.notes]
     say("judging")
+    if machine.policy.calibrated:
+        findings = [weighed(f, in_force()) for f in findings]
     verdict = judge(machine, findings, exact, notes)
     versions = {p: importlib.metadata.version(p) for p in machine.sources}
     verdict = verdict.model_copy(update={"seconds": time.perf_counter() - started, "versions": versions})

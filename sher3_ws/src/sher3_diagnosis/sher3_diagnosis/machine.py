@@ -38,11 +38,14 @@ class Policy:
             plain causes out; otherwise a known cause may leave a share, since laws are idealisations.
         constancy: a cause must keep its size over the excitations. Only where these were designed to differ.
         spill_over: a slight gap beside an explained one needs no cause of its own.
+        calibrated: causes and gaps are weighed by the calibration, which was set on machines of this kind; the two
+            rules before it then have nothing to say.
     """
 
     down_to_floor: bool = False
     constancy: bool = True
     spill_over: bool = True
+    calibrated: bool = False
 
 
 class Machine(ABC, Generic[R, E]):

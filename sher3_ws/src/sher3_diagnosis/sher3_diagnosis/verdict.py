@@ -63,6 +63,7 @@ class Cause(_Model):
     closure: Interval
     rivals: list[str] = []
     condition: str | None = None
+    probability: float | None = Field(default=None, ge=0.0, le=1.0)
 
 
 class Closure(_Model):
@@ -89,12 +90,21 @@ class Within(_Model):
     unit: str
 
 
+class Imitation(_Model):
+    """An effect that fits a gap although it is hardly its cause."""
+
+    effect: str
+    actuator: str
+    closure: Interval
+
+
 class Unexplained(_Model):
-    """Where a gap lives that no effect of the library explains, and what it looks like."""
+    """Where a gap lives that no effect of the library explains, what it looks like, and which effects imitate it."""
 
     stage: str
     actuator: str
     signature: str
+    imitated_by: list[Imitation] = []
 
 
 class NextExperiment(_Model):
@@ -118,6 +128,7 @@ class Verdict(_Model):
     unexplained: Unexplained | None = None
     next_experiment: NextExperiment | None = None
     within_tolerance: list[Within] = []
+    probabilities: dict[str, float] = {}
     seconds: float = 0.0
     versions: dict[str, str] = {}
     notes: list[str] = []

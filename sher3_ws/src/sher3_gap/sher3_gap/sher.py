@@ -12,7 +12,7 @@ from sher3_description import Robot
 from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.finding import ExactFinding, Finding
 from sher3_diagnosis.flow import Diagnosis, Say, diagnose
-from sher3_diagnosis.machine import Machine
+from sher3_diagnosis.machine import Machine, Policy
 from sher3_diagnosis.verdict import Cause, Interval
 from sher3_effects import library
 
@@ -37,6 +37,7 @@ class Sher(Machine[RunSignals, SherEvidence]):
     """
 
     robot: Robot
+    policy = Policy(constancy=False, spill_over=False, calibrated=True)
 
     def library(self) -> Sequence[Effect]:
         """Return every effect of the robot."""

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import typer
 
 from sher3_gap_cli.apply import apply, compare
-from sher3_gap_cli.challenge import challenge
+from sher3_gap_cli.challenge import calibrate, challenge
 from sher3_gap_cli.diagnose import diagnose
 from sher3_gap_cli.discover import discover
 from sher3_gap_cli.excite import excite
@@ -32,6 +32,7 @@ EXAMPLES: dict[Callable[..., None], str] = {
     describe: "sher3 gap describe slide.csv --out slide.yaml",
     case: "sher3 gap case bags/a bags/b --out case",
     challenge: "sher3 gap challenge --seeds 0:40 --json",
+    calibrate: "sher3 gap calibrate lumped=run/lumped tables=run/tables -o calibration.json --kept evidence",
 }
 """Every command whose function bears its name, with an example."""
 

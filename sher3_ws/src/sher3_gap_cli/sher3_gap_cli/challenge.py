@@ -1,4 +1,4 @@
-"""`sher3 gap challenge`: sealed cases, scores, and the same for the baselines."""
+"""`sher3 gap challenge`: sealed cases and their scores; `sher3 gap calibrate`: what labelled cases teach."""
 
 from __future__ import annotations
 
@@ -72,3 +72,56 @@ def challenge(
     print_outcome(outcome, Console())
     if out is not None and not merge:
         console.log(f"kept in {out}")
+
+
+def plants_of(arguments: list[str]) -> dict[str, list[Path]]:
+    """Return plant -> its labelled cases, of arguments NAME=FOLDER or FOLDER; raises ChallengeError."""
+    from sher3_challenge.calibration.observe import labelled
+    from sher3_challenge.errors import ChallengeError
+
+    out: dict[str, list[Path]] = {}
+    for argument in arguments:
+        name, _, folder = argument.rpartition("=")
+        found = list(labelled(Path(folder)))
+        if not found:
+            raise ChallengeError("no labelled case", value=folder, remedy="a folder of cases with truth.yaml")
+        out.setdefault(name or Path(folder).name, []).extend(found)
+    return out
+
+
+def calibrate(
+    folders: Annotated[list[str], typer.Argument(metavar="PLANT=FOLDER...", help="Labelled cases of each plant.")],
+    out: Annotated[Path | None, typer.Option("--out", "-o", help="File for the calibration.")] = None,
+    kept: Annotated[
+        Path | None, typer.Option(help="Folder that keeps the evidence of every case from one call to the next.")
+    ] = None,
+    diagram: Annotated[Path | None, typer.Option(help="Picture of the reliability on plants left out.")] = None,
+    jobs: Annotated[int, typer.Option(min=1, help="Processes.")] = 1,
+    as_json: Json = False,
+) -> None:
+    """Set the probabilities of verdicts on labelled cases; print how they hold on each plant when it is left out."""
+    import tempfile
+
+    from rich.console import Console
+    from sher3_challenge.calibration.fit import calibrated
+    from sher3_challenge.calibration.held_out import held_out
+    from sher3_challenge.calibration.observe import gathered
+    from sher3_challenge.calibration.reliability import diagram as drawn
+    from sher3_challenge.calibration.table import rates, written
+
+    with reported(as_json), tempfile.TemporaryDirectory() as scratch:
+        seen = gathered(plants_of(folders), kept or Path(scratch), jobs)
+        found = calibrated(seen)
+        names = sorted({o.plant for o in seen})
+        left_out = {name: held_out(seen, name) for name in names} if len(names) > 1 else {}
+        columns = {name: rates(judgements) for name, judgements in left_out.items()}
+        if out is not None:
+            out.write_text(found.model_dump_json(by_alias=True, indent=1) + "\n", encoding="utf-8")
+        if diagram is not None and left_out:
+            drawn({name: [r for j in js for r in j.right] for name, js in left_out.items()}, diagram)
+    if as_json:
+        typer.echo(json.dumps({n: {k: r.__dict__ for k, r in c.items()} for n, c in columns.items()}))
+        return
+    typer.echo(written(columns) if columns else "one plant: nothing is left out to show the calibration on")
+    if out is not None:
+        Console(stderr=True).log(f"calibration of {len(seen)} diagnoses in {out}")

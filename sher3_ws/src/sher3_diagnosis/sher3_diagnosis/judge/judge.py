@@ -10,9 +10,12 @@ from sher3_diagnosis.attribute.constancy import constancy_of
 from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.finding import ExactFinding, Finding
+from sher3_diagnosis.judge.calibration.calibration import Calibration, in_force
 from sher3_diagnosis.judge.causes import ordered, places_of
 from sher3_diagnosis.judge.next_experiment import next_experiment
+from sher3_diagnosis.judge.probabilities import LIBRARY, NO_GAP, probabilities_of, reproduced
 from sher3_diagnosis.judge.remainder import remainder
+from sher3_diagnosis.judge.status import crosses
 from sher3_diagnosis.localise.gaps import Gap, component_rms
 from sher3_diagnosis.machine import Machine, Policy
 from sher3_diagnosis.quantify.closure import closure, residual_after
@@ -24,23 +27,24 @@ Gaps = dict[Channel, Gap]
 
 def judge(machine: Machine, findings: Sequence[Finding], exact: Sequence[ExactFinding], notes: list[str]) -> Verdict:
     """Build the verdict of a machine from what was found on its parts and in its exact stages."""
-    causes = [c for f in exact for c in f.causes] + [c for f in findings for c in f.causes]
+    calibration = in_force() if machine.policy.calibrated else None
+    causes = [c for f in exact for c in _probable(f, calibration)] + [c for f in findings for c in f.causes]
     explained = bool(causes or exact)
     within = [w for f in findings for w in machine.within(f)]
     gaps = [_own_gaps(machine.policy, f, explained) for f in findings]
     if not any(gaps) and not exact:
-        return Verdict(status="no_gap", notes=notes, within_tolerance=within)
+        likely = _probabilities(findings, exact, calibration)
+        return Verdict(status="no_gap", probabilities=likely, within_tolerance=within, notes=notes)
     causes = ordered(causes, list(findings))
     fitted = [w for f in findings for w in places_of(f, f.significant)]
     where = [f.where for f in exact] + (fitted if len(findings) == 1 else sorted(fitted, key=lambda w: -_ratio(w)))
     stage, residual = _first(findings, gaps, exact, where[0].gap)
-    unexplained = _unexplained(machine.policy, findings, gaps, exact)
+    unexplained = _unexplained(machine.policy, findings, gaps, exact, calibration)
     proposals = [p for f in findings if (p := next_experiment(f.evidence, f.attribution)) is not None]
-    library = {e.id: e for e in machine.library()}
     status: Status = "attributed"
     if unexplained is not None:
         status = "outside_library"
-    elif proposals and any(_crossing(library, c) for c in causes):
+    elif proposals and _poor(machine, findings, causes, calibration):
         status = "under_excited"
     return Verdict(
         status=status,
@@ -51,8 +55,38 @@ def judge(machine: Machine, findings: Sequence[Finding], exact: Sequence[ExactFi
         unexplained=unexplained,
         next_experiment=proposals[0] if proposals else None,
         within_tolerance=within,
+        probabilities=_probabilities(findings, exact, calibration),
         notes=notes,
     )
+
+
+def _probable(stage: ExactFinding, calibration: Calibration | None) -> list[Cause]:
+    """Return the causes of an exact stage with the probability that they are the true ones."""
+    if calibration is None:
+        return list(stage.causes)
+    known = reproduced(stage, calibration)
+    return [c.model_copy(update={"probability": known}) for c in stage.causes]
+
+
+def _probabilities(
+    findings: Sequence[Finding], exact: Sequence[ExactFinding], calibration: Calibration | None
+) -> dict[str, float]:
+    """Return the answers' probabilities; none for a machine of a kind that the calibration was not set on."""
+    if calibration is None:
+        return {}
+    items = [j for f in findings for j in f.judged]
+    return probabilities_of(items, exact, calibration) or {NO_GAP: 1.0}
+
+
+def _poor(
+    machine: Machine, findings: Sequence[Finding], causes: Sequence[Cause], calibration: Calibration | None
+) -> bool:
+    """Whether the runs are too poor to tell a cause from one of another family."""
+    if calibration is not None:
+        named = (j for f in findings for j in f.judged if j.answer == LIBRARY)
+        return any(crosses(j.item, calibration.same) for j in named)
+    library = {e.id: e for e in machine.library()}
+    return any(_crossing(library, c) for c in causes)
 
 
 def _ratio(where: Where) -> float:
@@ -88,11 +122,15 @@ def _first(
 
 
 def _unexplained(
-    policy: Policy, findings: Sequence[Finding], gaps: Sequence[Gaps], exact: Sequence[ExactFinding]
+    policy: Policy,
+    findings: Sequence[Finding],
+    gaps: Sequence[Gaps],
+    exact: Sequence[ExactFinding],
+    calibration: Calibration | None,
 ) -> Unexplained | None:
     """What is left that no effect explains: in an exact stage, of a gap, or as a cause that changes its size."""
     for stage in exact:
-        if stage.closure.value < REPRODUCED:
+        if not _reproduced(stage, calibration):
             reason = f"an exact stage is not reproduced: {stage.note or 'no timing or gain error fits'}"
             return Unexplained(stage=stage.where.stage, actuator=stage.where.actuator, signature=reason)
     for finding, own in zip(findings, gaps, strict=True):
@@ -104,6 +142,13 @@ def _unexplained(
         return _described(finding, max(own, key=lambda c: own[c].power), "")
     changing = (_inconstant(f) for f in findings) if policy.constancy else ()
     return next((x for x in changing if x is not None), None)
+
+
+def _reproduced(stage: ExactFinding, calibration: Calibration | None) -> bool:
+    """Whether the causes of an exact stage are its causes."""
+    if calibration is None:
+        return stage.closure.value >= REPRODUCED
+    return reproduced(stage, calibration) > 0.5
 
 
 def _inconstant(finding: Finding) -> Unexplained | None:
@@ -121,7 +166,8 @@ def _inconstant(finding: Finding) -> Unexplained | None:
 
 def _described(finding: Finding, channel: Channel, before: str) -> Unexplained:
     text = remainder(finding.evidence, channel, finding.attribution.fit)
-    return Unexplained(stage=channel.stage, actuator=channel.actuator, signature=before + text)
+    imitated = sorted(finding.imitations, key=lambda i: -i.closure.value)
+    return Unexplained(stage=channel.stage, actuator=channel.actuator, signature=before + text, imitated_by=imitated)
 
 
 def _crossing(library: Mapping[str, Effect], cause: Cause) -> bool:

@@ -16,6 +16,9 @@ from sher3_diagnosis.verdict import Interval
 RESAMPLES = 400
 """Resamples of the runs from which an interval is read."""
 
+SHOWN = 0.1
+"""Share of the gap that a resample must show to tell how far it shrinks: one without the runs that show it does not."""
+
 
 def residual_after(evidence: Evidence, fit: Fit, channel: Channel) -> dict[int, Array]:
     """Residual of a channel with the fit's effects added, {run: (N_ok, d)} in SI units, with coefficients of the other
@@ -81,10 +84,17 @@ def interval_of(rows: Array) -> Interval:
     rng = np.random.default_rng(0)
     picks = rng.integers(0, len(rows), (RESAMPLES, len(rows)))
     floors = rng.normal(1.0, FLOOR_UNCERTAINTY, RESAMPLES)
-    draws = np.array([_kappa(rows[p].mean(axis=0) * [1.0, 1.0, f]) for p, f in zip(picks, floors, strict=True)])
+    resampled = [rows[p].mean(axis=0) * [1.0, 1.0, f] for p, f in zip(picks, floors, strict=True)]
+    draws = np.array([_kappa(row) for row in resampled if _gap(row) >= SHOWN * _gap(rows.mean(axis=0))])
+    if len(draws) < RESAMPLES // 4:
+        return Interval(value=value)
     low, high = np.percentile(draws, [2.5, 97.5])
     low, high = min(low, value - AS_BUILT_CLOSURE), max(high, value + IDEALISED)
     return Interval(value=value, low=float(low), high=float(min(1.0, high)))
+
+
+def _gap(row: Array) -> float:
+    return float(row[0] - row[2])
 
 
 def _kappa(row: Array) -> float:

@@ -16,6 +16,7 @@ from sher3_effects.view import NominalAxis
 
 from sher3_gap.case.signals import RunSignals
 from sher3_gap.stages.geometry import Geometry, Path
+from sher3_gap.stages.quantities import everything, quantities
 from sher3_gap.stages.recorded import recorded_at
 from sher3_gap.stages.residuals import drive_law
 
@@ -184,3 +185,15 @@ class SherView:
     def at_residuals(self, x: Array) -> Array:
         """Low-pass values of the ticks and sample them on the residual grid."""
         return self.run.to_grid(x)
+
+    def quantities(self, site: str) -> dict[str, Array]:
+        """Return what a place feels of the quantities that laws may depend on."""
+        return quantities(self, site)
+
+    def everything(self) -> Array:
+        """Return (g, k) everything that was recorded of the robot, with its past; computed once."""
+        return self._everything
+
+    @cached_property
+    def _everything(self) -> Array:
+        return everything(self)

@@ -1,0 +1,178 @@
+"""A calibration from observations: logistic models held down by a ridge, sets of rivals from a conformal quantile."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import minimize, minimize_scalar
+from scipy.special import softmax
+from sher3_diagnosis.judge.calibration.calibration import Calibration, Provenance
+from sher3_diagnosis.judge.calibration.logistic import Logistic
+from sher3_diagnosis.judge.evidence.scales import scaled_cause, scaled_exact, scaled_gap
+from sher3_diagnosis.judge.probabilities import LIBRARY, NO_GAP, OUTSIDE
+
+from sher3_challenge.calibration.labels import answer_of, equal, known
+from sher3_challenge.calibration.observe import Observation
+from sher3_challenge.errors import ChallengeError
+
+COVERAGE = 0.97
+"""Share of cases whose true effect the set of rivals is to hold."""
+SAME_DATA_CROSSING = 0.5
+"""Unlikeness up to which an effect of another family gives the same data."""
+RIDGE = 0.02
+"""Weight of the squared coefficients beside the mean log likelihood. Set on: the plants other than the one quoted."""
+EVEN = 1e-4
+"""The same of the constants: no answer is impossible because no case had it."""
+READ = ("left", "law", "foreign", "spread", "lost", "mismatch", "company")
+"""Evidence that the model of a cause reads."""
+
+
+@dataclass(frozen=True)
+class Example:
+    """One item with its right answer and the plant it is of."""
+
+    plant: str
+    numbers: Mapping[str, float]
+    answer: str
+
+
+PLAIN = 5 * [
+    Example("by argument", scaled_exact(1.0), LIBRARY),
+    Example("by argument", scaled_exact(0.5), OUTSIDE),
+]
+"""Exact stages whose answer needs no case: causes that reproduce the whole error to rounding, and half of it."""
+ECHOES = 3 * [
+    Example("by argument", scaled_gap({"power": 1.0, "beside": 4.0}), NO_GAP),
+    Example("by argument", scaled_gap({"power": 30.0, "beside": 0.0}), OUTSIDE),
+]
+"""Gaps whose answer needs no case: one at its threshold beside one fifty times as large, and one of thirty alone."""
+
+
+@dataclass(frozen=True)
+class Examples:
+    """What a calibration is fitted to.
+
+    Attributes:
+        causes, gaps, exact: items with their answers.
+        distances: per cause whose true effect is among its candidates, the unlikeness of that effect, and of all.
+    """
+
+    causes: list[Example]
+    gaps: list[Example]
+    exact: list[Example]
+    distances: list[tuple[float, list[float]]]
+
+
+def examples_of(observations: Sequence[Observation]) -> Examples:
+    """Return the items of observations that their labels settle."""
+    whole = {(o.plant, o.case, _key(o)): o for o in observations if not o.without}
+    out = Examples([], [], [], [])
+    for seen in observations:
+        for item in seen.items:
+            answer = answer_of(seen, item, whole[seen.plant, seen.case, _key(seen)])
+            if answer is None:
+                continue
+            if item["index"] is None:
+                out.gaps.append(Example(seen.plant, scaled_gap(item["numbers"]), answer))
+                continue
+            out.causes.append(Example(seen.plant, scaled_cause(item["numbers"]), answer))
+            far = [c["unlikeness"] for c in item["candidates"] if equal(c["effect"], known(seen))]
+            if answer == LIBRARY and far:
+                out.distances.append((min(far), [c["unlikeness"] for c in item["candidates"]]))
+        for stage in seen.exact:
+            right = bool(stage["causes"]) and {c["effect"] for c in stage["causes"]} <= known(seen)
+            if stage["causes"]:
+                numbers = scaled_exact(stage["closure"])
+                out.exact.append(Example(seen.plant, numbers, LIBRARY if right else OUTSIDE))
+    return out
+
+
+def _key(seen: Observation) -> str:
+    return str(seen.truth.get("seed", "")) + seen.truth["status"]
+
+
+def calibrated(observations: Sequence[Observation]) -> Calibration:
+    """Fit a calibration."""
+    seen = examples_of(observations)
+    plants = sorted({o.plant for o in observations})
+    return Calibration(
+        cause=logistic(seen.causes, (LIBRARY, OUTSIDE, NO_GAP), READ),
+        gap=logistic([*seen.gaps, *ECHOES], (NO_GAP, OUTSIDE), ("power", "alone")),
+        exact=logistic([*seen.exact, *PLAIN], (LIBRARY, OUTSIDE), ("missed",)),
+        sharpness=sharpness(seen.distances),
+        reach=conformal([d for d, _ in seen.distances], COVERAGE),
+        coverage=COVERAGE,
+        same=SAME_DATA_CROSSING,
+        provenance=tuple(
+            Provenance(
+                plant=p,
+                cases=len({(o.case, _key(o)) for o in observations if o.plant == p}),
+                causes=sum(e.plant == p for e in seen.causes),
+                gaps=sum(e.plant == p for e in seen.gaps),
+            )
+            for p in plants
+        ),
+    )
+
+
+def logistic(examples: Sequence[Example], classes: Sequence[str], inputs: Sequence[str]) -> Logistic:
+    """Fit a logistic model with a ridge in which every plant has the same weight.
+
+    The first class is the one that the inputs speak against, the second the one they speak for: weights of the other
+    sign are none, so that chance in one plant's cases cannot turn evidence round on the next.
+    """
+    x = np.array([[e.numbers[name] for name in inputs] for e in examples]).reshape(len(examples), len(inputs))
+    y = np.array([[e.answer == name for name in classes] for e in examples], dtype=float).reshape(-1, len(classes))
+    if (y.sum(axis=0) > 0.0).sum() < 2:
+        raise ChallengeError("cases of one kind only", value=len(examples), limit=2, remedy="healthy and foreign ones")
+    middle, spread = x.mean(axis=0), np.maximum(x.std(axis=0), 1e-9)
+    z, shares = (x - middle) / spread, weights(examples) / len(examples)
+    shape = (len(classes), len(inputs) + 1)
+
+    def loss(flat: np.ndarray) -> tuple[float, np.ndarray]:
+        w = flat.reshape(shape)
+        score = z @ w[:, :-1].T + w[:, -1]
+        share = softmax(score, axis=1)
+        error = shares[:, None] * (share - y)
+        slope = np.hstack([error.T @ z + 2.0 * RIDGE * w[:, :-1], error.sum(axis=0)[:, None] + 2.0 * EVEN * w[:, -1:]])
+        likely = float(np.sum(shares * np.log(np.sum(share * y, axis=1) + 1e-300)))
+        held = RIDGE * float(np.sum(w[:, :-1] ** 2)) + EVEN * float(np.sum(w[:, -1] ** 2))
+        return held - likely, slope.ravel()
+
+    sign = [(None, 0.0), (0.0, None), *[(None, None)] * (len(classes) - 2)]
+    bounds = [b for s in sign for b in [*[s] * len(inputs), (None, None)]]
+    found = minimize(loss, np.zeros(shape).ravel(), jac=True, bounds=bounds, method="L-BFGS-B").x.reshape(shape)
+    return Logistic(
+        classes=tuple(classes),
+        inputs=tuple(inputs),
+        middle=tuple(middle.tolist()),
+        spread=tuple(spread.tolist()),
+        weights=tuple(tuple(w) for w in found[:, :-1].tolist()),
+        offset=tuple(found[:, -1].tolist()),
+    )
+
+
+def weights(examples: Sequence[Example]) -> np.ndarray:
+    """Return weights, 1 on average, by which every plant counts the same."""
+    plants = [e.plant for e in examples]
+    return np.array([len(plants) / len(set(plants)) / plants.count(p) for p in plants])
+
+
+def sharpness(distances: Sequence[tuple[float, list[float]]]) -> float:
+    """Return the fall of a candidate's probability with its unlikeness that makes the true ones most probable."""
+
+    def surprise(log_rate: float) -> float:
+        rate = math.exp(log_rate)
+        return sum(rate * d + math.log(sum(math.exp(-rate * x) for x in all_)) for d, all_ in distances)
+
+    found = minimize_scalar(surprise, bounds=(math.log(0.1), math.log(30.0)), method="bounded")
+    return float(math.exp(found.x))
+
+
+def conformal(scores: Sequence[float], coverage: float) -> float:
+    """Return the score below which a new one lies with the coverage at least: the ceil((n + 1) c)-th smallest."""
+    ranked = sorted(scores)
+    return ranked[min(len(ranked), math.ceil((len(ranked) + 1) * coverage)) - 1]

@@ -1,0 +1,115 @@
+"""One plant left out at a time: statuses, rates and reliability on a plant that nothing was set on."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from sher3_diagnosis.channel import Channel
+from sher3_diagnosis.judge.calibration.calibration import Calibration
+from sher3_diagnosis.judge.evidence.scales import scaled_exact
+from sher3_diagnosis.judge.items import Candidate, Item
+from sher3_diagnosis.judge.probabilities import LIBRARY, NO_GAP, OUTSIDE, judged
+from sher3_diagnosis.judge.status import answer_to, crosses, status_of
+
+from sher3_challenge.calibration.fit import calibrated
+from sher3_challenge.calibration.labels import alike, answer_of, company, contains, equal, known, twins
+from sher3_challenge.calibration.observe import Observation
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """The judgement of one observation by a calibration that did not see its plant.
+
+    Attributes:
+        seen: the observation.
+        said: status.
+        named: the effects of the causes that are listed; `sets`: each with its rivals.
+        right: per cause and gap whose answer the label settles, the probabilities and that answer.
+        excused: an effect left out was answered by effects that explain the same data: nothing recorded tells.
+        rightly_named: the engine found a true effect, whatever the status.
+    """
+
+    seen: Observation
+    said: str
+    named: tuple[str, ...]
+    sets: tuple[frozenset[str], ...]
+    right: tuple[tuple[Mapping[str, float], str], ...]
+    excused: bool
+    rightly_named: bool
+
+    @property
+    def single(self) -> bool:
+        """Whether one effect of the library is to be named."""
+        return self.seen.truth["status"] == "attributed" and len(self.seen.truth["effects"]) == 1
+
+    @property
+    def first_right(self) -> bool | None:
+        """Whether the first cause of a single fault, but for its company, is the true one; None without a cause."""
+        own = [name for name in self.named if name not in company(self.seen) or equal(name, known(self.seen))]
+        return equal(own[0], known(self.seen)) if self.single and own else None
+
+    @property
+    def in_set(self) -> bool | None:
+        """Whether the set of a cause of a single fault holds the true one; None without a cause."""
+        return any(s & known(self.seen) for s in self.sets) if self.single and self.sets else None
+
+    @property
+    def set_size(self) -> float | None:
+        """Mean number of effects in the sets of a single fault."""
+        return sum(map(len, self.sets)) / len(self.sets) if self.single and self.sets else None
+
+
+def held_out(observations: Sequence[Observation], plant: str) -> list[Judgement]:
+    """Judge the observations of one plant with a calibration fitted to all others."""
+    calibration = calibrated([o for o in observations if o.plant != plant])
+    return judged_by(calibration, [o for o in observations if o.plant == plant])
+
+
+def judged_by(calibration: Calibration, observations: Sequence[Observation]) -> list[Judgement]:
+    """Judge observations with a calibration."""
+    whole = {(o.case, str(o.truth["effects"])): o for o in observations if not o.without}
+    return [_judgement(o, whole[o.case, str(o.truth["effects"])], calibration) for o in observations]
+
+
+def _judgement(seen: Observation, whole: Observation, calibration: Calibration) -> Judgement:
+    answers, named, sets, right = [], [], [], []
+    crossing = False
+    for row in seen.items:
+        j = judged(_item(row), calibration)
+        answers.append(answer_to(j, (row.get("closure") or {}).get("low")))
+        if answers[-1] == LIBRARY:
+            named.append(row["candidates"][0]["effect"])
+            sets.append(frozenset(alike(row, calibration.reach)))
+            crossing = crossing or crosses(j.item, calibration.same)
+        truth = answer_of(seen, row, whole)
+        if truth is not None:
+            right.append(({LIBRARY: j.library, OUTSIDE: j.outside, NO_GAP: j.no_gap}, truth))
+    for stage in seen.exact:
+        share = calibration.exact.probabilities(scaled_exact(stage["closure"]))[LIBRARY] if stage["causes"] else 0.0
+        answers.append(LIBRARY if share > 0.5 else OUTSIDE)
+        if share > 0.5:
+            named += [c["effect"] for c in stage["causes"]]
+            sets += [frozenset({c["effect"]}) for c in stage["causes"]]
+    found = [row["candidates"][0]["effect"] for row in seen.items if row["index"] is not None]
+    found += [c["effect"] for stage in seen.exact for c in stage["causes"]]
+    return Judgement(
+        seen,
+        status_of(answers, crossing),
+        tuple(named),
+        tuple(sets),
+        tuple(right),
+        excused=bool(seen.without and named) and all(_no_mistake(n, seen, whole) for n in named),
+        rightly_named=any(equal(name, known(seen)) for name in found),
+    )
+
+
+def _no_mistake(name: str, seen: Observation, whole: Observation) -> bool:
+    """Whether an effect contains the one left out, explains the same data, or comes with it."""
+    return contains(name, seen.without) or twins(name, whole) or name in company(seen)
+
+
+def _item(row: Mapping[str, Any]) -> Item:
+    channel = Channel(*row["channel"].split("/"))
+    return Item(channel, row["index"], row["numbers"], [Candidate(**c) for c in row["candidates"]])

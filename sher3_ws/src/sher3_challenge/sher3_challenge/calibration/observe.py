@@ -1,0 +1,164 @@
+"""The evidence of one labelled case, with its whole library and without its effect, as plain data."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import yaml
+from sher3_common import read_text
+from sher3_diagnosis.finding import ExactFinding, Finding
+from sher3_diagnosis.flow import find
+from sher3_diagnosis.judge.items import Item, items_of
+from sher3_gap.evidence import SherEvidence
+
+from sher3_challenge.cases.seal import LABELS
+
+LABEL = "truth.yaml"
+VERSION = 2
+"""Of the evidence: rows of another version are computed again."""
+
+
+@dataclass(frozen=True)
+class Observation:
+    """What the engine says of one case, before it is judged.
+
+    Attributes:
+        plant, case: where it came from.
+        truth: its label.
+        without: effects that were left out of the library.
+        items: the causes and gaps, plain: channel, numbers, candidates; of a cause its family and closure too.
+        exact: the exact stages: stage, actuator, closure and causes.
+        places: channels with a gap, most significant first.
+    """
+
+    plant: str
+    case: str
+    truth: dict[str, Any]
+    without: tuple[str, ...]
+    items: tuple[dict[str, Any], ...]
+    exact: tuple[dict[str, Any], ...]
+    places: tuple[str, ...]
+
+    @property
+    def ratio(self) -> float | None:
+        """Largest gap over floor by the label's oracle; None for exact stages and healthy cases."""
+        found = [x["gap_over_floor"] for x in (self.truth.get("oracle") or {}).values() if x.get("gap_over_floor")]
+        return max(found) if found and self.truth["effects"] else None
+
+
+def labelled(folder: Path) -> Iterator[Path]:
+    """Yield the cases below a folder that have a label: beside their runs, or as a challenge keeps it."""
+    for case in sorted(folder.rglob("case.yaml")):
+        if label_of(case.parent).exists():
+            yield case.parent
+
+
+def label_of(case: Path) -> Path:
+    """Return where the label of a case is, or would be."""
+    beside = case / LABEL
+    return beside if beside.exists() else case.parent.parent / LABELS / f"{case.name}.yaml"
+
+
+def truth_of(case: Path) -> dict[str, Any]:
+    """Return the label of a case; that of a withheld effect as of the fault that it is."""
+    truth: dict[str, Any] = yaml.safe_load(read_text(label_of(case)))
+    if not truth.get("without"):
+        return truth
+    effects = [{**e, "family": e.get("withheld", e["family"])} for e in truth["effects"]]
+    return {**truth, "status": "attributed", "kind": "single", "effects": effects, "without": []}
+
+
+def observations(plant: str, case: Path, kept: Path | None = None) -> list[Observation]:
+    """Return the observations of a case: with the whole library, and without the effect of a single fault.
+
+    Args:
+        plant: name of the truth plant.
+        case: folder with its label.
+        kept: file that holds them from one call to the next.
+    """
+    if kept is not None and kept.exists():
+        stored = json.loads(read_text(kept))
+        if stored["version"] == VERSION:
+            return [_again(row) for row in stored["rows"]]
+    truth = truth_of(case)
+    found = _observed(plant, case, truth)
+    if kept is not None:
+        kept.parent.mkdir(parents=True, exist_ok=True)
+        kept.write_text(json.dumps({"version": VERSION, "rows": [asdict(o) for o in found]}), encoding="utf-8")
+    return found
+
+
+def _again(row: dict[str, Any]) -> Observation:
+    listed = {name: tuple(row[name]) for name in ("without", "items", "exact", "places")}
+    return Observation(**{**row, **listed})
+
+
+def _observed(plant: str, case: Path, truth: dict[str, Any]) -> list[Observation]:
+    from sher3_gap.case.loading import load_case
+    from sher3_gap.sher import Sher
+
+    runs, robot = load_case(case)
+    machine = Sher(robot)
+    (evidence,) = machine.gather(runs)
+    out = []
+    for without in _libraries(truth):
+        finding = find(machine, evidence, without, lambda _: None)
+        exact = machine.exact(runs, [evidence], without)
+        out.append(
+            Observation(
+                plant,
+                case.name,
+                truth,
+                tuple(without),
+                tuple(_plain(finding, item) for item in items_of(finding)),
+                tuple(_stage(stage) for stage in exact),
+                tuple(str(c) for c in finding.significant),
+            )
+        )
+    return out
+
+
+def _libraries(truth: dict[str, Any]) -> list[Collection[str]]:
+    """Effects to leave out: none, and the one of a single fault."""
+    effects = truth["effects"]
+    single = truth["status"] == "attributed" and len(effects) == 1
+    return [(), (effects[0]["effect"],)] if single else [()]
+
+
+def _plain(finding: Finding[SherEvidence], item: Item) -> dict[str, Any]:
+    row: dict[str, Any] = {
+        "channel": str(item.channel),
+        "index": item.index,
+        "numbers": {name: float(x) for name, x in item.numbers.items()},
+        "candidates": [asdict(c) for c in item.candidates],
+    }
+    if item.index is not None:
+        cause = finding.causes[list(finding.attribution.causes).index(item.index)]
+        row |= {"family": cause.family, "stage": cause.stage, "closure": cause.closure.model_dump()}
+    return row
+
+
+def _stage(stage: ExactFinding) -> dict[str, Any]:
+    return {
+        "stage": stage.where.stage,
+        "actuator": stage.where.actuator,
+        "closure": stage.closure.value,
+        "causes": [{"effect": c.effect, "family": c.family, "actuator": c.actuator} for c in stage.causes],
+    }
+
+
+def gathered(plants: Mapping[str, Sequence[Path]], kept: Path, jobs: int = 1) -> list[Observation]:
+    """Return the observations of all cases of all plants; those in `kept` are not computed again."""
+    from joblib import Parallel, delayed
+
+    tasks = [
+        delayed(observations)(plant, case, kept / plant / f"{case.parent.name}_{case.name}.json")
+        for plant, cases in plants.items()
+        for case in cases
+    ]
+    found: list[list[Observation]] = Parallel(n_jobs=jobs)(tasks) if jobs > 1 else [t[0](*t[1]) for t in tasks]
+    return [o for rows in found for o in rows]

@@ -1,0 +1,67 @@
+"""Whether stated probabilities are met: the reliability diagram and the expected calibration error."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+BINS = 10
+
+Stated = tuple[Mapping[str, float], str]
+"""Probabilities of the answers to one item, and the right answer."""
+
+
+@dataclass(frozen=True)
+class Bin:
+    """Answers that were given about the same probability.
+
+    Attributes:
+        stated: mean probability; met: share that was right; n: answers.
+    """
+
+    stated: float
+    met: float
+    n: int
+
+
+def bins(answers: Sequence[Stated]) -> list[Bin]:
+    """Return the answers, every one of every item, by their probability."""
+    stated = np.array([p for given, _ in answers for p in given.values()])
+    met = np.array([name == right for given, right in answers for name in given], dtype=float)
+    if not len(stated):
+        return []
+    place = np.minimum((stated * BINS).astype(int), BINS - 1)
+    return [
+        Bin(float(stated[place == k].mean()), float(met[place == k].mean()), int((place == k).sum()))
+        for k in range(BINS)
+        if (place == k).any()
+    ]
+
+
+def calibration_error(answers: Sequence[Stated]) -> float:
+    """Return the mean difference of stated probability and share met, weighted by the answers in each bin."""
+    found = bins(answers)
+    total = sum(b.n for b in found)
+    return sum(b.n * abs(b.stated - b.met) for b in found) / total if total else 0.0
+
+
+def diagram(answers: Mapping[str, Sequence[Stated]], path: Path) -> None:
+    """Write the reliability diagram, one curve per name, as a picture."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(5.0, 5.0), layout="constrained")
+    axes = figure.subplots()
+    axes.plot([0.0, 1.0], [0.0, 1.0], color="0.7", linewidth=1.0)
+    for name, given in answers.items():
+        found = bins(given)
+        if found:
+            label = f"{name} (n {len(given)}, error {calibration_error(given):.3f})"
+            axes.plot([b.stated for b in found], [b.met for b in found], marker="o", label=label)
+            for b in found:
+                axes.annotate(str(b.n), (b.stated, b.met), textcoords="offset points", xytext=(5, -9), fontsize=7)
+    axes.set(xlim=(0, 1), ylim=(0, 1), xlabel="stated probability", ylabel="share that was right")
+    axes.legend(loc="upper left", fontsize=8)
+    figure.savefig(path, dpi=120)

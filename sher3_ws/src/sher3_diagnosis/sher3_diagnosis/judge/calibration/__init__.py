@@ -1,0 +1,1 @@
+"""The calibrated judgement: small logistic models whose coefficients stand in a data file with their provenance."""

@@ -1,0 +1,149 @@
+"""The evidence for one cause, as numbers that mean the same on every plant."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sher3_diagnosis.attribute.constancy import constancy_of
+from sher3_diagnosis.attribute.rivals import Attribution, without_term
+from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.evidence import Evidence
+from sher3_diagnosis.fitting import Fit, Term
+from sher3_diagnosis.judge.evidence.free_law import ROWS, loss_left
+from sher3_diagnosis.judge.evidence.transfer import steadiness_of
+from sher3_diagnosis.localise.gaps import gap_of
+from sher3_diagnosis.localise.pattern import pattern_of
+from sher3_diagnosis.quantify.closure import residual_after
+
+AT_FLOOR = 1.1
+"""Mean square over the floor up to which nothing is left that a law could be found in."""
+
+
+class Recorded(Protocol):
+    """What a view tells of the quantities that laws may depend on."""
+
+    def quantities(self, site: str) -> Mapping[str, Array]:
+        """Return quantity, of `sher3_diagnosis.effect.INPUTS`, -> (g, k) columns, as a place feels them."""
+
+    def everything(self) -> Array:
+        """Return (g, k) everything that was recorded of the whole machine, with its past."""
+
+
+@dataclass(frozen=True)
+class CauseEvidence:
+    """Evidence that one cause of a fit is at work. Shares are of the gap that the other causes leave, less its floor.
+
+    Attributes:
+        left: share left on held-out runs.
+        law: share left once its law is a free function of the inputs that the effect's page states.
+        place: of all quantities of its place.
+        anything: of whatever was recorded anywhere, and its past.
+        spread: share that coefficients of their own for every excitation add.
+        scatter: how much more the coefficients differ between excitations than between repeats (F).
+        lost: share lost in excitations left out of the fit.
+        mismatch: between the regimes where the cause says the gap is and where it is: 0 to 1.
+        sibling: share by which the next effect in its place explains less; 1 without one.
+        ratio: gap over floor.
+        samples: that tell of it.
+    """
+
+    left: float
+    law: float
+    place: float
+    anything: float
+    spread: float
+    scatter: float
+    lost: float
+    mismatch: float
+    sibling: float
+    ratio: float
+    samples: float
+
+    def numbers(self) -> dict[str, float]:
+        """Return the evidence by name."""
+        return asdict(self)
+
+
+def shown_at(evidence: Evidence, term: Term, before: Fit, after: Fit) -> Channel:
+    """Return the channel on which a term explains most."""
+    shows = [c for c in term.channels if evidence.excess(c) > 0.0] or sorted(term.channels)
+    return max(shows, key=lambda c: evidence.excess(c, before) - evidence.excess(c, after))
+
+
+def cause_evidence(evidence: Evidence, attribution: Attribution, index: int) -> CauseEvidence:
+    """Return the evidence for one cause of an attribution."""
+    found = attribution.fit
+    term, without = found.terms[index], without_term(evidence, found, index)
+    channel = shown_at(evidence, term, without, found)
+    samples = evidence.samples(channel)
+    gap = max(evidence.excess(channel, without), 1.0)
+    left = evidence.excess(channel, found)
+    laws = free_laws(evidence, channel, term, found)
+    steady = steadiness_of(evidence, found, index)
+    whole = gap_of(evidence, channel, residual_after(evidence, without, channel))
+    assert whole is not None
+    return CauseEvidence(
+        left=left / gap,
+        law=(left - laws[0] * samples) / gap,
+        place=(left - laws[1] * samples) / gap,
+        anything=(left - laws[2] * samples) / gap,
+        spread=constancy_of(evidence, found, index).spread,
+        scatter=steady.scatter,
+        lost=steady.lost,
+        mismatch=1.0 - pattern_of(evidence, found, index).agreement,
+        sibling=_sibling(attribution, index),
+        ratio=whole.ratio,
+        samples=float(samples),
+    )
+
+
+def free_laws(evidence: Evidence, channel: Channel, term: Term, fit: Fit) -> tuple[float, float, float]:
+    """Return the mean square over the floor, per sample and component, that free laws take off what a fit leaves.
+
+    Of the inputs that the term's effect states; of all quantities of the place; of everything recorded.
+    """
+    left = residual_after(evidence, fit, channel)
+    white = {r: x / evidence.floors[r][channel] for r, x in left.items()}
+    signal = np.concatenate(list(white.values()))
+    width = signal.shape[1]
+    level = float(np.mean(signal**2))
+    if level < AT_FLOOR:
+        return 0.0, 0.0, 0.0
+    step = max(1, len(signal) // ROWS)
+    picked = {r: np.flatnonzero(evidence.data.residuals[r][channel].ok)[::step] for r in left}
+    signal = np.concatenate([white[r][::step] for r in left])
+    run = np.concatenate([np.full(len(picked[r]), r) for r in left])
+    own, place, rest = [], [], []
+    for r, rows in picked.items():
+        view: Recorded = evidence.views[r]  # type: ignore[assignment]
+        known = view.quantities(channel.actuator)
+        own.append(_stacked({n: x for n, x in known.items() if n in term.effect.inputs}, rows))
+        place.append(_stacked({n: x for n, x in known.items() if n not in term.effect.inputs + ELSEWHERE}, rows))
+        rest.append(view.everything()[rows])
+    losses = loss_left([np.vstack(own), np.vstack(place), np.vstack(rest)], signal, run)
+    before = float(np.sum(signal**2)) / len(signal)
+    law, whole, anything = ((before - x) / width for x in losses)
+    return law, whole, anything
+
+
+ELSEWHERE = ("time", "temperature", "posture")
+"""Quantities that are no place's own; at the tip the posture is in everything that was recorded."""
+
+
+def _stacked(columns: Mapping[str, Array], rows: NDArray[np.int64]) -> Array:
+    parts = [x[rows] for x in columns.values()]
+    return np.hstack(parts) if parts else np.zeros((len(rows), 0))
+
+
+def _sibling(attribution: Attribution, index: int) -> float:
+    """Share by which the next effect of another id explains less in the place of a cause."""
+    chosen, worth = attribution.fit.terms[index], max(attribution.explained[index], 1.0)
+    others = [f.total for f in attribution.ranking[index] if f.terms[-1].effect.id != chosen.effect.id]
+    if not others:
+        return 1.0
+    return float(np.clip((min(others) - attribution.fit.total) / worth, 0.0, 1.0))

@@ -1,0 +1,121 @@
+"""Laws of any shape: what free functions of given inputs leave of a signal, on runs they were not trained on.
+
+An effect is known by the inputs its law may depend on. A remainder that a free function of these inputs takes away is
+the shape of the law; one that only other inputs take away is another law.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sher3_diagnosis.channel import Array
+
+FOLDS = 3
+"""Groups of runs, each predicted from the others."""
+ROWS = 1500
+"""Samples that are looked at, of all runs together."""
+KEPT = 12
+"""Inputs that a free function is given: those that alone tell most of the signal."""
+BINS = 12
+"""Bins of an input when it is looked at alone."""
+RIDGE = 0.01
+"""Ridge of the linear part, share of the variance of an input."""
+FEW = 60
+"""Samples below which nothing is trained."""
+ENERGY = 2
+"""Directions of a signal of several components that are looked at: those with most energy."""
+
+
+def loss_left(groups: Sequence[Array], signal: Array, run: NDArray[np.int64]) -> list[float]:
+    """Return the mean square per sample that is left of a signal by free functions of ever more inputs.
+
+    Args:
+        groups: of inputs, (n, k) each; the second law has those of the first as well, and so on.
+        signal: (n, d).
+        run: (n,) number of the run of each sample.
+
+    Returns:
+        Of each law, the loss over the runs it was not trained on, never more than that of the laws before.
+    """
+    total = float(np.sum(signal**2)) / len(signal)
+    left = signal @ principal(signal)
+    out: list[float] = []
+    given = np.zeros((len(signal), 0))
+    for group in groups:
+        given = np.hstack([given, group])
+        with _one_thread():
+            predicted = np.column_stack([_crossed(given, y, run) for y in left.T])
+        gain = float(np.sum(left**2) - np.sum((left - predicted) ** 2)) / len(signal)
+        if gain > 0.0:
+            total, left = total - gain, left - predicted
+        out.append(total)
+    return out
+
+
+def principal(signal: Array) -> Array:
+    """Return the directions (d, m) of a signal (n, d) with most energy."""
+    if signal.shape[1] == 1:
+        return np.eye(1)
+    return np.linalg.svd(signal.T @ signal)[0][:, :ENERGY]
+
+
+def _crossed(inputs: Array, y: Array, run: NDArray[np.int64]) -> Array:
+    """Predict y (n,) run by run from the other runs."""
+    fold = np.unique(run, return_inverse=True)[1] % FOLDS
+    out = np.zeros(len(y))
+    if not inputs.shape[1]:
+        return out
+    for k in range(FOLDS):
+        train, test = fold != k, fold == k
+        if train.sum() >= FEW and test.any():
+            chosen = telling(inputs[train], y[train])
+            straight = linear(inputs[train], y[train])
+            left = y[train] - straight(inputs[train])
+            out[test] = straight(inputs[test]) + _trees(inputs[train][:, chosen], left, inputs[test][:, chosen])
+    return out
+
+
+def linear(inputs: Array, y: Array) -> Callable[[Array], Array]:
+    """Return the linear function of the inputs (n, k) that fits y (n,), held down by a ridge: filters are linear."""
+    middle, spread = inputs.mean(axis=0), inputs.std(axis=0)
+    alive = spread > 1e-9 * max(float(spread.max(initial=0.0)), 1e-300)
+    x = (inputs[:, alive] - middle[alive]) / spread[alive]
+    ridge = RIDGE * len(y) * np.eye(x.shape[1])
+    weights = np.linalg.solve(x.T @ x + ridge, x.T @ (y - y.mean())) if x.shape[1] else np.zeros(0)
+    return lambda new: y.mean() + (new[:, alive] - middle[alive]) / spread[alive] @ weights
+
+
+def telling(inputs: Array, y: Array, kept: int = KEPT) -> NDArray[np.int64]:
+    """Return the columns of inputs (n, k) that alone tell most of y (n,)."""
+    if inputs.shape[1] <= kept:
+        return np.arange(inputs.shape[1])
+    gains = [_told(column, y) for column in inputs.T]
+    return np.argsort(gains)[::-1][:kept]
+
+
+def _told(column: Array, y: Array) -> float:
+    edges = np.quantile(column, np.linspace(0.0, 1.0, BINS + 1)[1:-1])
+    cell = np.searchsorted(edges, column)
+    count = np.bincount(cell, minlength=BINS)
+    return float(np.sum(np.bincount(cell, y, minlength=BINS) ** 2 / np.maximum(count, 1)))
+
+
+def _one_thread() -> AbstractContextManager[object]:
+    """Hold the compiled libraries to one thread: on so few samples more of them only wait for each other."""
+    import sklearn.ensemble  # noqa: F401  its threads are there to be held once it is loaded
+    from threadpoolctl import threadpool_limits
+
+    return threadpool_limits(limits=1)
+
+
+def _trees(inputs: Array, y: Array, new: Array) -> Array:
+    from sklearn.ensemble import HistGradientBoostingRegressor
+
+    trees = HistGradientBoostingRegressor(
+        max_iter=25, learning_rate=0.2, max_leaf_nodes=8, max_bins=32, l2_regularization=5.0, early_stopping=False
+    )
+    return trees.fit(inputs, y).predict(new)

@@ -1,0 +1,43 @@
+"""The scales on which a model reads the evidence: logarithms of shares, each down to where it tells nothing more."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+LEAST_SHARE = 0.003
+"""Share of a gap below which a remainder is none."""
+LEAST_LAW = 0.02
+"""Share that own inputs leave below which it does not matter what explains it."""
+
+
+def log_above(x: float, least: float) -> float:
+    """Return the natural logarithm of the larger of `x` and `least`."""
+    return math.log(max(x, least))
+
+
+def scaled_gap(numbers: Mapping[str, float]) -> dict[str, float]:
+    """Return what a model reads of a gap without a cause: the larger, the less it comes from elsewhere."""
+    return {
+        "power": log_above(numbers["power"], 1.0),
+        "alone": -max(0.0, numbers["beside"]),
+    }
+
+
+def scaled_exact(closure: float) -> dict[str, float]:
+    """Return what a model reads of an exact stage: the share of its error that the causes do not reproduce."""
+    return {"missed": 1.0 - closure}
+
+
+def scaled_cause(numbers: Mapping[str, float]) -> dict[str, float]:
+    """Return what a model reads of a cause; the larger a number, the less it speaks for the cause."""
+    left, law, anything = (min(max(numbers[name], 0.0), 1.0) for name in ("left", "law", "anything"))
+    return {
+        "left": log_above(left, LEAST_SHARE),
+        "law": log_above(law, LEAST_SHARE),
+        "foreign": max(0.0, law - anything) / max(law, LEAST_LAW),
+        "spread": log_above(numbers["spread"], 0.001),
+        "lost": log_above(numbers["lost"], 0.001),
+        "mismatch": log_above(numbers["mismatch"], 0.01),
+        "company": numbers["company"],
+    }

@@ -1,0 +1,101 @@
+"""Whether a cause holds where it was not fitted: in an excitation left out, and from one excitation to the next."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from sher3_diagnosis.channel import Array
+from sher3_diagnosis.evidence import Evidence
+from sher3_diagnosis.fitting import Fit, solve
+
+INFORMED = 0.2
+"""Share of what is known of a cause that the other excitations must hold for one to be left out."""
+
+
+@dataclass(frozen=True)
+class Steadiness:
+    """What each run tells of the coefficients of one cause, the other causes as fitted.
+
+    Attributes:
+        excitation: of every run.
+        normal: (runs, p, p) and `right` (runs, p): normal equations of every run.
+    """
+
+    excitation: tuple[str, ...]
+    normal: Array
+    right: Array
+
+    def gained(self, groups: tuple[str | int, ...]) -> float:
+        """Return the loss that the cause explains with coefficients of its own in every group of runs."""
+        sums: dict[str | int, list[Array]] = defaultdict(lambda: [0.0, 0.0])  # type: ignore[list-item]
+        for g, a, b in zip(groups, self.normal, self.right, strict=True):
+            sums[g] = [sums[g][0] + a, sums[g][1] + b]
+        return sum(float(b @ solve(a, b)) for a, b in sums.values())
+
+    @cached_property
+    def explained(self) -> float:
+        """Loss that the cause explains with the same coefficients in all runs."""
+        return self.gained((0,) * len(self.excitation))
+
+    @property
+    def scatter(self) -> float:
+        """F: how much more coefficients differ between excitations than between repeats of one; 1 for a true cause.
+
+        Differences of repeats are the coefficient's own uncertainty. 1 where there is nothing to compare.
+        """
+        width = self.right.shape[1]
+        kinds = len(set(self.excitation))
+        runs = len(self.excitation)
+        if width == 0 or kinds < 2 or runs == kinds:
+            return 1.0
+        between = self.gained(self.excitation) - self.explained
+        within = self.gained(tuple(range(runs))) - self.gained(self.excitation)
+        per_repeat = max(within / (runs - kinds), float(width))
+        return max(between, 0.0) / (kinds - 1) / per_repeat
+
+    @property
+    def lost(self) -> float:
+        """Share of what the cause explains that is lost in excitations left out of its fit; 0 where it transfers."""
+        if self.right.shape[1] == 0 or self.explained <= 0.0:
+            return 0.0
+        all_normal, all_right = self.normal.sum(axis=0), self.right.sum(axis=0)
+        together = solve(all_normal, all_right)
+        lost = 0.0
+        for name in set(self.excitation):
+            mine = [e == name for e in self.excitation]
+            a, b = self.normal[mine].sum(axis=0), self.right[mine].sum(axis=0)
+            if np.trace(all_normal - a) < INFORMED * np.trace(all_normal):
+                continue
+            apart = solve(all_normal - a, all_right - b)
+            lost += max(0.0, _explained(a, b, together) - _explained(a, b, apart))
+        return lost / self.explained
+
+
+def _explained(normal: Array, right: Array, coefficients: Array) -> float:
+    return float(2.0 * coefficients @ right - coefficients @ normal @ coefficients)
+
+
+def steadiness_of(evidence: Evidence, fit: Fit, index: int) -> Steadiness:
+    """Return what every run tells of one cause of a fit."""
+    data, term = evidence.data, fit.terms[index]
+    offsets = np.cumsum([0, *(t.width for t in fit.terms)])
+    normal = np.zeros((len(data.target), term.width, term.width))
+    right = np.zeros((len(data.target), term.width))
+    for r in range(len(data.target)):
+        for channel, x in term.columns[r].items():
+            left = data.target[r][channel].copy()
+            for j, other in enumerate(fit.terms):
+                if channel in other.fixed[r]:
+                    left -= other.fixed[r][channel]
+                if j != index and channel in other.columns[r]:
+                    z = other.columns[r][channel]
+                    left -= z @ fit.coefficients[offsets[j] : offsets[j] + z.shape[1]]
+            wide = np.zeros((len(x), term.width))
+            wide[:, : x.shape[1]] = x
+            normal[r] += wide.T @ wide
+            right[r] += wide.T @ left
+    return Steadiness(tuple(evidence.excitations), normal, right)

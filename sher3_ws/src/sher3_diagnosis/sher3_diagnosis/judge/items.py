@@ -1,0 +1,94 @@
+"""What asks for a judgement: every cause that a fit names, and every gap that no cause explains."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from sher3_diagnosis.attribute.rivals import Attribution, unlikeness, without_term
+from sher3_diagnosis.channel import Channel
+from sher3_diagnosis.finding import Finding
+from sher3_diagnosis.fitting import Term
+from sher3_diagnosis.judge.evidence.cause import cause_evidence, shown_at
+
+COVERED = 0.5
+"""Share of a gap that the causes of other gaps must explain for it to be theirs."""
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """An effect at a site that may be a cause, and how far it is from explaining as much as the one named.
+
+    Attributes:
+        effect, site, family: of the effect; `contains`: the simpler effects that it contains.
+        unlikeness: 0 of the cause itself; below 1 nearly the same data.
+    """
+
+    effect: str
+    site: str
+    family: str
+    contains: tuple[str, ...]
+    unlikeness: float
+
+
+@dataclass(frozen=True)
+class Item:
+    """One cause or one gap, with its evidence.
+
+    Attributes:
+        channel: where it shows most.
+        index: of the cause's term in its fit; None for a gap without a cause.
+        numbers: the evidence by name; of a cause also its `company`, the other causes that show most there.
+        candidates: of a cause, the effects that may stand in its place, itself first.
+    """
+
+    channel: Channel
+    index: int | None
+    numbers: Mapping[str, float]
+    candidates: Sequence[Candidate] = ()
+
+
+def items_of(finding: Finding) -> list[Item]:
+    """Return the causes of a finding, in their order, and then its gaps that they do not explain."""
+    evidence, attribution = finding.evidence, finding.attribution
+    causes = []
+    for i in attribution.causes:
+        channel = shown_at(
+            evidence, attribution.fit.terms[i], without_term(evidence, attribution.fit, i), attribution.fit
+        )
+        numbers = cause_evidence(evidence, attribution, i).numbers()
+        causes.append(Item(channel, i, numbers, candidates_of(attribution, i)))
+    shared = Counter(c.channel for c in causes)
+    causes = [replace(c, numbers={**c.numbers, "company": shared[c.channel] - 1.0}) for c in causes]
+    return causes + gaps_of(finding, set(shared))
+
+
+def gaps_of(finding: Finding, taken: set[Channel]) -> list[Item]:
+    """Return the significant gaps that no cause explains but for less than half."""
+    evidence, gaps = finding.evidence, finding.significant
+    out = []
+    for channel, gap in gaps.items():
+        null = max(evidence.excess(channel), 1.0)
+        if channel in taken or evidence.excess(channel, finding.attribution.fit) < (1.0 - COVERED) * null:
+            continue
+        others = [g.power for c, g in gaps.items() if c != channel]
+        beside = math.log(max(others) / gap.power) if others else 0.0
+        numbers = {"power": gap.power, "ratio": gap.ratio, "beside": beside, "others": float(len(others))}
+        out.append(Item(channel, None, numbers))
+    return out
+
+
+def candidates_of(attribution: Attribution, index: int) -> list[Candidate]:
+    """Return the cause and those that come closest to it in its place, each effect and site once."""
+    term = attribution.fit.terms[index]
+    out = {term.key: _candidate(term, 0.0)}
+    for f in attribution.ranking[index]:
+        far = max(0.0, unlikeness(f, attribution.fit, attribution.explained[index]))
+        out.setdefault(f.terms[-1].key, _candidate(f.terms[-1], far))
+    return list(out.values())
+
+
+def _candidate(term: Term, far: float) -> Candidate:
+    return Candidate(*term.key, term.effect.family, tuple(term.effect.extends), far)

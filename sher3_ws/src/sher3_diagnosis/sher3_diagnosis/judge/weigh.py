@@ -1,0 +1,86 @@
+"""Causes and gaps weighed by the calibration: what is named, what merely imitates, and what is no cause of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from sher3_diagnosis.attribute.rivals import Attribution
+from sher3_diagnosis.channel import Channel
+from sher3_diagnosis.finding import Finding
+from sher3_diagnosis.fitting import fit
+from sher3_diagnosis.judge.calibration.calibration import Calibration
+from sher3_diagnosis.judge.items import items_of
+from sher3_diagnosis.judge.probabilities import LIBRARY, OUTSIDE, Judged, judged
+from sher3_diagnosis.judge.status import answer_to
+from sher3_diagnosis.verdict import Cause, Imitation
+
+
+def weighed(finding: Finding, calibration: Calibration) -> Finding:
+    """Judge every cause and gap of a finding; keep the causes that are named, and the gaps that need an answer."""
+    items = [judged(i, calibration) for i in items_of(finding)]
+    answers = [answer_to(j, _low(finding, j)) for j in items]
+    named = [j for j, a in zip(items, answers, strict=True) if a == LIBRARY]
+    outside = [j for j, a in zip(items, answers, strict=True) if a == OUTSIDE]
+    attribution, causes = _kept(finding, named, calibration.reach)
+    touched = {c for j in (*named, *outside) for c in _touches(finding, j)}
+    return replace(
+        finding,
+        attribution=attribution,
+        causes=causes,
+        left={j.item.channel: finding.evidence.excess(j.item.channel, attribution.fit) for j in outside},
+        judged=tuple(items),
+        imitations=tuple(_imitation(finding, j) for j in outside if j.item.index is not None),
+        dismissed=frozenset(finding.significant) - touched,
+    )
+
+
+def _low(finding: Finding, j: Judged) -> float | None:
+    """Lower end of the closure of a cause; None of a gap."""
+    return None if j.item.index is None else _cause(finding, j).closure.low
+
+
+def _cause(finding: Finding, j: Judged) -> Cause:
+    return finding.causes[list(finding.attribution.causes).index(j.item.index)]  # type: ignore[arg-type]
+
+
+def _touches(finding: Finding, j: Judged) -> frozenset[Channel]:
+    if j.item.index is None:
+        return frozenset({j.item.channel})
+    return finding.attribution.fit.terms[j.item.index].channels
+
+
+def _imitation(finding: Finding, j: Judged) -> Imitation:
+    cause = _cause(finding, j)
+    return Imitation(effect=cause.effect, actuator=cause.actuator, closure=cause.closure)
+
+
+def _kept(finding: Finding, named: Sequence[Judged], reach: float) -> tuple[Attribution, list[Cause]]:
+    """Return the attribution with the named causes alone, their rivals within reach, and the causes."""
+    found = finding.attribution
+    indices = [*range(found.nuisance), *(j.item.index for j in named if j.item.index is not None)]
+    rivals = {j.item.index: _rivals(found, j, reach) for j in named}
+    again = found.fit
+    if len(indices) < len(found.fit.terms):
+        again = fit(finding.evidence.data, [found.fit.terms[i] for i in indices])
+    attribution = replace(
+        found,
+        fit=again,
+        rivals=tuple(rivals.get(i, ()) for i in indices),
+        explained=tuple(found.explained[i] for i in indices),
+        ranking=tuple(found.ranking[i] for i in indices),
+    )
+    causes = []
+    for j in named:
+        alike = [f.terms[-1].effect.id for f in rivals[j.item.index]]
+        update = {"rivals": list(dict.fromkeys(alike)), "probability": j.effects[0]}
+        causes.append(_cause(finding, j).model_copy(update=update))
+    return attribution, causes
+
+
+def _rivals(found: Attribution, j: Judged, reach: float) -> tuple:
+    """Return the fits of the candidates within reach, of other effects than the cause."""
+    within = {(c.effect, c.site) for c in j.item.candidates if c.unlikeness <= reach}
+    own = j.item.candidates[0].effect
+    ranking = found.ranking[j.item.index]  # type: ignore[index]
+    return tuple(f for f in ranking if f.terms[-1].key in within and f.terms[-1].effect.id != own)

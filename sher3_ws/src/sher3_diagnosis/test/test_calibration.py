@@ -1,0 +1,106 @@
+"""Probabilities from plain numbers, worked out by hand; the file that the package carries."""
+
+import math
+
+import pytest
+from pydantic import ValidationError
+from sher3_diagnosis.channel import Channel
+from sher3_diagnosis.finding import ExactFinding
+from sher3_diagnosis.judge.calibration.calibration import in_force
+from sher3_diagnosis.judge.calibration.logistic import Logistic
+from sher3_diagnosis.judge.evidence.scales import scaled_cause, scaled_exact, scaled_gap
+from sher3_diagnosis.judge.items import Candidate, Item
+from sher3_diagnosis.judge.probabilities import judged, probabilities_of
+from sher3_diagnosis.judge.status import answer_to, crosses, status_of
+from sher3_diagnosis.verdict import Interval, Residual, Where
+
+TWO = {"classes": ("library", "outside_library"), "inputs": ("x",), "middle": (1.0,), "spread": (2.0,)}
+NUMBERS = {
+    "left": 0.01, "law": 0.01, "place": 0.01, "anything": 0.01, "spread": 0.001, "scatter": 1.0, "lost": 0.001,
+    "mismatch": 0.02, "company": 0.0, "sibling": 0.5, "ratio": 6.0, "samples": 4000.0,
+}  # fmt: skip
+CALIBRATION = in_force()
+
+
+def cause(**changes: float) -> Item:
+    candidates = [
+        Candidate("coulomb_friction", "tilt", "friction", (), 0.0),
+        Candidate("payload_mass", "tilt", "inertia", (), 0.2),
+    ]
+    return Item(Channel("motor_mechanics", "tilt"), 0, NUMBERS | changes, candidates)
+
+
+def test_a_logistic_model_by_hand():
+    """Score 3 * (5 - 1) / 2 = 6 and 0, less 6: two even odds; at x = 3 the scores are -3 and 0."""
+    model = Logistic(**TWO, weights=((3.0,), (0.0,)), offset=(-6.0, 0.0))
+    assert model.probabilities({"x": 5.0}) == pytest.approx({"library": 0.5, "outside_library": 0.5})
+    assert model.probabilities({"x": 3.0})["library"] == pytest.approx(1.0 / (1.0 + math.exp(3.0)))
+
+
+def test_a_model_whose_numbers_do_not_fit_is_refused():
+    with pytest.raises(ValidationError, match="differ in number"):
+        Logistic(**TWO, weights=((3.0, 1.0), (0.0,)), offset=(0.0, 0.0))
+
+
+def test_scales_end_where_they_tell_nothing_more():
+    numbers = NUMBERS | {"left": -0.2, "law": 0.1, "anything": 0.04}
+    scaled = scaled_cause(numbers)
+    assert scaled["left"] == pytest.approx(math.log(0.003))
+    assert scaled["foreign"] == pytest.approx(0.6)  # of what its own inputs leave
+    assert scaled_gap({"power": 0.5, "ratio": 1.0, "beside": -2.0}) == {"power": 0.0, "alone": 0.0}
+    assert scaled_exact(0.9) == {"missed": pytest.approx(0.1)}
+
+
+def test_candidates_share_what_the_library_has_by_their_unlikeness():
+    j = judged(cause(), CALIBRATION)
+    assert sum(j.effects) + j.outside + j.no_gap == pytest.approx(1.0)
+    assert j.effects[1] / j.effects[0] == pytest.approx(math.exp(-0.2 * CALIBRATION.sharpness))
+
+
+def test_a_clean_cause_is_named_and_one_that_leaves_half_to_foreign_inputs_is_not():
+    assert judged(cause(), CALIBRATION).answer == "library"
+    worse = cause(left=0.6, law=0.5, place=0.5, anything=0.1, spread=0.2, lost=0.2, mismatch=0.5)
+    assert judged(worse, CALIBRATION).answer == "outside_library"
+
+
+def test_a_great_gap_without_a_cause_is_outside():
+    gap = Item(Channel("drive", "tilt"), None, {"power": 50.0, "ratio": 7.0, "beside": 0.0, "others": 0.0})
+    assert judged(gap, CALIBRATION).answer == "outside_library"
+
+
+def test_a_cause_whose_closure_may_be_nothing_is_not_named():
+    j = judged(cause(), CALIBRATION)
+    assert answer_to(j, 0.3) == answer_to(j, None) == "library"
+    assert answer_to(j, -0.1) == "outside_library"
+
+
+def test_the_status_follows_from_the_answers():
+    assert status_of([], False) == "no_gap"
+    assert status_of(["no_gap"], True) == "no_gap"
+    assert status_of(["library", "no_gap"], False) == "attributed"
+    assert status_of(["library"], True) == "under_excited"
+    assert status_of(["library", "outside_library"], True) == "outside_library"
+
+
+def test_only_another_family_that_gives_the_same_data_makes_runs_poor():
+    assert crosses(cause(), same=0.3)
+    assert not crosses(cause(), same=0.1)
+
+
+def test_probabilities_add_up_to_one_per_gap():
+    exact = ExactFinding(
+        Where(stage="transport", actuator="all", gap=1e-3, floor=1e-9, unit="m/s", regime="", confidence=1.0),
+        [],
+        Interval(value=0.0),
+        Residual(gap=1e-3, floor=1e-9, unit="m/s"),
+    )
+    found = probabilities_of([judged(cause(), CALIBRATION)], [exact], CALIBRATION)
+    assert sum(found.values()) == pytest.approx(2.0, abs=2e-3)
+    assert found["coulomb_friction:tilt"] > found["payload_mass:tilt"]
+    assert found["outside_library"] > 1.0  # nothing reproduces the exact stage
+
+
+def test_the_calibration_says_what_it_was_set_on():
+    assert {p.plant for p in CALIBRATION.provenance}
+    assert all(p.cases > 0 for p in CALIBRATION.provenance)
+    assert CALIBRATION.coverage >= 0.95
