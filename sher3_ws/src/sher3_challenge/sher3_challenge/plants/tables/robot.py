@@ -144,7 +144,7 @@ def individual(robot: Robot, rng: np.random.Generator) -> TableParameters:
         m.slope[j] = loop_slope(rng)
         along = [0.2 * np.interp(np.linspace(0, RING, PLACES, False), np.arange(RING), ring(rng)) for _ in range(2)]
         m.friction[j] = level[j] * (wobble(rng, 0.1, SPEEDS)[None, :, None] + np.array(along)[:, None, :])
-        p.transmission.ripple[j] = ring(rng) * rng.uniform(0, 1 / 3)
+        p.transmission.ripple[j] = ring(rng) * rng.uniform(0, 0.15)  # the tolerance is from peak to peak
     p.transmission.ripple[:] *= np.where(np.arange(AXES) == 3, 50e-6, 0.05e-6)[:, None]
     p.transmission.ratio[:] = 2e-5 / 3 * rng.standard_normal(AXES)
     g.centre[:, :] += 0.25e-6 / 3 * rng.standard_normal((3, 3))
