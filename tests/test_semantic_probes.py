@@ -26,7 +26,7 @@ from sher3_drivers.bus.link import open_link
 from sher3_drivers.canopen import objects as od
 from sher3_drivers.canopen.configuration import required_writes
 from sher3_drivers.mock.rig import LockstepRig
-from sher3_drivers.pedal.joystick import JS_EVENT, JoystickPedal
+from sher3_drivers.pedal.hid import REPORT, HidPedal
 from sher3_drivers.sensor.netft import NetFtScale
 from sher3_drivers.settings import default_settings
 from sher3_drivers.units import AxisScale
@@ -286,16 +286,16 @@ def test_force_counts_are_per_newton_and_newton_millimetre():
     )
 
 
-@pytest.mark.parametrize(("raw", "travel"), [(-32767, 0.0), (0, 0.5), (32767, 1.0), (-32768, 0.0)])
+@pytest.mark.parametrize(("raw", "travel"), [(0, 0.0), (32768, 0.5), (65535, 1.0)])
 def test_pedal_travel_is_nought_to_one(raw, travel, tmp_path):
     """Kills: -1 to 1, percent, a pedal that moves the robot when it is up."""
     import os
 
     os.mkfifo(tmp_path / "js")
-    pedal = JoystickPedal(str(tmp_path / "js"))
+    pedal = HidPedal(str(tmp_path / "js"))
     with open(tmp_path / "js", "wb", buffering=0) as device:
-        device.write(JS_EVENT.pack(0, raw, 2, 0))
-        assert pedal.read().travel == pytest.approx(travel)
+        device.write(REPORT.pack(raw, 1, 1))
+        assert pedal.read().travel == pytest.approx(travel, abs=1e-5)
     pedal.close()
 
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from sher3_drivers.mock.bus import MockDriveBus as MockDriveBus
     from sher3_drivers.mock.rig import LockstepRig as LockstepRig
     from sher3_drivers.pedal.device import PedalState as PedalState
-    from sher3_drivers.pedal.joystick import JoystickPedal as JoystickPedal
+    from sher3_drivers.pedal.hid import HidPedal as HidPedal
     from sher3_drivers.sensor.device import WrenchRecord as WrenchRecord
     from sher3_drivers.sensor.netft import NetFtSensor as NetFtSensor
     from sher3_drivers.settings import MotorDriverSettings as MotorDriverSettings
@@ -30,7 +30,7 @@ __getattr__, __dir__ = lazy(
         "mock.bus": ("MockDriveBus",),
         "mock.rig": ("LockstepRig",),
         "pedal.device": ("PedalState",),
-        "pedal.joystick": ("JoystickPedal",),
+        "pedal.hid": ("HidPedal",),
         "sensor.device": ("WrenchRecord",),
         "sensor.netft": ("NetFtSensor",),
         "settings": ("MotorDriverSettings", "default_settings"),

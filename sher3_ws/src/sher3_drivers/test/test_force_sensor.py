@@ -56,6 +56,18 @@ def test_no_reading_beyond_the_range_passes(wrench, status):
     assert (fault is SensorFault.NONE) == (believable and not status)
 
 
+def test_a_force_that_jumps_to_and_fro_is_no_hand():
+    """11 N either way at 125 Hz stays within the range; the third jump within 20 ms gives it away."""
+    square = [WrenchRecord(with_component(2, 11.0 if k // 2 % 2 else -11.0), k) for k in range(12)]
+    assert judge(*square)[:7] == [SensorFault.NONE] * 6 + [SensorFault.ABSURD]
+
+
+def test_a_hit_on_the_tool_is_one_jump_or_two():
+    forces = [0.3] * 5 + [8.0, 7.0] + [0.3] * 30 + [8.0] + [0.3] * 5
+    noisy = [WrenchRecord(with_component(2, f + 1e-3 * (k % 2)), k) for k, f in enumerate(forces)]
+    assert set(judge(*noisy)) == {SensorFault.NONE}
+
+
 def test_frozen_after_eight_identical_readings():
     faults = judge(*(WrenchRecord(QUIET, k) for k in range(20)))
     assert faults[:7] == [SensorFault.NONE] * 7 and set(faults[7:]) == {SensorFault.FROZEN}

@@ -142,7 +142,7 @@ class FaultInjector:
         if unit == "force_sensor":
             return WrenchRecords()
         if unit in ("pedal", _TORQUE):
-            return PedalStates()
+            return Numbers(1.0) if part else PedalStates()
         if part in ("", _UP, _DOWN):
             return BusFrames() if unit.startswith("bus") else DriveFrames()
         scale = self._drives.drives[unit].scale
@@ -156,7 +156,8 @@ class FaultInjector:
         """Open the seams that are needed and close the others."""
         names = self.active
         self._force.tamper = self._samples("force_sensor") if "force_sensor" in names else None
-        self._pedal.tamper = self._samples("pedal") if "pedal" in names else None
+        pedal = {"pedal", "pedal.travel", "pedal.contact"} & names.keys()
+        self._pedal.tamper = self._foot if pedal else None
         for name, drive in self._drives.drives.items():
             wanted = {f"{name}.load_encoder", f"{name}.motor_encoder", f"{name}.echo"} & names.keys()
             drive.tamper = self._feedback(name) if wanted else None
@@ -177,6 +178,17 @@ class FaultInjector:
             return fault([sample], now) if active.acts(now) else [sample]
 
         return tamper
+
+    def _foot(self, state: PedalState) -> list[PedalState]:
+        """Return the states of the pedal as faults of its travel, of its contact, and of its line leave them."""
+        travel = self._number("pedal", "travel", state.travel)
+        made = bool(round(self._number("pedal", "contact", float(bool(state.made)))))
+        states = [state._replace(travel=travel, made=made)]
+        active, now = self.active.get("pedal"), self._clock()
+        if active is None or not active.acts(now):
+            return states
+        (fault,) = active.faults.values()
+        return fault(states, now)
 
     def _feedback(self, name: str) -> Callable[[AxisReading], AxisReading]:
         fields = {"motor_encoder": "motor_position", "load_encoder": "load_position", "echo": "velocity_demand"}

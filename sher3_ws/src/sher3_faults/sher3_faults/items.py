@@ -9,7 +9,7 @@ from random import Random
 from typing import Any
 
 from sher3_drivers.bus.frame import ERROR_FLAG
-from sher3_drivers.pedal.device import PedalState
+from sher3_drivers.pedal.device import PedalState, wired
 from sher3_drivers.sensor.device import WrenchRecord
 
 from sher3_faults.kinds import Parameters
@@ -82,7 +82,8 @@ class PedalStates(OneSource):
 
     def garbage(self, item: PedalState, random: Random) -> PedalState:
         """Draw a travel, also outside 0 to 1."""
-        return PedalState(random.choice([random.uniform(-2.0, 2.0), math.nan, math.inf, 1e300]), False)
+        travel = random.choice([random.uniform(-2.0, 2.0), math.nan, math.inf, 1e300])
+        return wired(PedalState(travel, False))
 
     def wrong(self, item: PedalState, parameters: Parameters) -> PedalState:
         """Return the value scaled, then offset."""

@@ -20,6 +20,8 @@ LINES = ("bus", *(f"bus{i}" for i in range(5)), *ACTUATORS)
 DEVICES = (
     "force_sensor",
     "pedal",
+    "pedal.travel",
+    "pedal.contact",
     "safe_torque_off",
     *(name + way for name in LINES for way in ("", ".up", ".down")),
     *(f"{name}.{part}" for name in ACTUATORS for part in ("load_encoder", "motor_encoder", "demand", "power", "echo")),

@@ -62,10 +62,10 @@ def _force_sensor(settings: RunSettings) -> Any:
 
 
 def _pedal(settings: RunSettings) -> Any:
-    from sher3_drivers.pedal.joystick import JoystickPedal
+    from sher3_drivers.pedal.hid import HidPedal
     from sher3_drivers.pedal.pedal_node import PedalNode
 
-    device = _mock_pedal(settings) if settings.mock else JoystickPedal(settings.pedal_device)
+    device = _mock_pedal(settings) if settings.mock else HidPedal(settings.pedal_device)
     return PedalNode(settings.robot(), device)
 
 

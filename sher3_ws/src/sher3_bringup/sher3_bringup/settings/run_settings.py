@@ -54,7 +54,7 @@ class RunSettings(BaseModel):
         other_hosts: talk to other machines; by default everything stays on the loopback interface.
         realtime: SCHED_FIFO priority of every process, 0 for none, -1 for the default where the user may.
         force_device: address of the force sensor on the real robot, host or host:port.
-        pedal_device: joystick device of the pedal on the real robot.
+        pedal_device: raw HID device of the pedal on the real robot.
         patience: time limits in force, see `patience`; the real robot has only the strict ones.
         seed: of the plant's noise.
         near_speed, free_speed: speed caps of the two regimes [m/s], or None for those of the control settings; the
@@ -119,7 +119,9 @@ class RunSettings(BaseModel):
         if "force_sensor" in self.names and not self.force_device:
             return "the real robot needs --force-device, the address of its force sensor"
         if "pedal" in self.names and not self.pedal_device:
-            return "the real robot needs --pedal-device, as /dev/input/js0"
+            return "the real robot needs --pedal-device, as /dev/hidraw0"
+        if self.pedal_device.startswith("/dev/input/"):
+            return f"{self.pedal_device} tells changes only, so a dead pedal looks held; use its /dev/hidraw device"
         return ""
 
     @property

@@ -13,6 +13,9 @@ from typing import NamedTuple, Protocol
 AGE_LIMIT = 0.02
 """Longest silence of a pedal that says its whole state again and again, s. At the tip's 5 mm/s that is 100 um."""
 
+TOUCHED = 0.02
+"""Travel at which the contacts switch, as a share; below it nothing moves, whatever they say."""
+
 
 class PedalState(NamedTuple):
     """What a pedal says.
@@ -20,10 +23,22 @@ class PedalState(NamedTuple):
     Attributes:
         travel: how far it is pressed, from 0 (released) to 1.
         emergency_stop: whether the emergency stop is pressed.
+        made: whether the contact that closes when the pedal is pressed is closed; None where that is not known.
+        rest: the same of the contact that is closed while the pedal is at rest.
     """
 
     travel: float
     emergency_stop: bool
+    made: bool | None = None
+    rest: bool | None = None
+
+
+def wired(state: PedalState) -> PedalState:
+    """Return the state of a mock pedal with its two contacts, where it does not name them."""
+    if state.made is not None:
+        return state
+    pressed = not state.travel <= TOUCHED
+    return state._replace(made=pressed, rest=not pressed)
 
 
 PedalTamper = Callable[[PedalState], list[PedalState]]

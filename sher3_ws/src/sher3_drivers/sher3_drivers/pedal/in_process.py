@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from sher3_drivers.errors import DeviceMissing
-from sher3_drivers.pedal.device import AGE_LIMIT, PedalState, PedalTamper
+from sher3_drivers.pedal.device import AGE_LIMIT, PedalState, PedalTamper, wired
 
 
 class InProcessPedal:
@@ -29,9 +29,9 @@ class InProcessPedal:
         """Be the device: take this state, or be lost (None)."""
         self._lost = "was unplugged" if state is None else None
         if state is None or self.tamper is None:
-            self._take(state)
+            self._take(state if state is None else wired(state))
             return
-        for sent in self.tamper(state):
+        for sent in self.tamper(wired(state)):
             self._take(sent)
 
     def _take(self, state: PedalState | None) -> None:

@@ -9,11 +9,11 @@ import time
 from collections.abc import Callable
 
 from sher3_drivers.errors import DeviceMissing
-from sher3_drivers.pedal.device import AGE_LIMIT, PedalState, PedalTamper
+from sher3_drivers.pedal.device import AGE_LIMIT, PedalState, PedalTamper, wired
 from sher3_drivers.runtime_directory import runtime_directory
 
-_DATAGRAM = struct.Struct("<d?")
-"""Travel and emergency stop."""
+_DATAGRAM = struct.Struct("<d???")
+"""Travel, emergency stop and the two contacts."""
 _MOST_BYTES = 64
 """Bytes taken of a datagram: more than one state has, so that a longer one is not taken for it."""
 
@@ -77,7 +77,7 @@ class PedalSender:
     def send(self, state: PedalState) -> bool:
         """Send the state; return False when nobody takes it, which does no harm."""
         try:
-            for sent in [state] if self.tamper is None else self.tamper(state):
+            for sent in [wired(state)] if self.tamper is None else self.tamper(wired(state)):
                 self._socket.sendto(_DATAGRAM.pack(*sent), self._path)
         except OSError:
             return False

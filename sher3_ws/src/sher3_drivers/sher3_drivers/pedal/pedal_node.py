@@ -6,7 +6,6 @@ is not there, and its stop button is not there either.
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 from rclpy.node import Node
@@ -16,9 +15,8 @@ from sher3_runtime import NODE_OPTIONS, advertise, on_tick
 
 from sher3_drivers.errors import DeviceMissing
 from sher3_drivers.pedal.device import PedalDevice, PedalState, check_pedal
+from sher3_drivers.pedal.plausible import LOST, PedalWatch
 
-LOST = PedalState(math.nan, True)
-"""State of a pedal that is not there."""
 PHASE = 1e-5
 """Delay of the reading behind the tick, s: in stepped time the drives' SYNC comes first."""
 REPORT_PERIOD = 0.1
@@ -30,7 +28,7 @@ class PedalNode(Node):
 
     Args:
         robot: the robot, for the period.
-        device: the pedal: `JoystickPedal`, `LocalPedal` or `InProcessPedal`.
+        device: the pedal: `HidPedal`, `LocalPedal` or `InProcessPedal`.
         phase: delay of the reading behind the tick, s.
     """
 
@@ -39,6 +37,7 @@ class PedalNode(Node):
         self._device = device
         self._fault: str | None = None
         self._heard = False
+        self._watch = PedalWatch()
         self._publish = advertise(self, "pedal/measured")
         self._publish_report = advertise(self, "diagnostics")
         on_tick(self, self._tick, phase)
@@ -46,13 +45,13 @@ class PedalNode(Node):
         on_tick(self, self._report, 0.5 * period, max(1, round(REPORT_PERIOD / period)))
 
     def _tick(self, stamp: int) -> None:
-        state = self._read()
+        state = self._read(stamp)
         if state is not None:
             self._heard = True
             self._publish(JoySample(stamp, (state.travel,), (int(state.emergency_stop),)))
 
-    def _read(self) -> PedalState | None:
-        """Return the state; LOST when the pedal is gone or its state impossible; None before it said anything."""
+    def _read(self, stamp: int) -> PedalState | None:
+        """Return the state as the robot may use it, see `pedal.plausible`; None before the pedal said anything."""
         try:
             state = self._device.read()
         except DeviceMissing as error:
@@ -61,14 +60,21 @@ class PedalNode(Node):
             return None
         if not check_pedal(state):
             return self._lost(f"travel {state.travel} is not from 0 to 1")
-        self._fault = None
+        state = self._watch.judge(state, stamp)
+        if self._watch.fault is not None:
+            self._note(self._watch.fault)
+        else:
+            self._fault = None
         return state
 
     def _lost(self, why: str) -> PedalState:
+        self._note(why)
+        return LOST
+
+    def _note(self, why: str) -> None:
         if self._fault is None:
             self.get_logger().error(why)
         self._fault = why
-        return LOST
 
     def _report(self, stamp: int) -> None:
         message = self._fault or ("ok" if self._heard else "the pedal has not said anything yet")

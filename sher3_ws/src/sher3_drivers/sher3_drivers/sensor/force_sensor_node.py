@@ -27,6 +27,10 @@ WAIT = 0.8
 """Share of the period that a tick waits for its record."""
 
 
+_UNUSABLE = (SensorFault.DEVICE, SensorFault.ABSURD)
+"""Faults that nobody else can see in the numbers."""
+
+
 class ForceSensorNode(Node):
     """Publisher of `force/measured_cf`.
 
@@ -56,7 +60,7 @@ class ForceSensorNode(Node):
         if fault is not SensorFault.NONE:
             self._count(fault)
         if record is not None:
-            self._publish(WrenchSample(stamp, NOT_A_WRENCH if fault is SensorFault.DEVICE else record.wrench))
+            self._publish(WrenchSample(stamp, NOT_A_WRENCH if fault in _UNUSABLE else record.wrench))
 
     def _count(self, fault: SensorFault) -> None:
         if fault not in self._faults:

@@ -30,6 +30,7 @@ class SensorFault(Enum):
     NOT_FINITE = "a component is NaN or infinite"
     OUT_OF_RANGE = "a component is beyond what the sensor can read"
     SATURATED = "a component reached the rated range"
+    ABSURD = "the force jumps to and fro faster than any hand"
     FROZEN = "bit-identical readings in a row: a live sensor has noise"
 
     @property
@@ -46,11 +47,17 @@ class SensorLimits(NamedTuple):
         overload: multiple of the rated range that no true reading exceeds, 1.
         frozen: number of bit-identical readings in a row that make a frozen sensor, 1. The noise of the nominal sensor
             repeats all six components with a chance of about 2e-4 a sample: eight in a row do not occur in its life.
+        jump: change of a component between two records that counts as a jump, as a share of the rated range: 3 N.
+        jumps: number of jumps within `span` records that no hand makes; a hit on the tool is one, or two.
+        span: number of records, 20 ms at 500 Hz.
     """
 
     rated: tuple[float, ...]
     overload: float = 2.0
     frozen: int = 8
+    jump: float = 0.25
+    jumps: int = 3
+    span: int = 10
 
     @classmethod
     def of(cls, sensor: ForceSensor) -> SensorLimits:
@@ -65,11 +72,13 @@ class SensorHealth(NamedTuple):
         last: newest record, None before the first.
         repeats: how often its wrench has repeated in a row.
         lost: number of records that never arrived.
+        jumped: how many records ago each of the newest jumps was, newest last.
     """
 
     last: WrenchRecord | None = None
     repeats: int = 0
     lost: int = 0
+    jumped: tuple[int, ...] = ()
 
 
 def judge_record(
@@ -93,12 +102,17 @@ def judge_record(
     lost = health.lost
     if last is not None and in_order:
         lost += _steps(record.sequence, last.sequence) - record.drained
-    health = SensorHealth(record, repeats, lost)
+    jumped = tuple([age + 1 for age in health.jumped if age + 1 < limits.span])
+    if last is not None and _jumps(record.wrench, last.wrench, limits):
+        jumped += (0,)
+    health = SensorHealth(record, repeats, lost, jumped)
     if record.status:
         return health, SensorFault.DEVICE
     magnitude = _magnitude_fault(record.wrench, limits)
     if magnitude is not SensorFault.NONE:
         return health, magnitude
+    if len(jumped) >= limits.jumps:
+        return health, SensorFault.ABSURD
     if repeats + 1 >= limits.frozen:
         return health, SensorFault.FROZEN
     lost_now = last is not None and _steps(record.sequence, last.sequence) != record.drained
@@ -114,6 +128,13 @@ def _magnitude_fault(wrench: Wrench, limits: SensorLimits) -> SensorFault:
     if share > limits.overload:
         return SensorFault.OUT_OF_RANGE
     return SensorFault.SATURATED if share >= 1.0 else SensorFault.NONE
+
+
+def _jumps(wrench: Wrench, last: Wrench, limits: SensorLimits) -> bool:
+    """Return whether a component of the wrench has jumped; what is not finite is judged elsewhere."""
+    return any(
+        [abs(new - old) > limits.jump * rated for new, old, rated in zip(wrench, last, limits.rated, strict=True)]
+    )
 
 
 def sensor_readings(health: SensorHealth, limits: SensorLimits) -> list[tuple[str, str]]:

@@ -15,8 +15,8 @@ HELD = "a younger sample comes within the age limit; the last one is held until 
 SAME = "the command does not change, so nothing is lost with it; see the line with the pedal released"
 NO_WITNESS = "one channel, no second witness; the tip stays under the speed cap of its regime"
 STUCK_PEDAL = (
-    "one channel, no second witness: a pedal that stays pressed looks like a foot that does; the hand still decides"
-    " (no force, no motion), and so does whatever stops the robot without this pedal: a second contact is needed"
+    "travel and both contacts at once, as when the lever itself hangs: it looks like a foot that stays; the hand still"
+    " decides (no force, no motion), and no press counts for longer than 120 s"
 )
 AT_ONCE = "the drive's own limit, 12.2 mm/s, makes 24 um in the tick before its echo can tell"
 GARBLED = 250e-6
@@ -55,6 +55,9 @@ PEDAL = (
     Row("pedal", "intermittent", release=True),
     Row("pedal", "duplicated", effect="goes on", why=CURRENT),
     Row("pedal", "reordered", release=True),
+    Row("pedal.travel", "stuck", release=True, quick=True),
+    Row("pedal.contact", "stuck", release=True),
+    Row("pedal.contact", "wrong", {"scale": 0.0}),
 )
 
 
@@ -120,6 +123,7 @@ def _encoder(name: str, quick: bool = False) -> Iterator[Row]:
 
 ENCODERS = (*_encoder(f"{AXIS}.load_encoder", quick=True), *_encoder(f"{AXIS}.motor_encoder"))
 DRIVE = (
+    Row("safe_torque_off", "off", reasons=("SAFE_TORQUE_OFF",), quick=True),
     Row(f"{AXIS}.demand", "off", release=True),
     Row(f"{AXIS}.demand", "stuck", release=True, quick=True),
     Row(f"{AXIS}.demand", "garbage", quiet=STILL, budget=GARBLED, why=AT_ONCE),
