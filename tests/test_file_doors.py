@@ -103,8 +103,14 @@ def test_garbage_is_refused(name, content, tmp_path):
     ("text", "says"),
     [
         ("a: &a [x, x]\nb: &b [*a, *a]\nc: [*b, *b]\n", "alias"),
-        ("a: !!python/object/apply:os.system ['false']\n", "constructor"),
-        ("a: !!python/name:os.system\n", "constructor"),
+        ("a: !!python/object/apply:os.system ['false']\n", "YAML tag"),
+        ("a: !!python/name:os.system\n", "YAML tag"),
+        ("a: !!float 1\n", "YAML tag"),
+        ("a: !x {b: 1}\n", "YAML tag"),
+        ("a: 1:30\n", "YAML 1.1"),
+        ("a: -190:20:30.15\n", "YAML 1.1"),
+        ("a: 010\n", "YAML 1.1"),
+        ("a: 0x1F\n", "YAML 1.1"),
         ("a: " + "[" * 200 + "]" * 200, "nested too deeply"),
         ("{a: " * 200 + "1" + "}" * 200, "nested too deeply"),
         ("schema: x\nschema: y\n", "given twice"),
@@ -116,6 +122,13 @@ def test_yaml_that_is_not_plain_data_is_refused(name, text, says, tmp_path):
     door, path = door_and_path(name, tmp_path)
     path.write_text(text)
     assert says in refusal(door, path)
+
+
+def test_plain_data_is_read_as_people_read_it():
+    text = "a: 10\nb: '1:30'\nc: 1e-3\nd: 0\ne: 0.5\nf: -3\ng: '010'\nh: a:b\ni: 00:1a\n"
+    found = parse_yaml(text)
+    assert (found["a"], found["b"], found["d"], found["e"], found["f"], found["g"]) == (10, "1:30", 0, 0.5, -3, "010")
+    assert (found["h"], found["i"]) == ("a:b", "00:1a")
 
 
 def test_an_alias_bomb_costs_nothing(tmp_path):
@@ -299,7 +312,7 @@ OWN_FILES = {
     "sher3_bringup/processes/only_robot.py": "a lock, which has no content",
     "sher3_view/page.py": "the page's own parts, which come with the package",
     "sher3_challenge/cases/seal.py": "digest of the folder it has just written",
-    "sher3_drivers/pedal/joystick.py": "the joystick, a device",
+    "sher3_drivers/pedal/hid.py": "the pedal, a device",
 }
 
 

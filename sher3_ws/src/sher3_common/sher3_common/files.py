@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import stat
 from collections import Counter
 from pathlib import Path
@@ -87,7 +88,9 @@ def read_text(path: Path | str, max_bytes: int = MAX_CONFIGURATION_BYTES, encodi
 def parse_yaml(text: str, source: Path | str = "<text>", max_bytes: int = MAX_CONFIGURATION_BYTES) -> dict[str, Any]:
     """Return the mapping of plain data that a YAML text holds.
 
-    Aliases are refused: plain data needs none, and nested aliases expand without bound.
+    Aliases are refused: plain data needs none, and nested aliases expand without bound. So are tags, which say what a
+    value is instead of the program that reads it, and numbers that YAML 1.1 reads to another base than people do: 1:30
+    is 90 to it, and 010 is 8.
 
     Args:
         text: the YAML text.
@@ -95,14 +98,14 @@ def parse_yaml(text: str, source: Path | str = "<text>", max_bytes: int = MAX_CO
         max_bytes: longest text, in characters.
 
     Raises:
-        FileError: the text is too long, no valid YAML, nested too deeply, or no mapping; it uses an alias, or gives a
-            key twice.
+        FileError: the text is too long, no valid YAML, nested too deeply, or no mapping; it uses an alias
+            or a tag, gives a key twice, or a number to another base than ten.
     """
     if len(text) > max_bytes:
         remedy = "give a file of the expected kind"
         raise FileError("too large [characters]", path=source, value=len(text), limit=max_bytes, remedy=remedy)
     try:
-        _refuse_aliases_and_depth(text, source)
+        _refuse_what_is_not_plain(text, source)
         data = yaml.load(text, Loader=_StrictLoader)
     except (yaml.YAMLError, RecursionError, ValueError) as error:
         if isinstance(error, FileError):
@@ -112,6 +115,10 @@ def parse_yaml(text: str, source: Path | str = "<text>", max_bytes: int = MAX_CO
     if not isinstance(data, dict):
         raise FileError("holds no mapping", path=source, value=type(data).__name__, remedy="start with 'key: value'")
     return data
+
+
+_OTHER_BASE = re.compile(r"[-+]?(\d[\d_]*(:[0-5]?\d)+(\.[\d_]*)?|0[0-7_]+|0[bx][\da-fA-F_]+)")
+"""Plain scalars that YAML 1.1 takes for numbers to base 60, 8, 2 or 16."""
 
 
 class _StrictLoader(_SafeLoader):
@@ -125,7 +132,7 @@ class _StrictLoader(_SafeLoader):
         return super().construct_mapping(node, deep=deep)
 
 
-def _refuse_aliases_and_depth(text: str, source: Path | str) -> None:
+def _refuse_what_is_not_plain(text: str, source: Path | str) -> None:
     depth = 0
     for event in yaml.parse(text, Loader=_SafeLoader):
         place = f"line {event.start_mark.line + 1}" if event.start_mark else None
@@ -134,6 +141,13 @@ def _refuse_aliases_and_depth(text: str, source: Path | str) -> None:
             raise FileError("is nested too deeply", path=source, value=place, limit=MAX_DEPTH, remedy="flatten it")
         if isinstance(event, yaml.AliasEvent):
             raise FileError("uses a YAML alias", path=source, value=place, remedy="write the value out")
+        tag = getattr(event, "tag", None)
+        if tag is not None:
+            remedy = "write plain values; what they are follows from their place"
+            raise FileError("uses a YAML tag", path=source, value=f"{tag} in {place}", remedy=remedy)
+        if isinstance(event, yaml.ScalarEvent) and event.implicit[0] and _OTHER_BASE.fullmatch(event.value):
+            remedy = "write a decimal number, or quote a text"
+            raise FileError("holds a number of YAML 1.1", path=source, value=f"{event.value} in {place}", remedy=remedy)
 
 
 def read_yaml(path: Path | str, max_bytes: int = MAX_CONFIGURATION_BYTES) -> dict[str, Any]:

@@ -8,7 +8,21 @@ from pydantic import Field, model_validator
 from typing_extensions import Self
 
 from sher3_description.actuators import ActuatorName
-from sher3_description.fields import Mass, NonNegative, Number, Part, Positive, PositiveVector, Vector
+from sher3_description.fields import (
+    Gain,
+    Inertia,
+    Lead,
+    Load,
+    Mass,
+    NonNegative,
+    Number,
+    Part,
+    Positive,
+    PositiveVector,
+    Rate,
+    Resolution,
+    Vector,
+)
 from sher3_description.mechanism import refuse
 
 
@@ -17,8 +31,8 @@ class Limits(Part):
 
     lower: Annotated[Number, Field(ge=-10.0, le=10.0)]
     upper: Annotated[Number, Field(ge=-10.0, le=10.0)]
-    velocity: Annotated[Positive, Field(le=100.0)]
-    acceleration: Annotated[Positive, Field(le=1e5)]
+    velocity: Annotated[Number, Field(ge=1e-6, le=100.0)]
+    acceleration: Annotated[Number, Field(ge=1e-6, le=1e5)]
 
     @model_validator(mode="after")
     def _ordered(self) -> Self:
@@ -30,10 +44,10 @@ class Limits(Part):
 class Drive(Part):
     """PI velocity controller of one drive: gains, saturation and rated force (N or N m)."""
 
-    kp: Positive
-    ki: NonNegative
-    limit: Positive
-    rated: Positive
+    kp: Gain
+    ki: Annotated[NonNegative, Field(le=1e9)]
+    limit: Load
+    rated: Load
 
     @model_validator(mode="after")
     def _rated_within_limit(self) -> Self:
@@ -48,12 +62,12 @@ class Actuator(Part):
     name: ActuatorName
     kind: Literal["prismatic", "revolute"]
     limits: Limits
-    mass: Annotated[Positive, Field(le=1000.0)]
-    viscous: NonNegative
+    mass: Inertia
+    viscous: Annotated[NonNegative, Field(le=1e6)]
     drive: Drive
-    motor_encoder: Annotated[Positive, Field(le=0.1)]
-    load_encoder: Annotated[Positive, Field(le=0.1)]
-    lead: Positive
+    motor_encoder: Resolution
+    load_encoder: Resolution
+    lead: Lead
 
     @model_validator(mode="after")
     def _kind_of_name(self) -> Self:
@@ -89,7 +103,7 @@ class ForceSensor(Part):
 class Tracker(Part):
     """External metrology of the tip: rate [Hz] and noise, one standard deviation [m, rad]."""
 
-    rate: Positive
+    rate: Rate
     noise_position: NonNegative
     noise_rotation: NonNegative
 

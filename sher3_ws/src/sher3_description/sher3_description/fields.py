@@ -1,6 +1,7 @@
 """Field types of the robot model: finite numbers with a sign and a plausible magnitude.
 
-The upper bounds are far above any real instrument of this kind; they catch slips of units (mm for m, deg for rad).
+The bounds are far beyond any real instrument of this kind; they catch slips of units (mm for m, deg for rad) and
+numbers that no robot can have, with which the arithmetic behind them would overflow or never end.
 """
 
 from __future__ import annotations
@@ -27,6 +28,13 @@ def _sequence(value: Any) -> Any:
 Number = Annotated[float, BeforeValidator(_number), Strict(), Field(allow_inf_nan=False)]
 Positive = Annotated[Number, Field(gt=0.0)]
 NonNegative = Annotated[Number, Field(ge=0.0)]
+Period = Annotated[Number, Field(ge=1e-4, le=0.1)]
+Inertia = Annotated[Number, Field(ge=1e-6, le=1000.0)]
+Resolution = Annotated[Number, Field(ge=1e-12, le=0.1)]
+Lead = Annotated[Number, Field(ge=1e-6, le=10.0)]
+Gain = Annotated[Number, Field(ge=1e-6, le=1e9)]
+Load = Annotated[Number, Field(ge=1e-6, le=1e6)]
+Rate = Annotated[Number, Field(ge=1e-3, le=1e5)]
 Length = Annotated[Number, Field(gt=0.0, le=2.0)]
 Coordinate = Annotated[Number, Field(ge=-2.0, le=2.0)]
 Angle = Annotated[Number, Field(ge=-6.283185307179587, le=6.283185307179587)]

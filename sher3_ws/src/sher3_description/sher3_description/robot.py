@@ -8,7 +8,7 @@ import math
 from collections.abc import Mapping
 from functools import lru_cache
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Any, Literal
 
 import yaml
 from pydantic import Field, ValidationError, model_validator
@@ -17,7 +17,7 @@ from typing_extensions import Self
 
 from sher3_description.actuators import ACTUATORS
 from sher3_description.equipment import Actuator, Admittance, ForceSensor, Tracker
-from sher3_description.fields import NonNegative, Part, Positive
+from sher3_description.fields import NonNegative, Part, Period
 from sher3_description.invalid_robot import InvalidRobot
 from sher3_description.mechanism import ArmParameters, DeltaParameters, TiltLinkageParameters, refuse
 from sher3_description.tolerances import Tolerances
@@ -33,7 +33,7 @@ class Robot(Part):
     """
 
     schema_id: Literal["sher3.robot/1"] = Field(alias="schema")
-    control_period: Annotated[Positive, Field(le=0.1)]
+    control_period: Period
     position_gain: NonNegative
     delta: DeltaParameters
     arm: ArmParameters

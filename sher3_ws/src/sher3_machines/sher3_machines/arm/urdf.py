@@ -16,6 +16,8 @@ from sher3_machines.errors import MachineError
 
 MAX_BYTES = 4_000_000
 """Largest file that is read."""
+LARGEST, SHORTEST = 1e6, 1e-9
+"""Largest number of a file [m, rad], and shortest axis that has a direction."""
 DEFAULT_AXIS = "1 0 0"
 """Axis of a joint that states none, as the format has it."""
 
@@ -24,21 +26,20 @@ def arm_from_urdf(path: Path, base: str, tip: str) -> Arm:
     """Read the chain between two links.
 
     Raises:
-        MachineError: the file cannot be read, has no such chain, or a joint of it is neither revolute nor fixed.
+        MachineError: the file cannot be read, has no such chain, or a joint of it is neither revolute nor fixed; an
+            attribute is missing or does not hold three numbers.
     """
     names, fixed, axes, pending = [], [], [], np.eye(4)
     for joint in _chain(_root(path), path, base, tip):
-        pending = pending @ _origin(joint)
-        kind = joint.attrib["type"]
+        pending = pending @ _origin(joint, path)
+        kind, name = _word(joint, "type", path), _word(joint, "name", path)
         if kind in ("revolute", "continuous"):
-            names.append(joint.attrib["name"])
+            names.append(name)
             fixed.append(pending)
-            axes.append(_axis(joint))
+            axes.append(_axis(joint, path))
             pending = np.eye(4)
         elif kind != "fixed":
-            raise MachineError(
-                f"{path}: joint {joint.attrib['name']} is not revolute", value=kind, remedy="use a DH table"
-            )
+            raise MachineError(f"{path}: joint {name} is not revolute", value=kind, remedy="use a DH table")
     return Arm(tuple(names), np.array(fixed), np.array(axes), pending)
 
 
@@ -54,31 +55,53 @@ def _root(path: Path) -> ElementTree.Element:
 
 def _chain(root: ElementTree.Element, path: Path, base: str, tip: str) -> Sequence[ElementTree.Element]:
     """Joints from the base to the tip."""
-    above = {child.attrib["link"]: j for j in root.iter("joint") if (child := j.find("child")) is not None}
+    above = {_word(child, "link", path): j for j in root.iter("joint") if (child := j.find("child")) is not None}
     chain, link = [], tip
     while link != base:
         parent = above[link].find("parent") if link in above else None
         if parent is None or above[link] in chain:
-            links = ", ".join(x.attrib["name"] for x in root.iter("link"))
+            links = ", ".join(x.attrib.get("name", "?") for x in root.iter("link"))
             raise MachineError(
                 f"{path}: no chain from {base!r} to {tip!r}", value=link, limit=links, remedy="name its links"
             )
         chain.append(above[link])
-        link = parent.attrib["link"]
+        link = _word(parent, "link", path)
     return chain[::-1]
 
 
-def _axis(joint: ElementTree.Element) -> Array:
+def _word(element: ElementTree.Element, name: str, path: Path) -> str:
+    """Return an attribute that must be there."""
+    if name not in element.attrib:
+        raise MachineError(f"{path}: <{element.tag}> has no {name!r}", value=element.attrib, remedy="correct the file")
+    return element.attrib[name]
+
+
+def _three(text: str, path: Path, what: str) -> Array:
+    """Return three finite numbers of a text, (3,)."""
+    try:
+        numbers = np.array([float(word) for word in text.split()])
+    except ValueError:
+        numbers = np.empty(0)
+    if numbers.shape != (3,) or not np.all(np.abs(numbers) <= LARGEST):
+        raise MachineError(f"{path}: {what}", value=text, limit="three numbers", remedy="correct the file")
+    return numbers
+
+
+def _axis(joint: ElementTree.Element, path: Path) -> Array:
     """Unit vector of a joint's axis in its frame, (3,)."""
     axis = joint.find("axis")
-    u = np.array([float(x) for x in (DEFAULT_AXIS if axis is None else axis.attrib["xyz"]).split()])
-    return u / np.linalg.norm(u)
+    text = DEFAULT_AXIS if axis is None else _word(axis, "xyz", path)
+    u = _three(text, path, "axis of a joint")
+    length = float(np.linalg.norm(u))
+    if length < SHORTEST:
+        raise MachineError(f"{path}: axis of a joint", value=text, limit="not zero", remedy="give its direction")
+    return u / length
 
 
-def _origin(joint: ElementTree.Element) -> Array:
+def _origin(joint: ElementTree.Element, path: Path) -> Array:
     """Transform (4, 4) from the parent link to a joint's frame."""
     origin = joint.find("origin")
     if origin is None:
         return np.eye(4)
-    xyz, rpy = ([float(x) for x in origin.attrib.get(k, "0 0 0").split()] for k in ("xyz", "rpy"))
-    return transform(xyz, Rotation.from_euler("xyz", rpy).as_matrix())
+    xyz, rpy = (_three(origin.attrib.get(k, "0 0 0"), path, f"{k} of an origin") for k in ("xyz", "rpy"))
+    return transform(xyz.tolist(), Rotation.from_euler("xyz", rpy).as_matrix())

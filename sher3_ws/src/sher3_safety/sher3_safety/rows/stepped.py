@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from sher3_description import ACTUATORS
 
-from sher3_safety.rows.row import STILL, Row
+from sher3_safety.rows.row import IDLE, STILL, Row
 from sher3_safety.rows.slow import SLOW
 
 AXIS = ACTUATORS[0]
@@ -57,7 +57,7 @@ PEDAL = (
     Row("pedal", "reordered", release=True),
     Row("pedal.travel", "stuck", release=True, quick=True),
     Row("pedal.contact", "stuck", release=True),
-    Row("pedal.contact", "wrong", {"scale": 0.0}),
+    Row("pedal.contact", "wrong", {"scale": 0.0}, quiet=(IDLE.name,)),
 )
 
 
