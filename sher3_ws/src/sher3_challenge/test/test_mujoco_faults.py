@@ -139,3 +139,21 @@ def test_faults_on_one_axis_do_not_undo_each_other():
     plain = MUJOCO.make(ROBOT, 0, (), WARM, built=False).run(plan("sweep"), ideal=True)
     extra = (run["drives/measured_js"].effort - plain["drives/measured_js"].effort)[:, 0]
     assert 0.2 < np.abs(extra).max() < 0.5
+
+
+def test_a_wedge_rubs_alike_at_all_speeds_and_harder_one_way():
+    """Dry friction of a contact, not a viscous one, and in radians: against the wedge it is several times harder."""
+    e = excite("sweep", ROBOT, posture="p1")
+    v, q = e.velocity[:, 0], e.position[:, 0] - e.position[:, 0].mean()
+    fault = Fault(MUJOCO.kind("wedge_contact"), "delta_1", 1.0, 3)
+    region = tuple(e.position.mean(axis=0))
+    runs = (MUJOCO.make(ROBOT, 0, faults, WARM, built=False, region=region) for faults in ((fault,), ()))
+    wedged, plain = (r.run(RunPlan(e, 0, 10**18, 1), ideal=True)["drives/measured_js"].effort[:, 0] for r in runs)
+
+    def rub(speed):
+        there = (np.abs(v - speed) < 0.05 * abs(speed)) & (np.abs(q + 0.4e-3) < 0.2e-3)
+        return float(np.median((wedged - plain)[there]))
+
+    slow, fast = 1.1e-3, 4.15e-3  # m/s, speeds of the sweep in both directions
+    assert rub(fast) == pytest.approx(rub(slow), rel=0.15) and rub(slow) > 0.1
+    assert rub(-slow) == pytest.approx(rub(-fast), rel=0.15) and -rub(-slow) > 3 * rub(slow)

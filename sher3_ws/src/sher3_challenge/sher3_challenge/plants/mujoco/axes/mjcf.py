@@ -14,7 +14,7 @@ from collections.abc import Iterable
 from sher3_challenge.plants.mujoco.axes.parts import ELEMENTS, RUBBER_SOFT, Axis, Bristle
 
 SUBSTEPS = 10
-OPTIONS = """<option timestep="{step}" integrator="implicitfast" cone="elliptic">
+OPTIONS = """<option timestep="{step}" integrator="implicitfast" cone="elliptic" impratio="1e4">
   <flag island="disable" energy="disable" sensor="disable"/></option>"""
 RUB = 'solreffriction="{hard} 1" solimpfriction="0.9999 0.9999 1e-3"'
 """Dry friction, as hard as MuJoCo allows: what sticks creeps at 2e-8 s times force over mass. The default's softness
@@ -166,6 +166,6 @@ def mjcf(axes: list[Axis], period: float) -> str:
     bodies, tendons = map("".join, zip(*(axis_elements(j, axis, step) for j, axis in enumerate(axes)), strict=True))
     actuators = "".join(drive_elements(j, axis, step) for j, axis in enumerate(axes))
     return (
-        f'<mujoco model="sher3_axes"><compiler autolimits="true" boundmass="0"/>{OPTIONS.format(step=step)}'
-        f"<worldbody>{bodies}</worldbody><tendon>{tendons}</tendon><actuator>{actuators}</actuator></mujoco>"
+        f'<mujoco model="sher3_axes"><compiler angle="radian" autolimits="true" boundmass="0"/>'
+        f"{OPTIONS.format(step=step)}<worldbody>{bodies}</worldbody><tendon>{tendons}</tendon><actuator>{actuators}</actuator></mujoco>"
     )
