@@ -20,10 +20,10 @@ def monitor(
     """Run the model beside the running robot; gap over floor per stage on gap/diagnostics at 1 Hz, until Ctrl-C."""
     from sher3_description import load_robot
     from sher3_effects import load_effects
-    from sher3_gap.live.gap_monitor_node import StageStatus, judged_json, run
+    from sher3_gap.live.gap_monitor_node import Named, StageStatus, judged_json, run
 
-    def told(stamp: int, found: list[StageStatus]) -> None:
-        print(judged_json(stamp, found), flush=True)
+    def told(stamp: int, found: list[StageStatus], named: Named | None) -> None:
+        print(judged_json(stamp, found, named), flush=True)
 
     with reported(as_json):
         run(load_robot(robot), load_effects(effects) if effects else [], window, domain, told if as_json else None)

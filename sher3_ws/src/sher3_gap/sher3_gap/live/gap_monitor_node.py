@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict
 from typing import Any
 
@@ -20,16 +21,18 @@ from sher3_runtime.spinning import spin
 from sher3_sim import PlantEffect
 
 from sher3_gap.live.monitor import TOPICS, Monitor, StageStatus
+from sher3_gap.live.naming import Named, Naming
 
 TOPIC = "gap/diagnostics"
 MESSAGES = ("at the floor", "gap above the floor", "gap far above the floor")
-STALE = 3
-Told = Callable[[int, list[StageStatus]], None]
+WARNED, STALE = 1, 3
+Told = Callable[[int, list[StageStatus], Named | None], None]
 
 
 class GapMonitorNode(Node):
     """Listens to the robot's streams and publishes one status per stage and axis at 1 Hz.
 
+    A gap that stays is named on the same topic.
     `told` gets the stamp and what is published, once a second; no statuses while there is no whole window to judge.
     """
 
@@ -45,6 +48,7 @@ class GapMonitorNode(Node):
         super().__init__("gap_monitor", **{**NODE_OPTIONS, **options})
         self.monitor = Monitor(robot, effects, window)
         self._publish, self._told = advertise(self, TOPIC), told
+        self.naming = Naming(robot, self.monitor.stretch, executor=ThreadPoolExecutor(1, "naming"))
         for topic in TOPICS:
             subscribe(self, topic, self._feeder(topic), depth=500)
         on_tick(self, self._tick, every=round(1.0 / robot.control_period))
@@ -57,8 +61,11 @@ class GapMonitorNode(Node):
         found = self.monitor.judge()
         for status in found:
             self._publish(diagnostic(stamp, status))
+        named = self.naming.look(stamp, any(s.level for s in found)) if found else self.naming.named
+        if named is not None:
+            self._publish(cause_diagnostic(stamp, named))
         if self._told is not None:
-            self._told(stamp, found)
+            self._told(stamp, found, named)
         if not found:
             self._publish(DiagnosticSample(stamp, "gap", STALE, "waiting for a window without long holes"))
 
@@ -75,10 +82,22 @@ def diagnostic(stamp: int, status: StageStatus) -> DiagnosticSample:
     return DiagnosticSample(stamp, name, status.level, MESSAGES[status.level], values)
 
 
-def judged_json(stamp: int, found: Sequence[StageStatus]) -> str:
+def cause_diagnostic(stamp: int, named: Named) -> DiagnosticSample:
+    """Return what is named as a diagnostic: status, causes, and their probability where the verdict states one."""
+    causes = [f"{c.effect} on {c.actuator}" for c in named.verdict.causes]
+    known = () if named.probability is None else (("probability", f"{named.probability:.3g}"),)
+    values = (("status", named.verdict.status), ("causes", "; ".join(causes)), *known)
+    return DiagnosticSample(stamp, "gap/cause", WARNED, named.text, values)
+
+
+def judged_json(stamp: int, found: Sequence[StageStatus], named: Named | None = None) -> str:
     """Return what was judged at `stamp` [ns] as one line of JSON; no stages while there is no whole window."""
     stages = [{**asdict(s), "ratio": s.ratio, "level": s.level} for s in found]
-    return json.dumps({"stamp": stamp, "stages": stages})
+    cause = None
+    if named is not None:
+        causes = [{"effect": c.effect, "actuator": c.actuator} for c in named.verdict.causes]
+        cause = {"status": named.verdict.status, "causes": causes, "probability": named.probability, "text": named.text}
+    return json.dumps({"stamp": stamp, "stages": stages, "cause": cause})
 
 
 def run(robot: Robot, effects: Sequence[PlantEffect], window: float, domain: int = 0, told: Told | None = None) -> None:

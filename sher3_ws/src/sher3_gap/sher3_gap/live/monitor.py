@@ -42,6 +42,8 @@ NEEDED = ("drives/measured_js", "drives/setpoint_jv", "measured_js")
 """Without one of these a tick is not complete."""
 WINDOW = 4.0
 """Seconds a gap is taken over."""
+HELD = 12.0
+"""Seconds that are held for naming a gap."""
 WARNING, ERROR = 1.5, 3.0
 """Gap over floor from which a stage is reported as a warning and as an error."""
 
@@ -84,10 +86,11 @@ class Monitor:
     _newest: int = 0
 
     def feed(self, topic: str, sample: JointSample | WrenchSample) -> None:
-        """Take a sample of one of `TOPICS`; samples older than two windows are forgotten."""
+        """Take a sample of one of `TOPICS`; samples older than two windows, and than `HELD`, are forgotten."""
         self._ticks.setdefault(sample.stamp, {})[topic] = sample
         self._newest = max(self._newest, sample.stamp)
         keep = round(2.0 * self.window / self.robot.control_period)
+        keep = max(keep, round(HELD / self.robot.control_period))
         while len(self._ticks) > keep:
             del self._ticks[next(iter(self._ticks))]
 
@@ -117,11 +120,15 @@ class Monitor:
         known = _residuals(twin, self.robot, Geometry(self.robot))
         return {c: Residual(r.values - known[c].values, r.ok) for c, r in real.items() if c in known}
 
-    def _window(self) -> RunSignals | None:
+    def stretch(self, seconds: float) -> RunSignals | None:
+        """Return the newest seconds as a run; None while they are not whole."""
+        return self._window(seconds)
+
+    def _window(self, seconds: float | None = None) -> RunSignals | None:
         """Return the newest window as a run; None while it is not full or a hole in it is too long to bridge."""
         period = round(self.robot.control_period * 1e9)
         last = self._last_complete()
-        first = last - (round(self.window / self.robot.control_period) - 1) * period
+        first = last - (round((seconds or self.window) / self.robot.control_period) - 1) * period
         stamps = sorted(s for s in self._ticks if first <= s <= last)
         if not stamps or stamps[0] > first + LONGEST_HOLE * 1e9:
             return None
