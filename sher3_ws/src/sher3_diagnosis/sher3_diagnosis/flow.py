@@ -81,7 +81,7 @@ def find(machine: Machine[R, E], evidence: E, without: Collection[str], say: Say
     attribution = machine.attribute(evidence, candidates, partial(rule, significant, evidence), say)
     say("quantifying")
     attribution = polished(evidence, attribution)
-    refined, causes = machine.refine(evidence, causes_of(evidence, attribution))
+    refined, causes = machine.refine(evidence, causes_of(evidence, attribution), attribution)
     left = left_over(significant, evidence, attribution.fit)
     finding = Finding(refined, gaps, attribution, causes, left)
     return replace(finding, notes=machine.remarks(finding))

@@ -83,7 +83,7 @@ class Machine(ABC, Generic[R, E]):
         """Choose the causes of one part; default the engine's search."""
         return attribute(candidates, left_over, say)
 
-    def refine(self, evidence: E, causes: list[Cause]) -> tuple[E, list[Cause]]:
+    def refine(self, evidence: E, causes: list[Cause], attribution: Attribution) -> tuple[E, list[Cause]]:
         """Improve a part's causes, and nominal constants found from the data, by means the fit does not have.
 
         Default: both as they are.

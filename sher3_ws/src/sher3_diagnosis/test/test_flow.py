@@ -31,7 +31,7 @@ def test_remarks_and_refinements_of_a_machine_reach_the_verdict():
         def remarks(self, finding):
             return [f"{len(finding.causes)} {finding.causes[0].family} cause of {finding.evidence.excitations[0]}"]
 
-        def refine(self, evidence, causes):
+        def refine(self, evidence, causes, attribution):
             known = replace(evidence, excitations=["refined", *evidence.excitations[1:]])
             return known, [c.model_copy(update={"family": "better"}) for c in causes]
 

@@ -94,3 +94,14 @@ TAKES_PART = 0.3
 
 CHANGES = 3
 """Changes between conditions named at most: as many as causes of one part. Set by that argument."""
+
+# -- noisy encoders ------------------------------------------------------------------------------------------------
+
+NOISE_SHARE = 0.005
+"""Share of the acceleration's power that may be the encoder's noise: by so much a mass is too small, half a per cent,
+and by so much its interval is wider. Set by that argument.
+Measure: `pytest sher3_ws/src/sher3_machines/test/axes/test_noise.py`."""
+
+SLOWEST_CUT = 2.0
+"""Lowest cut-off of the low-pass, Hz: below it a record of a minute has too few independent samples. Set by that
+argument."""

@@ -16,6 +16,7 @@ from sher3_machines.axes.identify import identify_mass
 from sher3_machines.axes.record import AxesRun
 from sher3_machines.axes.signals import signals_of
 from sher3_machines.axes.view import AxisView
+from sher3_machines.errors import MachineError
 from sher3_machines.thresholds import BLOCKS, MIN_BLOCK
 
 
@@ -31,6 +32,7 @@ class AxisEvidence(Evidence):
         records: views of the axis, one for each record; blocks of one record share theirs.
         mass: nominal or identified, kg or kg m^2; 0 where the force balance is not looked at.
         mass_interval: 95 %, of an identified mass.
+        untold: why the force balance is not judged, where a mass could not be identified.
     """
 
     axis: Axis
@@ -38,20 +40,21 @@ class AxisEvidence(Evidence):
     records: Sequence[AxisView]
     mass: float
     mass_interval: tuple[float, float] | None = None
+    untold: str = ""
 
 
 def gather_axis(runs: Sequence[AxesRun], axis: Axis, repeats: bool) -> AxisEvidence:
-    """Compute residuals and floors of one axis and cut them into blocks.
-
-    Raises:
-        MachineError: an unknown mass cannot be identified.
-    """
+    """Compute residuals and floors of one axis and cut them into blocks."""
     signals = [signals_of(run, axis, "repeats" if repeats else run.name) for run in runs]
     mass, interval = (axis.mass, None) if isinstance(axis.mass, float) else (0.0, None)
+    untold = ""
     if axis.mass == "unknown" and all(s.effort is not None for s in signals):
-        mass, interval = identify_mass([AxisView(s, axis, 0.0) for s in signals])
+        try:
+            mass, interval = identify_mass([AxisView(s, axis, 0.0) for s in signals])
+        except MachineError as error:
+            untold = str(error)
     records = [AxisView(s, axis, mass) for s in signals]
-    found = [residuals_of(view) for view in records]
+    found = [_judged(residuals_of(view), untold) for view in records]
     floors = floors_of(records, found, repeats)
     per_record = -(-BLOCKS // len(records))
     blocks = [(r, block) for r, x in enumerate(found) for block in blocks_of(x, per_record)]
@@ -66,7 +69,13 @@ def gather_axis(runs: Sequence[AxesRun], axis: Axis, repeats: bool) -> AxisEvide
         records=records,
         mass=mass,
         mass_interval=interval,
+        untold=untold,
     )
+
+
+def _judged(found: Residuals, untold: str) -> Residuals:
+    """Leave the force balance out where its mass is not told."""
+    return {c: x for c, x in found.items() if not untold or c.stage != "motor_mechanics"}
 
 
 def units_of(axis: Axis) -> Mapping[Channel, str]:

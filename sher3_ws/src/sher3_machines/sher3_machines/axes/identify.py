@@ -17,7 +17,7 @@ from sher3_diagnosis.thresholds import JACKKNIFE
 
 from sher3_machines.axes.view import AxisView
 from sher3_machines.errors import MachineError
-from sher3_machines.thresholds import BLOCKS, LEAST_EXCITED, SLOW
+from sher3_machines.thresholds import BLOCKS, LEAST_EXCITED, NOISE_SHARE, SLOW
 
 RESISTING = (1, 2, 3)
 """Columns of the equations that may be left out: viscous, dry friction, offset; column 0 is the acceleration."""
@@ -26,7 +26,7 @@ DAHL_SHARE = 2.5e-3
 
 
 def identify_mass(views: Sequence[AxisView]) -> tuple[float, tuple[float, float]]:
-    """Return a mass and its 95 % interval from a jackknife over blocks, kg or kg m^2.
+    """Return a mass and its 95 % interval from a jackknife over blocks and the noise of the encoder, kg or kg m^2.
 
     Args:
         views: of all records; their nominal mass is zero.
@@ -44,13 +44,16 @@ def identify_mass(views: Sequence[AxisView]) -> tuple[float, tuple[float, float]
     mass = float(solve(used.T @ used, used.T @ y)[0])
     error = float(np.sqrt((BLOCKS - 1) / BLOCKS * np.sum((draws - draws.mean()) ** 2)))
     if not mass > LEAST_EXCITED * error:
+        wrong = mass < -LEAST_EXCITED * error
+        what = "its mass comes out below zero: the model is wrong" if wrong else "the record does not tell its mass"
         raise MachineError(
-            f"axis {views[0].described.name}: the record does not tell its mass",
+            f"axis {views[0].described.name}: {what}",
             value=f"{mass:.3g} +- {error:.2g}",
-            limit=f"{LEAST_EXCITED:g} standard errors",
-            remedy="state `mass`",
+            limit=f"{LEAST_EXCITED:g} standard errors above 0",
+            remedy="check sign and gain of the force, and weight" if wrong else "state `mass`",
         )
-    return mass, (mass - JACKKNIFE * error, mass + JACKKNIFE * error)
+    half = JACKKNIFE * error + NOISE_SHARE * mass
+    return mass, (mass - half, mass + half)
 
 
 def _equations(view: AxisView) -> tuple[Array, Array]:

@@ -19,6 +19,7 @@ from sher3_effects import library, pages
 
 from sher3_machines.axes.description import AxesDescription, Axis
 from sher3_machines.axes.evidence import AxisEvidence, gather_axis
+from sher3_machines.axes.fast import requantified
 from sher3_machines.axes.health import dead_channels, without_dead
 from sher3_machines.axes.limits import EFFECT as LIMIT
 from sher3_machines.axes.limits import limit_finding
@@ -78,6 +79,8 @@ class Axes(Machine[AxesRun, AxisEvidence]):
                 parts.append(gather_axis(heard, axis, self._repeats(runs)))
         if not parts:
             raise MachineError("no axis can be judged", value="every position is dead", remedy="connect the encoders")
+        if all(part.untold and not part.channels for part in parts):
+            raise MachineError(f"no axis can be judged: {parts[0].untold}")
         return parts
 
     def exact(
@@ -102,14 +105,20 @@ class Axes(Machine[AxesRun, AxisEvidence]):
         each = [(c, views_of(evidence, c.runs)) for c in conditions]
         return contrasted(evidence, common, candidates.effects, each)
 
-    def refine(self, evidence: AxisEvidence, causes: list[Cause]) -> tuple[AxisEvidence, list[Cause]]:
-        """Refine mass and forces of a free axis on its simulated motion."""
-        return refine_free(evidence, causes)
+    def refine(
+        self, evidence: AxisEvidence, causes: list[Cause], attribution: Attribution
+    ) -> tuple[AxisEvidence, list[Cause]]:
+        """Refine mass and forces of a free axis on its simulated motion, of a driven one away from its reversals."""
+        if evidence.axis.free:
+            return refine_free(evidence, causes)
+        return evidence, requantified(evidence, attribution, causes)
 
     def remarks(self, finding: Finding[AxisEvidence]) -> list[str]:
         """Say which mass was found, what the recorded signals cannot tell, and how the axis runs again."""
         again = replay(finding.evidence, finding.causes) if finding.significant else None
         changes = change_notes(finding.attribution, self._conditions(finding.evidence.runs))
+        untold = finding.evidence.untold
+        changes += [f"{untold}: its force balance is not judged"] if untold else []
         return [
             *changes,
             *mass_notes(finding.evidence),

@@ -11,6 +11,7 @@ from sher3_diagnosis.channel import Array, Mask
 from sher3_diagnosis.filter import BANDWIDTH, DECIMATED_RATE, EDGE, low_pass
 
 from sher3_machines.axes.description import Axis
+from sher3_machines.axes.noise import cut_off
 from sher3_machines.axes.record import AxesRun
 
 NYQUIST_SHARE = 0.4
@@ -118,6 +119,7 @@ def signals_of(run: AxesRun, axis: Axis, excitation: str) -> AxisSignals:
         excitation: the name that repeats of the run share.
     """
     found = {k: x[:, None] for k, x in run.signals[axis.name].items()}
+    most = min(BANDWIDTH, NYQUIST_SHARE * 0.5 / run.period)
     return AxisSignals(
         name=run.name,
         excitation=excitation,
@@ -129,7 +131,7 @@ def signals_of(run: AxesRun, axis: Axis, excitation: str) -> AxisSignals:
         load=found.get("load"),
         nominal=_nominal(found),
         applied=found.get("applied"),
-        bandwidth=min(BANDWIDTH, NYQUIST_SHARE * 0.5 / run.period),
+        bandwidth=most if axis.servo or axis.mass is None else cut_off(found["position"][:, 0], run.period, most),
     )
 
 

@@ -17,6 +17,7 @@ from sher3_effects import pages
 from sher3_effects.inertia.payload_mass import PayloadOnLink
 from sher3_effects.scale.torque_constant import TorqueConstant
 
+from sher3_machines.axes.fast import requantified
 from sher3_machines.axes.health import dead_channels
 from sher3_machines.axes.machine import NO_REPEATS
 from sher3_machines.axes.record import AxesRun
@@ -96,8 +97,11 @@ class Manipulator(Machine[AxesRun, ArmMotionEvidence]):
     def _conditions(self, runs: Sequence[AxesRun]) -> list[Condition]:
         return conditions_of(self.described.conditions, [run.name for run in runs])
 
-    def refine(self, evidence: ArmMotionEvidence, causes: list[Cause]) -> tuple[ArmMotionEvidence, list[Cause]]:
-        """Return forces of a joint with unknown gain in the unit that was recorded, with what hides in that gain."""
+    def refine(
+        self, evidence: ArmMotionEvidence, causes: list[Cause], attribution: Attribution
+    ) -> tuple[ArmMotionEvidence, list[Cause]]:
+        """Fit friction again away from reversals; give forces of a joint with unknown gain in the recorded unit."""
+        causes = requantified(evidence, attribution, causes)
         return evidence, [with_hidden(in_own_unit(c)) if c.actuator in evidence.shares else c for c in causes]
 
     def remarks(self, finding: Finding[ArmMotionEvidence]) -> list[str]:

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 
 import numpy as np
 from sher3_diagnosis.channel import Array
-from sher3_diagnosis.filter import BANDWIDTH
 
+from sher3_machines.axes.noise import cut_off
 from sher3_machines.axes.record import AxesRun
-from sher3_machines.axes.signals import NYQUIST_SHARE, AxisSignals, signals_of
+from sher3_machines.axes.signals import AxisSignals, signals_of
 from sher3_machines.manipulator.description import ManipulatorDescription
 
 
@@ -36,7 +36,7 @@ def joint_signals(run: AxesRun, described: ManipulatorDescription, excitation: s
         motor=np.hstack([one.motor for one in each]) @ travel.T,
         effort=effort @ force,
         load=_beside([one.load for one in each], each[0].motor),
-        bandwidth=min(BANDWIDTH, NYQUIST_SHARE * 0.5 / run.period),
+        bandwidth=min(cut_off(one.motor[:, 0], run.period, one.bandwidth) for one in each),
     )
 
 
