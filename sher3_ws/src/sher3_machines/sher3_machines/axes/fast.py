@@ -2,8 +2,9 @@
 
 Around a reversal dry friction is no sign of the speed: the axis sticks, the filter smears the step, and a sample more
 or less late makes the step small at low speed, which looks like viscosity. Causes are chosen on all samples, since laws
-that live at low speed show there; the numbers of those that do not are then fitted again without them. That is done
-where a slow record or a noisy encoder asked for a lower cut-off than the engine's, which smears more of the motion.
+that live at low speed show there; the numbers of those that do not are then fitted again without them. Where a slow
+record or a noisy encoder asked for a lower cut-off than the engine's, they take the place of the first ones; elsewhere
+the first ones stay, and an interval holds both: what the two differ by is what the law at a reversal is not known by.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.filter import BANDWIDTH
 from sher3_diagnosis.fitting import fit, make_term
 from sher3_diagnosis.quantify.parameters import parameters
-from sher3_diagnosis.verdict import Cause
+from sher3_diagnosis.verdict import Cause, Parameter
 from sher3_diagnosis.whitened import Whitened
 from sher3_effects.friction.presliding_friction import PreslidingFriction
 from sher3_effects.friction.stribeck_friction import StribeckFriction
@@ -42,18 +43,27 @@ def requantified(evidence: Evidence, attribution: Attribution, causes: Sequence[
     terms = attribution.fit.terms
     slow = {t.site for t in terms if t.effect.id in AT_LOW_SPEED}
     dry = {t.site for t in terms if t.effect.dry} - slow
+    if not dry:
+        return list(causes)
     views: Sequence[Any] = evidence.views
     smeared = any(view.run.bandwidth < BANDWIDTH for view in views)
-    if not (dry and smeared):
-        return list(causes)
     away = without_slow(evidence, dry)
     again = fit(away.data, [make_term(away.data, t.effect, t.site, t.shape) for t in terms])
     out = []
     for i, cause in zip(attribution.causes, causes, strict=True):
-        possible = terms[i].effect.admissible(terms[i].shape, again.of(i))
-        new = {"parameters": parameters(away, again, i)} if terms[i].site in dry and possible else {}
-        out.append(cause.model_copy(update=new))
+        if terms[i].site in dry and terms[i].effect.admissible(terms[i].shape, again.of(i)):
+            new = parameters(away, again, i)
+            told = new if smeared else {n: _holding(p, new[n]) for n, p in cause.parameters.items() if n in new}
+            cause = cause.model_copy(update={"parameters": told})
+        out.append(cause)
     return out
+
+
+def _holding(first: Parameter, other: Parameter) -> Parameter:
+    """Return a parameter whose interval holds that of another estimate of it too."""
+    if first.low is None or first.high is None or other.low is None or other.high is None:
+        return first
+    return first.model_copy(update={"low": min(first.low, other.low), "high": max(first.high, other.high)})
 
 
 def without_slow(evidence: E, sites: set[str]) -> E:

@@ -63,7 +63,7 @@ def test_friction_and_mass_of_a_slide_with_a_noisy_encoder():
 
 @pytest.mark.slow
 def test_intervals_hold_the_truth_over_a_ladder_of_rates_and_noises():
-    """At 100 to 1000 Hz with 1 to 50 um: 0.93 of the 95 % intervals or more hold the truth."""
+    """At 100 to 1000 Hz with 1 to 50 um: 0.93 of the 95 % intervals or more hold the truth, of each quantity."""
     runs = [slide(p, n, seed) for p in (0.01, 0.005, 0.002, 0.001) for n in (1e-6, 1e-5, 5e-5) for seed in (0, 1)]
     found = np.array([held(verdict_of(run)) for run in runs])
     assert (found.mean(axis=0) >= 0.93).all(), found.mean(axis=0)
