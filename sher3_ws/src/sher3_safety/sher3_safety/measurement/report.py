@@ -93,6 +93,20 @@ def misses(verdicts: Iterable[Verdict]) -> list[str]:
     return [f"{v.row.name}, {v.state.name}: {'; '.join(v.misses)}" for v in verdicts if v.misses]
 
 
+def nearest_to_budget(verdicts: Sequence[Verdict]) -> str:
+    """Return a sentence on the cell that had to stop and came nearest to its budget; empty without one."""
+    shares = []
+    for verdict in verdicts:
+        row, outcome = verdict.row, verdict.outcome
+        if row.effect == "stops" and outcome is not None:
+            travel = outcome.excess if row.slow else outcome.travel
+            budget = verdict.state.budget if row.budget is None else row.budget
+            shares.append(
+                (travel / budget, f"{row.name}, {verdict.state.name}: {travel * 1e6:.1f} of {budget * 1e6:g} um")
+            )
+    return f"Nearest to its budget: {max(shares)[1]}." if shares else ""
+
+
 def as_text(verdicts: Sequence[Verdict]) -> str:
     """Return the table for a terminal."""
     lines = [HEAD, UNITS, *table(verdicts)]

@@ -21,7 +21,7 @@ SLOW = (
     *(
         Row(f"{name}.power", "creep", {"speed": sign * speed}, reasons=LEFT, slow=True, quiet=FAST,
             duration=min(LONGEST, max(0.12, 2e-5 / speed)), quick=name == AXIS and speed == CREEPS[1])
-        for name, sign in ((AXIS, 1.0), (TILT, -1.0))
+        for name, sign in ((AXIS, 1.0), (ACTUATORS[1], -1.0), (ACTUATORS[2], 1.0), (TILT, -1.0))
         for speed in CREEPS
     ),
     *(
@@ -30,7 +30,8 @@ SLOW = (
         for speed in (1e-3, 1e-2, 1e-1)
     ),
     Row(f"{AXIS}.power", "creep", {"speed": 0.0122}, slow=True, budget=250e-6, why=AT_ITS_LIMIT),
-    Row(f"{AXIS}.load_encoder", "drift", {"rate": 2e-5}, slow=True, duration=LONGEST),
+    *(Row(f"{name}.load_encoder", "drift", {"rate": 2e-5}, slow=True, duration=LONGEST) for name in (AXIS, TILT)),
+    Row(f"{ROLL}.load_encoder", "drift", {"rate": 1e-3}, slow=True, duration=LONGEST),
     Row(f"{AXIS}.motor_encoder", "drift", {"rate": 2e-5}, slow=True, duration=LONGEST),
     Row(f"{AXIS}.motor_encoder", "ramp", {"rate": 0.5}, slow=True, effect="either", why=STATED),
     *(Row("bus.up", "late", {"items": age}, reasons=("FEEDBACK_STALE",)) for age in (1.0, 3.0)),

@@ -15,8 +15,9 @@ from sher3_common import make_folder
 from sher3_description import Robot, load_robot
 
 from sher3_safety.measurement.recording import Outcome
-from sher3_safety.measurement.report import as_markdown, as_text, misses
+from sher3_safety.measurement.report import as_markdown, as_text, misses, nearest_to_budget
 from sher3_safety.measurement.verdict import Verdict, judge
+from sher3_safety.rows.processes import WALL, WALL_STATES
 from sher3_safety.rows.row import STATES, Row, select
 from sher3_safety.rows.stepped import ROWS
 from sher3_safety.runs.stepped import Cell, run_cells
@@ -49,6 +50,8 @@ class MatrixResult:
         """Return what stands above the table."""
         held = sum(verdict.holds for verdict in self.verdicts)
         lines = [f"`{self.command}`, seed {self.seed}: {held} of {len(self.verdicts)} cells hold."]
+        lines += [nearest] if (nearest := nearest_to_budget(self.verdicts)) else []
+        lines.append(f"Not in this run: {self.left_out()}.")
         if self.false_trips is not None:
             f = self.false_trips
             lines.append(
@@ -56,6 +59,13 @@ class MatrixResult:
                 f"{f['per_hour']:.1f} per hour (95 % bound {f['upper_95']:.0f})."
             )
         return lines
+
+    def left_out(self) -> str:
+        """Return what this run did not measure."""
+        rest = len(ROWS) * len(STATES) - len(self.verdicts)
+        cells = [f"{rest} cells in stepped time (`{COMMAND}`)"] if rest > 0 else []
+        wall = f"{len(WALL) * len(WALL_STATES)} cells in wall time (`{COMMAND} --wall`)"
+        return ", ".join([*cells, wall, "real drives, sensor and pedal"])
 
     def as_text(self) -> str:
         """Return the table with its misses, for a terminal."""

@@ -1,0 +1,199 @@
+"""The hazards of the robot, each with its cause, its control, what verifies that, and what is left.
+
+In the manner of ISO 14971 (hazard, cause, risk control, verification, residual risk) and of the risk control measures
+of IEC 62304, from the data of the matrix: a row of the matrix that belongs to no hazard is an error, and so is a hazard
+that nothing verifies (`test/test_hazards.py`). The residual is a travel of the tip, by computation
+(`sher3_faults.budget`) and, where there is a report of the matrix, as measured.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from fnmatch import fnmatchcase
+from typing import Any, NamedTuple
+
+from sher3_faults.budget import TravelBudget
+
+from sher3_safety.rows.processes import WALL
+from sher3_safety.rows.row import Row
+from sher3_safety.rows.stepped import ROWS
+
+RUNAWAY = "runaway"
+"""In place of a fault of the budget: an axis as fast as its drive lets it be."""
+_DRIVERS = "sher3_ws/src/sher3_drivers/test"
+
+
+class Hazard(NamedTuple):
+    """One hazard.
+
+    Attributes:
+        name: what happens to the tip.
+        cause: why it may.
+        control: what keeps it short.
+        components: patterns of the components of the matrix that break for it.
+        tests: files of tests, under the project.
+        faults: faults of the travel budget that bound it; the longest travel counts.
+        gap: what software alone cannot hold; empty where nothing is known.
+    """
+
+    name: str
+    cause: str
+    control: str
+    components: tuple[str, ...]
+    tests: tuple[str, ...]
+    faults: tuple[str, ...]
+    gap: str = ""
+
+
+HAZARDS = (
+    Hazard(
+        "moves on though the foot has left",
+        "pedal silent, unplugged, stuck, chattering; contact or travel stuck",
+        "two antivalent contacts, whole state told, age of 20 ms, limits of a foot; release then press",
+        ("pedal", "pedal.*"),
+        (f"{_DRIVERS}/test_plausible_pedal.py",),
+        ("pedal released", "pedal silent or dead"),
+        "a lever that hangs: the hand alone decides, a press ends after 120 s",
+    ),
+    Hazard(
+        "moves without a hand, or against it",
+        "force sensor silent, frozen, saturated, not finite, faster than a hand",
+        "age, range, repetition and jumps judged in the same tick; speed cap of the regime",
+        ("force_sensor",),
+        (f"{_DRIVERS}/test_force_sensor.py",),
+        ("force sensor silent, dead", "force sensor frozen", "force not finite, out of range"),
+        "a force that is false and plausible: 500 um/s near tissue, 5000 um/s free, until the pedal is released",
+    ),
+    Hazard(
+        "an axis moves by itself",
+        "drive executes another velocity, creeps, runs at its own limit; echo false or missing",
+        "sum of the commands sent against both encoders without leak; echo; cap of the regime in the drive",
+        ("*.power", "*.demand", "*.echo"),
+        (f"{_DRIVERS}/test_position.py", f"{_DRIVERS}/test_speed_limits.py"),
+        ("axis leaves its commands", RUNAWAY),
+        "a drive that creeps and reports the force that would explain it: 0.2 mm of the axis; one that turns its motor "
+        "without being enabled: only safe torque off stops it",
+    ),
+    Hazard(
+        "goes elsewhere, since a position is wrong",
+        "encoder frozen, drifting, scaled, noisy; coupling slips",
+        "two encoders and the demand, two against one; tracker where there is one",
+        ("*.load_encoder", "*.motor_encoder"),
+        (f"{_DRIVERS}/test_watches.py",),
+        ("encoder wrong, coupling slips", "encoder frozen"),
+        "both encoders wrong alike by less than the force explains; a slip behind the load encoder without a tracker",
+    ),
+    Hazard(
+        "acts on reports that are old, garbled or of another axis",
+        "CAN frames lost, late, twice, exchanged; two drives with one node id",
+        "counter of SYNC and CRC with the node id behind every report; such a report is not believed",
+        ("*.up",),
+        (f"{_DRIVERS}/test_protection.py",),
+        ("joint positions silent", "drive silent"),
+        "drives without end-to-end protection: reports one tick old in even motion, 1 um near tissue and 10 um free",
+    ),
+    Hazard(
+        "the drives do not hear, or hear something else",
+        "CAN cut, bus off, commands garbled, another host",
+        "CRC of commands, event time of the RPDO, host's heartbeat; foreign frames trip",
+        ("bus", "delta_1", "*.down"),
+        (f"{_DRIVERS}/test_protection.py", f"{_DRIVERS}/test_other_host.py"),
+        ("CAN bus off or cut", "drive reports a fault or restarts"),
+        "drives without end-to-end protection: one garbled command that enables runs the drive for 2 ms at its limit",
+    ),
+    Hazard(
+        "the computer stops, hangs or is too late",
+        "process killed, held, started twice; processor taken away",
+        "each stage times out by itself: law, driver, drives; no heartbeat without a loop; one robot in a domain",
+        ("process.*", "cpu"),
+        ("tests/test_stop_and_hold.py",),
+        ("motor driver or computer dead", "motor driver held up", "supervisor dead", "kinematics node dead",
+         "admittance node dead", "user's commands silent"),
+        "a drive whose processor hangs with its power stage on: emergency stop circuit",
+    ),
+    Hazard(
+        "time is wrong",
+        "clock jumps, stands, or goes backwards",
+        "stamps against the monotonic clock at every stage",
+        ("clock", "clock.*"),
+        (),
+        ("clock jumped",),
+    ),
+    Hazard(
+        "loses its torque",
+        "safe torque off, supply lost, drive in local mode",
+        "POWER_OFF with its reason; no recovery while it lasts; bits of the statusword",
+        ("safe_torque_off",),
+        (f"{_DRIVERS}/test_closed_drives.py",),
+        ("drive reports a fault or restarts",),
+        "how far an axis without torque coasts: to be measured at the robot",
+    ),
+    Hazard(
+        "is another robot than the software believes",
+        "drive exchanged, configured by somebody else; robot file wrong",
+        "name plates, every object that shapes motion read back; impossible numbers refused",
+        (),
+        (f"{_DRIVERS}/test_closed_drives.py", "tests/test_file_doors.py", "tests/test_fuzz_files.py"),
+        (),
+        "a robot file that is plausible and wrong",
+    ),
+    Hazard(
+        "moves when a fault is cleared",
+        "recovery, enabling, late or lost frames",
+        "one recovery a fault, disabled first; release then press; fault reset held until the drive has left FAULT",
+        (),
+        ("tests/test_product_machine.py", "sher3_ws/src/sher3_control/test/test_supervisor_histories.py"),
+        ("pedal released",),
+    ),
+)  # fmt: skip
+
+
+def rows_of(hazard: Hazard) -> list[Row]:
+    """Return the rows of the matrix, in stepped and in wall time, that belong to a hazard."""
+    return [row for row in (*ROWS, *WALL) if any(fnmatchcase(row.component, name) for name in hazard.components)]
+
+
+def _bounds(hazard: Hazard, budget: TravelBudget) -> Iterator[tuple[str, float]]:
+    """Yield (regime, travel [m]) of the faults that bound a hazard."""
+    for row in budget.rows:
+        if row.fault in hazard.faults:
+            yield row.regime, row.travel
+    if RUNAWAY in hazard.faults:
+        for regime, ways in budget.runaway.items():
+            yield regime, max(ways.values())
+
+
+def residual(hazard: Hazard, budget: TravelBudget) -> dict[str, float]:
+    """Return the longest computed travel of the tip [m] by regime; nothing where no motion follows."""
+    found: dict[str, float] = {}
+    for regime, travel in _bounds(hazard, budget):
+        found[regime] = max(found.get(regime, 0.0), travel)
+    return found
+
+
+def measured(hazard: Hazard, cells: Sequence[Mapping[str, Any]]) -> dict[str, float]:
+    """Return the longest measured travel [m] by state, of cells of a report of the matrix that had to stop."""
+    found: dict[str, float] = {}
+    for cell in cells:
+        mine = any(fnmatchcase(cell["component"], name) for name in hazard.components)
+        if mine and cell["effect"] == "stops" and cell["outcome"] is not None:
+            found[cell["state"]] = max(found.get(cell["state"], 0.0), cell["outcome"]["travel"] or 0.0)
+    return found
+
+
+def hazard_table(budget: TravelBudget, cells: Sequence[Mapping[str, Any]] = ()) -> list[dict[str, Any]]:
+    """Return the hazards as plain data, with their residuals in um."""
+    table = []
+    for hazard in HAZARDS:
+        lines = rows_of(hazard)
+        table.append({
+            "hazard": f"the tip {hazard.name}" if not hazard.name.startswith(("the ", "time", "an ")) else hazard.name,
+            "cause": hazard.cause,
+            "control": hazard.control,
+            "rows": len(lines),
+            "tests": list(hazard.tests),
+            "residual": {regime: 1e6 * travel for regime, travel in residual(hazard, budget).items()},
+            "measured": {state: 1e6 * travel for state, travel in measured(hazard, cells).items()},
+            "gap": hazard.gap,
+        })  # fmt: skip
+    return table
