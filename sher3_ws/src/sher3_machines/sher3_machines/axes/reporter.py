@@ -33,10 +33,13 @@ class AxesReporter(Reporter[AxisEvidence]):
         return [k for k, view in enumerate(views) if view is views[run]]
 
     def output(self, evidence: AxisEvidence, run: int, channel: Channel) -> Output:
-        """Return the name of what a residual is."""
+        """Return the force of a driven axis, real against nominal against corrected; else what a residual is."""
         if channel.stage == "transmission":
             return Output("load − motor")
-        return Output("set-point − position" if evidence.axis.servo else "force − nominal")
+        signals = evidence.records[evidence.records.index(evidence.data.views[run])].run
+        if evidence.axis.servo or signals.effort is None:
+            return Output("set-point − position")
+        return Output("force", signals.to_grid(signals.effort)[:, 0])
 
 
 def samples_of(signals: dict) -> Sequence[float]:
