@@ -167,5 +167,6 @@ def mjcf(axes: list[Axis], period: float) -> str:
     actuators = "".join(drive_elements(j, axis, step) for j, axis in enumerate(axes))
     return (
         f'<mujoco model="sher3_axes"><compiler angle="radian" autolimits="true" boundmass="0"/>'
-        f"{OPTIONS.format(step=step)}<worldbody>{bodies}</worldbody><tendon>{tendons}</tendon><actuator>{actuators}</actuator></mujoco>"
+        f"{OPTIONS.format(step=step)}<worldbody>{bodies}</worldbody>"
+        f"<tendon>{tendons}</tendon><actuator>{actuators}</actuator></mujoco>"
     )
