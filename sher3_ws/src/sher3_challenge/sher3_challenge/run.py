@@ -24,8 +24,10 @@ from sher3_challenge.errors import ChallengeError
 from sher3_challenge.plants.registry import truth_plant, truth_plants
 from sher3_challenge.score.case import CaseScore, score_case
 from sher3_challenge.score.outcome import SCORES, Outcome
+from sher3_challenge.score.reliability import diagram
 
 VERDICTS = "verdicts"
+RELIABILITY = "reliability.png"
 MAXIMUM_CASES = 2000
 """Cases of one challenge: an end against slips of the keyboard."""
 WITHHELD = "withheld"
@@ -112,6 +114,8 @@ def run_challenge(
     errors = {name: given.error for name, given in answers.items() if given.error is not None}
     outcome = Outcome(score_all(labels, answers), time.perf_counter() - started, _range(todo), errors)
     (out / SCORES).write_text(json.dumps(outcome.as_dict(), indent=1), encoding="utf-8")
+    rows = outcome.scores["diagnosis"]
+    diagram({p: [x for s in rows if s.plant == p for x in s.stated] for p in outcome.plants}, out / RELIABILITY)
     return outcome
 
 

@@ -7,9 +7,9 @@ from sher3_challenge.calibration.fit import Example, calibrated, conformal, logi
 from sher3_challenge.calibration.held_out import held_out, judged_by
 from sher3_challenge.calibration.labels import answer_of
 from sher3_challenge.calibration.observe import Observation, labelled, truth_of
-from sher3_challenge.calibration.reliability import bins, calibration_error, diagram
 from sher3_challenge.calibration.table import rates, written
 from sher3_challenge.errors import ChallengeError
+from sher3_challenge.score.reliability import bins, calibration_error, diagram
 from sher3_diagnosis.judge.calibration.calibration import Calibration
 
 NUMBERS = {
@@ -120,7 +120,7 @@ def test_sharpness_by_hand():
 
 def test_the_calibration_error_by_hand():
     """0.8 stated and met in 1 of 2, 0.2 stated and met in 1 of 2: errors of 0.3 in both bins."""
-    answers = [({"a": 0.8, "b": 0.2}, "a"), ({"a": 0.8, "b": 0.2}, "b")]
+    answers = [(0.8, True), (0.8, False), (0.2, False), (0.2, True)]
     assert [(round(b.stated, 2), b.met, b.n) for b in bins(answers)] == [(0.2, 0.5, 2), (0.8, 0.5, 2)]
     assert calibration_error(answers) == pytest.approx(0.3)
     assert calibration_error([]) == 0.0

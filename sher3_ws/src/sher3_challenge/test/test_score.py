@@ -191,3 +191,14 @@ def test_agrees_with_the_scorer_of_the_contract(tmp_path):
         value, n = expected[other]
         assert ours[mine].n == n, mine
         assert ours[mine].value == (None if value is None else pytest.approx(value)), mine
+
+
+def test_stated_probabilities_are_kept_with_whether_they_were_right():
+    """A true cause at 0.9, its company at 0.6, an outside that is none at 0.2; what sums above one is one."""
+    named = [{**cause(), "probability": 0.9}, {**cause("presliding_friction", "friction"), "probability": 0.6}]
+    said = verdict(causes=named) | {"probabilities": {"outside_library": 0.2}}
+    assert score_case(truth(), said).stated == [(0.9, True), (0.6, True), (0.2, False)]
+    blamed = score_case(truth(status="outside_library", effects=()), said | {"probabilities": {"outside_library": 1.3}})
+    assert blamed.stated == [(0.9, False), (0.6, False), (1.0, True)]
+    error = summarise([blamed]).rates["calibration_error"]
+    assert (error.value, error.n) == (pytest.approx((0.9 + 0.6 + 0.0) / 3.0), 3)

@@ -106,8 +106,8 @@ def calibrate(
     from sher3_challenge.calibration.fit import calibrated
     from sher3_challenge.calibration.held_out import held_out
     from sher3_challenge.calibration.observe import gathered
-    from sher3_challenge.calibration.reliability import diagram as drawn
     from sher3_challenge.calibration.table import rates, written
+    from sher3_challenge.score.reliability import diagram as drawn
 
     with reported(as_json), tempfile.TemporaryDirectory() as scratch:
         seen = gathered(plants_of(folders), kept or Path(scratch), jobs)

@@ -6,7 +6,7 @@ import sys
 import pytest
 from sher3_challenge.errors import ChallengeError
 from sher3_gap_cli.app import app
-from sher3_gap_cli.challenge import parse_gap, parse_seeds
+from sher3_gap_cli.challenge import parse_gap, parse_seeds, plants_of
 from typer.testing import CliRunner
 
 ROW = {"case": "a", "truth": "no_gap", "said": "no_gap", "fault": "-", "answer": "-", "families": "-"}
@@ -49,3 +49,18 @@ def test_plants_that_are_left_out_are_told_with_the_extra_that_brings_them(monke
     assert "without plant mujoco" in result.output and "sher3[mujoco]" in result.output
     result = CliRunner().invoke(app, ["challenge", "--plant", "mujoco"])
     assert result.exit_code == 2 and "sher3[mujoco]" in result.output
+
+
+def test_calibrate_names_a_folder_without_labels(tmp_path):
+    result = CliRunner().invoke(app, ["calibrate", f"lumped={tmp_path}"])
+    assert result.exit_code == 2 and "no labelled case" in result.output and str(tmp_path) in result.output
+
+
+def test_calibrate_takes_several_folders_of_one_plant(tmp_path):
+    for name in ("one", "two"):
+        case = tmp_path / name / "case_1"
+        case.mkdir(parents=True)
+        (case / "case.yaml").write_text("")
+        (case / "truth.yaml").write_text("")
+    found = plants_of([f"lumped={tmp_path / 'one'}", f"lumped={tmp_path / 'two'}", str(tmp_path / "one")])
+    assert {name: len(cases) for name, cases in found.items()} == {"lumped": 2, "one": 1}

@@ -26,8 +26,10 @@ RIDGE = 0.02
 """Weight of the squared coefficients beside the mean log likelihood. Set on: the plants other than the one quoted."""
 EVEN = 1e-4
 """The same of the constants: no answer is impossible because no case had it."""
-READ = ("left", "law", "foreign", "spread", "lost", "mismatch", "company")
+READ = ("left", "law", "foreign", "spread", "lost", "mismatch", "company", "size")
 """Evidence that the model of a cause reads."""
+LAST = frozenset({"size"})
+"""Evidence that only says that a gap is one: how large it is tells nothing of its cause."""
 
 
 @dataclass(frozen=True)
@@ -68,11 +70,11 @@ class Examples:
 
 def examples_of(observations: Sequence[Observation]) -> Examples:
     """Return the items of observations that their labels settle."""
-    whole = {(o.plant, o.case, _key(o)): o for o in observations if not o.without}
+    whole = {(o.plant, o.case): o for o in observations if not o.without}
     out = Examples([], [], [], [])
     for seen in observations:
         for item in seen.items:
-            answer = answer_of(seen, item, whole[seen.plant, seen.case, _key(seen)])
+            answer = answer_of(seen, item, whole[seen.plant, seen.case])
             if answer is None:
                 continue
             if item["index"] is None:
@@ -90,10 +92,6 @@ def examples_of(observations: Sequence[Observation]) -> Examples:
     return out
 
 
-def _key(seen: Observation) -> str:
-    return str(seen.truth.get("seed", "")) + seen.truth["status"]
-
-
 def calibrated(observations: Sequence[Observation]) -> Calibration:
     """Fit a calibration."""
     seen = examples_of(observations)
@@ -109,7 +107,7 @@ def calibrated(observations: Sequence[Observation]) -> Calibration:
         provenance=tuple(
             Provenance(
                 plant=p,
-                cases=len({(o.case, _key(o)) for o in observations if o.plant == p}),
+                cases=len({o.case for o in observations if o.plant == p}),
                 causes=sum(e.plant == p for e in seen.causes),
                 gaps=sum(e.plant == p for e in seen.gaps),
             )
@@ -122,7 +120,8 @@ def logistic(examples: Sequence[Example], classes: Sequence[str], inputs: Sequen
     """Fit a logistic model with a ridge in which every plant has the same weight.
 
     The first class is the one that the inputs speak against, the second the one they speak for: weights of the other
-    sign are none, so that chance in one plant's cases cannot turn evidence round on the next.
+    sign are none, so that chance in one plant's cases cannot turn evidence round on the next. An input of `LAST` speaks
+    against the last class alone.
     """
     x = np.array([[e.numbers[name] for name in inputs] for e in examples]).reshape(len(examples), len(inputs))
     y = np.array([[e.answer == name for name in classes] for e in examples], dtype=float).reshape(-1, len(classes))
@@ -142,8 +141,7 @@ def logistic(examples: Sequence[Example], classes: Sequence[str], inputs: Sequen
         held = RIDGE * float(np.sum(w[:, :-1] ** 2)) + EVEN * float(np.sum(w[:, -1] ** 2))
         return held - likely, slope.ravel()
 
-    sign = [(None, 0.0), (0.0, None), *[(None, None)] * (len(classes) - 2)]
-    bounds = [b for s in sign for b in [*[s] * len(inputs), (None, None)]]
+    bounds = [b for k in range(len(classes)) for b in [*(_bound(n, k, len(classes)) for n in inputs), (None, None)]]
     found = minimize(loss, np.zeros(shape).ravel(), jac=True, bounds=bounds, method="L-BFGS-B").x.reshape(shape)
     return Logistic(
         classes=tuple(classes),
@@ -153,6 +151,13 @@ def logistic(examples: Sequence[Example], classes: Sequence[str], inputs: Sequen
         weights=tuple(tuple(w) for w in found[:, :-1].tolist()),
         offset=tuple(found[:, -1].tolist()),
     )
+
+
+def _bound(name: str, k: int, classes: int) -> tuple[float | None, float | None]:
+    """Return the least and the largest weight that an input may have for class k."""
+    if name in LAST:
+        return (None, 0.0) if k == classes - 1 else (0.0, 0.0)
+    return ((None, 0.0), (0.0, None), (None, None))[min(k, 2)]
 
 
 def weights(examples: Sequence[Example]) -> np.ndarray:

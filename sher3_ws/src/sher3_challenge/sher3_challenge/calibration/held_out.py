@@ -16,6 +16,7 @@ from sher3_diagnosis.judge.status import answer_to, crosses, status_of
 from sher3_challenge.calibration.fit import calibrated
 from sher3_challenge.calibration.labels import alike, answer_of, company, contains, equal, known, twins
 from sher3_challenge.calibration.observe import Observation
+from sher3_challenge.score.reliability import Stated
 
 
 @dataclass(frozen=True)
@@ -26,7 +27,8 @@ class Judgement:
         seen: the observation.
         said: status.
         named: the effects of the causes that are listed; `sets`: each with its rivals.
-        right: per cause and gap whose answer the label settles, the probabilities and that answer.
+        right: per cause and gap whose answer the label settles, the probability of each answer and whether it is the
+            right one.
         excused: an effect left out was answered by effects that explain the same data: nothing recorded tells.
         rightly_named: the engine found a true effect, whatever the status.
     """
@@ -35,7 +37,7 @@ class Judgement:
     said: str
     named: tuple[str, ...]
     sets: tuple[frozenset[str], ...]
-    right: tuple[tuple[Mapping[str, float], str], ...]
+    right: tuple[Stated, ...]
     excused: bool
     rightly_named: bool
 
@@ -69,8 +71,8 @@ def held_out(observations: Sequence[Observation], plant: str) -> list[Judgement]
 
 def judged_by(calibration: Calibration, observations: Sequence[Observation]) -> list[Judgement]:
     """Judge observations with a calibration."""
-    whole = {(o.case, str(o.truth["effects"])): o for o in observations if not o.without}
-    return [_judgement(o, whole[o.case, str(o.truth["effects"])], calibration) for o in observations]
+    whole = {o.case: o for o in observations if not o.without}
+    return [_judgement(o, whole[o.case], calibration) for o in observations]
 
 
 def _judgement(seen: Observation, whole: Observation, calibration: Calibration) -> Judgement:
@@ -85,7 +87,8 @@ def _judgement(seen: Observation, whole: Observation, calibration: Calibration) 
             crossing = crossing or crosses(j.item, calibration.same)
         truth = answer_of(seen, row, whole)
         if truth is not None:
-            right.append(({LIBRARY: j.library, OUTSIDE: j.outside, NO_GAP: j.no_gap}, truth))
+            given = {LIBRARY: j.library, OUTSIDE: j.outside, NO_GAP: j.no_gap}
+            right += [(p, name == truth) for name, p in given.items()]
     for stage in seen.exact:
         share = calibration.exact.probabilities(scaled_exact(stage["closure"]))[LIBRARY] if stage["causes"] else 0.0
         answers.append(LIBRARY if share > 0.5 else OUTSIDE)

@@ -15,7 +15,7 @@ from sher3_diagnosis.flow import find
 from sher3_diagnosis.judge.items import Item, items_of
 from sher3_gap.evidence import SherEvidence
 
-from sher3_challenge.cases.seal import LABELS
+from sher3_challenge.cases.seal import CASES, LABELS
 
 LABEL = "truth.yaml"
 VERSION = 2
@@ -27,7 +27,7 @@ class Observation:
     """What the engine says of one case, before it is judged.
 
     Attributes:
-        plant, case: where it came from.
+        plant: where it came from; case: its name with that of its folder.
         truth: its label.
         without: effects that were left out of the library.
         items: the causes and gaps, plain: channel, numbers, candidates; of a cause its family and closure too.
@@ -61,6 +61,12 @@ def label_of(case: Path) -> Path:
     """Return where the label of a case is, or would be."""
     beside = case / LABEL
     return beside if beside.exists() else case.parent.parent / LABELS / f"{case.name}.yaml"
+
+
+def name_of(case: Path) -> str:
+    """Return the name of a case with that of its folder: cases of two folders may bear one name."""
+    folder = case.parent.parent if case.parent.name == CASES else case.parent
+    return f"{folder.name}_{case.name}"
 
 
 def truth_of(case: Path) -> dict[str, Any]:
@@ -111,7 +117,7 @@ def _observed(plant: str, case: Path, truth: dict[str, Any]) -> list[Observation
         out.append(
             Observation(
                 plant,
-                case.name,
+                name_of(case),
                 truth,
                 tuple(without),
                 tuple(_plain(finding, item) for item in items_of(finding)),
@@ -156,7 +162,7 @@ def gathered(plants: Mapping[str, Sequence[Path]], kept: Path, jobs: int = 1) ->
     from joblib import Parallel, delayed
 
     tasks = [
-        delayed(observations)(plant, case, kept / plant / f"{case.parent.name}_{case.name}.json")
+        delayed(observations)(plant, case, kept / plant / f"{name_of(case)}.json")
         for plant, cases in plants.items()
         for case in cases
     ]

@@ -6,9 +6,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from sher3_challenge.calibration.held_out import Judgement
-from sher3_challenge.calibration.reliability import calibration_error
 from sher3_challenge.score.intervals import wilson
 from sher3_challenge.score.rates import Rate
+from sher3_challenge.score.reliability import calibration_error
 
 CLEAR = 3.0
 """Gap over floor from which a case counts; exact stages always do."""
@@ -29,6 +29,7 @@ def rates(judgements: Sequence[Judgement]) -> dict[str, Rate]:
     shares = {s: _share(whole, s, lambda j: j.said == j.seen.truth["status"]) for s in STATUSES}
     seen = [r.value for r in shares.values() if r.value is not None]
     withheld = [j for j in kept if j.seen.without and not j.excused]
+    stated = [r for j in judgements for r in j.right]
     return {
         "balanced": Rate(sum(seen) / len(seen) if seen else None, len(whole)),
         **{f"said {s}": r for s, r in shares.items()},
@@ -40,7 +41,7 @@ def rates(judgements: Sequence[Judgement]) -> dict[str, Rate]:
         "top1": _rate([j.first_right for j in whole if j.first_right is not None]),
         "in the set": _rate([j.in_set for j in whole if j.in_set is not None]),
         "set size": _mean([j.set_size for j in whole if j.set_size is not None]),
-        "calibration error": _mean([calibration_error([r for j in judgements for r in j.right])]),
+        "calibration error": Rate(calibration_error(stated) if stated else None, len(stated)),
     }
 
 

@@ -48,6 +48,8 @@ class CaseScore:
         false_attribution: an effect was blamed where none of the library is to blame.
         rivals, experiment: the rivals of an under-excited case were named, an experiment was proposed.
         seconds: the verdict's own.
+        stated: probabilities that the verdict states, of every cause and of a cause outside the library, and whether
+            each was right.
     """
 
     case: str
@@ -78,6 +80,7 @@ class CaseScore:
     rivals: bool | None = None
     experiment: bool | None = None
     seconds: float | None = None
+    stated: Sequence[tuple[float, bool]] = ()
     plant: str = "-"
 
 
@@ -105,6 +108,7 @@ def score_case(truth: Truth, verdict: Verdict | None) -> CaseScore:
     if effects:
         row |= _place(effects, given.get("where") or [])
     known = [e for e in effects if e["family"] != "outside"]
+    row["stated"] = _stated(truth, given, causes)
     if known:
         row |= _causes(known, causes)
         row |= _closure(truth, given)
@@ -132,6 +136,17 @@ def _names(truth: Truth, given: Verdict, causes: Sequence[Mapping[str, Any]]) ->
         "single": status == "attributed" and len(effects) == 1,
         "seconds": given.get("seconds"),
     }
+
+
+def _stated(truth: Truth, given: Verdict, causes: Sequence[Mapping[str, Any]]) -> list[tuple[float, bool]]:
+    """Return the stated probabilities with whether they were right; a true effect's company is right too."""
+    known = [e for e in truth["effects"] if e["family"] != "outside"]
+    right = {e["effect"] for e in known} | {name for e in known for name in e["company"]}
+    out = [(c["probability"], c["effect"] in right) for c in causes if c.get("probability") is not None]
+    outside = (given.get("probabilities") or {}).get("outside_library")
+    if outside is not None:
+        out.append((min(1.0, outside), truth["status"] == "outside_library"))
+    return out
 
 
 def _abstention(truth: Truth, given: Verdict, causes: Sequence[Mapping[str, Any]]) -> dict[str, Any]:

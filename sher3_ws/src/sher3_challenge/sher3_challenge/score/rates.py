@@ -12,6 +12,7 @@ from typing import Any
 
 from sher3_challenge.score.case import CaseScore
 from sher3_challenge.score.intervals import wilson
+from sher3_challenge.score.reliability import calibration_error
 
 BINS = ((0.0, 1.5), (1.5, 2.0), (2.0, 3.0), (3.0, 5.0), (5.0, 12.0), (12.0, math.inf))
 """Bins of gap over floor for the detectability curve."""
@@ -84,6 +85,7 @@ def _rates(kept: Sequence[CaseScore]) -> dict[str, Rate]:
 
     answered = [s for s in kept if s.single]
     close = [s.closure_error <= CLOSE for s in kept if s.closure_error is not None]
+    stated = [(p, right) for s in kept for p, right in s.stated]
     names, inside = sum(s.parameters for s in kept), sum(s.parameters_inside for s in kept)
     return {
         "detection": rate(kept, "detected", gap),
@@ -108,6 +110,7 @@ def _rates(kept: Sequence[CaseScore]) -> dict[str, Rate]:
         "closure_interval_coverage": rate(kept, "closure_inside"),
         "tip_closure_error": rate(kept, "tip_error"),
         "parameter_interval_coverage": Rate(inside / names if names else None, names),
+        "calibration_error": Rate(calibration_error(stated) if stated else None, len(stated)),
         "seconds": rate(kept, "seconds"),
     }
 

@@ -19,6 +19,7 @@ TARGETS = {
     "outside_abstention": (">=", 0.85),
     "outside_false_attribution": ("<=", 0.05),
     "closure_within_0.05": (">=", 0.90),
+    "calibration_error": ("<=", 0.05),
 }
 """What the diagnosis is held to on cases with a gap of at least three floors."""
 

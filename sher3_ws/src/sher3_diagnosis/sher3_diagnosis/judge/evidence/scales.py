@@ -30,7 +30,7 @@ def scaled_exact(closure: float) -> dict[str, float]:
 
 
 def scaled_cause(numbers: Mapping[str, float]) -> dict[str, float]:
-    """Return what a model reads of a cause; the larger a number, the less it speaks for the cause."""
+    """Return what a model reads of a cause; the larger a number but the size, the less it speaks for the cause."""
     left, law, anything = (min(max(numbers[name], 0.0), 1.0) for name in ("left", "law", "anything"))
     return {
         "left": log_above(left, LEAST_SHARE),
@@ -40,4 +40,5 @@ def scaled_cause(numbers: Mapping[str, float]) -> dict[str, float]:
         "lost": log_above(numbers["lost"], 0.001),
         "mismatch": log_above(numbers["mismatch"], 0.01),
         "company": numbers["company"],
+        "size": log_above(numbers["ratio"], 1.0),
     }

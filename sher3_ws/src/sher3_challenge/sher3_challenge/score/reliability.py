@@ -10,8 +10,8 @@ import numpy as np
 
 BINS = 10
 
-Stated = tuple[Mapping[str, float], str]
-"""Probabilities of the answers to one item, and the right answer."""
+Stated = tuple[float, bool]
+"""A probability, and whether what it was given for is true."""
 
 
 @dataclass(frozen=True)
@@ -28,11 +28,10 @@ class Bin:
 
 
 def bins(answers: Sequence[Stated]) -> list[Bin]:
-    """Return the answers, every one of every item, by their probability."""
-    stated = np.array([p for given, _ in answers for p in given.values()])
-    met = np.array([name == right for given, right in answers for name in given], dtype=float)
-    if not len(stated):
+    """Return the answers by their probability, in ten bins; empty ones are left out."""
+    if not answers:
         return []
+    stated, met = np.array(answers, dtype=float).T
     place = np.minimum((stated * BINS).astype(int), BINS - 1)
     return [
         Bin(float(stated[place == k].mean()), float(met[place == k].mean()), int((place == k).sum()))
@@ -63,5 +62,5 @@ def diagram(answers: Mapping[str, Sequence[Stated]], path: Path) -> None:
             for b in found:
                 axes.annotate(str(b.n), (b.stated, b.met), textcoords="offset points", xytext=(5, -9), fontsize=7)
     axes.set(xlim=(0, 1), ylim=(0, 1), xlabel="stated probability", ylabel="share that was right")
-    axes.legend(loc="upper left", fontsize=8)
+    axes.legend(loc="lower right", fontsize=8)
     figure.savefig(path, dpi=120)
