@@ -1,4 +1,4 @@
-"""Pedal back-ends: the kernel's joystick events, the datagram of the mock, and what is missing or lost."""
+"""Pedal back-ends: reports of the raw HID device, the datagram of the mock, and what is missing or lost."""
 
 import math
 import os
