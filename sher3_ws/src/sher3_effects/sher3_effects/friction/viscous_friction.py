@@ -20,7 +20,6 @@ class ViscousFriction(Page):
 
     id, family, stage = "viscous_friction", "friction", "motor_mechanics"
     inputs = ("velocity",)
-    kinds = ("robot", "axis")
     best = Best("reversals", "reversals of several amplitudes and speeds separate friction laws")
     explanation = (
         "The axis needs more force the faster it moves, in proportion: lubricant or seals are stiffer than "
@@ -45,6 +44,23 @@ class ViscousFriction(Page):
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Coefficient over the nominal one."""
         return {"extra": float(coefficients[0])}
+
+
+class ViscousOnAxis(ViscousFriction):
+    """The same on one axis of any machine: with the nominal one it never pushes along.
+
+    Attributes:
+        nominal: viscous coefficient that the description states, N/(m/s) or N m/(rad/s).
+    """
+
+    kinds = ("axis",)
+
+    def __init__(self, nominal: float = 0.0) -> None:
+        self.nominal = nominal
+
+    def admissible(self, shape: Shape, coefficients: Array) -> bool:
+        """Return whether all of it together resists."""
+        return bool(coefficients[0] > -self.nominal)
 
 
 @dataclass(frozen=True)

@@ -16,6 +16,7 @@ from sher3_diagnosis.judge.left_over import down_to_floor
 from sher3_diagnosis.machine import Machine, Policy
 from sher3_diagnosis.verdict import Cause, Interval
 from sher3_effects import library, pages
+from sher3_effects.friction.viscous_friction import ViscousOnAxis
 
 from sher3_machines.axes.description import AxesDescription, Axis
 from sher3_machines.axes.evidence import AxisEvidence, gather_axis
@@ -61,7 +62,9 @@ class Axes(Machine[AxesRun, AxisEvidence]):
 
     def effects(self, evidence: AxisEvidence) -> Sequence[Effect]:
         """Return the pages that can show in what was recorded of an axis."""
-        return pages(kind_of(evidence.axis), facts_of(evidence.axis))
+        own = ViscousOnAxis(evidence.axis.viscous)
+        found = pages(kind_of(evidence.axis), facts_of(evidence.axis))
+        return [own if isinstance(page, ViscousOnAxis) else page for page in found]
 
     def audit(self, runs: Sequence[AxesRun]) -> list[str]:
         """Return what was done to the data, and whether floors are known from repeats."""
