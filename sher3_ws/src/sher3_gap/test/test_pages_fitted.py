@@ -53,6 +53,7 @@ RECOVERED = [
     ("force_crosstalk", "force_sensor", {"xz": 0.05}),
     ("drive_lag", "delta_1", {"time_constant": 6e-3}),
     ("encoder_eccentricity", "delta_3", {"amplitude": 1e-5}),
+    ("joint_clearance", "tilt", {"clearance": 4e-5}),
     ("link_compliance", "tip", {"fraction": 0.8, "own_weight": 1.0}),
 ]
 

@@ -164,7 +164,7 @@ def true_tip(
         b: BODY record.
         s: BODY_STATE record, changed in place.
         state: AXIS_STATE records.
-        q: (5,) true load positions; the slides' growth is added in place.
+        q: (5,) true load positions; the slides' growth and the play behind the tilt slider are added in place.
         load: (5,) load on the axes [N, N m].
         wrench: (6,) contact wrench at the tip in {b}.
         tip_rate: (3,) tip velocity [m/s].
@@ -175,6 +175,7 @@ def true_tip(
     warmth = b.temperature - REFERENCE_TEMPERATURE
     for i in range(5):
         q[i] *= 1.0 + axis[i].expansion * warmth
+    q[4] -= 0.5 * axis[4].clearance * math.tanh(load[4] / CONTACT_FORCE)
     tip_pose_into(p, q, rotation, position)
     shift = np.zeros(3)
     if b.gives_way:

@@ -1,4 +1,4 @@
-"""Joint clearance: a ball joint of a leg rattles."""
+"""Joint clearance: a ball joint of a leg rattles, or the joint between the tilt slider and its four-bar."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Best, Shape, Signature
 from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
+from sher3_sim.tip import CONTACT_FORCE
 
 from sher3_effects.operators import play
 from sher3_effects.page import Page
@@ -21,17 +22,18 @@ REST_FORCE = 0.2
 
 
 class JointClearance(Page):
-    """A leg's length jumps by +-clearance / 2 with the direction of its slider, or with the sign of the load on the
-    tip.
+    """A leg's length, or the travel of the tilt slider behind its encoder, jumps by +-clearance / 2 with the direction
+    of the slider, or with the sign of the load on it.
     """
 
     id, family, stage = "joint_clearance", "lost_motion", "mechanism"
     inputs = ("direction", "load", "posture")
     best = Best("loads", "known loads at rest separate a fixed gap from a spring")
-    places = ("leg",)
+    places = ("leg", "tilt")
+    discrete = frozenset({"by_load"})
     explanation = (
-        "A ball joint has play: the tip jumps by a fixed amount when the leg's load or direction reverses, "
-        "with no trace in the encoders."
+        "A joint has play: the tip jumps by a fixed amount when the load or the direction of the leg, or of the tilt "
+        "slider, reverses, with no trace in the encoders."
     )
     siblings = {
         "backlash": "the load encoder lags behind the motor's",
@@ -45,36 +47,40 @@ class JointClearance(Page):
         return (Channel("mechanism", "tip"), Channel("structure", "tip"))
 
     def shapes(self, views: Sequence[RobotView], site: str) -> list[Shape]:
-        """What decides the side: 0 the direction of the slider, 1 the force along the leg, 2 that on each link.
+        """What decides the side: 0 the direction of the slider, 1 the force on it, 2 that on each link of the leg.
 
         A side that never changes is none.
         """
         shapes: list[Shape] = [*({"by_load": 0.0, "reach": r} for r in self.REACHES)]
-        shapes += [{"by_load": 1.0, "reach": 0.0}, {"by_load": 2.0, "reach": 0.0}]
+        shapes += [{"by_load": 1.0, "reach": 0.0}]
+        shapes += [{"by_load": 2.0, "reach": 0.0}] if site != "tilt" else []
         return [
             s for s in shapes if np.ptp(np.concatenate([self._side(v, site, s) for v in views]), axis=0).max() > 1.0
         ]
 
     def _side(self, view: RobotView, site: str, shape: Shape) -> Array:
-        """Side on which each link of the leg rests, (g, 2) in -1..1."""
+        """Side on which each link of the leg, or twice the tilt slider, rests, (g, 2) in -1..1."""
         axis = view.row(site)
         if shape["by_load"] == 2.0:
             return np.tanh(link_forces(view)[:, 2 * axis : 2 * axis + 2] / REST_FORCE)
         if shape["by_load"]:
             force = view.path.contact_force[:, axis] - view.path.gravity[:, axis]
-            return np.repeat(np.tanh(force / 0.05)[:, None], 2, axis=1)
+            return np.repeat(np.tanh(force / CONTACT_FORCE)[:, None], 2, axis=1)
         x, width = view.run.smooth[:, axis], shape["reach"] * view.lead(site)
         side = -2.0 / width * play(x, np.zeros(len(x)), width, np.inf, view.run.period, 0.0)[view.run.grid]
         return np.repeat(side[:, None], 2, axis=1)
 
     def signature(self, view: RobotView, site: str, shape: Shape) -> Signature:
-        """Two columns: half the change of the pose per metre of either link, with the sign of the side."""
+        """Half the change of the pose per metre of either link, or of the tilt slider, with the sign of the side."""
+        if site == "tilt":
+            change = view.path.jacobian[:, :, [view.row(site)]] * self._side(view, site, shape)[:, None, :1]
+            return Signature(view.at_tip(0.5 * change))
         first = 2 * view.row(site)
         change = view.link_changes[:, :, first : first + 2] * self._side(view, site, shape)[:, None, :]
         return Signature(view.at_tip(0.5 * change))
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Clearance along the leg."""
+        """Clearance along the leg or the slider."""
         return {"clearance": float(np.abs(coefficients).mean())}
 
 
@@ -87,11 +93,13 @@ def link_forces(view: RobotView) -> Array:
 
 @dataclass(frozen=True)
 class JointClearanceInPlant(PlantEffect, page=JointClearance):
-    """The ball joints of a leg have play: the leg is longer under tension than under compression by the clearance."""
+    """Joints have play: a leg is longer under tension than under compression by the clearance, and the four-bar follows
+    the tilt slider on one side or the other of it.
+    """
 
-    clearance: float = parameter("m", 10e-6, 0.0, 1e-3, "length between tension and compression")
+    clearance: float = parameter("m", 10e-6, 0.0, 1e-3, "travel between tension and compression")
 
     def apply(self, p: PlantParameters) -> None:
-        """Give the leg play."""
+        """Give the leg or the slider play."""
         p.axis["clearance"][self.rows] += self.clearance
         p.body["gives_way"] = True
