@@ -8,7 +8,8 @@ from __future__ import annotations
 from functools import lru_cache
 
 import numpy as np
-from scipy.signal import butter, sosfiltfilt
+from scipy.signal import butter, sosfilt_zi
+from sher3_common.compiled import compiled
 
 from sher3_diagnosis.channel import Array, Mask
 
@@ -20,6 +21,8 @@ EDGE = 0.05
 """Seconds at each end of a run that the filter spoils."""
 SHORT = 30
 """Samples below which a signal is too short for the filter and is left as it is."""
+PAD = 9
+"""Samples that each end is mirrored by before it is filtered, as `scipy.signal.sosfiltfilt` does."""
 NEAR_NYQUIST = 0.4
 """Product of cut-off and period from which the low-pass would change nothing that is left to see."""
 
@@ -34,12 +37,39 @@ def low_pass(x: Array, period: float, cutoff: float = BANDWIDTH) -> Array:
     """
     if cutoff * period >= NEAR_NYQUIST or len(x) < SHORT:
         return np.asarray(x, dtype=float)
-    return sosfiltfilt(_butterworth(period, cutoff), x, axis=0)
+    wide = np.ascontiguousarray(x, dtype=float).reshape(len(x), -1)
+    return _both_ways(wide, *_butterworth(period, cutoff)).reshape(np.shape(x))
 
 
 @lru_cache(maxsize=32)
-def _butterworth(period: float, cutoff: float) -> Array:
-    return butter(2, cutoff, fs=1.0 / period, output="sos")
+def _butterworth(period: float, cutoff: float) -> tuple[Array, Array]:
+    """One second-order section b0 b1 b2 a0 a1 a2, (6,), and its state at rest at one, (2,)."""
+    section = butter(2, cutoff, fs=1.0 / period, output="sos")
+    return section[0].copy(), sosfilt_zi(section)[0].copy()
+
+
+@compiled
+def _both_ways(x: Array, section: Array, rest: Array) -> Array:
+    """Filter x (n, k) forwards and backwards, its ends mirrored through their last sample: no phase is left."""
+    n, k = x.shape
+    out = np.empty((n, k))
+    line = np.empty(n + 2 * PAD)
+    for c in range(k):
+        line[PAD : PAD + n] = x[:, c]
+        for i in range(PAD):
+            line[i] = 2.0 * x[0, c] - x[PAD - i, c]
+            line[n + PAD + i] = 2.0 * x[n - 1, c] - x[n - 2 - i, c]
+        for _ in range(2):
+            s1, s2 = rest[0] * line[0], rest[1] * line[0]
+            for i in range(len(line)):
+                v = line[i]
+                y = section[0] * v + s1
+                s1 = section[1] * v - section[4] * y + s2
+                s2 = section[2] * v - section[5] * y
+                line[i] = y
+            line = line[::-1].copy()
+        out[:, c] = line[PAD : PAD + n]
+    return out
 
 
 def settled(known: Mask, margin: int = 3) -> Mask:

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.signal import butter, sosfiltfilt
 from sher3_diagnosis.filter import low_pass, settled
 
 PERIOD = 1e-3
@@ -36,3 +37,10 @@ def test_a_mask_shrinks_at_its_borders():
     mask = np.array([1, 1, 1, 1, 0, 1, 1, 1], dtype=bool)
     assert settled(mask, 1).tolist() == [True, True, True, False, False, False, True, True]
     assert settled(mask, 2).tolist() == [True, True, False, False, False, False, False, True]
+
+
+def test_the_compiled_filter_is_that_of_the_library():
+    x = np.random.default_rng(0).normal(size=(300, 4)).cumsum(axis=0)
+    section = butter(2, 40.0, fs=500.0, output="sos")
+    assert low_pass(x, 0.002) == pytest.approx(sosfiltfilt(section, x, axis=0), abs=1e-10)
+    assert low_pass(x[:, 0], 0.002) == pytest.approx(low_pass(x, 0.002)[:, 0])

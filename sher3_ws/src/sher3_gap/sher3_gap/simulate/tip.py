@@ -15,6 +15,7 @@ from sher3_diagnosis.channel import Array
 from sher3_diagnosis.fitting import Fit, Term
 from sher3_diagnosis.quantify.closure import interval_of
 from sher3_diagnosis.thresholds import NO_TIP_GAP
+from sher3_diagnosis.tolerance import NUISANCE
 from sher3_diagnosis.verdict import Cause, Interval
 from sher3_effects import to_effects
 
@@ -85,7 +86,8 @@ def tip_shift(evidence: SherEvidence, fit: Fit, run: int, ticks: np.ndarray) -> 
     signals = evidence.runs[run]
     shift = np.zeros((len(signals.grid), 3))
     for i, term in enumerate(fit.terms):
-        shift += _shift(evidence, term, fit.loro_of(i)[run], run)
+        if term.effect.family != NUISANCE:
+            shift += _shift(evidence, term, fit.loro_of(i)[run], run)
     return np.stack([np.interp(ticks, signals.grid, column) for column in shift.T], axis=1)
 
 
