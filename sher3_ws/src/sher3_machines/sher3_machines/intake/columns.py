@@ -36,6 +36,8 @@ def pick(column: Column, tables: Tables, run: str) -> Array:
                 f"{run}: {column.column} has no entry", value=column.index, limit=width, remedy="correct index"
             )
         x = x[:, column.index]
+    if not x.size:
+        raise MachineError(f"{run}: {column.column} is empty", value=x.shape, limit="1 sample", remedy="record again")
     bad = ~np.isfinite(x.reshape(len(x), -1)).all(axis=1)
     if bad.any():
         raise MachineError(

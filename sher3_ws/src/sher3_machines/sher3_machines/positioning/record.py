@@ -54,6 +54,7 @@ def read_tests(name: str, tables: Tables, machine: PositioningDescription) -> Te
 def axis_rows(run: str, tables: Tables, test: AxisTest, notes: list[str]) -> dict[str, Array]:
     """Return the rows of one axis; raises MachineError."""
     target = pick(test.target, tables, run)
+    _one_column(run, test.target, target)
     _enough(run, test.name, len(target))
     if len(targets := np.unique(target)) < LEAST_TARGETS:
         raise MachineError(
@@ -116,6 +117,7 @@ def cycles(target: Array, direction: Array) -> Array:
 def circle_rows(run: str, tables: Tables, test: CircleTest) -> dict[str, Array]:
     """Return the points of one circle; raises MachineError."""
     x = pick(test.x, tables, run)
+    _one_column(run, test.x, x)
     y = _like(x, test.y, tables, run)
     _enough(run, test.name, len(x))
     size = float(np.hypot(x - x.mean(), y - y.mean()).mean())
@@ -138,6 +140,12 @@ def _like(first: Array, column: Column, tables: Tables, run: str) -> Array:
             f"{run}: {column.column} has other rows", value=found.shape, limit=first.shape, remedy=remedy
         )
     return found
+
+
+def _one_column(run: str, column: Column, x: Array) -> None:
+    if x.ndim != 1:
+        remedy = "pick one of its columns with `index`"
+        raise MachineError(f"{run}: {column.column} is a matrix", value=x.shape, limit="(n,)", remedy=remedy)
 
 
 def _enough(run: str, name: str, rows: int) -> None:
