@@ -77,7 +77,7 @@ def changes_of(causes: Sequence[Cause], joints: Mapping[str, str] | None = None)
     untold: list[Untold] = []
     for cause in causes:
         joint = (joints or {}).get(cause.actuator, cause.actuator)
-        known = constants_of(cause.effect)
+        known = constants_of(cause)
         found = [_change(cause, joint, known[name], p) for name, p in cause.parameters.items() if name in known]
         changes += found
         if not found:
@@ -85,9 +85,10 @@ def changes_of(causes: Sequence[Cause], joints: Mapping[str, str] | None = None)
     return changes, untold
 
 
-def constants_of(effect: str) -> Mapping[str, str]:
-    """Return parameter -> constant of the pages of an effect."""
-    return {name: c for kind in KINDS for page in pages(kind) if page.id == effect for name, c in page.on_axis.items()}
+def constants_of(cause: Cause) -> Mapping[str, str]:
+    """Return parameter -> constant of a cause: of the form of its page that knows most of its parameters."""
+    forms = [page.on_axis for kind in KINDS for page in pages(kind) if page.id == cause.effect]
+    return max(forms, key=lambda form: len(form.keys() & cause.parameters.keys()), default={})
 
 
 def _change(cause: Cause, joint: str, constant: str, p: Parameter) -> Change:

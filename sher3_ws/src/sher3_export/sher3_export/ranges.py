@@ -71,7 +71,7 @@ def drawn(p: Parameter, rng: np.random.Generator) -> Parameter:
 
 
 def _entry(cause: Cause) -> dict[str, object]:
-    known = constants_of(cause.effect)
+    known = constants_of(cause)
     ranges = {
         known.get(name, name): {"range": list(interval(p)), "value": float(p.value), "unit": p.unit}
         for name, p in cause.parameters.items()

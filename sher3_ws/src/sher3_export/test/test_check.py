@@ -80,3 +80,20 @@ def test_a_case_of_another_kind_is_refused(case, monkeypatch):
     monkeypatch.setattr(checking, "open_case", lambda path: (object(), []))
     with pytest.raises(ExportError, match="this kind of machine"):
         check(case, Path("case"), None)
+
+
+def test_an_arm_in_motion_is_run_from_its_own_model(tmp_path, monkeypatch):
+    """A lift with a pendulum, friction on both joints: the URDF of the case becomes the nominal MJCF."""
+    import lifts
+
+    machine = lifts.machine(tmp_path / "lift.urdf")
+    q, v, a = lifts.motion(seconds=8.0)
+    runs = [lifts.run_of(q, lifts.needed(q, v, a) + lifts.friction(v, coulomb=(6.0, 0.5)))]
+    monkeypatch.setattr(checking, "open_case", lambda path: (machine, runs))
+    causes = (
+        cause("coulomb_friction", "lift", force=6.0),
+        cause("coulomb_friction", "swing", force=0.5, unit="N*m"),
+    )
+    found = check(verdict(*causes), Path("case"), None)
+    assert [gap.joint for gap in found.gaps] == ["lift", "swing"]
+    assert all(gap.after < 0.3 * gap.before for gap in found.gaps), found.gaps

@@ -105,6 +105,17 @@ def test_an_offset_of_the_zero_shifts_the_reading():
     assert compiled.qpos0[0] == pytest.approx(0.1) and math.degrees(0.1) != 0.1
 
 
+def test_a_spring_beside_the_joint_and_a_payload_on_its_link():
+    done, model = written(
+        cause("spring_torque", stiffness=50.0, rest=0.2, unit="N/m"),
+        cause("payload_mass", "b", mass=0.5, x=0.1, y=0.0, z=-0.2, unit="kg"),
+    )
+    assert not done.untold and sum(model.body_mass) == pytest.approx(2.5)
+    assert float(np.ravel(model.jnt_stiffness[0])[0]) == pytest.approx(50.0)
+    assert model.qpos_spring[0] == pytest.approx(0.2)
+    assert model.body("b_payload").pos == pytest.approx([0.1, 0.0, -0.2])
+
+
 def test_another_name_of_the_joint_is_given_or_the_cause_is_listed():
     done, model = written(cause("coulomb_friction", "axis_1", force=8.0), joints={"axis_1": "slide"})
     assert model.dof_frictionloss[0] == pytest.approx(9.0)

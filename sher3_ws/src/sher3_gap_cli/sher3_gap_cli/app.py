@@ -7,7 +7,7 @@ from collections.abc import Callable
 import typer
 
 from sher3_gap_cli.apply import apply, compare
-from sher3_gap_cli.challenge import calibrate, challenge
+from sher3_gap_cli.challenge import arms, calibrate, challenge
 from sher3_gap_cli.diagnose import diagnose
 from sher3_gap_cli.discover import discover
 from sher3_gap_cli.excite import excite
@@ -29,6 +29,7 @@ EXAMPLES: dict[Callable[..., None], str] = {
     library: "sher3 gap library · sher3 gap library friction · sher3 gap library backlash",
     excite: "sher3 gap excite · sher3 gap excite all -o case · sher3 gap excite sweep --simulate -o case",
     monitor: "sher3 gap monitor --effects effects.yaml --json",
+    arms: "sher3 gap arms --seeds 0:1 --seconds 20",
     describe: "sher3 gap describe slide.csv --out slide.yaml",
     case: "sher3 gap case bags/a bags/b --out case",
     challenge: "sher3 gap challenge --seeds 0:40 --json",

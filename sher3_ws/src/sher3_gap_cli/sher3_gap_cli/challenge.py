@@ -125,3 +125,27 @@ def calibrate(
     typer.echo(written(columns) if columns else "one plant: nothing is left out to show the calibration on")
     if out is not None:
         Console(stderr=True).log(f"calibration of {len(seen)} diagnoses in {out}")
+
+
+def arms(
+    seeds: Annotated[str, typer.Option(help="Range A:B of seeds, one case each.")] = "0:20",
+    robots: Annotated[str, typer.Option(help="Arms in turn: own, panda, ur5, ur10, kinova, xarm7, z1, so101.")] = "own",
+    seconds: Annotated[float, typer.Option(min=10.0, help="Length of a record, s.")] = 60.0,
+    out: Annotated[Path | None, typer.Option(help="New folder that keeps cases, labels and verdicts.")] = None,
+    as_json: Json = False,
+) -> None:
+    """Simulate arms with faults in MuJoCo, diagnose their records blind and score the verdicts.
+
+    All arms but `own` need the extra `arms`. Exit codes: 0 scored, 2 an arm or an extra is missing.
+    """
+    from rich.console import Console
+    from sher3_arms.run import run_arms
+    from sher3_arms.score import shares, table
+
+    console = Console(stderr=True)
+    with reported(as_json), tempfile.TemporaryDirectory() as scratch:
+        names = [name for name in robots.split(",") if name]
+        found = run_arms(range(*parse_seeds(seeds)), names, out or Path(scratch) / "arms", seconds, console.log)
+        data = {"scores": {name: {"share": x, "cases": n} for name, (x, n) in shares(found).items()}}
+        cases = [case.as_dict() for case in found]
+        typer.echo(json.dumps({**data, "cases": cases}) if as_json else table(found))

@@ -24,6 +24,7 @@ class RotorInertia(Page):
         "viscous_friction": "follows the speed",
     }
     units = {"inertia": "kg"}
+    on_axis = {"inertia": "inertia"}
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
         """Return one column: the acceleration."""

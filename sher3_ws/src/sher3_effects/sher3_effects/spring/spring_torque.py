@@ -27,6 +27,7 @@ class SpringTorque(Page):
         "cogging": "repeats with every turn of the motor",
     }
     units = {"stiffness": "N/m", "rest": "m"}
+    on_axis = {"stiffness": "spring", "rest": "rest"}
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
         """Return two columns: the position, and one."""

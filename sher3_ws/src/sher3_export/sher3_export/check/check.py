@@ -12,10 +12,11 @@ from sher3_diagnosis.channel import Array
 from sher3_diagnosis.quantify.closure import interval_of
 from sher3_diagnosis.verdict import Interval, Verdict
 from sher3_machines import open_case
+from sher3_machines.manipulator.machine import Manipulator
 from sher3_machines.thresholds import BLOCKS
 
 from sher3_export.check.engine import Engine, compiled, copied, prepared
-from sher3_export.check.model_of import model_of
+from sher3_export.check.model_of import model_of, model_of_arm
 from sher3_export.check.recorded import Recorded, recorded
 from sher3_export.targets.mjcf import Mjcf
 from sher3_export.writing import Exported, export
@@ -59,6 +60,8 @@ def nominal_model(case: Path, model: Path | None) -> tuple[Element, object, Sequ
     if model is not None:
         return read_xml(model, Mjcf.root_tag), machine, runs
     recorded(machine, [], {}, False)  # refuses another kind of machine
+    if isinstance(machine, Manipulator):
+        return model_of_arm(Path(machine.described.model)), machine, runs
     return model_of(machine.gather(runs)), machine, runs
 
 

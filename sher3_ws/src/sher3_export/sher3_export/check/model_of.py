@@ -4,18 +4,45 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from xml.etree.ElementTree import Element, SubElement
+from pathlib import Path
+from xml.etree.ElementTree import Element, SubElement, tostring
 
+from sher3_common import FileError, read_text
 from sher3_description.contract import GRAVITY
 from sher3_machines.axes.evidence import AxisEvidence
 
+from sher3_export.check.engine import mujoco
 from sher3_export.errors import ExportError
-from sher3_export.xml_file import written
+from sher3_export.xml_file import MAX_BYTES, parse_xml, read_xml, written
 
 SLENDER = 0.5
 """Share of a pendulum's inertia that its point mass makes up; the rest is rotor."""
 DUST = 1e-6
 """Mass and inertia of a part that must have some, kg and kg m^2."""
+
+
+def model_of_arm(path: Path) -> Element:
+    """Return the model of an arm, URDF or MJCF, as MuJoCo reads it; shapes are left out, since nothing is touched.
+
+    Raises:
+        ExportError: the file cannot be read.
+        MujocoMissing: MuJoCo is not installed.
+    """
+    try:
+        text = read_text(path, MAX_BYTES)
+    except FileError as error:
+        raise ExportError(f"{path}: cannot be read", value=error.reason, remedy="give --model") from error
+    if "<mujoco" in text and "<robot" not in text:
+        return read_xml(path, "mujoco")
+    root = parse_xml(text, "robot")
+    for link in root.iter("link"):
+        for shape in [*link.findall("visual"), *link.findall("collision")]:
+            link.remove(shape)
+    try:
+        spec = mujoco().MjSpec.from_string(tostring(root, encoding="unicode"))
+        return parse_xml(spec.to_xml(), "mujoco")
+    except ValueError as error:
+        raise ExportError(f"{path}: MuJoCo refuses it", value=str(error)[:200], remedy="give --model") from error
 
 
 def model_of(parts: Sequence[AxisEvidence]) -> Element:

@@ -11,6 +11,8 @@ from sher3_diagnosis.channel import Array
 from sher3_machines.axes.description import Axis
 from sher3_machines.axes.machine import Axes
 from sher3_machines.axes.record import AxesRun
+from sher3_machines.manipulator.description import Joint
+from sher3_machines.manipulator.machine import Manipulator
 
 from sher3_export.errors import ExportError
 
@@ -47,7 +49,7 @@ class Recorded:
 
 
 def recorded(machine: object, runs: Sequence[Any], joints: Mapping[str, str], late: bool) -> list[Recorded]:
-    """Return what was recorded of a chain of axes.
+    """Return what was recorded of a chain of axes, or of an arm in motion.
 
     Args:
         machine: of the case.
@@ -58,12 +60,14 @@ def recorded(machine: object, runs: Sequence[Any], joints: Mapping[str, str], la
     Raises:
         ExportError: the case is of another kind.
     """
-    if not isinstance(machine, Axes):
-        remedy = "check a chain of axes; the SHER's verdicts are checked by `sher3 gap apply --case`"
+    if not isinstance(machine, Axes | Manipulator):
+        remedy = (
+            "check a chain of axes or an arm in motion; the SHER's verdicts are checked by `sher3 gap apply --case`"
+        )
         raise ExportError(
             "records of this kind of machine are not run in MuJoCo", value=type(machine).__name__, remedy=remedy
         )
-    axes = machine.description.axes
+    axes = machine.description.axes if isinstance(machine, Axes) else machine.described.axes
     return [
         Recorded(run.period, {joints.get(axis.name, axis.name): track_of(run, axis, late) for axis in axes})
         for run in runs
@@ -89,4 +93,4 @@ def drive_of(signals: Mapping[str, Array], axis: Axis, late: bool) -> Array | No
         return signals["reference"]
     if "command" in signals and (late or "effort" not in signals):
         return axis.command_law.gain * signals["command"]
-    return signals["effort"]
+    return signals["effort"] * (axis.gain if isinstance(axis, Joint) and isinstance(axis.gain, float) else 1.0)

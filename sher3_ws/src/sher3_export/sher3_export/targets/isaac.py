@@ -41,6 +41,8 @@ class Isaac(Target):
         "zero": "the zero of a joint belongs to the asset",
         "backlash": "an actuator has no play",
         "compliance": "an actuator has no spring behind it",
+        **dict.fromkeys(("spring", "rest"), "an actuator has no spring beside it"),
+        **dict.fromkeys(("payload", "payload_x", "payload_y", "payload_z"), "a payload belongs to the asset"),
         "ratio": "the load encoder is no part of the actuator",
     }
 

@@ -8,7 +8,7 @@ from typing import ClassVar
 from xml.etree.ElementTree import Element, SubElement
 
 from sher3_export.changes import Change
-from sher3_export.targets.target import XmlTarget
+from sher3_export.targets.target import XmlTarget, field
 from sher3_export.xml_file import elements, number, numbers, parents, written
 
 STEP = 0.002
@@ -59,6 +59,12 @@ class Mjcf(XmlTarget):
             "zero": self._zero,
             "backlash": self._backlash,
             "compliance": self._compliance,
+            "spring": lambda change, joint: self._add(joint, "stiffness", change.value),
+            "rest": self._rest,
+            "payload": self._payload,
+            "payload_x": self._centre,
+            "payload_y": self._centre,
+            "payload_z": self._centre,
             "shift_x": self._shift,
             "shift_y": self._shift,
             "shift_z": self._shift,
@@ -68,6 +74,10 @@ class Mjcf(XmlTarget):
         """Return kp of the position actuator on a joint."""
         gains = [self._inherited(x, "kp", 1.0) for x in self._actuators(joint) if x.tag == "position"]
         return gains[0] if gains else 0.0
+
+    def place(self, change: Change) -> Element | None:
+        """Return the joint of a change, or the body of a payload."""
+        return self.body(change.joint) if change.constant.startswith("payload") else self.joints.get(change.joint)
 
     def _add(self, joint: Element, attribute: str, change: float) -> str:
         total = self._inherited(joint, attribute) + change
@@ -141,6 +151,29 @@ class Mjcf(XmlTarget):
         degrees = self._degrees() and joint.get("type", "hinge") == "hinge"
         joint.set("ref", written(number(joint.get("ref")) + (math.degrees(change.value) if degrees else change.value)))
         return ""
+
+    def _rest(self, change: Change, joint: Element) -> str:
+        degrees = self._degrees() and joint.get("type", "hinge") == "hinge"
+        return field(joint, "springref", math.degrees(change.value) if degrees else change.value)
+
+    def body(self, place: str) -> Element | None:
+        """Return the body of a name, or the body that a joint of that name moves."""
+        found = next((x for x in elements(self.root, "body") if x.get("name") == place), None)
+        return parents(self.root)[self.joints[place]] if found is None and place in self.joints else found
+
+    def _payload(self, change: Change, body: Element) -> str:
+        """A body of its own with the mass of a point, at the joint of the link until its centre is known."""
+        if change.value <= 0.0:
+            return "no mass is zero or less"
+        anchor = body.find("joint")
+        added = SubElement(body, "body", {"name": f"{change.joint}_payload"})
+        added.set("pos", "0 0 0" if anchor is None else anchor.get("pos", "0 0 0"))
+        inertial = {"pos": "0 0 0", "mass": written(change.value), "diaginertia": written(*[DUST] * 3)}
+        SubElement(added, "inertial", inertial)
+        return ""
+
+    def _centre(self, change: Change, body: Element) -> str:
+        return moved(self.root, f"{change.joint}_payload", change)
 
     def _shift(self, change: Change, joint: Element) -> str:
         """A joint that sits elsewhere than drawn: the body moves by as much in its own frame."""
@@ -230,3 +263,14 @@ class Mjcf(XmlTarget):
                 return stated
             found = above[found]
         return None
+
+
+def moved(root: Element, name: str, change: Change) -> str:
+    """Move a body along the axis that the constant of a change ends with; return why not, or nothing."""
+    body = next((x for x in elements(root, "body") if x.get("name") == name), None)
+    if body is None:
+        return "the payload itself could not be written"
+    place = numbers(body.get("pos"), "0 0 0")
+    place["xyz".index(change.constant[-1])] += change.value
+    body.set("pos", written(*place))
+    return ""

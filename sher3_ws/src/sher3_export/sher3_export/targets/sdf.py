@@ -8,7 +8,7 @@ from xml.etree.ElementTree import Element
 
 from sher3_export.changes import Change
 from sher3_export.targets.target import XmlTarget
-from sher3_export.targets.urdf import child
+from sher3_export.targets.urdf import PAYLOAD, child
 from sher3_export.xml_file import number, written
 
 DRIVE = "an SDF joint has no drive; gain, delay and lag belong to the controller plugin"
@@ -31,6 +31,7 @@ class Sdf(XmlTarget):
         "zero": "an SDF joint has no offset of its zero; turn the pose of its child by hand",
         "backlash": "an SDF joint has no play; add a joint by hand or export to mjcf",
         "compliance": SPRING,
+        **dict.fromkeys(("payload", "payload_x", "payload_y", "payload_z"), PAYLOAD),
         "ratio": "the load encoder is no part of the joint",
         "shift_x": "the pose of the child link belongs to the model's tree; shift it by hand",
         "shift_y": "the pose of the child link belongs to the model's tree; shift it by hand",
@@ -47,6 +48,8 @@ class Sdf(XmlTarget):
         return {
             "coulomb": lambda change, joint: self._add(joint, "dynamics", "friction", change.value),
             "viscous": lambda change, joint: self._add(joint, "dynamics", "damping", change.value),
+            "spring": lambda change, joint: self._add(joint, "dynamics", "spring_stiffness", change.value),
+            "rest": self._rest,
             "limit": self._limit,
         }
 
@@ -54,6 +57,10 @@ class Sdf(XmlTarget):
         """Add to a number that stands as an element's text."""
         value = child(child(child(joint, "axis"), group), name)
         value.text = written(max(number(value.text) + change, 0.0))
+        return ""
+
+    def _rest(self, change: Change, joint: Element) -> str:
+        child(child(child(joint, "axis"), "dynamics"), "spring_reference").text = written(change.value)
         return ""
 
     def _limit(self, change: Change, joint: Element) -> str:

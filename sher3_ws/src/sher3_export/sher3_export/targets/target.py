@@ -64,15 +64,19 @@ class XmlTarget(Target):
         """Write a change at its joint; return why it cannot be written, or nothing."""
         if change.constant not in self.writers:
             return self.refuses.get(change.constant, f"{self.name} has no field for it")
-        joint = self.joints.get(change.joint)
+        joint = self.place(change)
         if joint is None:
-            return f"the model has no joint of this name (joints: {', '.join(list(self.joints)[:12])}); see --joint"
+            return f"the model has nothing of this name (joints: {', '.join(list(self.joints)[:12])}); see --joint"
         if change.over_stiffness and not (stiffness := self.stiffness(change.joint)):
             return "given in units of the servo's stiffness, which the model does not state"
         elif change.over_stiffness:
             scaled = {"value": change.value * stiffness, "unit": "N*m" if change.unit == "rad" else "N"}
             change = Change(**{**change.__dict__, **scaled})
         return self.writers[change.constant](change, joint)
+
+    def place(self, change: Change) -> Element | None:
+        """Return the element that a change is written at; default the joint of its name."""
+        return self.joints.get(change.joint)
 
     def stiffness(self, joint: str) -> float:
         """Return the stiffness of the servo on a joint, N/m or N m/rad; default 0, not stated."""

@@ -14,6 +14,7 @@ from sher3_export.targets.target import XmlTarget, field
 from sher3_export.xml_file import add, numbers, written
 
 DRIVE = "a URDF has no drive: no gain, delay or lag"
+PAYLOAD = "a payload is a link of its own: add it with a fixed joint by hand, or export to mjcf"
 ELASTIC = "a URDF joint has no play and no spring; add a joint by hand or export to mjcf"
 
 
@@ -32,6 +33,9 @@ class Urdf(XmlTarget):
         "lag": DRIVE,
         "backlash": ELASTIC,
         "compliance": ELASTIC,
+        **dict.fromkeys(("payload", "payload_x", "payload_y", "payload_z"), PAYLOAD),
+        "spring": ELASTIC,
+        "rest": ELASTIC,
         "ratio": "the load encoder is no part of the joint",
     }
 

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 
-from sher3_diagnosis.attribute.candidates import Candidates, cost, price
+from sher3_diagnosis.attribute.candidates import Candidates, cost, possible, price
 from sher3_diagnosis.attribute.rivals import Attribution, without_term
 from sher3_diagnosis.attribute.search import Say, attribute
 from sher3_diagnosis.channel import Array, Channel
@@ -106,7 +106,7 @@ def _at(
 ) -> Fit | None:
     """Fit a payload at a link."""
     trial = fit(evidence.data, [*plain, candidates.term(page, link, {})])
-    return centred(candidates, trial) if trial.admissible else None
+    return centred(candidates, trial) if possible(trial) else None  # friction that is not there may fit below zero
 
 
 def centred(candidates: Candidates, found: Fit) -> Fit:
@@ -117,7 +117,7 @@ def centred(candidates: Candidates, found: Fit) -> Fit:
         values = page.parameters({}, found.of(last))
         shape = {name: round(values[name], 4) for name in "xyz"}
         trial = fit(candidates.evidence.data, [*found.terms[:last], candidates.term(page, link, shape)])
-        if not trial.admissible:
+        if not possible(trial):
             break
         found = trial
     return found

@@ -129,7 +129,11 @@ def load_model(path: Path, names: Sequence[str], gravity: tuple[float, float, fl
                 f"{path}: joint {n} neither turns nor slides", value=joint.shortname(), remedy="leave it out"
             )
     locked = [j for j in range(1, model.njoints) if model.names[j] not in names]
-    reduced = pin.buildReducedModel(model, locked, pin.neutral(model))
+    try:
+        reduced = pin.buildReducedModel(model, locked, pin.neutral(model)) if locked else model
+    except ValueError as error:  # a joint and a link of one name, which Pinocchio cannot tell apart
+        remedy = "give joints and links names of their own, or list every joint"
+        raise MachineError(f"{path}: joints cannot be locked", value=str(error)[:120], remedy=remedy) from error
     if gravity is not None:
         reduced.gravity.linear = np.array(gravity)
     if not any(b.mass > 0.0 for b in list(reduced.inertias)[1:]):

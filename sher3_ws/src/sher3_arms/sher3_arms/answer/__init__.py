@@ -1,0 +1,1 @@
+"""What answers: it sees records and the nominal model, and nothing of the truth."""

@@ -1,0 +1,63 @@
+"""The challenge: cases are sealed, answered blind one by one, and scored."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import asdict
+from pathlib import Path
+
+from sher3_common import Sher3Error
+
+from sher3_arms.answer.diagnosis import answer
+from sher3_arms.errors import ArmsError
+from sher3_arms.score import Scored, scored
+from sher3_arms.truth.cases import seal
+
+SECONDS = 60.0
+"""Length of a record, s."""
+
+
+def run_arms(
+    seeds: Sequence[int],
+    robots: Sequence[str],
+    folder: Path,
+    seconds: float = SECONDS,
+    say: Callable[[str], None] = lambda _: None,
+) -> list[Scored]:
+    """Seal, answer and score one case for each seed.
+
+    Args:
+        seeds: of the cases.
+        robots: names of arms, taken in turn.
+        folder: new; keeps cases, labels, verdicts and scores.
+        seconds: length of a record, s.
+        say: takes a line for each case.
+
+    Raises:
+        ArmsError: the folder exists, no such arm, or MuJoCo or the wheel with the arms is missing.
+    """
+    if folder.exists():
+        raise ArmsError(f"{folder}: exists already", value="a folder or file", remedy="choose another --out")
+    out = []
+    for seed in seeds:
+        case = folder / "cases" / f"{seed:05d}"
+        label = seal(seed, robots, case, seconds)
+        begun = time.perf_counter()
+        try:
+            verdict = answer(case)
+            verdict.write(case / "verdict.json")
+        except Sher3Error as error:
+            verdict = None
+            say(f"{seed}: refused: {error}")
+        found = scored(label, verdict, time.perf_counter() - begun)
+        out.append(found)
+        (folder / "labels").mkdir(exist_ok=True)
+        (folder / "labels" / f"{seed:05d}.json").write_text(json.dumps(asdict(label), indent=1), encoding="utf-8")
+        say(
+            f"{seed}: {found.kind} on {found.joint or 'no joint'} of {found.robot}: "
+            f"{found.status} {found.effect} {found.place}"
+        )
+    (folder / "scores.json").write_text(json.dumps([c.as_dict() for c in out], indent=1), encoding="utf-8")
+    return out

@@ -1,0 +1,112 @@
+"""Scores of the arms: what was named, where, and whether it abstained where it should."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+
+from sher3_diagnosis import Verdict
+
+from sher3_arms.truth.cases import Label
+from sher3_arms.truth.faults import HEALTHY, KINDS
+
+REFUSED = "refused"
+"""Status of a case that ended in an error."""
+NAMES: Mapping[str, tuple[str, ...]] = {
+    "coulomb": ("coulomb_friction", "presliding_friction"),
+    "viscous": ("viscous_friction",),
+    "armature": ("rotor_inertia",),
+    "gain": ("torque_constant",),
+    "payload": ("payload_mass",),
+    "gear_loss": ("gear_loss",),
+    "spring": ("spring_torque", "cable_torque"),
+}
+"""Fault -> effects that are right answers: presliding friction contains Coulomb friction, a free law a spring."""
+
+
+@dataclass(frozen=True)
+class Scored:
+    """One case.
+
+    Attributes:
+        seed, robot, kind, joint: of the truth.
+        status, effect, place: of the verdict; its first cause.
+        top: whether the first cause is the fault; None where there is none to name.
+        in_set: whether the fault is the first cause or one of its rivals.
+        placed: whether the first cause sits on the right joint, a payload on its link.
+        seconds: of the answer.
+    """
+
+    seed: int
+    robot: str
+    kind: str
+    joint: str
+    status: str
+    effect: str
+    place: str
+    top: bool | None
+    in_set: bool | None
+    placed: bool | None
+    seconds: float
+
+    def as_dict(self) -> dict[str, object]:
+        """Return the case as plain data."""
+        return asdict(self)
+
+
+def scored(label: Label, verdict: Verdict | None, seconds: float) -> Scored:
+    """Score one verdict; None where the case was refused, which names nothing."""
+    if verdict is None:
+        wrong = False if label.fault.kind in KINDS else None
+        return Scored(
+            label.seed, label.robot, label.fault.kind, label.joint, REFUSED, "", "", wrong, wrong, wrong, seconds
+        )
+    first = verdict.causes[0] if verdict.causes else None
+    effect, place = (first.effect, first.actuator) if first else ("", "")
+    top = in_set = placed = None
+    if label.fault.kind in KINDS:
+        right = NAMES[label.fault.kind]
+        top, in_set = effect in right, bool({effect, *(first.rivals if first else ())} & set(right))
+        placed = (place or (verdict.where[0].actuator if verdict.where else "")) in (label.joint, label.link)
+    return Scored(
+        label.seed,
+        label.robot,
+        label.fault.kind,
+        label.joint,
+        verdict.status,
+        effect,
+        place,
+        top,
+        in_set,
+        placed,
+        seconds,
+    )
+
+
+def shares(cases: Sequence[Scored]) -> dict[str, tuple[float, int]]:
+    """Return each score as a share and the number of cases it is over."""
+    known = [c for c in cases if c.kind in KINDS]
+    healthy = [c for c in cases if c.kind == HEALTHY]
+    outside = [c for c in cases if c.kind not in (*KINDS, HEALTHY)]
+    columns = {
+        "top-1": [bool(c.top) for c in known],
+        "in the set": [bool(c.in_set) for c in known],
+        "joint right": [bool(c.placed) for c in known],
+        "known cases called outside": [c.status == "outside_library" for c in known],
+        "healthy alarms": [c.status != "no_gap" for c in healthy],
+        "outside abstained": [c.status in ("outside_library", "under_excited") for c in outside],
+    }
+    return {name: (sum(x) / len(x) if x else float("nan"), len(x)) for name, x in columns.items()}
+
+
+def table(cases: Sequence[Scored]) -> str:
+    """Return the scores, overall and for each kind of fault, as text."""
+    lines = [f"{name:<28} {share:6.2f}  of {n}" for name, (share, n) in shares(cases).items()]
+    worst = max((c.seconds for c in cases), default=0.0)
+    lines.append(f"{'slowest answer':<28} {worst:6.1f} s")
+    lines.append("")
+    for kind in dict.fromkeys(c.kind for c in cases):
+        found = [c for c in cases if c.kind == kind]
+        named = ", ".join(f"{c.effect or c.status}" for c in found)
+        lines.append(f"{kind:<16} {sum(c.top is True for c in found)} of {len(found)}: {named}")
+    return "\n".join(lines)

@@ -1,0 +1,1 @@
+"""What knows the truth: models, faults and the engine. Nothing here reaches the diagnosis."""

@@ -1,0 +1,58 @@
+"""Sealed cases: a seed gives the arm, the fault and the motion; the label stays here."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from sher3_arms.files import write_case
+from sher3_arms.truth.faults import Fault, deal, dealt
+from sher3_arms.truth.robots import urdf_of
+from sher3_arms.truth.world import COUNT, inertias, inverse, load, motion, record
+
+SIZING = 20.0
+"""Seconds of a motion from which the size of a fault is taken."""
+
+
+@dataclass(frozen=True)
+class Label:
+    """The truth of one case.
+
+    Attributes:
+        seed: of the case.
+        robot: name of the arm.
+        fault: what is wrong.
+        joint: name of its joint; empty for a healthy arm.
+        link: the link behind that joint.
+    """
+
+    seed: int
+    robot: str
+    fault: Fault
+    joint: str = ""
+    link: str = ""
+
+
+def seal(seed: int, robots: Sequence[str], folder: Path, seconds: float) -> Label:
+    """Write the case of a seed into a new folder and return its label; arms are taken in turn.
+
+    Raises:
+        ArmsError: no such arm, or MuJoCo or the wheel with the arms is missing.
+    """
+    robot = robots[seed % len(robots)]
+    urdf = urdf_of(robot)
+    nominal, rng = load(urdf), np.random.default_rng([seed, 8128])
+    _, q, v, a = motion(nominal, SIZING, np.random.default_rng([seed, 496]))
+    torque = np.sqrt(np.mean(inverse(nominal, q, v, a) ** 2, axis=0))
+    speed = np.sqrt(np.mean(v**2, axis=0))
+    fault = deal(rng, dealt([seed])[seed], torque, speed, inertias(nominal, q[0]))
+    found = record(urdf, fault, seconds, rng)
+    arrays = {"time": found.time, "position": found.position, "effort": found.effort}
+    write_case(folder, urdf, found.names, arrays, COUNT, found.noise)
+    if fault.joint < 0:
+        return Label(seed, robot, fault)
+    link = nominal.body(int(nominal.jnt_bodyid[fault.joint])).name
+    return Label(seed, robot, fault, found.names[fault.joint], link)

@@ -1,0 +1,51 @@
+"""The whole path on the arm of our own: sealed, answered, scored."""
+
+import ast
+import json
+from pathlib import Path
+
+import pytest
+import sher3_arms
+from sher3_arms import ArmsError, run_arms
+from sher3_arms.score import Scored, shares, table
+
+
+def test_a_friction_is_sealed_answered_and_scored(tmp_path):
+    (found,) = run_arms([0], ["own"], tmp_path / "run", seconds=20.0)
+    assert found.kind == "coulomb" and found.top and found.placed
+    assert (tmp_path / "run/cases/00000/verdict.json").is_file()
+    assert json.loads((tmp_path / "run/scores.json").read_text())[0]["effect"] == found.effect
+    with pytest.raises(ArmsError, match="exists already"):
+        run_arms([0], ["own"], tmp_path / "run")
+
+
+def case(kind, status="attributed", effect="coulomb_friction", top=None, placed=None):
+    return Scored(1, "own", kind, "turn", status, effect, "turn", top, top, placed, 3.0)
+
+
+def test_shares_are_of_the_cases_they_are_over():
+    cases = [
+        case("coulomb", top=True, placed=True),
+        case("gain", top=False, placed=True),
+        case("healthy", status="no_gap"),
+        case("heavy_air", status="outside_library"),
+        case("foreign_cable"),
+    ]
+    found = shares(cases)
+    assert found["top-1"] == (0.5, 2) and found["joint right"] == (1.0, 2)
+    assert found["healthy alarms"] == (0.0, 1) and found["outside abstained"] == (0.5, 2)
+    assert "slowest answer" in table(cases)
+
+
+SEALED = {"truth": ("sher3_diagnosis", "sher3_machines", "answer"), "answer": ("truth", "score", "run")}
+
+
+@pytest.mark.parametrize("folder", SEALED)
+def test_the_challenge_is_sealed(folder):
+    """The truth reaches no code of the diagnosis, and what answers cannot look the truth up."""
+    home = Path(sher3_arms.__file__).parent
+    for path in (home / folder).glob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.ImportFrom) and node.module:
+                words = node.module.replace("sher3_arms.", "").split(".")
+                assert words[0] not in SEALED[folder], f"{path.name} imports {node.module}"
