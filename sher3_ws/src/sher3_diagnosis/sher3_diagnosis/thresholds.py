@@ -158,6 +158,24 @@ SAME_GAIN = (1e-3, 0.02)
 """Difference of the axes' gain errors, absolute and relative, below which they are one error.
 Set on: development seeds with `controller_gain`. Measure: `sher3 gap challenge --seeds 0:40`."""
 
+# -- weigh: what is evidence? --------------------------------------------------------------------------------------
+
+COVERED = 0.5
+"""Share of a gap that the causes of other gaps must explain for it to be theirs. Set by that argument: more than half.
+Measure: `sher3 gap calibrate`, lines of the status."""
+
+AT_FLOOR = 1.1
+"""Mean square over the floor up to which nothing is left that a law could be found in: twice `FLOOR_UNCERTAINTY`.
+Set by that argument. Measure: `sher3 gap calibrate`, lines of the status."""
+
+INFORMED = 0.2
+"""Share of what is known of a cause that the other excitations must hold for one to be left out of its fit.
+Set by argument: less only says that one excitation shows it. Measure: `sher3 gap calibrate`, lines of the status."""
+
+SHOWN = 0.1
+"""Share of the gap that a resample of the runs must show to tell how far it shrinks: one without the runs that show the
+gap does not. Set by argument. Measure: `sher3 gap challenge --seeds 0:40` (coverage of the closure)."""
+
 # -- quantify: how sure are the numbers? ---------------------------------------------------------------------------
 
 MIN_RUNS = 5

@@ -12,9 +12,7 @@ from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.finding import Finding
 from sher3_diagnosis.fitting import Term
 from sher3_diagnosis.judge.evidence.cause import cause_evidence, shown_at
-
-COVERED = 0.5
-"""Share of a gap that the causes of other gaps must explain for it to be theirs."""
+from sher3_diagnosis.thresholds import COVERED
 
 
 @dataclass(frozen=True)

@@ -10,14 +10,11 @@ from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fitting import Fit
 from sher3_diagnosis.localise.gaps import PARTS
-from sher3_diagnosis.thresholds import AS_BUILT_CLOSURE, FLOOR_UNCERTAINTY, IDEALISED, MIN_RUNS
+from sher3_diagnosis.thresholds import AS_BUILT_CLOSURE, FLOOR_UNCERTAINTY, IDEALISED, MIN_RUNS, SHOWN
 from sher3_diagnosis.verdict import Interval
 
 RESAMPLES = 400
 """Resamples of the runs from which an interval is read."""
-
-SHOWN = 0.1
-"""Share of the gap that a resample must show to tell how far it shrinks: one without the runs that show it does not."""
 
 
 def residual_after(evidence: Evidence, fit: Fit, channel: Channel) -> dict[int, Array]:

@@ -19,9 +19,7 @@ from sher3_diagnosis.judge.evidence.transfer import steadiness_of
 from sher3_diagnosis.localise.gaps import gap_of
 from sher3_diagnosis.localise.pattern import pattern_of
 from sher3_diagnosis.quantify.closure import residual_after
-
-AT_FLOOR = 1.1
-"""Mean square over the floor up to which nothing is left that a law could be found in."""
+from sher3_diagnosis.thresholds import AT_FLOOR
 
 
 class Recorded(Protocol):

@@ -11,9 +11,7 @@ import numpy as np
 from sher3_diagnosis.channel import Array
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fitting import Fit, solve
-
-INFORMED = 0.2
-"""Share of what is known of a cause that the other excitations must hold for one to be left out."""
+from sher3_diagnosis.thresholds import INFORMED
 
 
 @dataclass(frozen=True)
