@@ -38,7 +38,7 @@ WIDEST = 100.0
 """Largest size of a coefficient in the plant, over that of the file."""
 SHAPED = 10.0
 """The same, and its inverse, for a shape."""
-KINDS = {"time": "time", "warmth": "temperature", "demand": "command", "load": "load"}
+KINDS = {"time": "time", "warmth": "temperature", "demand": "command", "load": "load", "law": "command"}
 """Quantity -> what it is among the inputs of an effect, where that has another name or must be told."""
 
 
@@ -175,7 +175,7 @@ def _inputs(terms: Sequence[SavedTerm]) -> tuple[str, ...]:
 def _shape_units(page: FoundPage) -> dict[str, str]:
     """Return the units of the shapes: those of what they scale."""
     base = {"position": "m", "velocity": "m/s", "demand": "m/s", "time": "s", "warmth": "K", "work": "1"}
-    base |= {"acceleration": "m/s^2", "force": "N", "load": "N", "effort": "N"}
+    base |= {"acceleration": "m/s^2", "force": "N", "load": "N", "effort": "N", "law": "N"}
     out = {}
     for name, value in page.shape.items():
         factor = next(f for t in page.terms for f in t.feature.factors if value in f.shape)

@@ -18,7 +18,7 @@ from scipy.linalg import expm
 from sher3_common.compiled import compiled
 from sher3_common.laws import MOST_FACTORS
 
-from sher3_sim.found import AXIS_QUANTITIES, AXIS_TERMS, DEMAND, DRIVE, EFFORT, MOTOR, POSITION, VELOCITY, total
+from sher3_sim.found import AXIS_QUANTITIES, AXIS_TERMS, DEMAND, DRIVE, EFFORT, LAW, MOTOR, POSITION, VELOCITY, total
 from sher3_sim.parameters import Records
 
 PENDING = 64
@@ -142,7 +142,7 @@ def _found_force(a: Any, s: Any, position: float, velocity: float, demand: float
     """Return what discovered formulas resist with over a step [N]; what they add to the drive's effort is kept."""
     x = s.found_inputs
     x[POSITION], x[VELOCITY], x[DEMAND] = position, velocity, demand
-    x[EFFORT] = drive_force(a, s)
+    x[EFFORT], x[LAW] = drive_force(a, s), a.kp * (demand - velocity) + s.integral
     s.found_effort = total(a.found, DRIVE, x, s.found_last, s.found_memory, h)
     return total(a.found, MOTOR, x, s.found_last, s.found_memory, h) - a.torque_scale * s.found_effort
 

@@ -32,8 +32,8 @@ ACTS = {
     "sensing": SENSOR,
 }
 """Stage -> where its formula acts in the plant."""
-OWN = ("position", "velocity", "acceleration", "demand", "effort", "force", "load", "warmth", "time", "work")
-POSITION, VELOCITY, ACCELERATION, DEMAND, EFFORT, FORCE, LOAD, WARMTH, TIME, WORK = range(10)
+OWN = ("position", "velocity", "acceleration", "demand", "effort", "force", "load", "warmth", "time", "work", "law")
+POSITION, VELOCITY, ACCELERATION, DEMAND, EFFORT, FORCE, LOAD, WARMTH, TIME, WORK, LAW = range(11)
 AXIS_QUANTITIES = (*OWN, *(f"{a}.{q}" for a in ACTUATORS for q in OWN[:3]))
 OTHERS = len(OWN)
 """First of the other axes' quantities."""

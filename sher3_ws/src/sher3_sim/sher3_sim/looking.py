@@ -13,6 +13,7 @@ from sher3_sim.found import (
     DEMAND,
     EFFORT,
     FORCE,
+    LAW,
     LOAD,
     OTHERS,
     POSITION,
@@ -47,7 +48,7 @@ def look_at_axes(axis: Any, b: Any, state: Any, s: Any) -> None:
     for i in range(5):
         inputs = state[i].found_inputs
         inputs[POSITION], inputs[VELOCITY], inputs[ACCELERATION] = motion[i, 0], motion[i, 1], motion[i, 2]
-        inputs[DEMAND], inputs[EFFORT] = state[i].demand, state[i].integral
+        inputs[DEMAND], inputs[EFFORT], inputs[LAW] = state[i].demand, state[i].integral, state[i].integral
         inputs[WARMTH], inputs[TIME] = b.temperature - REFERENCE_TEMPERATURE, s.tick * b.period
         inputs[WORK] = work
         for j in range(5):

@@ -48,6 +48,13 @@ def test_an_extra_effort_is_reported_and_taken_by_the_integrator():
     assert np.abs((found["motor"] - nominal["motor"])[:, AXIS]).max() > 1e-6  # but for the jolt at the start
 
 
+def test_a_drive_that_gives_less_than_its_law_asks_for():
+    found = with_formula("drive", FoundTerm(0, -0.2, [("itself", "law", ())]))
+    nominal = simulate_arrays(plant(), DRIVE)[1]
+    late = np.abs((found["motor"] - nominal["motor"])[:, AXIS]).max()
+    assert 1e-7 < late < 1e-4 and np.all(np.isfinite(found["effort"]))  # the integrator makes up for it
+
+
 def test_growth_at_the_tip_and_a_bias_of_the_sensor():
     nominal = simulate_arrays(plant(), DRIVE)[1]
     tip = with_formula("mechanism", FoundTerm(2, 3e-6, [("itself", "warmth", ())]), body=True)

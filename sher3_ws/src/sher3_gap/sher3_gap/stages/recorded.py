@@ -37,6 +37,10 @@ def _of_axis(view: SherView, channel: Channel) -> dict[str, Quantity]:
     out["load"] = Quantity(load[:, i], unit, "the load on the axis", "force")
     if run.echo is not None:
         out["demand"] = Quantity(run.echo[:, i], _speed(place), "the demanded velocity", "speed")
+    if run.effort is not None and run.echo is not None and channel.stage == "drive":
+        law = view.law[:, i]  # but for the integrator's start, which the run's mean effort tells
+        asked = law + float(np.mean(run.effort[:, i] - law))
+        out["law"] = Quantity(asked, unit, "the force that the drive's law asks for", "force")
     if run.effort is not None and channel.stage == "transmission":
         out["effort"] = Quantity(run.effort[:, i], unit, "the effort of the drive", "force")
     out |= _shared(view)
