@@ -8,8 +8,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-import yaml
-from sher3_common import read_text
+from sher3_common import read_text, read_yaml
 from sher3_diagnosis.finding import ExactFinding, Finding
 from sher3_diagnosis.flow import find
 from sher3_diagnosis.judge.items import Item, items_of
@@ -71,7 +70,7 @@ def name_of(case: Path) -> str:
 
 def truth_of(case: Path) -> dict[str, Any]:
     """Return the label of a case; that of a withheld effect as of the fault that it is."""
-    truth: dict[str, Any] = yaml.safe_load(read_text(label_of(case)))
+    truth: dict[str, Any] = read_yaml(label_of(case))
     if not truth.get("without"):
         return truth
     effects = [{**e, "family": e.get("withheld", e["family"])} for e in truth["effects"]]

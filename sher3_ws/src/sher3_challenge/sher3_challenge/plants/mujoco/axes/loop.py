@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-import pickle
-from functools import lru_cache
+from collections import OrderedDict
+from copy import deepcopy
 from typing import NamedTuple
 
+import joblib
 import numpy as np
 
 from sher3_challenge.plants.mujoco.axes.field import Field
@@ -46,12 +47,16 @@ class Course(NamedTuple):
 
 def run_loop(axes: list[Axis], host: Host, script: Script) -> Course:
     """Run the closed loop; the same axes, host and script give the same answer without running again."""
-    return _remembered(pickle.dumps((axes, host, script)))
+    task = str(joblib.hash((axes, host, script)))
+    if task not in _courses:
+        _courses[task] = Loop(*deepcopy((axes, host, script))).run()
+    _courses.move_to_end(task)
+    while len(_courses) > REMEMBERED:
+        _courses.popitem(last=False)
+    return _courses[task]
 
 
-@lru_cache(maxsize=REMEMBERED)
-def _remembered(task: bytes) -> Course:
-    return Loop(*pickle.loads(task)).run()
+_courses: OrderedDict[str, Course] = OrderedDict()
 
 
 class Loop:
