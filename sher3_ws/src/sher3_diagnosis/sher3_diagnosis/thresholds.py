@@ -245,8 +245,8 @@ Set by that argument. Measure: `python bench/gap_discover.py`."""
 
 PLAIN = 0.002
 """Share of a gap that each further number or law of a term must be worth: of two formulas that fit alike, the plainer.
-Set on and measured as `TERM_WORTH`."""
+Set by argument. Measure: `python bench/gap_discover.py`."""
 
 LEAST_COMPONENT = 0.03
 """Share of the largest component's gap from which a formula is looked for in a component too.
-Set on and measured as `TERM_WORTH`."""
+Set by argument. Measure: `python bench/gap_discover.py`."""
