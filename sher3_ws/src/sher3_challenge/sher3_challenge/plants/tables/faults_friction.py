@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from sher3_description import ACTUATORS
 
@@ -45,7 +47,7 @@ def stribeck_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """Friction that falls with speed, with a longer tail than a bell curve has."""
     static, share = site.scaled(x, "force"), site.rng.uniform(0.1, 0.4)
     velocity = site.scaled(site.rng.uniform(4e-4, 1.6e-3), "speed")
-    falls = 1 / (1 + (np.e - 1) * (speeds(rig, site) / velocity) ** 1.6)  # 1/e at `velocity`
+    falls = 1 / (1 + (math.e - 1) * (speeds(rig, site) / velocity) ** 1.6)  # 1/e at `velocity`
     level = static * (share + (1 - share) * falls) * wobble(site.rng, 0.06, SPEEDS)
     rig.truth.motor.friction[site.rows] += level[None, :, None] * patches(site.rng)
     return {"static": static, "force": share * static, "velocity": velocity}
