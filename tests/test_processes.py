@@ -118,7 +118,7 @@ def test_the_death_of_the_recorder_stops_the_robot_unless_recording_is_optional(
     ("arguments", "sentence"),
     [
         (("--can", "socketcan:nocan0", "--can", "socketcan:nocan1", "--nodes", "motor_driver"), "socketcan:nocan0"),
-        (("--can", "a", "--can", "b", "--nodes", "pedal", "--pedal-device", "/dev/input/none"), "/dev/input/none"),
+        (("--can", "a", "--can", "b", "--nodes", "pedal", "--pedal-device", "/dev/hidraw99"), "/dev/hidraw99"),
         (("--can", "a", "--can", "b", "--nodes", "force_sensor", "--force-device", "127.0.0.1:9"), "127.0.0.1:9"),
     ],
 )

@@ -85,3 +85,9 @@ def test_a_position_that_no_leg_reaches_has_no_state():
     frames = RobotFrames(ROBOT)
     assert frames.follow(message(1, (0.0, 0.5, 0.0, 0.0, 0.0))) == []
     assert frames.follow(joint_state(10**9, ("one",), (0.0,))) == []
+
+
+def test_bytes_that_are_no_message_have_no_state():
+    whole = message(1_000_000_000)
+    for spoilt in (b"", whole[:9], whole[:30], whole[:12] + b"\xff" * 40):
+        assert RobotFrames(ROBOT).follow(spoilt) == []

@@ -21,6 +21,7 @@ from sher3_kinematics.model_joints import MODEL_JOINTS, model_positions
 
 from sher3_bags.codec.cdr import STAMP, read_layout
 from sher3_bags.codec.pack import Quaternion, Triple, joint_state, lines, text, transforms
+from sher3_bags.errors import MalformedMessageError
 from sher3_bags.messages import TEXT
 
 JOINT_STATE, TF = "sensor_msgs/msg/JointState", "tf2_msgs/msg/TFMessage"
@@ -82,14 +83,19 @@ class RobotFrames:
     def follow(self, data: bytes) -> list[Made]:
         """Return the state that follows from a message of `measured_js`, 50 times a second; else nothing.
 
-        A message of other joints has no state.
+        A message of other joints has no state, nor have bytes that are no message; the recording keeps both.
         """
+        if len(data) < STAMP + _STAMP.size:
+            return []
         seconds, nanoseconds = _STAMP.unpack_from(data, STAMP)
         stamp = seconds * SECOND + nanoseconds
         if stamp < self._next:
             return []
         self._next = stamp + PERIOD_NS
-        layout = read_layout(data, JOINT_STATE, topic=SOURCE)
+        try:
+            layout = read_layout(data, JOINT_STATE, topic=SOURCE)
+        except MalformedMessageError:
+            return []
         entry, start, count = layout.slots[0]
         if entry.name != "position" or count != len(self._robot.actuators):
             return []

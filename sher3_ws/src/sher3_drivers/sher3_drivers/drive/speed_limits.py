@@ -7,13 +7,13 @@ and the gate last; a slower one closes the gate once commands have had the time 
 
 from __future__ import annotations
 
-import json
 import math
 from collections import deque
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
+from sher3_common import Sher3Error, parse_json
 from sher3_common.reasons import Reason
 from sher3_common.vectors import Vector
 from sher3_description import ACTUATORS
@@ -82,8 +82,8 @@ class SpeedLimits:
     def hear(self, text: str, now: int) -> None:
         """Take the settings of the motion modes as they are published; the regime that comes is what counts."""
         try:
-            data = json.loads(text)
-        except ValueError:
+            data = parse_json(text)
+        except Sher3Error:
             return
         regime = data.get("coming", data.get("regime")) if isinstance(data, dict) else None
         if isinstance(regime, str) and regime in self._by_regime and regime != self.regime:
