@@ -81,10 +81,10 @@ def test_contact_and_pedal_reach_their_devices_and_let_go_when_silent(rig):
         rig.graph.settle()
     rig.graph.step(2)
     assert np.array(rig.force.read(0, 0).wrench) - rest == pytest.approx([0, 0, 1.5, 0, 0, 0], abs=0.05)
-    assert rig.pedal.read() == (0.75, True)
+    assert rig.pedal.read()[:2] == (0.75, True)
     rig.graph.step(105)
     assert np.array(rig.force.read(0, 0).wrench) == pytest.approx(rest, abs=0.05)
-    assert rig.pedal.read() == (0.0, False)
+    assert rig.pedal.read()[:2] == (0.0, False)
 
 
 def test_a_wrench_that_is_not_finite_is_ignored(rig):

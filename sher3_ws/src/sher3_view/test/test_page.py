@@ -137,7 +137,7 @@ def test_nothing_to_show_is_an_error(tmp_path):
 
 def test_the_command_writes_the_page(tmp_path):
     write_run(tmp_path / "trial", made())
-    result = CliRunner().invoke(app, [str(tmp_path / "trial"), "--json"])
+    result = CliRunner().invoke(app, ["view", str(tmp_path / "trial"), "--json"])
     facts = json.loads(result.stdout)
     assert facts["page"] == str(tmp_path / "trial.html") and facts["frames"] == 61
     assert (tmp_path / "trial.html").stat().st_size == facts["bytes"]

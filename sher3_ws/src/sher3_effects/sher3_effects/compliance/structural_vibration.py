@@ -32,6 +32,9 @@ class StructuralVibration(Page):
     PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
     """Axes of {b} that a column couples."""
 
+    ONE_MODE = 0.5
+    """Second principal value of the matrix over the first from which it is no single mode: half way to two alike."""
+
     def channels(self, site: str) -> tuple[Channel, ...]:
         """Return the tip, free and loaded."""
         return (Channel("mechanism", "tip"), Channel("structure", "tip"))
@@ -67,7 +70,10 @@ class StructuralVibration(Page):
             for (i, j), c in zip(self.PAIRS, coefficients, strict=True):
                 matrix[i, j] = matrix[j, i] = c
             values, vectors = np.linalg.eigh(matrix)
-            largest = int(np.argmax(np.abs(values)))
+            largest, second = np.argsort(-np.abs(values))[:2]
+            if abs(values[second]) > self.ONE_MODE * abs(values[largest]):
+                # Several modes of one frequency: what swings is each axis by itself.
+                return self.parameters({**shape, "single": 0.0}, np.diag(matrix))
             amplitude, direction = float(values[largest]), vectors[:, largest]
             direction = direction * np.sign(direction[np.argmax(np.abs(direction))])
             return {**shape, "amplitude": amplitude, **dict(zip("xyz", direction.tolist(), strict=True))}
