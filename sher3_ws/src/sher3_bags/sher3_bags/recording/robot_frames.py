@@ -23,6 +23,7 @@ from sher3_bags.codec.cdr import STAMP, read_layout
 from sher3_bags.codec.pack import Quaternion, Triple, joint_state, lines, text, transforms
 from sher3_bags.errors import MalformedMessageError
 from sher3_bags.messages import TEXT
+from sher3_bags.recording.made import Made
 
 JOINT_STATE, TF = "sensor_msgs/msg/JointState", "tf2_msgs/msg/TFMessage"
 MARKER = "visualization_msgs/msg/Marker"
@@ -34,15 +35,6 @@ PERIOD_NS = 20_000_000
 LEG_WIDTH = 0.0044
 """Thickness of a drawn leg [m]."""
 _STAMP = struct.Struct("<iI")
-
-
-class Made(NamedTuple):
-    """A message made beside the streams: absolute topic name, type, quality of service and CDR bytes."""
-
-    topic: str
-    type: str
-    qos: Qos
-    data: bytes
 
 
 class Link(NamedTuple):
