@@ -110,11 +110,17 @@ def teleop(
     script: Annotated[
         Path | None, typer.Argument(help="Script (YAML, sher3.teleop/1); the keyboard without one.")
     ] = None,
+    device: Annotated[
+        Path | None, typer.Option(help="Joystick or SpaceMouse as hand and foot: /dev/input/js0, /dev/input/event7.")
+    ] = None,
     show: Annotated[bool, typer.Option("--print", help="Print the script of the demo and leave.")] = False,
     rate: Annotated[float, typer.Option(help="Control rate of the running graph [Hz].")] = 500.0,
     domain: Domain = 0,
 ) -> None:
-    """Act the surgeon on a running mock: press the pedal and push the tool."""
+    """Act the surgeon on a running mock: press the pedal and push the tool.
+
+    At the keyboard the robot answers: state with its reason, tip, speed, force, pedal, and what it refused.
+    """
     from sher3_bringup.surgeon.script import demo_script, load_script
 
     if show:
@@ -123,7 +129,7 @@ def teleop(
     from sher3_bringup.surgeon.teleop import run_keyboard, run_script
 
     if script is None:
-        run_keyboard(rate, domain)
+        run_keyboard(rate, domain, device)
     else:
         run_script(load_script(script), rate, domain)
 

@@ -1,18 +1,45 @@
-"""The surgeon at the keyboard: keys change hand and foot; plain data, no terminal."""
+"""The surgeon at the keyboard: keys change hand and foot and ask the robot for things; plain data, no terminal."""
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 from sher3_common.operating_state import StateCommand
 from sher3_common.vectors import Wrench
 
-HELP = """Keys: w/s x, a/d y, r/f z push harder (N) · i/k, j/l, u/o turn harder (N*m) · space drops the tool
-      p pedal pressed or released · e enable · x disable · q quit"""
+HELP = """Hand    w/s x, a/d y, r/f z push harder (N) · i/k, j/l, u/o turn harder (N*m) · space drops the tool
+Foot    p pedal pressed or released
+Robot   e enable · x disable · z pause · c continue · t tare · g near tissue, G free · h remote centre, H none
+        q quit"""
 FORCE_STEP = 0.2
 TORQUE_STEP = 0.005
 FORCE_LIMIT = 5.0
 TORQUE_LIMIT = 0.05
+RCM_DEPTH = 0.018
+"""Where `h` puts the remote centre [m] behind the tip: a little more than an eye's wall is from its retina's middle."""
+TARE = "admittance/tare"
+"""Service of the tare; the other requests are topics."""
 _AXES = "wsadrfikjluo"
-_COMMANDS = {"e": StateCommand.ENABLE.value, "x": StateCommand.DISABLE.value}
+
+
+class Asked(NamedTuple):
+    """What a key asks of the robot: the topic (or `TARE`) and the text for it."""
+
+    topic: str
+    text: str = ""
+
+
+KEYS = {
+    "e": Asked("command/state_command", StateCommand.ENABLE.value),
+    "x": Asked("command/state_command", StateCommand.DISABLE.value),
+    "z": Asked("command/state_command", StateCommand.PAUSE.value),
+    "c": Asked("command/state_command", StateCommand.RESUME.value),
+    "g": Asked("command/regime", "near_tissue"),
+    "G": Asked("command/regime", "free"),
+    "h": Asked("command/rcm", f"here {RCM_DEPTH}"),
+    "H": Asked("command/rcm", "off"),
+    "t": Asked(TARE),
+}
 
 
 class Keyboard:
@@ -28,8 +55,7 @@ class Keyboard:
         self.wrench = [0.0] * 6
         self.pressed = False
         self.quit = False
-        self._pending = ""
-        self._shown = ""
+        self._asked: list[Asked] = []
 
     def press(self, key: str) -> None:
         """Take one key; unknown ones do nothing."""
@@ -44,25 +70,20 @@ class Keyboard:
             self.pressed = not self.pressed
         elif key == "q":
             self.quit = True
-        else:
-            self._pending = _COMMANDS.get(key, self._pending)
+        elif key in KEYS:
+            self._asked.append(KEYS[key])
 
     def hands(self, _: float) -> tuple[float, Wrench]:
         """Return pedal travel and wrench."""
         return float(self.pressed), tuple(self.wrench)  # type: ignore[return-value]
 
-    def command(self, _: float) -> str:
-        """Return the state command that was asked for, once."""
-        command, self._pending = self._pending, ""
-        return command
+    def asked(self) -> list[Asked]:
+        """Return what was asked for since the last call."""
+        asked, self._asked = self._asked, []
+        return asked
 
     def line(self) -> str:
-        """Return the status line."""
+        """Return what hand and foot do."""
         fx, fy, fz, mx, my, mz = self.wrench
         pedal = "pressed " if self.pressed else "released"
         return f"pedal {pedal}  force {fx:+.1f} {fy:+.1f} {fz:+.1f} N  torque {mx:+.3f} {my:+.3f} {mz:+.3f} N*m"
-
-    def changed(self) -> bool:
-        """Tell whether the status line differs from the one shown last."""
-        before, self._shown = self._shown, self.line()
-        return self._shown != before

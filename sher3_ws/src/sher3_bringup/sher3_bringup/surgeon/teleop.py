@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import os
 import select
+import shutil
 import sys
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
 from sher3_bringup.errors import ConfigurationError
@@ -30,29 +33,61 @@ def run_script(script: Script, rate: float, domain: int) -> None:
     run_node(lambda: script_node(script), stop, rate, domain)
 
 
-def run_keyboard(rate: float, domain: int) -> None:
-    """Run until `q` or Ctrl-C.
+def run_keyboard(rate: float, domain: int, device: Path | None = None) -> None:
+    """Run until `q` or Ctrl-C; with a joystick or a SpaceMouse its axes are the hand and its buttons the foot.
 
     Raises:
-        ConfigurationError: standard input is no terminal.
+        ConfigurationError: standard input is no terminal, or the device cannot be read.
     """
     if not sys.stdin.isatty():
         raise ConfigurationError("standard input is no terminal", remedy="run in a terminal or give a script")
-    from sher3_bringup.surgeon.teleop_node import TeleopNode, run_node
+    from sher3_bringup.surgeon.device import Device
+    from sher3_bringup.surgeon.keyboard_node import KeyboardNode
+    from sher3_bringup.surgeon.teleop_node import run_node
 
     keyboard = Keyboard()
+    stick = None if device is None else Device(device)
+    hands = keyboard.hands if stick is None else stick.hands
+    screen = _Screen()
 
     def stop(node: Any) -> bool:
         while select.select([sys.stdin], [], [], 0.0)[0]:
             keyboard.press(os.read(sys.stdin.fileno(), 1).decode("ascii", "ignore"))
-        if keyboard.changed():
-            print(f"\r{keyboard.line()}\x1b[K", end="", flush=True)
+        if screen.due():
+            hand = keyboard.line() if stick is None else f"{device}, {'pressed' if stick.pressed else 'released'}"
+            screen.show(node.look(hand, screen.width))
         return keyboard.quit
 
     print(HELP)
     with _single_keys():
-        run_node(lambda: TeleopNode(keyboard.hands, keyboard.command), stop, rate, domain)
+        run_node(lambda: KeyboardNode(keyboard, hands), stop, rate, domain)
     print()
+
+
+class _Screen:
+    """Lines that are written over at each update; plain escape codes, so that it works over ssh."""
+
+    def __init__(self) -> None:
+        self._next, self._lines = 0.0, 0
+
+    @property
+    def width(self) -> int:
+        """Columns of the terminal."""
+        return shutil.get_terminal_size((100, 24)).columns
+
+    def due(self) -> bool:
+        """Whether it is time for an update: ten times a second, faster than anybody reads."""
+        now = time.monotonic()
+        if now < self._next:
+            return False
+        self._next = now + 0.1
+        return True
+
+    def show(self, lines: list[str]) -> None:
+        """Write the lines over the ones before."""
+        up = f"\x1b[{self._lines - 1}A" if self._lines > 1 else ""
+        self._lines = len(lines)
+        print("\r" + up + "\n".join(f"{line}\x1b[K" for line in lines), end="", flush=True)
 
 
 @contextmanager

@@ -151,7 +151,7 @@ class Snapshot:
         fault = supervisor.get("first_fault")
         lines = [
             f"### {state}",
-            f"**{_fault(fault)}**" if fault else str(why),
+            f"**{fault_text(fault)}**" if fault else str(why),
             *([f"\n**The joints are {age:.1f} s old.**"] if age > STALE else []),
             *(f"\nRefused: {text}" for text in self.refusals()),
             "",
@@ -189,7 +189,7 @@ def lost_cycles(sample: Any) -> dict[str, int]:
     return {sample.name: int(text)} if text.isdigit() else {}
 
 
-def _fault(fault: dict[str, Any]) -> str:
+def fault_text(fault: dict[str, Any]) -> str:
     """Return code, source, value and limit of a fault."""
     text = f"{fault.get('code')} {fault.get('source', '')}".strip()
     value, limit, unit = (fault.get(key) for key in ("value", "limit", "unit"))
