@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Optional
 
@@ -122,13 +123,16 @@ def state(
     domain: Annotated[
         int, typer.Option(help="ROS domain id of the running robot.", min=0, max=232, envvar="ROS_DOMAIN_ID")
     ] = 0,
+    parameters: Annotated[
+        bool, typer.Option("--parameters", help="Also serve the settings as parameters of /sher3/parameters.")
+    ] = False,
     seconds: Annotated[float | None, typer.Option("--for", help="Seconds it lasts; until Ctrl-C.")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of text.")] = False,
 ) -> None:
-    """Publish the running robot for RViz and Foxglove: description, joint states, transforms and legs.
+    """Publish the running robot for other ROS tools: description, joint states, transforms, legs, statuses, log.
 
-    Topics: /robot_description, /joint_states, /tf, /tf_static, /sher3/markers, 50 times a second. A recording holds
-    them anyway.
+    Topics: /robot_description, /joint_states, /tf, /tf_static, /sher3/markers, 50 times a second, and /sher3/typed/….
+    A recording holds them anyway. Faults, refusals and complaints of nodes go to /rosout.
     """
     from sher3_description import load_robot
 
@@ -141,4 +145,9 @@ def state(
         return
     from sher3_view.live.state_node import run
 
-    run(model, domain, seconds, lambda line: typer.echo(json.dumps({"note": line}) if as_json else line, err=True))
+    say = partial(_note, as_json)
+    run(model, domain, seconds, parameters, say)
+
+
+def _note(as_json: bool, line: str) -> None:
+    typer.echo(json.dumps({"note": line}) if as_json else line, err=True)

@@ -11,8 +11,11 @@ from importlib.util import find_spec
 from typing import Any
 
 import rclpy
+from rcl_interfaces.msg import Log
 from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.signals import SignalHandlerOptions
+from rclpy.time import Time
 from sher3_bags.recording.made import Made
 from sher3_bags.recording.robot_frames import PERIOD_NS, SOURCE, RobotFrames
 from sher3_bags.recording.typed_status import SOURCES, TypedStatuses
@@ -22,35 +25,63 @@ from sher3_runtime.codec.messages import message_class
 from sher3_runtime.ports import NODE_OPTIONS, clock_of, latest, qos_profile
 from sher3_runtime.process import stop_on_signals
 
+from sher3_view.live.log_lines import Line, LogLines
+from sher3_view.live.parameters_node import ParametersNode
+from sher3_view.live.snapshot import Snapshot
+
+LATCHED = DurabilityPolicy.TRANSIENT_LOCAL
+
 
 class StateNode(Node):
-    """Publishes what follows from the newest `measured_js` and the newest statuses.
+    """Publishes what follows from the newest `measured_js` and the newest statuses, and the log of ROS.
 
     Attributes:
         left_out: topics whose message type is not installed.
+        snapshot: what was heard.
     """
 
     def __init__(self, robot: Robot, **options: Any) -> None:
         super().__init__("robot_state", **{**NODE_OPTIONS, **options})
         self.left_out: set[str] = set()
-        self._frames = RobotFrames(robot)
-        self._newest = latest(self, SOURCE)
-        self._typed = TypedStatuses()
-        self._statuses = {topic: latest(self, topic) for topic in SOURCES}
+        self.snapshot = Snapshot.empty()
+        self._frames, self._typed, self._lines = RobotFrames(robot), TypedStatuses(), LogLines()
+        self._newest = {topic: latest(self, topic) for topic in (SOURCE, *SOURCES, "diagnostics")}
+        self._heard: dict[str, Any] = {}
         self._by_topic: dict[str, Any] = {}
+        self._log = self.create_publisher(Log, "/rosout", QoSProfile(depth=1000, durability=LATCHED))
         for made in self._frames.fixed(clock_of(self).now()):
             self._send(made)
 
+    def listen(self) -> None:
+        """Take what has come, and publish nothing."""
+        self.snapshot.take(self._newest)
+
     def step(self) -> None:
         """Publish what follows from the newest position and the newest statuses, where they came."""
-        for topic, take in self._statuses.items():
-            if (status := take()) is not None:
-                for made in self._typed.follow(topic, status.text, clock_of(self).now()):
-                    self._send(made)
-        sample = self._newest()
-        if sample is not None and sample.position is not None:
-            for made in self._frames.state(sample.stamp, sample.position):
-                self._send(made)
+        self.listen()
+        for topic, sample in self.snapshot.samples.items():
+            if self._heard.get(topic) is not sample:
+                self._heard[topic] = sample
+                self._tell(topic, sample)
+
+    def _tell(self, topic: str, sample: Any) -> None:
+        now = clock_of(self).now()
+        if topic == SOURCE:
+            made = self._frames.state(sample.stamp, sample.position) if sample.position is not None else []
+        elif topic == "diagnostics":
+            made = []
+            self._write(now, self._lines.diagnostic(sample.name, sample.level, sample.message))
+        else:
+            made = self._typed.follow(topic, sample.text, now)
+            self._write(now, self._lines.status(topic, self.snapshot.status(topic)))
+        for message in made:
+            self._send(message)
+
+    def _write(self, now: int, lines: list[Line]) -> None:
+        """Write into the log of ROS, under the name of the node that it is about."""
+        for line in lines:
+            stamp = Time(nanoseconds=now).to_msg()
+            self._log.publish(Log(stamp=stamp, level=line.level, name=line.name, msg=line.text))
 
     def _send(self, made: Made) -> None:
         if made.topic in self.left_out:
@@ -65,13 +96,14 @@ class StateNode(Node):
         self._by_topic[made.topic].publish(made.data)
 
 
-def run(robot: Robot, domain: int, seconds: float | None, say: Callable[[str], None]) -> None:
-    """Publish the state of the robot of a domain until a signal, or for so many seconds."""
+def run(robot: Robot, domain: int, seconds: float | None, parameters: bool, say: Callable[[str], None]) -> None:
+    """Publish the state of the robot of a domain until a signal, or for so many seconds; its parameters if asked."""
     environment.apply(domain)
     rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
     try:
         signalled = stop_on_signals()
         node = StateNode(robot)
+        served = ParametersNode(node.snapshot, node.listen) if parameters else None
         node.step()
         if node.left_out:
             say(f"without {', '.join(sorted(node.left_out))}: `make messages` builds their types")
@@ -79,6 +111,8 @@ def run(robot: Robot, domain: int, seconds: float | None, say: Callable[[str], N
         while not signalled() and (seconds is None or time.monotonic() - begin < seconds):
             now = time.monotonic()
             node.step()
+            if served is not None:
+                served.step()
             time.sleep(max(0.0, PERIOD_NS * 1e-9 - (time.monotonic() - now)))
         node.destroy_node()
     finally:
