@@ -142,14 +142,15 @@ def demo(
     folder: Annotated[Path, typer.Option(help="Where the run's folder is made.")] = Path("bags"),
     view: Annotated[bool, typer.Option("--view", help="Also show the robot in the browser (extra `view`).")] = False,
     view_port: Annotated[int, typer.Option(help="Port of the view, on 127.0.0.1 alone.", min=1, max=65535)] = 8080,
+    domain: Domain = 73,
     as_json: Json = False,
 ) -> None:
     """Run every node on mocks with a scripted surgeon, record it, analyse the recording, show figures and a picture."""
-    from sher3_bringup.demo.session import DOMAIN, run_demo
+    from sher3_bringup.demo.session import run_demo
     from sher3_bringup.processes.onlooker import onlooker
 
-    with onlooker(view, DOMAIN, view_port):
-        result = run_demo(rate, effects, script, folder, say=_say(as_json))
+    with onlooker(view, domain, view_port):
+        result = run_demo(rate, effects, script, folder, say=_say(as_json), domain=domain)
     if as_json:
         typer.echo(json.dumps(result))
 

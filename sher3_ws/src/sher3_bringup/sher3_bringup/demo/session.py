@@ -32,6 +32,7 @@ def run_demo(
     folder: Path,
     say: Callable[[str], None] = print,
     patience: Patience = "patient",
+    domain: int = DOMAIN,
 ) -> dict[str, Any]:
     """Run the demo and return its figures as plain data.
 
@@ -49,7 +50,7 @@ def run_demo(
         record=bag,
         processes=parse_processes(None, mock=True, record=True),
         duration=script.duration + AFTERWARDS,
-        domain=DOMAIN,
+        domain=domain,
         realtime=-1,
         patience=patience,
     )

@@ -174,7 +174,7 @@ class KinematicsNode(Node):
         self._tick_count += 1
 
     def _command(self, mode: Mode) -> Callable[[Any], None]:
-        topic = TOPICS[f"command/{mode.value}"].full_name
+        topic = self.resolve_topic_name(TOPICS[f"command/{mode.value}"].full_name)
 
         def on_command(sample: Any) -> None:
             try:

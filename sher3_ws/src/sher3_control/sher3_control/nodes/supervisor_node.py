@@ -96,6 +96,7 @@ class SupervisorNode(Node):
         self._take_tip = latest(self, "tracker/measured_cp")
         subscribe(self, PEDAL, self.on_pedal)
         self._matched = [(name, ports(self).subscriptions[name].handle.get_publisher_count) for name in STREAMS]
+        self._names = {name: self.resolve_topic_name(TOPICS[name].full_name) for name in OWN}
         self._in_turn = cycle(BESIDE)
         subscribe(self, "diagnostics", self._on_diagnostics)
         subscribe(self, "command/state_command", self._on_command)
@@ -123,7 +124,7 @@ class SupervisorNode(Node):
         as much.
         """
         counts = {name: count() for name, count in self._matched}
-        counts.update((name, self.count_publishers(TOPICS[name].full_name)) for name in (*STEERING, *beside))
+        counts.update((name, self.count_publishers(self._names[name])) for name in (*STEERING, *beside))
         self._twins.feed(counts)
 
     def on_pedal(self, sample: JoySample) -> None:
