@@ -93,10 +93,11 @@ def replay(
         printed(as_json, data, f"sent {sent} of {len(player)} messages of {len(player.topics)} topics")
 
 
-@app.command(epilog="Example: sher3 compare bags/before bags/after --topic measured_cp")
+@app.command(epilog="Example: sher3 compare bags/before bags/after --topic measured_cp --picture difference.png")
 def compare(
     a: Annotated[Path, typer.Argument(help="Reference bag.", autocompletion=folders_with(BAG))],
     b: Annotated[Path, typer.Argument(help="Other bag.", autocompletion=folders_with(BAG))],
+    picture: Annotated[Path | None, typer.Option(help="Also draw the differences to this PNG, PDF or SVG.")] = None,
     align: Annotated[str, typer.Option(help="auto, stamp (one clock) or start (both from zero).")] = "auto",
     topic: Topics = None,
     as_json: Json = False,
@@ -109,8 +110,15 @@ def compare(
 
     with reported(as_json):
         alignment = alignment_from(align)
-        result = compare_runs(read_run(a, topic), read_run(b, topic), alignment=alignment, topics=topic)
-        printed(as_json, result.to_dict(), comparison_text(result))
+        one, two = read_run(a, topic), read_run(b, topic)
+        result = compare_runs(one, two, alignment=alignment, topics=topic)
+        data, note = result.to_dict(), ""
+        if picture is not None:
+            from sher3_bags.figures.compare_picture import draw_comparison
+
+            data["picture"] = str(draw_comparison(one, two, result, picture))
+            note = f"\n\npicture: {picture}"
+        printed(as_json, data, comparison_text(result) + note)
 
 
 @app.command(epilog="Example: sher3 recover bags/trial --output bags/trial_whole")

@@ -33,6 +33,11 @@ def test_compare_info_recover(bag, tmp_path):
     data = json.loads(runner.invoke(app, ["compare", str(bag), str(bag), "--json"]).output)
     assert data["alignment"] == "stamp"
     assert data["residuals"]["measured_js"]["position"][0]["max"] == 0
+    picture = bag.parent / "difference.png"
+    assert str(picture) in runner.invoke(app, ["compare", str(bag), str(bag), "--picture", str(picture)]).output
+    assert picture.stat().st_size > 10_000
+    result = runner.invoke(app, ["compare", str(bag), str(bag), "--picture", str(bag.parent / "a.xyz")])
+    assert (result.exit_code, "cannot be drawn" in result.output) == (1, True)
     assert "b - a" in runner.invoke(app, ["compare", str(bag), str(bag), "--topic", "measured_js"]).output
     data = json.loads(runner.invoke(app, ["info", str(bag), "--json"]).output)
     assert data["topics"]["force/measured_cf"]["frame_id"] == "f"

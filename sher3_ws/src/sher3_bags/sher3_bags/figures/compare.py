@@ -66,6 +66,7 @@ class Comparison:
     Attributes:
         a, b: Paths of the bags.
         alignment: `stamp` when the runs are compared at equal stamps, `start` when each is counted from its own start.
+        shift: Time [ns] that was added to the stamps of b.
         overlap: Time [s] that both runs cover.
         lag: Median lag [s] of all axes; None when no axis has one.
         residuals: Residuals by topic and column.
@@ -76,6 +77,7 @@ class Comparison:
     a: str
     b: str
     alignment: str
+    shift: int
     overlap: float
     lag: float | None
     residuals: dict[str, dict[str, tuple[AxisResidual, ...]]]
@@ -131,6 +133,7 @@ def compare(a: Run, b: Run, *, alignment: Alignment = "auto", topics: Iterable[s
         a=str(a.path or ""),
         b=str(b.path or ""),
         alignment=alignment,
+        shift=shift,
         overlap=seconds(overlap),
         lag=_median_lag(residuals),
         residuals=residuals,

@@ -15,6 +15,8 @@ from sher3_bags.figures.timing import topic_timing
 from sher3_bags.provenance import PROVENANCE_RECORD
 from sher3_bags.reading import read_run
 
+FOR_OTHERS = ("/robot_description", "/joint_states", "/tf", f"{NAMESPACE}/markers", f"{NAMESPACE}/typed/")
+"""Beginnings of the topics that follow from others and that viewers read, see `sher3_bags.recording.beside`."""
 _LONG = ("versions", "parameters")
 
 
@@ -112,6 +114,10 @@ def overview_text(data: dict[str, Any]) -> str:
     origin = [f"{k}: {v if k not in _LONG else f'{len(v)} entries'}" for k, v in data["provenance"].items()]
     if origin:
         parts.append("\n".join(origin))
-    if data["skipped"]:
-        parts.append("not read: " + ", ".join(f"{topic} ({why})" for topic, why in data["skipped"].items()))
+    beside = [topic for topic in data["skipped"] if topic.startswith(FOR_OTHERS)]
+    if beside:
+        parts.append("for viewers and other ROS tools: " + ", ".join(sorted(beside)))
+    strange = {topic: why for topic, why in data["skipped"].items() if topic not in beside}
+    if strange:
+        parts.append("not read: " + ", ".join(f"{topic} ({why})" for topic, why in strange.items()))
     return "\n\n".join(parts)

@@ -16,11 +16,12 @@ MAX_POINTS = 5000
 
 def draw_timeline(axis: Any, run: Run) -> None:
     """Draw force [N] and speed [mm/s] over the run's own time [s]; the pedal as an area, the state as a strip."""
-    axis.set_title("force and speed; blue area: pedal pressed; strip: operating state")
+    axis.set_title("force and speed; blue area: pedal pressed; strip: operating state; dotted: steps of the script")
     axis.set_xlabel("time [s]")
     axis.set_xlim(0.0, max((run.end - run.start) * 1e-9, 1e-3))
     _pedal(axis, run)
     _state(axis, run)
+    _steps(axis, run)
     if all(topic in run for topic in ("force/measured_cf", "measured_cp", "pedal/measured")):
         stamp, force, _ = force_in_base(run)
         _line(axis, run, stamp, np.linalg.norm(force, axis=1), FORCE)
@@ -47,6 +48,20 @@ def _pedal(axis: Any, run: Run) -> None:
     seconds = (pedal.stamp - run.start) * 1e-9
     for begin, end in zip(edges[::2], edges[1::2], strict=True):
         axis.axvspan(seconds[begin], seconds[min(end, len(seconds) - 1)], color=PEDAL, alpha=0.5, lw=0)
+
+
+def _steps(axis: Any, run: Run) -> None:
+    """Draw where each step of the surgeon's script begins, with its name."""
+    if "mock/step" not in run or not len(run["mock/step"]):
+        return
+    steps = run["mock/step"]
+    log = steps.stamp if steps.log_time is None else steps.log_time
+    for begin, name in zip((log - run.start) * 1e-9, steps.data or (), strict=True):
+        axis.axvline(begin, lw=0.6, ls=":", color="#555555")
+        where = axis.get_xaxis_transform()
+        style = {"rotation": 90, "ha": "left", "va": "bottom", "fontsize": 7, "color": "#333333", "zorder": 5}
+        paper = {"facecolor": "white", "alpha": 0.75, "lw": 0, "pad": 0.8}
+        axis.text(begin, 0.03, f" {name}", transform=where, bbox=paper, **style)
 
 
 def _state(axis: Any, run: Run) -> None:

@@ -86,10 +86,26 @@ class ScriptCommands:
         return command
 
 
+class ScriptNode(TeleopNode):
+    """A scripted surgeon, which says the name of each step as it begins."""
+
+    def __init__(self, script: Script, commands: ScriptCommands, **options: Any) -> None:
+        super().__init__(script.at, commands, **options)
+        self._script, self._step = script, -1
+        self._publish_step = advertise(self, "mock/step")
+
+    def _tick(self, stamp: int) -> None:
+        super()._tick(stamp)
+        step, _ = self._script.step_at(self.elapsed)
+        if step != self._step:
+            self._step = step
+            self._publish_step(TextSample(self._script.steps[step].name))
+
+
 def script_node(script: Script, **options: Any) -> TeleopNode:
     """Return the node of a scripted surgeon."""
     commands = ScriptCommands(script)
-    node = TeleopNode(script.at, commands, **options)
+    node = ScriptNode(script, commands, **options)
     subscribe(node, "operating_state", lambda sample: commands.heard(sample.text))
     return node
 
