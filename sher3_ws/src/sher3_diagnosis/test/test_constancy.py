@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from sher3_diagnosis.attribute.constancy import constancy_of
-from sher3_diagnosis.fitting import fit, make_term
+from sher3_diagnosis.fit.fitting import fit, make_term
 from toy import OFFSET, ToyRun, evidence_of
 
 

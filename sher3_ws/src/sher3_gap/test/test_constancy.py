@@ -2,7 +2,7 @@
 
 import numpy as np
 from sher3_diagnosis.attribute.constancy import constancy_of
-from sher3_diagnosis.fitting import fit, make_term
+from sher3_diagnosis.fit.fitting import fit, make_term
 from sher3_effects import library, plants
 from sher3_gap.evidence import gather
 from simulated import ROBOT, runs_of, signals

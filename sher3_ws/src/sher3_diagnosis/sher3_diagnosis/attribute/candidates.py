@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.effect import Effect, Shape
 from sher3_diagnosis.evidence import Evidence
-from sher3_diagnosis.fitting import Fit, Term, fit, make_term
+from sher3_diagnosis.fit.fitting import Fit, Term, fit, make_term
 from sher3_diagnosis.thresholds import NEEDED, PARSIMONY, PRICE, UNLIKELY
 
 ROUNDS = 3

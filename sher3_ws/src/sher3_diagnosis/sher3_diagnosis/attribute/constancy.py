@@ -12,7 +12,7 @@ import numpy as np
 
 from sher3_diagnosis.channel import Array
 from sher3_diagnosis.evidence import Evidence
-from sher3_diagnosis.fitting import Fit, solve
+from sher3_diagnosis.fit.fitting import Fit, solve
 from sher3_diagnosis.thresholds import CERTAIN, CONSTANT
 
 

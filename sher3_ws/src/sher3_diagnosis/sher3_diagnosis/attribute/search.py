@@ -13,7 +13,7 @@ from sher3_diagnosis.attribute.constancy import constancy_of
 from sher3_diagnosis.attribute.rivals import RANKED, Attribution, with_rivals, without_term
 from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.evidence import Evidence
-from sher3_diagnosis.fitting import Fit, Term, fit
+from sher3_diagnosis.fit.fitting import Fit, Term, fit
 from sher3_diagnosis.thresholds import (
     COMPLETE,
     MAX_CAUSES,

@@ -12,7 +12,7 @@ from sher3_diagnosis.attribute.candidates import Candidates, complexity
 from sher3_diagnosis.attribute.rivals import without_term
 from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.evidence import Evidence
-from sher3_diagnosis.fitting import Fit, Term, fit
+from sher3_diagnosis.fit.fitting import Fit, Term, fit
 from sher3_diagnosis.thresholds import NEEDED, PARSIMONY, PRICE
 
 

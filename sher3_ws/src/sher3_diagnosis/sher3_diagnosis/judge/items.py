@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from sher3_diagnosis.attribute.rivals import Attribution, unlikeness, without_term
 from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.finding import Finding
-from sher3_diagnosis.fitting import Term
+from sher3_diagnosis.fit.fitting import Term
 from sher3_diagnosis.judge.evidence.cause import cause_evidence, shown_at
 from sher3_diagnosis.thresholds import COVERED
 

@@ -15,9 +15,9 @@ from sher3_diagnosis.channel import Array
 from sher3_diagnosis.filter import low_pass
 
 from sher3_gap.case.audit import check_parameters
-from sher3_gap.case.signals import RunSignals
 from sher3_gap.case.ticks import Gap, check_finite, in_order, is_live, on_grid, tick_grid
 from sher3_gap.errors import CaseError
+from sher3_gap.signals import RunSignals
 from sher3_gap.stages.exact import with_lateness
 
 LOADED = 0.15

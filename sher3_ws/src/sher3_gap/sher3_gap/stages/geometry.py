@@ -20,7 +20,7 @@ from sher3_kinematics.kernel import (
     tip_pose_into,
 )
 
-from sher3_gap.case.signals import RunSignals
+from sher3_gap.signals import RunSignals
 
 
 @compiled

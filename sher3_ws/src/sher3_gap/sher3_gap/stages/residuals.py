@@ -13,7 +13,7 @@ from sher3_description import ACTUATORS, Robot
 from sher3_diagnosis.channel import Array, Channel, Residual, Residuals
 from sher3_diagnosis.filter import settled
 
-from sher3_gap.case.signals import RunSignals
+from sher3_gap.signals import RunSignals
 from sher3_gap.stages.geometry import Geometry
 
 ZEROS_FREE = 0.96

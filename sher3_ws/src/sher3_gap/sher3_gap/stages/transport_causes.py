@@ -24,7 +24,7 @@ from sher3_effects.timing.command_delay import CommandDelay
 from sher3_effects.timing.command_jitter import CommandJitter
 from sher3_effects.timing.dropped_commands import DroppedCommands
 
-from sher3_gap.case.signals import RunSignals
+from sher3_gap.signals import RunSignals
 from sher3_gap.stages.exact import EXACT, ROUNDING
 from sher3_gap.stages.exact_findings import exact_cause, exact_finding, exact_place
 from sher3_gap.stages.timing import Timing

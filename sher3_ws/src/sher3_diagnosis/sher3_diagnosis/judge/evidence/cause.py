@@ -13,7 +13,7 @@ from sher3_diagnosis.attribute.constancy import constancy_of
 from sher3_diagnosis.attribute.rivals import Attribution, without_term
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.evidence import Evidence
-from sher3_diagnosis.fitting import Fit, Term
+from sher3_diagnosis.fit.fitting import Fit, Term
 from sher3_diagnosis.judge.evidence.free_law import ROWS, loss_left
 from sher3_diagnosis.judge.evidence.transfer import steadiness_of
 from sher3_diagnosis.localise.gaps import gap_of
