@@ -3,35 +3,21 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import asdict
 from datetime import datetime
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from sher3_common import Sher3Error
+from sher3_common.command_line import Domain, Json, reported
 from sher3_common.completing import BAG, CASE, folders_with
 from sher3_description.topics import NAMESPACE
 
 app = typer.Typer(no_args_is_help=True, help="Record, replay, analyse, compare and recover bags.")
 
 Bag = Annotated[Path, typer.Argument(help="Bag folder or .mcap file.", autocompletion=folders_with(BAG))]
-Domain = Annotated[int, typer.Option(help="ROS domain id.", min=0, max=232, envvar="ROS_DOMAIN_ID")]
-Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")]
 Topics = Annotated[list[str] | None, typer.Option("--topic", help="Topic relative to /sher3; repeat for more.")]
 Namespace = Annotated[str, typer.Option(help="Namespace of the robot in the bag.")]
-
-
-@contextmanager
-def _reported(as_json: bool) -> Iterator[None]:
-    """Turn an error of this project into one sentence on stderr (an object with --json) and exit code 1."""
-    try:
-        yield
-    except Sher3Error as error:
-        typer.echo(json.dumps(error.to_dict(), default=str) if as_json else f"error: {error}", err=True)
-        raise typer.Exit(1) from error
 
 
 def _print(as_json: bool, data: dict[str, Any], text: str) -> None:
@@ -53,7 +39,7 @@ def record(
     from sher3_bags.errors import NothingRecorded
     from sher3_bags.recording.recorder_node import run
 
-    with _reported(as_json):
+    with reported(as_json):
         target = output or Path("bags", datetime.now().strftime("%Y%m%d_%H%M%S"))
         typer.echo(f"recording to {target}, Ctrl-C stops", err=True)
         counts = run(target, load_robot(robot), topics=topic, seconds=seconds, domain=domain)
@@ -84,7 +70,7 @@ def replay(
     from sher3_bags.playback.replay import Replay
     from sher3_bags.playback.replay_node import run
 
-    with _reported(as_json):
+    with reported(as_json):
         player = Replay(bag, topic, rate=rate, stamps="keep" if keep_stamps else "shift", namespace=namespace)
         typer.echo(f"replaying {len(player)} messages in {player.duration:.1f} s", err=True)
         sent = run(player, wait_for, domain)
@@ -104,7 +90,7 @@ def analyze(
     from sher3_bags.figures.report import analysis_text
     from sher3_bags.reading import read_run
 
-    with _reported(as_json):
+    with reported(as_json):
         run = read_run(bag, namespace=namespace, check=False)
         analysis = analyse(run)
         data = analysis.to_dict()
@@ -141,7 +127,7 @@ def compare(
     from sher3_bags.figures.report import comparison_text
     from sher3_bags.reading import read_run
 
-    with _reported(as_json):
+    with reported(as_json):
         alignment = alignment_from(align)
         result = compare_runs(read_run(a, topic), read_run(b, topic), alignment=alignment, topics=topic)
         _print(as_json, result.to_dict(), comparison_text(result))
@@ -156,7 +142,7 @@ def recover(
     """Save what can be read of a cut or corrupt bag, and count what cannot."""
     from sher3_bags.recovery import recover as recover_bag
 
-    with _reported(as_json):
+    with reported(as_json):
         recovery = recover_bag(bag, output)
         _print(as_json, asdict(recovery), str(recovery))
 
@@ -166,7 +152,7 @@ def info(bag: Bag, namespace: Namespace = NAMESPACE, as_json: Json = False) -> N
     """Show what a bag or a case holds: topics, metadata, provenance, samples the recorder missed; runs of a case."""
     from sher3_bags.figures.overview import case_overview, case_text, overview, overview_text
 
-    with _reported(as_json):
+    with reported(as_json):
         if (bag / CASE).is_file():
             runs = case_overview(bag)
             _print(as_json, runs, case_text(runs))

@@ -8,12 +8,11 @@ from pathlib import Path
 from typing import Annotated, Optional
 
 import typer
+from sher3_common.command_line import Domain, Json
 
 app = typer.Typer(rich_markup_mode="markdown")
 
-Json = Annotated[bool, typer.Option("--json", help="Print one JSON object instead of text.")]
 Robot = Annotated[Optional[Path], typer.Option(help="Robot file; the nominal robot by default.")]  # noqa: UP045
-Domain = Annotated[int, typer.Option(help="ROS domain id.", min=0, max=232, envvar="ROS_DOMAIN_ID")]
 
 
 @app.command(

@@ -8,8 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+from sher3_common.command_line import Json
 
-from sher3_gap_cli.options import Json, Library, RobotFile, VerdictFile, case_argument, reported
+from sher3_gap_cli.options import Library, RobotFile, VerdictFile, case_argument, reported
 
 if TYPE_CHECKING:
     from sher3_gap.simulate.apply import StageGap

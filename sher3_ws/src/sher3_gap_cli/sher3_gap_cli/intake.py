@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+from sher3_common.command_line import Json
 
-from sher3_gap_cli.options import Json, RequestError, RobotFile, reported
+from sher3_gap_cli.options import RequestError, RobotFile, reported
 
 IMPORT_EXAMPLE = "sher3 gap import DATA_EMPS.mat emps.yaml --out cases/emps"
 
