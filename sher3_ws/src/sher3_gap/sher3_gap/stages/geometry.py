@@ -119,8 +119,7 @@ class Geometry:
         """Gamma (g, 6, 6) for platform centres (g, 3): columns (u; b x u), links of leg 1, 2, 3 in pairs."""
         delta = self.robot.delta
         half = 0.5 * delta.leg_width
-        inner = np.sqrt(delta.platform_radius**2 - half**2)
-        spread = np.sqrt(delta.base_radius**2 - half**2) - inner
+        inner, spread = delta.platform_distance, delta.leg_offset
         gamma = np.empty((len(platform), 6, 6))
         for k, azimuth in enumerate(delta.leg_azimuth):
             radial = np.array([np.cos(azimuth), np.sin(azimuth), 0.0])
