@@ -157,7 +157,7 @@ def _inconstant(finding: Finding) -> Unexplained | None:
         found = constancy_of(finding.evidence, finding.attribution.fit, i)
         if not found.constant:
             term = finding.attribution.fit.terms[i]
-            channel = max(term.channels, key=finding.evidence.excess)
+            channel = max(sorted(term.channels), key=finding.evidence.excess)
             share = f"{found.spread:.1%} of what it explains differs"
             text = f"{term.effect.id} fits, but not with one size in all excitations ({share}); "
             return _described(finding, channel, text)

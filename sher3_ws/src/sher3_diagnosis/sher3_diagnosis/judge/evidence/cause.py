@@ -69,7 +69,7 @@ class CauseEvidence:
 
 def shown_at(evidence: Evidence, term: Term, before: Fit, after: Fit) -> Channel:
     """Return the channel on which a term explains most."""
-    shows = [c for c in term.channels if evidence.excess(c) > 0.0] or sorted(term.channels)
+    shows = [c for c in sorted(term.channels) if evidence.excess(c) > 0.0] or sorted(term.channels)
     return max(shows, key=lambda c: evidence.excess(c, before) - evidence.excess(c, after))
 
 
