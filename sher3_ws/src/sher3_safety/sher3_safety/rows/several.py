@@ -7,12 +7,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from sher3_safety.rows.row import AIMING, DISABLED, IDLE, STATES, STILL, Row
+from sher3_safety.rows.row import AIMING, DISABLED, IDLE, LIMIT, STATES, STILL, Row
 from sher3_safety.rows.slow import ALL, AXIS, FAST, LEFT, LONGEST, ROLL
 
 LEGS = "legs"
 DISOBEYS = (*LEFT, "DRIVE_DISOBEYS")
 STANDS = (*LEFT, "ENCODER_FROZEN")
+DOUBTFUL = ("HAND_DOUBTFUL",)
 WRAP = 65536.0 * 1e-8
 """Counts of 16 bits of a load encoder of 10 nm [m]: a counter that wraps, or a homing that is off by as much."""
 WARNS = "bit 7 is a warning: it is on /diagnostics, and the drive goes on doing as it is told"
@@ -62,7 +63,9 @@ def _lively() -> Iterator[Row]:
     """Yield inputs that are alive and false."""
     yield Row("pedal", "chatter", {"items": 5.0, "code": 1.0}, reasons=("PEDAL_INVALID",), slow=True, duration=0.6,
               quiet=(IDLE.name,), rest=1.0)  # fmt: skip
-    yield Row("force_sensor", "chatter", {"items": 2.0, "offset": 11.0}, reasons=("WRENCH_NOT_FINITE",))
+    yield Row("force_sensor", "chatter", {"items": 2.0, "offset": 11.0}, reasons=("WRENCH_NOT_FINITE", *DOUBTFUL))
+    yield Row("force_sensor", "held", reasons=DOUBTFUL, states=(LIMIT,), lets_go=True, quick=True)
+    yield Row("force_sensor", "wrong", {"scale": -1.0}, reasons=DOUBTFUL, states=(LIMIT,))
     for first in (0.0, 1.0):
         yield Row(f"{AXIS}.up", "contradicted", {"first": first}, reasons=("DRIVE_TWICE", "DRIVE_RESTARTED"))
 

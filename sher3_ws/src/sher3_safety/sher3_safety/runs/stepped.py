@@ -20,6 +20,7 @@ from sher3_bags.run import RunMetadata
 from sher3_bringup.stepped_robot import SteppedRobot
 from sher3_common import Sher3Error
 from sher3_common.operating_state import OperatingState, StateCommand
+from sher3_control.settings import ControlSettings
 from sher3_description import Robot
 from sher3_drivers.settings import default_settings
 from sher3_faults.items import Numbers, Stamps
@@ -54,7 +55,9 @@ class MatrixRun:
     def __init__(self, graph: Graph, robot: Robot, seed: int) -> None:
         self.graph, self.seed = graph, seed
         self.operator = graph.add(OperatorNode)
-        self.rig = SteppedRobot(graph, seed=seed, robot=robot, drives=default_settings(robot.control_period))
+        control = ControlSettings.from_robot(robot, {"motion": {"regime": "free"}})
+        drives = default_settings(robot.control_period)
+        self.rig = SteppedRobot(graph, seed=seed, robot=robot, control=control, drives=drives)
         self._sign = 1.0
 
     def start(self) -> bool:
