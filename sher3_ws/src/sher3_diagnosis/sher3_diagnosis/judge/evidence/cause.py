@@ -47,6 +47,7 @@ class CauseEvidence:
         sibling: share by which the next effect in its place explains less; 1 without one.
         ratio: gap over floor.
         samples: that tell of it.
+        idealised: 1 where a real machine adds to the law (`Effect.leaves_out`), 0 where the law is complete.
     """
 
     left: float
@@ -60,6 +61,7 @@ class CauseEvidence:
     sibling: float
     ratio: float
     samples: float
+    idealised: float
 
     def numbers(self) -> dict[str, float]:
         """Return the evidence by name."""
@@ -96,6 +98,7 @@ def cause_evidence(evidence: Evidence, attribution: Attribution, index: int) -> 
         sibling=_sibling(attribution, index),
         ratio=whole.ratio,
         samples=float(samples),
+        idealised=float(bool(term.effect.leaves_out)),
     )
 
 
