@@ -66,8 +66,8 @@ def items_of(finding: Finding) -> list[Item]:
 def gaps_of(finding: Finding, taken: set[Channel]) -> list[Item]:
     """Return the significant gaps that no cause explains but for less than half.
 
-    Only a larger gap of the same place may echo in one: every residual is predicted from its stage's measured input, and
-    the tip's from the encoders at the loads.
+    Only a larger gap of the same place may echo in one: every residual is predicted from its stage's measured input,
+    and the tip's from the encoders at the loads.
     """
     evidence, gaps = finding.evidence, finding.significant
     out = []
