@@ -9,8 +9,8 @@ from collections.abc import Callable
 from itertools import combinations
 
 from sher3_diagnosis.attribute.candidates import Candidates, complexity
-from sher3_diagnosis.attribute.constancy import constancy_of
 from sher3_diagnosis.attribute.rivals import RANKED, Attribution, with_rivals, without_term
+from sher3_diagnosis.attribute.steadiness import steadiness_of
 from sher3_diagnosis.attribute.ties import TIE, first_of_least
 from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.evidence import Evidence
@@ -115,11 +115,11 @@ def _prune(evidence: Evidence, current: Fit, left_over: Left) -> Fit:
 def _steadier(evidence: Evidence, found: Attribution) -> Fit | None:
     """Where a cause changes size between excitations and a rival does not, the fit with that rival in its place."""
     for i in found.causes:
-        if constancy_of(evidence, found.fit, i).constant:
+        if steadiness_of(evidence, found.fit, i).constant:
             continue
         for rival in found.rivals[i]:
             terms = [*found.fit.terms[:i], rival.terms[-1], *found.fit.terms[i + 1 :]]
             trial = fit(evidence.data, terms)
-            if trial.admissible and constancy_of(evidence, trial, i).constant:
+            if trial.admissible and steadiness_of(evidence, trial, i).constant:
                 return trial
     return None
