@@ -1,4 +1,4 @@
-"""The bag commands of `sher3`: record, replay, analyze, compare, recover, info."""
+"""The bag commands of `sher3`: record, replay, compare, recover, info."""
 
 from __future__ import annotations
 
@@ -13,14 +13,15 @@ from sher3_common.command_line import Domain, Json, reported
 from sher3_common.completing import BAG, CASE, folders_with
 from sher3_description.topics import NAMESPACE
 
-app = typer.Typer(no_args_is_help=True, help="Record, replay, analyse, compare and recover bags.")
+app = typer.Typer(no_args_is_help=True, help="Record, replay, compare and recover bags.")
 
 Bag = Annotated[Path, typer.Argument(help="Bag folder or .mcap file.", autocompletion=folders_with(BAG))]
 Topics = Annotated[list[str] | None, typer.Option("--topic", help="Topic relative to /sher3; repeat for more.")]
 Namespace = Annotated[str, typer.Option(help="Namespace of the robot in the bag.")]
 
 
-def _print(as_json: bool, data: dict[str, Any], text: str) -> None:
+def printed(as_json: bool, data: dict[str, Any], text: str) -> None:
+    """Print figures as one JSON object or as text."""
     typer.echo(json.dumps(data) if as_json else text)
 
 
@@ -47,7 +48,7 @@ def record(
             remedy = f"start the robot in ROS domain {domain}, or name its domain"
             raise NothingRecorded("no message of the robot came", path=target, remedy=remedy)
         lines = [f"{name}: {entry['messages']} messages, {entry['dropped']} dropped" for name, entry in counts.items()]
-        _print(as_json, {"bag": str(target), "topics": counts}, "\n".join([*lines, f"recorded to {target}"]))
+        printed(as_json, {"bag": str(target), "topics": counts}, "\n".join([*lines, f"recorded to {target}"]))
 
 
 @app.command(epilog="Example: sher3 replay bags/trial --rate 0.5 --topic force/measured_cf --topic pedal/measured")
@@ -75,42 +76,7 @@ def replay(
         typer.echo(f"replaying {len(player)} messages in {player.duration:.1f} s", err=True)
         sent = run(player, wait_for, domain)
         data = {"bag": str(bag), "sent": sent, "messages": len(player), "topics": list(player.topics)}
-        _print(as_json, data, f"sent {sent} of {len(player)} messages of {len(player.topics)} topics")
-
-
-@app.command(epilog="Example: sher3 analyze bags/trial --picture trial.png")
-def analyze(
-    bag: Bag,
-    picture: Annotated[Path | None, typer.Option(help="Also draw the run to this PNG, PDF or SVG.")] = None,
-    namespace: Namespace = NAMESPACE,
-    as_json: Json = False,
-) -> None:
-    """Figures of a run: tip path, force against velocity, tracking per axis, timing and drops per topic."""
-    from sher3_bags.figures.analysis import analyse
-    from sher3_bags.figures.report import analysis_text
-    from sher3_bags.reading import read_run
-
-    with reported(as_json):
-        run = read_run(bag, namespace=namespace, check=False)
-        analysis = analyse(run)
-        data = analysis.to_dict()
-        if picture is not None:
-            from sher3_bags.figures.picture import draw
-
-            data["picture"] = str(_drawn(lambda: draw(run, analysis, picture), picture))
-        note = f"\n\npicture: {picture}" if picture is not None else ""
-        _print(as_json, data, analysis_text(analysis) + note)
-
-
-def _drawn(draw: Any, picture: Path) -> Path:
-    try:
-        return draw()
-    except (OSError, ValueError) as error:
-        from sher3_bags.errors import BagError
-
-        raise BagError(
-            f"cannot be drawn ({error})", path=picture, remedy="name a writable .png, .pdf or .svg"
-        ) from error
+        printed(as_json, data, f"sent {sent} of {len(player)} messages of {len(player.topics)} topics")
 
 
 @app.command(epilog="Example: sher3 compare bags/before bags/after --topic measured_cp")
@@ -130,7 +96,7 @@ def compare(
     with reported(as_json):
         alignment = alignment_from(align)
         result = compare_runs(read_run(a, topic), read_run(b, topic), alignment=alignment, topics=topic)
-        _print(as_json, result.to_dict(), comparison_text(result))
+        printed(as_json, result.to_dict(), comparison_text(result))
 
 
 @app.command(epilog="Example: sher3 recover bags/trial --output bags/trial_whole")
@@ -144,7 +110,7 @@ def recover(
 
     with reported(as_json):
         recovery = recover_bag(bag, output)
-        _print(as_json, asdict(recovery), str(recovery))
+        printed(as_json, asdict(recovery), str(recovery))
 
 
 @app.command(epilog="Example: sher3 info bags/trial")
@@ -155,7 +121,7 @@ def info(bag: Bag, namespace: Namespace = NAMESPACE, as_json: Json = False) -> N
     with reported(as_json):
         if (bag / CASE).is_file():
             runs = case_overview(bag)
-            _print(as_json, runs, case_text(runs))
+            printed(as_json, runs, case_text(runs))
             return
         data = overview(bag, namespace)
-        _print(as_json, data, overview_text(data))
+        printed(as_json, data, overview_text(data))

@@ -82,6 +82,7 @@ def up(
         processes=parse_processes(nodes, mock, record is not None, monitor),
         robot_path=robot,
         effects=effects,
+        exchange=view and mock,
         record=record,
         recording="optional" if record_optional else "required",
         duration=duration,

@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 import struct
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +24,7 @@ from sher3_bags.codec.cdr import STAMP, read_layout
 from sher3_bags.codec.pack import Quaternion, Triple, joint_state, lines, text, transforms
 from sher3_bags.errors import MalformedMessageError
 from sher3_bags.messages import TEXT
+from sher3_bags.recording.made import Made
 
 JOINT_STATE, TF = "sensor_msgs/msg/JointState", "tf2_msgs/msg/TFMessage"
 MARKER = "visualization_msgs/msg/Marker"
@@ -38,15 +38,6 @@ LEG_WIDTH = 0.0044
 UPRIGHT: Quaternion = (0.0, 0.0, 0.0, 1.0)
 """The rotation that turns nothing."""
 _STAMP = struct.Struct("<iI")
-
-
-class Made(NamedTuple):
-    """A message made beside the streams: absolute topic name, type, quality of service and CDR bytes."""
-
-    topic: str
-    type: str
-    qos: Qos
-    data: bytes
 
 
 class RobotFrames:

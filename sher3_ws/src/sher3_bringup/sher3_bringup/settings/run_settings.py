@@ -56,6 +56,7 @@ class RunSettings(BaseModel):
         force_device: address of the force sensor on the real robot, host or host:port.
         pedal_device: raw HID device of the pedal on the real robot.
         patience: time limits in force, see `patience`; the real robot has only the strict ones.
+        exchange: the plant takes other effects while it runs; it then knows the library from the start.
         seed: of the plant's noise.
         near_speed, free_speed: speed caps of the two regimes [m/s], or None for those of the control settings; the
             caps of turning go with them.
@@ -70,6 +71,7 @@ class RunSettings(BaseModel):
     processes: tuple[tuple[str, ...], ...] = ()
     robot_path: Path | None = None
     effects: Path | None = None
+    exchange: bool = False
     links: tuple[str, ...] = ()
     record: Path | None = None
     recording: Literal["required", "optional"] = "required"
