@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from sher3_common.reasons import Reason
 from sher3_common.stamps import nanoseconds, seconds
-from sher3_common.vectors import Vector, Wrench
+from sher3_common.vectors import Vector
 from sher3_kinematics import RobotKinematics
 
 from sher3_control.settings import SupervisorSettings
@@ -49,7 +49,7 @@ class HandDetector(PlainDetector):
         self._known, self._since = None, -1
         self._found = self._found._replace(value=0.0)
 
-    def feed(self, stamp: int, wrench: Wrench, q: Vector, effort: Vector, command: Vector) -> None:
+    def feed(self, stamp: int, wrench: Vector, q: Vector, effort: Vector, command: Vector) -> None:
         """Take samples of one tick [ns]; they count in even motion, whose change is no more than `hand_even` a look.
 
         Args:

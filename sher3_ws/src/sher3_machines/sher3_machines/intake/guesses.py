@@ -90,7 +90,7 @@ def time_unit(clock: str, period: float, guesses: list[str]) -> str:
 
 def position_unit(unit: str | None, x: Array) -> tuple[str, float, str]:
     """Return the unit of a position, its factor, and why."""
-    if unit in UNITS and unit not in ("count", "%", "1"):
+    if unit is not None and unit in UNITS and unit not in ("count", "%", "1"):
         return unit, 1.0, "its name says so"
     largest = reach(x)
     if unit == "count" or (bool((x == np.round(x)).all()) and largest > COARSE):
