@@ -33,7 +33,8 @@ from sher3_sim.scatter import RunScatter
 
 from sher3_safety.measurement.recording import INTENDED
 from sher3_safety.measurement.report import false_trips
-from sher3_safety.runs.sessions import SESSION, ExcitationNode, excitations, surgeon
+from sher3_safety.runs.excitation_node import ExcitationNode
+from sher3_safety.runs.sessions import SESSION, excitations, surgeon
 
 RECORDED = ("supervisor/status", "admittance/status", "motion/status", "operating_state", "mock/pedal", "measured_cp")
 EVERY = 4
