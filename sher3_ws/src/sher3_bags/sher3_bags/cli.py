@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from sher3_common.command_line import Domain, Json, reported
-from sher3_common.completing import BAG, CASE, folders_with
+from sher3_common.commands.completing import BAG, CASE, folders_with
+from sher3_common.commands.options import Domain, Json, reported
 from sher3_description.topics import NAMESPACE
 
 app = typer.Typer(no_args_is_help=True, help="Record, replay, compare and recover bags.")

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Annotated, Optional
 
 import typer
-from sher3_common.command_line import Domain, Json
+from sher3_common.commands.options import Domain, Json
 
 app = typer.Typer(rich_markup_mode="markdown")
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
-from sher3_common.command_line import Json
+from sher3_common.commands.options import Json
 
 from sher3_gap_cli.options import Library, RobotFile, VerdictFile, case_argument, reported
 

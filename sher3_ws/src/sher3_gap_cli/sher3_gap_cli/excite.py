@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-from sher3_common.command_line import Domain, Json
+from sher3_common.commands.options import Domain, Json
 
 from sher3_gap_cli.options import NominalFile, reported
 

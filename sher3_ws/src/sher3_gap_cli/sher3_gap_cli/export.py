@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-from sher3_common.command_line import Json
+from sher3_common.commands.options import Json
 
 from sher3_gap_cli.options import Library, RequestError, VerdictFile, reported
 

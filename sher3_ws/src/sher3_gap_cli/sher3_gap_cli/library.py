@@ -6,7 +6,7 @@ import json
 from typing import Annotated
 
 import typer
-from sher3_common.command_line import Json
+from sher3_common.commands.options import Json
 
 from sher3_gap_cli.options import Library, effects, reported
 

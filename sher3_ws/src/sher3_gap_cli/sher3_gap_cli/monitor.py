@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from sher3_common.command_line import Domain
+from sher3_common.commands.options import Domain
 
 from sher3_gap_cli.options import NominalFile, reported
 

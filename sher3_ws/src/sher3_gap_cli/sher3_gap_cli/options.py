@@ -7,13 +7,13 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from sher3_common import command_line
-from sher3_common.completing import CASE, Completer, folders_with, words
+from sher3_common.commands import options
+from sher3_common.commands.completing import CASE, Completer, folders_with, words
 from sher3_common.errors import Sher3Error
 
 BAD_INPUT = 2
 """Exit code when an input or an option is wrong."""
-reported = partial(command_line.reported, code=BAD_INPUT)
+reported = partial(options.reported, code=BAD_INPUT)
 """Turns an error of ours into one sentence on stderr (an object with --json) and exit code 2."""
 RobotFile = Annotated[Path | None, typer.Option(help="robot.yaml of the nominal model; default: the case's.")]
 NominalFile = Annotated[Path | None, typer.Option(help="robot.yaml; the nominal robot by default.")]

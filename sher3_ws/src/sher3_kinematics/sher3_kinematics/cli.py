@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 from sher3_common import Sher3Error
-from sher3_common.command_line import Json, reported
+from sher3_common.commands.options import Json, reported
 
 if TYPE_CHECKING:
     import numpy as np

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Annotated, Optional
 
 import typer
-from sher3_common.completing import BAG, folders_with
+from sher3_common.commands.completing import BAG, folders_with
 from sher3_description.topics import NAMESPACE
 
 app = typer.Typer(rich_markup_mode="markdown")
@@ -97,7 +97,7 @@ def analyze(
     from sher3_bags.figures.analysis import analyse
     from sher3_bags.figures.report import analysis_text
     from sher3_bags.reading import read_run
-    from sher3_common.command_line import reported
+    from sher3_common.commands.options import reported
 
     from sher3_view.figures import drawn, write_figures
 

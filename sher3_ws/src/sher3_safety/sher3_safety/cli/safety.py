@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Annotated, Any, Optional
 
 import typer
-from sher3_common.command_line import Json
+from sher3_common.commands.options import Json
 
 from sher3_safety.cli.budget import budget
 from sher3_safety.cli.hazards import hazards

@@ -1,4 +1,4 @@
-"""What commands of several packages share: options, and how a command ends when something it was given is wrong."""
+"""Options of several commands, and how a command ends when something it was given is wrong."""
 
 from __future__ import annotations
 
