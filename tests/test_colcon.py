@@ -57,7 +57,7 @@ def test_colcon_knows_every_package(colcon):
 
 
 def test_colcon_builds_and_tests(colcon):
-    """Without the interfaces, which need generators, and without the tests that need more than a package."""
+    """Without the interfaces, which need generators, and tests that have run already: those with several packages."""
     colcon("build", "--base-paths", "src", "--executor", "sequential")
     select = "not graph and not slow and not shared"
     test = ["test", "--base-paths", "src", "--executor", "sequential", "--return-code-on-test-failure"]

@@ -3,35 +3,21 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import asdict
 from datetime import datetime
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from sher3_common import Sher3Error
-from sher3_common.completing import BAG, CASE, folders_with
+from sher3_common.commands.completing import BAG, CASE, folders_with
+from sher3_common.commands.options import Domain, Json, reported
 from sher3_description.topics import NAMESPACE
 
 app = typer.Typer(no_args_is_help=True, help="Record, replay, compare and recover bags.")
 
 Bag = Annotated[Path, typer.Argument(help="Bag folder or .mcap file.", autocompletion=folders_with(BAG))]
-Domain = Annotated[int, typer.Option(help="ROS domain id.", min=0, max=232, envvar="ROS_DOMAIN_ID")]
-Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")]
 Topics = Annotated[list[str] | None, typer.Option("--topic", help="Topic relative to /sher3; repeat for more.")]
 Namespace = Annotated[str, typer.Option(help="Namespace of the robot in the bag.")]
-
-
-@contextmanager
-def reported(as_json: bool) -> Iterator[None]:
-    """Turn an error of this project into one sentence on stderr (an object with --json) and exit code 1."""
-    try:
-        yield
-    except Sher3Error as error:
-        typer.echo(json.dumps(error.to_dict(), default=str) if as_json else f"error: {error}", err=True)
-        raise typer.Exit(1) from error
 
 
 def printed(as_json: bool, data: dict[str, Any], text: str) -> None:

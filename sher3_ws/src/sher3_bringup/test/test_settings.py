@@ -10,6 +10,7 @@ from sher3_cli.root import make_app
 from sher3_common import Sher3Error
 from sher3_control.settings import ControlSettings, MotionSettings
 from sher3_description import load_robot
+from sher3_drivers.errors import DriverSettingsError
 from sher3_drivers.settings import default_settings
 from sher3_faults.budget import BudgetExceeded
 from typer.testing import CliRunner
@@ -27,6 +28,14 @@ def test_processes_can_be_joined():
         ("force_sensor", "pedal"),
         ("admittance",),
     )
+
+
+def test_the_loop_can_be_one_process_and_the_supervisor_never_is_part_of_it():
+    processes = parse_processes(None, mock=True, record=True, layout="composed")
+    assert processes[0] == ("force_sensor", "pedal", "admittance", "kinematics", "motor_driver")
+    assert all(len(process) == 1 for process in processes[1:])
+    assert {name for process in processes for name in process} == {*NODES} - {"gap_monitor"}
+    assert parse_processes(None, mock=False, record=False, layout="composed")[1:] == (("supervisor",),)
 
 
 def test_the_rate_sets_period_and_channels():
@@ -57,6 +66,8 @@ def test_patience_lengthens_time_limits_and_nothing_else():
         ({"rate": 5000.0}, "rate: .*less than or equal to 1000"),
         ({"rate": float("nan")}, "rate"),
         ({"processes": (("plant", "motor_driver"),)}, "wait for each other"),
+        ({"processes": (("motor_driver", "supervisor"),)}, "a process of its own"),
+        ({"processes": (("kinematics", "gap_monitor"),)}, "hold up the nodes of the loop"),
         ({"processes": (("pedals",),)}, "unknown node pedals; known: plant"),
         ({"processes": (("pedal",), ("pedal",))}, "named twice"),
         ({"mock": False, "links": ("socketcan:can0", "socketcan:can1"), "processes": (("plant",),)}, "for mocks only"),
@@ -80,6 +91,17 @@ def test_contradictions_are_named(options, message):
 def test_a_channel_too_few_for_the_rate():
     with pytest.raises(Sher3Error, match="links"):
         checked(rate=1000.0, links=("local:a", "local:b"))
+
+
+def test_name_plates_reach_the_driver_and_a_drive_that_does_not_exist_is_refused(tmp_path):
+    path = tmp_path / "drives.yaml"
+    text = "schema: sher3.drives/1\ndrives: {ROLL: {vendor: 1, product: 2, serial: 3}}\n"
+    path.write_text(text.replace("ROLL", "roll"))
+    (plate,) = checked(drives_path=path, processes=parse_processes(None, True, False)).drives().identities
+    assert (plate.drive, plate.serial) == ("roll", 3)
+    path.write_text(text)
+    with pytest.raises(DriverSettingsError, match="identities name the drives"):
+        checked(drives_path=path)
 
 
 def test_a_robot_file_that_is_not_there(tmp_path):

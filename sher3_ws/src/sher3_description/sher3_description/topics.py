@@ -140,7 +140,7 @@ _TABLE = (
     # Between a scripted surgeon, the plant process and the device ends of sensor and pedal; mocks only.
     Topic("mock/contact_wrench", _WRENCH, "b", STREAM, "wrench on the tip in {b}, into the plant"),
     Topic("mock/pedal", _JOY, "", STREAM, "pedal as the foot presses it, into the pedal's device end"),
-    Topic("mock/step", _TEXT, "", LATCHED, "step of the surgeon's script that begins"),
+    Topic("mock/step", _TEXT, "", STREAM, "step of the surgeon's script that begins"),
     Topic("mock/force_device", _WRENCH, "f", STREAM, "what the mock force sensor puts on its wire"),
     Topic("mock/pedal_device", _JOY, "", STREAM, "what the mock pedal puts on its wire"),
     Topic("mock/fault", _TEXT, "", STREAM, "fault to inject or to clear, as JSON"),

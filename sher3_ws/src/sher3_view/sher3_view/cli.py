@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Annotated, Optional
 
 import typer
-from sher3_common.completing import BAG, folders_with
+from sher3_common.commands.completing import BAG, folders_with
 from sher3_description.topics import NAMESPACE
 
 app = typer.Typer(rich_markup_mode="markdown")
@@ -94,10 +94,11 @@ def analyze(
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")] = False,
 ) -> None:
     """Figures of a run: tip path, force against velocity, tracking per axis, timing and drops per topic."""
-    from sher3_bags.cli import printed, reported
+    from sher3_bags.cli import printed
     from sher3_bags.figures.analysis import analyse
     from sher3_bags.figures.report import analysis_text
     from sher3_bags.reading import read_run
+    from sher3_common.commands.options import reported
 
     from sher3_view.figures import drawn, write_figures
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 from sher3_control.settings import ControlSettings, MotionSettings
 from sher3_description import Robot, load_robot
+from sher3_drivers.name_plates import load_name_plates
 from sher3_drivers.settings import MotorDriverSettings, default_settings
 
 from sher3_bringup.errors import ConfigurationError
@@ -27,6 +28,11 @@ NODES = (
     "recorder",
     "gap_monitor",
 )
+LOOP = ("force_sensor", "pedal", "admittance", "kinematics", "motor_driver")
+"""Nodes between the devices and the drives: with `--layout composed` they share a process, in this order."""
+UNHURRIED = frozenset({"recorder", "gap_monitor"})
+"""Nodes that compress and compute for milliseconds at a time."""
+Layout = Literal["separate", "composed"]
 MOCK_ONLY = frozenset({"plant"})
 ON_REQUEST = frozenset({"gap_monitor"})
 RATES = (100, 1000)
@@ -44,6 +50,7 @@ class RunSettings(BaseModel):
         rate: control rate [Hz]; sets `control_period` of the robot.
         processes: node names, grouped into processes.
         robot_path: robot file, or None for the nominal one.
+        drives_path: file of the drives' name plates (`sher3.drives/1`): others are refused at the start.
         effects: file of effects for the plant.
         links: CAN link per channel, as `socketcan:can0`; by default local ones of this run.
         record: folder of the recorded run.
@@ -70,6 +77,7 @@ class RunSettings(BaseModel):
     rate: Annotated[float, Field(ge=RATES[0], le=RATES[1])] = 500.0
     processes: tuple[tuple[str, ...], ...] = ()
     robot_path: Path | None = None
+    drives_path: Path | None = None
     effects: Path | None = None
     exchange: bool = False
     links: tuple[str, ...] = ()
@@ -102,6 +110,10 @@ class RunSettings(BaseModel):
             return f"node {twice[0]} is named twice"
         if any({"plant", "motor_driver"} <= set(process) for process in self.processes):
             return "plant and motor_driver wait for each other on the CAN link; give each a process"
+        if any("supervisor" in process and len(process) > 1 for process in self.processes):
+            return "the supervisor watches the others and must not end or wait with them; give it a process of its own"
+        if any(UNHURRIED & set(process) and set(process) & set(LOOP) for process in self.processes):
+            return "recorder and gap_monitor would hold up the nodes of the loop; give them another process"
         if self.record is None and "recorder" in self.names:
             return "the recorder needs --record FOLDER"
         return ""
@@ -166,7 +178,9 @@ class RunSettings(BaseModel):
             settings = default_settings(1.0 / self.rate, links)
         settings = drives_in(self.robot(), self.control().motion, settings)
         patient = DRIVES if self.patience != "strict" else {}
-        return MotorDriverSettings.checked(**{**settings.model_dump(), **patient})
+        plates = () if self.drives_path is None else load_name_plates(self.drives_path)
+        identities = [plate.model_dump() for plate in plates]
+        return MotorDriverSettings.checked(**{**settings.model_dump(), **patient, "identities": identities})
 
     def control(self) -> ControlSettings:
         """Return the settings of the control nodes."""
@@ -196,16 +210,21 @@ class RunSettings(BaseModel):
         return TravelBudget(self.robot(), self.control(), self.drives())
 
 
-def parse_processes(text: str | None, mock: bool, record: bool, monitor: bool = False) -> tuple[tuple[str, ...], ...]:
-    """Return the nodes of each process from `a+b,c` (a and b in one process); None means one process for each node.
+def parse_processes(
+    text: str | None, mock: bool, record: bool, monitor: bool = False, layout: Layout = "separate"
+) -> tuple[tuple[str, ...], ...]:
+    """Return the nodes of each process from `a+b,c` (a and b in one process); without a text all nodes in a `layout`.
 
-    `monitor` adds the gap monitor in a process of its own, unless the text names it.
+    `separate` means one process for each node, `composed` one for the nodes of the loop. `monitor` adds
+    the gap monitor in a process of its own, unless the text names it.
     """
     watch = (("gap_monitor",),) if monitor and "gap_monitor" not in (text or "") else ()
     if text:
         return tuple(tuple(name.strip() for name in process.split("+")) for process in text.split(",")) + watch
     skip = {*ON_REQUEST, *(() if mock else MOCK_ONLY), *(() if record else ("recorder",))}
-    return tuple((name,) for name in NODES if name not in skip) + watch
+    loop = LOOP if layout == "composed" else ()
+    others = tuple((name,) for name in NODES if name not in {*skip, *loop})
+    return (*((loop,) if loop else ()), *others, *watch)
 
 
 def checked(**options: object) -> RunSettings:

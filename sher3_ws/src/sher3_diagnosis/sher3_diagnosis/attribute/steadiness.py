@@ -1,4 +1,8 @@
-"""Whether a cause holds where it was not fitted: in an excitation left out, and from one excitation to the next."""
+"""Whether a cause has one size in every excitation, and holds in one left out: an effect does, a stand-in does not.
+
+Letting the coefficients of a cause differ from excitation to excitation explains hardly more when its law is right.
+The share it explains more is the parameter's spread, weighted by what each excitation tells of it.
+"""
 
 from __future__ import annotations
 
@@ -10,8 +14,8 @@ import numpy as np
 
 from sher3_diagnosis.channel import Array
 from sher3_diagnosis.evidence import Evidence
-from sher3_diagnosis.fitting import Fit, solve
-from sher3_diagnosis.thresholds import INFORMED
+from sher3_diagnosis.fit.fitting import Fit, solve
+from sher3_diagnosis.thresholds import CERTAIN, CONSTANT, INFORMED
 
 
 @dataclass(frozen=True)
@@ -39,6 +43,21 @@ class Steadiness:
         """Loss that the cause explains with the same coefficients in all runs."""
         return self.gained((0,) * len(self.excitation))
 
+    @cached_property
+    def varying(self) -> float:
+        """Loss that it explains in addition with coefficients of its own in every excitation."""
+        return self.gained(self.excitation) - self.explained
+
+    @property
+    def spread(self) -> float:
+        """Share that coefficients of their own add."""
+        return self.varying / max(self.explained, 1.0)
+
+    @property
+    def constant(self) -> bool:
+        """Whether one set of coefficients does."""
+        return self.spread < CONSTANT or self.varying < CERTAIN
+
     @property
     def scatter(self) -> float:
         """F: how much more coefficients differ between excitations than between repeats of one; 1 for a true cause.
@@ -50,10 +69,9 @@ class Steadiness:
         runs = len(self.excitation)
         if width == 0 or kinds < 2 or runs == kinds:
             return 1.0
-        between = self.gained(self.excitation) - self.explained
         within = self.gained(tuple(range(runs))) - self.gained(self.excitation)
         per_repeat = max(within / (runs - kinds), float(width))
-        return max(between, 0.0) / (kinds - 1) / per_repeat
+        return max(self.varying, 0.0) / (kinds - 1) / per_repeat
 
     @property
     def lost(self) -> float:

@@ -18,10 +18,10 @@ from sher3_diagnosis.attribute.rivals import Attribution
 from sher3_diagnosis.channel import Channel, Mask, Residual
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.filter import BANDWIDTH
-from sher3_diagnosis.fitting import fit, make_term
+from sher3_diagnosis.fit.fitting import fit, make_term
+from sher3_diagnosis.fit.whitened import Whitened
 from sher3_diagnosis.quantify.parameters import parameters
 from sher3_diagnosis.verdict import Cause, Parameter
-from sher3_diagnosis.whitened import Whitened
 from sher3_effects.friction.presliding_friction import PreslidingFriction
 from sher3_effects.friction.stribeck_friction import StribeckFriction
 

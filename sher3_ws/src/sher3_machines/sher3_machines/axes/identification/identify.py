@@ -12,7 +12,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 from sher3_diagnosis.channel import Array
-from sher3_diagnosis.fitting import solve
+from sher3_diagnosis.fit.fitting import solve
 from sher3_diagnosis.thresholds import JACKKNIFE
 
 from sher3_machines.axes.view import AxisView

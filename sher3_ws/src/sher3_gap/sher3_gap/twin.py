@@ -12,7 +12,7 @@ from sher3_diagnosis.channel import Array
 from sher3_sim.closed_loop import simulate
 
 from sher3_gap.case.loading import signals_of
-from sher3_gap.case.signals import RunSignals
+from sher3_gap.signals import RunSignals
 
 
 def driven_as(run: RunSignals, robot: Robot, seed: int = 0, shift: float = 0.0, **plant: object) -> RunSignals | None:

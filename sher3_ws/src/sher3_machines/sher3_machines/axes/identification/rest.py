@@ -11,7 +11,7 @@ from collections.abc import Collection, Sequence
 import numpy as np
 from sher3_diagnosis.attribute.candidates import Candidates
 from sher3_diagnosis.channel import Array, Channel
-from sher3_diagnosis.fitting import Fit, Term
+from sher3_diagnosis.fit.fitting import Fit, Term
 
 from sher3_machines.axes.evidence import AxisEvidence
 from sher3_machines.axes.view import AxisView

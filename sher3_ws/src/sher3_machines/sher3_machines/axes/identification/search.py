@@ -7,11 +7,11 @@ from dataclasses import replace
 from sher3_diagnosis.attribute.candidates import Candidates
 from sher3_diagnosis.attribute.rivals import Attribution, with_rivals
 from sher3_diagnosis.attribute.search import Left, Say, attribute
-from sher3_diagnosis.fitting import Fit, fit
+from sher3_diagnosis.fit.fitting import Fit, fit
 from sher3_diagnosis.thresholds import NEEDED
 
 from sher3_machines.axes.evidence import AxisEvidence
-from sher3_machines.axes.rest import Bounded, DryFirst, rest_loss
+from sher3_machines.axes.identification.rest import Bounded, DryFirst, rest_loss
 
 POLISHES = 4
 """Rounds over the causes at most: the second lets the first cause see the polished last one."""

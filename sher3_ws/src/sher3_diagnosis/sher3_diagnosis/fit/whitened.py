@@ -16,7 +16,7 @@ class Whitened:
         views: per run, what effects see of it.
         residuals, floors: per run and channel.
         target: `target[r][c]` is the (N,) vector of channel c in run r: samples that count, components in turn.
-        fits: kept by `sher3_diagnosis.fitting`.
+        fits: kept by `sher3_diagnosis.fit.fitting`.
     """
 
     def __init__(self, views: Sequence[Any], residuals: Sequence[Residuals], floors: Sequence[Floors]) -> None:

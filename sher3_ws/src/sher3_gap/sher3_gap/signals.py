@@ -14,6 +14,9 @@ from numpy.typing import NDArray
 from sher3_diagnosis.channel import Array
 from sher3_diagnosis.filter import DECIMATED_RATE, EDGE, low_pass
 
+RAMP_LIMIT = 0.25
+"""Longest time from an unloaded tip to a stated plateau over which the load is taken as unknown, s."""
+
 
 @dataclass(frozen=True)
 class RunSignals:

@@ -11,8 +11,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from sher3_diagnosis.channel import Array, Channel
-from sher3_diagnosis.term import Term
-from sher3_diagnosis.whitened import Whitened
+from sher3_diagnosis.fit.term import Term
+from sher3_diagnosis.fit.whitened import Whitened
 
 
 def products(data: Whitened, terms: Sequence[Term], channel: Channel) -> tuple[Array, Array, Array]:

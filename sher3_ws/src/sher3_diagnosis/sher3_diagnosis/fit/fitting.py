@@ -13,10 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from sher3_diagnosis.channel import Array, Channel
-from sher3_diagnosis.gram import products
-from sher3_diagnosis.solving import RIDGE, solve, solve_within
-from sher3_diagnosis.term import Term, make_term
-from sher3_diagnosis.whitened import Whitened
+from sher3_diagnosis.fit.gram import products
+from sher3_diagnosis.fit.solving import RIDGE, solve, solve_within
+from sher3_diagnosis.fit.term import Term, make_term
+from sher3_diagnosis.fit.whitened import Whitened
 
 __all__ = ["RIDGE", "Fit", "Term", "fit", "make_term", "solve"]
 

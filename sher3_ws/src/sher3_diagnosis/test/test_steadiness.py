@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from sher3_diagnosis.judge.evidence.transfer import Steadiness
+from sher3_diagnosis.attribute.steadiness import Steadiness
 
 
 def steadiness(*values: float, weight: float = 100.0) -> Steadiness:

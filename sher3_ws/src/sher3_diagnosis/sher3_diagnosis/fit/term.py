@@ -9,7 +9,7 @@ from typing import Any
 
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Effect, Shape, Signature
-from sher3_diagnosis.whitened import Whitened
+from sher3_diagnosis.fit.whitened import Whitened
 
 
 @dataclass(frozen=True)
@@ -22,7 +22,7 @@ class Term:
         width: number of coefficients p.
         limit: largest magnitude of a coefficient, in standard deviations: each is then expected to be normal with a
             standard deviation of one. Infinite for coefficients of which nothing is known beforehand.
-        products: with other terms, kept by `sher3_diagnosis.gram`.
+        products: with other terms, kept by `sher3_diagnosis.fit.gram`.
     """
 
     effect: Effect
