@@ -63,7 +63,7 @@ HAZARDS = (
         (f"{_DRIVERS}/test_force_sensor.py", "sher3_ws/src/sher3_control/test/test_hand.py"),
         ("force sensor silent, dead", "force sensor frozen", "force not finite, out of range"),
         "a false force below 0.8 N or a quarter of the hand: 500 um/s near tissue, 800 um/s free, until the pedal is "
-        "released; one of 1 N: 50 um near tissue",
+        "released; one of 1 N: 35 um near tissue",
     ),
     Hazard(
         "an axis moves by itself",
