@@ -305,7 +305,7 @@ class Contradicted(Kind):
 
     def __call__(self, items: list[Any], now: int) -> list[Any]:
         """Return each item with one of random content beside it."""
-        passed = []
+        passed: list[Any] = []
         for item in items:
             pair = [item, self.items.garbage(item, self.random)]
             passed += reversed(pair) if self.parameters["first"] else pair

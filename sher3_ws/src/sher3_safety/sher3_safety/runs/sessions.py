@@ -54,7 +54,8 @@ def excitations(robot: Robot, seed: int) -> tuple[Array, Array]:
     """
     draw, labels = np.random.default_rng([seed, 0xE8C1]), list(catalogue())
     share = 0.5 - 0.5 * np.cos(np.pi * np.linspace(0.0, 1.0, round(BETWEEN / robot.control_period)))[:, None]
-    goals, wrenches = [np.zeros((1, 5))], [np.zeros((1, 6))]
+    goals: list[Array] = [np.zeros((1, 5))]
+    wrenches: list[Array] = [np.zeros((1, 6))]
     while sum(map(len, goals)) * robot.control_period < SESSION:
         made = excite(labels[draw.integers(len(labels))], robot)
         way = goals[-1][-1] + share * (made.position[0] - goals[-1][-1])
