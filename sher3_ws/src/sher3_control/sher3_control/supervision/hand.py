@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from sher3_common.reasons import Reason
 from sher3_common.stamps import nanoseconds, seconds
-from sher3_common.vectors import Vector, Wrench
+from sher3_common.vectors import Vector
 from sher3_kinematics import RobotKinematics
 
 from sher3_control.settings import SupervisorSettings
@@ -51,7 +51,7 @@ class HandDetector(PlainDetector):
         self._known, self._since = None, -1
         self._found = self._found._replace(value=0.0)
 
-    def feed(self, stamp: int, wrench: Wrench, q: Vector, effort: Vector, command: Vector) -> None:
+    def feed(self, stamp: int, wrench: Vector, q: Vector, effort: Vector, command: Vector) -> None:
         """Take samples of one tick [ns].
 
         They count while neither the motion nor the sensor's force changes faster than `hand_even` and `hand_jump`.
