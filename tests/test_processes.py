@@ -80,10 +80,23 @@ def test_ready_line_then_ctrl_c_stops_everything(robot, bag_folder):
 
 
 def test_nodes_can_share_processes_and_the_run_can_end_by_itself(robot):
-    nodes = "plant,force_sensor+pedal,admittance+kinematics,motor_driver+supervisor"
+    nodes = "plant,force_sensor+pedal,admittance+kinematics+motor_driver,supervisor"
     running = robot("--nodes", nodes, "--duration", "0.5")
     assert "4 processes" in running.ready()
     assert running.finish()[0] == 0
+
+
+def test_the_loop_in_one_process_ends_as_one_and_stops_the_robot(robot):
+    """Who shares a process ends with it; plant and supervisor are other processes."""
+    running = robot("--layout", "composed", "--rate", "200")
+    assert "3 processes" in running.ready()
+    children = running.children()
+    time.sleep(0.5)
+    children[1].kill()
+    status, _, err = running.finish()
+    assert status == 4
+    assert "force_sensor+pedal+admittance+kinematics+motor_driver stopped: killed by SIGKILL" in err
+    assert not [child for child in children if child.is_running() and child.status() != psutil.STATUS_ZOMBIE]
 
 
 def test_the_death_of_a_process_stops_the_robot(robot):

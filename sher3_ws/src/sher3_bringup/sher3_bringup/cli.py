@@ -4,22 +4,30 @@ from __future__ import annotations
 
 import json
 import sys
+from enum import Enum
 from pathlib import Path
 from typing import Annotated, Optional
 
 import typer
+from sher3_common.commands.options import Domain, Json
 
 app = typer.Typer(rich_markup_mode="markdown")
 
-Json = Annotated[bool, typer.Option("--json", help="Print one JSON object instead of text.")]
 Robot = Annotated[Optional[Path], typer.Option(help="Robot file; the nominal robot by default.")]  # noqa: UP045
-Domain = Annotated[int, typer.Option(help="ROS domain id.", min=0, max=232, envvar="ROS_DOMAIN_ID")]
+
+
+class Layout(str, Enum):
+    """Which nodes share a process."""
+
+    SEPARATE = "separate"
+    COMPOSED = "composed"
 
 
 @app.command(
     epilog="Examples: `sher3 up` · `sher3 up --rate 1000 --record bags/run` · "
-    "`sher3 up --effects backlash.yaml` · `sher3 up --nodes force_sensor+pedal,admittance+kinematics,"
-    "motor_driver,plant,supervisor` · `sher3 up --real --can socketcan:can0 --can socketcan:can1`"
+    "`sher3 up --rate 1000 --layout composed` · `sher3 up --effects backlash.yaml` · "
+    "`sher3 up --nodes force_sensor+pedal,admittance+kinematics,motor_driver,plant,supervisor` · "
+    "`sher3 up --real --can socketcan:can0 --can socketcan:can1`"
 )
 def up(
     mock: Annotated[
@@ -29,6 +37,9 @@ def up(
     nodes: Annotated[
         str, typer.Option(help="Nodes to run: `,` between processes, `+` within one; all by default.")
     ] = "",
+    layout: Annotated[
+        Layout, typer.Option(help="Processes: one for each node, or one for the loop (half the processor time).")
+    ] = Layout.SEPARATE,
     effects: Annotated[Optional[Path], typer.Option(help="Effects for the plant (YAML, sher3.effects/1).")] = None,  # noqa: UP045
     record: Annotated[Optional[Path], typer.Option(help="Record the run into this new folder.")] = None,  # noqa: UP045
     record_optional: Annotated[
@@ -71,8 +82,8 @@ def up(
 ) -> None:
     """Start the robot and keep it running until Ctrl-C.
 
-    Every node is a process of its own unless `--nodes` joins some. A line says when all are ready. If a process ends,
-    everything is stopped, drives first.
+    Every node is a process of its own unless `--layout composed` or `--nodes` joins some. A line says when
+    all are ready. If a process ends, everything is stopped, drives first.
 
     Exit codes: 0 stopped as asked, 2 wrong option, 1 bad file, 3 not started (a device is missing), 4 a process died,
     5 a process had to be killed.
@@ -84,10 +95,11 @@ def up(
     settings = checked(
         mock=mock,
         rate=rate,
-        processes=parse_processes(nodes, mock, record is not None, monitor),
+        processes=parse_processes(nodes, mock, record is not None, monitor, layout.value),
         robot_path=robot,
         drives_path=drives,
         effects=effects,
+        exchange=view and mock,
         record=record,
         recording="optional" if record_optional else "required",
         duration=duration,

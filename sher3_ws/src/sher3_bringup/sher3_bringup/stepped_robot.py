@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
 from sher3_control.nodes.admittance_node import AdmittanceNode
@@ -22,6 +23,7 @@ from sher3_drivers.sensor.force_sensor_node import ForceSensorNode
 from sher3_drivers.settings import MotorDriverSettings, default_settings
 from sher3_faults.injector import FaultInjector
 from sher3_runtime import Graph
+from sher3_runtime.composed.composition import Composition
 from sher3_sim import PlantEffect
 from sher3_sim.plant_node import PlantNode
 from sher3_sim.scatter import RunScatter
@@ -35,7 +37,8 @@ class SteppedRobot:
     """Every node of `sher3 up` but the recorder, in one `Graph`.
 
     The speed regime is the bench unless `control` says another. The motor driver's limits are those of that regime, as
-    in `sher3 up`, unless `drives` are given: who measures the strict limits gives `default_settings(period)`.
+    in `sher3 up`, unless `drives` are given: who measures the strict limits gives `default_settings(period)`. With
+    `composed` the nodes of the loop share a process, as in `sher3 up --layout composed`.
 
     Attributes:
         graph: the graph; `force` and `pedal_device`: the device ends; the nodes by their names.
@@ -50,6 +53,7 @@ class SteppedRobot:
         control: ControlSettings | None = None,
         scatter: RunScatter | None = None,
         drives: MotorDriverSettings | None = None,
+        composed: bool = False,
     ) -> None:
         robot = robot or load_robot()
         control = control or ControlSettings.from_robot(robot, {"motion": {"regime": "bench"}})
@@ -60,14 +64,16 @@ class SteppedRobot:
         count = len(settings.channels)
         device_ends, host_ends = ([open_link(f"virtual:{channel}-{i}") for i in range(count)] for _ in range(2))
         devices = {"force_device": self.force, "pedal_device": self.pedal_device, "faults": FaultInjector}
+        together = Composition() if composed else None
+        add = graph.add if together is None else partial(graph.add_to, together)
         self.plant = graph.add(PlantNode, robot, settings, effects, seed, scatter, device_ends, **devices)
         self._settings, self._channel = settings, channel
-        self.motor_driver = graph.add(MotorDriverNode, robot, settings, self._lockstep(host_ends))
-        self.force_sensor = graph.add(ForceSensorNode, robot, self.force)
-        self.pedal = graph.add(PedalNode, robot, self.pedal_device)
+        self.motor_driver = add(MotorDriverNode, robot, settings, self._lockstep(host_ends))
+        self.force_sensor = add(ForceSensorNode, robot, self.force)
+        self.pedal = add(PedalNode, robot, self.pedal_device)
         self.supervisor = graph.add(SupervisorNode, robot, control)
-        self.kinematics = graph.add(KinematicsNode, robot, control)
-        self.admittance = graph.add(AdmittanceNode, robot, control)
+        self.kinematics = add(KinematicsNode, robot, control)
+        self.admittance = add(AdmittanceNode, robot, control)
 
     def _lockstep(self, links: Sequence[CanLink]) -> list[LockstepLink]:
         return [LockstepLink(link, [self.plant.drives.poll]) for link in links]

@@ -30,6 +30,14 @@ def test_processes_can_be_joined():
     )
 
 
+def test_the_loop_can_be_one_process_and_the_supervisor_never_is_part_of_it():
+    processes = parse_processes(None, mock=True, record=True, layout="composed")
+    assert processes[0] == ("force_sensor", "pedal", "admittance", "kinematics", "motor_driver")
+    assert all(len(process) == 1 for process in processes[1:])
+    assert {name for process in processes for name in process} == {*NODES} - {"gap_monitor"}
+    assert parse_processes(None, mock=False, record=False, layout="composed")[1:] == (("supervisor",),)
+
+
 def test_the_rate_sets_period_and_channels():
     """A kilohertz does not fit on the channels of 500 Hz; the layout follows."""
     slow, fast = checked(rate=500.0), checked(rate=1000.0)
@@ -58,6 +66,8 @@ def test_patience_lengthens_time_limits_and_nothing_else():
         ({"rate": 5000.0}, "rate: .*less than or equal to 1000"),
         ({"rate": float("nan")}, "rate"),
         ({"processes": (("plant", "motor_driver"),)}, "wait for each other"),
+        ({"processes": (("motor_driver", "supervisor"),)}, "a process of its own"),
+        ({"processes": (("kinematics", "gap_monitor"),)}, "hold up the nodes of the loop"),
         ({"processes": (("pedals",),)}, "unknown node pedals; known: plant"),
         ({"processes": (("pedal",), ("pedal",))}, "named twice"),
         ({"mock": False, "links": ("socketcan:can0", "socketcan:can1"), "processes": (("plant",),)}, "for mocks only"),

@@ -4,14 +4,15 @@ rclpy's own executor builds a new wait set and one task per message at every spi
 the control loop. This one keeps its wait sets until an entity comes or goes (rclpy then triggers the guard condition)
 and hands the raw bytes straight to the codec. A control loop waits only for the topics that carry a stream. Silent
 topics, services, timers, clients, guard conditions and event handlers are looked at every `LOOK_NS`; all of these but
-the topics go through rclpy's own takers. The executor has one thread and raises what a callback raises.
+the topics go through rclpy's own takers. The executor has one thread, or one at a time (`relief`), and raises what a
+callback raises.
 """
 
 from __future__ import annotations
 
 import select
-from collections.abc import Callable
-from contextlib import ExitStack
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager, nullcontext
 from time import monotonic_ns, sleep
 from typing import Any
 
@@ -22,6 +23,9 @@ from rclpy.node import Node
 from rclpy.task import Task
 
 from sher3_runtime.clock import Clock
+from sher3_runtime.composed.composition import Composition
+from sher3_runtime.composed.relief import Relief
+from sher3_runtime.composed.turn import Turn
 from sher3_runtime.ports import Subscribed, clock_of, ports
 from sher3_runtime.tick import Tick
 
@@ -29,12 +33,14 @@ IDLE_NS = 100_000_000
 """Longest wait [ns]: a shutdown that wakes nobody is noticed after this time."""
 LOOK_NS = 5_000_000
 """Period [ns] at which a process that wakes up at the control rate looks at everything that is no stream."""
+NEVER_NS = 1 << 62
 QUIET_NS = 100_000_000
 """A topic that was silent for this long [ns] counts as no stream, until its next sample."""
 
 
 Take = Callable[[Any], Any]
-Others = dict[str, list[tuple[Any, Take]]]
+Entity = tuple[Any, Take, Turn | None]
+"""What a callback comes from, its taker, and the turn of its node."""
 
 
 class _Topic:
@@ -66,19 +72,21 @@ class RawExecutor(Executor):
 
     def __init__(self, *, context: Any = None) -> None:
         super().__init__(context=context)
+        self.relief: Relief | None = None
         self._held = ExitStack()
         self._wait_set: Any = None
         self._stream_set: Any = None
         self._stale = True
         self._add: list[tuple[Callable[[Any], object], Any]] = []
+        self._compositions: list[Composition] = []
         self._topics: dict[int, _Topic] = {}
         self._streams: list[_Topic] = []
-        self._others: list[tuple[str, list[tuple[Any, Take]]]] = []
+        self._others: list[tuple[str, list[Entity]]] = []
         self._waitables: list[Any] = []
         self._ticks: list[Tick] = []
         self._files: dict[int, Callable[[], None]] = {}
         self._clock_of_ticks: Clock | None = None
-        self._period_ns = IDLE_NS
+        self._period_ns, self._paced = IDLE_NS, False
         self._events: list[Any] = []
         self._asked: list[Any] = []
         self._events_due_ns = self._topics_due_ns = self._look_due_ns = 0
@@ -90,7 +98,7 @@ class RawExecutor(Executor):
         timeout = IDLE_NS if timeout_sec is None or timeout_sec < 0 else min(int(timeout_sec * 1e9), IDLE_NS)
         now, clock = monotonic_ns(), self._clock_of_ticks
         if clock is not None:
-            timeout = max(0, min(timeout, min([tick.due_ns for tick in self._ticks]) - clock.offset_ns - now))
+            timeout = max(0, min(timeout, self._next_due() - clock.offset_ns - now))
         if self._files:
             self._wait_on_files(timeout)
             now, timeout = monotonic_ns(), 0
@@ -99,11 +107,42 @@ class RawExecutor(Executor):
             self._wait_and_run(timeout, now)
         if clock is not None:
             self._run_ticks(clock)
+        for composition in self._compositions:
+            composition.flush()
+
+    def work(self) -> float:
+        """Deliver what has come and run the ticks that are due, without waiting; what a stand-in does (`relief`).
+
+        Returns:
+            Time until the next tick [s].
+        """
+        for topic in self._topics.values():
+            topic.drain()
+        clock = self._clock_of_ticks
+        if clock is None:
+            return IDLE_NS * 1e-9
+        self._run_ticks(clock)
+        for composition in self._compositions:
+            composition.flush()
+        return (self._next_due() - clock.now()) * 1e-9
+
+    def _next_due(self) -> int:
+        """Return when the next tick is due [ns], ticks of nodes at work left out."""
+        return min([tick.due_ns for tick in self._ticks if tick.turn is None or not tick.turn.taken], default=NEVER_NS)
+
+    @contextmanager
+    def _asleep(self) -> Iterator[None]:
+        """Sleep so that a node in the hands of a stand-in can go on."""
+        if self.relief is not None and self.relief.away:
+            with self.relief.at_rest():
+                yield
+        else:
+            yield
 
     def _wait_and_run(self, timeout_ns: int, now: int) -> None:
         """Wait for the streams, or every `LOOK_NS` for everything, and run what is ready."""
         left = self._look_due_ns - now
-        if left <= 0 or (timeout_ns > left and not self._streams):
+        if left <= 0 or (timeout_ns > left and not self._streams and not self._paced):
             self._wait(timeout_ns)
             self._take_topics()
             self._run_others()
@@ -118,18 +157,22 @@ class RawExecutor(Executor):
     def _wait_for_streams(self, timeout_ns: int) -> None:
         waking = [topic.handle for topic in self._streams if topic.subscribed.wakes]
         if not waking:
-            sleep(timeout_ns * 1e-9)
+            with self._asleep():
+                sleep(timeout_ns * 1e-9)
             return
         wait_set = self._stream_set
         wait_set.clear_entities()
         for handle in waking:
             wait_set.add_subscription(handle)
-        wait_set.wait(timeout_ns)
+        with self._asleep():
+            wait_set.wait(timeout_ns)
 
     def settle(self) -> bool:
         """Run what is ready now, without waiting; return whether there was anything (for stepped time)."""
         if self._stale:
             self._rebuild()
+        for composition in self._compositions:
+            composition.flush()
         files = bool(self._files) and self._wait_on_files(0)
         self._wait(0)
         topics = self._take_topics()
@@ -169,7 +212,7 @@ class RawExecutor(Executor):
         nodes = self.get_nodes()
         self._stale = False
         self._topics, self._streams, self._look_due_ns = {}, [], 0
-        others: Others = {"guard_condition": [], "service": [], "timer": [], "client": []}
+        others: dict[str, list[Entity]] = {"guard_condition": [], "service": [], "timer": [], "client": []}
         for node in nodes:
             port = ports(node)
             for sub in node.subscriptions:
@@ -177,10 +220,15 @@ class RawExecutor(Executor):
                 if pointer not in port.polled and self._hold(sub.handle):
                     subscribed = port.subscribed.get(pointer) or Subscribed()
                     self._topics[pointer] = _Topic(sub, port.deliveries.get(pointer, sub.callback), subscribed)
-            self._collect(others["service"], node.services, self._take_service)
-            self._collect(others["timer"], node.timers, self._take_ready_timer)
-            self._collect(others["client"], node.clients, self._take_client)
-            self._collect(others["guard_condition"], node.guards, self._take_guard_condition)
+            for kind, entities, take in (
+                ("service", node.services, self._take_service),
+                ("timer", node.timers, self._take_ready_timer),
+                ("client", node.clients, self._take_client),
+                ("guard_condition", node.guards, self._take_guard_condition),
+            ):
+                others[kind] += [(entity, take, port.turn) for entity in entities if self._hold(entity.handle)]
+        found = [ports(node).composition for node in nodes]
+        self._compositions = list({id(c): c for c in found if c is not None}.values())
         waitables = [waitable for node in nodes for waitable in node.waitables if self._hold(waitable)]
         self._hold(self._context.handle)
         # Our own guard condition only has to wake the wait: `wake` has marked the wait set as stale already.
@@ -199,10 +247,7 @@ class RawExecutor(Executor):
             return False
         return True
 
-    def _collect(self, found: list[tuple[Any, Take]], entities: Any, take: Take) -> None:
-        found.extend((entity, take) for entity in entities if self._hold(entity.handle))
-
-    def _size_wait_set(self, guards: list[Any], others: Others, waitables: list[Any]) -> None:
+    def _size_wait_set(self, guards: list[Any], others: dict[str, list[Entity]], waitables: list[Any]) -> None:
         subscriptions = [topic.handle for topic in self._topics.values()]
         counts = {kind: len(entities) for kind, entities in others.items()}
         counts["subscription"], counts["event"] = len(subscriptions), 0
@@ -217,7 +262,7 @@ class RawExecutor(Executor):
         self._add += [(wait_set.add_guard_condition, handle) for handle in guards]
         for kind, entities in others.items():
             add = getattr(wait_set, f"add_{kind}")
-            self._add += [(add, entity.handle) for entity, _ in entities]
+            self._add += [(add, entity.handle) for entity, _, _ in entities]
         # Most waitables are event handlers nobody waits for; the others (actions) are worth their place.
         self._events = [waitable for waitable in waitables if isinstance(waitable, EventHandler)]
         self._waitables = [waitable for waitable in waitables if waitable not in self._events]
@@ -234,6 +279,8 @@ class RawExecutor(Executor):
         self._files = {file.fileno(): callback for node in nodes for file, callback in ports(node).readables}
         self._period_ns = min((clock_of(node).period_ns for node in nodes), default=IDLE_NS)
         self._clock_of_ticks = clock_of(nodes[0]) if ticks and not clock_of(nodes[0]).stepped else None
+        # Streams within the process need no wait; what else there is can wait for the next look.
+        self._paced = bool(self._compositions) and self._period_ns <= LOOK_NS and self._clock_of_ticks is not None
 
     # One spin.
 
@@ -249,14 +296,16 @@ class RawExecutor(Executor):
             self._asked = self._waitables + self._events
         else:
             self._asked = self._waitables
-        wait_set.wait(timeout_ns)
+        with self._asleep():
+            wait_set.wait(timeout_ns)
 
     def _wait_on_files(self, timeout_ns: int) -> bool:
         """Wait on the files instead of the wait set.
 
         The wait is no longer than a period, since the topics are only looked at afterwards.
         """
-        readable, _, _ = select.select(self._files, (), (), min(timeout_ns, self._period_ns) * 1e-9)
+        with self._asleep():
+            readable, _, _ = select.select(self._files, (), (), min(timeout_ns, self._period_ns) * 1e-9)
         # Several files may share a callback, which serves them all.
         for callback in dict.fromkeys([self._files[number] for number in readable]):
             callback()
@@ -280,10 +329,11 @@ class RawExecutor(Executor):
         wait_set, anything = self._wait_set, False
         for kind, entities in self._others:
             if ready := wait_set.get_ready_entities(kind):
-                for entity, take in entities:
-                    if entity.handle.pointer in ready:
+                for entity, take, turn in entities:
+                    if entity.handle.pointer in ready and (turn is None or not turn.taken):
                         anything = True
-                        self._run(take(entity))
+                        with turn or nullcontext():
+                            self._run(take(entity))
         for waitable in self._asked:
             if waitable.is_ready(wait_set):
                 anything = True

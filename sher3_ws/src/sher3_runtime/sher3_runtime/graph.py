@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from contextlib import nullcontext
+from functools import partial
 from itertools import groupby
 from types import TracebackType
 from typing import Any, TypeVar
@@ -18,6 +20,7 @@ from sher3_description import TOPICS
 
 from sher3_runtime import environment
 from sher3_runtime.clock import SteppedClock, set_timer_slack
+from sher3_runtime.composed.composition import Composition
 from sher3_runtime.domains import own_domain
 from sher3_runtime.executor import RawExecutor
 from sher3_runtime.ports import NODE_OPTIONS, advertise, ports, subscribe, use_clock
@@ -59,7 +62,18 @@ class Graph:
 
     def add(self, factory: Callable[..., N], *arguments: Any, **settings: Any) -> N:
         """Add the node that `factory(*arguments, context=..., **settings)` returns."""
-        node = factory(*arguments, context=self.context, **settings)
+        return self._add(partial(factory, *arguments, **settings), None)
+
+    def add_to(self, composition: Composition, factory: Callable[..., N], *arguments: Any, **settings: Any) -> N:
+        """Add a node, as `add` does, to the nodes of one process, which hear each other without the middleware."""
+        return self._add(partial(factory, *arguments, **settings), composition)
+
+    def _add(self, factory: Callable[..., N], composition: Composition | None) -> N:
+        with composition or nullcontext():
+            node = factory(context=self.context)
+            ports(node)
+        if composition is not None:
+            composition.open()
         self.nodes.append(node)
         self.executor.add_node(node)
         self._matched, self._routes = False, self._find_routes()
@@ -90,24 +104,35 @@ class Graph:
         return stamp
 
     def pause(self, node: Node) -> None:
-        """Stop a node as SIGSTOP stops its process: no tick, no callback.
+        """Stop a node as SIGSTOP stops its process: no tick, no callback; nodes of the same process stop with it.
 
         What is sent to the node waits in its queues.
         """
-        self.nodes.remove(node)
-        self._paused.append(node)
-        self.executor.remove_node(node)
+        for one in self._process_of(node, self.nodes):
+            self.nodes.remove(one)
+            self._paused.append(one)
+            self.executor.remove_node(one)
         self._routes = self._find_routes()
 
     def resume(self, node: Node) -> None:
         """Let a paused node go on: it gets first what waits in its queues; what did not fit into them is lost."""
-        self.executor.add_node(node)
+        process = self._process_of(node, self._paused)
+        for one in process:
+            self.executor.add_node(one)
         while self.executor.settle():
             pass
-        self._paused.remove(node)
-        self.nodes.append(node)
+        for one in process:
+            self._paused.remove(one)
+            self.nodes.append(one)
         self._routes = self._find_routes()
-        self._expect_nothing(node)
+        for one in process:
+            self._expect_nothing(one)
+
+    @staticmethod
+    def _process_of(node: Node, among: list[Node]) -> list[Node]:
+        """Return the nodes of the process of `node`."""
+        composition = ports(node).composition
+        return [one for one in among if one is node or (composition and ports(one).composition is composition)]
 
     def _expect_nothing(self, node: Node) -> None:
         """Count what was sent until now as received by a node that did not exist then."""

@@ -46,4 +46,11 @@ def advertise_on_demand(node: Node, name: str) -> OnDemand:
         UnknownTopic: the name is not in the table.
     """
     publish, port = advertise(node, name), ports(node)
-    return OnDemand(publish, port.publishers[name].get_subscription_count, port.clock.stepped)
+    count: Callable[[], int] = port.publishers[name].get_subscription_count
+    if (composition := port.composition) is not None:
+        offers, outside = composition.offers(name), count
+
+        def count() -> int:
+            return len(offers) + outside()
+
+    return OnDemand(publish, count, port.clock.stepped)

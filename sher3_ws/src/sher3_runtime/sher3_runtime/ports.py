@@ -1,156 +1,46 @@
 """The doors of a node: `subscribe`, `advertise`, `on_tick`, `on_readable`.
 
 A node stays an ordinary `rclpy.node.Node` whose subscriptions and publishers come from the topic table; callbacks get
-samples, not messages. With `SHER3_EXECUTOR=default` the same calls make ordinary message-object subscriptions and
-publishers for rclpy's own executor.
+samples, not messages. Nodes of one process hear each other without the middleware (`composition`). With
+`SHER3_EXECUTOR=default` the same calls make ordinary message-object subscriptions and publishers for rclpy's own
+executor.
 """
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
+from functools import partial
 from typing import Any
-from weakref import WeakKeyDictionary
 
-from rclpy.context import Context
 from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from rclpy.node import Node
-from rclpy.parameter import Parameter
-from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
-from rclpy.utilities import get_default_context
-from sher3_common import Sher3Error
 from sher3_description import ACTUATORS
-from sher3_description.topics import NAMESPACE, TOPICS, Qos, Topic
+from sher3_description.topics import Topic
 
-from sher3_runtime.clock import Clock
-from sher3_runtime.codec.cdr import CdrError, codec
+from sher3_runtime.codec.cdr import CdrError, as_sent, codec
 from sher3_runtime.codec.messages import from_message, message_class, to_message
+from sher3_runtime.composed.composition import Composition
+from sher3_runtime.port import EXECUTOR_VARIABLE as EXECUTOR_VARIABLE
+from sher3_runtime.port import GAPLESS
+from sher3_runtime.port import NODE_OPTIONS as NODE_OPTIONS
+from sher3_runtime.port import PERIOD_VARIABLE as PERIOD_VARIABLE
+from sher3_runtime.port import STATISTICS_VARIABLE as STATISTICS_VARIABLE
+from sher3_runtime.port import TRACE_VARIABLE as TRACE_VARIABLE
+from sher3_runtime.port import Ports as Ports
+from sher3_runtime.port import Subscribed as Subscribed
+from sher3_runtime.port import UnknownTopic as UnknownTopic
+from sher3_runtime.port import clock_of as clock_of
+from sher3_runtime.port import context_clock as context_clock
+from sher3_runtime.port import find_topic as find_topic
+from sher3_runtime.port import ports as ports
+from sher3_runtime.port import qos_profile as qos_profile
+from sher3_runtime.port import raw_mode as raw_mode
+from sher3_runtime.port import statistics_of as statistics_of
+from sher3_runtime.port import use_clock as use_clock
 from sher3_runtime.tick import Tick
-from sher3_runtime.timing import Histogram, Statistics
-
-EXECUTOR_VARIABLE = "SHER3_EXECUTOR"
-PERIOD_VARIABLE = "SHER3_CONTROL_PERIOD"
-TRACE_VARIABLE = "SHER3_TRACE"
-STATISTICS_VARIABLE = "SHER3_STATISTICS"
-
-NODE_OPTIONS: dict[str, Any] = {
-    "namespace": NAMESPACE,
-    "enable_rosout": False,
-    "start_parameter_services": False,
-    "use_global_arguments": False,
-    "parameter_overrides": [Parameter("start_type_description_service", value=False)],
-}
-"""Keyword arguments for `Node.__init__`: no parameter and type services and no rosout, which would cost a fifth of the
-loop."""
-
-GAPLESS = frozenset(
-    {"servo_jv", "drives/setpoint_jv", "drives/measured_js", "measured_js", "force/measured_cf", "pedal/measured"}
-)
-"""Streams with a sample at every tick: a stamp that skips a tick means a lost sample."""
+from sher3_runtime.timing import Histogram, Trace
 
 Publish = Callable[[Any], None]
-
-
-class Subscribed:
-    """A subscription of a node.
-
-    Attributes:
-        wakes: Whether a sample wakes the process. A node that has nothing to do before some other sample comes sets
-            this to False, and gets the sample, in the order of its subscriptions, once something else has woken the
-            process.
-    """
-
-    __slots__ = ("wakes",)
-
-    def __init__(self) -> None:
-        self.wakes = True
-
-
-_clocks: WeakKeyDictionary[Context, Clock] = WeakKeyDictionary()
-
-
-class UnknownTopic(Sher3Error):
-    """A topic name that is not in the topic table."""
-
-
-def use_clock(context: Context, clock: Clock) -> None:
-    """Make `clock` the time of every node of `context` created from now on."""
-    _clocks[context] = clock
-
-
-def clock_of(node: Node) -> Clock:
-    """Return the clock of the node's context; by default the wall clock of period `SHER3_CONTROL_PERIOD` [s]."""
-    return context_clock(node.context)
-
-
-def context_clock(context: Context | None = None) -> Clock:
-    """Return the clock of a context, by default that of the process's own context.
-
-    For devices that are made before their node.
-    """
-    context = context or get_default_context()
-    if context not in _clocks:
-        _clocks[context] = Clock(round(float(os.environ.get(PERIOD_VARIABLE, "0.002")) * 1e9))
-    return _clocks[context]
-
-
-class Ports:
-    """What the executor needs to know of one node."""
-
-    def __init__(self, node: Node) -> None:
-        self.name = node.get_name()
-        self.clock = clock_of(node)
-        self.statistics = Statistics()
-        self.statistics.traces = {} if os.environ.get(TRACE_VARIABLE) else None
-        self.polled: set[int] = set()
-        self.deliveries: dict[int, Callable[[bytes], None]] = {}
-        self.subscribed: dict[int, Subscribed] = {}
-        self.ticks: list[Tick] = []
-        self.readables: list[tuple[Any, Callable[[], None]]] = []
-        self.publishers: dict[str, Any] = {}
-        self.subscriptions: dict[str, Any] = {}
-        self.sent: dict[str, int] = {}
-        self.received: dict[str, int] = {}
-
-
-def ports(node: Node) -> Ports:
-    """Return the ports of a node, made at the first call."""
-    try:
-        return node.__dict__["_sher3_ports"]
-    except KeyError:
-        return node.__dict__.setdefault("_sher3_ports", Ports(node))
-
-
-def statistics_of(node: Node) -> Statistics:
-    """Return the timing statistics of a node."""
-    return ports(node).statistics
-
-
-def qos_profile(qos: Qos) -> QoSProfile:
-    """Return the rclpy profile of a topic's quality of service."""
-    return QoSProfile(
-        history=HistoryPolicy.KEEP_LAST,
-        depth=qos.depth,
-        reliability=ReliabilityPolicy[qos.reliability.upper()],
-        durability=DurabilityPolicy[qos.durability.upper()],
-    )
-
-
-def find_topic(name: str) -> Topic:
-    """Return the row of the topic table.
-
-    Raises:
-        UnknownTopic: no such row.
-    """
-    try:
-        return TOPICS[name]
-    except KeyError:
-        raise UnknownTopic("topic", value=name, limit=", ".join(TOPICS), remedy="use a name of the table") from None
-
-
-def raw_mode() -> bool:
-    """Return whether topics are handled as raw bytes (the default) or as message objects."""
-    return os.environ.get(EXECUTOR_VARIABLE, "") != "default"
 
 
 def subscribe(node: Node, name: str, callback: Callable[[Any], None], depth: int | None = None) -> Subscribed:
@@ -174,14 +64,19 @@ def subscribe(node: Node, name: str, callback: Callable[[Any], None], depth: int
     if depth is not None:
         profile.depth = depth
     raw = raw_mode()
+    if port.composition is not None and port.turn is not None:
+        # The subscription is made below; it is there when the composition asks to leave it.
+        receive = port.composition.hear(
+            topic, port.turn, receive, profile.depth, lambda: port.leave(node, name, subscription)
+        )
     if raw:
         decode, garbage = codec(topic.type, topic.frame_id, ACTUATORS).decode, port.statistics.garbage
 
         def deliver(data: Any) -> None:
+            port.received[name] += 1
             try:
                 sample = decode(data)
             except CdrError as error:
-                port.received[name] = port.received.get(name, 0) + 1
                 if name not in garbage:
                     node.get_logger().warning(f"{name}: {error}; further ones are only counted")
                 garbage[name] = garbage.get(name, 0) + 1
@@ -190,8 +85,10 @@ def subscribe(node: Node, name: str, callback: Callable[[Any], None], depth: int
     else:
 
         def deliver(data: Any) -> None:
+            port.received[name] += 1
             receive(from_message(topic, data))
 
+    port.received[name] = 0
     subscription = node.create_subscription(
         message_class(topic.type),
         topic.full_name,
@@ -208,16 +105,9 @@ def subscribe(node: Node, name: str, callback: Callable[[Any], None], depth: int
 def _receiver(port: Ports, topic: Topic, callback: Callable[[Any], None]) -> Callable[[Any], None]:
     """Wrap a callback with the counting of age, gaps and duration."""
     name, clock, stats = topic.name, port.clock, port.statistics
-    received = port.received
-    received[name] = 0
     duration = stats.callback.setdefault(name, Histogram())
     if "String" in topic.type:
-
-        def receive_text(sample: Any) -> None:
-            received[name] += 1
-            callback(sample)
-
-        return receive_text
+        return callback
 
     age, period = stats.age.setdefault(name, Histogram()), clock.period_ns
     gapless, last = name in GAPLESS, 0
@@ -225,7 +115,6 @@ def _receiver(port: Ports, topic: Topic, callback: Callable[[Any], None]) -> Cal
 
     def receive(sample: Any) -> None:
         nonlocal last
-        received[name] += 1
         start, stamp = clock.now(), sample.stamp
         age.add(start - stamp)
         if gapless:
@@ -260,9 +149,12 @@ def advertise(node: Node, name: str) -> Publish:
     trace = port.statistics.trace(f"publish {name}") if stamped else None
     sent, now = port.sent, port.clock.now
     sent[name] = 0
-    encode, raw = codec(topic.type, topic.frame_id, ACTUATORS).encode, raw_mode()
+    encode = codec(topic.type, topic.frame_id, ACTUATORS).encode
+    raw, composition = raw_mode(), port.composition
     # The handle's own method: rclpy's wrapper would enter the handle's context at each call.
     send = publisher.handle.publish_raw if raw else publisher.publish
+    if composition is not None:
+        return _publish_inside(port, topic, composition, lambda sample: send(encode(sample)), trace)
 
     def publish(sample: Any) -> None:
         sent[name] += 1
@@ -273,6 +165,28 @@ def advertise(node: Node, name: str) -> Publish:
     if trace is None and raw and not port.clock.stepped:
         return lambda sample: send(encode(sample))
     return publish
+
+
+def _publish_inside(port: Ports, topic: Topic, composition: Composition, send: Publish, trace: Trace | None) -> Publish:
+    """Return `publish(sample)` for a node that shares its process."""
+    name, now, sent = topic.name, port.clock.now, port.sent
+    stepped, publisher = port.clock.stepped, port.publishers[name]
+
+    def send_outside(sample: Any) -> None:
+        sent[name] += 1
+        send(sample)
+
+    # In stepped time all that is sent is counted, so nothing may be left out.
+    listens = (lambda: True) if stepped else publisher.get_subscription_count
+    publish = composition.publisher(topic, as_sent(topic.type), send_outside, listens)
+    if trace is None:
+        return publish
+
+    def publish_traced(sample: Any) -> None:
+        trace.mark(sample[0], now())
+        publish(sample)
+
+    return publish_traced
 
 
 def latest(node: Node, name: str) -> Callable[[], Any]:
@@ -295,7 +209,15 @@ def latest(node: Node, name: str) -> Callable[[], Any]:
     decode, take = codec(topic.type, topic.frame_id, ACTUATORS).decode, subscription.handle.take_message
     garbage = port.statistics.garbage
 
+    composition = port.composition
+    if composition is None:
+        inside = None
+    else:
+        inside = composition.keep_newest(topic, partial(port.leave, node, name, subscription))
+
     def take_newest() -> Any:
+        if inside is not None and composition is not None and composition.inner(name):
+            return inside()
         if (taken := take(kind, True)) is None:
             return None
         try:
@@ -371,7 +293,7 @@ def on_tick(node: Node, callback: Callable[[int], None], phase: float = 0.0, eve
         The tick. A node whose tick only looks for late samples calls its `done(stamp)` when they were in time.
     """
     port = ports(node)
-    tick = Tick(callback, round(phase * 1e9), every, port.clock, port.statistics)
+    tick = Tick(callback, round(phase * 1e9), every, port.clock, port.statistics, port.turn)
     port.ticks.append(tick)
     if node.executor is not None:
         node.executor.wake()
@@ -384,6 +306,7 @@ def on_readable(node: Node, file: Any, callback: Callable[[], None]) -> None:
     The callback must take all there is without blocking. A process with such a file waits on the file and looks at its
     topics at least once a period.
     """
-    ports(node).readables.append((file, callback))
+    port = ports(node)
+    port.readables.append((file, callback if port.turn is None else port.turn.guard(callback)))
     if node.executor is not None:
         node.executor.wake()

@@ -15,7 +15,7 @@ import signal
 import socket
 import time
 from collections.abc import Callable, Mapping, Sequence
-from contextlib import suppress
+from contextlib import nullcontext, suppress
 
 import rclpy
 from rclpy.executors import Executor
@@ -23,6 +23,7 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 from sher3_common import Sher3Error
 
+from sher3_runtime.composed.composition import Composition
 from sher3_runtime.ports import clock_of, ports
 from sher3_runtime.spinning import spin
 
@@ -41,8 +42,12 @@ class NotStarted(Sher3Error):
     """The processes of the graph did not find each other in time."""
 
 
-def run(make_nodes: Callable[[], Sequence[Node]]) -> None:
+def run(make_nodes: Callable[[], Sequence[Node]], together: bool = False) -> None:
     """Make nodes and run them until they are told to stop; the process must end soon after (see `leave_in_time`).
+
+    Args:
+        make_nodes: returns the nodes.
+        together: they hear each other within the process, see `composition`.
 
     Raises:
         Exception: Whatever making or running a node raises; the supervising process has been told by then.
@@ -52,7 +57,8 @@ def run(make_nodes: Callable[[], Sequence[Node]]) -> None:
     rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
     stop = stop_on_signals()
     try:
-        nodes = make_nodes()
+        with Composition() if together else nullcontext():
+            nodes = make_nodes()
         make_logging_prompt()
         barrier = None if control is None else Barrier(nodes, control, stop)
 

@@ -10,8 +10,10 @@ from typing import Any
 
 from rclpy.executors import Executor, ExternalShutdownException
 from rclpy.node import Node
+from sher3_common.waiting import let_others_go_on
 
 from sher3_runtime.clock import set_timer_slack
+from sher3_runtime.composed.relief import Relief
 from sher3_runtime.executor import RawExecutor
 from sher3_runtime.ports import STATISTICS_VARIABLE, TRACE_VARIABLE, ports, raw_mode
 from sher3_runtime.statistics.baseline import BaselineExecutor
@@ -47,12 +49,14 @@ def spin(
     Raises:
         Exception: Whatever a callback raises.
     """
-    executor = None
+    executor = relief = None
     try:
         set_timer_slack()
         for node in nodes if diagnostics else ():
             report_statistics(node)
         executor = make_executor(nodes, nodes[0].context)
+        if (composition := ports(nodes[0]).composition) is not None:
+            composition.open()
         # What exists now lives to the end; a collection during the run must not walk through it.
         gc.collect()
         gc.freeze()
@@ -62,15 +66,25 @@ def spin(
             meet(executor)
         if isinstance(executor, BaselineExecutor):
             executor.start_ticks()
+        if composition is not None and isinstance(executor, RawExecutor):
+            # After the meeting: the stand-ins take over the priority of this thread.
+            relief = executor.relief = Relief(executor.work)
+            relief.start()
+            let_others_go_on(relief.others_go_on)
         while nodes[0].context.ok() and not stop():
             # Asking the context takes a lock; a shutdown has time for a few spins.
             for _ in range(20):
                 executor.spin_once(0.05)
+                if relief is not None and relief.error is not None:
+                    raise relief.error
                 if stop():
                     break
     except ExternalShutdownException:
         pass
     finally:
+        let_others_go_on(None)
+        if relief is not None:
+            relief.stop()
         close(nodes, executor, leave)
 
 
@@ -82,6 +96,9 @@ def close(nodes: Iterable[Node], executor: Executor | None = None, leave: Callab
             getattr(node, "close", lambda: None)()
         except Exception as error:
             failure = failure or error
+    for node in nodes:
+        if (composition := ports(node).composition) is not None:
+            composition.flush()
     if folder := os.environ.get(TRACE_VARIABLE) or os.environ.get(STATISTICS_VARIABLE):
         for node in nodes:
             ports(node).statistics.write(Path(folder), node.get_name())

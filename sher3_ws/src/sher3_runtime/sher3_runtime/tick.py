@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from sher3_runtime.clock import Clock
+from sher3_runtime.composed.turn import Turn
 from sher3_runtime.timing import Histogram, Statistics
 
 
@@ -14,15 +15,23 @@ class Tick:
     Attributes:
         phase_ns: Delay behind the stamp [ns].
         due_ns: Time of the next call [ns]; `due_ns - phase_ns` is its stamp.
+        turn: Of the node, where it shares a process: while another callback of the node is at work, the call waits.
     """
 
     def __init__(
-        self, callback: Callable[[int], None], phase_ns: int, every: int, clock: Clock, statistics: Statistics
+        self,
+        callback: Callable[[int], None],
+        phase_ns: int,
+        every: int,
+        clock: Clock,
+        statistics: Statistics,
+        turn: Turn | None = None,
     ) -> None:
         self.callback = callback
         self.phase_ns = phase_ns
         self.period_ns = every * clock.period_ns
         self.due_ns = 0
+        self.turn = turn
         self._clock = clock
         self._statistics = statistics
         self._duration = statistics.callback.setdefault("tick", Histogram())
@@ -46,6 +55,13 @@ class Tick:
 
     def run(self, now: int) -> None:
         """Call the callback for the latest stamp that is due."""
+        if self.turn is None:
+            self._run(now)
+        elif not self.turn.taken:
+            with self.turn:
+                self._run(now)
+
+    def _run(self, now: int) -> None:
         late = now - self.due_ns
         missed = max(late, 0) // self.period_ns
         stamp = self.due_ns - self.phase_ns + missed * self.period_ns

@@ -27,7 +27,8 @@ from sher3_bags.mcap.rosbag2 import TopicCount, write_metadata
 from sher3_bags.mcap.writer import CHUNK_LIMIT, McapWriter
 from sher3_bags.provenance import PROVENANCE_RECORD, provenance
 from sher3_bags.reading import ROBOT_FILE, RUN_RECORD
-from sher3_bags.recording.robot_frames import SOURCE, Made, RobotFrames
+from sher3_bags.recording.beside import FOLLOWED, Beside
+from sher3_bags.recording.made import Made
 from sher3_bags.run import RunMetadata
 
 RECORDING_RECORD = "sher3.recording"
@@ -73,7 +74,7 @@ class Recorder:
         robot: Robot,
         metadata: RunMetadata | None = None,
         parameters: Mapping[str, object] | None = None,
-        frames: RobotFrames | None = None,
+        frames: Beside | None = None,
     ) -> None:
         if folder.exists():
             raise BagError("exists already", path=folder, remedy="choose another name")
@@ -122,7 +123,7 @@ class Recorder:
         source.sequence = (source.sequence + 1) & 0xFFFFFFFF
         if self._frames is not None:
             made = [] if self._made else self._frames.fixed(log_time)
-            for message in [*made, *(self._frames.follow(data) if topic == SOURCE else [])]:
+            for message in [*made, *(self._frames.follow(topic, data, log_time) if topic in FOLLOWED else [])]:
                 self._add_made(message, log_time)
 
     def _add_made(self, message: Made, log_time: int) -> None:

@@ -17,6 +17,7 @@ import time
 import traceback
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 from sher3_common import Sher3Error
@@ -80,8 +81,11 @@ class Fleet:
         self.members: list[Member] = []
         os.environ[OFFSET_VARIABLE] = str(system_offset())
 
-    def launch(self, name: str, make_nodes: Callable[[], Any], realtime: int = 0) -> Member:
-        """Fork a process that makes and runs nodes, under SCHED_FIFO from its first tick on (see `use_realtime`)."""
+    def launch(self, name: str, make_nodes: Callable[[], Any], realtime: int = 0, together: bool = False) -> Member:
+        """Fork a process that makes and runs nodes, under SCHED_FIFO from its first tick on (see `use_realtime`).
+
+        With `together` its nodes hear each other within the process.
+        """
         ours, theirs = socket.socketpair()
         sys.stdout.flush()
         sys.stderr.flush()
@@ -90,7 +94,8 @@ class Fleet:
         if pid == 0:
             die_with_parent(parent)
             os.environ[REALTIME_VARIABLE] = str(realtime)
-            _child(name, make_nodes, theirs, [ours, *(member.control for member in self.members)])
+            others = [ours, *(member.control for member in self.members)]
+            _child(partial(run, make_nodes, together), theirs, others)
         theirs.close()
         ours.setblocking(False)
         member = Member(name, pid, ours)
@@ -215,7 +220,7 @@ def _ended(member: Member) -> str:
     return f"stopped: {member.failure}"
 
 
-def _child(name: str, make_nodes: Callable[[], Any], control: socket.socket, not_mine: Sequence[socket.socket]) -> None:
+def _child(run_nodes: Callable[[], None], control: socket.socket, not_mine: Sequence[socket.socket]) -> None:
     """Be one process of the graph; never returns."""
     status = 1
     try:
@@ -223,7 +228,7 @@ def _child(name: str, make_nodes: Callable[[], Any], control: socket.socket, not
         for other in not_mine:
             other.close()
         os.environ[CONTROL_VARIABLE] = str(control.detach())
-        run(make_nodes)
+        run_nodes()
         status = 0
     except Sher3Error:
         # The sentence has gone to the supervising process, which prints it.

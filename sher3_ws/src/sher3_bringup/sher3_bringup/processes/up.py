@@ -16,12 +16,9 @@ from sher3_runtime.process import realtime_permitted
 from sher3_bringup.processes.fleet import Fleet
 from sher3_bringup.processes.nodes import make_nodes, preload
 from sher3_bringup.processes.only_robot import only_robot
-from sher3_bringup.settings.run_settings import RunSettings
+from sher3_bringup.settings.run_settings import UNHURRIED, RunSettings
 
 DEFAULT_REALTIME = 40
-UNHURRIED = frozenset({"recorder", "gap_monitor"})
-"""Processes without real-time priority: compressing a chunk at the priority of the loop would hold the loop up. Only
-their receiving threads have it."""
 BESIDE = frozenset({"pedal", "supervisor"})
 BESIDE_BY = 10
 """By how much the priority of a process beside the chain from force sample to CAN frame is lower than the chain's."""
@@ -76,13 +73,18 @@ def launch_nodes(fleet: Fleet, settings: RunSettings, realtime: int, patience: f
         StartError: the plant's process failed, or did not answer in time.
     """
     for process in launch_order(settings.processes):
-        fleet.launch("+".join(process), partial(make_nodes, settings, process), priority(process, realtime))
+        make = partial(make_nodes, settings, process)
+        fleet.launch("+".join(process), make, priority(process, realtime), together=len(process) > 1)
         if "plant" in process:
             fleet.gather("publishes", patience)
 
 
 def priority(process: Sequence[str], realtime: int) -> int:
-    """Return the priority of a process, as `use_realtime` takes it, where the chain has `realtime`."""
+    """Return the priority of a process, as `use_realtime` takes it, where the chain has `realtime`.
+
+    Recorder and gap monitor have none: compressing a chunk at the priority of the loop would hold the loop up. Only
+    their receiving threads have it.
+    """
     if set(process) <= UNHURRIED:
         return -realtime
     return beside(realtime) if set(process) <= BESIDE else realtime

@@ -28,6 +28,11 @@ NODES = (
     "recorder",
     "gap_monitor",
 )
+LOOP = ("force_sensor", "pedal", "admittance", "kinematics", "motor_driver")
+"""Nodes between the devices and the drives: with `--layout composed` they share a process, in this order."""
+UNHURRIED = frozenset({"recorder", "gap_monitor"})
+"""Nodes that compress and compute for milliseconds at a time."""
+Layout = Literal["separate", "composed"]
 MOCK_ONLY = frozenset({"plant"})
 ON_REQUEST = frozenset({"gap_monitor"})
 RATES = (100, 1000)
@@ -58,6 +63,7 @@ class RunSettings(BaseModel):
         force_device: address of the force sensor on the real robot, host or host:port.
         pedal_device: raw HID device of the pedal on the real robot.
         patience: time limits in force, see `patience`; the real robot has only the strict ones.
+        exchange: the plant takes other effects while it runs; it then knows the library from the start.
         seed: of the plant's noise.
         near_speed, free_speed: speed caps of the two regimes [m/s], or None for those of the control settings; the
             caps of turning go with them.
@@ -73,6 +79,7 @@ class RunSettings(BaseModel):
     robot_path: Path | None = None
     drives_path: Path | None = None
     effects: Path | None = None
+    exchange: bool = False
     links: tuple[str, ...] = ()
     record: Path | None = None
     recording: Literal["required", "optional"] = "required"
@@ -103,6 +110,10 @@ class RunSettings(BaseModel):
             return f"node {twice[0]} is named twice"
         if any({"plant", "motor_driver"} <= set(process) for process in self.processes):
             return "plant and motor_driver wait for each other on the CAN link; give each a process"
+        if any("supervisor" in process and len(process) > 1 for process in self.processes):
+            return "the supervisor watches the others and must not end or wait with them; give it a process of its own"
+        if any(UNHURRIED & set(process) and set(process) & set(LOOP) for process in self.processes):
+            return "recorder and gap_monitor would hold up the nodes of the loop; give them another process"
         if self.record is None and "recorder" in self.names:
             return "the recorder needs --record FOLDER"
         return ""
@@ -199,16 +210,21 @@ class RunSettings(BaseModel):
         return TravelBudget(self.robot(), self.control(), self.drives())
 
 
-def parse_processes(text: str | None, mock: bool, record: bool, monitor: bool = False) -> tuple[tuple[str, ...], ...]:
-    """Return the nodes of each process from `a+b,c` (a and b in one process); None means one process for each node.
+def parse_processes(
+    text: str | None, mock: bool, record: bool, monitor: bool = False, layout: Layout = "separate"
+) -> tuple[tuple[str, ...], ...]:
+    """Return the nodes of each process from `a+b,c` (a and b in one process); without a text all nodes in a `layout`.
 
-    `monitor` adds the gap monitor in a process of its own, unless the text names it.
+    `separate` means one process for each node, `composed` one for the nodes of the loop. `monitor` adds
+    the gap monitor in a process of its own, unless the text names it.
     """
     watch = (("gap_monitor",),) if monitor and "gap_monitor" not in (text or "") else ()
     if text:
         return tuple(tuple(name.strip() for name in process.split("+")) for process in text.split(",")) + watch
     skip = {*ON_REQUEST, *(() if mock else MOCK_ONLY), *(() if record else ("recorder",))}
-    return tuple((name,) for name in NODES if name not in skip) + watch
+    loop = LOOP if layout == "composed" else ()
+    others = tuple((name,) for name in NODES if name not in {*skip, *loop})
+    return (*((loop,) if loop else ()), *others, *watch)
 
 
 def checked(**options: object) -> RunSettings:

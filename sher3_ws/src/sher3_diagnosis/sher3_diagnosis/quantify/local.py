@@ -17,8 +17,8 @@ from scipy.stats import t as student
 
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.evidence import Evidence
-from sher3_diagnosis.fitting import Fit
-from sher3_diagnosis.term import Term, make_term
+from sher3_diagnosis.fit.fitting import Fit
+from sher3_diagnosis.fit.term import Term, make_term
 from sher3_diagnosis.thresholds import PIECES
 
 STEP = 0.01

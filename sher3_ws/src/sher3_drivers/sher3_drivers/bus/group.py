@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import select
 from collections.abc import Sequence
+
+from sher3_common.waiting import wait_readable
 
 from sher3_drivers.bus.frame import bundle, unbundle
 from sher3_drivers.bus.link import CanLink
@@ -35,13 +36,12 @@ class LinkGroup:
     def receive(self, timeout: float = 0.0) -> bytes:
         """Return the next frames of every channel that has some; wait at most `timeout` s for the first.
 
-        Links within the process are never waited on. `select` is used because its timeout resolves microseconds; that
-        of `poll` resolves milliseconds, which is a whole control period.
+        Links within the process are never waited on.
         """
         cable = self._cable
         if cable is None:
             return self._receive_each(timeout)
-        if timeout > 0.0 and self.waits and not select.select(self._by_descriptor, (), (), timeout)[0]:
+        if timeout > 0.0 and self.waits and not wait_readable(self._by_descriptor, timeout):
             return b""
         try:
             return cable.receive()
@@ -52,7 +52,7 @@ class LinkGroup:
 
     def _receive_each(self, timeout: float) -> bytes:
         if self.waits:
-            ready, _, _ = select.select(self._by_descriptor, (), (), timeout if timeout > 0.0 else 0.0)
+            ready = wait_readable(self._by_descriptor, timeout)
             candidates = [self._by_descriptor[descriptor] for descriptor in ready]
         else:
             candidates = [(index, link) for index, link in enumerate(self.links) if index not in self.failures]

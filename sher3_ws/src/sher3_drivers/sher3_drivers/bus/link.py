@@ -9,10 +9,11 @@ A specification `kind:channel` names a link. The same driver runs on every kind:
 
 from __future__ import annotations
 
-import select
 import time
 from collections.abc import Sequence
 from typing import Protocol
+
+from sher3_common.waiting import wait_readable
 
 from sher3_drivers.bus.local import LocalCable, LocalLink
 from sher3_drivers.bus.socketcan import SocketCanLink
@@ -104,6 +105,6 @@ def wait_frames(link: CanLink, timeout: float) -> bytes:
     deadline = time.monotonic() + timeout
     frames = link.recv_frames()
     while not frames and link.fileno() >= 0 and (left := deadline - time.monotonic()) > 0:
-        select.select((link.fileno(),), (), (), left)
+        wait_readable((link.fileno(),), left)
         frames = link.recv_frames()
     return frames

@@ -16,6 +16,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from sher3_common.vectors import Wrench
+from sher3_common.waiting import wait_readable
 
 from sher3_drivers.errors import DeviceMissing
 from sher3_drivers.sensor.device import WrenchRecord
@@ -118,7 +119,7 @@ class NetFtSensor:
         """Return the newest record that arrived at or after `since`; see `sensor.device.ForceSensorDevice`."""
         deadline = time.monotonic() + timeout
         while True:
-            select.select((self._socket,), (), (), max(0.0, deadline - time.monotonic()))
+            wait_readable((self._socket.fileno(),), deadline - time.monotonic())
             record = self._newest(since)
             if record is not None or time.monotonic() >= deadline:
                 return record

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import json
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, Optional
 
 import typer
+from sher3_common.commands.options import Json
 
 from sher3_safety.cli.budget import budget
 from sher3_safety.cli.hazards import hazards
 
 app = typer.Typer(rich_markup_mode="markdown", invoke_without_command=True)
-Json = Annotated[bool, typer.Option("--json", help="Print one JSON object instead of text.")]
 
 app.command(epilog="Examples: `sher3 safety budget` · `sher3 safety budget --rate 200 --json`")(budget)
 app.command(epilog="Examples: `sher3 safety hazards` · `sher3 safety hazards --json`")(hazards)
@@ -26,6 +27,9 @@ def safety(
     out: Annotated[Path, typer.Option(help="Folder for report.md, report.json and the bags.")] = Path("bags/safety"),
     only: Annotated[str, typer.Option(help="Only components whose name begins so; `healthy`: none.")] = "",
     quick: Annotated[bool, typer.Option("--quick", help="The compact set of the default test run.")] = False,
+    composed: Annotated[
+        bool, typer.Option("--composed", help="The loop in one process, as in `sher3 up`; stepped time only.")
+    ] = False,
     wall: Annotated[bool, typer.Option("--wall", help="Kill and hold processes in wall time instead.")] = False,
     healthy: Annotated[
         Optional[float],  # noqa: UP045
@@ -45,7 +49,7 @@ def safety(
     from sher3_safety.runs.matrix import COMMAND, MatrixResult, run_matrix
     from sher3_safety.runs.wall import run_wall
 
-    run: Any = run_wall if wall else run_matrix
+    run: Any = run_wall if wall else partial(run_matrix, composed=composed)
     none = only == "healthy"
     command = f"{COMMAND} --only healthy"
     result = (

@@ -93,6 +93,7 @@ def run_matrix(
     jobs: int = 1,
     say: Callable[[str], None] = lambda _: None,
     robot: Robot | None = None,
+    composed: bool = False,
 ) -> MatrixResult:
     """Run the matrix in stepped time; bags go to `folder/<component>`.
 
@@ -104,6 +105,7 @@ def run_matrix(
         jobs: processes at a time.
         say: prints progress.
         robot: nominal by default.
+        composed: the nodes of the loop share a process.
 
     Raises:
         ConfigurationError: no component's name begins so.
@@ -115,11 +117,11 @@ def run_matrix(
         raise ConfigurationError("no such component in the matrix", value=only, limit=known, remedy="choose one")
     groups = {"compact": rows} if quick else _by_component(rows)
     found: dict[str, Outcome] = {}
-    for name, outcomes in _run_groups(groups, robot, folder, seed, jobs):
+    for name, outcomes in _run_groups(groups, robot, folder, seed, jobs, composed):
         found.update(outcomes)
         say(f"{name}: {len(outcomes)} cells measured")
     verdicts = [judge(row, state, found.get(row.label(state))) for row in rows for state in row.states]
-    options = (f" --only {only}" if only else "") + " --quick" * quick
+    options = (f" --only {only}" if only else "") + " --quick" * quick + " --composed" * composed
     return MatrixResult(verdicts, COMMAND + options, seed)
 
 
@@ -131,16 +133,18 @@ def _by_component(rows: Iterable[Row]) -> dict[str, list[Row]]:
 
 
 def _run_groups(
-    groups: dict[str, list[Row]], robot: Robot, folder: Path, seed: int, jobs: int
+    groups: dict[str, list[Row]], robot: Robot, folder: Path, seed: int, jobs: int, composed: bool
 ) -> Iterable[tuple[str, dict[str, Outcome]]]:
     cells: dict[str, list[Cell]] = {
         name: [(row, state) for row in rows for state in row.states] for name, rows in groups.items()
     }
     if jobs == 1:
         for name, part in cells.items():
-            yield name, run_cells(name, part, robot, folder, seed)
+            yield name, run_cells(name, part, robot, folder, seed, composed)
         return
     with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
-        futures = {name: pool.submit(run_cells, name, part, robot, folder, seed) for name, part in cells.items()}
+        futures = {
+            name: pool.submit(run_cells, name, part, robot, folder, seed, composed) for name, part in cells.items()
+        }
         for name, future in futures.items():
             yield name, future.result()

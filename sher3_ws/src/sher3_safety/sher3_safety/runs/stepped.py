@@ -52,12 +52,12 @@ Cell = tuple[Row, State]
 class MatrixRun:
     """A robot on which faults are tried."""
 
-    def __init__(self, graph: Graph, robot: Robot, seed: int) -> None:
+    def __init__(self, graph: Graph, robot: Robot, seed: int, composed: bool = False) -> None:
         self.graph, self.seed = graph, seed
         self.operator = graph.add(OperatorNode)
         control = ControlSettings.from_robot(robot, {"motion": {"regime": "free"}})
         drives = default_settings(robot.control_period)
-        self.rig = SteppedRobot(graph, seed=seed, robot=robot, control=control, drives=drives)
+        self.rig = SteppedRobot(graph, seed=seed, robot=robot, control=control, drives=drives, composed=composed)
         self._sign = 1.0
 
     def start(self) -> bool:
@@ -212,15 +212,18 @@ def _stands(label: str) -> float:
     return STANDS * next(state.budget for state in (*STATES, *FURTHER) if label.endswith(f"| {state.name}"))
 
 
-def run_cells(name: str, cells: Sequence[Cell], robot: Robot, folder: Path, seed: int = 1) -> dict[str, Outcome]:
+def run_cells(
+    name: str, cells: Sequence[Cell], robot: Robot, folder: Path, seed: int = 1, composed: bool = False
+) -> dict[str, Outcome]:
     """Run cells one after another and return their outcomes by label; bags are `folder/<name>`, `<name>-1`, ...
 
     A robot that a fault has left beyond recovery is replaced by a new one, with a bag of its own; so is the robot for
-    the end of the travel (`<name>-end`), whose sliders have a shorter one.
+    the end of the travel (`<name>-end`), whose sliders have a shorter one. `composed`: the nodes of the loop share a
+    process.
     """
     inside, at_end = ([cell for cell in cells if cell[1].end is end] for end in (False, True))
-    found = _run_all(name, inside, robot, folder, seed)
-    return found | _run_all(f"{name}-end", at_end, with_travel(robot, TRAVEL), folder, seed)
+    found = _run_all(name, inside, robot, folder, seed, composed)
+    return found | _run_all(f"{name}-end", at_end, with_travel(robot, TRAVEL), folder, seed, composed)
 
 
 def with_travel(robot: Robot, travel: float) -> Robot:
@@ -230,23 +233,25 @@ def with_travel(robot: Robot, travel: float) -> Robot:
     return robot.model_copy(update={"actuators": (*sliders, *robot.actuators[3:])})
 
 
-def _run_all(name: str, cells: Sequence[Cell], robot: Robot, folder: Path, seed: int) -> dict[str, Outcome]:
+def _run_all(
+    name: str, cells: Sequence[Cell], robot: Robot, folder: Path, seed: int, composed: bool
+) -> dict[str, Outcome]:
     """Run cells one after another, with new robots where one is beyond recovery."""
     left, found, number = list(cells), dict[str, Outcome](), 0
     while left:
         bag = f"{name}-{number}" if number else name
-        count = _run_some(bag, left, robot, folder, seed)
+        count = _run_some(bag, left, robot, folder, seed, composed)
         for outcome in Recording(read_run(folder / bag, check=False), robot, robot.control_period).outcomes(_stands):
             found[outcome.label] = outcome
         left, number = left[count:], number + 1
     return found
 
 
-def _run_some(bag: str, cells: Sequence[Cell], robot: Robot, folder: Path, seed: int) -> int:
+def _run_some(bag: str, cells: Sequence[Cell], robot: Robot, folder: Path, seed: int, composed: bool) -> int:
     """Run cells on a new robot until one is beyond recovery; return how many were run."""
     metadata = RunMetadata(excitation="faults", origin="plant", seed=seed)
     with Graph(period=robot.control_period) as graph:
-        run = MatrixRun(graph, robot, seed)
+        run = MatrixRun(graph, robot, seed, composed)
         with recorded(graph, bag, robot=robot, root=folder, metadata=metadata):
             run.start()
             for count, (row, state) in enumerate(cells, 1):

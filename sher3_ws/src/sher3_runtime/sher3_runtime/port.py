@@ -1,0 +1,161 @@
+"""What the runtime knows of one node: its clock, its statistics, its ends of topics; and how topics become ROS."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from typing import Any
+from weakref import WeakKeyDictionary
+
+from rclpy.context import Context
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.utilities import get_default_context
+from sher3_common import Sher3Error
+from sher3_description.topics import NAMESPACE, TOPICS, Qos, Topic
+
+from sher3_runtime.clock import Clock
+from sher3_runtime.composed.composition import Composition, composing
+from sher3_runtime.composed.turn import Turn
+from sher3_runtime.tick import Tick
+from sher3_runtime.timing import Statistics
+
+EXECUTOR_VARIABLE = "SHER3_EXECUTOR"
+PERIOD_VARIABLE = "SHER3_CONTROL_PERIOD"
+TRACE_VARIABLE = "SHER3_TRACE"
+STATISTICS_VARIABLE = "SHER3_STATISTICS"
+
+NODE_OPTIONS: dict[str, Any] = {
+    "namespace": NAMESPACE,
+    "enable_rosout": False,
+    "start_parameter_services": False,
+    "use_global_arguments": False,
+    "parameter_overrides": [Parameter("start_type_description_service", value=False)],
+}
+"""Keyword arguments for `Node.__init__`: no parameter and type services and no rosout, which would cost a fifth of the
+loop."""
+
+GAPLESS = frozenset(
+    {"servo_jv", "drives/setpoint_jv", "drives/measured_js", "measured_js", "force/measured_cf", "pedal/measured"}
+)
+"""Streams with a sample at every tick: a stamp that skips a tick means a lost sample."""
+
+
+class Subscribed:
+    """A subscription of a node.
+
+    Attributes:
+        wakes: Whether a sample wakes the process. A node that has nothing to do before some other sample comes sets
+            this to False, and gets the sample, in the order of its subscriptions, once something else has woken the
+            process.
+    """
+
+    __slots__ = ("wakes",)
+
+    def __init__(self) -> None:
+        self.wakes = True
+
+
+_clocks: WeakKeyDictionary[Context, Clock] = WeakKeyDictionary()
+
+
+class UnknownTopic(Sher3Error):
+    """A topic name that is not in the topic table."""
+
+
+def use_clock(context: Context, clock: Clock) -> None:
+    """Make `clock` the time of every node of `context` created from now on."""
+    _clocks[context] = clock
+
+
+def clock_of(node: Node) -> Clock:
+    """Return the clock of the node's context; by default the wall clock of period `SHER3_CONTROL_PERIOD` [s]."""
+    return context_clock(node.context)
+
+
+def context_clock(context: Context | None = None) -> Clock:
+    """Return the clock of a context, by default that of the process's own context.
+
+    For devices that are made before their node.
+    """
+    context = context or get_default_context()
+    if context not in _clocks:
+        _clocks[context] = Clock(round(float(os.environ.get(PERIOD_VARIABLE, "0.002")) * 1e9))
+    return _clocks[context]
+
+
+class Ports:
+    """What the executor needs to know of one node.
+
+    Attributes:
+        composition: The nodes that share the process with this one; None for a node alone.
+        turn: Then, the right to run this node's code.
+    """
+
+    def __init__(self, node: Node) -> None:
+        self.composition: Composition | None = composing() if raw_mode() else None
+        self.turn: Turn | None = None if self.composition is None else self.composition.turn()
+        self.name = node.get_name()
+        self.clock = clock_of(node)
+        self.statistics = Statistics()
+        self.statistics.traces = {} if os.environ.get(TRACE_VARIABLE) else None
+        self.polled: set[int] = set()
+        self.deliveries: dict[int, Callable[[bytes], None]] = {}
+        self.subscribed: dict[int, Subscribed] = {}
+        self.ticks: list[Tick] = []
+        self.readables: list[tuple[Any, Callable[[], None]]] = []
+        self.publishers: dict[str, Any] = {}
+        self.subscriptions: dict[str, Any] = {}
+        self.sent: dict[str, int] = {}
+        self.received: dict[str, int] = {}
+
+    def leave(self, node: Node, name: str, subscription: Any) -> None:
+        """Take a subscription off the middleware: its samples come from within the process."""
+        pointer = subscription.handle.pointer
+        self.polled.discard(pointer)
+        self.deliveries.pop(pointer, None)
+        self.subscribed.pop(pointer, None)
+        self.subscriptions.pop(name, None)
+        self.received.pop(name, None)
+        node.destroy_subscription(subscription)
+
+
+def ports(node: Node) -> Ports:
+    """Return the ports of a node, made at the first call."""
+    try:
+        return node.__dict__["_sher3_ports"]
+    except KeyError:
+        return node.__dict__.setdefault("_sher3_ports", Ports(node))
+
+
+def statistics_of(node: Node) -> Statistics:
+    """Return the timing statistics of a node."""
+    return ports(node).statistics
+
+
+def qos_profile(qos: Qos) -> QoSProfile:
+    """Return the rclpy profile of a topic's quality of service."""
+    return QoSProfile(
+        history=HistoryPolicy.KEEP_LAST,
+        depth=qos.depth,
+        reliability=ReliabilityPolicy[qos.reliability.upper()],
+        durability=DurabilityPolicy[qos.durability.upper()],
+    )
+
+
+def find_topic(name: str) -> Topic:
+    """Return the row of the topic table.
+
+    Raises:
+        UnknownTopic: no such row.
+    """
+    try:
+        return TOPICS[name]
+    except KeyError:
+        raise UnknownTopic("topic", value=name, limit=", ".join(TOPICS), remedy="use a name of the table") from None
+
+
+def raw_mode() -> bool:
+    """Return whether topics are handled as raw bytes (the default) or as message objects."""
+    return os.environ.get(EXECUTOR_VARIABLE, "") != "default"
