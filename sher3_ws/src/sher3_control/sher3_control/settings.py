@@ -193,6 +193,7 @@ class SupervisorSettings(Settings):
             robot.
         hand_even: largest change of a leg's velocity from one look to the next in even motion [m/s]; a slider of 10 kg
             then needs 0.5 N for it.
+        hand_jump: largest change of the sensor's force from one look to the next under an even push [N].
         hand_look: time from one look to the next, at most [s].
         hand_lag: time constant of the low pass on that difference [s].
         hand_memory: time constant with which slow changes of it are taken for granted [s].
@@ -210,6 +211,7 @@ class SupervisorSettings(Settings):
     hand_force: Annotated[Number, Field(gt=0.0, le=100.0)] = 0.8
     hand_share: Fraction = 0.25
     hand_even: Annotated[Number, Field(gt=0.0, le=0.05)] = 5e-4
+    hand_jump: Annotated[Number, Field(gt=0.0, le=100.0)] = 0.5
     hand_look: Annotated[Number, Field(ge=1e-3, le=1.0)] = 0.01
     hand_lag: Annotated[Number, Field(ge=1e-3, le=1.0)] = 0.05
     hand_memory: Annotated[Number, Field(ge=1e-2, le=100.0)] = 2.0

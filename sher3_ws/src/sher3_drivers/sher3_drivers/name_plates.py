@@ -1,7 +1,6 @@
 """The file that says which drives the robot has: vendor, product and serial number of each (YAML, `sher3.drives/1`).
 
-Below `schema: sher3.drives/1` it has `drives`, and under each drive's name
-`{vendor: 21320, product: 12291, serial: 1}`.
+Below `schema: sher3.drives/1` stands `drives`, and under each name `{vendor: 21320, product: 12291, serial: 1}`.
 """
 
 from __future__ import annotations

@@ -57,12 +57,13 @@ HAZARDS = (
     ),
     Hazard(
         "moves without a hand, or against it",
-        "force sensor silent, frozen, saturated, not finite, faster than a hand",
-        "age, range, repetition and jumps judged in the same tick; speed cap of the regime",
+        "force sensor silent, frozen, saturated, not finite, faster than a hand, alive without one, of another sign",
+        "age, range, repetition and jumps judged in the same tick; the drives' forces as a second witness; speed cap",
         ("force_sensor",),
-        (f"{_DRIVERS}/test_force_sensor.py",),
+        (f"{_DRIVERS}/test_force_sensor.py", "sher3_ws/src/sher3_control/test/test_hand.py"),
         ("force sensor silent, dead", "force sensor frozen", "force not finite, out of range"),
-        "a force that is false and plausible: 500 um/s near tissue, 5000 um/s free, until the pedal is released",
+        "a false force below 0.8 N or a quarter of the hand: 500 um/s near tissue, 800 um/s free, until the pedal is "
+        "released; one of 1 N: 35 um near tissue",
     ),
     Hazard(
         "an axis moves by itself",
@@ -131,9 +132,14 @@ HAZARDS = (
     Hazard(
         "is another robot than the software believes",
         "drive exchanged, configured by somebody else; robot file wrong",
-        "name plates, every object that shapes motion read back; impossible numbers refused",
+        "name plates (`sher3 up --drives`), every object that shapes motion read back; impossible numbers refused",
         (),
-        (f"{_DRIVERS}/test_closed_drives.py", "tests/test_file_doors.py", "tests/test_fuzz_files.py"),
+        (
+            f"{_DRIVERS}/test_closed_drives.py",
+            f"{_DRIVERS}/test_name_plates.py",
+            "tests/test_file_doors.py",
+            "tests/test_fuzz_files.py",
+        ),
         (),
         "a robot file that is plausible and wrong",
     ),

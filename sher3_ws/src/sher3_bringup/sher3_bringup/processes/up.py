@@ -42,9 +42,9 @@ def run_graph(
         AlreadyRunning, StartError, ProcessDied, NotStopped: see `errors`; whatever was running has been stopped.
     """
     begin = time.monotonic()
-    realtime = prepare(settings)
-    imported = time.monotonic()
     with only_robot(settings.domain), _signals() as caught, Fleet() as fleet:
+        realtime = prepare(settings)
+        imported = time.monotonic()
         launch_nodes(fleet, settings, realtime)
         for name, make in (extra or {}).items():
             fleet.launch(name, make, beside(realtime))

@@ -142,8 +142,7 @@ class SupervisorNode(Node):
         elif forces is not None and forces.effort is not None and self._wrench is not None:
             same = forces.stamp == self._wrench.stamp == self._joints.stamp
             if same and self._joints.position is not None:
-                wrench, q = self._wrench.wrench, self._joints.position
-                self._hand.feed(forces.stamp, wrench, q, forces.effort, self._command)
+                self._hand.feed(forces.stamp, self._wrench.wrench, self._joints.position, forces.effort, self._command)
 
     def _count_publishers(self, *beside: str) -> None:
         """Count the publishers of the streams that move the robot, and of the streams `beside`.

@@ -3,8 +3,9 @@
 A hand at the tip is felt twice: by the force sensor F, and by the legs, whose drives hold it with the forces u that
 they report. At rest and in even motion F + J^-T u is what the platform weighs, whoever pushes (virtual work on the
 delta's Jacobian J). So this sum does not change when the hand does; a sensor that stands, or is scaled, or pushes by
-itself changes it. So do inertia, noise and friction: hence it looks only in even motion, through a low pass, and with a
-limit that grows with the hand that both feel. Slow changes (bias, posture, temperature) are taken for granted.
+itself changes it. So do inertia, noise and friction: hence it looks only in even motion under an even push, through a
+low pass, and with a limit that grows with the hand that both feel. Slow changes (bias, posture, temperature) are taken
+for granted.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ from sher3_control.supervision.detectors import Finding, PlainDetector
 Array = NDArray[np.float64]
 LEGS = 3
 CALM = 2
-"""Looks after an uneven motion that do not count: the axes follow their commands within 20 ms."""
+"""Looks after uneven ones that do not count: the axes follow their commands, and hold a push, within 20 ms."""
 
 
 class HandDetector(PlainDetector):
@@ -32,7 +33,7 @@ class HandDetector(PlainDetector):
 
     Args:
         kinematics: of the robot.
-        settings: `hand_force`, `hand_share`, `hand_even`, `hand_lag`, `hand_memory`, `hand_settling`.
+        settings: `hand_force`, `hand_share`, `hand_even`, `hand_jump`, `hand_lag`, `hand_memory`, `hand_settling`.
     """
 
     def __init__(self, kinematics: RobotKinematics, settings: SupervisorSettings) -> None:
@@ -40,6 +41,7 @@ class HandDetector(PlainDetector):
         self._known: tuple[Array, Array] | None = None
         self._peaks = (0.0, 0.0)
         self._command: Vector = (0.0,) * LEGS
+        self._force = np.zeros(3)
         self._uneven = 0
         self._last = self._since = -1
         self._found = Finding(Reason.HAND_DOUBTFUL, 0.0, settings.hand_force, "N", "force sensor")
@@ -50,7 +52,9 @@ class HandDetector(PlainDetector):
         self._found = self._found._replace(value=0.0)
 
     def feed(self, stamp: int, wrench: Vector, q: Vector, effort: Vector, command: Vector) -> None:
-        """Take samples of one tick [ns]; they count in even motion, whose change is no more than `hand_even` a look.
+        """Take samples of one tick [ns].
+
+        They count while neither the motion nor the sensor's force changes faster than `hand_even` and `hand_jump`.
 
         Args:
             stamp: of the samples.
@@ -59,16 +63,22 @@ class HandDetector(PlainDetector):
             effort: forces of the drives (5,), N and N m.
             command: newest velocities of the axes (5,), m/s and rad/s.
         """
-        changed = max([abs(new - old) for new, old in zip(command[:LEGS], self._command, strict=True)])
-        self._command = command[:LEGS]
-        self._uneven = CALM if changed > self._settings.hand_even else max(0, self._uneven - 1)
-        if self._uneven:
-            return
         joints = np.asarray(q)
-        rotation = self._kinematics.transform_tip_to_base(joints)[:3, :3]
+        force = self._kinematics.transform_tip_to_base(joints)[:3, :3] @ np.asarray(wrench[:3])
+        if not self._even(command[:LEGS], force):
+            return
         jacobian = self._kinematics.jacobian(joints)[:LEGS, :LEGS]
         held = np.linalg.solve(jacobian.T, np.asarray(effort[:LEGS]))
-        self.follow(stamp, rotation @ np.asarray(wrench[:3]), held)
+        self.follow(stamp, force, held)
+
+    def _even(self, command: Vector, force: Array) -> bool:
+        """Return whether motion and push have been even for a while: a hit needs time to reach the drives."""
+        faster = max([abs(new - old) for new, old in zip(command, self._command, strict=True)])
+        harder = float(np.linalg.norm(force - self._force))
+        self._command, self._force = command, force
+        changes = faster > self._settings.hand_even or harder > self._settings.hand_jump
+        self._uneven = CALM if changes else max(0, self._uneven - 1)
+        return not self._uneven
 
     def follow(self, stamp: int, force: Array, held: Array) -> None:
         """Take the force of the sensor (3,) and what the legs hold (3,), N in {b}, of the tick `stamp` [ns]."""
@@ -78,11 +88,14 @@ class HandDetector(PlainDetector):
         if self._since < 0:
             self._since = stamp
         settling = stamp - self._since < nanoseconds(settings.hand_settling)
-        if self._known is None or settling or not np.isfinite(total).all():
+        if self._known is None or not np.isfinite(total).all():
             self._known, self._peaks = (total, total), (0.0, 0.0)
             return
         quick, slow = self._known
         quick = quick + min(1.0, step / settings.hand_lag) * (total - quick)
+        if settling:
+            self._known = quick, quick
+            return
         slow = slow + min(1.0, step / settings.hand_memory) * (total - slow)
         self._known = quick, slow
         keep = math.exp(-step / settings.hand_lag)

@@ -65,7 +65,7 @@ def _lively() -> Iterator[Row]:
               quiet=(IDLE.name,), rest=1.0)  # fmt: skip
     yield Row("force_sensor", "chatter", {"items": 2.0, "offset": 11.0}, reasons=("WRENCH_NOT_FINITE", *DOUBTFUL))
     yield Row("force_sensor", "held", reasons=DOUBTFUL, states=(LIMIT,), lets_go=True, quick=True)
-    yield Row("force_sensor", "wrong", {"scale": -1.0}, reasons=DOUBTFUL, states=(LIMIT,))
+    yield Row("force_sensor", "wrong", {"scale": -1.0}, reasons=DOUBTFUL, states=(LIMIT,), slow=True)
     for first in (0.0, 1.0):
         yield Row(f"{AXIS}.up", "contradicted", {"first": first}, reasons=("DRIVE_TWICE", "DRIVE_RESTARTED"))
 

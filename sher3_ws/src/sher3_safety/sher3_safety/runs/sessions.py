@@ -54,11 +54,11 @@ def excitations(robot: Robot, seed: int) -> tuple[Array, Array]:
     """
     draw, labels = np.random.default_rng([seed, 0xE8C1]), list(catalogue())
     share = 0.5 - 0.5 * np.cos(np.pi * np.linspace(0.0, 1.0, round(BETWEEN / robot.control_period)))[:, None]
-    goals: list[NDArray[Any]] = [np.zeros((1, 5))]
-    wrenches: list[NDArray[Any]] = [np.zeros((1, 6))]
+    goals: list[Array] = [np.zeros((1, 5))]
+    wrenches: list[Array] = [np.zeros((1, 6))]
     while sum(map(len, goals)) * robot.control_period < SESSION:
         made = excite(labels[draw.integers(len(labels))], robot)
-        way = goals[-1][-1] + share * (made.position[0] - goals[-1][-1])
-        goals += [way, made.position]
-        wrenches += [np.zeros((len(way), 6)), made.contact_wrench()]
+        way: Array = goals[-1][-1] + share * (made.position[0] - goals[-1][-1])
+        goals += [way, np.asarray(made.position, dtype=np.float64)]
+        wrenches += [np.zeros((len(way), 6)), np.asarray(made.contact_wrench(), dtype=np.float64)]
     return np.concatenate(goals), np.concatenate(wrenches)

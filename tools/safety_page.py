@@ -1,0 +1,28 @@
+"""Write docs/reference/safety-matrix.md from what `sher3 safety` left in its folder.
+
+sher3 safety --jobs 2 && python tools/safety_page.py bags/safety
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+PAGE = Path(__file__).parent.parent / "docs" / "reference" / "safety-matrix.md"
+INTRODUCTION = """# Safety matrix
+
+The table of the faults, as `sher3 safety` writes it into `report.md` of its folder (`--out`, by default
+`bags/safety`); `tools/safety_page.py` makes this page of it. What a cell is, when it holds and how it is measured
+stands in [safety](safety.md).
+
+"""
+
+
+def page(report: str) -> str:
+    """Return the page of a report: what was run, the table, what misses, what goes on and why."""
+    _, _, rest = report.partition("\n")
+    return INTRODUCTION + rest.strip().replace("um]", "µm]") + "\n"
+
+
+if __name__ == "__main__":
+    PAGE.write_text(page((Path(sys.argv[1]) / "report.md").read_text(encoding="utf-8")), encoding="utf-8")
