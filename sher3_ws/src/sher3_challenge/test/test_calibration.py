@@ -3,6 +3,7 @@
 import json
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from sher3_challenge.calibration.fit import Example, calibrated, conformal, logistic, sharpness, weights
 from sher3_challenge.calibration.held_out import held_out, judged_by
@@ -106,9 +107,11 @@ def test_what_is_found_where_no_fault_is_has_no_gap_of_its_own():
     assert [answer_of(outside, i, outside) for i in outside.items] == ["outside_library", "outside_library"]
 
 
-def test_every_plant_counts_the_same():
-    examples = [Example("a", {}, "x"), Example("a", {}, "x"), Example("a", {}, "y"), Example("b", {}, "x")]
-    assert weights(examples) == pytest.approx([2 / 3, 2 / 3, 2 / 3, 2.0])
+def test_every_plant_counts_the_same_once_it_has_ten_examples():
+    """30 of one at 1 / 30 and 10 of the other at 1 / 10: each sums to 1, 40 examples weigh 40."""
+    found = weights(30 * [Example("a", {}, "x")] + 10 * [Example("b", {}, "x")])
+    assert found[[0, -1]] == pytest.approx([20 / 30, 20 / 10])
+    assert weights([Example("a", {}, "x"), Example("a", {}, "y"), Example("b", {}, "x")]) == pytest.approx(np.ones(3))
 
 
 def test_a_fit_by_hand():

@@ -28,6 +28,8 @@ EVEN = 1e-4
 """The same of the constants: no answer is impossible because no case had it."""
 READ = ("left", "complete", "law", "foreign", "spread", "lost", "mismatch", "company", "size")
 """Evidence that the model of a cause reads."""
+FEW = 10
+"""Examples of a plant up to which each counts the same: a lone one must not speak for its plant."""
 LAST = frozenset({"size"})
 """Evidence that only says that a gap is one: how large it is tells nothing of its cause."""
 
@@ -164,9 +166,10 @@ def _bound(name: str, k: int, classes: int) -> tuple[float | None, float | None]
 
 
 def weights(examples: Sequence[Example]) -> np.ndarray:
-    """Return weights, 1 on average, by which every plant counts the same."""
+    """Return weights, 1 on average, by which every plant counts the same once it has `FEW` examples."""
     plants = [e.plant for e in examples]
-    return np.array([len(plants) / len(set(plants)) / plants.count(p) for p in plants])
+    found = np.array([1.0 / max(plants.count(p), FEW) for p in plants])
+    return found / found.mean()
 
 
 def sharpness(distances: Sequence[tuple[float, list[float]]]) -> float:
