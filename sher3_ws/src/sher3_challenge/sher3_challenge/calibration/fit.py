@@ -26,7 +26,7 @@ RIDGE = 0.02
 """Weight of the squared coefficients beside the mean log likelihood. Set on: the plants other than the one quoted."""
 EVEN = 1e-4
 """The same of the constants: no answer is impossible because no case had it."""
-READ = ("left", "complete", "law", "foreign", "spread", "lost", "mismatch", "company", "size")
+READ = ("left", "complete", "law", "foreign", "spread", "lost", "mismatch", "size")
 """Evidence that the model of a cause reads."""
 FEW = 10
 """Examples of a plant up to which each counts the same: a lone one must not speak for its plant."""
@@ -56,6 +56,11 @@ ECHOES = 3 * [
 """Gaps whose answer needs no case: one at its threshold beside one of its place fifty times as large, one of
 thirty alone, and one
 that is hardly above its threshold: of the healthy robots' many channels some are."""
+
+SWAPPED = [*(5 * [(0.0, [0.0, 1.0])]), (1.0, [0.0, 1.0])]
+"""Pairs of effects, one at the margin of a rival (unlikeness 1), whose answer needs no case: five to one for the
+closer. Few cases hold a close rival at all, and such cases would call the second impossible. The calibration before
+this one, on 186 cases, had a sharpness of 1.71 and a reach of 0.95; five to one alone is 1.61."""
 
 
 @dataclass(frozen=True)
@@ -105,8 +110,8 @@ def calibrated(observations: Sequence[Observation]) -> Calibration:
         cause=logistic(seen.causes, (LIBRARY, OUTSIDE, NO_GAP), READ),
         gap=logistic([*seen.gaps, *ECHOES], (NO_GAP, OUTSIDE), ("power", "alone")),
         exact=logistic([*seen.exact, *PLAIN], (LIBRARY, OUTSIDE), ("missed",)),
-        sharpness=sharpness(seen.distances),
-        reach=conformal([d for d, _ in seen.distances], COVERAGE),
+        sharpness=sharpness([*seen.distances, *SWAPPED]),
+        reach=conformal([d for d, _ in [*seen.distances, *SWAPPED]], COVERAGE),
         coverage=COVERAGE,
         same=SAME_DATA_CROSSING,
         provenance=tuple(
