@@ -83,6 +83,9 @@ def test_several_effects_that_together_leave_as_little_as_the_true_one_give_the_
         left_out = seen(effect="base_tilt", items=items, without=("base_tilt",))
         assert same_data(left_out, whole) == same
         assert answer_of(left_out, items[0], whole) == (None if same else "outside_library")
+    far = {**cause("cogging", {}, left=0.001, ratio=60.0), "channel": "motor_mechanics/roll"}
+    worse = seen(effect="base_tilt", items=[far, cause("tool_offset", {}, left=0.1)], without=("base_tilt",))
+    assert not same_data(worse, whole)  # each place by itself: the larger gap elsewhere excuses nothing
     beside = seen(effect="base_tilt", items=[cause("tool_offset", {}), gap()], without=("base_tilt",))
     assert not same_data(beside, whole)  # a gap has no cause
 
