@@ -3,6 +3,7 @@
 import json
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from sher3_challenge.calibration.fit import Example, calibrated, conformal, logistic, sharpness, weights
 from sher3_challenge.calibration.held_out import held_out, judged_by
@@ -15,7 +16,7 @@ from sher3_diagnosis.judge.calibration.calibration import Calibration
 
 NUMBERS = {
     "left": 0.01, "law": 0.01, "place": 0.01, "anything": 0.01, "spread": 0.001, "scatter": 1.0, "lost": 0.001,
-    "mismatch": 0.02, "company": 0.0, "sibling": 0.5, "ratio": 6.0, "samples": 4000.0, "idealised": 1.0,
+    "mismatch": 0.02, "sibling": 0.5, "ratio": 6.0, "samples": 4000.0, "idealised": 1.0,
 }  # fmt: skip
 BAD = {"left": 0.6, "law": 0.5, "anything": 0.1, "spread": 0.2, "lost": 0.2, "mismatch": 0.5}
 RIVAL = {"presliding_friction": 0.5, "viscous_friction": 20.0}
@@ -82,6 +83,9 @@ def test_several_effects_that_together_leave_as_little_as_the_true_one_give_the_
         left_out = seen(effect="base_tilt", items=items, without=("base_tilt",))
         assert same_data(left_out, whole) == same
         assert answer_of(left_out, items[0], whole) == (None if same else "outside_library")
+    far = {**cause("cogging", {}, left=0.001, ratio=60.0), "channel": "motor_mechanics/roll"}
+    worse = seen(effect="base_tilt", items=[far, cause("tool_offset", {}, left=0.1)], without=("base_tilt",))
+    assert not same_data(worse, whole)  # each place by itself: the larger gap elsewhere excuses nothing
     beside = seen(effect="base_tilt", items=[cause("tool_offset", {}), gap()], without=("base_tilt",))
     assert not same_data(beside, whole)  # a gap has no cause
 
@@ -106,9 +110,11 @@ def test_what_is_found_where_no_fault_is_has_no_gap_of_its_own():
     assert [answer_of(outside, i, outside) for i in outside.items] == ["outside_library", "outside_library"]
 
 
-def test_every_plant_counts_the_same():
-    examples = [Example("a", {}, "x"), Example("a", {}, "x"), Example("a", {}, "y"), Example("b", {}, "x")]
-    assert weights(examples) == pytest.approx([2 / 3, 2 / 3, 2 / 3, 2.0])
+def test_every_plant_counts_the_same_once_it_has_ten_examples():
+    """30 of one at 1 / 30 and 10 of the other at 1 / 10: each sums to 1, 40 examples weigh 40."""
+    found = weights(30 * [Example("a", {}, "x")] + 10 * [Example("b", {}, "x")])
+    assert found[[0, -1]] == pytest.approx([20 / 30, 20 / 10])
+    assert weights([Example("a", {}, "x"), Example("a", {}, "y"), Example("b", {}, "x")]) == pytest.approx(np.ones(3))
 
 
 def test_a_fit_by_hand():

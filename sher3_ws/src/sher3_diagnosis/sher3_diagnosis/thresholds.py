@@ -151,6 +151,11 @@ MOSTLY_DROPS = 0.5
 """Share of the ticks out of time that must be late by whole periods for them to be drops. Set by that argument: drops
 leave a lattice of latencies, jitter a continuum. Measure: `sher3 gap challenge --seeds 0:40`."""
 
+CONTINUUM = 0.1
+"""Distance of the quartiles of the ticks' latencies, over their rms, from which lateness may be jitter: that of a
+half-normal one is 0.83; where it is nothing most ticks are on time, and what is late is late for a reason.
+Set by that argument. Measure: `sher3 gap challenge --kinds outside` (demand_slew)."""
+
 EXACT_UNTOLD = 0.005
 """Share of an exact stage's error in ticks whose timing cannot be told. Set on and measured as `SKEW`."""
 

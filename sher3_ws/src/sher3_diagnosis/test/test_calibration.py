@@ -17,7 +17,7 @@ from sher3_diagnosis.verdict import Interval, Residual, Where
 TWO = {"classes": ("library", "outside_library"), "inputs": ("x",), "middle": (1.0,), "spread": (2.0,)}
 NUMBERS = {
     "left": 0.01, "law": 0.01, "place": 0.01, "anything": 0.01, "spread": 0.001, "scatter": 1.0, "lost": 0.001,
-    "mismatch": 0.02, "company": 0.0, "sibling": 0.5, "ratio": 6.0, "samples": 4000.0, "idealised": 1.0,
+    "mismatch": 0.02, "sibling": 0.5, "ratio": 6.0, "samples": 4000.0, "idealised": 1.0,
 }  # fmt: skip
 CALIBRATION = in_force()
 
@@ -73,8 +73,10 @@ def test_a_great_gap_without_a_cause_is_outside():
 
 def test_a_cause_whose_closure_may_be_nothing_is_not_named():
     j = judged(cause(), CALIBRATION)
-    assert answer_to(j, 0.3) == answer_to(j, None) == "library"
-    assert answer_to(j, -0.1) == "outside_library"
+    assert answer_to(j, Interval(value=0.5, low=0.3)) == answer_to(j, Interval(value=0.5)) == "library"
+    assert answer_to(j, Interval(value=0.5, low=-0.1)) == "outside_library"
+    assert answer_to(j, Interval(value=0.0)) == "no_gap"  # over all runs there is nothing above the floor
+    assert answer_to(j, None) == "library"
 
 
 def test_the_status_follows_from_the_answers():

@@ -72,6 +72,13 @@ def test_drops_are_no_jitter_even_where_they_are_not_in_the_library():
     assert result.closure.value == 0.0
 
 
+def test_lateness_of_a_few_ticks_by_any_time_is_neither_jitter_nor_drops():
+    """A limit on how fast the demand may change holds one command in ten back, the longer the larger its step."""
+    samples = np.concatenate([np.zeros(900), np.linspace(0.3, 20.4, 100)])
+    late = {"samples": samples, "drops": 0.1, "scatter": 0.1, "constant": 0.6, "per_tick": 0.0}
+    assert found(**late).causes == []
+
+
 def test_latencies_that_scatter_are_jitter_with_their_rms():
     samples = np.abs(np.random.default_rng(0).normal(0.0, 0.3, 500))
     scatter = float(samples.std())

@@ -98,24 +98,33 @@ def calibrate(
     ] = None,
     diagram: Annotated[Path | None, typer.Option(help="Picture of the reliability on plants left out.")] = None,
     jobs: Annotated[int, typer.Option(min=1, help="Processes.")] = 1,
+    in_force: Annotated[
+        bool,
+        typer.Option("--in-force", help="Set nothing; judge cases that set no weight as verdicts are judged."),
+    ] = False,
     as_json: Json = False,
 ) -> None:
     """Set the probabilities of verdicts on labelled cases; print how they hold on each plant when it is left out."""
-    import tempfile
-
     from rich.console import Console
     from sher3_challenge.calibration.fit import calibrated
-    from sher3_challenge.calibration.held_out import held_out
+    from sher3_challenge.calibration.held_out import held_out, judged_by
     from sher3_challenge.calibration.observe import gathered
     from sher3_challenge.calibration.table import rates, written
     from sher3_challenge.score.reliability import diagram as drawn
+    from sher3_diagnosis.judge.calibration import calibration
 
     with reported(as_json), tempfile.TemporaryDirectory() as scratch:
         seen = gathered(plants_of(folders), kept or Path(scratch), jobs)
-        found = calibrated(seen)
         names = sorted({o.plant for o in seen})
-        left_out = {name: held_out(seen, name) for name in names} if len(names) > 1 else {}
+        if in_force:
+            found = calibration.in_force()
+            left_out = {name: judged_by(found, [o for o in seen if o.plant == name]) for name in names}
+        else:
+            found = calibrated(seen)
+            left_out = {name: held_out(seen, name) for name in names} if len(names) > 1 else {}
         columns = {name: rates(judgements) for name, judgements in left_out.items()}
+        if len(columns) > 1:
+            columns["all"] = rates([j for judgements in left_out.values() for j in judgements])
         if out is not None:
             out.write_text(found.model_dump_json(by_alias=True, indent=1) + "\n", encoding="utf-8")
         if diagram is not None and left_out:

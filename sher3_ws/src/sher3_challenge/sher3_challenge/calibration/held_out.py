@@ -12,6 +12,7 @@ from sher3_diagnosis.judge.evidence.scales import scaled_exact
 from sher3_diagnosis.judge.items import Candidate, Item
 from sher3_diagnosis.judge.probabilities import LIBRARY, NO_GAP, OUTSIDE, judged
 from sher3_diagnosis.judge.status import answer_to, crosses, status_of
+from sher3_diagnosis.verdict import Interval
 
 from sher3_challenge.calibration.fit import calibrated
 from sher3_challenge.calibration.labels import alike, answer_of, company, contains, equal, known, same_data, twins
@@ -80,7 +81,7 @@ def _judgement(seen: Observation, whole: Observation, calibration: Calibration) 
     crossing = False
     for row in seen.items:
         j = judged(_item(row), calibration)
-        answers.append(answer_to(j, (row.get("closure") or {}).get("low")))
+        answers.append(answer_to(j, Interval(**row["closure"]) if row.get("closure") else None))
         if answers[-1] == LIBRARY:
             named.append(row["candidates"][0]["effect"])
             sets.append(frozenset(alike(row, calibration.reach)))

@@ -81,14 +81,18 @@ def same_data(seen: Observation, whole: Observation) -> bool:
     """
     if not seen.items or any(x["index"] is None for x in seen.items):
         return False
-    size = max((x["numbers"]["ratio"] ** 2 for x in whole.items), default=0.0)
-    return _remainder(seen) <= _remainder(whole) + RIVAL * size
+    left, before = _remainders(seen), _remainders(whole)
+    return all(rest <= before.get(c, (0.0, gap))[0] + RIVAL * gap for c, (rest, gap) in left.items())
 
 
-def _remainder(seen: Observation) -> float:
-    """Return the largest power over its floor that the causes leave."""
-    found = (x["numbers"] for x in seen.items if x["index"] is not None)
-    return max((max(0.0, n["left"]) * n["ratio"] ** 2 for n in found), default=0.0)
+def _remainders(seen: Observation) -> dict[str, tuple[float, float]]:
+    """Return per channel with a cause the largest power over its floor that its causes leave, and that they explain."""
+    out: dict[str, tuple[float, float]] = {}
+    for item in (x for x in seen.items if x["index"] is not None):
+        gap = item["numbers"]["ratio"] ** 2
+        rest, most = out.get(item["channel"], (0.0, 0.0))
+        out[item["channel"]] = max(rest, gap * max(0.0, item["numbers"]["left"])), max(most, gap)
+    return out
 
 
 def _at_a_fault(seen: Observation, item: Row) -> bool:

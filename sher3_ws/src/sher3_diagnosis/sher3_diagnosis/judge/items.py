@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from sher3_diagnosis.attribute.rivals import Attribution, unlikeness, without_term
 from sher3_diagnosis.channel import Channel
@@ -38,7 +37,7 @@ class Item:
     Attributes:
         channel: where it shows most.
         index: of the cause's term in its fit; None for a gap without a cause.
-        numbers: the evidence by name; of a cause also its `company`, the other causes that show most there.
+        numbers: the evidence by name.
         candidates: of a cause, the effects that may stand in its place, itself first.
     """
 
@@ -58,9 +57,7 @@ def items_of(finding: Finding) -> list[Item]:
         )
         numbers = cause_evidence(evidence, attribution, i).numbers()
         causes.append(Item(channel, i, numbers, candidates_of(attribution, i)))
-    shared = Counter(c.channel for c in causes)
-    causes = [replace(c, numbers={**c.numbers, "company": shared[c.channel] - 1.0}) for c in causes]
-    return causes + gaps_of(finding, set(shared))
+    return causes + gaps_of(finding, {c.channel for c in causes})
 
 
 def gaps_of(finding: Finding, taken: set[Channel]) -> list[Item]:

@@ -5,13 +5,22 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from sher3_diagnosis.judge.items import Item
-from sher3_diagnosis.judge.probabilities import LIBRARY, OUTSIDE, Judged
-from sher3_diagnosis.verdict import Status
+from sher3_diagnosis.judge.probabilities import LIBRARY, NO_GAP, OUTSIDE, Judged
+from sher3_diagnosis.verdict import Interval, Status
 
 
-def answer_to(j: Judged, low: float | None) -> str:
-    """Return the answer to an item; a cause whose closure may be nothing at all (`low` <= 0) is not named."""
-    if j.answer == LIBRARY and low is not None and low <= 0.0:
+def answer_to(j: Judged, closure: Interval | None) -> str:
+    """Return the answer to an item; a cause is not named where its closure may be nothing at all.
+
+    Args:
+        j: the item with its probabilities.
+        closure: of a cause; exactly 0 where over all runs there is nothing above the floor that could be closed.
+    """
+    if closure is None:
+        return j.answer
+    if closure.value == 0.0:
+        return NO_GAP
+    if j.answer == LIBRARY and closure.low is not None and closure.low <= 0.0:
         return OUTSIDE
     return j.answer
 

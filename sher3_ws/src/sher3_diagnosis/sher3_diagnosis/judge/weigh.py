@@ -13,13 +13,13 @@ from sher3_diagnosis.judge.calibration.calibration import Calibration
 from sher3_diagnosis.judge.items import items_of
 from sher3_diagnosis.judge.probabilities import LIBRARY, OUTSIDE, Judged, judged
 from sher3_diagnosis.judge.status import answer_to
-from sher3_diagnosis.verdict import Cause, Imitation
+from sher3_diagnosis.verdict import Cause, Imitation, Interval
 
 
 def weighed(finding: Finding, calibration: Calibration) -> Finding:
     """Judge every cause and gap of a finding; keep the causes that are named, and the gaps that need an answer."""
     items = [judged(i, calibration) for i in items_of(finding)]
-    answers = [answer_to(j, _low(finding, j)) for j in items]
+    answers = [answer_to(j, _closure(finding, j)) for j in items]
     named = [j for j, a in zip(items, answers, strict=True) if a == LIBRARY]
     outside = [j for j, a in zip(items, answers, strict=True) if a == OUTSIDE]
     attribution, causes = _kept(finding, named, calibration.reach)
@@ -35,9 +35,9 @@ def weighed(finding: Finding, calibration: Calibration) -> Finding:
     )
 
 
-def _low(finding: Finding, j: Judged) -> float | None:
-    """Lower end of the closure of a cause; None of a gap."""
-    return None if j.item.index is None else _cause(finding, j).closure.low
+def _closure(finding: Finding, j: Judged) -> Interval | None:
+    """Closure of a cause; None of a gap."""
+    return None if j.item.index is None else _cause(finding, j).closure
 
 
 def _cause(finding: Finding, j: Judged) -> Cause:

@@ -11,6 +11,7 @@ from sher3_diagnosis.finding import ExactFinding
 from sher3_diagnosis.thresholds import (
     ANY_JITTER,
     APART,
+    CONTINUUM,
     DROPS_SEEN,
     DROPS_USUAL,
     JITTER_OVER_LATENCY,
@@ -127,7 +128,7 @@ def _causes(late: Lateness, without: Collection[str]) -> tuple[list[Cause], floa
         if DroppedCommands.id not in without:
             closure, lost = late.per_tick, _probability(late.timing)
             causes.append(exact_cause(DroppedCommands.id, late.site, late.per_tick, probability=lost))
-    elif CommandJitter.id not in without and (late.jittery or late.random_share > ANY_JITTER):
+    elif CommandJitter.id not in without and _jittering(late):
         closure = late.per_tick
         share = late.per_tick if late.jittery else late.random_share
         causes.append(exact_cause(CommandJitter.id, late.site, share, sigma=_sigma(late)))
@@ -153,6 +154,14 @@ def _dropping(late: Lateness) -> bool:
     odd = deviation[np.abs(deviation) > SKEW]
     on_lattice = np.abs(odd - np.rint(odd)) < SKEW
     return len(odd) > 0 and float(np.mean(on_lattice)) > MOSTLY_DROPS
+
+
+def _jittering(late: Lateness) -> bool:
+    """Whether every command is late by chance; a latency of every tick would reproduce any lateness, so shares alone
+    tell nothing.
+    """
+    low, high, rms = *np.quantile(late.timing.samples, (0.25, 0.75)), np.sqrt(np.mean(late.timing.samples**2))
+    return bool((late.jittery or late.random_share > ANY_JITTER) and high - low > CONTINUUM * rms)
 
 
 def _probability(t: Timing) -> Parameter:

@@ -40,6 +40,5 @@ def scaled_cause(numbers: Mapping[str, float]) -> dict[str, float]:
         "spread": log_above(numbers["spread"], 0.001),
         "lost": log_above(numbers["lost"], 0.001),
         "mismatch": log_above(numbers["mismatch"], 0.01),
-        "company": numbers["company"],
         "size": log_above(numbers["ratio"], 1.0),
     }
