@@ -42,9 +42,7 @@ def import_data(
 def describe(
     file: Annotated[Path, typer.Argument(help="Data file, folder of files, or bag.")],
     out: Annotated[Path | None, typer.Option(help="YAML file to write; default: print it.")] = None,
-    rate: Annotated[
-        float | None, typer.Option(min=1e-3, help="Samples per second, without a time.")
-    ] = None,
+    rate: Annotated[float | None, typer.Option(min=1e-3, help="Samples per second, without a time.")] = None,
     as_json: Json = False,
 ) -> None:
     """Draft a machine description from a file and say what was guessed; check it before you import with it.
