@@ -13,7 +13,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.stats import t as student
 
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.evidence import Evidence
@@ -57,6 +56,8 @@ class Local:
 
     def half_width(self, gradient: Array) -> float:
         """Return the half width of the 95 % interval of a parameter with this gradient (p_own,)."""
+        from scipy.special import stdtrit  # slow to import, and not needed before a case is read
+
         direction = self._inverse[:, self.own] @ gradient
         known = float(direction @ (self.prior * direction))
         widest = 0.0
@@ -65,7 +66,7 @@ class Local:
             pieces = len(scores)
             freedom = max(1.0, float(told.sum() ** 2 / max((told**2).sum(), 1e-300)) - 1.0)
             variance = float(told.sum()) * pieces / max(pieces - 1, 1) + known
-            widest = max(widest, float(student.ppf(0.975, freedom) * np.sqrt(variance)))
+            widest = max(widest, float(stdtrit(freedom, 0.975) * np.sqrt(variance)))
         return widest
 
 
