@@ -23,7 +23,7 @@ def message(stamp, q=Q):
 
 @pytest.fixture
 def opened(tmp_path):
-    with Recorder(tmp_path / "bag", ROBOT, frames=Beside(ROBOT)) as recorder:
+    with Recorder(tmp_path / "bag", ROBOT, beside=Beside(ROBOT)) as recorder:
         for k in range(26):
             recorder.write("measured_js", message(1_000_000_000 + 4_000_000 * k), 5 + k)
     with AnyReader([tmp_path / "bag"]) as reader:

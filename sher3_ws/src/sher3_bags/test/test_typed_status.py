@@ -36,7 +36,7 @@ SETTINGS = {"version": 3, "rcm": [0.1, 0.2, 0.3], "regime": "free", "settings": 
 def recorded(tmp_path):
     """Return the typed messages of a bag, newest by topic."""
     robot = load_robot()
-    with Recorder(tmp_path / "bag", robot, frames=Beside(robot)) as recorder:
+    with Recorder(tmp_path / "bag", robot, beside=Beside(robot)) as recorder:
         texts = {"motion/status": MOTION, "supervisor/status": SUPERVISOR, "motion/settings": SETTINGS}
         for k, (topic, content) in enumerate(texts.items()):
             recorder.write(topic, text(json.dumps(content)), 9_000_000_000 + k)

@@ -5,10 +5,10 @@ Counting such samples counts information, which is what losses and their prices 
 
 from __future__ import annotations
 
+import math
 from functools import lru_cache
 
 import numpy as np
-from scipy.signal import butter, sosfilt_zi
 from sher3_common.compiled import compiled
 
 from sher3_diagnosis.channel import Array, Mask
@@ -43,9 +43,15 @@ def low_pass(x: Array, period: float, cutoff: float = BANDWIDTH) -> Array:
 
 @lru_cache(maxsize=32)
 def _butterworth(period: float, cutoff: float) -> tuple[Array, Array]:
-    """One second-order section b0 b1 b2 a0 a1 a2, (6,), and its state at rest at one, (2,)."""
-    section = butter(2, cutoff, fs=1.0 / period, output="sos")
-    return section[0].copy(), sosfilt_zi(section)[0].copy()
+    """One second-order section b0 b1 b2 a0 a1 a2, (6,), and its state at rest at one, (2,).
+
+    The bilinear transform of 1 / (s^2 + sqrt(2) s + 1), cut-off kept: as `scipy.signal.butter`, but without
+    a second of import.
+    """
+    k = math.tan(math.pi * cutoff * period)
+    unit = 1.0 + math.sqrt(2.0) * k + k * k
+    b, a1, a2 = k * k / unit, 2.0 * (k * k - 1.0) / unit, (1.0 - math.sqrt(2.0) * k + k * k) / unit
+    return np.array([b, 2.0 * b, b, 1.0, a1, a2]), np.array([1.0 - b, b - a2])
 
 
 @compiled

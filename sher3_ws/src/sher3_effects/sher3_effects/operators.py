@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from scipy.signal import lfilter
 from sher3_common.compiled import compiled
 from sher3_diagnosis.channel import Array
 
@@ -154,4 +153,15 @@ def frozen_integral(
 def held_lag(x: Array, time_constant: float, period: float) -> Array:
     """First-order lag of x (n, d), exact for an input that is held from one sample to the next; at rest at first."""
     keep = math.exp(-period / time_constant)
-    return np.asarray(lfilter([0.0, 1.0 - keep], [1.0, -keep], x - x[0], axis=0) + x[0])
+    return _follow(np.ascontiguousarray(x, dtype=float), keep)
+
+
+@compiled
+def _follow(x: Array, keep: float) -> Array:
+    """Return x (n, d) one sample late through y <- keep y + (1 - keep) x, at rest at first."""
+    out = np.empty_like(x)
+    y = np.zeros_like(x[0])
+    for k in range(len(x)):
+        out[k] = y + x[0]
+        y = (1.0 - keep) * (x[k] - x[0]) + keep * y
+    return out

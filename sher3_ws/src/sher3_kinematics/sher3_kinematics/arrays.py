@@ -5,22 +5,24 @@ A Python call of a compiled function costs the unpacking of its arguments; an ar
 
 from __future__ import annotations
 
+import functools
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
-from numba import config
-from numba.np.unsafe.ndarray import to_fixed_tuple as _to_fixed_tuple
 from numpy.typing import NDArray
 from sher3_common.compiled import compiled_ieee
 
 from sher3_kinematics import kernel
+from sher3_kinematics.direct import direct
 from sher3_kinematics.errors import BadInput
 from sher3_kinematics.kernel import reach as kernel_reach
 from sher3_kinematics.kernel.parameters import KernelParameters
+from sher3_kinematics.kernel.parameters import unpack as unpack
 
 Floats = NDArray[np.float64]
-_COUNT = len(KernelParameters._fields)
+FLOAT64 = np.dtype(np.float64)
 
 
 def vector(values: Sequence[float] | Floats, size: int, name: str) -> Floats:
@@ -29,7 +31,7 @@ def vector(values: Sequence[float] | Floats, size: int, name: str) -> Floats:
     Raises:
         BadInput: wrong shape, or a value that is not finite.
     """
-    if _is_plain(values, size):
+    if is_plain(values, size) and math.isfinite(sum(values.tolist())):  # type: ignore[union-attr]
         return values  # type: ignore[return-value]
     try:
         result = np.ascontiguousarray(values, dtype=np.float64)
@@ -42,17 +44,16 @@ def vector(values: Sequence[float] | Floats, size: int, name: str) -> Floats:
     return result
 
 
-def _is_plain(values: object, size: int) -> bool:
-    """Return whether a value is a vector that needs no conversion.
+def is_plain(values: object, size: int) -> bool:
+    """Return whether a value is a vector (size,) that needs no conversion, finite or not.
 
     This is the case of the control loop, and the test is several times faster than a conversion.
     """
     return (
         isinstance(values, np.ndarray)
-        and values.dtype == np.float64
+        and values.dtype is FLOAT64
         and values.shape == (size,)
         and values.flags.c_contiguous
-        and math.isfinite(values.dot(values))
     )
 
 
@@ -62,18 +63,6 @@ def rows(values: Sequence[Sequence[float]] | Floats, size: int, name: str) -> Fl
     if result.ndim != 2 or result.shape[1] != size:
         raise BadInput(f"{name} has the wrong shape", value=result.shape, limit=("n", size), remedy="give one row each")
     return result
-
-
-_OFF = config.DISABLE_JIT  # type: ignore[attr-defined]
-to_fixed_tuple = (lambda array, _: tuple(array)) if _OFF else _to_fixed_tuple
-"""Numba's function works in compiled code alone; with numba switched off (mutation checks do so) Python's does the
-same."""
-
-
-@compiled_ieee
-def unpack(parameters: Floats) -> KernelParameters:
-    """Return the parameter tuple held in an array (44,)."""
-    return KernelParameters(*to_fixed_tuple(parameters, _COUNT))  # type: ignore[call-arg]
 
 
 @compiled_ieee
@@ -93,19 +82,20 @@ def tip_jacobian(parameters: Floats, q: Floats) -> Floats:
 
 
 @compiled_ieee
-def pose_inverse(
-    parameters: Floats, position: Floats, axis: Floats, lower: Floats, upper: Floats, elevation: float
-) -> tuple[Floats, bool]:
-    """Return q (5,) for a tip position and a distal tool axis, and whether it is within travel and workspace."""
+def pose_inverse(parameters: Floats, position: Floats, axis: Floats, bounds: Floats) -> tuple[Floats, bool]:
+    """Return q (5,) for a tip position and a distal tool axis, and whether it is within travel and workspace.
+
+    `bounds` (11,): lower ends, upper ends, least elevation of the legs. Whatever is not finite is not within.
+    """
     p = unpack(parameters)
     q, margins = np.empty(5), np.empty(5)
     kernel.pose_inverse_into(p, position[0], position[1], position[2], axis, q)
     kernel_reach.singularity_margins_into(p, q, margins)
     inside = True
     for k in range(5):
-        inside = inside and lower[k] <= q[k] <= upper[k]
+        inside = inside and bounds[k] <= q[k] <= bounds[5 + k]
     for k in range(3):
-        inside = inside and margins[k] >= elevation
+        inside = inside and margins[k] >= bounds[10]
     return q, inside
 
 
@@ -131,3 +121,10 @@ def delta_inverse(parameters: Floats, centre: Floats) -> Floats:
 def delta_jacobian(parameters: Floats, q: Floats) -> Floats:
     """Return the Jacobian (3, 3) of the platform centre for slider positions (3,)."""
     return kernel.delta_jacobian(unpack(parameters), q[0], q[1], q[2])
+
+
+@functools.cache
+def entry(name: str) -> Callable[..., Any]:
+    """Return the machine code of one of the functions above that the control loop calls; see `direct`."""
+    vectors = {"tip_transform": (5,), "tip_jacobian": (5,), "pose_inverse": (3, 3, 11)}[name]
+    return direct(globals()[name], np.zeros(len(KernelParameters._fields)), *map(np.zeros, vectors))

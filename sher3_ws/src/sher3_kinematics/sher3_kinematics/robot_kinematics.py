@@ -10,7 +10,7 @@ import numpy as np
 from sher3_description import ACTUATORS, Robot, load_robot
 
 from sher3_kinematics import arrays
-from sher3_kinematics.arrays import Floats, rows, vector
+from sher3_kinematics.arrays import Floats, is_plain, rows, vector
 from sher3_kinematics.delta import Delta
 from sher3_kinematics.errors import BadInput, OutsideLimits, Unreachable
 from sher3_kinematics.kernel import batch as kernel_batch
@@ -53,6 +53,7 @@ class RobotKinematics:
         self.tilt_linkage = TiltLinkage(self.robot, self.parameters)
         self._values = np.array(self.parameters)
         self._lower, self._upper = self.lower - TOLERANCE, self.upper + TOLERANCE
+        self._bounds = np.array([*self._lower, *self._upper, self.delta.least_elevation])
 
     def transform_tip_to_base(self, q: Sequence[float] | Floats) -> Floats:
         """Return T_bt (4, 4), recorded-run contract version 1, section 2.
@@ -61,16 +62,18 @@ class RobotKinematics:
             BadInput: q is not five finite numbers.
             Unreachable: the legs do not meet or the tilt slider is beyond a dead point.
         """
-        positions = vector(q, 5, "actuator positions")
-        transform = arrays.tip_transform(self._values, positions)
+        positions = q if is_plain(q, 5) else vector(q, 5, "actuator positions")
+        transform: Floats = arrays.entry("tip_transform")(self._values, positions)
         if math.isnan(transform[2, 3]):
+            positions = vector(q, 5, "actuator positions")
             self.delta.forward(positions[:3])
             self.tilt_linkage.angle(float(positions[4]))
         return transform
 
     def jacobian(self, q: Sequence[float] | Floats) -> Floats:
         """Return the Jacobian (6, 5) from actuator velocities to the tip twist (linear; angular) in {b} at the tip."""
-        return arrays.tip_jacobian(self._values, vector(q, 5, "actuator positions"))
+        jacobian: Floats = arrays.entry("tip_jacobian")(self._values, vector(q, 5, "actuator positions"))
+        return jacobian
 
     def gravity_load(self, q: Sequence[float] | Floats) -> Floats:
         """Return the effort (5,) [N, N m] that holds the robot against gravity, contract section 3."""
@@ -87,10 +90,12 @@ class RobotKinematics:
             BadInput: wrong shape, not finite, or an axis without length.
             Unreachable: roll or tilt beyond its travel (distance in rad), or platform outside its workspace (in m).
         """
-        point, direction = vector(position, 3, "tip position"), vector(axis, 3, "tool axis")
-        lower, upper, elevation = self._lower, self._upper, self.delta.least_elevation
-        q, inside = arrays.pose_inverse(self._values, point, direction, lower, upper, elevation)
+        point = position if is_plain(position, 3) else vector(position, 3, "tip position")
+        direction = axis if is_plain(axis, 3) else vector(axis, 3, "tool axis")
+        q: Floats
+        q, inside = arrays.entry("pose_inverse")(self._values, point, direction, self._bounds)
         if not inside:
+            point, direction = vector(position, 3, "tip position"), vector(axis, 3, "tool axis")
             length = math.hypot(*direction)
             if length < SHORTEST_AXIS:
                 remedy = "give a unit vector"

@@ -12,7 +12,8 @@ from sher3_description import Robot
 
 from sher3_kinematics.arrays import vector
 from sher3_kinematics.deflection import DeltaDeflection
-from sher3_kinematics.kernel.deflection import point_deflection
+from sher3_kinematics.direct import direct
+from sher3_kinematics.kernel.deflection import tip_deflection
 from sher3_kinematics.link_law import LinkLaw
 from sher3_kinematics.robot_kinematics import RobotKinematics
 
@@ -78,9 +79,12 @@ class TipDeflection:
         sensor = robot.force_sensor
         self._range = np.array([*sensor.range_force, *sensor.range_torque])
         self._sensor_position = np.array(sensor.position)
-        law = self.delta.law
-        self._law = np.array([law.a * law.factor, law.b, law.force_floor**2])
-        self._arm = np.array([1.0 / self.arm.pitch, 1.0 / self.arm.yaw, self.arm.along_x])
+        law, arm = self.delta.law, self.arm
+        constants = [self.delta.link_length, law.a * law.factor, law.b, law.force_floor**2]
+        constants += [1.0 / arm.pitch, 1.0 / arm.yaw, arm.along_x, *self._range, *self._sensor_position, ABSURD_FORCE]
+        self._geometry = self.delta.platform, self.delta.base, np.array(constants)
+        self._values = np.array(self.kinematics.parameters)
+        self._deflection = direct(tip_deflection, self._values, np.zeros(5), np.zeros(6), *self._geometry)
 
     def at_point(self, centre: Floats, lever: Floats, wrench: Floats) -> Floats:
         """Return the deflection (..., 6) of a point under a wrench (..., 6) that acts there.
@@ -103,25 +107,15 @@ class TipDeflection:
             LoadBeyondRange: the wrench, seen by the force sensor, exceeds its range.
         """
         positions, load = vector(q, 5, "actuator positions"), vector(wrench, 6, "wrench at the tip")
+        moved: Floats
+        moved, usable = self._deflection(self._values, positions, load, *self._geometry)
+        if usable:
+            return moved
+        # What is wrong is said by the model that is checked step by step.
         transform = self.kinematics.transform_tip_to_base(positions)
         self._require_measurable(transform[:3, :3], load)
         centre = self.kinematics.delta.forward(positions[:3])
-        return self._at_point_fast(centre, transform[:3, 3] - centre, load)
-
-    def _at_point_fast(self, centre: Floats, lever: Floats, load: Floats) -> Floats:
-        """Return the same as `at_point`, computed by compiled code.
-
-        Where links carry absurd forces `at_point` is called instead: its error says why.
-        """
-        delta = self.delta
-        geometry = delta.platform, delta.base, delta.link_length
-        try:
-            moved, force = point_deflection(*geometry, self._law, self._arm, centre, lever, load)
-        except np.linalg.LinAlgError:
-            return self.at_point(centre, lever, load)
-        if not force < ABSURD_FORCE:
-            return self.at_point(centre, lever, load)
-        return moved
+        return self.at_point(centre, transform[:3, 3] - centre, load)
 
     def compensated(
         self, q: Sequence[float] | Floats, wrench: Sequence[float] | Floats, position: Sequence[float] | Floats

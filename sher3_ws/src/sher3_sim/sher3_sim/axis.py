@@ -14,7 +14,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import expm
 from sher3_common.compiled import compiled
 from sher3_common.laws import MOST_FACTORS
 
@@ -63,6 +62,8 @@ def propagators(axis: Records, step: float) -> NDArray[np.float64]:
 @lru_cache(maxsize=4096)
 def _exact_step(rates: bytes) -> NDArray[np.float64]:
     """Return the used part (4, 5) of the matrix exponential, remembered: runs of one robot use few of them."""
+    from scipy.linalg import expm  # slow to import, and not needed before a case is read
+
     return expm(np.frombuffer(rates).reshape(6, 6))[:4, [0, 1, 2, 4, 5]]
 
 

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 from sher3_common import parse_json
 from sher3_description import Robot, load_robot
 
@@ -135,6 +134,8 @@ def force_in_base(run: Run) -> tuple[NDArray[np.int64], NDArray[np.float64], NDA
     stamp = force.stamp[rows_f]
     held = np.clip(np.searchsorted(pedal.stamp, stamp, side="right") - 1, 0, None)
     pressed = pedal.axes[held, 0] > 0.0
+    from scipy.spatial.transform import Rotation  # slow to import, and not needed before a case is read
+
     orientation = Rotation.from_quat(pose.orientation[rows_p])
     base = orientation.apply(force.force[rows_f])
     base -= np.median(base[~pressed], axis=0) if (~pressed).any() else base[0]

@@ -8,7 +8,6 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import correlate
 from sher3_common.errors import Sher3Error
 from sher3_common.stamps import seconds
 from sher3_description import ACTUATORS
@@ -262,6 +261,8 @@ def _correlation(x: NDArray[Any], y: NDArray[Any], reach: int) -> NDArray[np.flo
     x, y = x - x.mean(), y - y.mean()
     lags = np.arange(-reach, reach + 1)
     first, count = np.maximum(0, -lags), n - np.abs(lags)
+    from scipy.signal import correlate  # slow to import, and not needed before a case is read
+
     products = correlate(y, x, mode="full", method="fft")[n - 1 - reach : n + reach]
 
     def sums(values: NDArray[Any], start: NDArray[Any]) -> NDArray[Any]:

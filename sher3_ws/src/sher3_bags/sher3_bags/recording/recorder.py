@@ -34,8 +34,10 @@ from sher3_bags.run import RunMetadata
 RECORDING_RECORD = "sher3.recording"
 MAX_AGE_NS = 500_000_000
 
-_HEAD = struct.Struct("<BQHIQQ")
-_STAMP = struct.Struct("<iI")
+_pack_head = struct.Struct("<BQHIQQ").pack
+_unpack_stamp = struct.Struct("<iI").unpack_from
+_LEAST = STAMP + 8
+"""Bytes of the shortest message with a stamp."""
 
 
 @dataclass
@@ -43,6 +45,8 @@ class _Source:
     topic: Topic
     channel: int
     gaps: GapCounter
+    stamped: bool
+    beside: Beside | None
     sequence: int = 0
 
 
@@ -62,7 +66,7 @@ class Recorder:
         robot: in force; attached to the bag, and the source of the sample periods.
         metadata: the contract's `sher3.run` record.
         parameters: settings of the nodes, noted in the provenance.
-        frames: makes what viewers need beside the streams; None leaves it out.
+        beside: makes what viewers need beside the streams; None leaves it out.
 
     Raises:
         FileError: the folder exists (BagError) or cannot be made.
@@ -74,7 +78,7 @@ class Recorder:
         robot: Robot,
         metadata: RunMetadata | None = None,
         parameters: Mapping[str, object] | None = None,
-        frames: Beside | None = None,
+        beside: Beside | None = None,
     ) -> None:
         if folder.exists():
             raise BagError("exists already", path=folder, remedy="choose another name")
@@ -87,7 +91,7 @@ class Recorder:
         self._writer.add_attachment(ROBOT_FILE, "application/yaml", robot.to_yaml().encode())
         self._periods = grid_periods(robot)
         self._sources: dict[str, _Source] = {}
-        self._frames = frames
+        self._beside = beside
         self._made: dict[str, TopicCount] = {}
         self._chunk = _OpenChunk()
         self.closed = False
@@ -112,18 +116,19 @@ class Recorder:
         """
         if self.closed:
             raise BagError("the recording is complete", path=self.folder, remedy="start another one")
-        source = self._sources.get(topic) or self._add(topic)
-        if source.gaps.stamped and len(data) >= STAMP + _STAMP.size:
-            seconds, nanoseconds = _STAMP.unpack_from(data, STAMP)
+        source = self._sources.get(topic)
+        if source is None:
+            source = self._add(topic, log_time)
+        if source.stamped and len(data) >= _LEAST:
+            seconds, nanoseconds = _unpack_stamp(data, STAMP)
             source.gaps.see(seconds * SECOND + nanoseconds)
         else:
             source.gaps.see(log_time)
         sent = log_time if publish_time is None else publish_time
         self._append(source.channel, source.sequence, data, log_time, sent)
         source.sequence = (source.sequence + 1) & 0xFFFFFFFF
-        if self._frames is not None:
-            made = [] if self._made else self._frames.fixed(log_time)
-            for message in [*made, *(self._frames.follow(topic, data, log_time) if topic in FOLLOWED else [])]:
+        if source.beside is not None:
+            for message in source.beside.follow(topic, data, log_time):
                 self._add_made(message, log_time)
 
     def _add_made(self, message: Made, log_time: int) -> None:
@@ -136,15 +141,16 @@ class Recorder:
 
     def _append(self, channel: int, sequence: int, data: bytes, log_time: int, sent: int) -> None:
         chunk = self._chunk
-        size = RECORD_HEAD + MESSAGE_HEAD + len(data)
-        if chunk.body and (len(chunk.body) + size > CHUNK_LIMIT or log_time - chunk.log_time[0] > MAX_AGE_NS):
+        body, size, begin = chunk.body, MESSAGE_HEAD + len(data), len(chunk.body)
+        if begin and (begin + RECORD_HEAD + size > CHUNK_LIMIT or log_time - chunk.log_time[0] > MAX_AGE_NS):
             self.flush()
             chunk = self._chunk
+            body, begin = chunk.body, 0
         chunk.channel.append(channel)
         chunk.log_time.append(log_time)
-        chunk.position.append(len(chunk.body))
-        chunk.body += _HEAD.pack(MESSAGE, MESSAGE_HEAD + len(data), channel, sequence, log_time, sent)
-        chunk.body += data
+        chunk.position.append(begin)
+        body += _pack_head(MESSAGE, size, channel, sequence, log_time, sent)
+        body += data
 
     def flush(self) -> None:
         """Write what has been recorded so far to the file.
@@ -197,13 +203,18 @@ class Recorder:
         write_metadata(self.folder, f"{self.folder.name}.mcap", self._writer.start, self._writer.end, topics)
         return counts
 
-    def _add(self, name: str) -> _Source:
+    def _add(self, name: str, log_time: int) -> _Source:
         if name not in TOPICS:
             raise TopicError("no such topic in the table", topic=name, remedy="use a name relative to /sher3")
         topic = TOPICS[name]
         channel = self._writer.channel(topic.recorded_name, topic.type, topic.qos)
-        self._sources[name] = _Source(topic, channel, GapCounter(self._periods.get(name), is_stamped(name)))
-        return self._sources[name]
+        gaps = GapCounter(self._periods.get(name), is_stamped(name))
+        source = _Source(topic, channel, gaps, gaps.stamped, self._beside if name in FOLLOWED else None)
+        if self._beside is not None and not self._made:
+            for message in self._beside.fixed(log_time):
+                self._add_made(message, log_time)
+        self._sources[name] = source
+        return source
 
     def __enter__(self) -> Recorder:
         return self

@@ -123,6 +123,14 @@ class BacklashOnAxis(Backlash):
         lag = flight(np.ascontiguousarray(run.smooth[:, axis]), shape["width"], shape["braking"], run.period, start)
         return Signature({}, {Channel(self.stage, site): run.to_grid(lag)[:, None]})
 
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Width of the gap."""
+        return {"width": shape["width"]}
+
+    def measured(self, views: Sequence[AxisView], site: str, shape: Shape) -> Mapping[str, Measured]:
+        """Return none: what else makes most of the encoders' difference stands on the plateaus as well."""
+        return {}
+
 
 class BacklashOfJoint(BacklashOnAxis):
     """The same on a joint of a serial arm with a second encoder at its link: the force on the link says on which flank.
@@ -155,14 +163,6 @@ class BacklashOfJoint(BacklashOnAxis):
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
         """Return whether the link lags behind the force."""
         return "soft" not in shape or bool(coefficients[0] > 0.0)
-
-    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Width of the gap."""
-        return {"width": shape["width"]}
-
-    def measured(self, views: Sequence[AxisView], site: str, shape: Shape) -> Mapping[str, Measured]:
-        """Return none: what else makes most of the encoders' difference stands on the plateaus as well."""
-        return {}
 
 
 def resting_force(views: Sequence[AxisView], site: str) -> float:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Best, Shape, Signature
 
@@ -37,6 +36,8 @@ class SensorFrame(Page):
 
     def signature(self, view: SensorView, site: str, shape: Shape) -> Signature:
         """Return the change by the turn, and three columns: what it is off by about the axes of that frame, per rad."""
+        from scipy.spatial.transform import Rotation  # slow to import, and not needed before a case is read
+
         turn = Rotation.from_rotvec([shape.get(name, 0.0) for name in ("rx", "ry", "rz")])
         wrench = view.wrench(int(shape["frame"]))
         wrench = np.hstack([turn.apply(wrench[:, :3]), turn.apply(wrench[:, 3:])])

@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 from sher3_description import Robot
 from sher3_diagnosis.channel import Array
 from sher3_diagnosis.fit.fitting import Fit, Term
@@ -77,6 +76,8 @@ def tip_error(run: RunSignals, twin: RunSignals | None) -> Array:
     assert twin is not None and run.tracker_index is not None and twin.tracker_index is not None
     assert run.tracker_position is not None and twin.tracker_position is not None
     ticks = shared_ticks(run, twin)
+    from scipy.interpolate import CubicSpline  # slow to import, and not needed before a case is read
+
     path = CubicSpline(twin.tracker_index, twin.tracker_position)
     return run.tracker_position[np.isin(run.tracker_index, ticks)] - path(ticks)
 

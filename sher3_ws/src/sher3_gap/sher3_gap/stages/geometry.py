@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 from sher3_common.compiled import compiled
 from sher3_description import Robot
 from sher3_description.contract import GRAVITY
@@ -176,6 +175,8 @@ class Geometry:
         rotation, position = self.poses(self.parameters, source[run.tracker_index])
         out, slot = np.zeros((len(run.grid), 6)), run.tracker_slot
         out[slot, :3] = run.tracker_position - position
+        from scipy.spatial.transform import Rotation  # slow to import, and not needed before a case is read
+
         measured = Rotation.from_quat(run.tracker_rotation)
         out[slot, 3:] = (measured * Rotation.from_matrix(rotation).inv()).as_rotvec()
         return out
@@ -192,5 +193,7 @@ class Geometry:
             sides.append(self.poses(self.parameters._replace(**moved), q))
         (r1, p1), (r0, p0) = sides
         linear = (p1 - p0) / (2.0 * step)
+        from scipy.spatial.transform import Rotation  # slow to import, and not needed before a case is read
+
         angular = (Rotation.from_matrix(r1) * Rotation.from_matrix(r0).inv()).as_rotvec() / (2.0 * step)
         return np.hstack([linear, angular])

@@ -7,8 +7,10 @@ import math
 import numpy as np
 from sher3_common.compiled import compiled_ieee
 
+from sher3_kinematics.kernel.blocks import pose_inverses, tip_jacobians, tip_poses
 from sher3_kinematics.kernel.parameters import KernelParameters
 from sher3_kinematics.kernel.robot import (
+    base_is_rotated,
     delta_forward,
     delta_inverse,
     pose_inverse_into,
@@ -60,6 +62,9 @@ def tilt_slider_batch(p: KernelParameters, angles: Array) -> Array:
 def tip_pose_batch(p: KernelParameters, q: Array) -> tuple[Array, Array]:
     """Return the tip rotations (n, 3, 3) and positions (n, 3) [m] for actuator positions (n, 5)."""
     rotations, positions = np.empty((q.shape[0], 3, 3)), np.empty((q.shape[0], 3))
+    if not base_is_rotated(p):
+        tip_poses(p, q, rotations, positions)
+        return rotations, positions
     for i in range(q.shape[0]):
         tip_pose_into(p, q[i], rotations[i], positions[i])
     return rotations, positions
@@ -69,6 +74,9 @@ def tip_pose_batch(p: KernelParameters, q: Array) -> tuple[Array, Array]:
 def tip_jacobian_batch(p: KernelParameters, q: Array) -> Array:
     """Return the tip Jacobians (n, 6, 5) for actuator positions (n, 5)."""
     jacobians = np.empty((q.shape[0], 6, 5))
+    if not base_is_rotated(p):
+        tip_jacobians(p, q, jacobians)
+        return jacobians
     for i in range(q.shape[0]):
         tip_jacobian_into(p, q[i], jacobians[i])
     return jacobians
@@ -78,6 +86,9 @@ def tip_jacobian_batch(p: KernelParameters, q: Array) -> Array:
 def pose_inverse_batch(p: KernelParameters, positions: Array, axes: Array) -> Array:
     """Return the actuator positions (n, 5) for tip positions (n, 3) [m] and distal tool axes (n, 3)."""
     q = np.empty((positions.shape[0], 5))
+    if not base_is_rotated(p):
+        pose_inverses(p, positions, axes, q)
+        return q
     for i in range(positions.shape[0]):
         pose_inverse_into(p, positions[i, 0], positions[i, 1], positions[i, 2], axes[i], q[i])
     return q

