@@ -15,7 +15,7 @@ SESSION = 60.0
 """Length of one session, s."""
 WEAKEST, STRONGEST = 0.1, 6.0
 """Forces of a hand, N: what it feels, and what a hand that is in a hurry pushes with."""
-ACROSS, TORQUE = 2.5, 0.02
+ACROSS, TORQUE = 2.5, 0.012
 """Most that it pushes across the tool, N, and turns it, N m: more saturates the moment of the force sensor."""
 BETWEEN = 1.5
 """Time from the end of one excitation to the beginning of the next, s."""
