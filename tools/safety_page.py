@@ -1,11 +1,9 @@
-"""Write docs/reference/safety-matrix.md from what `sher3 safety` left in its folder.
-
-sher3 safety --jobs 2 && python tools/safety_page.py bags/safety
-"""
+"""Write docs/reference/safety-matrix.md from what `sher3 safety --jobs 2` left in its folder: safety_page.py FOLDER."""
 
 from __future__ import annotations
 
 import sys
+import textwrap
 from pathlib import Path
 
 PAGE = Path(__file__).parent.parent / "docs" / "reference" / "safety-matrix.md"
@@ -13,15 +11,18 @@ INTRODUCTION = """# Safety matrix
 
 The table of the faults, as `sher3 safety` writes it into `report.md` of its folder (`--out`, by default
 `bags/safety`); `tools/safety_page.py` makes this page of it. What a cell is, when it holds and how it is measured
-stands in [safety](safety.md).
+stands in [safety](safety.md); why some rows go on stands in the report.
 
 """
+WIDTH = 118
 
 
 def page(report: str) -> str:
-    """Return the page of a report: what was run, the table, what misses, what goes on and why."""
+    """Return the page of a report: what was run, the table, what misses."""
     _, _, rest = report.partition("\n")
-    return INTRODUCTION + rest.strip().replace("um]", "µm]") + "\n"
+    told, _, _ = rest.strip().replace("um]", "µm]").partition("\n## What goes on")
+    lines = [line if line.startswith("|") else textwrap.fill(line, WIDTH) for line in told.splitlines()]
+    return INTRODUCTION + "\n".join(lines).rstrip() + "\n"
 
 
 if __name__ == "__main__":

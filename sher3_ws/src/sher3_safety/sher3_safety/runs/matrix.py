@@ -22,7 +22,7 @@ from sher3_safety.rows.row import Row, select
 from sher3_safety.rows.stepped import ROWS
 from sher3_safety.runs.stepped import Cell, run_cells
 
-COMMAND = "sher3 safety"
+COMMAND, WALL_OPTION = "sher3 safety", " --wall"
 
 
 @dataclass
@@ -62,10 +62,13 @@ class MatrixResult:
 
     def left_out(self) -> str:
         """Return what this run did not measure."""
-        rest = sum(len(row.states) for row in ROWS) - len(self.verdicts)
-        cells = [f"{rest} cells in stepped time (`{COMMAND}`)"] if rest > 0 else []
-        wall = f"{len(WALL) * len(WALL_STATES)} cells in wall time (`{COMMAND} --wall`)"
-        return ", ".join([*cells, wall, "real drives, sensor and pedal"])
+        stepped, wall = sum(len(row.states) for row in ROWS), len(WALL) * len(WALL_STATES)
+        kinds = {"": ("stepped", stepped), WALL_OPTION: ("wall", wall)}
+        mine = WALL_OPTION if WALL_OPTION in self.command else ""
+        left = {option: number - (len(self.verdicts) if option == mine else 0) for option, (_, number) in kinds.items()}
+        cells = [f"{left[option]} cells in {time} time (`{COMMAND}{option}`)" for option, (time, _) in kinds.items()
+                 if left[option] > 0]  # fmt: skip
+        return ", ".join([*cells, "real drives, sensor and pedal"])
 
     def as_text(self) -> str:
         """Return the table with its misses, for a terminal."""

@@ -15,8 +15,8 @@ SESSION = 60.0
 """Length of one session, s."""
 WEAKEST, STRONGEST = 0.1, 6.0
 """Forces of a hand, N: what it feels, and what a hand that is in a hurry pushes with."""
-TORQUE = 0.008
-"""Moment of a hand per newton of its force, N m."""
+ACROSS, TORQUE = 2.5, 0.012
+"""Most that it pushes across the tool, N, and turns it, N m: more saturates the moment of the force sensor."""
 BETWEEN = 1.5
 """Time from the end of one excitation to the beginning of the next, s."""
 
@@ -31,10 +31,13 @@ def surgeon(seed: int) -> Script:
     time = 0.7
     while time < SESSION - 8.0:
         strength = float(np.exp(draw.uniform(np.log(WEAKEST), np.log(STRONGEST))))
-        force, torque = draw.standard_normal(3), draw.uniform(-TORQUE, TORQUE, 3) * strength
+        force = draw.standard_normal(3)
+        force *= strength / np.linalg.norm(force)
+        force[:2] = np.clip(force[:2], -ACROSS, ACROSS)
+        torque = draw.uniform(-TORQUE, TORQUE, 3) * min(1.0, strength / ACROSS)
         length, ramp, pedal = draw.uniform(0.5, 2.0), draw.uniform(0.02, 0.5), draw.uniform(0.4, 1.0)
         push = {"duration": length, "ramp": ramp, "pedal": pedal}
-        wrench = np.concatenate([strength * force / np.linalg.norm(force), torque])
+        wrench = np.concatenate([force, torque])
         sine = {"dither": (0.3 * wrench * draw.uniform(0.0, 1.0, 6)).tolist(), "frequency": draw.uniform(0.5, 8.0)}
         steps += [
             {"name": "push", "wrench": wrench.tolist(), **push, **sine},

@@ -1,0 +1,36 @@
+"""What a healthy robot is asked to do: hands of every strength that the sensor can read, set-points without a jump."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from sher3_description import load_robot
+from sher3_safety.runs.sessions import ACROSS, SESSION, STRONGEST, TORQUE, WEAKEST, excitations, surgeon
+
+ROBOT = load_robot()
+
+
+def test_hands_are_of_every_strength_and_none_saturates_the_sensor():
+    pushes = [step.wrench for seed in range(30) for step in surgeon(seed).steps if step.name == "push"]
+    wrenches = np.array(pushes)
+    strength = np.linalg.norm(wrenches[:, :3], axis=1)
+    assert strength.max() <= STRONGEST and strength.max() > 5.0 and strength.min() < 2.0 * WEAKEST
+    assert np.abs(wrenches[:, :2]).max() <= ACROSS and np.abs(wrenches[:, 3:]).max() <= TORQUE
+    lever = float(np.linalg.norm(ROBOT.force_sensor.position))
+    most = 1.3 * (TORQUE + lever * ACROSS)  # with the dither on top
+    assert most < 0.98 * min(ROBOT.force_sensor.range_torque)
+
+
+def test_a_surgeon_takes_back_every_push_and_leaves_in_time():
+    script = surgeon(7)
+    pushes = [step for step in script.steps if step.name in ("push", "back")]
+    assert np.allclose(sum(np.array(step.wrench) * step.duration for step in pushes), 0.0)
+    assert script.duration == pytest.approx(SESSION, abs=1.0)
+
+
+def test_excitations_follow_each_other_without_a_jump():
+    goals, wrenches = excitations(ROBOT, 4)
+    assert len(goals) == len(wrenches) and len(goals) * ROBOT.control_period >= SESSION
+    assert not goals[0].any()
+    speed = np.abs(np.diff(goals, axis=0)).max(axis=0) / ROBOT.control_period
+    assert all(speed <= [1.02 * actuator.limits.velocity for actuator in ROBOT.actuators])
