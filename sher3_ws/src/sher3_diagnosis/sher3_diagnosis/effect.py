@@ -45,6 +45,18 @@ INPUTS: Mapping[str, str] = {
 """Quantities that the law of an effect may depend on."""
 
 
+class Measured(NamedTuple):
+    """A parameter that is told by other means than the fit, SI units.
+
+    Attributes:
+        value: of the parameter.
+        error: its standard error.
+    """
+
+    value: float
+    error: float
+
+
 @dataclass(frozen=True)
 class Signature:
     """What an effect adds to the residuals of one run.
@@ -141,6 +153,10 @@ class Effect:
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Return the physical parameters of a fit, SI units; default the values of the shape."""
         return dict(shape)
+
+    def measured(self, views: Sequence[Any], site: str, shape: Shape) -> Mapping[str, Measured]:
+        """Return parameters that other means than the fit tell better, by name; default none."""
+        return {}
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
         """Return whether a fit is physically possible; default always."""

@@ -7,7 +7,7 @@ from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import fit, make_term
 from sher3_diagnosis.fit.whitened import Whitened
 from sher3_diagnosis.quantify.closure import closure, interval_of, residual_after, zeros_floor
-from sher3_diagnosis.thresholds import AS_BUILT_CLOSURE, IDEALISED
+from sher3_diagnosis.thresholds import IDEALISED, PIECES
 from toy import AXIS, OFFSET, ToyRun, evidence_of
 
 
@@ -36,13 +36,21 @@ def test_closure_is_the_share_of_the_loss_above_the_floor():
     evidence, null, after = fits()
     found = closure(evidence, AXIS, null, after)
     assert found.value == pytest.approx(36.0 / 39.0, rel=1e-5)
-    assert (found.low, found.high) == (None, None)  # two runs carry no interval
+    assert (found.low, found.high) == (None, None)  # two runs of two samples carry no interval
+
+
+def test_few_runs_carry_an_interval_by_their_pieces():
+    long = [run(np.tile([2.0, 4.0], 2 * PIECES)) for _ in range(2)]
+    evidence = evidence_of(long, floor=0.5)
+    null, after = (fit(evidence.data, terms) for terms in ([], [make_term(evidence.data, OFFSET, "axis", {})]))
+    found = closure(evidence, AXIS, null, after)
+    assert found.low is not None and found.low < found.value < found.high
 
 
 def test_five_alike_runs_carry_an_interval_of_what_the_floor_and_the_law_may_be_off_by():
     found = interval_of(np.array([[40.0, 4.0, 1.0]] * 5))
     assert found.value == pytest.approx(36.0 / 39.0)
-    assert found.low == pytest.approx(found.value - AS_BUILT_CLOSURE, abs=2e-3)
+    assert found.low == pytest.approx(1.0 - 4.0 / 40.0)
     assert found.high == pytest.approx(min(1.0, found.value + IDEALISED))
 
 

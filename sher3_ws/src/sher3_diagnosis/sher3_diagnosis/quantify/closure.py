@@ -10,7 +10,7 @@ from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import Fit
 from sher3_diagnosis.localise.gaps import PARTS
-from sher3_diagnosis.thresholds import AS_BUILT_CLOSURE, FLOOR_UNCERTAINTY, IDEALISED, MIN_RUNS, SHOWN
+from sher3_diagnosis.thresholds import IDEALISED, MIN_RUNS, PIECES, SHOWN
 from sher3_diagnosis.verdict import Interval
 
 RESAMPLES = 400
@@ -44,15 +44,18 @@ def closure(evidence: Evidence, channel: Channel, before: Fit, after: Fit) -> In
 
     At the tip the position counts, as the contract's closure does.
     """
-    old, new = residual_after(evidence, before, channel), residual_after(evidence, after, channel)
-    rows, repeats = [], zeros_floor(evidence, channel)
+    old, new = (residual_after(evidence, f, channel) for f in (before, after))
+    repeats = zeros_floor(evidence, channel)
+    cuts = 1 if len(old) >= MIN_RUNS else PIECES  # where few runs show the channel, their pieces are resampled
+    rows = []
     for r in old:
         part = PARTS[len(evidence.floors[r][channel])][0]
         floor = evidence.floors[r][channel][part]
         residual = evidence.data.residuals[r][channel]
-        left = (residual.restored(x[r])[:, part] for x in (old, new))
+        left = [residual.restored(x[r])[:, part] / floor for x in (old, new)]
         base = max(1.0, repeats / float(np.mean(floor**2)))
-        rows.append([np.mean((x / floor) ** 2) for x in left] + [base])
+        pieces = zip(*(np.array_split(x, cuts) for x in left), strict=True)
+        rows += [[np.mean(x**2) for x in piece] + [base] for piece in pieces if len(piece[0])]
     return interval_of(np.array(rows))
 
 
@@ -74,19 +77,23 @@ def zeros_floor(evidence: Evidence, channel: Channel) -> float:
 
 
 def interval_of(rows: Array) -> Interval:
-    """Closure from rows (runs, 3) of L0, L1, F per run."""
-    value = _kappa(rows.mean(axis=0))
+    """Closure from rows (runs, 3) of L0, L1, F per run.
+
+    The interval is that of resampled runs. Its lower end is at most the closure without any floor, 1 - L1 / L0: repeats
+    say how much of what is left is floor, and a machine as built differs from its model by more.
+    """
+    row = rows.mean(axis=0)
+    value = _kappa(row)
     if len(rows) < MIN_RUNS:
         return Interval(value=value)
     rng = np.random.default_rng(0)
     picks = rng.integers(0, len(rows), (RESAMPLES, len(rows)))
-    floors = rng.normal(1.0, FLOOR_UNCERTAINTY, RESAMPLES)
-    resampled = [rows[p].mean(axis=0) * [1.0, 1.0, f] for p, f in zip(picks, floors, strict=True)]
-    draws = np.array([_kappa(row) for row in resampled if _gap(row) >= SHOWN * _gap(rows.mean(axis=0))])
+    resampled = [rows[p].mean(axis=0) for p in picks]
+    draws = np.array([_kappa(r) for r in resampled if _gap(r) >= SHOWN * _gap(row)])
     if len(draws) < RESAMPLES // 4:
         return Interval(value=value)
     low, high = np.percentile(draws, [2.5, 97.5])
-    low, high = min(low, value - AS_BUILT_CLOSURE), max(high, value + IDEALISED)
+    low, high = min(low, 1.0 - row[1] / row[0]), max(high, value + IDEALISED)
     return Interval(value=value, low=float(low), high=float(min(1.0, high)))
 
 

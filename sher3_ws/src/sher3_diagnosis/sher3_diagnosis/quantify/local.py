@@ -1,9 +1,9 @@
 """A fit seen as linear around its best point: coefficients, shape parameters and deviations within tolerance together.
 
 One step of Gauss and Newton from there polishes a shape beyond the grid of its search. How the gradient scatters over
-pieces of the data gives the covariance of all parameters (White 1982; Liang and Zeger 1986). There are two ways to cut,
-and the wider answer is taken: by parts of the motion, which repeats share, since a law that is an idealisation wants
-another size in each of them; and by runs, since the machine itself differs from run to run.
+pieces of the data gives the covariance of all parameters (White 1982; Liang and Zeger 1986). There are three ways to
+cut: by parts of the motion, which repeats share, and by excitations, since a law that is an idealisation wants another
+size in each of them; and by runs, since the machine itself differs from run to run.
 """
 
 from __future__ import annotations
@@ -13,7 +13,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.stats import t as student
 
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.evidence import Evidence
@@ -55,18 +54,17 @@ class Local:
         start = self.own.stop - len(self.names)
         return dict(zip(self.names, map(float, change[start : self.own.stop]), strict=True))
 
-    def half_width(self, gradient: Array) -> float:
-        """Return the half width of the 95 % interval of a parameter with this gradient (p_own,)."""
+    def error(self, gradient: Array) -> float:
+        """Return the standard error of a parameter with this gradient (p_own,).
+
+        Noise at the floor and deviations within tolerance, and the scatter over every way to cut the data.
+        """
         direction = self._inverse[:, self.own] @ gradient
-        known = float(direction @ (self.prior * direction))
-        widest = 0.0
+        variance = float(gradient @ direction[self.own])
         for scores in self.scores:
-            told = (scores @ direction) ** 2
             pieces = len(scores)
-            freedom = max(1.0, float(told.sum() ** 2 / max((told**2).sum(), 1e-300)) - 1.0)
-            variance = float(told.sum()) * pieces / max(pieces - 1, 1) + known
-            widest = max(widest, float(student.ppf(0.975, freedom) * np.sqrt(variance)))
-        return widest
+            variance += float(np.sum((scores @ direction) ** 2)) * pieces / max(pieces - 1, 1)
+        return float(np.sqrt(max(variance, 0.0)))
 
 
 def local(evidence: Evidence, fit: Fit, index: int) -> Local:
@@ -81,6 +79,7 @@ def local(evidence: Evidence, fit: Fit, index: int) -> Local:
     information = np.zeros((p, p))
     parts: dict[tuple[str, int], Array] = defaultdict(lambda: np.zeros(p))
     runs: dict[int, Array] = defaultdict(lambda: np.zeros(p))
+    whole: dict[str, Array] = defaultdict(lambda: np.zeros(p))
     for r, excitation in enumerate(evidence.excitations):
         for channel in sorted(term.channels & data.target[r].keys()):
             left, columns = data.target[r][channel].copy(), []
@@ -97,9 +96,10 @@ def local(evidence: Evidence, fit: Fit, index: int) -> Local:
                 gradient = jacobian[at].T @ left[at]
                 parts[excitation, int(k)] += gradient
                 runs[r] += gradient
+                whole[excitation] += gradient
     limited = [np.full(widths[i], float(np.isfinite(fit.terms[i].limit))) for i in [*order, index]]
     prior = np.concatenate([*limited, np.zeros(len(slopes))])
-    scores = tuple(np.array(list(cut.values())) for cut in (parts, runs))
+    scores = tuple(np.array(list(cut.values())) for cut in (parts, runs, whole))
     return Local(tuple(slopes), own, information, prior, scores)
 
 

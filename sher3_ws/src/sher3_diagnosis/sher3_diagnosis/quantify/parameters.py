@@ -15,7 +15,7 @@ from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import Fit
 from sher3_diagnosis.fit.term import Term
 from sher3_diagnosis.quantify.local import Local, local
-from sher3_diagnosis.thresholds import MIN_RUNS
+from sher3_diagnosis.thresholds import BEYOND, JACKKNIFE, MIN_RUNS
 from sher3_diagnosis.verdict import Parameter
 
 STEP = 1e-4
@@ -30,9 +30,12 @@ def parameters(evidence: Evidence, fit: Fit, index: int) -> dict[str, Parameter]
     term, best = fit.terms[index], fit.of(index)
     bounded = len(fit.loro_coefficients) >= MIN_RUNS
     around = local(evidence, fit, index) if bounded else None
+    told = term.effect.measured(evidence.views, term.site, term.shape)
     out: dict[str, Parameter] = {}
     for name, x in term.effect.parameters(term.shape, best).items():
         half = None if around is None or name in term.effect.discrete else _half_width(term, best, around, name)
+        if name in told and half is not None:
+            x, half = told[name].value, max(half, JACKKNIFE * told[name].error)
         unit = term.effect.unit(name, term.site, term.site in evidence.rotary)
         low, high = (None, None) if half is None else (x - half, x + half)
         out[name] = Parameter(value=x, low=low, high=high, unit=unit)
@@ -44,7 +47,7 @@ def _half_width(term: Term, best: Array, around: Local, name: str) -> float | No
     gradient = _gradient(term, best, around.names, name)
     if not gradient.any():
         return None
-    return around.half_width(gradient)
+    return BEYOND * around.error(gradient)
 
 
 def _gradient(term: Term, best: Array, names: tuple[str, ...], name: str) -> Array:

@@ -10,10 +10,14 @@ from sher3_diagnosis.fit.fitting import Fit, fit
 from sher3_diagnosis.fit.term import make_term
 from sher3_diagnosis.quantify.local import local
 
-STEPS = 4
-"""Steps at most: each is quadratic, and the grid is a few percent away."""
-LONGEST = 0.05
+STEPS = 8
+"""Steps at most: each is quadratic, but some grids are a factor of four apart."""
+LONGEST = 0.25
 """Relative change of a shape parameter in one step."""
+SHORTER = (1.0, 0.3)
+"""Shares of a step that are tried: the whole one may overshoot where the grid is coarse."""
+WORTH = 0.01
+"""Loss that a step must lower for another one to follow."""
 
 
 def polished(evidence: Evidence, attribution: Attribution) -> Attribution:
@@ -26,18 +30,27 @@ def polished(evidence: Evidence, attribution: Attribution) -> Attribution:
 
 def _polish(evidence: Evidence, current: Fit, index: int) -> Fit:
     for _ in range(STEPS):
-        term = current.terms[index]
         change = local(evidence, current, index).step
-        shape = dict(term.shape)
-        for name, by in change.items():
-            room = LONGEST * abs(shape[name])
-            shape[name] += min(max(by, -room), room)
-        if shape == term.shape:
+        trials = (_stepped(evidence, current, index, change, share) for share in SHORTER)
+        better = next((t for t in trials if t is not None and t.total < current.total), None)
+        if better is None:
             return current
-        terms = list(current.terms)
-        terms[index] = make_term(evidence.data, term.effect, term.site, shape)
-        trial = fit(evidence.data, terms)
-        if not trial.admissible or trial.total >= current.total:
+        gained, current = current.total - better.total, better
+        if gained < WORTH:
             return current
-        current = trial
     return current
+
+
+def _stepped(evidence: Evidence, current: Fit, index: int, change: dict[str, float], share: float) -> Fit | None:
+    """Return the fit with one term's shape changed by a share of a step; None where nothing changes or may be."""
+    term = current.terms[index]
+    shape = dict(term.shape)
+    for name, by in change.items():
+        room = LONGEST * abs(shape[name])
+        shape[name] += share * min(max(by, -room), room)
+    if shape == term.shape:
+        return None
+    terms = list(current.terms)
+    terms[index] = make_term(evidence.data, term.effect, term.site, shape)
+    trial = fit(evidence.data, terms)
+    return trial if trial.admissible else None

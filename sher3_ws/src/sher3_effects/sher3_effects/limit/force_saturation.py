@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from sher3_diagnosis.channel import Array, Channel
-from sher3_diagnosis.effect import Best, Shape, Signature
+from sher3_diagnosis.effect import Best, Measured, Shape, Signature
 from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
@@ -29,6 +29,10 @@ class ForceSaturation(Page):
     finer = {"limit": (0.9, 0.94, 0.97, 0.985, 0.993, 1.007, 1.015, 1.03, 1.06, 1.1)}
     LEVELS = 12
     """Limits tried between the largest force that was reported and the largest that was asked for."""
+    HELD = 50
+    """Ticks at the limit from which their mean tells it."""
+    NEAR = 0.93
+    """Share of the limit from which three reports in a row are at it."""
 
     def shapes(self, views: Sequence[RobotView], site: str) -> list[Shape]:
         """Levels from the largest force that was reported, which no limit is below, to the largest asked for."""
@@ -65,6 +69,21 @@ class ForceSaturation(Page):
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Limit."""
         return {"limit": shape["limit"]}
+
+    def measured(self, views: Sequence[RobotView], site: str, shape: Shape) -> Mapping[str, Measured]:
+        """Return the force that is reported while it ends at the limit: noise makes no difference to its mean."""
+        held = [_held(np.abs(v.run.effort[:, v.row(site)]), shape["limit"]) for v in views if v.run.effort is not None]
+        force = np.concatenate(held) if held else np.zeros(0)
+        if len(force) < self.HELD:
+            return {}
+        return {"limit": Measured(float(force.mean()), float(force.std() / np.sqrt(len(force))))}
+
+
+def _held(force: Array, limit: float) -> Array:
+    """Return the reported force (n,) at the ticks that lie between two others near the limit."""
+    near = force > ForceSaturation.NEAR * limit
+    near[1:-1] &= near[:-2] & near[2:]
+    return force[near]
 
 
 @dataclass(frozen=True)

@@ -7,13 +7,15 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
+from sher3_description import Robot
 from sher3_diagnosis.channel import Array, Channel
-from sher3_diagnosis.effect import Best, Shape, Signature, column
+from sher3_diagnosis.effect import Best, Measured, Shape, Signature, column
 from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
+from sher3_effects.lost_motion.plateau import plateau
 from sher3_effects.operators import play
-from sher3_effects.page import Page
+from sher3_effects.page import Page, Part, Values
 from sher3_effects.view import AxisView
 
 
@@ -27,6 +29,7 @@ class Backlash(Page):
     best = Best("loads", "known loads at rest separate a fixed gap from a spring")
     companion = "friction"
     on_axis = {"width": "backlash"}
+    units: ClassVar[Mapping[str, str]] = {"lost": "m"}
     leaves_out = "the elasticity of its contact"
     explanation = (
         "After a reversal the motor moves by a fixed amount before the load follows; a load that pushes the "
@@ -71,14 +74,24 @@ class Backlash(Page):
         return Signature({}, {Channel(self.stage, site): run.to_grid(lag)[:, None]})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Width of the gap."""
-        return {"width": shape["width"]}
+        """Width of the gap, and the travel lost between the two directions."""
+        return {"width": shape["width"], "lost": shape["width"]}
+
+    def measured(self, views: Sequence[AxisView], site: str, shape: Shape) -> Mapping[str, Measured]:
+        """Return the width of the gap without the give of its flanks, where the plateaus tell it."""
+        found = plateau(views, site, shape["width"], resting_force(views, site))
+        return {"width": Measured(found.width, found.error)} if found else {}
+
+    def to_simulator(self, actuator: str, values: Values, robot: Robot) -> list[Part]:
+        """Return a rigid gap that loses as much travel."""
+        return [Part(self.id, actuator, {"width": values.get("lost", values["width"])})]
 
 
 class BacklashOnAxis(Backlash):
     """The same on one axis of any machine, where something else may make most of the encoders' difference."""
 
     kinds = ("axis", "servo")
+    units: ClassVar[Mapping[str, str]] = {}
     SMALLER = (0.06, 0.12, 0.25, 0.45)
     """Widths in spans of the residual that are tried for a load that stays put in the gap."""
     finer: ClassVar[Mapping[str, tuple[float, ...]]] = {
@@ -92,6 +105,14 @@ class BacklashOnAxis(Backlash):
         found = super().shapes(views, site)
         span = found[0]["width"] / self.WIDTHS[0] if found else 0.0
         return [*found, *({"width": w * span, "damping": np.inf, "stick": 0.0} for w in self.SMALLER if span)]
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Width of the gap."""
+        return {"width": shape["width"]}
+
+    def measured(self, views: Sequence[AxisView], site: str, shape: Shape) -> Mapping[str, Measured]:
+        """Return none: what else makes most of the encoders' difference stands on the plateaus as well."""
+        return {}
 
 
 def resting_force(views: Sequence[AxisView], site: str) -> float:

@@ -37,6 +37,7 @@ class CableDrag(Page):
         "tool_gravity": "turns with the tool exactly as weight does",
     }
     units = {"preload": "N"}
+    polished = ("stroke",)
 
     def channels(self, site: str) -> tuple[Channel, ...]:
         """On the force sensor it is a matter of sensing."""
