@@ -72,6 +72,13 @@ class Residual:
         """Take the free share of the mean off (n, ...) values of one run."""
         return values - self.free_mean * values.mean(axis=0) if self.free_mean else values
 
+    def wholly_told(self) -> Residual:
+        """Return the residual with those samples alone that tell all of their components."""
+        if self.told is None:
+            return self
+        whole = np.all(self.told == np.eye(self.values.shape[1]), axis=(1, 2))
+        return Residual(self.values, self.ok & whole, self.free_mean)
+
     @property
     def partly_free(self) -> bool:
         """Whether a share of the mean is free, but not all of it."""

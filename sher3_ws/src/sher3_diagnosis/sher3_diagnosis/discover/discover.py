@@ -75,6 +75,7 @@ def discover_at(evidence: Evidence, channel: Channel, say: Say = lambda _: None)
     """
     channels = [c for c in evidence.channels if c == channel or {c.stage, channel.stage} <= set(AT_TIP)]
     channels.sort(key=lambda c: c != channel)
+    evidence = wholly_told(evidence, channels)
     target = evidence.data.target
     shown = sum(any(c in t for c in channels) for t in target)
     if shown < MIN_RUNS:
@@ -104,6 +105,15 @@ def discover_at(evidence: Evidence, channel: Channel, say: Say = lambda _: None)
     terms = _terms(found, formula, again)
     told = [sentence(t, channel, found.quantities[0]) for t in terms]
     return Discovery(channels, terms, closure, ceiling, told, len(parts))
+
+
+def wholly_told(evidence: Evidence, channels: Sequence[Channel]) -> Evidence:
+    """Return the evidence without the samples of these channels that tell a part alone: their inputs are not known."""
+    residuals = [
+        {c: x.wholly_told() if c in channels else x for c, x in run.items()} for run in evidence.data.residuals
+    ]
+    data = type(evidence.data)(evidence.data.views, residuals, evidence.floors)
+    return Evidence(evidence.excitations, data, evidence.units, evidence.places)
 
 
 def _with_gap(found: Columns) -> list[int]:
