@@ -205,7 +205,7 @@ Set on: development seeds. With it 71 of 75 intervals hold the oracle's closure 
 Measure: `sher3 gap challenge --seeds 0:40` (coverage of the closure)."""
 
 NO_TIP_GAP = 1.2
-"""Power over floor of the nominal tip error below which there is nothing at the tip to close.
+"""Power over floor of the nominal tip error, less what tolerances make, below which there is nothing there to close.
 Set on and measured as `POOLED`."""
 
 # -- regimes and remainders: what a gap looks like -----------------------------------------------------------------

@@ -1,9 +1,12 @@
 """Tip errors of a run against its twin, on the ticks that both know."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from recorded import run
-from sher3_gap.simulate.tip import known_at, shared_ticks, tip_error, without_tracker_noise
+from sher3_gap.simulate.tip import as_built_share, known_at, shared_ticks, tip_error, without_tracker_noise
+from sher3_gap.stages.units import TIP
 from simulated import ROBOT
 
 
@@ -39,3 +42,11 @@ def test_a_silent_tracker_changes_nothing_else():
     quiet = without_tracker_noise(ROBOT)
     assert quiet.tracker.noise_position == quiet.tracker.noise_rotation == 0.0
     assert quiet.tracker.rate == ROBOT.tracker.rate
+
+
+def test_what_a_robot_as_built_is_off_by_at_the_tip_is_told_in_floors():
+    """Two samples, one deviation of a standard deviation of 3 and 1 floors along x: (9 + 1) / 2 over three floors."""
+    column = np.zeros((12, 1))
+    column[0], column[6] = 3.0, 1.0
+    evidence = SimpleNamespace(floors=[{TIP: np.full(6, 2e-6)}], nuisance=[SimpleNamespace(columns=[{TIP: column}])])
+    assert as_built_share(evidence, 0) == pytest.approx(5.0 / 3.0)

@@ -25,11 +25,14 @@ from sher3_gap.twin import driven_as
 
 
 def tip_closure(evidence: SherEvidence, causes: Sequence[Cause], fit: Fit) -> Interval | None:
-    """Closure of the free-run tip position; None without a tracker, without set-points, or without a gap at the tip."""
+    """Closure of the free-run tip position; None without a tracker, without set-points, or without a gap at the tip.
+
+    What a robot as built is expected to deviate by is no gap: no cause closes it.
+    """
     at_tip = {t.key for t in fit.terms if TIP in t.channels or LOADED_TIP in t.channels}
     effects = to_effects([c for c in causes if (c.effect, c.actuator) not in at_tip], evidence.robot)
     quiet = without_tracker_noise(evidence.robot)
-    rows = []
+    rows, own = [], []
     for r, run in enumerate(evidence.runs):
         if run.tracker_position is None or run.reference is None:
             continue
@@ -43,12 +46,21 @@ def tip_closure(evidence: SherEvidence, causes: Sequence[Cause], fit: Fit) -> In
         corrected = corrected - tip_shift(evidence, fit, r, shared_ticks(run, twin))
         known = known_at(run, shared_ticks(run, twin))
         rows.append([np.mean(np.sum(e[known] ** 2, axis=1)) / power for e in (nominal, corrected)] + [1.0])
+        own.append(as_built_share(evidence, r))
     if not rows:
         return None
     table = np.array(rows)
-    if table[:, 0].mean() < NO_TIP_GAP:
+    if table[:, 0].mean() < NO_TIP_GAP + float(np.mean(own)):
         return None
     return interval_of(table)
+
+
+def as_built_share(evidence: SherEvidence, run: int) -> float:
+    """Return the mean square of the tip's position that deviations within tolerance make in a run, over its floor."""
+    floor = evidence.floors[run][TIP]
+    columns = [t.columns[run][TIP] for t in evidence.nuisance if TIP in t.columns[run]]
+    power = [np.sum(x**2, axis=1).reshape(-1, len(floor))[:, :3] @ floor[:3] ** 2 for x in columns]
+    return float(sum(x.mean() for x in power) / np.sum(floor[:3] ** 2))
 
 
 def without_tracker_noise(robot: Robot) -> Robot:
