@@ -166,8 +166,8 @@ Set on: development seeds with `controller_gain`. Measure: `sher3 gap challenge 
 # -- weigh: what is evidence? --------------------------------------------------------------------------------------
 
 COVERED = 0.5
-"""Share of a gap that the causes of other gaps must explain for it to be theirs. Set by that argument: more than half.
-Measure: `sher3 gap calibrate`, lines of the status."""
+"""Share of a gap that a cause, or the causes of other gaps, must explain for it to be theirs. Set by that argument:
+half. Measure: `sher3 gap calibrate`, lines of the status."""
 
 AT_FLOOR = 1.1
 """Mean square over the floor up to which nothing is left that a law could be found in: two standard errors of a floor

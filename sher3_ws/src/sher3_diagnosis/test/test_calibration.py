@@ -75,6 +75,7 @@ def test_a_cause_whose_closure_may_be_nothing_is_not_named():
     j = judged(cause(), CALIBRATION)
     assert answer_to(j, Interval(value=0.5, low=0.3)) == answer_to(j, Interval(value=0.5)) == "library"
     assert answer_to(j, Interval(value=0.5, low=-0.1)) == "outside_library"
+    assert answer_to(j, Interval(value=0.4, low=0.3)) == "outside_library"  # most of the gap is left
     assert answer_to(j, Interval(value=0.0)) == "no_gap"  # over all runs there is nothing above the floor
     assert answer_to(j, None) == "library"
 

@@ -6,11 +6,12 @@ from collections.abc import Sequence
 
 from sher3_diagnosis.judge.items import Item
 from sher3_diagnosis.judge.probabilities import LIBRARY, NO_GAP, OUTSIDE, Judged
+from sher3_diagnosis.thresholds import COVERED
 from sher3_diagnosis.verdict import Interval, Status
 
 
 def answer_to(j: Judged, closure: Interval | None) -> str:
-    """Return the answer to an item; a cause is not named where its closure may be nothing at all.
+    """Return the answer to an item; a cause is not named that leaves most of its gap, or whose closure may be nothing.
 
     Args:
         j: the item with its probabilities.
@@ -20,7 +21,7 @@ def answer_to(j: Judged, closure: Interval | None) -> str:
         return j.answer
     if closure.value == 0.0:
         return NO_GAP
-    if j.answer == LIBRARY and closure.low is not None and closure.low <= 0.0:
+    if j.answer == LIBRARY and (closure.value < COVERED or (closure.low is not None and closure.low <= 0.0)):
         return OUTSIDE
     return j.answer
 
