@@ -3,7 +3,7 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 
-.PHONY: demo test test-slow docs bench bench-all lint setup clean
+.PHONY: demo test test-slow docs bench bench-all lint setup messages clean
 
 demo: $(READY)  ## scripted surgeon on mocks: recorded, analysed, shown
 	$(BIN)/sher3 demo
@@ -30,6 +30,9 @@ bench-all: $(READY)  ## everything that any page quotes a speed of: hours
 	for script in $(filter-out bench/graph_run.py bench/page.py,$(wildcard bench/*.py)); do echo "== $$script"; $(BIN)/python $$script || exit 1; done
 
 setup: $(READY)
+
+messages: $(READY)  ## typed messages for `sher3 state` and other ROS programs of this environment; needs a C compiler
+	tools/build-messages $(VENV)
 
 # No download address here or in requirements.txt: pip's own configuration says where from; the hashes say what.
 $(READY): requirements.txt pyproject.toml tools/find-python

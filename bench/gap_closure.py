@@ -16,9 +16,9 @@ from typing import Any
 from sher3_challenge.cases.builder import Request, build_case
 from sher3_challenge.plants.registry import truth_plant
 from sher3_description import load_robot
-from sher3_diagnosis.report.words import quantity, share
+from sher3_diagnosis.words import quantity, share
 from sher3_gap.case.loading import load_case
-from sher3_gap.simulate.closing import close_loop
+from sher3_gap.closing import close_loop
 
 GAP = (6.0, 12.0)
 

@@ -19,6 +19,7 @@ from sher3_common import FileError, Sher3Error, parse_json, parse_yaml, read_byt
 from sher3_common.array_files import read_arrays
 from sher3_common.files import MAX_CONFIGURATION_BYTES, MAX_DEPTH
 from sher3_description import load_robot
+from sher3_drivers.name_plates import load_name_plates
 from sher3_effects import load_effects
 from sher3_gap.excitation.file import load_excitation
 from sher3_gap.simulate.apply import read_verdict
@@ -34,6 +35,7 @@ DOORS = {
     "robot.yaml": load_robot,
     "effects.yaml": load_effects,
     "script.yaml": load_script,
+    "drives.yaml": load_name_plates,
     "machine.yaml": load_description,
     "excitation.yaml": lambda path: load_excitation(path, ROBOT),
     "verdict.json": read_verdict,

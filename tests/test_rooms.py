@@ -115,9 +115,6 @@ def test_the_doors_are_looked_for_where_they_are():
         assert any(module in imports(path) for path in FILES), module
 
 
-REBUILT = {"sher3_diagnosis", "sher3_effects", "sher3_gap", "sher3_machines", "sher3_challenge"}
-"""Packages that are being rebuilt and still form circles or hold many loose files. This set shrinks to nothing."""
-
 LOOSE_FILES = 15
 """Python files in one folder that a reader takes in at a glance; `__init__.py` is not counted."""
 
@@ -149,7 +146,7 @@ def test_packages_import_in_no_circle():
         }
         for package in PACKAGES
     }
-    assert not [group for group in circles(arrows) if not set(group) <= REBUILT]
+    assert not circles(arrows)
 
 
 @pytest.mark.parametrize("package", PACKAGES)
@@ -159,7 +156,7 @@ def test_the_folders_of_a_package_import_in_no_circle(package):
     for path in FILES:
         if package_of(path) == package and room_of(path) != "__init__":
             arrows.setdefault(room_of(path), set()).update(rooms_imported(path) - {room_of(path)})
-    assert package in REBUILT or not circles(arrows)
+    assert not circles(arrows)
 
 
 def room_of(path: Path) -> str:
@@ -177,7 +174,7 @@ def rooms_imported(path: Path) -> set[str]:
 
 
 def test_no_folder_holds_many_loose_files():
-    counts = Counter(path.parent for path in FILES if path.name != "__init__.py" and package_of(path) not in REBUILT)
+    counts = Counter(path.parent for path in FILES if path.name != "__init__.py")
     assert not {str(folder): count for folder, count in counts.items() if count > LOOSE_FILES}
 
 

@@ -1,40 +1,27 @@
-"""The bag commands of `sher3`: record, replay, analyze, compare, recover, info."""
+"""The bag commands of `sher3`: record, replay, compare, recover, info."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import asdict
 from datetime import datetime
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from sher3_common import Sher3Error
-from sher3_common.completing import BAG, CASE, folders_with
+from sher3_common.commands.completing import BAG, CASE, folders_with
+from sher3_common.commands.options import Domain, Json, reported
 from sher3_description.topics import NAMESPACE
 
-app = typer.Typer(no_args_is_help=True, help="Record, replay, analyse, compare and recover bags.")
+app = typer.Typer(no_args_is_help=True, help="Record, replay, compare and recover bags.")
 
 Bag = Annotated[Path, typer.Argument(help="Bag folder or .mcap file.", autocompletion=folders_with(BAG))]
-Domain = Annotated[int, typer.Option(help="ROS domain id.", min=0, max=232, envvar="ROS_DOMAIN_ID")]
-Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")]
 Topics = Annotated[list[str] | None, typer.Option("--topic", help="Topic relative to /sher3; repeat for more.")]
 Namespace = Annotated[str, typer.Option(help="Namespace of the robot in the bag.")]
 
 
-@contextmanager
-def _reported(as_json: bool) -> Iterator[None]:
-    """Turn an error of this project into one sentence on stderr (an object with --json) and exit code 1."""
-    try:
-        yield
-    except Sher3Error as error:
-        typer.echo(json.dumps(error.to_dict(), default=str) if as_json else f"error: {error}", err=True)
-        raise typer.Exit(1) from error
-
-
-def _print(as_json: bool, data: dict[str, Any], text: str) -> None:
+def printed(as_json: bool, data: dict[str, Any], text: str) -> None:
+    """Print figures as one JSON object or as text."""
     typer.echo(json.dumps(data) if as_json else text)
 
 
@@ -53,7 +40,7 @@ def record(
     from sher3_bags.errors import NothingRecorded
     from sher3_bags.recording.recorder_node import run
 
-    with _reported(as_json):
+    with reported(as_json):
         target = output or Path("bags", datetime.now().strftime("%Y%m%d_%H%M%S"))
         typer.echo(f"recording to {target}, Ctrl-C stops", err=True)
         counts = run(target, load_robot(robot), topics=topic, seconds=seconds, domain=domain)
@@ -61,7 +48,7 @@ def record(
             remedy = f"start the robot in ROS domain {domain}, or name its domain"
             raise NothingRecorded("no message of the robot came", path=target, remedy=remedy)
         lines = [f"{name}: {entry['messages']} messages, {entry['dropped']} dropped" for name, entry in counts.items()]
-        _print(as_json, {"bag": str(target), "topics": counts}, "\n".join([*lines, f"recorded to {target}"]))
+        printed(as_json, {"bag": str(target), "topics": counts}, "\n".join([*lines, f"recorded to {target}"]))
 
 
 @app.command(epilog="Example: sher3 replay bags/trial --rate 0.5 --topic force/measured_cf --topic pedal/measured")
@@ -84,47 +71,12 @@ def replay(
     from sher3_bags.playback.replay import Replay
     from sher3_bags.playback.replay_node import run
 
-    with _reported(as_json):
+    with reported(as_json):
         player = Replay(bag, topic, rate=rate, stamps="keep" if keep_stamps else "shift", namespace=namespace)
         typer.echo(f"replaying {len(player)} messages in {player.duration:.1f} s", err=True)
         sent = run(player, wait_for, domain)
         data = {"bag": str(bag), "sent": sent, "messages": len(player), "topics": list(player.topics)}
-        _print(as_json, data, f"sent {sent} of {len(player)} messages of {len(player.topics)} topics")
-
-
-@app.command(epilog="Example: sher3 analyze bags/trial --picture trial.png")
-def analyze(
-    bag: Bag,
-    picture: Annotated[Path | None, typer.Option(help="Also draw the run to this PNG, PDF or SVG.")] = None,
-    namespace: Namespace = NAMESPACE,
-    as_json: Json = False,
-) -> None:
-    """Figures of a run: tip path, force against velocity, tracking per axis, timing and drops per topic."""
-    from sher3_bags.figures.analysis import analyse
-    from sher3_bags.figures.report import analysis_text
-    from sher3_bags.reading import read_run
-
-    with _reported(as_json):
-        run = read_run(bag, namespace=namespace, check=False)
-        analysis = analyse(run)
-        data = analysis.to_dict()
-        if picture is not None:
-            from sher3_bags.figures.picture import draw
-
-            data["picture"] = str(_drawn(lambda: draw(run, analysis, picture), picture))
-        note = f"\n\npicture: {picture}" if picture is not None else ""
-        _print(as_json, data, analysis_text(analysis) + note)
-
-
-def _drawn(draw: Any, picture: Path) -> Path:
-    try:
-        return draw()
-    except (OSError, ValueError) as error:
-        from sher3_bags.errors import BagError
-
-        raise BagError(
-            f"cannot be drawn ({error})", path=picture, remedy="name a writable .png, .pdf or .svg"
-        ) from error
+        printed(as_json, data, f"sent {sent} of {len(player)} messages of {len(player.topics)} topics")
 
 
 @app.command(epilog="Example: sher3 compare bags/before bags/after --topic measured_cp")
@@ -141,10 +93,10 @@ def compare(
     from sher3_bags.figures.report import comparison_text
     from sher3_bags.reading import read_run
 
-    with _reported(as_json):
+    with reported(as_json):
         alignment = alignment_from(align)
         result = compare_runs(read_run(a, topic), read_run(b, topic), alignment=alignment, topics=topic)
-        _print(as_json, result.to_dict(), comparison_text(result))
+        printed(as_json, result.to_dict(), comparison_text(result))
 
 
 @app.command(epilog="Example: sher3 recover bags/trial --output bags/trial_whole")
@@ -156,9 +108,9 @@ def recover(
     """Save what can be read of a cut or corrupt bag, and count what cannot."""
     from sher3_bags.recovery import recover as recover_bag
 
-    with _reported(as_json):
+    with reported(as_json):
         recovery = recover_bag(bag, output)
-        _print(as_json, asdict(recovery), str(recovery))
+        printed(as_json, asdict(recovery), str(recovery))
 
 
 @app.command(epilog="Example: sher3 info bags/trial")
@@ -166,10 +118,10 @@ def info(bag: Bag, namespace: Namespace = NAMESPACE, as_json: Json = False) -> N
     """Show what a bag or a case holds: topics, metadata, provenance, samples the recorder missed; runs of a case."""
     from sher3_bags.figures.overview import case_overview, case_text, overview, overview_text
 
-    with _reported(as_json):
+    with reported(as_json):
         if (bag / CASE).is_file():
             runs = case_overview(bag)
-            _print(as_json, runs, case_text(runs))
+            printed(as_json, runs, case_text(runs))
             return
         data = overview(bag, namespace)
-        _print(as_json, data, overview_text(data))
+        printed(as_json, data, overview_text(data))

@@ -37,6 +37,25 @@ DEFINITIONS: dict[str, str] = {
     ),
     "diagnostic_msgs/DiagnosticArray": "std_msgs/Header header\nDiagnosticStatus[] status",
     "tf2_msgs/TFMessage": "geometry_msgs/TransformStamped[] transforms",
+    "crtk_msgs/OperatingState": "std_msgs/Header header\nstring state\nbool is_homed\nbool is_busy",
+    "sher3_msgs/Fault": "string code\nstring source\nfloat64 value\nfloat64 limit\nstring unit\nstring action",
+    "sher3_msgs/Refusal": "string error\nstring text",
+    "sher3_msgs/SupervisorStatus": (
+        "std_msgs/Header header\nstring state\nbuiltin_interfaces/Time since\nstring reason\nstring action\n"
+        "bool is_homed\nFault first_fault\nuint32 later_faults\nRefusal refused"
+    ),
+    "sher3_msgs/MotionStatus": (
+        "std_msgs/Header header\nstring mode\nbuiltin_interfaces/Time since\nstring reason\nstring text\n"
+        "string limited_by\nbool is_busy\nfloat64 rcm_deviation\nRefusal refused"
+    ),
+    "sher3_msgs/AdmittanceStatus": (
+        "std_msgs/Header header\nstring reason\nstring text\nbuiltin_interfaces/Time since\nbool drift_exceeded\n"
+        "Refusal refused"
+    ),
+    "sher3_msgs/Settings": (
+        "std_msgs/Header header\nuint32 version\nstring regime\nbool has_remote_centre\n"
+        "geometry_msgs/Point remote_centre\nstring[] names\nfloat64[] values"
+    ),
     "sensor_msgs/Temperature": "std_msgs/Header header\nfloat64 temperature\nfloat64 variance",
 }
 
@@ -98,13 +117,18 @@ def schema_text(type_name: str) -> str:
         if name in seen:
             continue
         seen.add(name)
-        text = _definition(name)
+        text = definition_of(name)
         blocks.append(text if len(seen) == 1 else f"MSG: {name}\n{text}")
         waiting += _nested(text, name.split("/")[0])
     return f"\n{'=' * 80}\n".join(blocks) + "\n"
 
 
-def _definition(name: str) -> str:
+def definition_of(name: str) -> str:
+    """Return the definition of one type such as `std_msgs/Header`, without those of its fields.
+
+    Raises:
+        TopicError: the type is unknown here.
+    """
     if name in DEFINITIONS:
         return DEFINITIONS[name]
     package, short = name.split("/")

@@ -217,7 +217,7 @@ def test_orientation_is_compared_whatever_its_sign(build):
 
 def test_quantities():
     texts = [quantity(v, "m") for v in (1.5, 2.5e-3, -3e-6, 4e-9, 2e-11, 0.0, None)]
-    assert texts == ["1.5 m", "2.5 mm", "-3 um", "4 nm", "0.02 nm", "0 m", "-"]
+    assert texts == ["1.5 m", "2.5 mm", "-3 µm", "4 nm", "0.02 nm", "0 m", "-"]
 
 
 @pytest.mark.shared

@@ -23,20 +23,10 @@ def bag(tmp_path, build):
 
 
 def test_help_has_an_example_for_each_command():
-    for name in ("record", "replay", "analyze", "compare", "recover", "info"):
+    for name in ("record", "replay", "compare", "recover", "info"):
         result = runner.invoke(app, [name, "--help"])
         assert result.exit_code == 0
         assert "Example: sher3 " + name in result.output.replace("\n", " ")
-
-
-def test_analyze(bag, tmp_path):
-    text = runner.invoke(app, ["analyze", str(bag), "--picture", str(tmp_path / "a.png")])
-    assert text.exit_code == 0
-    assert "position tracking" in text.output
-    assert (tmp_path / "a.png").is_file()
-    data = json.loads(runner.invoke(app, ["analyze", str(bag), "--json"]).output)
-    assert data["dropped"] == 0
-    assert len(data["position_tracking"]) == 5
 
 
 def test_compare_info_recover(bag, tmp_path):
@@ -55,7 +45,6 @@ def test_compare_info_recover(bag, tmp_path):
 @pytest.mark.parametrize(
     "arguments",
     [
-        ["analyze", "missing"],
         ["info", "missing"],
         ["recover", "missing"],
         ["compare", "missing", "missing"],
@@ -74,8 +63,6 @@ def test_failures_are_one_sentence(arguments, monkeypatch, tmp_path):
 def test_other_failures(bag, tmp_path):
     result = runner.invoke(app, ["compare", str(bag), str(bag), "--align", "phase"])
     assert (result.exit_code, "unknown alignment; value phase" in result.output) == (1, True)
-    result = runner.invoke(app, ["analyze", str(bag), "--picture", str(tmp_path / "a.xyz")])
-    assert (result.exit_code, "cannot be drawn" in result.output) == (1, True)
     result = runner.invoke(app, ["replay", str(bag), "--rate", "0"])
     assert (result.exit_code, "rate must be positive" in result.output) == (1, True)
 

@@ -8,6 +8,7 @@ from rosbags.highlevel import AnyReader
 from scipy.spatial.transform import Rotation
 from sher3_bags import Recorder, read_run
 from sher3_bags.codec.pack import joint_state
+from sher3_bags.recording.beside import Beside
 from sher3_bags.recording.robot_frames import RobotFrames
 from sher3_description import ACTUATORS, load_robot
 from sher3_kinematics import RobotKinematics
@@ -22,7 +23,7 @@ def message(stamp, q=Q):
 
 @pytest.fixture
 def opened(tmp_path):
-    with Recorder(tmp_path / "bag", ROBOT, frames=RobotFrames(ROBOT)) as recorder:
+    with Recorder(tmp_path / "bag", ROBOT, frames=Beside(ROBOT)) as recorder:
         for k in range(26):
             recorder.write("measured_js", message(1_000_000_000 + 4_000_000 * k), 5 + k)
     with AnyReader([tmp_path / "bag"]) as reader:

@@ -9,13 +9,11 @@ from pathlib import Path
 from typing import Annotated, Optional
 
 import typer
+from sher3_common.commands.options import Domain, Json
 
 app = typer.Typer(rich_markup_mode="markdown")
 
-Json = Annotated[bool, typer.Option("--json", help="Print one JSON object instead of text.")]
 Robot = Annotated[Optional[Path], typer.Option(help="Robot file; the nominal robot by default.")]  # noqa: UP045
-
-Domain = Annotated[int, typer.Option(help="ROS domain id.", min=0, max=232, envvar="ROS_DOMAIN_ID")]
 
 
 class Layout(str, Enum):
@@ -58,6 +56,10 @@ def up(
     ] = False,
     duration: Annotated[Optional[float], typer.Option(help="Stop after so many seconds.")] = None,  # noqa: UP045
     robot: Robot = None,
+    drives: Annotated[
+        Optional[Path],  # noqa: UP045
+        typer.Option(help="Name plates of the drives (YAML, sher3.drives/1); the robot does not start with others."),
+    ] = None,
     can: Annotated[Optional[list[str]], typer.Option(help="CAN link of each channel, as socketcan:can0.")] = None,  # noqa: UP045
     force_device: Annotated[str, typer.Option(help="Device of the force sensor (real robot).")] = "",
     pedal_device: Annotated[str, typer.Option(help="Device of the pedal (real robot).")] = "",
@@ -95,7 +97,9 @@ def up(
         rate=rate,
         processes=parse_processes(nodes, mock, record is not None, monitor, layout.value),
         robot_path=robot,
+        drives_path=drives,
         effects=effects,
+        exchange=view and mock,
         record=record,
         recording="optional" if record_optional else "required",
         duration=duration,

@@ -10,6 +10,7 @@ from sher3_cli.root import make_app
 from sher3_common import Sher3Error
 from sher3_control.settings import ControlSettings, MotionSettings
 from sher3_description import load_robot
+from sher3_drivers.errors import DriverSettingsError
 from sher3_drivers.settings import default_settings
 from sher3_faults.budget import BudgetExceeded
 from typer.testing import CliRunner
@@ -90,6 +91,17 @@ def test_contradictions_are_named(options, message):
 def test_a_channel_too_few_for_the_rate():
     with pytest.raises(Sher3Error, match="links"):
         checked(rate=1000.0, links=("local:a", "local:b"))
+
+
+def test_name_plates_reach_the_driver_and_a_drive_that_does_not_exist_is_refused(tmp_path):
+    path = tmp_path / "drives.yaml"
+    text = "schema: sher3.drives/1\ndrives: {ROLL: {vendor: 1, product: 2, serial: 3}}\n"
+    path.write_text(text.replace("ROLL", "roll"))
+    (plate,) = checked(drives_path=path, processes=parse_processes(None, True, False)).drives().identities
+    assert (plate.drive, plate.serial) == ("roll", 3)
+    path.write_text(text)
+    with pytest.raises(DriverSettingsError, match="identities name the drives"):
+        checked(drives_path=path)
 
 
 def test_a_robot_file_that_is_not_there(tmp_path):

@@ -1,11 +1,12 @@
 """The calibration: labels to answers, fits by hand, sets that cover, and what is quoted of a plant left out."""
 
 import json
+from dataclasses import replace
 
 import pytest
 from sher3_challenge.calibration.fit import Example, calibrated, conformal, logistic, sharpness, weights
 from sher3_challenge.calibration.held_out import held_out, judged_by
-from sher3_challenge.calibration.labels import answer_of
+from sher3_challenge.calibration.labels import answer_of, same_data
 from sher3_challenge.calibration.observe import Observation, labelled, truth_of
 from sher3_challenge.calibration.table import rates, written
 from sher3_challenge.errors import ChallengeError
@@ -14,7 +15,7 @@ from sher3_diagnosis.judge.calibration.calibration import Calibration
 
 NUMBERS = {
     "left": 0.01, "law": 0.01, "place": 0.01, "anything": 0.01, "spread": 0.001, "scatter": 1.0, "lost": 0.001,
-    "mismatch": 0.02, "company": 0.0, "sibling": 0.5, "ratio": 6.0, "samples": 4000.0,
+    "mismatch": 0.02, "company": 0.0, "sibling": 0.5, "ratio": 6.0, "samples": 4000.0, "idealised": 1.0,
 }  # fmt: skip
 BAD = {"left": 0.6, "law": 0.5, "anything": 0.1, "spread": 0.2, "lost": 0.2, "mismatch": 0.5}
 RIVAL = {"presliding_friction": 0.5, "viscous_friction": 20.0}
@@ -60,7 +61,7 @@ def test_a_cause_is_right_when_it_or_one_that_explains_the_data_alike_is_true():
 
 def test_a_relative_of_an_effect_left_out_imitates_it():
     whole = seen(items=[cause("viscous_friction", {"cogging": 30.0})], effect="viscous_friction")
-    left_out = seen(effect="viscous_friction", items=[cause("cogging", {})], without=("viscous_friction",))
+    left_out = seen(effect="viscous_friction", items=[cause("cogging", {}, left=0.1)], without=("viscous_friction",))
     assert answer_of(left_out, left_out.items[0], whole) == "outside_library"
 
 
@@ -70,6 +71,30 @@ def test_one_that_gives_the_same_data_or_contains_the_effect_is_no_mistake():
     assert answer_of(twin, twin.items[0], whole) is None
     containing = seen(items=[cause("presliding_friction", {})], without=("coulomb_friction",))
     assert answer_of(containing, containing.items[0], seen(items=[cause()])) in (None, "library")
+
+
+def test_several_effects_that_together_leave_as_little_as_the_true_one_give_the_same_data():
+    """A gap of 6 floors, power 36: left 0.01 of it by the true one; the two together may leave 0.02 more, 1.08."""
+    whole = seen(items=[cause("base_tilt", {})], effect="base_tilt")
+    names = ("encoder_offset", "link_length_error")
+    for left, same in ((0.028, True), (0.032, False)):
+        items = [cause(n, {}, left=left) for n in names]
+        left_out = seen(effect="base_tilt", items=items, without=("base_tilt",))
+        assert same_data(left_out, whole) == same
+        assert answer_of(left_out, items[0], whole) == (None if same else "outside_library")
+    beside = seen(effect="base_tilt", items=[cause("tool_offset", {}), gap()], without=("base_tilt",))
+    assert not same_data(beside, whole)  # a gap has no cause
+
+
+def test_a_gap_that_only_the_effect_left_out_explains_is_of_that_effect():
+    whole = seen(items=[cause("encoder_eccentricity", {})], effect="encoder_eccentricity")
+    tip = gap("mechanism/tip", 4.0, 3.6)
+    left_out = seen(effect="encoder_eccentricity", items=[cause("cogging"), tip], without=("encoder_eccentricity",))
+    assert (
+        answer_of(left_out, tip, replace(whole, places=("motor_mechanics/tilt", "mechanism/tip"))) == "outside_library"
+    )
+    echo = replace(whole, items=(*whole.items, tip), places=("motor_mechanics/tilt", "mechanism/tip"))
+    assert answer_of(left_out, tip, echo) == "no_gap"
 
 
 def test_what_is_found_where_no_fault_is_has_no_gap_of_its_own():

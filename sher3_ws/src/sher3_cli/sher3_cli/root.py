@@ -33,7 +33,7 @@ COMMANDS: dict[str, Entry] = {
     "ik": Entry("sher3_kinematics.cli", "ik", "Actuator positions from a tip pose."),
     "record": Entry("sher3_bags.cli", "record", "Record the running graph into a bag."),
     "replay": Entry("sher3_bags.cli", "replay", "Play a bag into the graph, at any rate."),
-    "analyze": Entry("sher3_bags.cli", "analyze", "Figures and a picture of a bag."),
+    "analyze": Entry("sher3_view.cli", "analyze", "Figures and a picture of a bag."),
     "compare": Entry("sher3_bags.cli", "compare", "Differences of two bags, on header time."),
     "recover": Entry("sher3_bags.cli", "recover", "Save what can be read of a cut bag."),
     "info": Entry("sher3_bags.cli", "info", "What a bag holds."),

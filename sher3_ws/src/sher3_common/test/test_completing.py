@@ -1,4 +1,4 @@
-from sher3_common.completing import BAG, CASE, folders_with, words
+from sher3_common.commands.completing import BAG, CASE, folders_with, words
 
 
 def test_bags_and_cases_are_offered_and_other_folders_to_go_into(tmp_path):

@@ -188,6 +188,15 @@ class SupervisorSettings(Settings):
             has slipped [m]; a push of 1 N bends the structure of the paper by up to 0.35 mm.
         leg_latency: how long that motion must last [s].
         leg_memory: time constant with which slow changes of it are taken for granted [s].
+        hand_force, hand_share: force [N], and share of the hand that both feel [1], by which the force sensor and the
+            drives may differ; friction that turns round, inertia and noise stay below it on the nominal
+            robot.
+        hand_even: largest change of a leg's velocity from one look to the next in even motion [m/s]; a slider of 10 kg
+            then needs 0.5 N for it.
+        hand_look: time from one look to the next, at most [s].
+        hand_lag: time constant of the low pass on that difference [s].
+        hand_memory: time constant with which slow changes of it are taken for granted [s].
+        hand_settling: how long after enabling all of it is [s].
     """
 
     stream_age_limit: Seconds = 0.1
@@ -198,6 +207,13 @@ class SupervisorSettings(Settings):
     leg_distance: Annotated[Number, Field(gt=0.0, le=0.01)] = 1e-3
     leg_latency: Seconds = 0.1
     leg_memory: Seconds = 1.0
+    hand_force: Annotated[Number, Field(gt=0.0, le=100.0)] = 0.8
+    hand_share: Fraction = 0.25
+    hand_even: Annotated[Number, Field(gt=0.0, le=0.05)] = 5e-4
+    hand_look: Annotated[Number, Field(ge=1e-3, le=1.0)] = 0.01
+    hand_lag: Annotated[Number, Field(ge=1e-3, le=1.0)] = 0.05
+    hand_memory: Annotated[Number, Field(ge=1e-2, le=100.0)] = 2.0
+    hand_settling: Seconds = 0.2
 
 
 class ControlSettings(Settings):

@@ -8,6 +8,7 @@ from law_bench import ROBOT
 from sher3_common.operating_state import OperatingState
 from sher3_common.reasons import Action, Reason
 from sher3_control.errors import StateCommandRefused
+from sher3_control.settings import SupervisorSettings
 from sher3_control.supervision.detectors import Finding, OverrunDetector, ReportedFault, SilenceDetector, TwinDetector
 from sher3_control.supervision.driver_reports import cycle_counts, driver_stop
 from sher3_control.supervision.leg_residual import LegDetector, leg_residual
@@ -151,7 +152,7 @@ def test_a_shift_of_the_whole_tip_is_no_leg():
 
 
 def leg_detector():
-    return LegDetector(KINEMATICS, limit=1e-3, latency=0.1, memory=1.0)
+    return LegDetector(KINEMATICS, SupervisorSettings())
 
 
 def play(detector, slip, seconds, start=0):

@@ -37,13 +37,22 @@ class DeltaParameters(Part):
     moving_mass: Mass
 
     @property
+    def base_distance(self) -> float:
+        """Distance [m] from the axis to the middle of a leg's pair of balls on its slider."""
+        return math.sqrt(self.base_radius**2 - self.leg_width**2 / 4)
+
+    @property
+    def platform_distance(self) -> float:
+        """Distance [m] from the axis to the middle of a leg's pair of balls on the platform."""
+        return math.sqrt(self.platform_radius**2 - self.leg_width**2 / 4)
+
+    @property
     def leg_offset(self) -> float:
         """Horizontal distance R [m] from the platform ball pair to the base ball pair of a leg at the centre.
 
         R = sqrt(r_b^2 - w^2/4) - sqrt(r_p^2 - w^2/4), recorded-run contract version 1, section 2.
         """
-        half = self.leg_width / 2
-        return math.sqrt(self.base_radius**2 - half**2) - math.sqrt(self.platform_radius**2 - half**2)
+        return self.base_distance - self.platform_distance
 
     @model_validator(mode="after")
     def _constructible(self) -> Self:

@@ -143,6 +143,7 @@ _TABLE = (
     Topic("mock/force_device", _WRENCH, "f", STREAM, "what the mock force sensor puts on its wire"),
     Topic("mock/pedal_device", _JOY, "", STREAM, "what the mock pedal puts on its wire"),
     Topic("mock/fault", _TEXT, "", STREAM, "fault to inject or to clear, as JSON"),
+    Topic("mock/effects", _TEXT, "", STREAM, "effects that the plant has from now on, as a JSON list"),
     Topic("mock/true_js", _JOINT, "", STREAM, "true load position and executed demand, from the first fault on"),
 )
 

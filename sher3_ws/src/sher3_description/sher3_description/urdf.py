@@ -1,9 +1,8 @@
 """The robot as URDF, generated from its parameters, for viewers and rigid-body libraries.
 
-URDF knows trees only. The delta stage therefore appears as three translations of the platform, which is what it does,
-beside the three sliders on their rails; the tilt joint is the angle, not the slider. Joint origins and masses come from
-the robot file. The file has no inertias about the centres of mass, so bodies are point masses. Their shapes for a
-viewer are those of `visuals`; the legs close loops, which no URDF can, and are shown as markers.
+Its tree is that of `model_joints`; origins and masses come from the robot file. The file has no inertias about the
+centres of mass, so bodies are point masses. Their shapes for a viewer are those of `visuals`; the legs close loops,
+which no URDF can, and are shown as markers.
 """
 
 from __future__ import annotations
@@ -11,11 +10,10 @@ from __future__ import annotations
 import math
 from xml.etree import ElementTree
 
+from sher3_description.equipment import Actuator
+from sher3_description.model_joints import ZERO, ModelJoint, Triple, fixed_joints, moving_joints
 from sher3_description.robot import Robot
 from sher3_description.visuals import Shape, shapes
-
-Triple = tuple[float, float, float]
-ZERO: Triple = (0.0, 0.0, 0.0)
 
 
 def urdf(robot: Robot) -> str:
@@ -25,10 +23,11 @@ def urdf(robot: Robot) -> str:
     Links: `b`, `slider_k`, `p`, `r`, `a`, `t`, `f` and two massless ones inside the platform's translation.
     """
     root = ElementTree.Element("robot", name="sher3")
+    masses, travels = _masses(robot), _travels(robot)
     _link(root, "b")
-    _sliders(root, robot)
-    _platform(root, robot)
-    _arm(root, robot)
+    for joint in (*moving_joints(robot), *fixed_joints(robot)):
+        _link(root, joint.child, *masses.get(joint.child, ()))
+        _joint(root, joint, travels.get(joint.name))
     for name, bodies in shapes(robot).items():
         link = root.find(f"link[@name='{name}']")
         assert link is not None
@@ -50,43 +49,32 @@ def tilt_angle_limits(robot: Robot) -> tuple[float, float]:
     return angles[0], angles[1]
 
 
-def _sliders(root: ElementTree.Element, robot: Robot) -> None:
-    half = robot.delta.leg_width / 2
-    radius = math.sqrt(robot.delta.base_radius**2 - half**2)
-    for k, azimuth in enumerate(robot.delta.leg_azimuth):
-        actuator = robot.actuators[k]
-        origin = (radius * math.cos(azimuth), radius * math.sin(azimuth), robot.delta.slider_zero)
-        _link(root, f"slider_{k + 1}")
-        limits = (actuator.limits.lower, actuator.limits.upper)
-        _joint(root, actuator.name, "prismatic", "b", f"slider_{k + 1}", origin, (0, 0, 1), limits, k, robot)
+def _masses(robot: Robot) -> dict[str, tuple[float, Triple]]:
+    """Return mass [kg] and its centre (3,) [m] in the link's frame of every link that has any."""
+    arm = robot.arm
+    return {
+        "p": (robot.delta.moving_mass, ZERO),
+        "r": (arm.roll_mass, arm.roll_com),
+        "a": (arm.tilt_mass, arm.tilt_com),
+    }
 
 
-def _platform(root: ElementTree.Element, robot: Robot) -> None:
-    """Add the translation of the platform; its limits are the reach, an outer bound of the workspace."""
+def _travels(robot: Robot) -> dict[str, tuple[float, float, Actuator]]:
+    """Return the ends [m, rad] of every movable joint, and the actuator whose speed and effort limit it.
+
+    The platform's ends are the reach, an outer bound of the workspace.
+    """
+    sliders, roll, tilt = robot.actuators[:3], robot.actuators[3], robot.actuators[4]
     reach = robot.delta.link_length - robot.delta.leg_offset
-    travel = [actuator.limits for actuator in robot.actuators[:3]]
     height = robot.delta.slider_zero + robot.delta.link_length
-    ends = (min(limit.lower for limit in travel), height + max(limit.upper for limit in travel))
-    parent = "b"
-    for axis, (name, child) in enumerate((("x", "p_x"), ("y", "p_y"), ("z", "p"))):
-        _link(root, child, robot.delta.moving_mass if child == "p" else 0.0)
-        direction = tuple(float(axis == i) for i in range(3))
-        limits = ends if name == "z" else (-reach, reach)
-        _joint(root, f"platform_{name}", "prismatic", parent, child, ZERO, direction, limits, 0, robot)
-        parent = child
-
-
-def _arm(root: ElementTree.Element, robot: Robot) -> None:
-    arm, roll = robot.arm, robot.actuators[3].limits
-    _link(root, "r", arm.roll_mass, arm.roll_com)
-    _link(root, "a", arm.tilt_mass, arm.tilt_com)
-    _joint(root, "roll", "revolute", "p", "r", (0.0, 0.0, arm.d1), (1, 0, 0), (roll.lower, roll.upper), 3, robot)
-    tilt = tilt_angle_limits(robot)
-    _joint(root, "tilt_angle", "revolute", "r", "a", (arm.d2, 0.0, arm.d3), (0, 1, 0), tilt, 4, robot)
-    _link(root, "t")
-    _link(root, "f")
-    _joint(root, "tip", "fixed", "a", "t", arm.tool)
-    _joint(root, "force_sensor", "fixed", "t", "f", robot.force_sensor.position)
+    ends = [(actuator.limits.lower, actuator.limits.upper, actuator) for actuator in (*sliders, roll)]
+    lowest, highest = min(end[0] for end in ends[:3]), max(end[1] for end in ends[:3])
+    return {actuator.name: (lower, upper, actuator) for lower, upper, actuator in ends} | {
+        "platform_x": (-reach, reach, sliders[0]),
+        "platform_y": (-reach, reach, sliders[0]),
+        "platform_z": (lowest, height + highest, sliders[0]),
+        "tilt_angle": (*tilt_angle_limits(robot), tilt),
+    }
 
 
 def _link(root: ElementTree.Element, name: str, mass: float = 0.0, com: Triple = ZERO) -> None:
@@ -112,33 +100,17 @@ def _visual(link: ElementTree.Element, name: str, shape: Shape) -> None:
     ElementTree.SubElement(material, "color", rgba=_xyz((*shape.colour, 1.0)))
 
 
-def _joint(
-    root: ElementTree.Element,
-    name: str,
-    kind: str,
-    parent: str,
-    child: str,
-    origin: Triple,
-    axis: tuple[float, ...] | None = None,
-    limits: tuple[float, float] | None = None,
-    actuator: int = 0,
-    robot: Robot | None = None,
-) -> None:
-    joint = ElementTree.SubElement(root, "joint", name=name, type=kind)
-    ElementTree.SubElement(joint, "parent", link=parent)
-    ElementTree.SubElement(joint, "child", link=child)
-    ElementTree.SubElement(joint, "origin", xyz=_xyz(origin))
-    if axis is not None and limits is not None and robot is not None:
-        ElementTree.SubElement(joint, "axis", xyz=_xyz(axis))
-        values = robot.actuators[actuator]
-        ElementTree.SubElement(
-            joint,
-            "limit",
-            lower=repr(limits[0]),
-            upper=repr(limits[1]),
-            velocity=repr(values.limits.velocity),
-            effort=repr(values.drive.limit),
-        )
+def _joint(root: ElementTree.Element, joint: ModelJoint, travel: tuple[float, float, Actuator] | None) -> None:
+    element = ElementTree.SubElement(root, "joint", name=joint.name, type=joint.kind)
+    ElementTree.SubElement(element, "parent", link=joint.parent)
+    ElementTree.SubElement(element, "child", link=joint.child)
+    ElementTree.SubElement(element, "origin", xyz=_xyz(joint.origin))
+    if travel is None:
+        return
+    lower, upper, actuator = travel
+    ElementTree.SubElement(element, "axis", xyz=_xyz(joint.axis))
+    limits = {"lower": lower, "upper": upper, "velocity": actuator.limits.velocity, "effort": actuator.drive.limit}
+    ElementTree.SubElement(element, "limit", {name: repr(value) for name, value in limits.items()})
 
 
 def _xyz(values: tuple[float, ...]) -> str:

@@ -37,11 +37,9 @@ class Shape(NamedTuple):
 
 def shapes(robot: Robot) -> dict[str, list[Shape]]:
     """Return the bodies of every link of the URDF that has any, by its name."""
-    half = robot.delta.leg_width / 2
-    radius = math.sqrt(robot.delta.base_radius**2 - half**2)
     lower = min(a.limits.lower for a in robot.actuators[:3]) + robot.delta.slider_zero - 0.02
     upper = max(a.limits.upper for a in robot.actuators[:3]) + robot.delta.slider_zero + 0.02
-    out = radius + 0.012
+    out = robot.delta.base_distance + 0.012
     base = [Shape("cylinder", (0.1, 0.006), (0.0, 0.0, lower - 0.003), colour=DARK)]
     found: dict[str, list[Shape]] = {"b": base}
     for k, azimuth in enumerate(robot.delta.leg_azimuth):

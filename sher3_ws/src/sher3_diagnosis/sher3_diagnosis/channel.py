@@ -41,11 +41,14 @@ class Residual:
         free_mean: share of each run's mean that is not the machine's and is taken off before anything is compared.
             1 where the start of an integrator is not recorded. A share below 1 is the quasi-demeaning of a random
             intercept: two encoders' zeros differ from run to run, and the share that stays weighs that spread.
+        told: (g, d, d) what each sample tells of its components, where a part of the input is unknown: a projection
+            that takes the unknown part off. None where all of every sample counts.
     """
 
     values: Array
     ok: Mask
     free_mean: float = 0.0
+    told: Array | None = None
 
     def rms(self) -> Array:
         """Root mean square over the samples that count, (d,)."""
@@ -53,7 +56,19 @@ class Residual:
             return np.zeros(self.values.shape[1])
         return np.sqrt(np.mean(self.values[self.ok] ** 2, axis=0))
 
-    def relieved(self, values: Array) -> Array:
+    def relieved(self, values: Array, at: Mask | None = None) -> Array:
+        """Take the free share of the mean and what is not told off (n, ...) values of one run.
+
+        Args:
+            values: at the samples of a mask.
+            at: the mask, as long as the shortest run compared; default the samples that count.
+        """
+        if self.told is not None:
+            at = self.ok if at is None else at
+            values = np.einsum("gij,gj...->gi...", self.told[: len(at)][at], values)
+        return self.centred(values)
+
+    def centred(self, values: Array) -> Array:
         """Take the free share of the mean off (n, ...) values of one run."""
         return values - self.free_mean * values.mean(axis=0) if self.free_mean else values
 

@@ -91,7 +91,8 @@ class Effect:
         companion: family of another effect on the same axis without which this one does not show.
         dry: whether it is a friction that holds an axis at rest.
         best: the excitation that shows it best.
-        leaves_out: what a real machine adds to the idealised law, in words; empty where nothing is known.
+        leaves_out: what a real machine adds to the idealised law, in words. Empty for a law of geometry, mechanics or
+            arithmetic that a machine follows to a few percent: there much left over speaks against the effect.
         condition: under which alone it acts, where runs were recorded under several; None: in all runs.
     """
 

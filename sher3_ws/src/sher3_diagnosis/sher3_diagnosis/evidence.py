@@ -14,8 +14,8 @@ from typing import NamedTuple, Protocol
 
 from sher3_diagnosis.channel import Array, Channel, Floors, Mask
 from sher3_diagnosis.effect import ROTARY
-from sher3_diagnosis.fitting import Fit, Term, fit
-from sher3_diagnosis.whitened import Whitened
+from sher3_diagnosis.fit.fitting import Fit, Term, fit
+from sher3_diagnosis.fit.whitened import Whitened
 
 TURNS = 3
 """First component of a pose or a wrench that is a rotation or a torque."""

@@ -5,15 +5,16 @@ from __future__ import annotations
 import importlib.metadata
 import time
 from collections.abc import Callable, Collection, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from sher3_diagnosis.attribute.candidates import Candidates
 from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.diagnosis import Diagnosis
 from sher3_diagnosis.errors import UnknownEffect
 from sher3_diagnosis.evidence import Evidence
-from sher3_diagnosis.finding import Finding, Findings
+from sher3_diagnosis.finding import Finding
 from sher3_diagnosis.judge.calibration.calibration import in_force
 from sher3_diagnosis.judge.causes import causes_of
 from sher3_diagnosis.judge.judge import judge
@@ -27,13 +28,6 @@ from sher3_diagnosis.quantify.polish import polished
 R = TypeVar("R")
 E = TypeVar("E", bound=Evidence)
 Say = Callable[[str], None]
-
-
-@dataclass(frozen=True)
-class Diagnosis(Findings[E]):
-    """A verdict with what it rests on, and the machine that was diagnosed, for reports and further experiments."""
-
-    machine: Machine[Any, E]
 
 
 def diagnose(

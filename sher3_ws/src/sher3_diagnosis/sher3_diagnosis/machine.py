@@ -9,7 +9,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Generic, TypeVar
+from typing import Generic, TypeVar
 
 from sher3_diagnosis.attribute.candidates import Candidates
 from sher3_diagnosis.attribute.rivals import Attribution
@@ -17,11 +17,9 @@ from sher3_diagnosis.attribute.search import Left, Say, attribute
 from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.finding import ExactFinding, Finding
+from sher3_diagnosis.reporter import Reporter
 from sher3_diagnosis.tolerance import within
 from sher3_diagnosis.verdict import Cause, Interval, Within
-
-if TYPE_CHECKING:
-    from sher3_diagnosis.report.reporter import Reporter
 
 R = TypeVar("R")
 """A run as the machine reads it."""
@@ -104,6 +102,4 @@ class Machine(ABC, Generic[R, E]):
 
     def reporter(self) -> Reporter[E]:
         """Return what a report shows that only this machine knows; default nothing."""
-        from sher3_diagnosis.report.reporter import Reporter
-
         return Reporter()

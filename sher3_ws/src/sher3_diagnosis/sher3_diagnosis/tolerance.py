@@ -15,12 +15,12 @@ import numpy as np
 
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Effect, Shape, Signature
-from sher3_diagnosis.fitting import Fit, connected
-from sher3_diagnosis.gram import products
-from sher3_diagnosis.term import Term, make_term
+from sher3_diagnosis.fit.fitting import Fit, connected
+from sher3_diagnosis.fit.gram import products
+from sher3_diagnosis.fit.term import Term, make_term
+from sher3_diagnosis.fit.whitened import Whitened
 from sher3_diagnosis.thresholds import VISIBLE, WITHIN
 from sher3_diagnosis.verdict import Within
-from sher3_diagnosis.whitened import Whitened
 
 SIGMAS = 3.0
 """Standard deviations in a tolerance: values are three of them, or hard limits."""

@@ -17,7 +17,7 @@ from sher3_diagnosis.verdict import Interval, Residual, Where
 TWO = {"classes": ("library", "outside_library"), "inputs": ("x",), "middle": (1.0,), "spread": (2.0,)}
 NUMBERS = {
     "left": 0.01, "law": 0.01, "place": 0.01, "anything": 0.01, "spread": 0.001, "scatter": 1.0, "lost": 0.001,
-    "mismatch": 0.02, "company": 0.0, "sibling": 0.5, "ratio": 6.0, "samples": 4000.0,
+    "mismatch": 0.02, "company": 0.0, "sibling": 0.5, "ratio": 6.0, "samples": 4000.0, "idealised": 1.0,
 }  # fmt: skip
 CALIBRATION = in_force()
 
@@ -47,6 +47,9 @@ def test_scales_end_where_they_tell_nothing_more():
     scaled = scaled_cause(numbers)
     assert scaled["left"] == pytest.approx(math.log(0.003))
     assert scaled["foreign"] == pytest.approx(0.6)  # of what its own inputs leave
+    assert scaled["complete"] == 0.0
+    complete = scaled_cause(NUMBERS | {"left": 0.03, "idealised": 0.0})
+    assert complete["complete"] == pytest.approx(math.log(10.0))  # ten times the share that is nothing
     assert scaled_gap({"power": 0.5, "ratio": 1.0, "beside": -2.0}) == {"power": 0.0, "alone": 0.0}
     assert scaled_exact(0.9) == {"missed": pytest.approx(0.1)}
 

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from sher3_diagnosis.channel import Channel, Residual
 from sher3_diagnosis.evidence import Evidence
-from sher3_diagnosis.fitting import fit, make_term
+from sher3_diagnosis.fit.fitting import fit, make_term
+from sher3_diagnosis.fit.whitened import Whitened
 from sher3_diagnosis.quantify.closure import closure, interval_of, residual_after, zeros_floor
 from sher3_diagnosis.thresholds import AS_BUILT_CLOSURE, IDEALISED
-from sher3_diagnosis.whitened import Whitened
 from toy import AXIS, OFFSET, ToyRun, evidence_of
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from sher3_diagnosis.fitting import fit, make_term, solve
+from sher3_diagnosis.fit.fitting import fit, make_term, solve
 from toy import AXIS, DIRECTION, OFFSET, ToyRun, evidence_of
 
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 from sher3_diagnosis import diagnose
 from sher3_diagnosis.errors import UnknownEffect
-from sher3_diagnosis.fitting import make_term
+from sher3_diagnosis.fit.fitting import make_term
 from toy import DIRECTION, OFFSET, SPEED, Toy, case
 
 

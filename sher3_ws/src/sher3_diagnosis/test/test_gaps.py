@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from sher3_diagnosis.channel import Channel, Residual
 from sher3_diagnosis.evidence import Evidence
+from sher3_diagnosis.fit.whitened import Whitened
 from sher3_diagnosis.localise.gaps import component_rms, gap_of, localise
 from sher3_diagnosis.thresholds import FLOOR_SCATTER, GROUPED, POOLED, ZERO_COUNTS
-from sher3_diagnosis.whitened import Whitened
 from toy import AXIS, ToyRun, evidence_of
 
 TIP = Channel("mechanism", "tip")

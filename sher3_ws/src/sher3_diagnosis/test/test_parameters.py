@@ -7,7 +7,7 @@ import pytest
 from scipy.stats import t as student
 from sher3_diagnosis.attribute.rivals import Attribution
 from sher3_diagnosis.effect import Signature
-from sher3_diagnosis.fitting import fit, make_term
+from sher3_diagnosis.fit.fitting import fit, make_term
 from sher3_diagnosis.quantify.parameters import parameters
 from sher3_diagnosis.quantify.polish import polished
 from sher3_diagnosis.thresholds import MIN_RUNS

@@ -8,8 +8,8 @@ from sher3_diagnosis.flow import diagnose
 from sher3_diagnosis.report.causes import cause_cards, separates
 from sher3_diagnosis.report.chain import AT_FLOOR, GAP, chain
 from sher3_diagnosis.report.page import render
-from sher3_diagnosis.report.reporter import Isolability, Reporter, counted
 from sher3_diagnosis.report.traces import scale_of
+from sher3_diagnosis.reporter import Isolability, Reporter, counted
 from toy import DIRECTION, OFFSET, SPEED, Column, Toy, case
 
 

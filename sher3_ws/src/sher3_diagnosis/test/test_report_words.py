@@ -1,7 +1,7 @@
 """Names and numbers as reports print them."""
 
 import pytest
-from sher3_diagnosis.report.words import listed, place, quantity, range_text, ratio_text, share, words
+from sher3_diagnosis.words import listed, place, quantity, range_text, ratio_text, share, words
 
 
 @pytest.mark.parametrize(

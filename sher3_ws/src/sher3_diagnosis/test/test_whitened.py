@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from sher3_diagnosis.channel import Channel, Residual
-from sher3_diagnosis.whitened import Whitened
+from sher3_diagnosis.fit.whitened import Whitened
 
 TIP = Channel("mechanism", "tip")
 VALUES = np.array([[2.0, 30.0], [4.0, 60.0], [6.0, 90.0]])

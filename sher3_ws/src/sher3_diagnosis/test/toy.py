@@ -9,8 +9,8 @@ import numpy as np
 from sher3_diagnosis.channel import Array, Channel, Residual
 from sher3_diagnosis.effect import Best, Effect, Shape, Signature
 from sher3_diagnosis.evidence import Evidence, Motion
+from sher3_diagnosis.fit.whitened import Whitened
 from sher3_diagnosis.machine import Machine
-from sher3_diagnosis.whitened import Whitened
 
 AXIS = Channel("motor_mechanics", "axis")
 

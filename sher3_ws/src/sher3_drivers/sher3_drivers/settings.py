@@ -34,18 +34,26 @@ class ChannelSettings(_Part):
     drives: tuple[str, ...]
 
 
-class DriveIdentity(_Part):
-    """The name plate of a drive (object 0x1018), as it must be found.
+class NamePlate(_Part):
+    """What stands on a drive (object 0x1018).
 
     Attributes:
-        drive: actuator.
         vendor, product, serial: vendor id, product code and serial number.
     """
 
-    drive: str
     vendor: Number
     product: Number
     serial: Number
+
+
+class DriveIdentity(NamePlate):
+    """The name plate of a drive, as it must be found.
+
+    Attributes:
+        drive: actuator.
+    """
+
+    drive: str
 
 
 class RegimeCaps(_Part):

@@ -11,7 +11,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
-from sher3_common import FileError, dump_yaml, read_yaml
+from sher3_common import FileError, Sher3Error, dump_yaml, parse_json, read_yaml
 from sher3_sim.effect import PlantEffect
 from sher3_sim.errors import EffectError
 
@@ -66,6 +66,23 @@ def load_effects(path: Path | str) -> list[PlantEffect]:
     entries = data.get("effects")
     if not isinstance(entries, list) or not all(isinstance(entry, Mapping) for entry in entries):
         raise FileError("effects is not a list of mappings", path=path)
+    return [effect_from_dict(entry) for entry in entries]
+
+
+def effects_from_text(text: str) -> list[PlantEffect]:
+    """Return the effects of a JSON list of plain forms, as `mock/effects` carries them; an empty list is no effect.
+
+    Raises:
+        EffectError: it is no such list, or an entry is wrong.
+    """
+    try:
+        entries = parse_json(text)
+    except Sher3Error:
+        entries = None
+    if not isinstance(entries, list) or not all(isinstance(entry, Mapping) for entry in entries):
+        raise EffectError(
+            "effects are a JSON list of objects", value=text[:80], remedy='[{"effect": …, "actuator": …}]'
+        )
     return [effect_from_dict(entry) for entry in entries]
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 from random import Random
-from typing import Any, NamedTuple, Protocol
+from typing import NamedTuple, Protocol
 
 from sher3_description import ACTUATORS
 from sher3_drivers.bus.frame import FRAME_SIZE
@@ -20,8 +20,8 @@ from sher3_drivers.sensor.device import WrenchRecord
 
 from sher3_faults.errors import FaultRefused
 from sher3_faults.items import BusFrames, DriveFrames, Numbers, PedalStates, WrenchRecords
-from sher3_faults.kinds import KINDS, OFF, OK, Kind
-from sher3_faults.requests import DEVICES, FaultRequest, parse_request
+from sher3_faults.kinds import KINDS, OFF, OK, Items, Kind
+from sher3_faults.requests import DEVICES, GROUPS, FaultRequest, parse_request
 
 _UP, _DOWN = "up", "down"
 _TORQUE = "safe_torque_off"
@@ -42,16 +42,29 @@ class PedalEnd(Protocol):
 
 
 class Active(NamedTuple):
-    """A requested fault; it acts from `begin` to `end` [ns]."""
+    """A requested fault; it acts from `begin` to `end` [ns].
+
+    Attributes:
+        ways: directions of a line that it acts on.
+        kinds: the fault of each stream so far, by a name of that stream.
+    """
 
     request: FaultRequest
     begin: int
     end: int | None
-    faults: dict[str, Kind]
+    ways: tuple[str, ...]
+    kinds: dict[str, Kind]
 
     def acts(self, now: int) -> bool:
         """Whether it acts at `now`."""
         return self.begin <= now and (self.end is None or now < self.end)
+
+    def kind(self, stream: str, items: Items) -> Kind:
+        """Return the fault of one stream: what waits on one never comes out of another."""
+        if stream not in self.kinds:
+            make, random = KINDS[self.request.fault], Random(f"{self.request.seed} {stream}")
+            self.kinds[stream] = make(items, self.request.parameters, random)
+        return self.kinds[stream]
 
 
 class FaultInjector:
@@ -94,8 +107,9 @@ class FaultInjector:
         elif request.component in DEVICES:
             begin = now + round(request.start * 1e9)
             end = None if request.duration is None else begin + round(request.duration * 1e9)
-            self.active[request.component] = Active(request, begin, end, self._kinds(request))
-            self._held.pop(request.component, None)
+            _, _, part = request.component.partition(".")
+            self.active[request.component] = Active(request, begin, end, (part,) if part else (_UP, _DOWN), {})
+            self._held.clear()
         self._connect()
         return request
 
@@ -112,8 +126,13 @@ class FaultInjector:
             self._connect()
 
     def _act_on_drive(self, name: str, drive: MockDrive, now: int) -> None:
-        """Take a whole drive off the line, deaf to SYNC and heartbeat too, or let it find an error in itself."""
+        """Take a whole drive off the line, deaf to SYNC and heartbeat too, or let it find an error in itself.
+
+        Or let it misstate itself: the bits of `code` in its statusword are the other way.
+        """
         line, inside = self.active.get(name), self.active.get(f"{name}.demand")
+        says = self.active.get(f"{name}.statusword")
+        drive.misstates = int(says.request.parameters.get("code", 0)) if says is not None and says.acts(now) else 0
         drive.powered = line is None or line.request.fault != OFF or not line.acts(now)
         if inside is not None and inside.acts(now) and (code := int(inside.request.parameters.get("code", 0))):
             drive.fault(code)
@@ -131,53 +150,40 @@ class FaultInjector:
             limit = f"bus0 to bus{len(self._drives.links) - 1}"
             raise FaultRefused(request.component, request.fault, "no such channel", value=unit, limit=limit)
 
-    def _kinds(self, request: FaultRequest) -> dict[str, Kind]:
-        """Return the fault, one object for each direction of a line."""
-        unit, _, part = request.component.partition(".")
-        ways = (part,) if part or unit in _NO_LINES else (_UP, _DOWN)
-        make, items = KINDS[request.fault], self._items(unit, part)
-        return {way: make(items, request.parameters, Random(f"{request.seed} {way}")) for way in ways}
+    def _numbers(self, unit: str, part: str) -> Numbers:
+        """Return what the numbers of one part are: positions, velocities, or the shares of a pedal."""
+        if unit == "pedal":
+            return Numbers(1.0)
+        return Numbers(0.05 if "encoder" in part else self._drives.drives[unit].scale.velocity_limit)
 
-    def _items(self, unit: str, part: str) -> Any:
-        if unit == "force_sensor":
-            return WrenchRecords()
-        if unit in ("pedal", _TORQUE):
-            return Numbers(1.0) if part else PedalStates()
-        if part in ("", _UP, _DOWN):
-            return BusFrames() if unit.startswith("bus") else DriveFrames()
-        scale = self._drives.drives[unit].scale
-        if part in ("power", "echo"):
-            return Numbers(scale.velocity_limit)
-        return Numbers(scale.velocity_limit / scale.velocity if part == "demand" else 0.05)
+    def _faulty(self, name: str, *parts: str) -> bool:
+        """Whether a fault of one of these parts of an axis was asked for, alone or with others."""
+        return any(f"{unit}.{part}" in self.active for unit in _units(name) for part in parts)
 
     # The seams.
 
     def _connect(self) -> None:
         """Open the seams that are needed and close the others."""
         names = self.active
-        self._force.tamper = self._samples("force_sensor") if "force_sensor" in names else None
+        self._force.tamper = self._record if "force_sensor" in names else None
         pedal = {"pedal", "pedal.travel", "pedal.contact"} & names.keys()
         self._pedal.tamper = self._foot if pedal else None
         for name, drive in self._drives.drives.items():
-            wanted = {f"{name}.load_encoder", f"{name}.motor_encoder", f"{name}.echo"} & names.keys()
-            drive.tamper = self._feedback(name) if wanted else None
-            drive.mistake = partial(self._demand, name) if f"{name}.demand" in names else None
-            drive.stray = partial(self._number, name, "power") if f"{name}.power" in names else None
+            says = self._faulty(name, "load_encoder", "motor_encoder", "encoders", "echo")
+            drive.tamper = self._feedback(name) if says else None
+            drive.mistake = partial(self._demand, name) if self._faulty(name, "demand") else None
+            drive.stray = partial(self._number, name, "power") if self._faulty(name, "power") else None
+            drive.turned = partial(self._number, name, "motor") if self._faulty(name, "motor") else None
         parts = [name.partition(".")[::2] for name in names if name not in _NO_LINES]
         up = any(part in ("", _UP) for _, part in parts)
         down = any(part in ("", _DOWN) for _, part in parts)
         self._drives.tamper_frames = self._frames(_UP) if up else None
         self._drives.tamper_received = self._frames(_DOWN) if down else None
 
-    def _samples(self, component: str) -> Callable[[Any], list[Any]]:
-        active = self.active[component]
-        (fault,) = active.faults.values()
-
-        def tamper(sample: Any) -> list[Any]:
-            now = self._clock()
-            return fault([sample], now) if active.acts(now) else [sample]
-
-        return tamper
+    def _record(self, record: WrenchRecord) -> list[WrenchRecord]:
+        """Return the records of the force sensor as a fault leaves them."""
+        active, now = self.active["force_sensor"], self._clock()
+        return active.kind("", WrenchRecords())([record], now) if active.acts(now) else [record]
 
     def _foot(self, state: PedalState) -> list[PedalState]:
         """Return the states of the pedal as faults of its travel, of its contact, and of its line leave them."""
@@ -187,32 +193,36 @@ class FaultInjector:
         active, now = self.active.get("pedal"), self._clock()
         if active is None or not active.acts(now):
             return states
-        (fault,) = active.faults.values()
-        return fault(states, now)
+        return active.kind("", PedalStates())(states, now)
 
     def _feedback(self, name: str) -> Callable[[AxisReading], AxisReading]:
-        fields = {"motor_encoder": "motor_position", "load_encoder": "load_position", "echo": "velocity_demand"}
-
         def tamper(feedback: AxisReading) -> AxisReading:
-            for part, field in fields.items():
-                value = self._number(name, part, getattr(feedback, field))
-                feedback = feedback._replace(**{field: value})
-            return feedback
+            motor = self._number(name, "motor_encoder", feedback.motor_position)
+            load = self._number(name, "load_encoder", feedback.load_position)
+            return feedback._replace(
+                motor_position=self._number(name, "encoders", motor, " motor"),
+                load_position=self._number(name, "encoders", load, " load"),
+                velocity_demand=self._number(name, "echo", feedback.velocity_demand),
+            )
 
         return tamper
 
     def _demand(self, name: str, counts: float) -> float:
-        limit = 2**31 - 1
-        return max(-limit, min(limit, self._number(name, "demand", counts)))
+        limit, scale = 2**31 - 1, self._drives.drives[name].scale.velocity
+        return max(-limit, min(limit, self._number(name, "demand", counts * scale) / scale))
 
-    def _number(self, name: str, part: str, value: float) -> float:
-        """Return a number as a fault leaves it; a number that the fault drops keeps its last value."""
-        component, now = f"{name}.{part}", self._clock()
-        active = self.active.get(component)
-        if active is not None and active.acts(now):
-            passed = active.faults[part]([value], now)
-            value = passed[-1] if passed else self._held.get(component, value)
-        self._held[component] = value
+    def _number(self, name: str, part: str, value: float, which: str = "") -> float:
+        """Return a number as faults leave it; a number that a fault drops keeps its last value.
+
+        `which` tells numbers apart that are of one part.
+        """
+        now, stream = self._clock(), f"{name}.{part}{which}"
+        for unit in _units(name):
+            active = self.active.get(f"{unit}.{part}")
+            if active is not None and active.acts(now):
+                passed = active.kind(stream, self._numbers(name, part))([value], now)
+                value = passed[-1] if passed else self._held.get(stream, value)
+        self._held[stream] = value
         return value
 
     def _frames(self, way: str) -> Callable[[int, bytes, int], bytes]:
@@ -222,18 +232,18 @@ class FaultInjector:
                 unit = component.partition(".")[0]
                 if unit in _NO_LINES or not active.acts(now):
                     continue
-                if way in active.faults and unit in ("bus", f"bus{channel}"):
+                if way in active.ways and unit in ("bus", f"bus{channel}"):
                     items = self._of_bus(active, way, channel, items, now)
-                elif way in active.faults and unit in ACTUATORS:
-                    items = self._of_drive(unit, channel, active.faults[way], items, now)
+                elif way in active.ways and unit in ACTUATORS:
+                    items = self._of_drive(unit, channel, active.kind(way, DriveFrames()), items, now)
             return b"".join(items)
 
         return tamper
 
     def _of_bus(self, active: Active, way: str, channel: int, items: list[bytes], now: int) -> list[bytes]:
         """Let the fault act on all frames of a channel; a SYNC twice would be a step of the plant too many."""
-        fault = _of_channel(active, way, channel)
-        if active.request.fault not in ("duplicated", "reordered"):
+        fault = active.kind(f"{way} {channel}", BusFrames())
+        if active.request.fault not in ("duplicated", "reordered", "contradicted"):
             return fault(items, now)
         passed: list[bytes] = []
         for item in items:
@@ -251,14 +261,9 @@ class FaultInjector:
         return passed + fault([], now)
 
 
-def _of_channel(active: Active, way: str, channel: int) -> Kind:
-    """Return the fault of one channel: what waits on one line never comes out of another."""
-    key = f"{way} {channel}"
-    if key not in active.faults:
-        model = active.faults[way]
-        random = Random(f"{active.request.seed} {key}")
-        active.faults[key] = KINDS[active.request.fault](model.items, active.request.parameters, random)
-    return active.faults[key]
+def _units(name: str) -> tuple[str, ...]:
+    """Return an axis and the groups that it is in."""
+    return (name, *(group for group, axes in GROUPS.items() if name in axes))
 
 
 def _concerns(item: bytes, drive: MockDrive) -> bool:

@@ -15,6 +15,7 @@ from sher3_drivers.sensor.device import WrenchRecord
 from sher3_faults.kinds import Parameters
 
 _FRAME = struct.Struct("<IB3x8s")
+_NOISE = (3e-3,) * 3 + (3e-5,) * 3
 _ERROR_PASSIVE = _FRAME.pack(ERROR_FLAG | 0x004, 8, bytes([0, 0x30, 0, 0, 0, 0, 0, 0]))
 """Error frame of class "controller" with "error passive" (include/uapi/linux/can/error.h)."""
 
@@ -34,6 +35,10 @@ class BusFrames:
         """Return a frame of node 1 as one of node 2, and the other way round; other frames stay."""
         can_id, length, data = _FRAME.unpack(item)
         return _FRAME.pack(can_id ^ 3, length, data) if can_id & 0x7F in (1, 2) else item
+
+    def alive(self, item: bytes, random: Random) -> bytes:
+        """Return the frame: a bus has no noise."""
+        return item
 
     def wrong(self, item: bytes, parameters: Parameters) -> bytes:
         """Return an error frame, "error passive"."""
@@ -60,6 +65,10 @@ class OneSource:
         """Return the item: there is no other source."""
         return item
 
+    def alive(self, item: Any, random: Random) -> Any:
+        """Return the item: it has no noise."""
+        return item
+
 
 class WrenchRecords(OneSource):
     """Records of the force sensor. Wrong: scaled, offset along every axis of force [N], with a status word `code`."""
@@ -68,6 +77,11 @@ class WrenchRecords(OneSource):
         """Draw each component from the whole range of 32 bit counts: up to 2147 N and 2.1 N m."""
         wrench = tuple([random.uniform(-2147.0, 2147.0) * scale for scale in (1, 1, 1, 1e-3, 1e-3, 1e-3)])
         return item._replace(wrench=wrench)  # type: ignore[arg-type]
+
+    def alive(self, item: WrenchRecord, random: Random) -> WrenchRecord:
+        """Add the noise of a sensor that works: 3 mN and 0.03 mN m."""
+        noisy = tuple([random.gauss(value, size) for value, size in zip(item.wrench, _NOISE, strict=True)])
+        return item._replace(wrench=noisy)  # type: ignore[arg-type]
 
     def wrong(self, item: WrenchRecord, parameters: Parameters) -> WrenchRecord:
         """Scale, then add the offset to the force."""
@@ -78,7 +92,7 @@ class WrenchRecords(OneSource):
 
 
 class PedalStates(OneSource):
-    """States of the pedal. Wrong: the travel is scaled and offset."""
+    """States of the pedal. Wrong: the travel is scaled and offset, and with `code` 1 both contacts go with it."""
 
     def garbage(self, item: PedalState, random: Random) -> PedalState:
         """Draw a travel, also outside 0 to 1."""
@@ -86,8 +100,9 @@ class PedalStates(OneSource):
         return wired(PedalState(travel, False))
 
     def wrong(self, item: PedalState, parameters: Parameters) -> PedalState:
-        """Return the value scaled, then offset."""
-        return item._replace(travel=parameters["scale"] * item.travel + parameters["offset"])
+        """Return the travel scaled, then offset."""
+        false = item._replace(travel=parameters["scale"] * item.travel + parameters["offset"])
+        return wired(false._replace(made=None, rest=None)) if parameters["code"] else false
 
 
 class Stamps(OneSource):

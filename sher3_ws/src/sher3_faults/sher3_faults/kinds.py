@@ -1,8 +1,8 @@
 """The kinds of faults, each one small class that acts on a stream: items in, items out, told the time.
 
 The names follow PX4's failure injection (off, stuck, garbage, wrong, slow, delayed, intermittent) with duplicated,
-reordered and the slow ones (creep, drift, ramp, late, swap) added. What an item is (a CAN frame, a force record, a
-pedal state, one number) is told by `Items`, so that each kind exists once.
+reordered, the slow ones (creep, drift, ramp, late, swap) and the lively ones (held, chatter, contradicted) added. What
+an item is (a CAN frame, a force record, a pedal state, one number) is told by `Items`, so that each kind exists once.
 """
 
 from __future__ import annotations
@@ -29,6 +29,9 @@ class Items(Protocol):
 
     def exchanged(self, item: Any) -> Any:
         """Return an item of one of two sources under the name of the other; where there is one source, the item."""
+
+    def alive(self, item: Any, random: Random) -> Any:
+        """Return the item with the noise of a living source, where it has any."""
 
 
 class Bounds(NamedTuple):
@@ -259,6 +262,56 @@ class Swap(Kind):
         return [self.items.exchanged(item) for item in items]
 
 
+class Held(Kind):
+    """Every item is the first one again, with noise: it looks alive and says nothing."""
+
+    def __init__(self, items: Items, parameters: Parameters, random: Random) -> None:
+        super().__init__(items, parameters, random)
+        self._first: dict[Hashable, Any] = {}
+
+    def __call__(self, items: list[Any], now: int) -> list[Any]:
+        """Return the first item of each source in place of its later ones, alive."""
+        return [self.items.alive(self._first.setdefault(self.items.key(item), item), self.random) for item in items]
+
+
+class Chatter(Kind):
+    """Of each source `items` items are false as in `Wrong`, as many true, and so on."""
+
+    bounds: ClassVar[Mapping[str, Bounds]] = {
+        "items": Bounds(5.0, 1.0, 1e3),
+        "scale": Bounds(0.0, -1e3, 1e3),
+        "offset": Bounds(0.0, -1e3, 1e3),
+        "code": Bounds(0.0, 0.0, 0xFFFF),
+    }
+
+    def __init__(self, items: Items, parameters: Parameters, random: Random) -> None:
+        super().__init__(items, parameters, random)
+        self._count: dict[Hashable, int] = {}
+
+    def __call__(self, items: list[Any], now: int) -> list[Any]:
+        """Return false and true items in turn."""
+        return [self.items.wrong(item, self.parameters) if self._is_false(item) else item for item in items]
+
+    def _is_false(self, item: Any) -> bool:
+        key = self.items.key(item)
+        count = self._count[key] = self._count.get(key, -1) + 1
+        return count // int(self.parameters["items"]) % 2 == 0
+
+
+class Contradicted(Kind):
+    """A second source of the same name says something else, just after each item, or (`first` 1) just before it."""
+
+    bounds: ClassVar[Mapping[str, Bounds]] = {"first": Bounds(0.0, 0.0, 1.0)}
+
+    def __call__(self, items: list[Any], now: int) -> list[Any]:
+        """Return each item with one of random content beside it."""
+        passed: list[Any] = []
+        for item in items:
+            pair = [item, self.items.garbage(item, self.random)]
+            passed += reversed(pair) if self.parameters["first"] else pair
+        return passed
+
+
 KINDS: dict[str, Callable[[Items, Parameters, Random], Kind]] = {
     "off": Off,
     "stuck": Stuck,
@@ -274,6 +327,9 @@ KINDS: dict[str, Callable[[Items, Parameters, Random], Kind]] = {
     "ramp": Ramp,
     "late": Late,
     "swap": Swap,
+    "held": Held,
+    "chatter": Chatter,
+    "contradicted": Contradicted,
 }
 """Every kind by its name."""
 

@@ -17,6 +17,11 @@ Seconds = Annotated[float, Field(ge=0.0, le=3600.0, allow_inf_nan=False)]
 
 LINES = ("bus", *(f"bus{i}" for i in range(5)), *ACTUATORS)
 """Where frames run: all channels, one of them, or one drive's share of its channel."""
+PARTS = ("load_encoder", "motor_encoder", "encoders", "demand", "power", "motor", "echo")
+"""What each axis has: its two encoders, both alike (`encoders`), the velocity demand in its drive, what the power stage
+does while it has power, what the motor does with power or without (`motor`), and what the drive says of its demand."""
+GROUPS = {"legs": ACTUATORS[:3], "axes": ACTUATORS}
+"""Several axes that have the same fault at the same time."""
 DEVICES = (
     "force_sensor",
     "pedal",
@@ -24,10 +29,12 @@ DEVICES = (
     "pedal.contact",
     "safe_torque_off",
     *(name + way for name in LINES for way in ("", ".up", ".down")),
-    *(f"{name}.{part}" for name in ACTUATORS for part in ("load_encoder", "motor_encoder", "demand", "power", "echo")),
+    *(f"{name}.{part}" for name in (*ACTUATORS, *GROUPS) for part in PARTS),
+    *(f"{name}.statusword" for name in ACTUATORS),
 )
 """What the plant process can break: `.up` is towards the host, `.down` towards the drives; without either, both.
-`safe_torque_off` is the line that takes the torque from all motors: `off`."""
+`safe_torque_off` is the line that takes the torque from all motors: `off`. A `statusword` is wrong by the bits of
+`code`."""
 PROCESSES = ("force_sensor", "pedal", "admittance", "kinematics", "motor_driver", "supervisor", "plant", "recorder")
 OTHERS = ("all", "clock", *(f"clock.{name}" for name in PROCESSES), *(f"process.{name}" for name in PROCESSES))
 """`all` goes with `ok`; clock and processes are broken from outside, by `sher3 safety`: the plant only notes them."""
@@ -97,6 +104,8 @@ def checked(request: FaultRequest) -> FaultRequest:
         raise FaultRefused(component, fault, "no such fault", value=fault, limit=", ".join((*KINDS, OK)))
     if component == "safe_torque_off" and fault not in (OFF, OK):
         raise FaultRefused(component, fault, "a line is open or whole", value=fault, limit=f"{OFF}, {OK}")
+    if component.endswith(".statusword") and fault not in ("wrong", OK):
+        raise FaultRefused(component, fault, "a drive tells its own state", value=fault, limit=f"wrong, {OK}")
     if component == "all" and fault != OK:
         raise FaultRefused(component, fault, "only ok goes with all", remedy="name one component")
     bounds = bounds_of(fault) if component in DEVICES else {}

@@ -31,7 +31,7 @@ def flat(parts):
     return list(chain.from_iterable(parts))
 
 
-def through(kind, items, sent, seed=1, **parameters):
+def through(kind, items, sent, /, seed=1, **parameters):
     """Send items through a fault, one every 2 ms; return what came out at each time."""
     fault = KINDS[kind](items, parameters, Random(seed))
     return [fault([item], 2 * MS * k) for k, item in enumerate(sent)]
@@ -109,3 +109,33 @@ def test_sources_of_one_stream_do_not_mix():
     frames = [pack_frame(0x181 + i % 2, bytes([i] * 8)) for i in range(6)]
     fault = KINDS["stuck"](BusFrames(), {}, Random(1))
     assert fault(frames, 0) == frames[:2] * 3
+
+
+def test_held_repeats_the_first_and_looks_alive():
+    items, sent = STREAMS["wrenches"]
+    out = [record.wrench for record in flat(through("held", items, sent))]
+    assert len(set(out)) == len(out), "a sensor that works never repeats itself to the bit"
+    assert all(abs(wrench[0] - sent[0].wrench[0]) < 0.02 for wrench in out)
+    items, sent = STREAMS["frames"]
+    assert flat(through("held", items, sent)) == [sent[0]] * len(sent)
+
+
+def test_chatter_is_false_and_true_in_turn():
+    items, sent = STREAMS["numbers"]
+    out = flat(through("chatter", items, sent, items=2.0, offset=5.0))
+    assert out[:8] == [5.0, 5.0, *sent[2:4], 5.0, 5.0, *sent[6:8]]
+
+
+def test_the_contacts_of_a_chattering_pedal_go_with_its_travel():
+    pressed = PedalState(0.8, False, made=True, rest=False)
+    off, on = flat(through("chatter", PedalStates(), [pressed] * 2, items=1.0, code=1.0))
+    assert (off.travel, off.made, off.rest) == (0.0, False, True)
+    assert on == pressed
+
+
+@pytest.mark.parametrize("first", [0.0, 1.0])
+def test_a_contradicted_source_says_two_things(first):
+    items, sent = STREAMS["frames"]
+    for item, pair in zip(sent, through("contradicted", items, sent, first=first), strict=True):
+        mine, other = reversed(pair) if first else pair
+        assert mine == item and other != item and items.key(other) == items.key(item)

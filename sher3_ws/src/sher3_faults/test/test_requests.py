@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from sher3_description import load_robot
 from sher3_drivers.bus.link import open_link
 from sher3_drivers.mock.bus import MockDriveBus
+from sher3_drivers.mock.drive import AxisReading
 from sher3_drivers.mock.plant import IntegratorPlant
 from sher3_drivers.pedal.device import PedalState
 from sher3_drivers.pedal.in_process import InProcessPedal
@@ -89,7 +90,8 @@ def test_seams_are_closed_unless_a_fault_needs_them(devices, injector):
     assert seams() == (None,) * 4
     for component in DEVICES:
         if not component.startswith(("bus2", "bus3", "bus4")):
-            injector.take(make_request(component=component, fault="off").to_json(), 0)
+            fault = "wrong" if component.endswith(".statusword") else "off"
+            injector.take(make_request(component=component, fault=fault).to_json(), 0)
     assert all(seams())
     injector.take(make_request(component="all", fault="ok").to_json(), 0)
     injector.poll(0)
@@ -117,3 +119,49 @@ def test_an_unplugged_drive_is_silent_and_deaf_until_it_is_plugged_in(devices, i
     assert not drive.powered
     injector.poll(20_000_000)
     assert drive.powered
+
+
+def test_a_group_breaks_its_axes_and_no_other(devices, injector):
+    injector.take(make_request(component="legs.encoders", fault="wrong", parameters={"offset": 1e-3}).to_json(), 0)
+    broken = {name for name, drive in devices.drives.drives.items() if drive.tamper is not None}
+    assert broken == {"delta_1", "delta_2", "delta_3"}
+    said = devices.drives.drives["delta_2"].tamper(AxisReading(0.01, 0.02, 0.0, 0.0))
+    assert said[:2] == pytest.approx((0.011, 0.021))
+
+
+def test_each_axis_of_a_group_has_a_fault_of_its_own(devices, injector):
+    injector.take(make_request(component="axes.encoders", fault="stuck").to_json(), 0)
+    for number, drive in enumerate(devices.drives.drives.values()):
+        for count in range(3):
+            said = drive.tamper(AxisReading(number + count, 10.0 + number + count, 0.0, 0.0))
+        assert said[:2] == (number, 10.0 + number)
+
+
+def test_a_demand_is_broken_in_its_own_unit(devices, injector):
+    drive = devices.drives.drives["delta_1"]
+    injector.take(make_request(component="delta_1.demand", fault="creep", parameters={"speed": 1e-5}).to_json(), 0)
+    assert drive.mistake(0.0) * drive.scale.velocity == pytest.approx(1e-5)
+
+
+def test_a_motor_that_is_turned_needs_no_power(devices, injector):
+    drive = devices.drives.drives["roll"]
+    for part, moves in (("power", 0.0), ("motor", 0.02)):
+        injector.take(make_request(component=f"roll.{part}", fault="creep", parameters={"speed": 0.02}).to_json(), 0)
+        assert drive.demand(0.002) == pytest.approx(moves)
+
+
+def test_a_statusword_is_misstated_while_the_fault_lasts(devices, injector):
+    drive = devices.drives.drives["tilt"]
+    true = drive.statusword
+    request = make_request(component="tilt.statusword", fault="wrong", duration=0.01, parameters={"code": 512.0})
+    injector.take(request.to_json(), 0)
+    injector.poll(0)
+    assert drive.statusword == true ^ 0x200
+    injector.poll(20_000_000)
+    injector.poll(20_000_000)
+    assert drive.statusword == true
+
+
+def test_a_count_beyond_its_register_wraps_as_in_a_drive(devices, injector):
+    injector.take(make_request(component="delta_1.encoders", fault="wrong", parameters={"offset": 1e3}).to_json(), 0)
+    devices.drives.drives["delta_1"].sample(0.0, 0.0, 0.0, 0.0)

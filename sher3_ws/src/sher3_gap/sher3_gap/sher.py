@@ -9,17 +9,18 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from sher3_description import Robot
+from sher3_diagnosis.diagnosis import Diagnosis
 from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.finding import ExactFinding, Finding
-from sher3_diagnosis.flow import Diagnosis, Say, diagnose
+from sher3_diagnosis.flow import Say, diagnose
 from sher3_diagnosis.machine import Machine, Policy
 from sher3_diagnosis.verdict import Cause, Interval
 from sher3_effects import library
 
 from sher3_gap.case.audit import audit
 from sher3_gap.case.loading import load_case
-from sher3_gap.case.signals import RunSignals
 from sher3_gap.evidence import SherEvidence, gather
+from sher3_gap.signals import RunSignals
 from sher3_gap.simulate.tip import tip_closure
 from sher3_gap.stages.controller_causes import controller_finding
 from sher3_gap.stages.transport_causes import transport_finding

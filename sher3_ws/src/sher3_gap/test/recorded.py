@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from sher3_description import load_robot
-from sher3_gap.case.signals import RunSignals
+from sher3_gap.signals import RunSignals
 
 ROBOT = load_robot()
 PERIOD = ROBOT.control_period

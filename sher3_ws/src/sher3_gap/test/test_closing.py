@@ -2,9 +2,9 @@
 
 import pytest
 from sher3_effects import plants
+from sher3_gap.closing import close_loop
 from sher3_gap.excitation import excite
 from sher3_gap.experiments.rehearsal import rehearse
-from sher3_gap.simulate.closing import close_loop
 from simulated import ROBOT, SCATTER, signals
 
 GIVEN = {

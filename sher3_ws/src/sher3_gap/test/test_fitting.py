@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from sher3_diagnosis.fitting import fit, make_term, solve
+from sher3_diagnosis.fit.fitting import fit, make_term, solve
 from sher3_effects import library, plants
 from sher3_gap.evidence import gather
 from sher3_gap.stages.timing import timing_of

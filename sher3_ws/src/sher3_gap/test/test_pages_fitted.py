@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from sher3_diagnosis.attribute.candidates import Candidates
 from sher3_diagnosis.attribute.rivals import Attribution
-from sher3_diagnosis.fitting import make_term
+from sher3_diagnosis.fit.fitting import make_term
 from sher3_diagnosis.quantify.polish import polished
 from sher3_effects import library
 from sher3_gap.evidence import gather

@@ -64,6 +64,14 @@ def test_commands_held_for_whole_periods_are_drops():
     assert found(samples=samples, drops=DROPS_SEEN, per_tick=0.999).causes == []
 
 
+def test_drops_are_no_jitter_even_where_they_are_not_in_the_library():
+    samples = np.concatenate([np.zeros(490), np.ones(10)])
+    late = {"samples": samples, "drops": 0.02, "scatter": 0.14, "constant": 0.9, "per_tick": 0.0}
+    result = found(("dropped_commands",), **late)
+    assert result.causes == []
+    assert result.closure.value == 0.0
+
+
 def test_latencies_that_scatter_are_jitter_with_their_rms():
     samples = np.abs(np.random.default_rng(0).normal(0.0, 0.3, 500))
     scatter = float(samples.std())

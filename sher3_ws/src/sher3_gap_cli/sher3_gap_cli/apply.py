@@ -8,8 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+from sher3_common.commands.options import Json
 
-from sher3_gap_cli.options import Json, Library, RobotFile, VerdictFile, case_argument, reported
+from sher3_gap_cli.options import Library, RobotFile, VerdictFile, case_argument, reported
 
 if TYPE_CHECKING:
     from sher3_gap.simulate.apply import StageGap
@@ -62,7 +63,7 @@ def compare(
 
 def applied_text(effects: Sequence[PlantEffect], stages: Sequence[StageGap], output: Path) -> str:
     """Return what was written, and the gap per stage before and after."""
-    from sher3_diagnosis.report.words import quantity
+    from sher3_diagnosis.words import quantity
 
     lines = [f"{output}: {len(effects)} effect{'s' * (len(effects) != 1)}"]
     for effect in effects:
@@ -74,7 +75,7 @@ def applied_text(effects: Sequence[PlantEffect], stages: Sequence[StageGap], out
 
 def stages_text(stages: Sequence[StageGap]) -> str:
     """Return the gap per stage before and after as a table."""
-    from sher3_diagnosis.report.words import place, quantity, share, words
+    from sher3_diagnosis.words import place, quantity, share, words
 
     lines = [f"{'robot against simulator, rms':<34}{'nominal':>12}{'corrected':>12}{'closed':>9}"]
     for s in stages:

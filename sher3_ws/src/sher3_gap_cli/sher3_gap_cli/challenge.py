@@ -9,8 +9,9 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+from sher3_common.commands.options import Json
 
-from sher3_gap_cli.options import Json, reported
+from sher3_gap_cli.options import reported
 
 
 def parse_seeds(text: str) -> tuple[int, int]:

@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
+from sher3_common.commands.options import Json
 
-from sher3_gap_cli.options import BAD_INPUT, Json, Library, RobotFile, case_argument, effects, reported
+from sher3_gap_cli.options import BAD_INPUT, Library, RobotFile, case_argument, effects, reported
 
 
 def diagnose(

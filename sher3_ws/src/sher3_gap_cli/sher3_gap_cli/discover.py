@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+from sher3_common.commands.options import Json
 
-from sher3_gap_cli.options import Json, Library, RequestError, RobotFile, reported
+from sher3_gap_cli.options import Library, RequestError, RobotFile, reported
 
 if TYPE_CHECKING:
     from sher3_diagnosis.channel import Channel

@@ -8,8 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from sher3_common.commands.options import Domain, Json
 
-from sher3_gap_cli.options import Domain, Json, NominalFile, reported
+from sher3_gap_cli.options import NominalFile, reported
 
 if TYPE_CHECKING:
     from sher3_description import Robot

@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from sher3_common.commands.options import Json
 
-from sher3_gap_cli.options import Json, RobotFile, VerdictFile, case_argument, reported
+from sher3_gap_cli.options import RobotFile, VerdictFile, case_argument, reported
 
 if TYPE_CHECKING:
     from sher3_gap.experiments.design import Experiment

@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from sher3_common.commands.options import Json
 
-from sher3_gap_cli.options import Json, Library, RequestError, VerdictFile, reported
+from sher3_gap_cli.options import Library, RequestError, VerdictFile, reported
 
 if TYPE_CHECKING:
     from sher3_export.check.check import JointGap

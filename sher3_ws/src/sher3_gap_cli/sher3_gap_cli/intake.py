@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+from sher3_common.commands.options import Json
 
-from sher3_gap_cli.options import Json, RequestError, RobotFile, reported
+from sher3_gap_cli.options import RequestError, RobotFile, reported
 
 IMPORT_EXAMPLE = "sher3 gap import DATA_EMPS.mat emps.yaml --out cases/emps"
 
@@ -42,6 +43,7 @@ def import_data(
 def describe(
     file: Annotated[Path, typer.Argument(help="Data file, folder of files, or bag.")],
     out: Annotated[Path | None, typer.Option(help="YAML file to write; default: print it.")] = None,
+    rate: Annotated[float | None, typer.Option(min=1e-3, help="Samples per second, without a time.")] = None,
     as_json: Json = False,
 ) -> None:
     """Draft a machine description from a file and say what was guessed; check it before you import with it.
@@ -51,7 +53,7 @@ def describe(
     from sher3_machines.intake.draft import draft
 
     with reported(as_json):
-        found = draft(file)
+        found = draft(file, rate)
         if out is not None:
             _write(out, found.text)
         if as_json:

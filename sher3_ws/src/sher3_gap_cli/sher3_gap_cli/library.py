@@ -6,8 +6,9 @@ import json
 from typing import Annotated
 
 import typer
+from sher3_common.commands.options import Json
 
-from sher3_gap_cli.options import Json, Library, effects, reported
+from sher3_gap_cli.options import Library, effects, reported
 
 
 def library(

@@ -6,8 +6,9 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+from sher3_common.commands.options import Domain
 
-from sher3_gap_cli.options import Domain, NominalFile, reported
+from sher3_gap_cli.options import NominalFile, reported
 
 
 def monitor(

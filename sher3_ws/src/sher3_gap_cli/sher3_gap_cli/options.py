@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Iterator
-from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from sher3_common.completing import CASE, Completer, folders_with, words
+from sher3_common.commands import options
+from sher3_common.commands.completing import CASE, Completer, folders_with, words
 from sher3_common.errors import Sher3Error
 
 BAD_INPUT = 2
 """Exit code when an input or an option is wrong."""
-Json = Annotated[bool, typer.Option("--json", help="Print one JSON object instead of text.")]
+reported = partial(options.reported, code=BAD_INPUT)
+"""Turns an error of ours into one sentence on stderr (an object with --json) and exit code 2."""
 RobotFile = Annotated[Path | None, typer.Option(help="robot.yaml of the nominal model; default: the case's.")]
 NominalFile = Annotated[Path | None, typer.Option(help="robot.yaml; the nominal robot by default.")]
 Library = Annotated[
@@ -22,7 +22,6 @@ Library = Annotated[
     typer.Option("--library", help="File or folder with pages of effects of your own; repeat for more."),
 ]
 VerdictFile = Annotated[Path, typer.Argument(help="verdict.json of `sher3 gap diagnose`.")]
-Domain = Annotated[int, typer.Option(min=0, max=232, help="ROS domain id of the graph.", envvar="ROS_DOMAIN_ID")]
 
 
 def effects(families: bool = False) -> Completer:
@@ -44,13 +43,3 @@ def case_argument(text: str) -> Any:
 
 class RequestError(Sher3Error):
     """What was asked for makes no sense: no such effect, two cases of one name, a cluster that does not answer."""
-
-
-@contextmanager
-def reported(as_json: bool) -> Iterator[None]:
-    """Turn an error of ours into one sentence on stderr (an object with --json) and exit code 2."""
-    try:
-        yield
-    except Sher3Error as error:
-        typer.echo(json.dumps(error.to_dict(), default=str) if as_json else f"error: {error}", err=True)
-        raise typer.Exit(BAD_INPUT) from error

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 from sher3_common import Sher3Error
+from sher3_common.commands.options import Json, reported
 
 if TYPE_CHECKING:
     import numpy as np
@@ -22,7 +23,6 @@ ANY_NUMBER = {"ignore_unknown_options": True}
 """Lets negative numbers through, which would otherwise be read as options."""
 
 RobotOption = Annotated[Path | None, typer.Option("--robot", help="Robot file; the nominal robot if not given.")]
-JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 HumanOption = Annotated[bool, typer.Option("--mm-deg", help="Read and print mm and degrees instead of m and rad.")]
 
 
@@ -30,7 +30,7 @@ HumanOption = Annotated[bool, typer.Option("--mm-deg", help="Read and print mm a
 def fk(
     q: Annotated[list[float], typer.Argument(metavar="Q...", help="delta_1 delta_2 delta_3 roll tilt [m m m rad m]")],
     robot: RobotOption = None,
-    as_json: JsonOption = False,
+    as_json: Json = False,
     mm_deg: HumanOption = False,
 ) -> None:
     """Print the tip pose in {b} for five actuator positions; tilt is the slider's travel, not the angle.
@@ -64,7 +64,7 @@ def ik(
         ),
     ],
     robot: RobotOption = None,
-    as_json: JsonOption = False,
+    as_json: Json = False,
     mm_deg: HumanOption = False,
 ) -> None:
     """Print the actuator positions for a tip position and a tool direction; without a direction, straight down.
@@ -89,24 +89,6 @@ def ik(
         position = np.array(pose[:3]) * (1e-3 if mm_deg else 1.0)
         q = kinematics.inverse(position, pose[3:])
         _print_actuators(kinematics, q, as_json, mm_deg)
-
-
-class reported:
-    """Turns an error of the project into one sentence (or JSON) and exit code 1."""
-
-    def __init__(self, as_json: bool) -> None:
-        self.as_json = as_json
-
-    def __enter__(self) -> None:
-        return None
-
-    def __exit__(self, kind: object, error: BaseException | None, trace: object) -> None:
-        if isinstance(error, Sher3Error):
-            if self.as_json:
-                typer.echo(json.dumps(error.to_dict(), default=str))
-            else:
-                typer.echo(f"error: {error}", err=True)
-            raise typer.Exit(1) from None
 
 
 def _expect(count: int, needed: int, what: str, order: str) -> None:

@@ -35,8 +35,8 @@ def ball_centres(robot: Robot) -> tuple[Floats, Floats]:
         sideways = np.array([-np.sin(azimuth), np.cos(azimuth), 0.0])
         for side in (0, 1):
             shift = (2 * side - 1) * half * sideways
-            base[2 * k + side] = np.sqrt(delta.base_radius**2 - half**2) * outward + shift
-            platform[2 * k + side] = np.sqrt(delta.platform_radius**2 - half**2) * outward + shift
+            base[2 * k + side] = delta.base_distance * outward + shift
+            platform[2 * k + side] = delta.platform_distance * outward + shift
     return base, platform
 
 

@@ -54,7 +54,7 @@ def test_errors_are_one_sentence_and_exit_code_one(arguments: list[str], says: s
     assert result.stdout == ""
     as_json = run(app, [*arguments, "--json"])
     assert as_json.exit_code == 1
-    assert says in json.loads(as_json.stdout)["what"]
+    assert says in json.loads(as_json.stderr)["what"]
 
 
 def test_help_has_examples() -> None:

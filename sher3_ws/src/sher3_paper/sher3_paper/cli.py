@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 from sher3_common import make_folder
-from sher3_kinematics.cli import reported
+from sher3_common.commands.options import reported
 
 app = typer.Typer(no_args_is_help=True, help="The SHER 3.0 paper recomputed.")
 

@@ -68,7 +68,7 @@ HAZARDS = (
         "an axis moves by itself",
         "drive executes another velocity, creeps, runs at its own limit; echo false or missing",
         "sum of the commands sent against both encoders without leak; echo; cap of the regime in the drive",
-        ("*.power", "*.demand", "*.echo"),
+        ("*.power", "*.demand", "*.echo", "*.motor", "*.statusword"),
         (f"{_DRIVERS}/test_position.py", f"{_DRIVERS}/test_speed_limits.py"),
         ("axis leaves its commands", RUNAWAY),
         "a drive that creeps and reports the force that would explain it: 0.2 mm of the axis; one that turns its motor "
@@ -78,7 +78,7 @@ HAZARDS = (
         "goes elsewhere, since a position is wrong",
         "encoder frozen, drifting, scaled, noisy; coupling slips",
         "two encoders and the demand, two against one; tracker where there is one",
-        ("*.load_encoder", "*.motor_encoder"),
+        ("*.load_encoder", "*.motor_encoder", "*.encoders"),
         (f"{_DRIVERS}/test_watches.py",),
         ("encoder wrong, coupling slips", "encoder frozen"),
         "both encoders wrong alike by less than the force explains; a slip behind the load encoder without a tracker",

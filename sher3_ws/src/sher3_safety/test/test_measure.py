@@ -111,10 +111,10 @@ def test_without_the_truth_nothing_is_measured():
 
 def test_the_state_at_the_onset_the_fault_and_the_way_after_the_report_are_told():
     found = outcome(rows((0, 120)), state="FAULT")
-    assert found.enabled and found.fault_reason == "X"
+    assert found.operating == "ENABLED" and found.fault_reason == "X"
     assert found.faulted == pytest.approx(0.030)
     assert found.braking == pytest.approx(10 * 2e-3 * SPEED, rel=1e-6)
-    assert not outcome(rows((0, 120)), before="PAUSED").enabled
+    assert outcome(rows((0, 120)), before="PAUSED").operating == "PAUSED"
 
 
 def test_in_wall_time_a_fault_that_ends_the_plant_is_timed_without_it():

@@ -20,7 +20,7 @@ def test_a_good_cell_misses_nothing():
 
 
 def test_a_fault_may_be_noticed_before_the_pedal_is_released():
-    assert judge(replace(ROW, release=True), LIMIT, replace(GOOD, enabled=False)).holds
+    assert judge(replace(ROW, release=True), LIMIT, replace(GOOD, operating="DISABLED")).holds
 
 
 def test_a_robot_that_was_not_at_the_end_of_its_travel_misses():
@@ -42,7 +42,7 @@ def test_a_robot_that_was_not_at_the_end_of_its_travel_misses():
         ({"reason": "CLOCK"}, "reason CLOCK instead of WRENCH_STALE"),
         ({"alone": 6e-6}, "moved 6.0 um before the pedal was released"),
         ({"resumed": 0.0}, "did not move again"),
-        ({"enabled": False}, "was not enabled when the fault set in"),
+        ({"operating": "PAUSED"}, "was PAUSED when the fault set in instead of ENABLED"),
     ],
 )
 def test_each_shortfall_is_named(change, part):
@@ -101,7 +101,7 @@ def test_the_table_shows_every_state_and_counts_what_misses():
     text = as_text(cells)
     assert "MISS 1 of 4" in text and "300.0" in text and "6.5" in text
     assert misses(cells) == ["force_sensor off, at limit: travelled 300 um (budget 250 um)"]
-    line = "| force_sensor off | WRENCH_STALE | 12 | 40 | 0.0 | 6.5 | 300.0 | 1.0 | stops | MISS 1 of 4 |"
+    line = "| force_sensor off | WRENCH_STALE | 12 | 40 | 0.0 | 6.5 | 300.0 | 1.0 |  | stops | MISS 1 of 4 |"
     assert line in as_markdown("title", cells)
 
 

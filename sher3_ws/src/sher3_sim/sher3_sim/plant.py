@@ -84,16 +84,32 @@ class Plant:
         Raises:
             EffectError: an effect does not fit the robot.
         """
-        self.parameters = with_effects(robot, effects)
-        if scatter is not None:
-            self.parameters = scatter.apply(self.parameters, seed)
         self.temperature = temperature
         self.seed = seed
+        self._robot, self._scatter = robot, scatter
+        self._take_effects(effects)
+        self._command, self._wrench, self._flat = np.zeros(5), np.zeros(6), np.zeros(kernel.READING_SIZE)
+        self.reset(np.zeros(5))
+
+    def _take_effects(self, effects: Iterable[PlantEffect]) -> None:
+        self.parameters = with_effects(self._robot, effects)
+        if self._scatter is not None:
+            self.parameters = self._scatter.apply(self.parameters, self.seed)
         step = float(self.parameters.body["period"][0]) / self.parameters.substeps
         self._maps = propagators(self.parameters.axis, step)
         self._fixed = (self.parameters.axis, self.parameters.body[0], self.parameters.geometry)
-        self._command, self._wrench, self._flat = np.zeros(5), np.zeros(6), np.zeros(kernel.READING_SIZE)
-        self.reset(np.zeros(5))
+
+    def exchange(self, effects: Iterable[PlantEffect]) -> None:
+        """Go on from where the robot is with these effects instead of the present ones.
+
+        An effect that moves an axis at rest, such as an offset of an encoder, does so at the next step.
+
+        Raises:
+            EffectError: an effect does not fit the robot; the plant keeps those it has.
+        """
+        self._take_effects(effects)
+        self.parameters.body["temperature"] = self.temperature
+        self._bind()
 
     def reset(self, q_ref: ArrayLike, wrench: ArrayLike | Sequence[float] = (0.0,) * 6) -> Reading:
         """Put the robot at rest at `q_ref` (5,) under a contact wrench (6,) at the tip in {b}, held by its drives.
@@ -109,12 +125,16 @@ class Plant:
         self.parameters.body["temperature"] = self.temperature
         kernel.start(*self._fixed, self._axes, self._body[0], self._out[0], start, load)
         kernel.flatten(self._out[0], self._flat)
+        self._bind()
+        return self._reading()
+
+    def _bind(self) -> None:
+        """Bind the compiled step to parameters and state."""
         constants = (self.parameters.axis, self.parameters.body, np.array(self.parameters.geometry), self._maps)
         self._arguments = (*constants, self.parameters.substeps, self._axes, self._body, self._out)
         self._step = direct(
             kernel.step_flat, *self._arguments, self._command, self._wrench, REFERENCE_TEMPERATURE, self._flat
         )
-        return self._reading()
 
     def step(self, velocity_command: ArrayLike, contact_wrench: ArrayLike | Sequence[float] = (0.0,) * 6) -> Reading:
         """Advance one control period and sample the sensors at its end.

@@ -3,7 +3,7 @@
 The plant takes a step at each SYNC of the mock drives. The wrench on the tip and the foot on the pedal arrive on
 `mock/contact_wrench` and `mock/pedal`; a sender that falls silent counts as having let go of both. Faults of the
 devices are requested on `mock/fault`; from the first request on the plant publishes the true positions on
-`mock/true_js`, for whoever measures.
+`mock/true_js`, for whoever measures. Effects are exchanged on `mock/effects`.
 """
 
 from __future__ import annotations
@@ -73,6 +73,7 @@ class PlantNode(Node):
         force_device: Device end of the force sensor; by default one on its standard port.
         pedal_device: Device end of the pedal, or the name of its socket.
         faults: Makes the injector from what can break (drives, sensor, pedal); without it `mock/fault` is ignored.
+        effects_of: Makes effects from a text of `mock/effects`; without it nobody listens.
 
     Attributes:
         plant: The simulated robot.
@@ -94,6 +95,7 @@ class PlantNode(Node):
         force_device: NetFtServer | InProcessForceSensor | None = None,
         pedal_device: PedalSender | InProcessPedal | str = "pedal",
         faults: Callable[[MockDriveBus, Any, Any], Faults] | None = None,
+        effects_of: Callable[[str], Iterable[PlantEffect]] | None = None,
         **options: Any,
     ) -> None:
         super().__init__("plant", **{**NODE_OPTIONS, **options})
@@ -125,6 +127,9 @@ class PlantNode(Node):
         subscribe(self, "mock/contact_wrench", self._on_wrench)
         subscribe(self, "mock/pedal", self._on_pedal)
         subscribe(self, "mock/fault", self._on_fault)
+        if effects_of is not None:
+            self._effects_of = effects_of
+            subscribe(self, "mock/effects", self._on_effects)
         for link in links:
             if link.fileno() >= 0:
                 on_readable(self, link, self._serve)
@@ -201,6 +206,17 @@ class PlantNode(Node):
         except Sher3Error as error:
             self.get_logger().error(str(error))
         self._publish_report(DiagnosticSample(self._now(), "plant: faults", *self._faults.report()))
+
+    def _on_effects(self, sample: TextSample) -> None:
+        level, message, effects = 0, "exchanged", []
+        try:
+            effects = list(self._effects_of(sample.text))
+            self.plant.exchange(effects)
+        except Sher3Error as error:
+            level, message = 1, str(error)
+            self.get_logger().error(message)
+        values = tuple((effect.id, effect.actuator) for effect in effects)
+        self._publish_report(DiagnosticSample(self._now(), "plant: effects", level, message, values))
 
     def close(self) -> None:
         """Take the devices off their lines."""

@@ -1,6 +1,7 @@
 """The plant process in stepped time: moved over the CAN frames, its sensors on their device ends and topics."""
 
 import itertools
+import json
 
 import numpy as np
 import pytest
@@ -13,12 +14,14 @@ from sher3_drivers.pedal.in_process import InProcessPedal
 from sher3_drivers.sensor.device import InProcessForceSensor
 from sher3_drivers.settings import default_settings
 from sher3_effects import plants
+from sher3_effects.effects_file import effects_from_text
 from sher3_runtime import Graph, on_tick
 from sher3_sim.plant_node import PlantNode
 
 pytestmark = pytest.mark.graph
 ROBOT = load_robot()
 _numbers = itertools.count()
+OFFSET = json.dumps([{"effect": "encoder_offset", "actuator": "delta_1", "parameters": {"offset": 5e-4}}])
 
 
 class Rig:
@@ -29,11 +32,20 @@ class Rig:
         settings, channel = default_settings(), f"plant{next(_numbers)}"
         ends = [[open_link(f"virtual:{channel}-{i}") for i in range(2)] for _ in range(2)]
         devices = {"force_device": self.force, "pedal_device": self.pedal}
-        self.plant = graph.add(PlantNode, ROBOT, settings, effects, 3, None, ends[0], **devices)
+        self.plant = graph.add(
+            PlantNode, ROBOT, settings, effects, 3, None, ends[0], **devices, effects_of=effects_from_text
+        )
         links = [LockstepLink(link, [self.plant.drives.poll]) for link in ends[1]]
         graph.add(MotorDriverNode, ROBOT, settings, links)
         topics = ("measured_js", "drives/setpoint_jv", "drives/measured_js", "tracker/measured_cp", "temperature")
-        sends = ("servo_jv", "operating_state", "supervisor/heartbeat", "mock/contact_wrench", "mock/pedal")
+        sends = (
+            "servo_jv",
+            "operating_state",
+            "supervisor/heartbeat",
+            "mock/contact_wrench",
+            "mock/pedal",
+            "mock/effects",
+        )
         self.probe = graph.probe(*topics, sends=sends)
         self.beat = "DISABLED NONE"
         on_tick(self.probe, lambda _stamp: self.probe.send("supervisor/heartbeat", TextSample(self.beat)))
@@ -111,3 +123,15 @@ def test_effects_act_in_the_running_plant():
         commanded = echoes.index(pytest.approx(0.001, abs=1e-8))
         with_delay = len(echoes) - commanded
         assert with_delay == 5  # seven ticks since the first command, less one nominal tick and one of delay
+
+
+def test_effects_are_exchanged_while_the_plant_runs():
+    """An offset of 0.5 mm in the encoder is there, and gone again; what is refused changes nothing."""
+    with Graph(period=ROBOT.control_period) as graph:
+        rig = Rig(graph)
+        rig.enable()
+        start = rig.last("measured_js").position[0]
+        for text, shift in ((OFFSET, 5e-4), ('[{"effect": "no", "actuator": "tilt"}]', 5e-4), ("x", 5e-4), ("[]", 0.0)):
+            rig.probe.send("mock/effects", TextSample(text))
+            graph.step(20)
+            assert rig.last("measured_js").position[0] - start == pytest.approx(shift, abs=5e-6)

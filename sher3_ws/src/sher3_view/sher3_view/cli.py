@@ -1,4 +1,4 @@
-"""The command of this package: `view`."""
+"""The commands of this package: `view`, `analyze`, `state`."""
 
 from __future__ import annotations
 
@@ -7,14 +7,16 @@ from pathlib import Path
 from typing import Annotated, Optional
 
 import typer
-from sher3_common.completing import BAG, folders_with
+from sher3_common.commands.completing import BAG, folders_with
+from sher3_description.topics import NAMESPACE
 
 app = typer.Typer(rich_markup_mode="markdown")
 
 
 @app.command(
     epilog="Examples: `sher3 view bags/trial --html trial.html` · "
-    "`sher3 view` (the running robot) · `sher3 view bags/before --ghost bags/after --exaggerate 50 --html both.html`"
+    "`sher3 view` (the running robot) · `sher3 view bags/before --ghost bags/after --exaggerate 50 --html both.html` · "
+    "`sher3 view bags/trial --simulated nominal --simulated corrected.yaml --exaggerate 50`"
 )
 def view(
     bag: Annotated[
@@ -25,10 +27,20 @@ def view(
     ] = None,
     page: Annotated[Optional[Path], typer.Option("--html", help="File to write; default BAG.html.")] = None,  # noqa: UP045
     ghost: Annotated[
-        Path | None, typer.Option(help="Second bag, drawn as a transparent robot.", autocompletion=folders_with(BAG))
+        Optional[list[Path]],  # noqa: UP045
+        typer.Option(
+            help="Another bag, drawn as a transparent robot; repeat for more.", autocompletion=folders_with(BAG)
+        ),
+    ] = None,
+    simulated: Annotated[
+        Optional[list[str]],  # noqa: UP045
+        typer.Option(
+            help="The simulator driven as the recorded robot was, drawn as a transparent robot: `nominal` or a file of "
+            "effects; repeat for more."
+        ),
     ] = None,
     exaggerate: Annotated[
-        float, typer.Option(help="Draw the ghost's distance from the robot this many times as large.", min=1.0)
+        float, typer.Option(help="Draw the distance of ghosts from the robot this many times as large.", min=1.0)
     ] = 1.0,
     robot: Annotated[Optional[Path], typer.Option(help="Robot file; by default the one in the bag.")] = None,  # noqa: UP045
     port: Annotated[int, typer.Option(help="Port of the live page, on 127.0.0.1 alone.", min=1, max=65535)] = 8080,
@@ -50,13 +62,14 @@ def view(
     from sher3_description import load_robot
 
     from sher3_view.film import film_of
-    from sher3_view.ghost import ghost_of
+    from sher3_view.ghosts_asked import ghosts_asked
     from sher3_view.page import write_page
 
     model = load_robot(robot) if robot else None
-    film = film_of(read_run(bag, check=False), model)
-    other = None if ghost is None else ghost_of(film, read_run(ghost, check=False), exaggerate, model)
-    target = write_page(film, page or bag.with_name(bag.name + ".html"), other)
+    run = read_run(bag, check=False)
+    film = film_of(run, model)
+    ghosts = ghosts_asked(film, run, ghost or [], simulated or [], exaggerate, model)
+    target = write_page(film, page or bag.with_name(bag.name + ".html"), ghosts)
     facts = {"page": str(target), "bytes": target.stat().st_size, "frames": len(film.seconds)}
     typer.echo(json.dumps(facts) if as_json else f"page {target}: open it in a browser")
 
@@ -65,6 +78,39 @@ def _live(robot: Path | None, port: int, domain: int, seconds: float | None) -> 
     from sher3_view.live.alone import show
 
     show(robot, port, domain, seconds)
+
+
+@app.command(
+    epilog="Examples: `sher3 analyze bags/trial --picture trial.png` · `sher3 analyze bags/trial --html trial.html`"
+)
+def analyze(
+    bag: Annotated[Path, typer.Argument(help="Bag folder or .mcap file.", autocompletion=folders_with(BAG))],
+    picture: Annotated[Path | None, typer.Option(help="Also draw the run to this PNG, PDF or SVG.")] = None,
+    page: Annotated[
+        Path | None, typer.Option("--html", help="Also write figures, picture and the robot in motion into one file.")
+    ] = None,
+    namespace: Annotated[str, typer.Option(help="Namespace of the robot in the bag.")] = NAMESPACE,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")] = False,
+) -> None:
+    """Figures of a run: tip path, force against velocity, tracking per axis, timing and drops per topic."""
+    from sher3_bags.cli import printed
+    from sher3_bags.figures.analysis import analyse
+    from sher3_bags.figures.report import analysis_text
+    from sher3_bags.reading import read_run
+    from sher3_common.commands.options import reported
+
+    from sher3_view.figures import drawn, write_figures
+
+    with reported(as_json):
+        run = read_run(bag, namespace=namespace, check=False)
+        analysis = analyse(run)
+        data = analysis.to_dict()
+        if picture is not None:
+            data["picture"] = str(drawn(run, analysis, picture))
+        if page is not None:
+            data["page"] = str(write_figures(run, analysis, page))
+        notes = [f"\n\n{name}: {data[name]}" for name in ("picture", "page") if name in data]
+        printed(as_json, data, analysis_text(analysis) + "".join(notes))
 
 
 @app.command(epilog="Examples: `sher3 state` beside `sher3 up` · `sher3 state --urdf sher3.urdf`")

@@ -88,9 +88,9 @@ def film_of(run: Run, robot: Robot | None = None) -> Film:
     if robot is None:
         robot = Robot.from_yaml(run.robot_yaml) if run.robot_yaml else load_robot()
     kinematics = RobotKinematics(robot)
-    stamps, position = _joints(run)
+    stamps, position = joints_of(run)
     frames = _frames(stamps)
-    q = position[_held(stamps, frames)]
+    q = at_times(stamps, position, frames)
     q, frames = _reachable(kinematics, q, frames)
     force, centres = _force(run, frames), _remote_centre(run, frames)
     tracked, tracking = _tracking(run, frames)
@@ -123,7 +123,12 @@ def film_of(run: Run, robot: Robot | None = None) -> Film:
     )
 
 
-def _joints(run: Run) -> tuple[NDArray[np.int64], Floats]:
+def joints_of(run: Run) -> tuple[NDArray[np.int64], Floats]:
+    """Return the stamps (n,) [ns] and the positions (n, 5) of the finite samples of `measured_js`, in order.
+
+    Raises:
+        ViewError: less than two.
+    """
     if "measured_js" not in run or run["measured_js"].position is None:
         raise ViewError("there is no measured_js, so no robot to show", remedy="record measured_js too")
     table = run["measured_js"]
@@ -132,6 +137,12 @@ def _joints(run: Run) -> tuple[NDArray[np.int64], Floats]:
         raise ViewError("measured_js has too few finite samples", value=int(rows.sum()), limit="at least 2")
     order = np.argsort(table.stamp[rows], kind="stable")
     return table.stamp[rows][order], table.position[rows][order]
+
+
+def at_times(stamps: NDArray[np.int64], position: Floats, times: NDArray[np.int64]) -> Floats:
+    """Return the positions (k, 5) at times (k,) [ns], between the two samples around each, from samples (n, 5)."""
+    since = (stamps - stamps[0]).astype(np.float64)
+    return np.stack([np.interp(times - stamps[0], since, column) for column in position.T], axis=1)
 
 
 def _frames(stamps: NDArray[np.int64]) -> NDArray[np.int64]:

@@ -7,6 +7,7 @@ import html
 import json
 import math
 import re
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -25,42 +26,44 @@ ABSENT = -32768
 STEPS = 32767
 
 
-def write_page(film: Film, path: str | Path, ghost: Ghost | None = None) -> Path:
+def write_page(film: Film, path: str | Path, ghosts: Sequence[Ghost] = (), figures: str = "") -> Path:
     """Write the page of a film; return its path.
 
     Args:
         film: to show.
         path: of the file.
-        ghost: second recording, drawn as a transparent robot beside the first; its exaggeration is stated on the page.
+        ghosts: other robots, drawn transparent beside the first; their exaggeration is stated on the page.
+        figures: a further section, as HTML.
 
     Raises:
         ViewError: the file cannot be written.
     """
     target = Path(path)
     try:
-        target.write_text(page(film, ghost), encoding="utf-8")
+        target.write_text(page(film, ghosts, figures), encoding="utf-8")
     except OSError as error:
         raise ViewError(f"{target} cannot be written ({error.strerror})", remedy="name a writable file") from error
     return target
 
 
-def page(film: Film, ghost: Ghost | None = None) -> str:
+def page(film: Film, ghosts: Sequence[Ghost] = (), figures: str = "") -> str:
     """Return the text of the page; see `write_page`."""
     script = "\n".join((FILES / name).read_text(encoding="utf-8") for name in SCRIPTS)
-    data = json.dumps(_data(film, ghost), separators=(",", ":"), allow_nan=False)
+    data = json.dumps(_data(film, ghosts), separators=(",", ":"), allow_nan=False)
     parts = {
         "@TITLE@": html.escape(film.name),
         "@STYLE@": (FILES / "view.css").read_text(encoding="utf-8"),
         "@SCRIPT@": script,
         # A name in the recording may hold any text; "</script>" inside it must not end the data.
+        "@FIGURES@": figures,
         "@DATA@": data.replace("<", "\\u003c"),
     }
     text = (FILES / "view.html").read_text(encoding="utf-8")
     return re.sub("|".join(parts), lambda mark: parts[mark.group()], text)
 
 
-def _data(film: Film, ghost: Ghost | None) -> dict[str, Any]:
-    points = film.points if ghost is None else np.concatenate([film.points, ghost.points])
+def _data(film: Film, ghosts: Sequence[Ghost]) -> dict[str, Any]:
+    points = np.concatenate([film.points, *(ghost.points for ghost in ghosts)])
     packed, origin, step = _packed(points)
     count = len(film.seconds)
     return {
@@ -71,13 +74,15 @@ def _data(film: Film, ghost: Ghost | None) -> dict[str, Any]:
         "origin": origin,
         "step": step,
         "points": _text(packed[:count]),
-        "ghost": None
-        if ghost is None
-        else {
-            "name": ghost.name,
-            "points": _text(packed[count:]),
-            "exaggeration": ghost.exaggeration,
-        },
+        "ghosts": [
+            {
+                "name": ghost.name,
+                "points": _text(packed[k * count : (k + 1) * count]),
+                "exaggeration": ghost.exaggeration,
+                "distance": _rounded(ghost.distance, 9),
+            }
+            for k, ghost in enumerate(ghosts, 1)
+        ],
         "tip": _rounded(film.tip, 7),
         "position": _rounded(film.position, 7),
         "force": _rounded(film.force, 4),

@@ -81,8 +81,8 @@ class Scene:
         self.kinematics = kinematics
         robot = kinematics.robot
         self._half = robot.delta.leg_width / 2
-        self._base = math.sqrt(robot.delta.base_radius**2 - self._half**2)
-        self._platform = math.sqrt(robot.delta.platform_radius**2 - self._half**2)
+        self._base = robot.delta.base_distance
+        self._platform = robot.delta.platform_distance
         self._zero = robot.delta.slider_zero
         self.floor = self._zero + float(kinematics.lower[:3].min()) - MARGIN - FLOOR
 

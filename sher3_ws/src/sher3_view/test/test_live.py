@@ -10,12 +10,13 @@ import sys
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from sher3_common.samples import JointSample, JoySample, PoseSample, TextSample, WrenchSample
+from sher3_common.samples import DiagnosticSample, JointSample, JoySample, PoseSample, TextSample, WrenchSample
 from sher3_description import load_robot
 from sher3_faults.requests import make_request
 from sher3_kinematics import RobotKinematics
 from sher3_view.errors import ExtraMissing
-from sher3_view.live.page import BUTTONS, PROFILES, LivePage, pose_of, revolved
+from sher3_view.live.mock_panel import FAULTS
+from sher3_view.live.page import PROFILES, LivePage, pose_of, revolved
 from sher3_view.live.plot import plot_svg, scale_for
 from sher3_view.live.snapshot import Snapshot
 from sher3_view.scene import RobotState, Scene
@@ -23,6 +24,7 @@ from sher3_view.scene import RobotState, Scene
 ROBOT = load_robot()
 KINEMATICS = RobotKinematics(ROBOT)
 MS = 1_000_000
+EFFECTS = {"backlash": ("delta_1", "tilt")}
 
 
 def heard(**more):
@@ -71,6 +73,23 @@ def test_old_samples_and_faults_are_said():
     assert "Waiting" in Snapshot.empty().text(ROBOT, 0)
 
 
+def test_what_was_refused_stands_in_the_panel():
+    refused = TextSample(json.dumps({"refused": {"error": "MotionRefused", "text": "move_jp: not enabled"}}))
+    assert "Refused: move_jp: not enabled" in heard(**{"motion/status": refused}).text(ROBOT, 1010 * MS)
+    assert "Refused" not in heard().text(ROBOT, 1010 * MS)
+
+
+def test_a_fault_is_told_with_its_numbers_and_lost_cycles_are_added_up():
+    fault = {"code": "WRENCH_STALE", "source": "force/measured_cf", "value": 0.02, "limit": 0.01, "unit": "s"}
+    status = TextSample(json.dumps({"state": "FAULT", "reason": "WRENCH_STALE", "first_fault": fault}))
+    snapshot = heard(**{"supervisor/status": status})
+    for node, lost in (("sher3/pedal", 2), ("sher3/kinematics", 3), ("sher3/pedal", 4)):
+        told = DiagnosticSample(0, node, 1, "", (("ticks", "500"), ("lost_cycles", str(lost))))
+        snapshot.take({"diagnostics": lambda told=told: told})
+    text = snapshot.text(ROBOT, 1010 * MS)
+    assert "WRENCH_STALE force/measured_cf: 0.02 s, limit 0.01 s" in text and "| Cycles lost | 7 |" in text
+
+
 def test_what_is_not_finite_is_not_shown():
     snapshot = heard(measured_js=JointSample(1000 * MS, (math.nan, 0.0, 0.0, 0.0, 0.0)))
     assert snapshot.position is None
@@ -108,14 +127,14 @@ def test_the_scale_of_a_plot_is_round():
 
 
 def test_every_button_asks_for_a_fault_that_exists():
-    for request in BUTTONS.values():
+    for request in FAULTS.values():
         assert make_request(**request).component == request["component"]
 
 
 def test_a_missing_library_names_the_extra(monkeypatch):
     monkeypatch.setitem(sys.modules, "viser", None)
     with pytest.raises(ExtraMissing, match=r"sher3\[view\]") as caught:
-        LivePage(KINEMATICS, 8080)
+        LivePage(KINEMATICS, 8080, EFFECTS)
     assert caught.value.module == "viser" and caught.value.exit_code == 3
 
 
@@ -124,11 +143,13 @@ def test_the_page_is_served_on_loopback_alone():
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
-    page = LivePage(KINEMATICS, port)
+    page = LivePage(KINEMATICS, port, EFFECTS)
     try:
-        page.show(heard(), 1000 * MS, mocks=True)
-        page.show(heard(), 1010 * MS, mocks=False)
-        assert page.url == f"http://127.0.0.1:{port}" and page.requests() == []
+        page.show(heard(), 1000 * MS)
+        page.mocks.show(True, True)
+        page.show(heard(), 1010 * MS)
+        page.mocks.show(False, False)
+        assert page.url == f"http://127.0.0.1:{port}" and page.mocks.faults() == [] == page.mocks.exchanges()
         with socket.socket() as other:
             other.bind(("127.0.0.2", port)), other.listen()
         socket.create_connection(("127.0.0.1", port), 2.0).close()

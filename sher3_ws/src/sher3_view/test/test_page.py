@@ -13,7 +13,9 @@ import numpy as np
 import pytest
 from sher3_bags import Run, stream, write_run
 from sher3_description import load_robot
+from sher3_effects import plants, save_effects
 from sher3_kinematics import RobotKinematics
+from sher3_sim import simulate
 from sher3_view import ViewError, film_of, write_page
 from sher3_view.cli import app
 from sher3_view.ghost import ghost_of
@@ -114,7 +116,7 @@ def test_a_long_run_stays_small(tmp_path):
     run = Run({"measured_js": stream("measured_js", stamp, position=q)})
     film = film_of(run)
     assert len(film.seconds) == 1200
-    written = write_page(film, tmp_path / "long.html", ghost_of(film, run, 2.0))
+    written = write_page(film, tmp_path / "long.html", [ghost_of(film, run, 2.0)])
     assert written.stat().st_size < 3e6
 
 
@@ -123,7 +125,11 @@ def test_the_ghost_is_exaggerated_by_the_factor():
     film = film_of(made())
     ghost = ghost_of(film, made(shift=0.001), 4.0)
     assert ghost.points[0, 0] - film.points[0, 0] == pytest.approx([0, 0, 0.004])
-    assert data_of(page(film, ghost))["ghost"]["exaggeration"] == 4.0
+    (told,) = data_of(page(film, [ghost]))["ghosts"]
+    moved = RobotKinematics(load_robot()).transform_tip_to_base([0.001, 0, 0, 0, 0])[:3, 3]
+    rest = RobotKinematics(load_robot()).transform_tip_to_base([0.0] * 5)[:3, 3]
+    assert told["exaggeration"] == 4.0
+    assert told["distance"][0] == pytest.approx(np.linalg.norm(moved - rest), rel=1e-6), "told as it is"
     with pytest.raises(ViewError, match="limit at least 1"):
         ghost_of(film, made(), 0.5)
 
@@ -141,6 +147,55 @@ def test_the_command_writes_the_page(tmp_path):
     facts = json.loads(result.stdout)
     assert facts["page"] == str(tmp_path / "trial.html") and facts["frames"] == 61
     assert (tmp_path / "trial.html").stat().st_size == facts["bytes"]
+
+
+def test_ghosts_are_taken_between_samples():
+    """Of the same motion sampled every 6 ms, whose samples are beside the frames, no gap is drawn."""
+    run, other = made(), made()
+    rows = np.unique(np.append(np.arange(0, len(STAMP), 3), len(STAMP) - 1))
+    q = run["measured_js"].position[rows]
+    other.streams["measured_js"] = stream("measured_js", STAMP[rows], position=q)
+    assert ghost_of(film_of(run), other).distance == pytest.approx(np.zeros(61), abs=1e-9)
+
+
+def test_the_simulator_is_a_ghost_that_shows_the_gap(tmp_path):
+    """A robot with backlash, and the simulator without and with it: the second is nearer."""
+    robot = load_robot()
+    seconds = np.arange(0, 1000) * 0.002
+    goal = np.zeros((1000, 5))
+    goal[:, 0] = 0.002 * np.sin(2 * np.pi * seconds)
+    backlash = plants()["backlash"]("delta_1", width=4e-5)
+    write_run(tmp_path / "robot", simulate(robot, goal, np.zeros((1000, 6)), [backlash], seed=1))
+    save_effects(tmp_path / "found.yaml", [backlash])
+    arguments = ["view", str(tmp_path / "robot"), "--simulated", "nominal", "--exaggerate", "20"]
+    result = CliRunner().invoke(app, [*arguments, "--simulated", str(tmp_path / "found.yaml")])
+    assert result.exit_code == 0, result.output
+    nominal, found = data_of((tmp_path / "robot.html").read_text())["ghosts"]
+    assert (nominal["name"], found["name"]) == ("nominal simulator", "simulator with found.yaml")
+    assert np.mean(found["distance"]) < 0.3 * np.mean(nominal["distance"]) and np.max(nominal["distance"]) < 1e-4
+
+
+def test_analyze_writes_figures_picture_and_page(tmp_path):
+    bag = write_run(tmp_path / "trial", made())
+    arguments = ["analyze", str(bag), "--picture", str(tmp_path / "a.png"), "--html", str(tmp_path / "a.html")]
+    text = CliRunner().invoke(app, arguments)
+    assert text.exit_code == 0 and "times are median/99 %/max" in text.output
+    assert (tmp_path / "a.png").is_file()
+    written = (tmp_path / "a.html").read_text()
+    assert "<th>latency [ms]</th>" in written and "data:image/png;base64" in written
+    assert not re.search(r"https?:|\bhref=|@import|url\(|\bfetch\(", written)
+    assert json.loads(CliRunner().invoke(app, ["analyze", str(bag), "--json"]).output)["dropped"] == 0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [(["missing"], "error: missing: no such file"), (["{bag}", "--picture", "{bag}.xyz"], "cannot be drawn")],
+)
+def test_analyze_fails_in_one_sentence(arguments, said, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    bag = write_run(tmp_path / "trial", made())
+    result = CliRunner().invoke(app, ["analyze", *(word.format(bag=bag) for word in arguments)])
+    assert result.exit_code == 1 and said in result.output
 
 
 @pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed: the page was not opened in a browser")

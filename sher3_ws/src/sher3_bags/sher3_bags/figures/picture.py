@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +24,19 @@ _COLOURS = ("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9")
 
 def draw(run: Run, analysis: Analysis, path: str | Path) -> Path:
     """Write the picture of a run in the format of the path's suffix (PNG and others); return the path."""
+    target = Path(path)
+    _figure(run, analysis).savefig(target, dpi=110)
+    return target
+
+
+def png(run: Run, analysis: Analysis) -> bytes:
+    """Return the picture of a run as PNG."""
+    file = io.BytesIO()
+    _figure(run, analysis).savefig(file, dpi=110, format="png")
+    return file.getvalue()
+
+
+def _figure(run: Run, analysis: Analysis) -> Figure:
     figure = Figure(figsize=(15, 11), layout="constrained")
     FigureCanvasAgg(figure)
     name = run.path.name if run.path else "run"
@@ -39,9 +53,7 @@ def draw(run: Run, analysis: Analysis, path: str | Path) -> Path:
         _drops(figure.add_subplot(grid[2, 1]), analysis)
         velocity = (analysis.velocity_tracking, velocity_error(run), "velocity error")
         _tracking(figure.add_subplot(grid[2, 2]), run, *velocity)
-    target = Path(path)
-    figure.savefig(target, dpi=110)
-    return target
+    return figure
 
 
 def _absent(axis: Any, title: str, why: str) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import NamedTuple
 
 from sher3_bags.figures.analysis import Analysis
 from sher3_bags.figures.compare import Comparison
@@ -11,7 +12,7 @@ from sher3_bags.figures.tracking import AxisError
 
 SMALLEST = 1e-15
 """Magnitude below which a difference is rounding and shown as 0: a thousandth of a picometre."""
-_PREFIXES = ((1.0, ""), (1e-3, "m"), (1e-6, "u"), (1e-9, "n"))
+_PREFIXES = ((1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
 
 
 def quantity(value: float | None, unit: str) -> str:
@@ -43,37 +44,58 @@ def table(header: Iterable[str], rows: Iterable[Iterable[object]]) -> str:
 def _spread(spread: Spread | None) -> str:
     if spread is None:
         return "-"
-    return "/".join(f"{value * 1e3:.3g}" for value in (spread.p50, spread.p99, spread.max))
+    times = [1e3 * value for value in (spread.p50, spread.p99, spread.max)]
+    return "/".join(f"{value:.0f}" if abs(value) >= 999.5 else f"{value:.3g}" for value in times)
+
+
+class Block(NamedTuple):
+    """A part of a report: what it is about, and a table where there is one."""
+
+    text: str
+    header: tuple[str, ...] = ()
+    rows: tuple[tuple[object, ...], ...] = ()
+
+    def __str__(self) -> str:
+        return f"{self.text}\n{table(self.header, self.rows)}" if self.rows else self.text
 
 
 def analysis_text(analysis: Analysis) -> str:
     """Return the figures of a run, a screenful."""
+    return "\n\n".join(map(str, analysis_blocks(analysis)))
+
+
+def analysis_blocks(analysis: Analysis) -> list[Block]:
+    """Return the figures of a run as sentences and tables."""
     count = sum(timing.messages for timing in analysis.topics.values())
-    parts = [f"{analysis.source}: {analysis.duration:.3f} s, {count} messages, {analysis.dropped} dropped"]
-    parts.append(_timing_text(analysis))
-    parts += _tracking_text("position tracking (setpoint_js - measured_js)", analysis.position_tracking)
-    parts += _tracking_text("drive tracking (integral of drives/setpoint_jv - motor position)", analysis.drive_tracking)
-    parts += _tracking_text("velocity tracking (drives/setpoint_jv - motor, 20 ms average)", analysis.velocity_tracking)
+    blocks = [Block(f"{analysis.source}: {analysis.duration:.3f} s, {count} messages, {analysis.dropped} dropped")]
+    blocks += _timing(analysis)
+    blocks += _tracking("position tracking (setpoint_js - measured_js)", analysis.position_tracking)
+    blocks += _tracking("drive tracking (integral of drives/setpoint_jv - motor position)", analysis.drive_tracking)
+    blocks += _tracking("velocity tracking (drives/setpoint_jv - motor, 20 ms average)", analysis.velocity_tracking)
     if analysis.tip is not None:
         extent = " x ".join(f"{1e3 * value:.3g}" for value in analysis.tip.extent)
         speed = quantity(analysis.tip.max_speed, "m/s")
-        parts.append(f"tip: path {quantity(analysis.tip.length, 'm')}, extent {extent} mm, largest speed {speed}")
+        blocks.append(
+            Block(f"tip: path {quantity(analysis.tip.length, 'm')}, extent {extent} mm, largest speed {speed}")
+        )
     if analysis.tracker_rms is not None:
-        parts.append(f"tracker: {quantity(analysis.tracker_rms, 'm')} rms from measured_cp")
+        blocks.append(Block(f"tracker: {quantity(analysis.tracker_rms, 'm')} rms from measured_cp"))
     if analysis.force_velocity is not None:
         fit = analysis.force_velocity
-        parts.append(
-            f"force against velocity: {1e3 * fit.gain:.3g} (mm/s)/N, correlation {fit.correlation:.3f}, "
-            f"largest force {fit.max_force:.3g} N, {fit.samples} samples with the pedal pressed"
+        blocks.append(
+            Block(
+                f"force against velocity: {1e3 * fit.gain:.3g} (mm/s)/N, correlation {fit.correlation:.3f}, "
+                f"largest force {fit.max_force:.3g} N, {fit.samples} samples with the pedal pressed"
+            )
         )
         if fit.doubt:
-            parts.append(f"do not trust that line: {fit.doubt}")
-    return "\n\n".join(parts)
+            blocks.append(Block(f"do not trust that line: {fit.doubt}"))
+    return blocks
 
 
-def _timing_text(analysis: Analysis) -> str:
+def _timing(analysis: Analysis) -> list[Block]:
     header = ("topic", "node", "messages", "Hz", "period [ms]", "latency [ms]", "from force [ms]", "dropped", "pauses")
-    rows = [
+    rows = tuple(
         (
             topic,
             timing.node or "-",
@@ -86,18 +108,17 @@ def _timing_text(analysis: Analysis) -> str:
             timing.pauses,
         )
         for topic, timing in analysis.topics.items()
-    ]
-    text = "times are median/99 %/max\n" + table(header, rows)
+    )
     bad = [f"{t}: {x.disordered} stamps out of order" for t, x in analysis.topics.items() if x.disordered]
     bad += [f"{t}: {x.not_finite} values not finite" for t, x in analysis.topics.items() if x.not_finite]
-    return "\n".join([text, *bad])
+    return [Block("times are median/99 %/max", header, rows), *map(Block, bad)]
 
 
-def _tracking_text(title: str, errors: tuple[AxisError, ...]) -> list[str]:
-    if not errors:
-        return []
-    rows = [(e.actuator, quantity(e.mean, e.unit), quantity(e.rms, e.unit), quantity(e.max, e.unit)) for e in errors]
-    return [f"{title}\n" + table(("axis", "mean", "rms", "max"), rows)]
+def _tracking(title: str, errors: tuple[AxisError, ...]) -> list[Block]:
+    rows = tuple(
+        (e.actuator, quantity(e.mean, e.unit), quantity(e.rms, e.unit), quantity(e.max, e.unit)) for e in errors
+    )
+    return [Block(title, ("axis", "mean", "rms", "max"), rows)] if rows else []
 
 
 def comparison_text(comparison: Comparison) -> str:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 from sher3_description import load_robot
 
 _COLUMNS = {
@@ -30,5 +32,6 @@ def unit_of(type_name: str, column: str, axis: str) -> str:
     return angular if axis in _revolute() else linear
 
 
-def _revolute() -> set[str]:
-    return {actuator.name for actuator in load_robot().actuators if actuator.kind == "revolute"}
+@cache
+def _revolute() -> frozenset[str]:
+    return frozenset(actuator.name for actuator in load_robot().actuators if actuator.kind == "revolute")

@@ -27,7 +27,8 @@ from sher3_bags.mcap.rosbag2 import TopicCount, write_metadata
 from sher3_bags.mcap.writer import CHUNK_LIMIT, McapWriter
 from sher3_bags.provenance import PROVENANCE_RECORD, provenance
 from sher3_bags.reading import ROBOT_FILE, RUN_RECORD
-from sher3_bags.recording.robot_frames import SOURCE, Made, RobotFrames
+from sher3_bags.recording.beside import FOLLOWED, Beside
+from sher3_bags.recording.made import Made
 from sher3_bags.run import RunMetadata
 
 RECORDING_RECORD = "sher3.recording"
@@ -45,7 +46,7 @@ class _Source:
     channel: int
     gaps: GapCounter
     stamped: bool
-    frames: RobotFrames | None
+    frames: Beside | None
     sequence: int = 0
 
 
@@ -77,7 +78,7 @@ class Recorder:
         robot: Robot,
         metadata: RunMetadata | None = None,
         parameters: Mapping[str, object] | None = None,
-        frames: RobotFrames | None = None,
+        frames: Beside | None = None,
     ) -> None:
         if folder.exists():
             raise BagError("exists already", path=folder, remedy="choose another name")
@@ -127,7 +128,7 @@ class Recorder:
         self._append(source.channel, source.sequence, data, log_time, sent)
         source.sequence = (source.sequence + 1) & 0xFFFFFFFF
         if source.frames is not None:
-            for message in source.frames.follow(data):
+            for message in source.frames.follow(topic, data, log_time):
                 self._add_made(message, log_time)
 
     def _add_made(self, message: Made, log_time: int) -> None:
@@ -208,7 +209,7 @@ class Recorder:
         topic = TOPICS[name]
         channel = self._writer.channel(topic.recorded_name, topic.type, topic.qos)
         gaps = GapCounter(self._periods.get(name), is_stamped(name))
-        source = _Source(topic, channel, gaps, gaps.stamped, self._frames if name == SOURCE else None)
+        source = _Source(topic, channel, gaps, gaps.stamped, self._frames if name in FOLLOWED else None)
         if self._frames is not None and not self._made:
             for message in self._frames.fixed(log_time):
                 self._add_made(message, log_time)

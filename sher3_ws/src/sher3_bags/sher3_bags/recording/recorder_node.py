@@ -27,8 +27,8 @@ from sher3_runtime.process import stop_on_signals
 from sher3_runtime.spinning import spin
 
 from sher3_bags.errors import BagError
+from sher3_bags.recording.beside import Beside
 from sher3_bags.recording.recorder import Recorder
-from sher3_bags.recording.robot_frames import RobotFrames
 from sher3_bags.run import RunMetadata
 
 POLL_NS = 5_000_000
@@ -115,7 +115,7 @@ class RecorderNode(Node):
         """Take the new folder, robot, topics and metadata; a `required` recording that fails ends the node."""
         super().__init__("recorder", **{**NODE_OPTIONS, **options})
         robot = robot or load_robot()
-        self.recorder = Recorder(Path(output), robot, metadata, parameters, RobotFrames(robot))
+        self.recorder = Recorder(Path(output), robot, metadata, parameters, Beside(robot))
         self.counts: dict[str, dict[str, int]] = {}
         self.failure: BagError | None = None
         self.unrecorded = 0

@@ -9,20 +9,22 @@ from __future__ import annotations
 import math
 import struct
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from sher3_common.stamps import SECOND
 from sher3_description import Qos, Robot
+from sher3_description.model_joints import ModelJoint, fixed_joints, moving_joints
 from sher3_description.urdf import urdf
 from sher3_kinematics import BadInput, RobotKinematics, Unreachable
+from sher3_kinematics.deflection import ball_centres
 from sher3_kinematics.model_joints import MODEL_JOINTS, model_positions
 
 from sher3_bags.codec.cdr import STAMP, read_layout
 from sher3_bags.codec.pack import Quaternion, Triple, joint_state, lines, text, transforms
 from sher3_bags.errors import MalformedMessageError
 from sher3_bags.messages import TEXT
+from sher3_bags.recording.made import Made
 
 JOINT_STATE, TF = "sensor_msgs/msg/JointState", "tf2_msgs/msg/TFMessage"
 MARKER = "visualization_msgs/msg/Marker"
@@ -33,26 +35,9 @@ PERIOD_NS = 20_000_000
 """Time between two states: 50 Hz, more than a screen shows of a hand's motion."""
 LEG_WIDTH = 0.0044
 """Thickness of a drawn leg [m]."""
+UPRIGHT: Quaternion = (0.0, 0.0, 0.0, 1.0)
+"""The rotation that turns nothing."""
 _STAMP = struct.Struct("<iI")
-
-
-class Made(NamedTuple):
-    """A message made beside the streams: absolute topic name, type, quality of service and CDR bytes."""
-
-    topic: str
-    type: str
-    qos: Qos
-    data: bytes
-
-
-class Link(NamedTuple):
-    """A movable joint as a transform: parent and child link, its origin in the parent and its axis (3,)."""
-
-    parent: str
-    child: str
-    origin: tuple[float, float, float]
-    axis: tuple[float, float, float]
-    turns: bool
 
 
 class RobotFrames:
@@ -65,16 +50,14 @@ class RobotFrames:
     def __init__(self, robot: Robot) -> None:
         self._robot = robot
         self._kinematics = RobotKinematics(robot)
-        self._links = _links(robot)
-        self._half = robot.delta.leg_width / 2
-        self._base = math.sqrt(robot.delta.base_radius**2 - self._half**2)
-        self._platform = math.sqrt(robot.delta.platform_radius**2 - self._half**2)
+        self._joints = moving_joints(robot)
+        base, platform = ball_centres(robot)
+        self._balls = base + np.array([0.0, 0.0, robot.delta.slider_zero]), platform
         self._next = -(2**62)
 
     def fixed(self, stamp: int) -> list[Made]:
         """Return what never changes: the URDF and the transforms of its fixed joints; stamp in ns."""
-        arm, sensor = self._robot.arm, self._robot.force_sensor
-        still = [("a", "t", arm.tool, (0.0, 0.0, 0.0, 1.0)), ("t", "f", sensor.position, (0.0, 0.0, 0.0, 1.0))]
+        still = [(joint.parent, joint.child, joint.origin, UPRIGHT) for joint in fixed_joints(self._robot)]
         return [
             Made("/robot_description", TEXT, LATCHED, text(urdf(self._robot))),
             Made("/tf_static", TF, LATCHED, transforms(stamp, still)),
@@ -110,7 +93,10 @@ class RobotFrames:
             positions = model_positions(self._kinematics, q)
         except (BadInput, Unreachable):
             return []
-        moving = [(*link[:2], *link_transform(link, at)) for link, at in zip(self._links, positions, strict=True)]
+        moving = [
+            (joint.parent, joint.child, *joint_transform(joint, at))
+            for joint, at in zip(self._joints, positions, strict=True)
+        ]
         return [
             Made("/joint_states", JOINT_STATE, Qos(), joint_state(stamp, MODEL_JOINTS, positions)),
             Made("/tf", TF, Qos(), transforms(stamp, moving)),
@@ -119,42 +105,17 @@ class RobotFrames:
 
     def _legs(self, positions: tuple[float, ...]) -> list[tuple[float, float, float]]:
         """Return the ends (12, 3) [m] in {b} of the six legs, two after two."""
-        ends = []
-        x, y, z = positions[3:6]
-        for k, azimuth in enumerate(self._robot.delta.leg_azimuth):
-            c, s = math.cos(azimuth), math.sin(azimuth)
-            height = positions[k] + self._robot.delta.slider_zero
-            for side in (-self._half, self._half):
-                ends.append((self._base * c - side * s, self._base * s + side * c, height))
-                ends.append((x + self._platform * c - side * s, y + self._platform * s + side * c, z))
-        return ends
+        base, platform = self._balls
+        heights = np.repeat(positions[:3], 2)
+        ends = np.stack([base + np.outer(heights, (0.0, 0.0, 1.0)), platform + positions[3:6]], axis=1)
+        return [(x, y, z) for x, y, z in ends.reshape(-1, 3).tolist()]
 
 
-def _links(robot: Robot) -> list[Link]:
-    """Return the movable joints of the URDF in the order of `MODEL_JOINTS`."""
-    half = robot.delta.leg_width / 2
-    radius = math.sqrt(robot.delta.base_radius**2 - half**2)
-    up, zero = (0.0, 0.0, 1.0), (0.0, 0.0, 0.0)
-    sliders = [
-        Link("b", f"slider_{k + 1}", (radius * math.cos(a), radius * math.sin(a), robot.delta.slider_zero), up, False)
-        for k, a in enumerate(robot.delta.leg_azimuth)
-    ]
-    arm = robot.arm
-    return [
-        *sliders,
-        Link("b", "p_x", zero, (1.0, 0.0, 0.0), False),
-        Link("p_x", "p_y", zero, (0.0, 1.0, 0.0), False),
-        Link("p_y", "p", zero, up, False),
-        Link("p", "r", (0.0, 0.0, arm.d1), (1.0, 0.0, 0.0), True),
-        Link("r", "a", (arm.d2, 0.0, arm.d3), (0.0, 1.0, 0.0), True),
-    ]
-
-
-def link_transform(link: Link, position: float) -> tuple[Triple, Quaternion]:
+def joint_transform(joint: ModelJoint, position: float) -> tuple[Triple, Quaternion]:
     """Return translation (3,) [m] and rotation (x, y, z, w) of a joint at a position [m, rad]."""
-    if link.turns:
+    if joint.kind == "revolute":
         s, c = math.sin(position / 2), math.cos(position / 2)
-        x, y, z = link.axis
-        return link.origin, (s * x, s * y, s * z, c)
-    x, y, z = (o + position * a for o, a in zip(link.origin, link.axis, strict=True))
-    return (x, y, z), (0.0, 0.0, 0.0, 1.0)
+        x, y, z = joint.axis
+        return joint.origin, (s * x, s * y, s * z, c)
+    x, y, z = (o + position * a for o, a in zip(joint.origin, joint.axis, strict=True))
+    return (x, y, z), UPRIGHT

@@ -116,9 +116,13 @@ def _recorder(settings: RunSettings) -> Any:
 
 def _plant(settings: RunSettings) -> Any:
     from sher3_drivers.sensor.netft_server import NetFtServer
+    from sher3_effects import plants
+    from sher3_effects.effects_file import effects_from_text
     from sher3_faults.injector import FaultInjector
     from sher3_sim.plant_node import PlantNode
 
+    if settings.exchange:
+        plants()  # read now: the robot would stop while the plant reads the library
     return PlantNode(
         settings.robot(),
         settings.drives(),
@@ -127,6 +131,7 @@ def _plant(settings: RunSettings) -> Any:
         force_device=NetFtServer(settings.force_address()),
         pedal_device=settings.mock_name(),
         faults=FaultInjector,
+        effects_of=effects_from_text if settings.exchange else None,
     )
 
 

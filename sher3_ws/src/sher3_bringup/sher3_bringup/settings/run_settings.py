@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 from sher3_control.settings import ControlSettings, MotionSettings
 from sher3_description import Robot, load_robot
+from sher3_drivers.name_plates import load_name_plates
 from sher3_drivers.settings import MotorDriverSettings, default_settings
 
 from sher3_bringup.errors import ConfigurationError
@@ -49,6 +50,7 @@ class RunSettings(BaseModel):
         rate: control rate [Hz]; sets `control_period` of the robot.
         processes: node names, grouped into processes.
         robot_path: robot file, or None for the nominal one.
+        drives_path: file of the drives' name plates (`sher3.drives/1`): others are refused at the start.
         effects: file of effects for the plant.
         links: CAN link per channel, as `socketcan:can0`; by default local ones of this run.
         record: folder of the recorded run.
@@ -61,6 +63,7 @@ class RunSettings(BaseModel):
         force_device: address of the force sensor on the real robot, host or host:port.
         pedal_device: raw HID device of the pedal on the real robot.
         patience: time limits in force, see `patience`; the real robot has only the strict ones.
+        exchange: the plant takes other effects while it runs; it then knows the library from the start.
         seed: of the plant's noise.
         near_speed, free_speed: speed caps of the two regimes [m/s], or None for those of the control settings; the
             caps of turning go with them.
@@ -74,7 +77,9 @@ class RunSettings(BaseModel):
     rate: Annotated[float, Field(ge=RATES[0], le=RATES[1])] = 500.0
     processes: tuple[tuple[str, ...], ...] = ()
     robot_path: Path | None = None
+    drives_path: Path | None = None
     effects: Path | None = None
+    exchange: bool = False
     links: tuple[str, ...] = ()
     record: Path | None = None
     recording: Literal["required", "optional"] = "required"
@@ -173,7 +178,9 @@ class RunSettings(BaseModel):
             settings = default_settings(1.0 / self.rate, links)
         settings = drives_in(self.robot(), self.control().motion, settings)
         patient = DRIVES if self.patience != "strict" else {}
-        return MotorDriverSettings.checked(**{**settings.model_dump(), **patient})
+        plates = () if self.drives_path is None else load_name_plates(self.drives_path)
+        identities = [plate.model_dump() for plate in plates]
+        return MotorDriverSettings.checked(**{**settings.model_dump(), **patient, "identities": identities})
 
     def control(self) -> ControlSettings:
         """Return the settings of the control nodes."""

@@ -16,8 +16,8 @@ from sher3_challenge.baselines.inputs import Candidate, Inputs, Stage, Traces
 
 if TYPE_CHECKING:
     from sher3_diagnosis.channel import Channel
-    from sher3_diagnosis.fitting import Fit
-    from sher3_diagnosis.flow import Diagnosis
+    from sher3_diagnosis.diagnosis import Diagnosis
+    from sher3_diagnosis.fit.fitting import Fit
     from sher3_gap.evidence import SherEvidence
 
 Array = NDArray[np.floating[Any]]
@@ -79,7 +79,7 @@ def _left(evidence: SherEvidence, found: Fit, channel: Channel) -> tuple[list[Ar
 
 def _traces(evidence: SherEvidence) -> Traces | None:
     """Return joint positions beside those of the nominal robot driven from the recorded set-points and loads."""
-    from sher3_gap.simulate.twin import driven_as
+    from sher3_gap.twin import driven_as
 
     measured, simulated = [], []
     for run in evidence.runs:

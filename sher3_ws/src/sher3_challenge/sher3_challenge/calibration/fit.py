@@ -26,7 +26,7 @@ RIDGE = 0.02
 """Weight of the squared coefficients beside the mean log likelihood. Set on: the plants other than the one quoted."""
 EVEN = 1e-4
 """The same of the constants: no answer is impossible because no case had it."""
-READ = ("left", "law", "foreign", "spread", "lost", "mismatch", "company", "size")
+READ = ("left", "complete", "law", "foreign", "spread", "lost", "mismatch", "company", "size")
 """Evidence that the model of a cause reads."""
 LAST = frozenset({"size"})
 """Evidence that only says that a gap is one: how large it is tells nothing of its cause."""
@@ -49,8 +49,11 @@ PLAIN = 5 * [
 ECHOES = 3 * [
     Example("by argument", scaled_gap({"power": 1.0, "beside": 4.0}), NO_GAP),
     Example("by argument", scaled_gap({"power": 30.0, "beside": 0.0}), OUTSIDE),
+    Example("by argument", scaled_gap({"power": 1.5, "beside": 0.0}), NO_GAP),
 ]
-"""Gaps whose answer needs no case: one at its threshold beside one fifty times as large, and one of thirty alone."""
+"""Gaps whose answer needs no case: one at its threshold beside one of its place fifty times as large, one of
+thirty alone, and one
+that is hardly above its threshold: of the healthy robots' many channels some are."""
 
 
 @dataclass(frozen=True)

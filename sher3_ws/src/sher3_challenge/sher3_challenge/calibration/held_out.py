@@ -14,7 +14,7 @@ from sher3_diagnosis.judge.probabilities import LIBRARY, NO_GAP, OUTSIDE, judged
 from sher3_diagnosis.judge.status import answer_to, crosses, status_of
 
 from sher3_challenge.calibration.fit import calibrated
-from sher3_challenge.calibration.labels import alike, answer_of, company, contains, equal, known, twins
+from sher3_challenge.calibration.labels import alike, answer_of, company, contains, equal, known, same_data, twins
 from sher3_challenge.calibration.observe import Observation
 from sher3_challenge.score.reliability import Stated
 
@@ -103,14 +103,16 @@ def _judgement(seen: Observation, whole: Observation, calibration: Calibration) 
         tuple(named),
         tuple(sets),
         tuple(right),
-        excused=bool(seen.without and named) and all(_no_mistake(n, seen, whole) for n in named),
+        excused=bool(seen.without and named) and _no_mistake(named, seen, whole),
         rightly_named=any(equal(name, known(seen)) for name in found),
     )
 
 
-def _no_mistake(name: str, seen: Observation, whole: Observation) -> bool:
-    """Whether an effect contains the one left out, explains the same data, or comes with it."""
-    return contains(name, seen.without) or twins(name, whole) or name in company(seen)
+def _no_mistake(named: Sequence[str], seen: Observation, whole: Observation) -> bool:
+    """Whether effects contain the one left out or come with it, or explain the same data, one by one or together."""
+    if same_data(seen, whole):
+        return True
+    return all(contains(name, seen.without) or twins(name, whole) or name in company(seen) for name in named)
 
 
 def _item(row: Mapping[str, Any]) -> Item:

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from sher3_diagnosis.judge.probabilities import LIBRARY, NO_GAP, OUTSIDE
+from sher3_diagnosis.thresholds import RIVAL
 from sher3_effects import library
 
 from sher3_challenge.calibration.observe import Observation
@@ -25,7 +26,7 @@ def answer_of(seen: Observation, item: Row, whole: Observation) -> str | None:
         whole: the observation of the same case with the whole library.
     """
     if item["index"] is None:
-        return _of_gap(seen, item)
+        return _of_gap(seen, item, whole)
     named, true = item["candidates"][0]["effect"], known(seen)
     if equal(named, true) or any(equal(name, true) for name in alike(item)):
         return LIBRARY
@@ -37,7 +38,7 @@ def answer_of(seen: Observation, item: Row, whole: Observation) -> str | None:
     if status == "outside_library":
         return OUTSIDE
     if seen.without:
-        return None if contains(named, seen.without) or twins(named, whole) else OUTSIDE
+        return None if contains(named, seen.without) or twins(named, whole) or same_data(seen, whole) else OUTSIDE
     return None if _at_a_fault(seen, item) else NO_GAP
 
 
@@ -72,6 +73,24 @@ def twins(named: str, whole: Observation) -> bool:
     return any(named in alike(item) for item in whole.items if item["index"] is not None)
 
 
+def same_data(seen: Observation, whole: Observation) -> bool:
+    """Whether a library without an effect explains every gap as well as the whole one: nothing recorded tells them.
+
+    Several causes together may do so where no single one does. What they leave may exceed what the whole library leaves
+    by the share of the gap by which a rival may be worse, and no gap may be without a cause.
+    """
+    if not seen.items or any(x["index"] is None for x in seen.items):
+        return False
+    size = max((x["numbers"]["ratio"] ** 2 for x in whole.items), default=0.0)
+    return _remainder(seen) <= _remainder(whole) + RIVAL * size
+
+
+def _remainder(seen: Observation) -> float:
+    """Return the largest power over its floor that the causes leave."""
+    found = (x["numbers"] for x in seen.items if x["index"] is not None)
+    return max((max(0.0, n["left"]) * n["ratio"] ** 2 for n in found), default=0.0)
+
+
 def _at_a_fault(seen: Observation, item: Row) -> bool:
     """Whether an item sits where a fault of the label shows: a misnamed cause, not an idle one."""
     stage, actuator = item["channel"].split("/")
@@ -83,10 +102,17 @@ def _at_a_fault(seen: Observation, item: Row) -> bool:
     return False
 
 
-def _of_gap(seen: Observation, item: Row) -> str | None:
-    """A gap without a cause is outside where a fault shows there, and none of its own where no fault does."""
+def _of_gap(seen: Observation, item: Row, whole: Observation) -> str | None:
+    """A gap without a cause is outside where a fault shows there, and none of its own where no fault does.
+
+    A gap that the whole library explains, and the library without an effect does not, is one of that effect.
+    """
     if seen.truth["status"] == "no_gap":
         return NO_GAP
     if seen.truth["status"] == "under_excited":
         return None
+    channel = item["channel"]
+    unexplained = {x["channel"] for x in whole.items if x["index"] is None}
+    if seen.without and channel in whole.places and channel not in unexplained:
+        return OUTSIDE
     return OUTSIDE if _at_a_fault(seen, item) else NO_GAP

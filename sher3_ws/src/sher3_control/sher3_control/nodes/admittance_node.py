@@ -170,9 +170,10 @@ class AdmittanceNode(Node):
         try:
             self.live = apply_command(self.live, sample.text, self.settings)
         except Sher3Error as error:
-            self._report(refused=error.to_dict())
+            self._report(refused={**error.to_dict(), "text": str(error)})
             return
         self._publish_settings(TextSample(to_json(self.live, self.settings)))
+        self._events.pop("refused", None)
         self._report(parameters=self.live._asdict())
 
     def _on_tare(self, _request: Any, response: Any) -> Any:
@@ -182,11 +183,12 @@ class AdmittanceNode(Node):
             result = self._window.tare(pressed, self._now(), limit, self.live.bias)
         except Sher3Error as error:
             response.success, response.message = False, str(error)
-            self._report(refused=error.to_dict())
+            self._report(refused={**error.to_dict(), "text": str(error)})
             return response
         self.live = with_bias(self.live, result.bias)
         self._drift.reset()
         self._publish_settings(TextSample(to_json(self.live, self.settings)))
+        self._events.pop("refused", None)
         self._report(tare=vars(result))
         response.success, response.message = True, json.dumps(vars(result))
         return response

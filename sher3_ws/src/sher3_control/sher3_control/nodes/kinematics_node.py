@@ -217,6 +217,7 @@ class KinematicsNode(Node):
             self._refuse(error)
             return
         self._version += 1
+        self._refused, self._shown = None, ()
         self._report_settings()
 
     def _refuse(self, error: Sher3Error) -> None:

@@ -16,13 +16,14 @@ from rclpy.node import Node
 from sher3_common import Sher3Error
 from sher3_common.operating_state import OperatingState
 from sher3_common.reasons import Reason, reading
-from sher3_common.samples import DiagnosticSample, JointSample, JoySample, PoseSample, TextSample
+from sher3_common.samples import DiagnosticSample, JointSample, JoySample, PoseSample, TextSample, WrenchSample
 from sher3_common.stamps import NO_STAMP
-from sher3_description import TOPICS, Robot
+from sher3_common.vectors import Vector
+from sher3_description import ACTUATORS, TOPICS, Robot
 from sher3_kinematics import RobotKinematics
 from sher3_runtime.ports import NODE_OPTIONS, advertise, clock_of, latest, on_tick, ports, subscribe
 
-from sher3_control.settings import ControlSettings, SupervisorSettings
+from sher3_control.settings import ControlSettings
 from sher3_control.supervision.detectors import (
     Detector,
     EmergencyStopDetector,
@@ -32,6 +33,7 @@ from sher3_control.supervision.detectors import (
     TwinDetector,
 )
 from sher3_control.supervision.driver_reports import DRIVES, LOOP, cycle_counts, driver_stop
+from sher3_control.supervision.hand import HandDetector
 from sher3_control.supervision.leg_residual import LegDetector, leg_residual
 from sher3_control.supervision.supervisor import Supervisor
 
@@ -47,6 +49,8 @@ STEERING = ("servo_cv", "operating_state")
 BESIDE = ("drives/measured_js", "drives/setpoint_jv", "supervisor/heartbeat")
 OWN = (*STREAMS, *STEERING, *BESIDE)
 """Streams that only the robot itself publishes: those that are watched, those that steer it, and the others."""
+POWERED = (OperatingState.ENABLED, OperatingState.PAUSED)
+"""States in which the drives hold what pushes on the tip."""
 LEVELS = {OperatingState.FAULT: 2, OperatingState.PAUSED: 1}
 """Level of the supervisor's diagnostic by operating state: 2 error, 1 warning; 0, the others, is ok."""
 
@@ -75,15 +79,19 @@ class SupervisorNode(Node):
             options: of `rclpy.node.Node`.
         """
         super().__init__("supervisor", **{**NODE_OPTIONS, **options})
-        self.settings = (ControlSettings.from_robot(robot) if settings is None else settings).supervisor
+        settings = ControlSettings.from_robot(robot) if settings is None else settings
+        self.settings = settings.supervisor
         limit = self.settings.stream_age_limit
         self._silence = {name: SilenceDetector(name, limit, *reasons) for name, reasons in STREAMS.items()}
         self._button = EmergencyStopDetector()
         self._drives = ReportedFault("motor_driver")
         self._overruns = OverrunDetector(self.settings.overrun_share)
-        self._leg, self._twins = _leg_detector(robot, self.settings), TwinDetector()
+        kinematics = _warm(RobotKinematics(robot))
+        self._leg, self._twins = LegDetector(kinematics, self.settings), TwinDetector()
+        self._hand = None if settings.motion.regime == "bench" else HandDetector(kinematics, self.settings)
         built_in = [self._button, self._drives, *self._silence.values(), self._overruns, self._leg, self._twins]
-        self.supervisor = Supervisor([*built_in, *detectors])
+        hands = [] if self._hand is None else [self._hand]
+        self.supervisor = Supervisor([*built_in, *hands, *detectors])
         self._refused: dict[str, Any] | None = None
         self._beat = TextSample(self.supervisor.status.heartbeat)
         self._joints = JointSample(NO_STAMP)
@@ -93,6 +101,9 @@ class SupervisorNode(Node):
         self._publish_heartbeat = advertise(self, "supervisor/heartbeat")
         self._publish_report = advertise(self, "diagnostics")
         self._watched = [(name, self._silence[name], latest(self, name)) for name in STREAMS if name != PEDAL]
+        self._take_forces = None if self._hand is None else latest(self, "drives/measured_js")
+        self._wrench: WrenchSample | None = None
+        self._command: Vector = (0.0,) * len(ACTUATORS)
         self._take_tip = latest(self, "tracker/measured_cp")
         subscribe(self, PEDAL, self.on_pedal)
         self._matched = [(name, ports(self).subscriptions[name].handle.get_publisher_count) for name in STREAMS]
@@ -112,9 +123,26 @@ class SupervisorNode(Node):
                 detector.last = sample.stamp
                 if name == "measured_js":
                     self._joints = sample
+                elif name == "force/measured_cf":
+                    self._wrench = sample
+                elif name == "servo_jv" and sample.velocity is not None:
+                    self._command = sample.velocity
         tip: PoseSample | None = self._take_tip()
         if tip is not None and tip.stamp == self._joints.stamp and self._joints.position is not None:
             self._leg.feed(tip.stamp, tip.position, self._joints.position)
+
+    def _look_at_hand(self) -> None:
+        """Compare the newest samples of force sensor and drives where both are of one tick."""
+        if self._hand is None or self._take_forces is None:
+            return
+        forces: JointSample | None = self._take_forces()
+        if self.supervisor.state not in POWERED:
+            self._hand.begin()
+        elif forces is not None and forces.effort is not None and self._wrench is not None:
+            same = forces.stamp == self._wrench.stamp == self._joints.stamp
+            if same and self._joints.position is not None:
+                wrench, q = self._wrench.wrench, self._joints.position
+                self._hand.feed(forces.stamp, wrench, q, forces.effort, self._command)
 
     def _count_publishers(self, *beside: str) -> None:
         """Count the publishers of the streams that move the robot, and of the streams `beside`.
@@ -151,6 +179,7 @@ class SupervisorNode(Node):
         """Count publishers, ask the detectors and send the heartbeat."""
         self._count_publishers(next(self._in_turn))
         self._look()
+        self._look_at_hand()
         if self.supervisor.check(self._now()):
             self._publish()
         self._publish_heartbeat(self._beat)
@@ -183,8 +212,8 @@ class SupervisorNode(Node):
         self._publish_status(TextSample(json.dumps({**json.loads(status.to_json()), "refused": self._refused})))
 
 
-def _leg_detector(robot: Robot, settings: SupervisorSettings) -> LegDetector:
-    kinematics = RobotKinematics(robot)
-    leg_residual(kinematics, (0.0,) * 5, np.zeros(3))  # compiled now, not in the first check
+def _warm(kinematics: RobotKinematics) -> RobotKinematics:
+    """Return the kinematics, compiled now and not in the first check."""
+    leg_residual(kinematics, (0.0,) * 5, np.zeros(3))
     kinematics.transform_tip_to_base(np.zeros(5))
-    return LegDetector(kinematics, settings.leg_distance, settings.leg_latency, settings.leg_memory)
+    return kinematics

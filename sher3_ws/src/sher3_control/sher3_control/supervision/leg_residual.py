@@ -21,6 +21,7 @@ from sher3_common.vectors import Vector
 from sher3_description import ACTUATORS
 from sher3_kinematics import RobotKinematics
 
+from sher3_control.settings import SupervisorSettings
 from sher3_control.supervision.detectors import Finding, PlainDetector
 
 Array = NDArray[np.float64]
@@ -55,16 +56,16 @@ class LegDetector(PlainDetector):
 
     Args:
         kinematics: of the robot.
-        limit: motion of one leg's slider [m]; elastic deflection under the surgeon's hand stays below it.
-        latency: how long the motion must last [s].
-        memory: time constant with which slow changes of the residual are taken for granted [s].
+        settings: `leg_distance`, `leg_latency`, `leg_memory`.
     """
 
-    def __init__(self, kinematics: RobotKinematics, limit: float, latency: float, memory: float) -> None:
-        self._kinematics, self._limit, self._latency, self._memory = kinematics, limit, latency, memory
+    def __init__(self, kinematics: RobotKinematics, settings: SupervisorSettings) -> None:
+        self._kinematics = kinematics
+        self._limit, self._latency = settings.leg_distance, settings.leg_latency
+        self._memory = settings.leg_memory
         self._slow: Array | None = None
         self._last = self._since = -1
-        self._found = Finding(Reason.LEG_SLIPPED, 0.0, limit, "m", "delta")
+        self._found = Finding(Reason.LEG_SLIPPED, 0.0, self._limit, "m", "delta")
 
     def feed(self, stamp: int, tip: Vector, q: Vector) -> None:
         """Take a tracked position of the tip (3,) [m] in {b}, and the load encoders (5,) of the same stamp [ns]."""

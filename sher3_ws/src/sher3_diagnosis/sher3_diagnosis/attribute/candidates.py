@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 
+from sher3_diagnosis.attribute.ties import TIE, ranked
 from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.effect import Effect, Shape
 from sher3_diagnosis.evidence import Evidence
-from sher3_diagnosis.fitting import Fit, Term, fit, make_term
+from sher3_diagnosis.fit.fitting import Fit, Term, fit, make_term
 from sher3_diagnosis.thresholds import NEEDED, PARSIMONY, PRICE, UNLIKELY
 
 ROUNDS = 3
@@ -51,7 +52,7 @@ class Candidates:
             before = found
             for shape in shapes:
                 trial = fit(self.evidence.data, [*given, self.term(effect, site, shape)])
-                if self.possible(trial) and (found is None or cost(trial) < cost(found)):
+                if self.possible(trial) and (found is None or cost(trial) < cost(found) - TIE):
                     found = trial
             if found is None or found is before:
                 break
@@ -63,7 +64,7 @@ class Candidates:
         return possible(trial)
 
     def search(self, channels: Collection[Channel], given: Sequence[Term] = ()) -> list[Fit]:
-        """Fit every effect that shows on any of `channels`, best first.
+        """Fit every effect that shows on any of `channels`, best first; of equals, the law of fewest inputs first.
 
         An effect that contains a simpler one is left out unless it explains markedly more than that one does.
         """
@@ -76,7 +77,7 @@ class Candidates:
                 found = self.best(effect, site, given)
                 if found is not None:
                     out.append(found)
-        return sorted(self._without_idle_extensions(out, given), key=cost)
+        return ranked(self._without_idle_extensions(out, given), cost, inputs_of)
 
     def _without_idle_extensions(self, fits: list[Fit], given: Sequence[Term]) -> list[Fit]:
         base = fit(self.evidence.data, given).total
@@ -100,6 +101,11 @@ def possible(trial: Fit) -> bool:
 def complexity(term: Term) -> int:
     """Return the number of free numbers of a term."""
     return term.width + len(term.shape)
+
+
+def inputs_of(trial: Fit) -> int:
+    """Return the number of quantities that the law of the last term depends on."""
+    return len(trial.terms[-1].effect.inputs)
 
 
 def cost(trial: Fit) -> float:

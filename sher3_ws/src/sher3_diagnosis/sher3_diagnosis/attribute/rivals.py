@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from sher3_diagnosis.attribute.candidates import Candidates
 from sher3_diagnosis.channel import AT_TIP
 from sher3_diagnosis.evidence import Evidence
-from sher3_diagnosis.fitting import Fit, fit
+from sher3_diagnosis.fit.fitting import Fit, fit
 from sher3_diagnosis.thresholds import NEEDED, RIVAL
 
 RANKED = 6

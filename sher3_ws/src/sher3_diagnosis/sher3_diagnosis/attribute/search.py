@@ -9,11 +9,12 @@ from collections.abc import Callable
 from itertools import combinations
 
 from sher3_diagnosis.attribute.candidates import Candidates, complexity
-from sher3_diagnosis.attribute.constancy import constancy_of
 from sher3_diagnosis.attribute.rivals import RANKED, Attribution, with_rivals, without_term
+from sher3_diagnosis.attribute.steadiness import steadiness_of
+from sher3_diagnosis.attribute.ties import TIE, first_of_least
 from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.evidence import Evidence
-from sher3_diagnosis.fitting import Fit, Term, fit
+from sher3_diagnosis.fit.fitting import Fit, Term, fit
 from sher3_diagnosis.thresholds import (
     COMPLETE,
     MAX_CAUSES,
@@ -93,17 +94,17 @@ def _pair(
         if a.key == b.key or not a.channels & b.channels:
             continue
         trial = fit(candidates.evidence.data, [*chosen, a, b])
-        if trial.admissible and (best is None or trial.total < best.total):
+        if trial.admissible and (best is None or trial.total < best.total - TIE):
             best = trial
     return best
 
 
 def _prune(evidence: Evidence, current: Fit, left_over: Left) -> Fit:
-    """Backward pass: drop a cause whose loss nobody misses."""
+    """Backward pass: drop a cause whose loss nobody misses; of equals, the one that was chosen last."""
     first, base = len(evidence.nuisance), evidence.null().total
     while len(current.terms) > first + 1:
         reduced = {i: without_term(evidence, current, i) for i in range(first, len(current.terms))}
-        i = min(reduced, key=lambda j: reduced[j].total)
+        i = first_of_least({j: reduced[j].total for j in sorted(reduced, reverse=True)})
         price = NEEDED * complexity(current.terms[i]) + PARSIMONY * (base - current.total)
         if reduced[i].total - current.total > price or set(left_over(reduced[i])) - set(left_over(current)):
             return current
@@ -114,11 +115,11 @@ def _prune(evidence: Evidence, current: Fit, left_over: Left) -> Fit:
 def _steadier(evidence: Evidence, found: Attribution) -> Fit | None:
     """Where a cause changes size between excitations and a rival does not, the fit with that rival in its place."""
     for i in found.causes:
-        if constancy_of(evidence, found.fit, i).constant:
+        if steadiness_of(evidence, found.fit, i).constant:
             continue
         for rival in found.rivals[i]:
             terms = [*found.fit.terms[:i], rival.terms[-1], *found.fit.terms[i + 1 :]]
             trial = fit(evidence.data, terms)
-            if trial.admissible and constancy_of(evidence, trial, i).constant:
+            if trial.admissible and steadiness_of(evidence, trial, i).constant:
                 return trial
     return None

@@ -10,9 +10,10 @@ from collections.abc import Sequence
 
 from sher3_diagnosis.attribute.candidates import Candidates, complexity
 from sher3_diagnosis.attribute.rivals import without_term
+from sher3_diagnosis.attribute.ties import first_of_least
 from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.evidence import Evidence
-from sher3_diagnosis.fitting import Fit, Term, fit
+from sher3_diagnosis.fit.fitting import Fit, Term, fit
 from sher3_diagnosis.thresholds import NEEDED, PARSIMONY, PRICE
 
 
@@ -29,7 +30,7 @@ def grow(candidates: Candidates, effects: Sequence[Effect], current: Fit) -> Fit
     left = [candidates.term(e, site, {}) for e in effects for site in candidates.sites(e)]
     while left:
         trials = [fit(evidence.data, [*current.terms, t]) for t in left]
-        cheapest = min(range(len(left)), key=lambda i: trials[i].total + PRICE * complexity(left[i]))
+        cheapest = first_of_least({i: trials[i].total + PRICE * complexity(t) for i, t in enumerate(left)})
         if current.total - trials[cheapest].total < _needed(left[cheapest], base, current):
             break
         current = trials[cheapest]
@@ -46,7 +47,7 @@ def _prune(evidence: Evidence, current: Fit, base: float) -> Fit:
     first = len(evidence.nuisance)
     while len(current.terms) > first + 1:
         reduced = {i: without_term(evidence, current, i) for i in range(first, len(current.terms))}
-        least = min(reduced, key=lambda i: reduced[i].total)
+        least = first_of_least({i: reduced[i].total for i in sorted(reduced, reverse=True)})
         if reduced[least].total - current.total > _needed(current.terms[least], base, current):
             break
         current = reduced[least]

@@ -94,7 +94,7 @@ class Columns:
         """Return features at the samples of the target, relieved of what a run's mean leaves free, (N, p)."""
         self._learn(run, list(dict.fromkeys(factor for f in features for factor in f.factors)))
         whole = np.column_stack([self.feature(run, f) for f in features])
-        parts = [r.relieved(whole[r.ok]) for c in self._of(run) for r in (self.evidence.data.residuals[run][c],)]
+        parts = [r.centred(whole[r.ok]) for c in self._of(run) for r in (self.evidence.data.residuals[run][c],)]
         return np.vstack(parts)
 
 

@@ -17,7 +17,7 @@ from sher3_diagnosis.channel import Array
 from sher3_diagnosis.discover.columns import Columns
 from sher3_diagnosis.discover.dictionary import Group
 from sher3_diagnosis.discover.feature import Factor, Feature
-from sher3_diagnosis.fitting import RIDGE
+from sher3_diagnosis.fit.fitting import RIDGE
 from sher3_diagnosis.thresholds import PLAIN, PRICE, TERM_WORTH, TERMS
 
 REFINED = 40

@@ -7,7 +7,7 @@ from sher3_common.laws import LAWS
 from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.discover.feature import Factor, Quantities
 from sher3_diagnosis.discover.formula import FoundTerm
-from sher3_diagnosis.report.words import place, quantity
+from sher3_diagnosis.words import place, quantity
 
 NAMES = {
     "drive": "an extra effort of the drive on",

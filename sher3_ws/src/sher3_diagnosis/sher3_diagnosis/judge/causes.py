@@ -10,6 +10,7 @@ from sher3_diagnosis.attribute.rivals import Attribution, without_term
 from sher3_diagnosis.channel import AT_TIP, Channel
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.finding import Finding
+from sher3_diagnosis.judge.evidence.cause import shown_at
 from sher3_diagnosis.localise.gaps import Gap
 from sher3_diagnosis.localise.regimes import regime
 from sher3_diagnosis.quantify.closure import closure
@@ -27,8 +28,7 @@ def _cause(evidence: Evidence, attribution: Attribution, index: int) -> Cause:
     found = attribution.fit
     term = found.terms[index]
     without = without_term(evidence, found, index)
-    shows = [c for c in term.channels if evidence.excess(c) > 0.0] or list(term.channels)
-    channel = max(shows, key=lambda c: evidence.excess(c, without) - evidence.excess(c, found))
+    channel = shown_at(evidence, term, without, found)
     rivals = [f.terms[-1].effect.id for f in attribution.rivals[index]]
     return Cause(
         effect=term.effect.id,

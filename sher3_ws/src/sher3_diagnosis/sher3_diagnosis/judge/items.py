@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from sher3_diagnosis.attribute.rivals import Attribution, unlikeness, without_term
 from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.finding import Finding
-from sher3_diagnosis.fitting import Term
+from sher3_diagnosis.fit.fitting import Term
 from sher3_diagnosis.judge.evidence.cause import cause_evidence, shown_at
 from sher3_diagnosis.thresholds import COVERED
 
@@ -64,14 +64,18 @@ def items_of(finding: Finding) -> list[Item]:
 
 
 def gaps_of(finding: Finding, taken: set[Channel]) -> list[Item]:
-    """Return the significant gaps that no cause explains but for less than half."""
+    """Return the significant gaps that no cause explains but for less than half.
+
+    Only a larger gap of the same place may echo in one: every residual is predicted from its stage's measured input,
+    and the tip's from the encoders at the loads.
+    """
     evidence, gaps = finding.evidence, finding.significant
     out = []
     for channel, gap in gaps.items():
         null = max(evidence.excess(channel), 1.0)
         if channel in taken or evidence.excess(channel, finding.attribution.fit) < (1.0 - COVERED) * null:
             continue
-        others = [g.power for c, g in gaps.items() if c != channel]
+        others = [g.power for c, g in gaps.items() if c != channel and c.actuator == channel.actuator]
         beside = math.log(max(others) / gap.power) if others else 0.0
         numbers = {"power": gap.power, "ratio": gap.ratio, "beside": beside, "others": float(len(others))}
         out.append(Item(channel, None, numbers))

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from sher3_diagnosis.attribute.constancy import constancy_of
+from sher3_diagnosis.attribute.steadiness import steadiness_of
 from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.finding import ExactFinding, Finding
@@ -154,10 +154,10 @@ def _reproduced(stage: ExactFinding, calibration: Calibration | None) -> bool:
 def _inconstant(finding: Finding) -> Unexplained | None:
     """A cause whose size differs between excitations stands in for an effect the library does not have."""
     for i in finding.attribution.causes:
-        found = constancy_of(finding.evidence, finding.attribution.fit, i)
+        found = steadiness_of(finding.evidence, finding.attribution.fit, i)
         if not found.constant:
             term = finding.attribution.fit.terms[i]
-            channel = max(term.channels, key=finding.evidence.excess)
+            channel = max(sorted(term.channels), key=finding.evidence.excess)
             share = f"{found.spread:.1%} of what it explains differs"
             text = f"{term.effect.id} fits, but not with one size in all excitations ({share}); "
             return _described(finding, channel, text)

@@ -6,7 +6,7 @@ from collections.abc import Collection
 
 from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.evidence import Evidence
-from sher3_diagnosis.fitting import Fit
+from sher3_diagnosis.fit.fitting import Fit
 from sher3_diagnosis.localise.gaps import gap_of
 from sher3_diagnosis.quantify.closure import residual_after
 from sher3_diagnosis.thresholds import REMAINDER, SMALL_REMAINDER, SMALL_SHARE

@@ -8,7 +8,7 @@ from dataclasses import replace
 from sher3_diagnosis.attribute.rivals import Attribution
 from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.finding import Finding
-from sher3_diagnosis.fitting import fit
+from sher3_diagnosis.fit.fitting import fit
 from sher3_diagnosis.judge.calibration.calibration import Calibration
 from sher3_diagnosis.judge.items import items_of
 from sher3_diagnosis.judge.probabilities import LIBRARY, OUTSIDE, Judged, judged

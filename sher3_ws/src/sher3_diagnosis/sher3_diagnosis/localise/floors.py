@@ -35,7 +35,7 @@ def repeat_floors(excitations: Sequence[str], residuals: Sequence[Residuals]) ->
             x, y = residuals[a][channel], residuals[b][channel]
             n = min(len(x.values), len(y.values))
             ok = x.ok[:n] & y.ok[:n]
-            apart = x.relieved((x.values[:n] - y.values[:n])[ok])
+            apart = x.relieved((x.values[:n] - y.values[:n])[ok], ok)
             total[channel] = total.get(channel, 0.0) + 0.5 * np.sum(apart**2, axis=0)
             count[channel] += int(ok.sum())
     return {c: np.sqrt(t / count[c]) for c, t in total.items() if count[c] > ENOUGH}

@@ -14,7 +14,7 @@ import numpy as np
 
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.evidence import Evidence
-from sher3_diagnosis.fitting import Fit
+from sher3_diagnosis.fit.fitting import Fit
 from sher3_diagnosis.localise.regimes import regime_masks
 from sher3_diagnosis.thresholds import AGREEMENT
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.evidence import Evidence
-from sher3_diagnosis.fitting import Fit
+from sher3_diagnosis.fit.fitting import Fit
 from sher3_diagnosis.localise.gaps import PARTS
 from sher3_diagnosis.thresholds import AS_BUILT_CLOSURE, FLOOR_UNCERTAINTY, IDEALISED, MIN_RUNS, SHOWN
 from sher3_diagnosis.verdict import Interval

@@ -16,8 +16,8 @@ import numpy as np
 
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.evidence import Evidence
-from sher3_diagnosis.fitting import Fit
-from sher3_diagnosis.term import Term, make_term
+from sher3_diagnosis.fit.fitting import Fit
+from sher3_diagnosis.fit.term import Term, make_term
 from sher3_diagnosis.thresholds import PIECES
 
 STEP = 0.01

@@ -12,9 +12,9 @@ import numpy as np
 
 from sher3_diagnosis.channel import Array
 from sher3_diagnosis.evidence import Evidence
-from sher3_diagnosis.fitting import Fit
+from sher3_diagnosis.fit.fitting import Fit
+from sher3_diagnosis.fit.term import Term
 from sher3_diagnosis.quantify.local import Local, local
-from sher3_diagnosis.term import Term
 from sher3_diagnosis.thresholds import MIN_RUNS
 from sher3_diagnosis.verdict import Parameter
 

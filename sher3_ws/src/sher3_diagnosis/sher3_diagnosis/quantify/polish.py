@@ -6,9 +6,9 @@ from dataclasses import replace
 
 from sher3_diagnosis.attribute.rivals import Attribution
 from sher3_diagnosis.evidence import Evidence
-from sher3_diagnosis.fitting import Fit, fit
+from sher3_diagnosis.fit.fitting import Fit, fit
+from sher3_diagnosis.fit.term import make_term
 from sher3_diagnosis.quantify.local import local
-from sher3_diagnosis.term import make_term
 
 STEPS = 4
 """Steps at most: each is quadratic, and the grid is a few percent away."""

@@ -6,14 +6,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from sher3_diagnosis.attribute.rivals import Attribution
+from sher3_diagnosis.diagnosis import Diagnosis
 from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.finding import Finding
-from sher3_diagnosis.flow import Diagnosis
 from sher3_diagnosis.localise.pattern import Pattern, pattern_of
-from sher3_diagnosis.report.reporter import Isolability
 from sher3_diagnosis.report.summary import significant
-from sher3_diagnosis.report.words import listed, place, quantity, range_text, share, words
+from sher3_diagnosis.reporter import Isolability
 from sher3_diagnosis.verdict import Cause, Parameter
+from sher3_diagnosis.words import listed, place, quantity, range_text, share, words
 
 NO_LOSS = 1e-9
 """Explained loss below which a share of it means nothing."""

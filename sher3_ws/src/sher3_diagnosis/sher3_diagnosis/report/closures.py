@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from sher3_diagnosis.report.drawing import CORRECTED, FLOOR, INK, NOMINAL, TOGETHER, figure, to_svg
-from sher3_diagnosis.report.words import place, share, words
 from sher3_diagnosis.verdict import Interval, Verdict
+from sher3_diagnosis.words import place, share, words
 
 HALF = 0.5
 """Closure at which a dotted line helps the eye."""

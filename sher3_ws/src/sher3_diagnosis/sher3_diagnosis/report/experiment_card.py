@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from sher3_diagnosis.report.reporter import Reporter
-from sher3_diagnosis.report.words import words
+from sher3_diagnosis.reporter import Reporter
 from sher3_diagnosis.verdict import Verdict
+from sher3_diagnosis.words import words
 
 
 @dataclass(frozen=True)

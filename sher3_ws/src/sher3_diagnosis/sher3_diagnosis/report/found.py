@@ -6,8 +6,8 @@ from typing import Any, NamedTuple
 
 from sher3_diagnosis.discover.formula import Discovery
 from sher3_diagnosis.discover.sentence import component_name
-from sher3_diagnosis.report.words import place, quantity, range_text, share, words
 from sher3_diagnosis.verdict import Interval
+from sher3_diagnosis.words import place, quantity, range_text, share, words
 
 
 class FoundRow(NamedTuple):

@@ -5,8 +5,8 @@ from __future__ import annotations
 import jinja2
 from matplotlib import rc_context
 
+from sher3_diagnosis.diagnosis import Diagnosis
 from sher3_diagnosis.discover.formula import Discovery
-from sher3_diagnosis.flow import Diagnosis
 from sher3_diagnosis.report.causes import cause_cards
 from sher3_diagnosis.report.chain import chain
 from sher3_diagnosis.report.closures import closure_bars
@@ -14,10 +14,10 @@ from sher3_diagnosis.report.drawing import STYLE
 from sher3_diagnosis.report.experiment_card import experiment_card
 from sher3_diagnosis.report.found import closures, found_rows
 from sher3_diagnosis.report.regimes import regimes
-from sher3_diagnosis.report.reporter import Isolability
 from sher3_diagnosis.report.summary import command, five_lines, headline
 from sher3_diagnosis.report.traces import traces
-from sher3_diagnosis.report.words import place, words
+from sher3_diagnosis.reporter import Isolability
+from sher3_diagnosis.words import place, words
 
 TEMPLATE = "template.html"
 

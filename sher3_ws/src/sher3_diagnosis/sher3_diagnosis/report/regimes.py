@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from sher3_diagnosis.flow import Diagnosis
+from sher3_diagnosis.diagnosis import Diagnosis
 from sher3_diagnosis.localise.regimes import regime_powers
-from sher3_diagnosis.report.words import place, words
+from sher3_diagnosis.words import place, words
 
 SHOWN = 4
 """Channels shown, those with the largest gap."""

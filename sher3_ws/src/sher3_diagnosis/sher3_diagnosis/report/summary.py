@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from sher3_diagnosis.report.words import listed, place, quantity, range_text, ratio_text, share, words
 from sher3_diagnosis.verdict import Cause, Interval, Parameter, Verdict
+from sher3_diagnosis.words import listed, place, quantity, range_text, ratio_text, share, words
 
 LEFT_OVER = 1.2
 """Rms that is left, over the floor, from which the headline says what it is. A convention of the words."""

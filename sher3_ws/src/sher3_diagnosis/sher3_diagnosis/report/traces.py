@@ -9,14 +9,14 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.diagnosis import Diagnosis
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.finding import Finding
-from sher3_diagnosis.flow import Diagnosis
 from sher3_diagnosis.localise.gaps import PARTS
 from sher3_diagnosis.quantify.closure import residual_after
 from sher3_diagnosis.report.drawing import ABOVE, CORRECTED, FLOOR, MARGINS, NOMINAL, REAL, figure, to_svg
-from sher3_diagnosis.report.reporter import Reporter, Trace
-from sher3_diagnosis.report.words import place, words
+from sher3_diagnosis.reporter import Reporter, Trace
+from sher3_diagnosis.words import place, words
 
 WORST = 3
 """Channels shown of each part of the machine."""

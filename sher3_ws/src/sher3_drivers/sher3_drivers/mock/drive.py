@@ -31,6 +31,7 @@ _GARBLED_LIMIT = 3
 """Commands in a row that fail their check, after which a drive stops by itself."""
 _GO_ON = 0x0F
 """Controlword that keeps an enabled drive enabled."""
+_HALF = 1 << 31
 _FORMATS = {"u8": "B", "i8": "b", "u16": "H", "i16": "h", "u32": "I", "i32": "i"}
 
 
@@ -75,6 +76,11 @@ class _Pdo:
         self.checked = self.addresses[-1:] == [od.COMMAND_CHECK]
         self.controlword = self.addresses.index(od.CONTROLWORD) if od.CONTROLWORD in self.addresses else None
         self.data = struct.Struct("<" + layout)
+
+
+def _wrapped(count: int) -> int:
+    """Return a count as its register of 32 bits holds it."""
+    return count if -_HALF <= count < _HALF else (count + _HALF) % (2 * _HALF) - _HALF
 
 
 def _picker(keys: Sequence[Any]) -> Callable[[Any], tuple[Any, ...]]:
@@ -129,6 +135,8 @@ class MockDrive:
         tamper: replaces the reading before it is reported. The seam for stuck, wrong, delayed and garbage values.
         mistake: replaces the target velocity [counts] of a command that has arrived whole.
         stray: replaces the velocity that the power stage executes, as long as it has power; the echo does not show it.
+        turned: replaces the velocity of the motor, with power or without.
+        misstates: bits of the statusword that are the other way.
     """
 
     def __init__(self, scale: AxisScale, node_id: int, send: Callable[[bytes], None], channel: int = 0) -> None:
@@ -140,6 +148,8 @@ class MockDrive:
         self.tamper: Callable[[AxisReading], AxisReading] | None = None
         self.mistake: Callable[[float], float] | None = None
         self.stray: Callable[[float], float] | None = None
+        self.turned: Callable[[float], float] | None = None
+        self.misstates = 0
         self.counter = 0
         self.torque_off = False
         self._garbled, self._commanded = 0, 0
@@ -300,10 +310,13 @@ class MockDrive:
             self._demand = max(0, self._demand - step) if self._demand > 0 else min(0, self._demand + step)
         if self.state == FAULT_REACTION and self._demand == 0:
             self.state = FAULT
-        told, self._astray = self._demand * self.scale.velocity * self._micro, 0.0
+        moves = told = self._demand * self.scale.velocity * self._micro
         if self.stray is not None and self.state in (ENABLED, QUICK_STOP, FAULT_REACTION):
-            self._astray = self.stray(told) - told
-        return told + self._astray
+            moves = self.stray(moves)
+        if self.turned is not None:
+            moves = self.turned(moves)
+        self._astray = moves - told
+        return moves
 
     def sample(self, motor: float, load: float, demand: float, effort: float) -> bytes:
         """Take what the plant says at a SYNC, SI units, and return the synchronous TPDOs as frames."""
@@ -315,11 +328,11 @@ class MockDrive:
         if not -32768 <= torque <= 32767:
             torque = max(-32768, min(32767, torque))
         self._readings = readings = (
-            round(load / scale.load_encoder),
+            _wrapped(round(load / scale.load_encoder)),
             self.statusword,
             torque,
-            round(motor / scale.motor_encoder),
-            round(demand / scale.velocity),
+            _wrapped(round(motor / scale.motor_encoder)),
+            _wrapped(round(demand / scale.velocity)),
         )
         if not (self.powered and self.node.operational):
             return b""
@@ -335,4 +348,4 @@ class MockDrive:
         enabled = self.state == ENABLED
         return (
             self.state | _REMOTE | _VOLTAGE * (not self.torque_off) | _FOLLOWS * enabled | _LIMIT_ACTIVE * self._limited
-        )
+        ) ^ self.misstates

@@ -12,6 +12,7 @@ from sher3_diagnosis.effect import Best, Shape, Signature
 from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
+from sher3_effects.drift.warmth import warm, warming
 from sher3_effects.page import Page
 from sher3_effects.view import AxisView
 
@@ -34,7 +35,7 @@ class ForceDrift(Page):
 
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
         """Nothing to search; impossible without a temperature."""
-        return [{}] if any(v.warmth.any() for v in views) else []
+        return [{}] if warm(views) else []
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
         """Six columns: the warmth."""
@@ -67,8 +68,7 @@ class SensorDrift(Page):
 
     def shapes(self, views: Sequence[Any], site: str) -> list[Shape]:
         """Return time (1) and, where it was recorded and changes, temperature (0)."""
-        known = any(np.ptp(v.warmth) > 0.0 for v in views)
-        return [{"with_time": 1.0}, *([{"with_time": 0.0}] if known else [])]
+        return [{"with_time": 1.0}, *([{"with_time": 0.0}] if warming(views) else [])]
 
     def signature(self, view: Any, site: str, shape: Shape) -> Signature:
         """Return six columns: the share of the test that has passed, or of the warming."""

@@ -13,6 +13,7 @@ from sher3_diagnosis.effect import Best, Shape, Signature, column
 from sher3_sim.effect import SLIDERS, PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
+from sher3_effects.drift.warmth import warm
 from sher3_effects.page import Page, Tolerated
 from sher3_effects.table_view import TableView
 from sher3_effects.view import RobotView
@@ -41,7 +42,7 @@ class ThermalExpansion(Page):
 
     def shapes(self, views: Sequence[RobotView], site: str) -> list[Shape]:
         """What grows: 0 everything, 1 the links, 2 the arm, 3 the slider travel."""
-        if all(np.ptp(v.warmth) == 0.0 and not v.warmth.any() for v in views):
+        if not warm(views):
             return []
         return [{"part": float(i)} for i in range(4)]
 
@@ -84,7 +85,7 @@ class TableExpansion(Page):
 
     def shapes(self, views: Sequence[Any], site: str) -> list[Shape]:
         """Return one shape, where a temperature was recorded and is not the reference throughout."""
-        return [{}] if any(v.warmth.any() for v in views) else []
+        return [{}] if warm(views) else []
 
     def signature(self, view: TableView, site: str, shape: Shape) -> Signature:
         """Return one column: the target times what the table is warmer than the reference."""

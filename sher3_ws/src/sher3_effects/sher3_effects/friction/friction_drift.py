@@ -25,6 +25,7 @@ class FrictionDrift(Page):
     id, family, stage = "friction_drift", "friction", "motor_mechanics"
     inputs = ("direction", "time", "temperature")
     best = Best("reversals", "reversals of several amplitudes and speeds separate friction laws")
+    leaves_out = "how its level varies over the stroke"
     extends = ("coulomb_friction", "presliding_friction")
     explanation = (
         "Friction is not the same early and late, cold and warm: the step at a reversal changes with time or "

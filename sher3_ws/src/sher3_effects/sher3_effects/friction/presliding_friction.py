@@ -24,6 +24,7 @@ class PreslidingFriction(Page):
     on_axis = {"force": "coulomb"}
     dry = True
     best = Best("reversals", "reversals of several amplitudes and speeds separate friction laws")
+    leaves_out = "how its level varies over the stroke"
     explanation = (
         "After a reversal the friction force builds up gradually, over a micrometre-scale stroke, as bristles "
         "bend before they "

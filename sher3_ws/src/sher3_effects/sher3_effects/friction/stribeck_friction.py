@@ -24,6 +24,7 @@ class StribeckFriction(Page):
     kinds = ("robot", "axis")
     dry = True
     best = Best("reversals", "reversals of several amplitudes and speeds separate friction laws")
+    leaves_out = "how its level varies over the stroke"
     extends = ("coulomb_friction",)
     explanation = (
         "Friction is higher when the axis starts or creeps than when it runs: a hump of extra force at low "

@@ -22,6 +22,7 @@ class ForceSaturation(Page):
     id, family, stage = "force_saturation", "limit", "drive"
     inputs = ("force", "command")
     best = Best("steps", "large and small steps separate limits from lags")
+    leaves_out = "how it bends towards the limit"
     on_axis = {"limit": "limit"}
     explanation = "The reported force stops rising at a level below the drive's limit; below it the drive behaves."
     siblings = {"drive_lag": "late at every level"}

@@ -21,6 +21,7 @@ class VelocityDeadband(Page):
     id, family, stage = "velocity_deadband", "limit", "drive"
     inputs = ("command",)
     best = Best("steps", "large and small steps separate limits from lags")
+    leaves_out = "its rounded edge"
     explanation = "Small velocity demands do nothing: the drive echoes them but its force behaves as if they were zero."
     siblings = {"drive_lag": "late at every speed"}
     finer = {"width": (0.7, 0.8, 0.87, 0.94, 1.07, 1.15, 1.25, 1.4)}

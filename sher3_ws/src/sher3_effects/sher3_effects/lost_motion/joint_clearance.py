@@ -29,6 +29,7 @@ class JointClearance(Page):
     id, family, stage = "joint_clearance", "lost_motion", "mechanism"
     inputs = ("direction", "load", "posture")
     best = Best("loads", "known loads at rest separate a fixed gap from a spring")
+    leaves_out = "the elasticity of its contact"
     places = ("leg", "tilt")
     discrete = frozenset({"by_load"})
     explanation = (

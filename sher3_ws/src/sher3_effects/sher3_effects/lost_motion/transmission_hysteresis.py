@@ -22,6 +22,7 @@ class TransmissionHysteresis(Page):
     kinds = ("robot", "axis", "servo")
     needs = ("load",)
     best = Best("loads", "known loads at rest separate a fixed gap from a spring")
+    leaves_out = "the shape of its loops"
     companion = "friction"
     explanation = (
         "Going and coming differ by a fixed amount that builds up gradually after each reversal (harmonic drive, belt)."

@@ -23,6 +23,7 @@ class EncoderEccentricity(Page):
     inputs = ("position",)
     breaks = "load_encoder"
     best = Best("sweep", "constant speeds over several revolutions separate periods")
+    leaves_out = "further harmonics"
     explanation = "The load encoder's reading swings once per lead while the load, and the tip, run smoothly."
     siblings = {"transmission_ripple": "the load itself moves, and the tip with it"}
 

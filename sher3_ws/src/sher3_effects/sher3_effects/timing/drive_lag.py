@@ -22,6 +22,7 @@ class DriveLag(Page):
     id, family, stage = "drive_lag", "timing", "drive"
     inputs = ("command", "force")
     best = Best("steps", "steps of several amplitudes show a dead time as an onset and a lag as a slope")
+    leaves_out = "a second pole"
     explanation = (
         "The force follows the velocity loop's demand with a lag: too small at the start of each step, too "
         "large at its end."

@@ -24,6 +24,7 @@ class CableDrag(Page):
     id, family, stage = "cable_drag", "wrench", "motor_mechanics"
     inputs = ("position", "direction", "posture")
     best = Best("loads", "known loads in several orientations separate bias, weight and cross-talk")
+    leaves_out = "how it stiffens"
     places = ("axis", "force_sensor")
     extends = ("gravity_load", "presliding_friction")
     explanation = (

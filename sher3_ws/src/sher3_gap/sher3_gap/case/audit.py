@@ -16,8 +16,8 @@ from sher3_description import ACTUATORS, Robot
 from sher3_diagnosis.channel import Array
 from sher3_diagnosis.filter import EDGE
 
-from sher3_gap.case.signals import RunSignals
 from sher3_gap.errors import CaseError
+from sher3_gap.signals import RunSignals
 
 BEYOND = 2.0
 """Times its range at which a reading can no longer be meant in SI units."""

@@ -15,15 +15,13 @@ from sher3_diagnosis.channel import Array
 from sher3_diagnosis.filter import low_pass
 
 from sher3_gap.case.audit import check_parameters
-from sher3_gap.case.signals import RunSignals
 from sher3_gap.case.ticks import Gap, check_finite, in_order, is_live, on_grid, tick_grid
 from sher3_gap.errors import CaseError
+from sher3_gap.signals import RAMP_LIMIT, RunSignals
 from sher3_gap.stages.exact import with_lateness
 
 LOADED = 0.15
 """Force beside the tool's weight [N] from which a tip is not free."""
-RAMP_LIMIT = 0.25
-"""Longest time from an unloaded tip to a stated plateau over which the load is taken as unknown, s."""
 
 
 def load_case(path: Path, robot: Path | None = None) -> tuple[list[RunSignals], Robot]:

@@ -17,6 +17,7 @@ from rclpy.signals import SignalHandlerOptions
 from sher3_bags import Run, Stream, read_run, write_case
 from sher3_bags.errors import CaseError
 from sher3_bags.recording.recorder_node import RecorderNode
+from sher3_bags.run import CONTRACT_TOPICS
 from sher3_common import FileError, parse_json
 from sher3_common.samples import JointSample, TextSample, WrenchSample
 from sher3_description import Robot
@@ -29,20 +30,8 @@ from sher3_gap.case.ticks import LONGEST_HOLE, LOST_SHARE
 from sher3_gap.excitation import Excitation
 from sher3_gap.excitation.player import Phase, Player, PlayError
 
-RECORDED = (
-    "setpoint_js",
-    "servo_jv",
-    "drives/setpoint_jv",
-    "drives/measured_js",
-    "measured_js",
-    "measured_cp",
-    "force/measured_cf",
-    "pedal/measured",
-    "tracker/measured_cp",
-    "temperature",
-    "operating_state",
-)
-"""Topics of a recorded run (contract, section 4)."""
+RECORDED = tuple(topic for topic in CONTRACT_TOPICS if topic != "servo_cv")
+"""Topics of a recorded run; an excitation commands axes, so no speed of the tip is commanded."""
 LINGER = 100_000_000
 """Nanoseconds the recorder listens on after the last tick."""
 TRIES = 5

@@ -19,12 +19,12 @@ from sher3_effects import library, to_effects
 from sher3_sim import PlantEffect
 
 from sher3_gap.case.loading import signals_of
-from sher3_gap.case.signals import RunSignals
 from sher3_gap.evidence import gather
 from sher3_gap.excitation import Excitation, catalogue, excite
 from sher3_gap.experiments.family import CHOICES, Choices, Design, build
 from sher3_gap.experiments.rehearsal import rehearse
 from sher3_gap.experiments.separation import Prediction, Separation, floors_of, separation
+from sher3_gap.signals import RunSignals
 from sher3_gap.stages.floors import Floors
 from sher3_gap.stages.units import PLACES
 

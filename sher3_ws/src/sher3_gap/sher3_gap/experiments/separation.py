@@ -12,12 +12,12 @@ import numpy as np
 from sher3_description import Robot
 from sher3_diagnosis.attribute.candidates import Candidates
 from sher3_diagnosis.channel import Channel
-from sher3_diagnosis.fitting import Fit, Whitened
+from sher3_diagnosis.fit.fitting import Fit, Whitened
 from sher3_diagnosis.thresholds import NEEDED, RIVAL
 from sher3_effects import library
 
-from sher3_gap.case.signals import RunSignals
 from sher3_gap.evidence import SherEvidence, gather
+from sher3_gap.signals import RunSignals
 from sher3_gap.stages.floors import Floors
 
 

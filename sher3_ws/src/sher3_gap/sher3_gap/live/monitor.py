@@ -20,10 +20,9 @@ from sher3_diagnosis.channel import Channel
 from sher3_sim import PlantEffect
 
 from sher3_gap.case.loading import free, signals_of
-from sher3_gap.case.signals import RunSignals
 from sher3_gap.case.ticks import LONGEST_HOLE
 from sher3_gap.errors import CaseError
-from sher3_gap.simulate.twin import driven_as
+from sher3_gap.signals import RunSignals
 from sher3_gap.stages.exact import EXACT, controller_error, transport_error
 from sher3_gap.stages.floors import Floors, chatter_floors, resolution_floors
 from sher3_gap.stages.geometry import Geometry
@@ -36,6 +35,7 @@ from sher3_gap.stages.residuals import (
     wrench_residual,
 )
 from sher3_gap.stages.units import unit_of
+from sher3_gap.twin import driven_as
 
 TOPICS = ("setpoint_js", "servo_jv", "drives/setpoint_jv", "drives/measured_js", "measured_js", "force/measured_cf")
 NEEDED = ("drives/measured_js", "drives/setpoint_jv", "measured_js")
@@ -118,7 +118,7 @@ class Monitor:
         twin = driven_as(run, self.robot, effects=list(self.effects))
         assert twin is not None
         known = _residuals(twin, self.robot, Geometry(self.robot))
-        return {c: Residual(r.values - known[c].values, r.ok) for c, r in real.items() if c in known}
+        return {c: Residual(r.values - known[c].values, r.ok, told=r.told) for c, r in real.items() if c in known}
 
     def stretch(self, seconds: float) -> RunSignals | None:
         """Return the newest seconds as a run; None while they are not whole."""

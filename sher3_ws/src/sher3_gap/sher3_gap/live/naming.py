@@ -13,9 +13,9 @@ from sher3_description import Robot
 from sher3_diagnosis.report.summary import headline
 from sher3_diagnosis.verdict import Verdict
 
-from sher3_gap.case.signals import RunSignals
 from sher3_gap.errors import CaseError
 from sher3_gap.sher import diagnose_runs
+from sher3_gap.signals import RunSignals
 
 PIECES = 5
 """Pieces a stretch is cut into: each is left out of a fit once."""

@@ -6,13 +6,13 @@ from collections.abc import Sequence
 
 import numpy as np
 from sher3_diagnosis.report.drawing import ABOVE, CORRECTED, MARGINS, NOMINAL, figure, to_svg
-from sher3_diagnosis.report.reporter import Trace
+from sher3_diagnosis.reporter import Trace
 from sher3_diagnosis.verdict import Cause
 from sher3_effects import to_effects
 
 from sher3_gap.evidence import SherEvidence
 from sher3_gap.simulate.tip import tip_error
-from sher3_gap.simulate.twin import driven_as
+from sher3_gap.twin import driven_as
 
 
 def free_run_trace(evidence: SherEvidence, causes: Sequence[Cause]) -> Trace | None:

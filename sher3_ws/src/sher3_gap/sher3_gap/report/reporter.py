@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from sher3_description import ACTUATORS
 from sher3_diagnosis.channel import STAGES, Array, Channel
 from sher3_diagnosis.finding import Findings
-from sher3_diagnosis.report.reporter import FLOWS, Isolability, Output, Reporter, Trace
+from sher3_diagnosis.reporter import FLOWS, Isolability, Output, Reporter, Trace
 
 from sher3_gap.evidence import SherEvidence
 from sher3_gap.excitation import catalogue

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from sher3_diagnosis.report.reporter import Isolability, counted
+from sher3_diagnosis.reporter import Isolability, counted
 
-from sher3_gap.case.signals import RunSignals
+from sher3_gap.signals import RunSignals
 from sher3_gap.stages.isolability import structure
 
 TOPIC_OF = {

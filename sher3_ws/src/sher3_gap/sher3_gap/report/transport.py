@@ -7,12 +7,12 @@ from typing import NamedTuple
 import numpy as np
 from sher3_description import ACTUATORS
 from sher3_diagnosis.report.drawing import NOMINAL, REAL, figure, to_svg
-from sher3_diagnosis.report.reporter import Trace
 from sher3_diagnosis.report.traces import scale_of
-from sher3_diagnosis.report.words import place
+from sher3_diagnosis.reporter import Trace
+from sher3_diagnosis.words import place
 
-from sher3_gap.case.signals import RunSignals
 from sher3_gap.evidence import SherEvidence
+from sher3_gap.signals import RunSignals
 from sher3_gap.stages.exact import delayed
 from sher3_gap.stages.units import ROTARY_AXES
 

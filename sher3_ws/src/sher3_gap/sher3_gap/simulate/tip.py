@@ -11,17 +11,17 @@ from collections.abc import Sequence
 import numpy as np
 from sher3_description import Robot
 from sher3_diagnosis.channel import Array
-from sher3_diagnosis.fitting import Fit, Term
+from sher3_diagnosis.fit.fitting import Fit, Term
 from sher3_diagnosis.quantify.closure import interval_of
 from sher3_diagnosis.thresholds import NO_TIP_GAP
 from sher3_diagnosis.tolerance import NUISANCE
 from sher3_diagnosis.verdict import Cause, Interval
 from sher3_effects import to_effects
 
-from sher3_gap.case.signals import RunSignals
 from sher3_gap.evidence import SherEvidence
-from sher3_gap.simulate.twin import driven_as
+from sher3_gap.signals import RunSignals
 from sher3_gap.stages.units import LOADED_TIP, TIP
+from sher3_gap.twin import driven_as
 
 
 def tip_closure(evidence: SherEvidence, causes: Sequence[Cause], fit: Fit) -> Interval | None:

@@ -12,7 +12,7 @@ from sher3_diagnosis.thresholds import REPRODUCED, SAME_GAIN
 from sher3_diagnosis.verdict import Cause, Parameter
 from sher3_effects.scale.controller_gain import ControllerGain
 
-from sher3_gap.case.signals import RunSignals
+from sher3_gap.signals import RunSignals
 from sher3_gap.stages.exact import EXACT, controller_error, host_law
 from sher3_gap.stages.exact_findings import exact_cause, exact_finding, exact_place
 

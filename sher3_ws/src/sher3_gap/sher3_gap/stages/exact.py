@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from sher3_description import Robot
 from sher3_diagnosis.channel import Array
 
-from sher3_gap.case.signals import RunSignals
+from sher3_gap.signals import RunSignals
 
 EXACT = 1e-9
 """Share of an axis' velocity limit below which a difference is rounding."""

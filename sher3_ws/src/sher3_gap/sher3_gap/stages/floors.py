@@ -15,7 +15,7 @@ from sher3_diagnosis.channel import Channel, Floors, Residuals
 from sher3_diagnosis.filter import BANDWIDTH
 from sher3_diagnosis.localise.floors import relieved_rms, repeat_floors
 
-from sher3_gap.case.signals import RunSignals
+from sher3_gap.signals import RunSignals
 from sher3_gap.stages.geometry import Geometry
 
 CHATTER_RATE = 12.0

@@ -10,6 +10,7 @@ from sher3_common.compiled import compiled
 from sher3_description import Robot
 from sher3_description.contract import GRAVITY
 from sher3_diagnosis.channel import Array
+from sher3_diagnosis.filter import settled
 from sher3_kinematics.kernel import (
     KernelParameters,
     delta_forward,
@@ -19,7 +20,7 @@ from sher3_kinematics.kernel import (
     tip_pose_into,
 )
 
-from sher3_gap.case.signals import RunSignals
+from sher3_gap.signals import RAMP_LIMIT, RunSignals
 
 
 @compiled
@@ -45,7 +46,8 @@ class Path:
         contact: (g, 3) known force on the tip in {b}; contact_force: (g, 5) J^T W.
         loaded: (g,) a known load is on the tip.
         tool_wrench, contact_wrench: (g, 6) what the sensor reads nominally of the tool's weight and of the
-            contact, in {f}.
+            contact, in {f}; while a load changes, by as much as the reading says it has.
+        told: (g, 6, 6) what the reading tells beside that; None where no load changes.
     """
 
     position: Array
@@ -57,11 +59,26 @@ class Path:
     loaded: np.ndarray
     tool_wrench: Array
     contact_wrench: Array
+    told: Array | None = None
 
     @property
     def nominal_wrench(self) -> Array:
         """What the force sensor reads nominally, (g, 6) in {f}."""
         return self.tool_wrench + self.contact_wrench
+
+
+def changing(run: RunSignals) -> tuple[Array, Array]:
+    """Return the stated tip loads that come or go at samples of the grid, N in {b}: twice (g, 3), zero where none.
+
+    A share of each acts, which nobody states. Those of one load and the next are two, so that they may overlap.
+    """
+    clock = run.grid * run.period
+    doubtful = ~settled(run.loaded_ok)
+    out = np.zeros((2, len(clock), 3))
+    for n, (start, stop, *force) in enumerate(run.payload):
+        ends = np.minimum(np.abs(clock - start), np.abs(clock - stop))
+        out[n % 2][doubtful & (ends <= RAMP_LIMIT)] = force
+    return out[0], out[1]
 
 
 class Geometry:
@@ -100,7 +117,20 @@ class Geometry:
         contact_force = np.einsum("gji,gj->gi", jacobian[:, :3], contact)
         tool, touch = self._wrench(rotation, contact)
         loaded = np.abs(contact).max(axis=1) > 0.0
-        return Path(position, rotation, jacobian, gravity, contact, contact_force, loaded, tool, touch)
+        told = None
+        directions = [self._wrench(rotation, force)[1] for force in changing(run)]
+        if run.wrench is not None and any(d.any() for d in directions):
+            share, told = self._shares(run.to_grid(run.wrench) - tool - touch, np.stack(directions, axis=2))
+            touch = touch + share
+        return Path(position, rotation, jacobian, gravity, contact, contact_force, loaded, tool, touch, told)
+
+    def _shares(self, left: Array, directions: Array) -> tuple[Array, Array]:
+        """Return the part of a wrench (g, 6) along directions (g, 6, k), and what is left of one, (g, 6, 6)."""
+        sensor = self.robot.force_sensor
+        scale = np.array([sensor.noise_force] * 3 + [sensor.noise_torque] * 3)
+        along = (directions / scale[:, None]) @ np.linalg.pinv(directions / scale[:, None])
+        along = along * scale[:, None] / scale
+        return np.einsum("gij,gj->gi", along, left), np.eye(6) - along
 
     def _wrench(self, rotation: Array, contact: Array) -> tuple[Array, Array]:
         sensor = self.robot.force_sensor
@@ -118,8 +148,7 @@ class Geometry:
         """Gamma (g, 6, 6) for platform centres (g, 3): columns (u; b x u), links of leg 1, 2, 3 in pairs."""
         delta = self.robot.delta
         half = 0.5 * delta.leg_width
-        inner = np.sqrt(delta.platform_radius**2 - half**2)
-        spread = np.sqrt(delta.base_radius**2 - half**2) - inner
+        inner, spread = delta.platform_distance, delta.leg_offset
         gamma = np.empty((len(platform), 6, 6))
         for k, azimuth in enumerate(delta.leg_azimuth):
             radial = np.array([np.cos(azimuth), np.sin(azimuth), 0.0])

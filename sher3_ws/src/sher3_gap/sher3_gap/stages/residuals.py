@@ -13,8 +13,8 @@ from sher3_description import ACTUATORS, Robot
 from sher3_diagnosis.channel import Array, Channel, Residual, Residuals
 from sher3_diagnosis.filter import settled
 
-from sher3_gap.case.signals import RunSignals
-from sher3_gap.stages.geometry import Geometry
+from sher3_gap.signals import RunSignals
+from sher3_gap.stages.geometry import Geometry, changing
 
 ZEROS_FREE = 0.96
 """Share of a run's mean encoder difference that is taken off: the zeros of two encoders differ by a share of a count
@@ -158,13 +158,18 @@ def tip_residual(run: RunSignals, geometry: Geometry) -> Residuals:
 
 
 def wrench_residual(run: RunSignals, geometry: Geometry) -> Residuals:
-    """Force sensor reading minus tool gravity and the known contact, in {f}: force (N), torque (N m)."""
+    """Force sensor reading minus tool gravity and the known contact, in {f}: force (N), torque (N m).
+
+    While a stated load comes or goes its direction is known and its size is not: what disagrees with every size counts.
+    """
     if run.wrench is None:
         return {}
     path = geometry.path(run)
     values = run.to_grid(run.wrench) - path.nominal_wrench
     ok = run.inner & settled(run.loaded_ok)
-    return {Channel("sensing", "force_sensor"): Residual(values, ok)}
+    if path.told is not None:
+        ok |= run.inner & np.any(changing(run), axis=(0, 2))
+    return {Channel("sensing", "force_sensor"): Residual(values, ok, told=path.told)}
 
 
 def all_residuals(run: RunSignals, robot: Robot, geometry: Geometry, demand: Demand | None = None) -> Residuals:

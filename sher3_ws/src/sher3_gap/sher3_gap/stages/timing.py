@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from sher3_description import Robot
 from sher3_diagnosis.channel import Array
 
-from sher3_gap.case.signals import RunSignals
+from sher3_gap.signals import RunSignals
 from sher3_gap.stages.exact import delayed, shifted
 from sher3_gap.stages.residuals import Demand
 

@@ -24,7 +24,7 @@ from sher3_effects.timing.command_delay import CommandDelay
 from sher3_effects.timing.command_jitter import CommandJitter
 from sher3_effects.timing.dropped_commands import DroppedCommands
 
-from sher3_gap.case.signals import RunSignals
+from sher3_gap.signals import RunSignals
 from sher3_gap.stages.exact import EXACT, ROUNDING
 from sher3_gap.stages.exact_findings import exact_cause, exact_finding, exact_place
 from sher3_gap.stages.timing import Timing
@@ -123,9 +123,10 @@ def _causes(late: Lateness, without: Collection[str]) -> tuple[list[Cause], floa
         for i in late.odd:
             skew = late.seconds(late.timing.latency[i] - late.usual)
             causes.append(exact_cause(AxisSkew.id, ACTUATORS[i], late.constant, skew=skew))
-    if _dropping(late) and DroppedCommands.id not in without:
-        closure = late.per_tick
-        causes.append(exact_cause(DroppedCommands.id, late.site, late.per_tick, probability=_probability(late.timing)))
+    if _dropping(late):  # and no jitter, even where drops are not in the library: a continuum leaves no lattice
+        if DroppedCommands.id not in without:
+            closure, lost = late.per_tick, _probability(late.timing)
+            causes.append(exact_cause(DroppedCommands.id, late.site, late.per_tick, probability=lost))
     elif CommandJitter.id not in without and (late.jittery or late.random_share > ANY_JITTER):
         closure = late.per_tick
         share = late.per_tick if late.jittery else late.random_share

@@ -14,7 +14,7 @@ from sher3_diagnosis.filter import DECIMATED_RATE
 from sher3_effects.operators import dahl
 from sher3_effects.view import NominalAxis
 
-from sher3_gap.case.signals import RunSignals
+from sher3_gap.signals import RunSignals
 from sher3_gap.stages.geometry import Geometry, Path
 from sher3_gap.stages.quantities import everything, quantities
 from sher3_gap.stages.recorded import recorded_at

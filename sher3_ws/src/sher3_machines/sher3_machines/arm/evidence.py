@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from sher3_diagnosis.channel import Array, Residual
 from sher3_diagnosis.evidence import Evidence
-from sher3_diagnosis.fitting import Fit, make_term
+from sher3_diagnosis.fit.fitting import Fit, make_term
+from sher3_diagnosis.fit.whitened import Whitened
 from sher3_diagnosis.quantify.closure import residual_after
-from sher3_diagnosis.whitened import Whitened
 
 from sher3_machines.arm.frames import TIP, Frames, fitted_view, pose_error
 from sher3_machines.arm.kinematics import Arm

@@ -13,7 +13,7 @@ from sher3_diagnosis.attribute.search import Left, Say
 from sher3_diagnosis.attribute.stepwise import grow
 from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.finding import Finding
-from sher3_diagnosis.fitting import Fit
+from sher3_diagnosis.fit.fitting import Fit
 from sher3_diagnosis.machine import Machine, Policy
 from sher3_diagnosis.quantify.closure import closure
 from sher3_diagnosis.verdict import Cause, Interval

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from sher3_diagnosis.channel import Channel, Residual, Residuals
 from sher3_diagnosis.evidence import Evidence
-from sher3_diagnosis.whitened import Whitened
+from sher3_diagnosis.fit.whitened import Whitened
 
 from sher3_machines.axes.description import Axis
 from sher3_machines.axes.floors import floors_of
-from sher3_machines.axes.identify import identify_mass
+from sher3_machines.axes.identification.identify import identify_mass
 from sher3_machines.axes.record import AxesRun
 from sher3_machines.axes.signals import signals_of
 from sher3_machines.axes.view import AxisView

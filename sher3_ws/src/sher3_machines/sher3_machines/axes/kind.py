@@ -9,7 +9,7 @@ from sher3_diagnosis.channel import Array
 
 from sher3_machines.axes.description import AxesDescription
 from sher3_machines.axes.machine import Axes
-from sher3_machines.axes.record import AxesRun, axes_run
+from sher3_machines.axes.record import AxesRun, axes_run, parts_of_record
 from sher3_machines.intake.kind import Kind
 from sher3_machines.intake.tables import Tables
 
@@ -23,6 +23,10 @@ class AxesKind(Kind[AxesDescription, AxesRun]):
     def read(self, name: str, tables: Tables, description: AxesDescription) -> AxesRun:
         """Bring a data file onto a uniform clock; raises MachineError."""
         return axes_run(name, tables, description)
+
+    def parts(self, name: str, tables: Tables, description: AxesDescription) -> tuple[dict[str, Tables], str]:
+        """Return the parts of a record whose clock has holes or jumps back; repeats stay whole."""
+        return ({name: tables}, "") if description.repeats else parts_of_record(name, tables, description)
 
     def pack(self, run: AxesRun) -> Mapping[str, Array]:
         """Return the period and every signal."""

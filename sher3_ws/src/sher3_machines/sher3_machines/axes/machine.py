@@ -20,14 +20,14 @@ from sher3_effects.friction.viscous_friction import ViscousOnAxis
 
 from sher3_machines.axes.description import AxesDescription, Axis
 from sher3_machines.axes.evidence import AxisEvidence, gather_axis
-from sher3_machines.axes.fast import requantified
 from sher3_machines.axes.health import dead_channels, without_dead
+from sher3_machines.axes.identification.fast import requantified
+from sher3_machines.axes.identification.refine import refine_free
+from sher3_machines.axes.identification.search import causes_of_axis
 from sher3_machines.axes.limits import EFFECT as LIMIT
 from sher3_machines.axes.limits import limit_finding
 from sher3_machines.axes.record import AxesRun
-from sher3_machines.axes.refine import refine_free
 from sher3_machines.axes.replay import replay
-from sher3_machines.axes.search import causes_of_axis
 from sher3_machines.contrast.changes import change_notes, contrasted, of_runs
 from sher3_machines.contrast.conditions import Condition, conditions_of, reference_runs, told_together
 from sher3_machines.errors import MachineError

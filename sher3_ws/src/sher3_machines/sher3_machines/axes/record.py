@@ -7,35 +7,28 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from sher3_diagnosis.channel import Array
+from sher3_diagnosis.channel import Array, Mask
 
 from sher3_machines.axes.description import Axis
+from sher3_machines.axes.units import check_units
 from sher3_machines.errors import MachineError
-from sher3_machines.intake.columns import pick, stamps_of
-from sher3_machines.intake.fields import Clock
+from sher3_machines.intake.cleaning import even_stamps, glitches, known_readings
+from sher3_machines.intake.columns import find, pick, stamps_of
+from sher3_machines.intake.fields import Clock, Column
+from sher3_machines.intake.parts import LONGEST_HOLE, cut
 from sher3_machines.intake.tables import Tables
 
-MIN_SAMPLES = 100
-"""Samples a run must have: the blocks that take the place of repeats need a dozen each."""
+MIN_SAMPLES = 20
+"""Samples a run must have: five blocks of the smallest size. Several short runs are judged together."""
 JITTER = 0.01
 """Share of the period by which stamps may be off before the record is resampled."""
-LONGEST_HOLE = 10.0
-"""Periods without a sample that are interpolated over; a longer hole is refused."""
-SLIPS = {"linear": (1e3, "mm recorded as m"), "rotary": (180.0 / np.pi, "deg recorded as rad")}
-"""Motion -> factor of its usual wrong unit, and that slip in words."""
-SLIP_TOLERANCE = 1.25
-"""Factor within which a ratio of two signals counts as that of a wrong unit."""
-FURTHEST = {"linear": 10.0, "rotary": 40.0}
-"""Travel, m or rad, beyond which an axis without a stated range is taken for a unit slip."""
-BEYOND = 0.1
-"""Share of the range by which a position may leave it: stated ranges are rounded."""
-COUNTS_MOVED = 100.0
-"""Travel in counts from which two signals of one axis can be compared in size."""
 SIGNALS = ("position", "reference", "command", "effort", "load", "nominal_effort", "applied")
 """Signals of an axis, as the description names them."""
 
 POSITIONS = ("position", "reference", "load")
 """Signals that are places."""
+ENCODERS = ("position", "load")
+"""Signals that an encoder reads."""
 WRAP = 0.1
 """Share of a turn by which a jump between two samples may differ from a whole turn that was wrapped."""
 
@@ -79,19 +72,67 @@ def axes_run(name: str, tables: Tables, machine: Chain) -> AxesRun:
         MachineError: a column is missing, values are not finite, stamps run backwards or have holes, a unit slips.
     """
     raw: dict[str, dict[str, Stamped]] = {}
+    mended: list[str] = []
     for axis in machine.axes:
         columns = {which: getattr(axis.signals, which) for which in SIGNALS}
         raw[axis.name] = {
-            which: (stamps_of(column, tables, machine.time, name), pick(column, tables, name))
+            which: _mended(column, tables, machine.time, name, (axis.name, which), mended)
             for which, column in columns.items()
             if column is not None
         }
-    unwrapped = [note for axis in machine.axes for note in _unwrap(axis, raw[axis.name], name)]
+        mended += _unwrap(axis, raw[axis.name], name)
+        mended += _without_glitches(axis, raw[axis.name], name)
     clock, period, notes = _clock([s for a in raw.values() for s in a.values()], machine.time, name)
     signals = {a: {k: _onto(clock, t, x) for k, (t, x) in found.items()} for a, found in raw.items()}
     for axis in machine.axes:
         check_units(axis, signals[axis.name], name)
-    return AxesRun(name, period, signals, [*unwrapped, *notes])
+    return AxesRun(name, period, signals, [*dict.fromkeys(mended), *notes])
+
+
+def _mended(column: Column, tables: Tables, clock: Clock, run: str, of: tuple[str, str], notes: list[str]) -> Stamped:
+    """Return the readings of a column with their stamps, without those that are missing or written twice."""
+    stamps, x = stamps_of(column, tables, clock, run), pick(column, tables, run, finite=False)
+    what = f"{run}: {of[0]}.{of[1]} ({column.column})"
+    if x.ndim != 1:
+        raise MachineError(f"{what} is a list at each sample", value=x.shape, limit="1 number", remedy="give `index`")
+    if stamps is not None:
+        if len(stamps) != len(x):
+            raise MachineError(
+                f"{what}: time and signal differ in length", value=len(x), limit=len(stamps), remedy="check columns"
+            )
+        stamps, keep, note = even_stamps(stamps, run)
+        x = x[keep]
+        notes += [note] if note else []
+    known, note = known_readings(x, stamps is not None, what)
+    notes += [note] if note else []
+    return _only(stamps, x, known)
+
+
+def _only(stamps: Array | None, x: Array, kept: Mask) -> Stamped:
+    """Return the readings that are kept; without stamps the others are interpolated, since each has its place."""
+    if stamps is not None:
+        return stamps[kept], x[kept]
+    place = np.arange(len(x))
+    return None, np.interp(place, place[kept], x[kept])
+
+
+def _without_glitches(axis: Axis, raw: dict[str, Stamped], run: str) -> list[str]:
+    """Leave impossible readings of the encoders out; return a note for each encoder that had some."""
+    notes = []
+    for which in ENCODERS:
+        if which in raw:
+            stamps, x = raw[which]
+            bad = glitches(x)
+            if len(bad):
+                kept = np.ones(len(x), dtype=bool)
+                kept[bad] = False
+                raw[which] = _only(stamps, x, kept)
+                worst = float(x[bad[int(np.argmax(np.abs(x[bad])))]])
+                notes.append(
+                    f"{run}: {axis.name}.{which}: {len(bad)} readings are far off those beside them, such as "
+                    f"{worst:.4g} {axis.unit_of_position}; interpolated"
+                )
+    return notes
 
 
 def _unwrap(axis: Axis, raw: dict[str, Stamped], run: str) -> list[str]:
@@ -118,7 +159,7 @@ def _clock(found: list[Stamped], clock: Clock, run: str) -> tuple[Array, float, 
         if len(lengths) > 1:
             raise MachineError(f"{run}: columns differ in length", value=sorted(lengths), remedy="give a time column")
         return np.arange(min(lengths)) / clock.rate, 1.0 / clock.rate, []
-    stamps = [_checked(t, x, run) for t, x in found if t is not None]
+    stamps = [_checked(t, run) for t, _ in found if t is not None]
     period = float(np.median(np.diff(stamps[0])))
     start, end = max(t[0] for t in stamps), min(t[-1] for t in stamps)
     if end - start < MIN_SAMPLES * period:
@@ -133,12 +174,8 @@ def _clock(found: list[Stamped], clock: Clock, run: str) -> tuple[Array, float, 
     return start + period * np.arange(samples), period, [note] if uneven > JITTER else []
 
 
-def _checked(t: Array, x: Array, run: str) -> Array:
-    """Stamps (n,) of samples, refused where they run backwards, have a hole or are not as many as the samples."""
-    if len(t) != len(x):
-        raise MachineError(
-            f"{run}: time and signal differ in length", value=len(x), limit=len(t), remedy="check columns"
-        )
+def _checked(t: Array, run: str) -> Array:
+    """Stamps (n,), refused where they run backwards or have a hole."""
     steps = np.diff(t)
     if (steps <= 0.0).any():
         at = int(np.argmax(steps <= 0.0)) + 1
@@ -164,42 +201,15 @@ def _onto(clock: Array, t: Array | None, x: Array) -> Array:
     return np.asarray(x if t is None else np.interp(clock, t, x), dtype=float)
 
 
-def check_units(axis: Axis, signals: dict[str, Array], run: str) -> None:
-    """Refuse positions recorded in another unit than stated.
-
-    They leave the axis' range, or are 1000 (mm for m) or 57.3 (deg for rad) times another position of the axis.
-
-    Raises:
-        MachineError: a unit slips.
-    """
-    position = signals["position"]
-    _check_range(axis, position, run)
-    moves = np.ptp(position) > COUNTS_MOVED * axis.encoder_resolution
-    for other in ("reference", "load"):
-        if moves and other in signals and np.ptp(signals[other]) > 0.0:
-            ratio = float(np.ptp(signals[other]) / np.ptp(position))
-            factor, slip = SLIPS[axis.motion]
-            if abs(abs(np.log(ratio)) - np.log(factor)) < np.log(SLIP_TOLERANCE):
-                larger = other if ratio > 1.0 else "position"
-                raise MachineError(
-                    f"{run}: {axis.name}.{larger}: likely {slip}",
-                    value=f"{other} spans {ratio:.4g} times the position",
-                    limit="1",
-                    remedy="correct the units in the description",
-                )
-
-
-def _check_range(axis: Axis, position: Array, run: str) -> None:
-    lowest, highest = axis.range or (-FURTHEST[axis.motion], FURTHEST[axis.motion])
-    worst = float(position[np.argmax(np.abs(position))])
-    span = max(abs(lowest), abs(highest))
-    if lowest - BEYOND * span <= worst <= highest + BEYOND * span:
-        return
-    factor, slip = SLIPS[axis.motion]
-    likely = f"; likely {slip}" if abs(worst) / factor <= (1.0 + BEYOND) * span else ""
-    raise MachineError(
-        f"{run}: {axis.name}.position leaves the range of the axis{likely}",
-        value=f"{worst:.4g}",
-        limit=f"{lowest:g} .. {highest:g}",
-        remedy="correct the unit in the description, or state the axis' range",
-    )
+def parts_of_record(name: str, tables: Tables, machine: Chain) -> tuple[dict[str, Tables], str]:
+    """Return the parts of a record whose clock has holes or jumps back, and a note; else the record itself."""
+    columns = [c for axis in machine.axes for which in SIGNALS if (c := getattr(axis.signals, which)) is not None]
+    one = len({c.column.rpartition("/")[0] for c in columns}) == 1
+    clock = machine.time.column
+    if clock is None or not one:
+        return {name: tables}, ""
+    table = columns[0].column.rpartition("/")[0]
+    try:
+        return cut(name, tables, find(f"{table}/{clock}" if table else clock, tables, name))
+    except MachineError:
+        return {name: tables}, ""  # the reader names what is missing

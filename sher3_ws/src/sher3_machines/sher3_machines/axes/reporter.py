@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from sher3_diagnosis.channel import Channel
-from sher3_diagnosis.report.reporter import Output, Reporter
+from sher3_diagnosis.reporter import Output, Reporter
 
 from sher3_machines.axes.evidence import AxisEvidence
 

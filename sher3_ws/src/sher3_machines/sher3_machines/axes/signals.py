@@ -11,7 +11,7 @@ from sher3_diagnosis.channel import Array, Mask
 from sher3_diagnosis.filter import BANDWIDTH, DECIMATED_RATE, EDGE, low_pass
 
 from sher3_machines.axes.description import Axis
-from sher3_machines.axes.noise import cut_off
+from sher3_machines.axes.identification.noise import cut_off
 from sher3_machines.axes.record import AxesRun
 
 NYQUIST_SHARE = 0.4

@@ -15,9 +15,9 @@ from sher3_diagnosis.attribute.rivals import Attribution, without_term
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Effect, Shape, Signature
 from sher3_diagnosis.evidence import Evidence
-from sher3_diagnosis.fitting import Fit, Term, fit, make_term
+from sher3_diagnosis.fit.fitting import Fit, Term, fit, make_term
+from sher3_diagnosis.fit.whitened import Whitened
 from sher3_diagnosis.thresholds import NEEDED, PARSIMONY, RIVAL
-from sher3_diagnosis.whitened import Whitened
 
 from sher3_machines.contrast.conditions import Condition
 from sher3_machines.thresholds import CHANGES

@@ -9,6 +9,7 @@ from pydantic import Field
 
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.fields import Description
+from sher3_machines.intake.parts import whole
 
 Tag = Literal["payload", "posture", "temperature", "day", "simulator"]
 """What may differ between runs."""
@@ -52,7 +53,8 @@ def conditions_of(stated: Conditions, runs: Sequence[str]) -> list[Condition]:
     """
     if not stated:
         return []
-    unknown = sorted(set(stated) - set(runs))
+    stated = {**stated, **{run: stated[whole(run)] for run in runs if run not in stated and whole(run) in stated}}
+    unknown = sorted({run for run in stated if not any(run in (x, whole(x)) for x in runs)})
     if unknown:
         raise MachineError(
             f"conditions: no run {unknown[0]!r}", limit=f"runs: {', '.join(runs)}", remedy="name runs as their files"

@@ -50,8 +50,12 @@ def import_case(data: Sequence[Path], description: Path, out: Path) -> list[str]
         raise MachineError(f"{out}: is not empty and no case", remedy="choose another --out")
     kind = kinds()[machine.kind]
     tables = [read_tables(path) for path in data]
-    runs = [kind.read(name, table, machine) for name, table in zip(_names(data), tables, strict=True)]
-    notes = [note for run in runs for note in run.notes]
+    runs, notes = [], []
+    for name, table in zip(_names(data), tables, strict=True):
+        parts, note = kind.parts(name, table, machine)
+        notes += [note] if note else []
+        runs += [kind.read(part, x, machine) for part, x in parts.items()]
+    notes += [note for run in runs for note in run.notes]
     (out / RUNS).mkdir(parents=True, exist_ok=True)
     for stale in (out / RUNS).glob("*.npz"):
         stale.unlink()

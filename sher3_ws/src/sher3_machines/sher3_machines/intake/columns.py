@@ -14,14 +14,40 @@ from sher3_machines.intake.tables import Tables
 
 IN_HEADER = re.compile(r"(?P<name>.*?)\s*[\[(](?P<unit>[^\])]+)[\])]")
 """A column's header with its unit: `q [mm]`, `current (A)`."""
-SPELLINGS = {"µm": "um", "μm": "um", "°": "deg", "degrees": "deg", "Nm": "N*m", "N m": "N*m", "sec": "s", "-": "1"}
-"""Spellings of units in headers -> as descriptions have them."""
+SPELLINGS = {
+    "um": "µm μm micron microns",
+    "mm": "millimeter millimetre",
+    "m": "meter metre meters metres",
+    "rad": "radian radians rads",
+    "deg": "° degree degrees degs grad",
+    "rev": "turn turns revolution revolutions revs rot",
+    "N": "newton newtons",
+    "N*m": "Nm N·m N⋅m N.m N-m newton-meter",
+    "mN*m": "mNm mN·m mN.m",
+    "A": "amp amps ampere amperes Arms",
+    "V": "volt volts Volt",
+    "%": "pct percent prozent",
+    "count": "counts cnt cnts inc incr increments ticks tick pulses",
+    "s": "sec secs second seconds",
+    "ms": "msec msecs millis milliseconds",
+    "us": "µs μs usec micros microseconds",
+    "ns": "nsec nanos nanoseconds nanosec",
+    "1": "-",
+}
+"""Unit as descriptions have it -> how else headers spell it."""
+READ_AS = {other: unit for unit, others in SPELLINGS.items() for other in others.split()}
 NEAR = 5
 """Columns of similar names that a refusal lists."""
 
 
-def pick(column: Column, tables: Tables, run: str) -> Array:
+def pick(column: Column, tables: Tables, run: str, finite: bool = True) -> Array:
     """Return the samples of a column in SI units, (n,) or (n, ...).
+
+    Args:
+        column: of the description.
+        tables: columns of the data.
+        run: name of the run.
+        finite: whether a sample that is not finite is refused.
 
     Raises:
         MachineError: the column or its entry is missing, its unit is not stated or another than its header's, or a
@@ -39,7 +65,7 @@ def pick(column: Column, tables: Tables, run: str) -> Array:
     if not x.size:
         raise MachineError(f"{run}: {column.column} is empty", value=x.shape, limit="1 sample", remedy="record again")
     bad = ~np.isfinite(x.reshape(len(x), -1)).all(axis=1)
-    if bad.any():
+    if finite and bad.any():
         raise MachineError(
             f"{run}: {column.column} is not finite at sample {int(np.argmax(bad))}",
             value=f"{int(bad.sum())} of {len(x)} samples",
@@ -65,8 +91,7 @@ def find(name: str, tables: Tables, run: str) -> str:
 def scale(column: Column, header: str, run: str) -> float:
     """Return the factor from recorded numbers to SI; raises MachineError where no unit is stated, or two are."""
     match = IN_HEADER.fullmatch(header)
-    words = match["unit"].strip() if match else ""
-    said = SPELLINGS.get(words, words)
+    said = spelled(match["unit"]) if match else ""
     if column.unit is None and said not in UNITS:
         raise MachineError(
             f"{run}: the unit of {column.column} is not stated",
@@ -78,6 +103,20 @@ def scale(column: Column, header: str, run: str) -> float:
         remedy = "correct `unit` in the description, or leave it out"
         raise MachineError(f"{run}: {column.column} is in another unit", value=said, limit=column.unit, remedy=remedy)
     return column.factor * UNITS[column.unit or said]
+
+
+def spelled(words: str) -> str:
+    """Return a unit of a header as descriptions have it; unknown words as they are."""
+    bare = words.strip()
+    unit = bare if bare in UNITS else READ_AS.get(bare, READ_AS.get(bare.lower(), bare))
+    return {"N m": "N*m", "mN m": "mN*m"}.get(unit, unit)
+
+
+def _clock_column(name: str, clock: Clock) -> Column:
+    """Return the column of the stamps: a unit in its header is the right one where the description has the default."""
+    match = IN_HEADER.fullmatch(name)
+    told = match is not None and spelled(match["unit"]) in UNITS and "unit" not in clock.model_fields_set
+    return Column(column=name, unit=None if told else clock.unit)
 
 
 def stamps_of(column: Column, tables: Tables, clock: Clock, run: str) -> Array | None:
@@ -92,6 +131,6 @@ def stamps_of(column: Column, tables: Tables, clock: Clock, run: str) -> Array |
         name = find(table + clock.column, tables, run)
     except MachineError:
         name = clock.column
-    stamps = pick(Column(column=name, unit=clock.unit), tables, run)
+    stamps = pick(_clock_column(name, clock), tables, run, finite=False)
     known = [x for x in clock.offsets if table.startswith(x.rstrip("/") + "/")]
     return stamps + (clock.offsets[max(known, key=len)] if known else 0.0)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -12,37 +13,25 @@ from sher3_common import dump_yaml
 from sher3_diagnosis.channel import Array
 
 from sher3_machines.errors import MachineError
-from sher3_machines.intake.columns import IN_HEADER, SPELLINGS
 from sher3_machines.intake.fields import UNITS
+from sher3_machines.intake.guesses import clock_of, count_of, period_of, position_unit, time_unit, travel
+from sher3_machines.intake.names import counts_samples, named
 from sher3_machines.intake.tables import Tables, read_tables
 
-CLOCKS = ("stamp", "time", "timestamp", "timestamps", "t", "zeit", "date", "datetime", "received")
-"""Names of a time column, best first."""
-SIGNALS = {
-    "reference": r"ref|reference|setpoint|set_point|desired|des|target|goal|soll|qg|q_?d",
-    "load": r"load|second|output|scale|link|tip_encoder",
-    "effort": r"effort|torque|tau|force|current|curr|i|iq|trq|moment",
-    "command": r"command|cmd|u|voltage|volt|pwm|vir",
-    "velocity": r"velocity|vel|speed|qd|dq|omega|qdot",
-    "position": r"positions?|pos|q|theta|angle|encoder|enc|ist|actual|measured|qm|x",
-}
-"""Signal -> words of a column's name that speak for it; the first one that fits counts."""
-ROTARY_UNITS = ("rad", "mrad", "deg", "rev")
-TOO_FAR = 40.0
-"""Position beyond which the unit is hardly rad or m: more than six turns."""
-COARSE = 400.0
-"""Position beyond which the unit is hardly degrees either, but counts."""
-STEPS = 1e-3
-"""Share of the travel below which the smallest step of a signal counts as that of its encoder."""
+SIGNALS = ("position", "reference", "command", "effort", "load")
+"""Signals of an axis that a draft looks for, in the order they are written."""
+PLACES = ("reference", "load")
+"""Signals that are in the unit of the position where their name says no other."""
+ROTARY_UNITS = ("rad", "mrad", "deg", "rev", "count")
 WIDEST = 12
 """Entries of an array column that may be axes: a humanoid's arms; wider ones are matrices."""
-FEWEST_STEPS = 10
-"""Steps from which the smallest one tells an encoder's count."""
-WHOLE, WHOLE_SHARE = 0.05, 0.9
-"""How near to a whole multiple of the count a step must be, and the share of steps that must be."""
-TIME_UNITS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
-USUAL_RATES = (5.0, 20_000.0)
-"""Rates, Hz, between which a clock is believed: of servo loops, and of slow loggers."""
+GEARED = 1.5
+"""Travel of one encoder over that of the other from which a gear is between them."""
+LISTED = 12
+"""Columns that a sentence lists at most."""
+
+Place = tuple[str, int | None]
+"""A column, and the entry of it where each sample is a list."""
 
 
 @dataclass
@@ -53,114 +42,144 @@ class Draft:
     guesses: list[str] = field(default_factory=list)
 
 
-def draft(path: Path) -> Draft:
+def draft(path: Path, rate: float | None = None) -> Draft:
     """Draft a description of a chain of axes from a data file, folder or bag.
 
+    Args:
+        path: of the data.
+        rate: samples per second, Hz, where no time was recorded.
+
     Raises:
-        MachineError: the file cannot be read, or no column looks like a position.
+        MachineError: the file cannot be read, or no column looks like a time or a position.
     """
     tables = read_tables(path)
     guesses: list[str] = []
-    clock, time = _clock(tables, guesses)
-    groups: dict[str, dict[str, Any]] = {}
-    for name, x in tables.items():
-        if len(x) == len(time) and name != clock and not name.endswith(CLOCKS[-1]):
-            for index in range(x.shape[1]) if x.ndim == 2 and x.shape[1] <= WIDEST else [None]:
-                _place(name, index, groups)
-    axes = [_axis(axis, signals, tables, guesses) for axis, signals in groups.items() if "position" in signals]
+    clock = None if rate else clock_of(tables, guesses)
+    if clock is None:
+        time: dict[str, Any] = {"rate": rate}
+    else:
+        time = {"column": clock.rsplit("/", 1)[-1]}
+        time["unit"] = time_unit(clock, period_of(tables[clock]), guesses)
+    groups, left = together(_placed(tables, clock))
+    axes = [_axis(axis, signals, tables, guesses) for axis, signals in groups.items()]
     if not axes:
         raise MachineError(
             f"{path}: no column looks like a position",
-            value=", ".join(sorted(tables)[:12]),
+            value=", ".join(sorted(tables)[:LISTED]),
             limit="names with position, pos, q, angle, encoder",
-            remedy="write the description by hand",
+            remedy="write the description by hand; where a velocity was recorded, integrate it first",
         )
-    period = float(np.median(np.diff(time)))
-    unit = _time_unit(clock, period, guesses)
-    column = clock.rsplit("/", 1)[-1] if "/" in clock else clock
-    stem = re.sub(r"\W+", "_", path.stem)
-    data = {"kind": "axes", "name": stem, "time": {"column": column, "unit": unit}, "axes": axes}
+    if left:
+        more = f" and {len(left) - LISTED} more" if len(left) > LISTED else ""
+        guesses.append(f"not used: {', '.join(left[:LISTED])}{more}")
+    data = {"kind": "axes", "name": re.sub(r"\W+", "_", path.stem), "time": time, "axes": axes}
     head = "".join(f"# guessed: {guess}\n" for guess in guesses)
     return Draft(head + dump_yaml(data), guesses)
 
 
-def _clock(tables: Tables, guesses: list[str]) -> tuple[str, Array]:
-    """Return the time column: of a known name, growing; the one with most samples."""
-    rising = {n: x for n, x in tables.items() if x.ndim == 1 and len(x) > 2 and bool((np.diff(x) > 0.0).all())}
-    for word in CLOCKS:
-        named = [
-            n for n in rising if _bare(n).lower() == word or re.fullmatch(rf"{word}[_ ]?\w{{0,4}}", _bare(n).lower())
-        ]
-        if named:
-            best = max(named, key=lambda n: len(rising[n]))
-            guesses.append(f"time is the column {best!r}, because of its name and because it only grows")
-            return best, rising[best]
-    raise MachineError(
-        "no column looks like a time",
-        value=", ".join(sorted(tables)[:12]),
-        limit="a growing column named t, time or stamp",
-        remedy="name it so, or state `time: {rate: HZ}` by hand",
-    )
+def _placed(tables: Tables, clock: str | None) -> dict[Place, tuple[str, str]]:
+    """Return signal and axis of every column whose name says one, of tables that have stamps."""
+    lengths = {table_of(n): len(x) for n, x in tables.items() if clock and n.rsplit("/", 1)[-1] == bare(clock)}
+    least = len(tables[clock]) if clock else 0
+    found: dict[Place, tuple[str, str]] = {}
+    for name, x in tables.items():
+        stamped = len(x) == lengths.get(table_of(name), least) or not clock
+        what = named(name)
+        if what.signal is None or not stamped or name == clock or counts_samples(name):
+            continue
+        for index in range(x.shape[1]) if x.ndim == 2 and x.shape[1] <= WIDEST else [None]:
+            if x.ndim == 1 or index is not None:
+                axis = "_".join(w for w in (what.axis, "" if index is None else str(index + 1)) if w)
+                found[name, index] = what.signal, axis
+    return found
 
 
-def _bare(name: str) -> str:
-    """Return a column's name without its table and unit."""
-    match = IN_HEADER.fullmatch(name)
-    return (match["name"] if match else name).rsplit("/", 1)[-1]
+def together(placed: Mapping[Place, tuple[str, str]]) -> tuple[dict[str, dict[str, Place]], list[str]]:
+    """Return axis -> signal -> column, of axes with a position, and the columns that found no axis.
+
+    A column whose name has no axis of its own, or another one than every position, belongs to the only axis there is,
+    or to the one axis whose name ends in the same number.
+    """
+    groups: dict[str, dict[str, Place]] = {}
+    for place, (signal, axis) in placed.items():
+        if signal == "position":
+            groups.setdefault(axis, {}).setdefault(signal, place)
+    left = []
+    for place, (signal, axis) in placed.items():
+        home = axis if axis in groups else _home(axis, groups)
+        if signal not in SIGNALS or home is None or groups[home].setdefault(signal, place) != place:
+            left.append(place[0])
+    return groups, list(dict.fromkeys(left))
 
 
-def _place(name: str, index: int | None, groups: dict[str, dict[str, Any]]) -> None:
-    """Put a column down as a signal of an axis, where its name says one."""
-    bare = _bare(name)
-    for signal, pattern in SIGNALS.items():
-        word = re.search(rf"(?:^|[_.\s\-/]|(?<=[a-z])(?=[A-Z]))({pattern})(?:$|[_.\s\-/\d])", bare, re.I)
-        if word:
-            rest = (bare[: word.start(1)] + bare[word.end(1) :]).strip("_.- ")
-            table = name.rsplit("/", 1)[0].rsplit("/", 1)[-1] if "/" in name else ""
-            axis = "_".join(x for x in (rest or table or "axis", "" if index is None else str(index + 1)) if x)
-            groups.setdefault(re.sub(r"\W+", "_", axis), {}).setdefault(signal, (name, index))
-            return
+def _home(axis: str, groups: Mapping[str, Any]) -> str | None:
+    """Return the axis that a signal of another name belongs to; None where there is none, or more than one."""
+    if len(groups) == 1:
+        return next(iter(groups))
+    words = set(axis.split("_"))
+    fits = [x for x in groups if (axis and x and (words <= set(x.split("_")) or set(x.split("_")) <= words))]
+    number = re.search(r"\d+$", axis)
+    fits = fits or [x for x in groups if number and re.search(r"(?<!\d)" + number[0] + "$", x)]
+    return fits[0] if len(fits) == 1 else None
 
 
-def _axis(axis: str, signals: dict[str, tuple[str, int | None]], tables: Tables, guesses: list[str]) -> dict[str, Any]:
-    name, index = signals["position"]
-    x = tables[name] if index is None else tables[name][:, index]
-    unit, why = _position_unit(name, x)
-    guesses.append(f"{axis}: position in {unit}, because {why}")
-    count = _count(x)
-    factor = 1.0 if unit == "count" else UNITS[unit]
-    resolution = (count or float(np.ptp(x)) * 1e-6 or 1e-6) * factor
-    said = "its smallest step" if count else "a millionth of its travel: no step is seen"
-    guesses.append(f"{axis}: encoder_resolution {resolution:.3g}, {said}")
+def _axis(axis: str, signals: Mapping[str, Place], tables: Tables, guesses: list[str]) -> dict[str, Any]:
+    label = re.sub(r"\W+", "_", axis) or "axis"
+    label = f"joint{label}" if label[0].isdigit() else label
+    x = values_of(signals["position"], tables)
+    unit, factor, why = position_unit(named(signals["position"][0]).unit, x)
+    guesses.append(f"{label}: position in {unit}, because {why}")
     columns: dict[str, Any] = {}
-    for signal in ("position", "reference", "command", "effort", "load"):
+    for signal in SIGNALS:
         if signal in signals:
-            columns[signal] = _column(*signals[signal], unit if signal in ("position", "reference", "load") else None)
+            place = signal in PLACES
+            columns[signal] = _column(*signals[signal], unit if place else None, factor if place else 1.0)
             if signal != "position":
-                guesses.append(f"{axis}: {signal} is {signals[signal][0]!r}, because of its name")
-    law = _law(axis, columns, guesses)
-    motion = "rotary" if unit in ROTARY_UNITS or unit == "count" else "linear"
-    out = {"name": axis, "motion": motion, "signals": columns, "command_law": law}
+                guesses.append(f"{label}: {signal} is {signals[signal][0]!r}, because of its name")
+    columns["position"].update({"unit": unit, **({"factor": factor} if factor != 1.0 else {})})
+    if "load" in signals:
+        factor *= _gear(label, columns, travel(x), values_of(signals["load"], tables), guesses)
+    count = count_of(x)
+    resolution = (count or travel(x) * 1e-6 or 1e-6) * factor * UNITS[unit]
+    said = "its smallest step" if count else "a millionth of its travel: no step is seen"
+    guesses.append(f"{label}: encoder_resolution {resolution:.3g}, {said}")
+    law = _law(label, columns, guesses)
+    out = {"name": label, "motion": "rotary" if unit in ROTARY_UNITS else "linear", "signals": columns}
+    out["command_law"] = law
     if law["kind"] == "force":
-        guesses.append(f"{axis}: mass is not known and will be identified from the record; state it where you can")
+        guesses.append(f"{label}: mass is not known and will be identified from the record; state it where you can")
         out["mass"] = "unknown"
     return {**out, "encoder_resolution": float(f"{resolution:.6g}")}
 
 
-def _column(name: str, index: int | None, unit: str | None) -> dict[str, Any]:
-    found: dict[str, Any] = {"column": name, "unit": unit or _header_unit(name) or "1"}
+def _column(name: str, index: int | None, unit: str | None, factor: float) -> dict[str, Any]:
+    own = named(name).unit
+    found: dict[str, Any] = {"column": name, "unit": own or unit or "1"}
     if index is not None:
         found["index"] = index
-    if found["unit"] == "count":
-        found["factor"] = 0.001
+    if factor != 1.0 and own in (None, unit):
+        found["factor"] = factor
     return found
 
 
-def _law(axis: str, columns: dict[str, Any], guesses: list[str]) -> dict[str, Any]:
+def _gear(label: str, columns: dict[str, Any], moved: float, load: Array, guesses: list[str]) -> float:
+    """Return the factor by which the position is that of the load, where a gear is between the two encoders."""
+    scales = [UNITS[columns[k]["unit"]] * columns[k].get("factor", 1.0) for k in ("position", "load")]
+    ratio = moved * scales[0] / max(travel(load) * scales[1], 1e-300)
+    if 1.0 / GEARED < ratio < GEARED or not 1e-5 < ratio < 1e5:
+        return 1.0
+    whole = round(ratio) if ratio > GEARED else 1.0 / round(1.0 / ratio)
+    factor = float(f"{1.0 / whole:.6g}")
+    columns["position"]["factor"] = columns["position"].get("factor", 1.0) * factor
+    guesses.append(f"{label}: a gear of {whole:.6g} between the encoders, because the position moves {ratio:.4g} times")
+    return factor
+
+
+def _law(axis: str, columns: Mapping[str, Any], guesses: list[str]) -> dict[str, Any]:
     if "effort" in columns or "command" in columns:
-        guesses.append(
-            f"{axis}: driven by a force; its effort and command count as N or N m until `factor` and `gain` say more"
-        )
+        unit = columns["effort" if "effort" in columns else "command"]["unit"]
+        counts = "" if unit in ("N", "N*m") else f"; forces are in {unit} until `factor` or `gain` makes them N or N m"
+        guesses.append(f"{axis}: driven by a force{counts}")
         return {"kind": "force"}
     if "reference" in columns:
         guesses.append(f"{axis}: a position servo, because a reference and no force was recorded")
@@ -169,44 +188,17 @@ def _law(axis: str, columns: dict[str, Any], guesses: list[str]) -> dict[str, An
     return {"kind": "none"}
 
 
-def _header_unit(name: str) -> str | None:
-    match = IN_HEADER.fullmatch(name)
-    said = SPELLINGS.get(match["unit"].strip(), match["unit"].strip()) if match else None
-    ending = name.rsplit("_", 1)[-1]
-    return said if said in UNITS else ending if ending in UNITS and ending not in ("1", "s") else None
+def values_of(place: Place, tables: Tables) -> Array:
+    """Return the numbers of a column or of an entry of it, without those that are not finite."""
+    x = tables[place[0]] if place[1] is None else tables[place[0]][:, place[1]]
+    return np.asarray(x[np.isfinite(x)])
 
 
-def _position_unit(name: str, x: Array) -> tuple[str, str]:
-    if unit := _header_unit(name):
-        return unit, "its name says so"
-    largest = float(np.nanmax(np.abs(x)))
-    if bool((x == np.round(x)).all()) and largest > COARSE:
-        return "count", f"all values are whole and reach {largest:.4g}; `factor` is a placeholder"
-    if largest > TOO_FAR:
-        return "deg", f"values reach {largest:.4g}"
-    return "rad", f"values reach {largest:.4g}; write m for an axis that slides"
+def table_of(name: str) -> str:
+    """Return the table a column lies in; empty for none."""
+    return name.rpartition("/")[0]
 
 
-def _count(x: Array) -> float | None:
-    """Return the smallest step of a signal where it is one of an encoder: most steps are whole multiples of it."""
-    steps = np.abs(np.diff(x))
-    steps = steps[steps > 1e-12 * max(1.0, float(np.abs(x).max()))]
-    if len(steps) < FEWEST_STEPS:
-        return None
-    least = float(np.quantile(steps, 0.01))
-    multiples = steps / least
-    whole = np.mean(np.abs(multiples - np.round(multiples)) < WHOLE)
-    return least if whole > WHOLE_SHARE and least > STEPS * 1e-3 * float(np.ptp(x)) else None
-
-
-def _time_unit(clock: str, period: float, guesses: list[str]) -> str:
-    """Return the unit of the stamps: of the header, or the one that makes the rate usual."""
-    unit = _header_unit(clock)
-    if unit in TIME_UNITS:
-        return str(unit)
-    for unit, scale in TIME_UNITS.items():
-        if USUAL_RATES[0] <= 1.0 / (period * scale) <= USUAL_RATES[1]:
-            guesses.append(f"time in {unit}: {1.0 / (period * scale):.4g} samples per second")
-            return unit
-    guesses.append(f"time in s, though a period of {period:.4g} s is unusual")
-    return "s"
+def bare(name: str) -> str:
+    """Return a column's name without its table."""
+    return name.rsplit("/", 1)[-1]

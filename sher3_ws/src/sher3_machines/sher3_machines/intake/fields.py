@@ -30,6 +30,7 @@ UNITS: Mapping[str, float] = {
     "mV": 1e-3,
     "A": 1.0,
     "mA": 1e-3,
+    "%": 1.0,
     "1": 1.0,
     "count": 1.0,
     "s": 1.0,
@@ -37,7 +38,7 @@ UNITS: Mapping[str, float] = {
     "us": 1e-6,
     "ns": 1e-9,
 }
-"""Unit -> factor to SI."""
+"""Unit -> factor to SI; a percentage stays one, of a rated value that nobody stated."""
 
 
 class Strict(BaseModel):

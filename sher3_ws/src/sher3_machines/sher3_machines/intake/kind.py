@@ -44,6 +44,10 @@ class Kind(ABC, Generic[D, R]):
     def read(self, name: str, tables: Tables, description: D) -> R:
         """Check a data file's columns and return them as a run in SI units; raises MachineError."""
 
+    def parts(self, name: str, tables: Tables, description: D) -> tuple[dict[str, Tables], str]:
+        """Return the records that a data file holds by name, and a note; default one."""
+        return {name: tables}, ""
+
     @abstractmethod
     def pack(self, run: R) -> Mapping[str, Array]:
         """Return the arrays of a run as a case stores them."""

@@ -15,14 +15,14 @@ from sher3_diagnosis.attribute.rivals import Attribution, without_term
 from sher3_diagnosis.attribute.search import Say, attribute
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Effect
-from sher3_diagnosis.fitting import Fit, Term, fit
+from sher3_diagnosis.fit.fitting import Fit, Term, fit
 from sher3_diagnosis.judge.left_over import down_to_floor
 from sher3_diagnosis.thresholds import NEEDED, PARSIMONY, RIVAL
 from sher3_effects.friction.coulomb_friction import CoulombFriction
 from sher3_effects.friction.viscous_friction import ViscousFriction
 from sher3_effects.inertia.payload_mass import PayloadOnLink
 
-from sher3_machines.axes.rest import Bounded
+from sher3_machines.axes.identification.rest import Bounded
 from sher3_machines.manipulator.evidence import ArmMotionEvidence, channel_of, of_joint
 from sher3_machines.thresholds import CAUSES_OF_JOINT
 

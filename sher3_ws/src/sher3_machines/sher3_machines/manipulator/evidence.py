@@ -8,8 +8,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from sher3_diagnosis.channel import Array, Channel, Floors, Residual, Residuals
 from sher3_diagnosis.evidence import Evidence
+from sher3_diagnosis.fit.whitened import Whitened
 from sher3_diagnosis.localise.floors import repeat_floors
-from sher3_diagnosis.whitened import Whitened
 
 from sher3_machines.axes.evidence import blocks_of
 from sher3_machines.axes.floors import NOTHING, UNIFORM, foresight, innovation

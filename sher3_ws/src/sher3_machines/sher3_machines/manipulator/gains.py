@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 from sher3_diagnosis.channel import Array
-from sher3_diagnosis.fitting import solve
+from sher3_diagnosis.fit.fitting import solve
 from sher3_diagnosis.thresholds import JACKKNIFE
 
 from sher3_machines.manipulator.view import MotionView

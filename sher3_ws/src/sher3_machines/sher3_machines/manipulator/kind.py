@@ -8,7 +8,7 @@ from pathlib import Path
 from sher3_diagnosis.channel import Array
 
 from sher3_machines.axes.kind import packed, unpacked
-from sher3_machines.axes.record import AxesRun, axes_run
+from sher3_machines.axes.record import AxesRun, axes_run, parts_of_record
 from sher3_machines.intake.kind import Kind
 from sher3_machines.intake.tables import Tables
 from sher3_machines.manipulator.description import ManipulatorDescription
@@ -25,6 +25,10 @@ class ManipulatorKind(Kind[ManipulatorDescription, AxesRun]):
     def read(self, name: str, tables: Tables, description: ManipulatorDescription) -> AxesRun:
         """Bring a data file onto a uniform clock; raises MachineError."""
         return axes_run(name, tables, description)
+
+    def parts(self, name: str, tables: Tables, description: ManipulatorDescription) -> tuple[dict[str, Tables], str]:
+        """Return the parts of a record whose clock has holes or jumps back; repeats stay whole."""
+        return ({name: tables}, "") if description.repeats else parts_of_record(name, tables, description)
 
     def pack(self, run: AxesRun) -> Mapping[str, Array]:
         """Return the period and every signal."""

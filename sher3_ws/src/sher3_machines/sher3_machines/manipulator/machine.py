@@ -17,8 +17,8 @@ from sher3_effects import pages
 from sher3_effects.inertia.payload_mass import PayloadOnLink
 from sher3_effects.scale.torque_constant import TorqueConstant
 
-from sher3_machines.axes.fast import requantified
 from sher3_machines.axes.health import dead_channels
+from sher3_machines.axes.identification.fast import requantified
 from sher3_machines.axes.machine import NO_REPEATS
 from sher3_machines.axes.record import AxesRun
 from sher3_machines.contrast.changes import change_notes, contrasted, of_runs

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from sher3_diagnosis.channel import Array
 
-from sher3_machines.axes.noise import cut_off
+from sher3_machines.axes.identification.noise import cut_off
 from sher3_machines.axes.record import AxesRun
 from sher3_machines.axes.signals import AxisSignals, signals_of
 from sher3_machines.manipulator.description import ManipulatorDescription

@@ -9,9 +9,9 @@ import numpy as np
 from sher3_diagnosis.channel import Array, Channel, Residual
 from sher3_diagnosis.effect import Effect, Shape, Signature, column
 from sher3_diagnosis.evidence import Evidence
-from sher3_diagnosis.fitting import make_term
+from sher3_diagnosis.fit.fitting import make_term
+from sher3_diagnosis.fit.whitened import Whitened
 from sher3_diagnosis.judge.causes import NUISANCE
-from sher3_diagnosis.whitened import Whitened
 
 from sher3_machines.errors import MachineError
 from sher3_machines.positioning.description import AxisTest, CircleTest

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from sher3_diagnosis.channel import Array, Channel, Residual
 from sher3_diagnosis.evidence import Evidence
-from sher3_diagnosis.whitened import Whitened
+from sher3_diagnosis.fit.whitened import Whitened
 
 from sher3_machines.thresholds import BLOCKS
 from sher3_machines.wrench.description import SensorDescription

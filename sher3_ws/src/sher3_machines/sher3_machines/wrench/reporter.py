@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 from sher3_diagnosis.channel import Array, Channel
-from sher3_diagnosis.report.reporter import FLOWS, Output, Reporter
+from sher3_diagnosis.reporter import FLOWS, Output, Reporter
 
 from sher3_machines.wrench.evidence import SensorEvidence
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from sher3_machines import MachineError
-from sher3_machines.axes.identify import identify_mass
+from sher3_machines.axes.identification.identify import identify_mass
 from sher3_machines.axes.signals import AxisSignals
 from sher3_machines.axes.view import AxisView
 from slides import axis_of

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from sher3_diagnosis import diagnose
 from sher3_machines import MachineError
-from sher3_machines.axes.noise import cut_off, noise_of
+from sher3_machines.axes.identification.noise import cut_off, noise_of
 from sher3_machines.axes.record import AxesRun
 from slides import machine
 

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 from sher3_machines import MachineError
-from sher3_machines.axes.record import axes_run, check_units
+from sher3_machines.axes.record import axes_run
+from sher3_machines.axes.units import check_units
 from slides import axis_of, columns, described
 
 SERVO = {"signals": columns("position", "reference"), "command_law": {"kind": "position"}}
@@ -54,7 +55,7 @@ def test_a_rate_stands_for_stamps():
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"n": 50}, "too short"),
+        ({"n": 15}, "too short"),
         ({"reference": np.zeros(150)}, "time and signal differ in length"),
     ],
 )

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from sher3_diagnosis.verdict import Cause, Interval, Parameter
 from sher3_machines.axes.evidence import gather_axis
+from sher3_machines.axes.identification.refine import refine_free, scaled
 from sher3_machines.axes.record import AxesRun
-from sher3_machines.axes.refine import refine_free, scaled
 from sher3_machines.axes.replay import replay
 from sher3_machines.axes.simulate import Law, simulate
 from slides import axis_of, columns

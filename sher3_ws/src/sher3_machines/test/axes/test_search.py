@@ -2,11 +2,11 @@
 
 from sher3_diagnosis.attribute.candidates import Candidates
 from sher3_diagnosis.attribute.rivals import Attribution
-from sher3_diagnosis.fitting import fit
+from sher3_diagnosis.fit.fitting import fit
 from sher3_effects import pages
 from sher3_machines.axes.evidence import gather_axis
+from sher3_machines.axes.identification.search import polished
 from sher3_machines.axes.machine import facts_of
-from sher3_machines.axes.search import polished
 from slides import axis_of, driven, run_of
 
 

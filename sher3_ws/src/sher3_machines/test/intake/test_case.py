@@ -91,9 +91,6 @@ def _missing(c):
     ("spoil", "words"),
     [
         (_mm, "mm recorded as m"),
-        (_nan, "not finite at sample 7"),
-        (_back, "time does not increase at sample 40"),
-        (_hole, "a hole of 1.01 s"),
         (_missing, "no column 'r'"),
     ],
 )
@@ -103,6 +100,22 @@ def test_bad_records_are_named(tmp_path, spoil, words):
     data, description = written(tmp_path, columns)
     with pytest.raises(MachineError, match=words):
         import_case([data], description, tmp_path / "case")
+
+
+@pytest.mark.parametrize(
+    ("spoil", "words"),
+    [
+        (_nan, "1 of 500 readings are missing or not finite"),
+        (_back, "1 samples came in a wrong order"),
+        (_hole, "is cut into 2 parts, because its clock has holes"),
+    ],
+)
+def test_small_faults_of_a_log_are_mended_and_said(tmp_path, spoil, words):
+    columns = record()
+    spoil(columns)
+    data, description = written(tmp_path, columns)
+    notes = import_case([data], description, tmp_path / "case")
+    assert any(words in note for note in notes), notes
 
 
 def test_degrees_are_named(tmp_path):

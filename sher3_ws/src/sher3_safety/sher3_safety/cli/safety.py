@@ -8,12 +8,12 @@ from pathlib import Path
 from typing import Annotated, Any, Optional
 
 import typer
+from sher3_common.commands.options import Json
 
 from sher3_safety.cli.budget import budget
 from sher3_safety.cli.hazards import hazards
 
 app = typer.Typer(rich_markup_mode="markdown", invoke_without_command=True)
-Json = Annotated[bool, typer.Option("--json", help="Print one JSON object instead of text.")]
 
 app.command(epilog="Examples: `sher3 safety budget` · `sher3 safety budget --rate 200 --json`")(budget)
 app.command(epilog="Examples: `sher3 safety hazards` · `sher3 safety hazards --json`")(hazards)

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from sher3_bags.run import Run
-from sher3_common.operating_state import OperatingState
+from sher3_common.operating_state import OperatingState, StateCommand
 from sher3_description import Robot
 from sher3_faults.kinds import OK
 from sher3_kinematics.kernel import kernel_parameters
@@ -50,7 +50,7 @@ class Outcome:
         alone: motion after the end of the observation before the pedal was released, m.
         resumed: motion after release-then-press, m.
         to_end: at the onset, of the axis that is nearest to an end of its travel, as a share of the travel.
-        enabled: the robot was ENABLED when the fault set in, as far as the bag tells.
+        operating: operating state when the fault set in, empty where the bag does not tell.
         braking: travel of the tip after the first report, m.
         faulted: from the onset to FAULT, s; None: never.
         fault_reason: of the FAULT.
@@ -67,7 +67,7 @@ class Outcome:
     alone: float
     resumed: float
     to_end: float = 0.5
-    enabled: bool = True
+    operating: str = OperatingState.ENABLED.value
     braking: float = 0.0
     faulted: float | None = None
     fault_reason: str = ""
@@ -119,7 +119,8 @@ class Recording:
                     found.append((stamp, str(data.get("reason")), False))
         for stamp, data in self._texts("supervisor/status"):
             state = data.get("state")
-            if state in (OperatingState.FAULT, OperatingState.PAUSED):
+            asked = data.get("reason") == StateCommand.PAUSE
+            if state == OperatingState.FAULT or (state == OperatingState.PAUSED and not asked):
                 first = data.get("first_fault") or data
                 found.append((stamp, str(first.get("code") or first.get("reason")), state == OperatingState.FAULT))
         return found
@@ -172,7 +173,9 @@ class Recording:
         velocity = (self._tip[first] - self._tip[begin]) / span
         speed = float(np.linalg.norm(velocity))
         window, time = self._tip[first : last + 1], self._time[first : last + 1] - self._time[first]
-        events = [event for event in self._events if onset <= event[0] <= end]
+        operating = self._state(onset)
+        known = operating in ("", OperatingState.ENABLED)
+        events = [event for event in self._events if onset <= event[0] <= end and (known or event[1] != SILENT)]
         fault = next((event for event in events if event[2]), None)
         reported = self._row(events[0][0], first) if events else last
         released, pressed, until = self._operator(last, following)
@@ -188,7 +191,7 @@ class Recording:
             alone=_reach(self._tip[last : released + 1], self._tip[last]),
             resumed=_reach(self._tip[pressed : until + 1], self._tip[pressed]),
             to_end=float(self._to_end[first]),
-            enabled=self._state(onset) in ("", OperatingState.ENABLED),
+            operating=operating,
             braking=_reach(self._tip[reported : last + 1], self._tip[reported]),
             faulted=None if fault is None else self._elapsed(fault[0], first),
             fault_reason="" if fault is None else fault[1],

@@ -8,10 +8,11 @@ from typing import Any
 
 from sher3_safety.measurement.recording import Outcome
 from sher3_safety.measurement.verdict import Verdict
-from sher3_safety.rows.row import STATES, Row
+from sher3_safety.rows.row import FURTHER, STATES, Row
 
-HEAD = ("fault", "first reason", "detection", "stop", *(f"travel {state.name}" for state in STATES), "must", "verdict")
-UNITS = ("", "", "ms", "ms", *("um",) * len(STATES), "", "")
+TRAVELS = tuple(f"travel {state.name}" for state in STATES)
+HEAD = ("fault", "first reason", "detection", "stop", *TRAVELS, "travel in other states", "must", "verdict")
+UNITS = ("", "", "ms", "ms", *("um",) * len(STATES), "um", "", "")
 
 
 def by_row(verdicts: Iterable[Verdict]) -> dict[str, list[Verdict]]:
@@ -39,6 +40,7 @@ def _line(name: str, cells: Sequence[Verdict]) -> tuple[str, ...]:
         _first_reasons(cells),
         *times,
         *(travel.get(state.name, "") for state in STATES),
+        ", ".join(f"{state.name} {travel[state.name]}" for state in FURTHER if state.name in travel),
         effect,
         _held(cells),
     )
@@ -72,7 +74,7 @@ def _held(cells: Sequence[Verdict]) -> str:
     missed = sum(not cell.holds for cell in cells)
     if missed:
         return f"MISS {missed} of {len(cells)}"
-    return "residual" if cells[0].row.effect == "residual" else "ok"
+    return "residual" if cells[0].row.effect in ("residual", "said") else "ok"
 
 
 def _travel(row: Row, cell: Verdict) -> str:
@@ -80,7 +82,8 @@ def _travel(row: Row, cell: Verdict) -> str:
         return "?"
     if row.effect == "ends":
         return "-"
-    metres = cell.outcome.travel if row.effect in ("stops", "residual") else cell.outcome.excess
+    far = row.effect in ("stops", "residual", "said") and not row.slow
+    metres = cell.outcome.travel if far else cell.outcome.excess
     return f"{metres * 1e6:.1f}"
 
 

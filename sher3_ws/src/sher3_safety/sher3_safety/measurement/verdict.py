@@ -47,8 +47,8 @@ def judge(row: Row, state: State, outcome: Outcome | None, recovered: bool = Tru
 def _misses(row: Row, state: State, o: Outcome, recovered: bool) -> Iterator[str]:
     budget = state.budget if row.budget is None else row.budget
     # Where the pedal is released, that is the onset, and the fault may have been noticed before.
-    if not o.enabled and not row.release:
-        yield "was not enabled when the fault set in"
+    if o.operating not in ("", state.operating) and not row.release:
+        yield f"was {o.operating} when the fault set in instead of {state.operating.value}"
     if o.speed < 0.8 * state.speed:
         yield f"moved at {o.speed * 1e3:.2f} mm/s before the fault instead of {state.speed * 1e3:g}"
     if state.end and o.to_end > AT_END:
@@ -57,6 +57,8 @@ def _misses(row: Row, state: State, o: Outcome, recovered: bool) -> Iterator[str
         yield f"tripped: {o.reason}"
     if row.effect == "ends":
         yield from _of_an_end(row, o)
+    elif row.effect == "said":
+        yield from _of_a_report(row, o)
     elif row.effect == "stops":
         yield from _of_a_stop(row, state, o, budget)
     elif o.excess > budget and row.effect != "residual":
@@ -91,6 +93,14 @@ def _of_a_stop(row: Row, state: State, o: Outcome, budget: float) -> Iterator[st
         yield f"reason {o.reason} instead of {' or '.join(row.reasons)}"
     if o.detection is not None and o.detection > DETECTION_LIMIT and state.speed:
         yield f"noticed after {o.detection * 1e3:.0f} ms (limit {DETECTION_LIMIT * 1e3:.0f})"
+
+
+def _of_a_report(row: Row, o: Outcome) -> Iterator[str]:
+    """Ask of what no software can stop that it is reported in time, for the right reason."""
+    if o.detection is None or o.detection > DETECTION_LIMIT:
+        yield "nobody noticed" if o.detection is None else f"noticed after {o.detection * 1e3:.0f} ms"
+    elif row.reasons and o.reason not in row.reasons:
+        yield f"reason {o.reason} instead of {' or '.join(row.reasons)}"
 
 
 def _of_an_end(row: Row, o: Outcome) -> Iterator[str]:

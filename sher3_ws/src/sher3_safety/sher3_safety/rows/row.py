@@ -6,10 +6,11 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
+from sher3_common.operating_state import OperatingState
 from sher3_description import ACTUATORS
 from sher3_faults.requests import FaultRequest, make_request
 
-Effect = Literal["stops", "goes on", "either", "residual", "ends"]
+Effect = Literal["stops", "goes on", "either", "residual", "ends", "said"]
 DETECTION_LIMIT, STOP_LIMIT = 0.050, 0.100
 """Longest times [s] from the onset of a fault to the first reaction and to rest. In 50 ms the tip travels the whole
 budget: 250 um at 5 mm/s, 25 um at 0.5 mm/s."""
@@ -25,6 +26,8 @@ class State:
         pedal: travel.
         budget: largest allowed travel [m].
         end: the hand has pushed the sliders against the end of their travel, and still pushes.
+        operating: operating state.
+        aim: how far from where they are `command/servo_jp` asks the sliders to be, from the onset on, m.
     """
 
     name: str
@@ -33,6 +36,8 @@ class State:
     pedal: float
     budget: float
     end: bool = False
+    operating: OperatingState = OperatingState.ENABLED
+    aim: float = 0.0
 
 
 IDLE = State("idle", 0.0, 0.6, 0.0, 25e-6)
@@ -42,6 +47,12 @@ END = State("at end", 0.0, 6.0, 1.0, 250e-6, end=True)
 STATES = (IDLE, MOVING, LIMIT, END)
 """Enabled and at rest under a hand; at the speed near tissue; at the speed limit; pushed against the end of the travel,
 as fast as at the speed limit were there no end."""
+PAUSED = State("paused", 0.0, 0.6, 0.0, 25e-6, operating=OperatingState.PAUSED)
+DISABLED = State("disabled", 0.0, 0.6, 0.0, 25e-6, operating=OperatingState.DISABLED)
+AIMING = State("aiming", 0.0, 0.0, 0.0, 25e-6, aim=15e-6)
+FURTHER = (PAUSED, DISABLED, AIMING)
+"""States for some rows only: held by the drives while motion is paused; without power; a position mode with an aim that
+the axes are not at yet."""
 STILL = (IDLE.name, END.name)
 """States in which nothing moves."""
 AT_END = 1e-3
@@ -57,7 +68,8 @@ class Row:
             the operator asks for it. `goes on`: it does not stop, and the tip stays within the budget of its
             undisturbed path. `either`: chance decides between the two. `residual`: no detector can see the fault, so
             the travel is only stated. `ends`: the emulated robot itself has ended and there is no tip to measure; the
-            fault must be reported, and FAULT entered, in time.
+            fault must be reported, and FAULT entered, in time. `said`: no software can stop it; it is reported in time
+            and for one of `reasons`, and the travel is stated.
         duration: of the fault, s; None: until it is taken away.
         reasons: the first reported reason, or that of the FAULT (`ends`), must be one of these; empty where nobody
             needs to notice (`goes on`).
@@ -67,6 +79,9 @@ class Row:
         slow: the fault grows so slowly that its distance counts, not its time: how far the tip is off its undisturbed
             path, against the budget, whenever that is noticed.
         budget: travel allowed instead of the budget of the state, m; `why` gives the reason.
+        rest: how much longer than usual the foot stays off the pedal before it is pressed again, s.
+        lets_go: the hand leaves as the fault sets in.
+        states: in which it is tried.
         why: why the robot may go on, a sentence for the report.
     """
 
@@ -81,6 +96,9 @@ class Row:
     release: bool = False
     slow: bool = False
     budget: float | None = None
+    rest: float = 0.0
+    lets_go: bool = False
+    states: tuple[State, ...] = STATES
     why: str = ""
 
     @property
@@ -88,7 +106,7 @@ class Row:
         """Component, fault, parameters, and what the operator does."""
         parts = [f"{name} {value:g}" for name, value in self.parameters.items()]
         name = f"{self.component} {self.fault}" + (f" ({', '.join(parts)})" if parts else "")
-        return name + ", pedal released" * self.release
+        return name + ", pedal released" * self.release + ", hand gone" * self.lets_go
 
     @property
     def final(self) -> bool:

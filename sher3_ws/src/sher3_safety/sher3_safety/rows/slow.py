@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from sher3_description import ACTUATORS
 
-from sher3_safety.rows.row import LIMIT, STILL, Row
+from sher3_safety.rows.row import LIMIT, PAUSED, STATES, STILL, Row
 
 AXIS, ROLL, TILT = ACTUATORS[0], ACTUATORS[3], ACTUATORS[4]
 LEFT = ("POSITION_LEFT",)
+ALL = (*STATES, PAUSED)
 CREEPS = (1e-5, 1e-4, 1e-3)
 """Speeds of a creeping slider [m/s], a decade apart; the slowest takes 0.7 s to its limit of 7 um."""
 LONGEST = 1.5
@@ -20,13 +21,13 @@ STATED = "in the middle of the travel a scale changes nothing; elsewhere the enc
 SLOW = (
     *(
         Row(f"{name}.power", "creep", {"speed": sign * speed}, reasons=LEFT, slow=True, quiet=FAST,
-            duration=min(LONGEST, max(0.12, 2e-5 / speed)), quick=name == AXIS and speed == CREEPS[1])
+            duration=min(LONGEST, max(0.12, 2e-5 / speed)), states=ALL, quick=name == AXIS and speed == CREEPS[1])
         for name, sign in ((AXIS, 1.0), (ACTUATORS[1], -1.0), (ACTUATORS[2], 1.0), (TILT, -1.0))
         for speed in CREEPS
     ),
     *(
         Row(f"{ROLL}.power", "creep", {"speed": speed}, reasons=LEFT, slow=True, quiet=FAST,
-            duration=min(LONGEST, 1e-3 / speed))
+            duration=min(LONGEST, 1e-3 / speed), states=ALL)
         for speed in (1e-3, 1e-2, 1e-1)
     ),
     Row(f"{AXIS}.power", "creep", {"speed": 0.0122}, slow=True, budget=250e-6, why=AT_ITS_LIMIT),

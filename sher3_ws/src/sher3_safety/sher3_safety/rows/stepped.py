@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from sher3_description import ACTUATORS
 
 from sher3_safety.rows.row import IDLE, STILL, Row
+from sher3_safety.rows.several import SEVERAL
 from sher3_safety.rows.slow import SLOW
 
 AXIS = ACTUATORS[0]
@@ -195,5 +196,5 @@ CLOCK = (
         for name in ("admittance", "kinematics")
     ),
 )
-ROWS = (*FORCE, *PEDAL, *LINES, *ENCODERS, *DRIVE, *SLOW, *PROCESSES, *CLOCK)
+ROWS = (*FORCE, *PEDAL, *LINES, *ENCODERS, *DRIVE, *SLOW, *SEVERAL, *PROCESSES, *CLOCK)
 """All rows, by component."""

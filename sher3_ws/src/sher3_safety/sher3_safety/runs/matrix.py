@@ -18,7 +18,7 @@ from sher3_safety.measurement.recording import Outcome
 from sher3_safety.measurement.report import as_markdown, as_text, misses, nearest_to_budget
 from sher3_safety.measurement.verdict import Verdict, judge
 from sher3_safety.rows.processes import WALL, WALL_STATES
-from sher3_safety.rows.row import STATES, Row, select
+from sher3_safety.rows.row import Row, select
 from sher3_safety.rows.stepped import ROWS
 from sher3_safety.runs.stepped import Cell, run_cells
 
@@ -62,7 +62,7 @@ class MatrixResult:
 
     def left_out(self) -> str:
         """Return what this run did not measure."""
-        rest = len(ROWS) * len(STATES) - len(self.verdicts)
+        rest = sum(len(row.states) for row in ROWS) - len(self.verdicts)
         cells = [f"{rest} cells in stepped time (`{COMMAND}`)"] if rest > 0 else []
         wall = f"{len(WALL) * len(WALL_STATES)} cells in wall time (`{COMMAND} --wall`)"
         return ", ".join([*cells, wall, "real drives, sensor and pedal"])
@@ -120,7 +120,7 @@ def run_matrix(
     for name, outcomes in _run_groups(groups, robot, folder, seed, jobs, composed):
         found.update(outcomes)
         say(f"{name}: {len(outcomes)} cells measured")
-    verdicts = [judge(row, state, found.get(row.label(state))) for row in rows for state in STATES]
+    verdicts = [judge(row, state, found.get(row.label(state))) for row in rows for state in row.states]
     options = (f" --only {only}" if only else "") + " --quick" * quick + " --composed" * composed
     return MatrixResult(verdicts, COMMAND + options, seed)
 
@@ -136,7 +136,7 @@ def _run_groups(
     groups: dict[str, list[Row]], robot: Robot, folder: Path, seed: int, jobs: int, composed: bool
 ) -> Iterable[tuple[str, dict[str, Outcome]]]:
     cells: dict[str, list[Cell]] = {
-        name: [(row, state) for row in rows for state in STATES] for name, rows in groups.items()
+        name: [(row, state) for row in rows for state in row.states] for name, rows in groups.items()
     }
     if jobs == 1:
         for name, part in cells.items():

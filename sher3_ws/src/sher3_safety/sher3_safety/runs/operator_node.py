@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from operator import add
 from typing import Any
 
 from rclpy.node import Node
 from sher3_common.operating_state import OperatingState, StateCommand
-from sher3_common.samples import JoySample, PoseSample, TextSample, WrenchSample
+from sher3_common.samples import JointSample, JoySample, PoseSample, TextSample, WrenchSample
+from sher3_common.vectors import Vector
 from sher3_faults.kinds import OK
 from sher3_faults.requests import make_request
-from sher3_runtime.ports import NODE_OPTIONS, advertise, on_tick, subscribe
+from sher3_runtime.ports import NODE_OPTIONS, advertise, latest, on_tick, subscribe
 
 
 class OperatorNode(Node):
@@ -20,11 +22,16 @@ class OperatorNode(Node):
         force: of the hand along z of {b} [N].
         state: newest operating state heard.
         height: newest z of the tip heard [m].
+        aim: how far from where the axes are the position commands ask them to be (5,) [m, rad]; None: no such command.
     """
 
     def __init__(self, **options: Any) -> None:
         super().__init__("operator", **{**NODE_OPTIONS, **options})
         self.pedal, self.force, self.state, self.height = 0.0, 0.0, "", 0.0
+        self.aim: Vector | None = None
+        self._goal: Vector | None = None
+        self._take_joints = latest(self, "measured_js")
+        self._publish_goal = advertise(self, "command/servo_jp")
         self._publish_wrench = advertise(self, "mock/contact_wrench")
         self._publish_pedal = advertise(self, "mock/pedal")
         self._publish_command = advertise(self, "command/state_command")
@@ -47,7 +54,18 @@ class OperatorNode(Node):
     def _on_tip(self, sample: PoseSample) -> None:
         self.height = sample.position[2]
 
+    def _follow_aim(self, stamp: int) -> None:
+        """Ask for the place that the aim means at its first tick, and for the same one from then on."""
+        joints = self._take_joints()
+        if self.aim is None:
+            self._goal = None
+        elif self._goal is None and joints is not None:
+            self._goal = tuple(map(add, joints.position, self.aim))
+        if self._goal is not None:
+            self._publish_goal(JointSample(stamp, self._goal))
+
     def _tick(self, stamp: int) -> None:
+        self._follow_aim(stamp)
         self._publish_pedal(JoySample(stamp, (self.pedal,), (0,)))
         self._publish_wrench(WrenchSample(stamp, (0.0, 0.0, self.force, 0.0, 0.0, 0.0)))
 

@@ -20,6 +20,7 @@ from sher3_bags.run import RunMetadata
 from sher3_bringup.stepped_robot import SteppedRobot
 from sher3_common import Sher3Error
 from sher3_common.operating_state import OperatingState, StateCommand
+from sher3_control.settings import ControlSettings
 from sher3_description import Robot
 from sher3_drivers.settings import default_settings
 from sher3_faults.items import Numbers, Stamps
@@ -29,12 +30,14 @@ from sher3_runtime import Graph
 from sher3_runtime.ports import ports
 
 from sher3_safety.measurement.recording import STANDS, Outcome, Recording
-from sher3_safety.rows.row import STATES, Row, State
+from sher3_safety.rows.row import FURTHER, STATES, Row, State
 from sher3_safety.runs.operator_node import OperatorNode
 
 SETTLE, APPROACH, OBSERVE, HELD, RELEASED, AGAIN = 60, 90, 40, 25, 15, 40
 """Ticks: before the first `enable`; until the tip has the speed of the state; observed after a fault; enabled with
 the pedal still pressed; with the pedal released; with the pedal pressed again."""
+LEAVES = {OperatingState.PAUSED: StateCommand.PAUSE.value, OperatingState.DISABLED: StateCommand.DISABLE.value}
+"""Commands that lead from ENABLED to the states in which a fault sets in."""
 ENABLE_TRIES, ENABLE_TICKS = 16, 30
 TRAVEL = 4e-3
 """Travel of the sliders to either side [m] where the robot has to be at the end of it: the real end is 38 mm and 8 s
@@ -52,8 +55,9 @@ class MatrixRun:
     def __init__(self, graph: Graph, robot: Robot, seed: int, composed: bool = False) -> None:
         self.graph, self.seed = graph, seed
         self.operator = graph.add(OperatorNode)
+        control = ControlSettings.from_robot(robot, {"motion": {"regime": "free"}})
         drives = default_settings(robot.control_period)
-        self.rig = SteppedRobot(graph, seed=seed, robot=robot, drives=drives, composed=composed)
+        self.rig = SteppedRobot(graph, seed=seed, robot=robot, control=control, drives=drives, composed=composed)
         self._sign = 1.0
 
     def start(self) -> bool:
@@ -71,13 +75,19 @@ class MatrixRun:
             self._go_to_end(self._sign * state.force)
         operator.force, operator.pedal = self._sign * state.force, state.pedal
         self.graph.step(APPROACH if state.pedal else SETTLE)
+        if state.operating is not OperatingState.ENABLED:
+            operator.command(LEAVES[state.operating])
+            self.graph.step(SETTLE)
         if row.release:
             self._release_under(row, label)
         else:
             self._inject(row.request(self.seed, label).to_json())
+        operator.force *= not row.lets_go
+        operator.aim = (state.aim,) * 3 + (0.0, 0.0) if state.aim else None
         duration = OBSERVE if row.duration is None else round(row.duration * 1e9 / self.graph.clock.period_ns)
         self._go_through(row, duration)
         self.graph.step(OBSERVE)
+        operator.aim = None
         self._inject(make_request(component=row.component, fault=OK, label=label).to_json())
         if row.final:
             self.graph.step(5)
@@ -87,7 +97,8 @@ class MatrixRun:
             operator.pedal = 0.0
             self.graph.step(RELEASED)
             return True
-        return self._recover(-self._sign * PULL if state.end else operator.force)
+        hand = -self._sign * PULL if state.end or not operator.force else operator.force
+        return self._recover(hand, RELEASED + round(row.rest / self.rig.robot.control_period))
 
     def _go_to_end(self, force: float) -> None:
         """Push the sliders to the end of their travel."""
@@ -114,15 +125,18 @@ class MatrixRun:
         self.operator.inject(request)
         self.graph.settle()
 
-    def _recover(self, force: float) -> bool:
-        """Leave FAULT, enable with the pedal still pressed, release it, press it again under this `force` [N]."""
+    def _recover(self, force: float, released: int) -> bool:
+        """Leave FAULT, enable with the pedal still pressed, release it for so many ticks, press it again.
+
+        `force`: of the hand then, N.
+        """
         self.operator.command(StateCommand.DISABLE.value)
         self.graph.step(5)
         if not self._enable():
             return False
         self.graph.step(HELD)
         self.operator.pedal = 0.0
-        self.graph.step(RELEASED)
+        self.graph.step(released)
         self.operator.pedal, self.operator.force = 1.0, force
         self.graph.step(AGAIN)
         self.operator.pedal = 0.0
@@ -195,7 +209,7 @@ def _tick_through(fault: Kind, call: Callable[[int], None], stamp: int) -> None:
 
 
 def _stands(label: str) -> float:
-    return STANDS * next(state.budget for state in STATES if label.endswith(f"| {state.name}"))
+    return STANDS * next(state.budget for state in (*STATES, *FURTHER) if label.endswith(f"| {state.name}"))
 
 
 def run_cells(

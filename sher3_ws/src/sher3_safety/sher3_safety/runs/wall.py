@@ -93,7 +93,8 @@ def run_case(row: Row, state: State, folder: Path, seed: int = 1, domain: int = 
             outcome = _run(row, state, folder / name, seed, domain)
         except StartError as error:
             return Verdict(row, state, None, (f"did not start: {error}",))
-        if outcome is not None and outcome.enabled and outcome.speed >= 0.8 * state.speed:
+        ready = outcome is not None and outcome.operating in ("", state.operating)
+        if outcome is not None and ready and outcome.speed >= 0.8 * state.speed:
             break
     else:
         return _unmeasured(row, state, outcome)

@@ -13,12 +13,13 @@ def show(robot: Path | None, port: int, domain: int, seconds: float | None) -> N
         ExtraMissing: viser is not installed.
     """
     from sher3_description import load_robot
+    from sher3_effects import plants
     from sher3_kinematics import RobotKinematics
 
     from sher3_view.live.page import LivePage
     from sher3_view.live.view_node import run
 
-    page = LivePage(RobotKinematics(load_robot(robot)), port)
+    page = LivePage(RobotKinematics(load_robot(robot)), port, {name: kind.sites for name, kind in plants().items()})
     print(f"live on {page.url}", flush=True)
     run(page, domain, seconds)
 

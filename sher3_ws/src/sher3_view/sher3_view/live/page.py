@@ -4,19 +4,17 @@ from __future__ import annotations
 
 import time
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from importlib import import_module
-from queue import Empty, SimpleQueue
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
-from sher3_faults.requests import FaultRequest, make_request
 from sher3_kinematics import RobotKinematics
 
 from sher3_view.errors import ExtraMissing
-from sher3_view.live.hand import COMMANDS, MOST_FORCE, Hand
+from sher3_view.live.mock_panel import MockPanel
 from sher3_view.live.plot import WINDOW, plot_svg
 from sher3_view.live.snapshot import Snapshot
 from sher3_view.scene import Primitive, RobotState, Scene
@@ -35,20 +33,12 @@ COLOURS = {
     "needle": (107, 115, 125),
     "force": (230, 82, 15),
 }
-BUTTONS = {
-    "Force sensor silent, 0.5 s": {"component": "force_sensor", "fault": "off", "duration": 0.5},
-    "Pedal silent, 0.5 s": {"component": "pedal", "fault": "off", "duration": 0.5},
-    "Bus 0 delayed by 10 ms, 1 s": {
-        "component": "bus0.up",
-        "fault": "delayed",
-        "duration": 1.0,
-        "parameters": {"delay": 0.01},
-    },
-    "End all faults": {"component": "all", "fault": "ok"},
-}
-"""What can be broken from the page, and how it is asked for on `mock/fault`."""
-PLOTS = (("Force on the tip", "N", "#d9480f"), ("Speed of the tip", "mm/s", "#2b6cb0"))
-"""Title, unit and colour of the plots."""
+PLOTS = (
+    ("Force on the tip", "N", "#d9480f"),
+    ("Speed of the tip", "mm/s", "#2b6cb0"),
+    ("Largest tracking error of the sliders", "", "#2f9e44"),
+)
+"""Title, unit and colour of the plots; the unit of the tracking error follows the mode."""
 STEP = 2e-6
 """Motion [m] below which a part is not sent again: a hundredth of a pixel, and above the noise of the encoders."""
 SLOWLY = 0.2
@@ -67,11 +57,11 @@ class LivePage:
 
     Attributes:
         url: where it is served.
-        hand: hand and foot of the visitor, for mocks.
+        mocks: what a visitor asks of the mocks.
     """
 
-    def __init__(self, kinematics: RobotKinematics, port: int) -> None:
-        """Serve on the loopback interface.
+    def __init__(self, kinematics: RobotKinematics, port: int, effects: Mapping[str, Sequence[str]]) -> None:
+        """Serve on the loopback interface; `effects` are those the mocks can have, with their places.
 
         Raises:
             ExtraMissing: viser is not installed.
@@ -93,25 +83,15 @@ class LivePage:
         self._shown = self._scene.moving(RobotState((0.0,) * 5))
         self._moving = [self._add(part) for part in self._shown]
         self._path = self._line("path", np.zeros((2, 3)), (43, 108, 176))
-        self._history: deque[tuple[float, float, float, NDArray[np.float64]]] = deque()
+        self._history: deque[tuple[float, float, float, float, NDArray[np.float64]]] = deque()
+        self._tracked = ""
         self._panel = self._server.gui.add_markdown("### Waiting for the robot")
         self._plots = [self._server.gui.add_html("") for _ in PLOTS]
-        self._requests: SimpleQueue[FaultRequest] = SimpleQueue()
-        self.hand = Hand()
-        self._mocks = [self._add_hand(), self._add_buttons()]
+        self.mocks = MockPanel(self._server.gui, effects)
         self._slow = 0.0
 
-    def requests(self) -> list[FaultRequest]:
-        """Return the faults that were asked for since the last call."""
-        found = []
-        while True:
-            try:
-                found.append(self._requests.get_nowait())
-            except Empty:
-                return found
-
-    def show(self, snapshot: Snapshot, now: int, mocks: bool) -> None:
-        """Show a moment; `now` is the time [ns], `mocks` whether there are mocks that can be broken."""
+    def show(self, snapshot: Snapshot, now: int) -> None:
+        """Show a moment; `now` is the time [ns]."""
         seconds = time.monotonic()
         slowly = seconds - self._slow >= SLOWLY
         with self._server.atomic():
@@ -124,8 +104,6 @@ class LivePage:
             if slowly:
                 self._slow = seconds
                 self._panel.content = snapshot.text(self._robot, now)
-                for folder in self._mocks:
-                    folder.visible = mocks
                 self._draw_history()
 
     def close(self) -> None:
@@ -134,18 +112,26 @@ class LivePage:
 
     def _remember(self, seconds: float, snapshot: Snapshot, tip: NDArray[np.float64]) -> None:
         force = float(np.linalg.norm(snapshot.force))
-        self._history.append((seconds, force, snapshot.speed * 1e3, tip))
+        kind, errors = snapshot.tracking() or (self._tracked, (0.0,) * 5)
+        if kind != self._tracked:
+            # Micrometres and micrometres per second do not go into one plot.
+            self._history.clear()
+            self._tracked = kind
+        error = max(map(abs, errors[:3])) * 1e6
+        self._history.append((seconds, force, snapshot.speed * 1e3, error, tip))
         while self._history[0][0] < seconds - WINDOW:
             self._history.popleft()
 
     def _draw_history(self) -> None:
         if len(self._history) < 2:
             return
-        path = np.array([row[3] for row in self._history])
+        path = np.array([row[4] for row in self._history])
         self._path.points = np.stack([path[:-1], path[1:]], axis=1).astype(np.float32)
         times = np.array([row[0] for row in self._history]) - self._history[-1][0]
-        for handle, (title, unit, colour), column in zip(self._plots, PLOTS, (1, 2), strict=True):
-            handle.content = plot_svg(times, np.array([row[column] for row in self._history]), title, unit, colour)
+        for handle, (title, unit, colour), column in zip(self._plots, PLOTS, (1, 2, 3), strict=True):
+            values = np.array([row[column] for row in self._history])
+            shown = unit or ("µm" if self._tracked == "position" else "µm/s")
+            handle.content = plot_svg(times, values, title, shown, colour)
 
     def _add(self, part: Primitive) -> Any:
         name, colour = f"robot/{part.name}", COLOURS[part.role]
@@ -184,39 +170,11 @@ class LivePage:
         if part.kind == "ball":
             return
         handle.wxyz = wxyz
-        size = (*part.size, max(length, 1e-5))
+        # A short arrow is thin too: its head keeps its shape.
+        thick = part.size if part.kind != "arrow" else (min(part.size[0], 0.1 * length),) * 2
+        size = (*thick, max(length, 1e-5))
         if part.kind != "bar" and not np.allclose(handle.scale, size, rtol=0.0, atol=STEP):
             handle.scale = size
-
-    def _add_hand(self) -> Any:
-        """Add pedal, push and state buttons; what they say is in `hand`."""
-        gui = self._server.gui
-        folder = gui.add_folder("Hand and foot on the mock", expand_by_default=False, visible=False)
-        with folder:
-            for command in COMMANDS:
-                gui.add_button(command.capitalize()).on_click(lambda _, command=command: self._ask(command=command))
-            pedal = gui.add_checkbox("Pedal", initial_value=False)
-            pedal.on_update(lambda _: self._ask(pedal=pedal.value))
-            pushes = [
-                gui.add_slider(f"Push {name} [N]", -MOST_FORCE, MOST_FORCE, step=0.1, initial_value=0.0)
-                for name in "xyz"
-            ]
-            for push in pushes:
-                push.on_update(lambda _: self._ask(force=tuple(p.value for p in pushes)))
-        return folder
-
-    def _ask(self, **wanted: Any) -> None:
-        self.hand.touched = True
-        for name, value in wanted.items():
-            setattr(self.hand, name, value)
-
-    def _add_buttons(self) -> Any:
-        folder = self._server.gui.add_folder("Break a mock", expand_by_default=False, visible=False)
-        with folder:
-            for label, request in BUTTONS.items():
-                button = self._server.gui.add_button(label)
-                button.on_click(lambda _, request=request: self._requests.put(make_request(**request)))
-        return folder
 
 
 def pose_of(part: Primitive) -> tuple[NDArray[np.float64], NDArray[np.float64], float]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -25,8 +25,12 @@ TOPICS = (
     "admittance/status",
     "admittance/settings",
     "motion/settings",
+    "motion/status",
+    "diagnostics",
 )
 """What the view listens to."""
+REFUSING = ("supervisor/status", "motion/status", "admittance/status")
+"""Statuses that tell a refused command."""
 STALE = 0.5
 """Age [s] from which the newest joint sample is called old."""
 CAPS = {"near_tissue": "near_speed", "free": "free_speed"}
@@ -40,10 +44,12 @@ class Snapshot:
     Attributes:
         samples: by topic; a topic that has not been heard is absent.
         speed: of the tip [m/s], from the last two poses.
+        lost: cycles that each node has lost since it began.
     """
 
     samples: dict[str, Any]
     speed: float = 0.0
+    lost: dict[str, int] = field(default_factory=dict)
 
     @classmethod
     def empty(cls) -> Snapshot:
@@ -60,6 +66,8 @@ class Snapshot:
             if topic == "measured_cp" and before is not None and sample.stamp > before.stamp:
                 travel = math.dist(sample.position, before.position)
                 self.speed = travel / ((sample.stamp - before.stamp) * 1e-9)
+            if topic == "diagnostics":
+                self.lost.update(lost_cycles(sample))
             self.samples[topic] = sample
 
     @property
@@ -125,6 +133,11 @@ class Snapshot:
             return {}
         return data if isinstance(data, dict) else {}
 
+    def refusals(self) -> list[str]:
+        """Return what was refused last and is not settled yet: by the supervisor, the motion and the law."""
+        found = [self.status(topic).get("refused") for topic in REFUSING]
+        return [str(refused.get("text") or refused) for refused in found if isinstance(refused, dict)]
+
     def text(self, robot: Robot, now: int) -> str:
         """Return what the side panel says, as Markdown; `now` is the time [ns]."""
         joints = self.samples.get("measured_js")
@@ -133,15 +146,20 @@ class Snapshot:
         supervisor, law = self.status("supervisor/status"), self.status("admittance/status")
         age = (now - joints.stamp) * 1e-9
         cap = "no cap" if math.isinf(self.cap) else f"cap {self.cap * 1e3:g}"
+        state = supervisor.get("state", "state unknown")
+        why = law.get("text", "") if state == "ENABLED" else f"since {supervisor.get('reason', 'not known')}"
+        fault = supervisor.get("first_fault")
         lines = [
-            f"### {supervisor.get('state', 'state unknown')}",
-            f"**The joints are {age:.1f} s old.**" if age > STALE else str(law.get("text", "")),
-            *([f"**Fault: {supervisor['first_fault'].get('code')}**"] if supervisor.get("first_fault") else []),
+            f"### {state}",
+            f"**{_fault(fault)}**" if fault else str(why),
+            *([f"\n**The joints are {age:.1f} s old.**"] if age > STALE else []),
+            *(f"\nRefused: {text}" for text in self.refusals()),
             "",
             "| | |\n|:--|--:|",
             f"| Tip speed | {self.speed * 1e3:.2f} mm/s, {cap} |",
             f"| Force | {float(np.linalg.norm(self.force)):.2f} N |",
             f"| Pedal | {self.pedal:.0%} |",
+            f"| Cycles lost | {sum(self.lost.values())} |",
             "",
         ]
         return "\n".join([*lines, *self._axes(robot)])
@@ -162,3 +180,19 @@ class Snapshot:
                 small = "not known"
             rows.append(f"| {actuator.name} | {shown} | {share:.0%} | {small} |")
         return rows
+
+
+def lost_cycles(sample: Any) -> dict[str, int]:
+    """Return the lost cycles that a diagnostic of a node tells, by node; empty for other diagnostics."""
+    values = dict(sample.values)
+    text = values.get("lost_cycles", "")
+    return {sample.name: int(text)} if text.isdigit() else {}
+
+
+def _fault(fault: dict[str, Any]) -> str:
+    """Return code, source, value and limit of a fault."""
+    text = f"{fault.get('code')} {fault.get('source', '')}".strip()
+    value, limit, unit = (fault.get(key) for key in ("value", "limit", "unit"))
+    if not isinstance(value, float | int) or not isinstance(limit, float | int):
+        return text
+    return f"{text}: {value:.4g} {unit}, limit {limit:.4g} {unit}"

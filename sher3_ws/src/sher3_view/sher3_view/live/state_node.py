@@ -1,4 +1,4 @@
-"""Publish a running robot the way ROS viewers expect it: description, joint states, transforms and legs.
+"""Publish a running robot the way ROS tools expect it: description, joint states, transforms, legs, typed statuses.
 
 It takes the newest position 50 times a second and wakes nobody. It is no part of the robot: nothing stops when it ends.
 """
@@ -13,7 +13,9 @@ from typing import Any
 import rclpy
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
-from sher3_bags.recording.robot_frames import PERIOD_NS, SOURCE, Made, RobotFrames
+from sher3_bags.recording.made import Made
+from sher3_bags.recording.robot_frames import PERIOD_NS, SOURCE, RobotFrames
+from sher3_bags.recording.typed_status import SOURCES, TypedStatuses
 from sher3_description import Robot
 from sher3_runtime import environment
 from sher3_runtime.codec.messages import message_class
@@ -22,7 +24,7 @@ from sher3_runtime.process import stop_on_signals
 
 
 class StateNode(Node):
-    """Publishes what `RobotFrames` makes of the newest `measured_js`.
+    """Publishes what follows from the newest `measured_js` and the newest statuses.
 
     Attributes:
         left_out: topics whose message type is not installed.
@@ -33,12 +35,18 @@ class StateNode(Node):
         self.left_out: set[str] = set()
         self._frames = RobotFrames(robot)
         self._newest = latest(self, SOURCE)
+        self._typed = TypedStatuses()
+        self._statuses = {topic: latest(self, topic) for topic in SOURCES}
         self._by_topic: dict[str, Any] = {}
         for made in self._frames.fixed(clock_of(self).now()):
             self._send(made)
 
     def step(self) -> None:
-        """Publish the state that follows from the newest position, if one came."""
+        """Publish what follows from the newest position and the newest statuses, where they came."""
+        for topic, take in self._statuses.items():
+            if (status := take()) is not None:
+                for made in self._typed.follow(topic, status.text, clock_of(self).now()):
+                    self._send(made)
         sample = self._newest()
         if sample is not None and sample.position is not None:
             for made in self._frames.state(sample.stamp, sample.position):
@@ -66,9 +74,7 @@ def run(robot: Robot, domain: int, seconds: float | None, say: Callable[[str], N
         node = StateNode(robot)
         node.step()
         if node.left_out:
-            say(
-                f"without {', '.join(sorted(node.left_out))}: tf2_msgs is not installed; see docs/how-to/ros-viewers.md"
-            )
+            say(f"without {', '.join(sorted(node.left_out))}: `make messages` builds their types")
         begin = time.monotonic()
         while not signalled() and (seconds is None or time.monotonic() - begin < seconds):
             now = time.monotonic()

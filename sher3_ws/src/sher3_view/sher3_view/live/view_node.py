@@ -1,9 +1,10 @@
-"""The live view as a node: it listens. To mocks it also hands on what is asked for on its page: hand, foot, faults."""
+"""The live view as a node: it listens. To mocks it also hands on what is asked for on its page."""
 
 from __future__ import annotations
 
+import json
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import rclpy
@@ -17,6 +18,7 @@ from sher3_runtime.ports import NODE_OPTIONS, advertise, clock_of, latest
 from sher3_runtime.process import stop_on_signals
 
 from sher3_view.live.hand import Hand
+from sher3_view.live.mock_panel import Effect
 from sher3_view.live.page import LivePage
 from sher3_view.live.snapshot import TOPICS, Snapshot
 
@@ -43,15 +45,21 @@ class ViewNode(Node):
         """Take what has come."""
         self.snapshot.take(self._newest)
 
-    def mocks(self) -> bool:
-        """Whether a plant with mocks listens to requests for faults; hardware has none."""
-        ends = self.get_subscriptions_info_by_topic(TABLE["mock/fault"].full_name)
+    def mocks(self, topic: str = "mock/fault") -> bool:
+        """Whether a plant with mocks listens to requests, by default for faults; hardware has none."""
+        ends = self.get_subscriptions_info_by_topic(TABLE[topic].full_name)
         return any(end.node_name == "plant" for end in ends)
 
     def ask(self, request: FaultRequest) -> None:
         """Ask the plant for a fault; nothing happens where there is no plant."""
         if self.mocks():
             self._send("mock/fault", TextSample(request.to_json()))
+
+    def exchange(self, effects: Sequence[Effect]) -> None:
+        """Ask the plant for these effects instead of those it has; nothing happens where no plant takes them."""
+        if self.mocks("mock/effects"):
+            entries = [{"effect": name, "actuator": place} for name, place in effects]
+            self._send("mock/effects", TextSample(json.dumps(entries)))
 
     def act(self, hand: Hand) -> None:
         """Let the mocks feel a hand that somebody has used; whoever calls makes sure that there are mocks."""
@@ -79,16 +87,19 @@ def run(page: LivePage, domain: int, seconds: float | None) -> None:
         signalled = stop_on_signals()
         node = ViewNode()
         begin = looked = time.monotonic()
-        mocks = False
+        mocks = exchange = False
         while not signalled() and (seconds is None or time.monotonic() - begin < seconds):
             if (now := time.monotonic()) - looked >= LOOK_AROUND:
-                looked, mocks = now, node.mocks()
+                looked, mocks, exchange = now, node.mocks(), node.mocks("mock/effects")
             node.look()
-            page.show(node.snapshot, clock_of(node).now(), mocks)
-            for request in page.requests():
+            page.mocks.show(mocks, exchange)
+            page.show(node.snapshot, clock_of(node).now())
+            for request in page.mocks.faults():
                 node.ask(request)
+            for effects in page.mocks.exchanges():
+                node.exchange(effects)
             if mocks:
-                node.act(page.hand)
+                node.act(page.mocks.hand)
             time.sleep(max(0.0, 1.0 / RATE - (time.monotonic() - now)))
         node.destroy_node()
     finally:

@@ -4,7 +4,7 @@ const COLOURS = {
   joint: [0.30, 0.34, 0.39], platform: [0.20, 0.25, 0.31], arm: [0.33, 0.38, 0.44], linkage: [0.70, 0.73, 0.76],
   tool: [0.88, 0.90, 0.92], needle: [0.42, 0.45, 0.49], force: [0.90, 0.32, 0.06],
 };
-const GHOST = [0.44, 0.28, 0.91];
+const GHOSTS = [[0.44, 0.28, 0.91], [0.18, 0.62, 0.27], [0.80, 0.55, 0.05]], GHOST_INKS = ["#7048e8", "#2b8a3e", "#b7791f"];
 
 const VERTEX = `
 attribute vec3 place, normal; uniform vec3 origin, ax, ay, az, scale, light; uniform mat4 camera; uniform float floorAt, shadow;
@@ -82,8 +82,8 @@ class Stage {
     gl.enable(gl.DEPTH_TEST); gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
   }
 
-  // Draw parts, each with kind, role, size and its points; the ghost's parts transparent and without shadow.
-  draw(view, parts, ghost) {
+  // Draw parts, each with kind, role, size and its points; the ghosts' parts transparent and without shadow.
+  draw(view, parts, ghosts) {
     const gl = this.gl;
     if (!gl) return;
     gl.viewport(0, 0, this.canvas.width, this.canvas.height);
@@ -97,14 +97,15 @@ class Stage {
     for (const part of parts) if (part.role !== "force" && part.kind !== "path") this.part(part, [0.85, 0.87, 0.895]);
     gl.uniform1f(this.at.shadow, 0);
     for (const part of parts) this.part(part, COLOURS[part.role]);
-    if (!ghost) return;
-    // First the depth alone, then the colour: only the nearest face of the ghost is seen, not all that lie behind it.
-    for (const colour of [false, true]) {
-      gl.colorMask(colour, colour, colour, colour);
-      if (colour) { gl.enable(gl.BLEND); gl.depthFunc(gl.LEQUAL); gl.uniform1f(this.at.alpha, 0.42); }
-      for (const part of ghost) if (part.role !== "force") this.part(part, GHOST);
-    }
-    gl.disable(gl.BLEND); gl.depthFunc(gl.LESS);
+    // First the depth alone, then the colour: only the nearest face of a ghost is seen, not all that lie behind it.
+    ghosts.forEach((ghost, k) => {
+      for (const colour of [false, true]) {
+        gl.colorMask(colour, colour, colour, colour);
+        if (colour) { gl.enable(gl.BLEND); gl.depthFunc(gl.LEQUAL); gl.uniform1f(this.at.alpha, 0.42); }
+        for (const part of ghost) if (part.role !== "force") this.part(part, GHOSTS[k % GHOSTS.length]);
+      }
+      gl.disable(gl.BLEND); gl.depthFunc(gl.LESS);
+    });
   }
 
   part({ kind, points, size: [width, height] }, colour) {

@@ -8,7 +8,7 @@ function unpacked(text) {
   const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
   return new Int16Array(bytes.buffer);
 }
-const robot = unpacked(data.points), ghost = data.ghost && unpacked(data.ghost.points);
+const robot = unpacked(data.points), ghosts = data.ghosts.map((ghost) => unpacked(ghost.points));
 const WIDTH = 3 * data.moving.reduce((sum, part) => sum + part.count, 0);
 
 function partsAt(numbers, row, share) {
@@ -108,6 +108,9 @@ const plots = [
   new Plot(byId("plot_tracking"), seconds, data.limits.map(([name, unit], k) => ({ name, unit, k }))
     .filter((axis) => axis.unit === "m").map(({ name, k }) => ({ name: name.replace("delta_", "δ"), colour: BLUES[k], values: column(data.tracking, k, 1e6) })), seek),
 ];
+byId("gap").hidden = !data.ghosts.length;
+if (data.ghosts.length) plots.push(new Plot(byId("plot_gap"), seconds, data.ghosts.map((ghost, k) =>
+  ({ name: ghost.name, colour: GHOST_INKS[k % GHOST_INKS.length], values: ghost.distance.map((v) => v * 1e6) })), seek));
 byId("axes").innerHTML = data.limits.map(([name]) => `<div class="axis"><span>${name.replace("delta_", "delta ")}</span><div class="bar"><i></i></div><span></span></div>`).join("");
 const bars = [...document.querySelectorAll(".axis")];
 
@@ -146,7 +149,7 @@ function draw() {
     if (newton > 0.15) labels.push({ at: part.points[1], text: `${newton.toFixed(2)} N`, colour: "#c2410c" });
   }
   for (const part of moving) if (part.name === "remote_centre" && !Number.isNaN(part.points[0][0])) labels.push({ at: part.points[0], text: "remote centre", colour: "#c2410c" });
-  stage.draw(view, [...fixed, ...moving], ghost && partsAt(ghost, row, share));
+  stage.draw(view, [...fixed, ...moving], ghosts.map((ghost) => partsAt(ghost, row, share)));
   overlay.draw(view, data.tip, row, chosen === "tip" ? null : edge.points, labels);
   plots.forEach((plot) => plot.draw(time));
   drawRibbon(byId("ribbon"), data.states, seconds, data.pedal);
@@ -164,7 +167,12 @@ function tick(now) {
 }
 byId("tracked").innerHTML = data.tracked === "position" ? "Wanted minus measured position <i>µm</i>" : "Demanded minus measured velocity <i>µm/s</i>";
 byId("facts").textContent = `${(seconds[LAST] - seconds[0]).toFixed(1)} s · ${data.dropped ? `${data.dropped} samples dropped by the recorder` : "no samples dropped"} · force arrow ${data.metresPerNewton * 1e3} mm per N`;
-if (data.ghost) { byId("ghost").hidden = false; byId("ghost").textContent = `Ghost: ${data.ghost.name}, difference drawn ${data.ghost.exaggeration} times`; }
+data.ghosts.forEach((ghost, k) => {
+  const line = document.createElement("span");
+  line.style.color = GHOST_INKS[k % GHOST_INKS.length];
+  line.textContent = `${ghost.name}: difference drawn ${ghost.exaggeration} times`;
+  byId("ghost").append(line);
+});
 // An address that ends in #t=8,tip opens at 8 s from near.
 for (const word of location.hash.slice(1).split(",")) { if (word.startsWith("t=")) time = Math.max(seconds[0], Math.min(seconds[LAST], Number(word.slice(2)) || 0)); else if (VIEWS[word]) choose(word); }
 requestAnimationFrame(tick);

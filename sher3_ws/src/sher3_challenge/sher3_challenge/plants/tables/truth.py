@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from sher3_challenge.plants.plant import TruthPlant
-from sher3_challenge.plants.tables import faults_drive, faults_friction, faults_outside, faults_tip
+from sher3_challenge.plants.tables.faults import drive, friction, outside, tip
 from sher3_challenge.plants.tables.plant import TablesPlant
 
 PLANT = TruthPlant(
     name="tables",
     summary="sampled laws: friction maps, gear records, two-mass stages with elastic contacts, lagging temperatures",
-    library={**faults_drive.CATALOGUE, **faults_friction.CATALOGUE, **faults_tip.CATALOGUE},
-    outside=dict(faults_outside.CATALOGUE),
+    library={**drive.CATALOGUE, **friction.CATALOGUE, **tip.CATALOGUE},
+    outside=dict(outside.CATALOGUE),
     make=TablesPlant,
 )

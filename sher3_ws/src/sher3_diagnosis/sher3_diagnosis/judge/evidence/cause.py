@@ -9,13 +9,12 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from sher3_diagnosis.attribute.constancy import constancy_of
 from sher3_diagnosis.attribute.rivals import Attribution, without_term
+from sher3_diagnosis.attribute.steadiness import steadiness_of
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.evidence import Evidence
-from sher3_diagnosis.fitting import Fit, Term
+from sher3_diagnosis.fit.fitting import Fit, Term
 from sher3_diagnosis.judge.evidence.free_law import ROWS, loss_left
-from sher3_diagnosis.judge.evidence.transfer import steadiness_of
 from sher3_diagnosis.localise.gaps import gap_of
 from sher3_diagnosis.localise.pattern import pattern_of
 from sher3_diagnosis.quantify.closure import residual_after
@@ -48,6 +47,7 @@ class CauseEvidence:
         sibling: share by which the next effect in its place explains less; 1 without one.
         ratio: gap over floor.
         samples: that tell of it.
+        idealised: 1 where a real machine adds to the law (`Effect.leaves_out`), 0 where the law is complete.
     """
 
     left: float
@@ -61,6 +61,7 @@ class CauseEvidence:
     sibling: float
     ratio: float
     samples: float
+    idealised: float
 
     def numbers(self) -> dict[str, float]:
         """Return the evidence by name."""
@@ -69,7 +70,7 @@ class CauseEvidence:
 
 def shown_at(evidence: Evidence, term: Term, before: Fit, after: Fit) -> Channel:
     """Return the channel on which a term explains most."""
-    shows = [c for c in term.channels if evidence.excess(c) > 0.0] or sorted(term.channels)
+    shows = [c for c in sorted(term.channels) if evidence.excess(c) > 0.0] or sorted(term.channels)
     return max(shows, key=lambda c: evidence.excess(c, before) - evidence.excess(c, after))
 
 
@@ -90,13 +91,14 @@ def cause_evidence(evidence: Evidence, attribution: Attribution, index: int) -> 
         law=(left - laws[0] * samples) / gap,
         place=(left - laws[1] * samples) / gap,
         anything=(left - laws[2] * samples) / gap,
-        spread=constancy_of(evidence, found, index).spread,
+        spread=steady.spread,
         scatter=steady.scatter,
         lost=steady.lost,
         mismatch=1.0 - pattern_of(evidence, found, index).agreement,
         sibling=_sibling(attribution, index),
         ratio=whole.ratio,
         samples=float(samples),
+        idealised=float(bool(term.effect.leaves_out)),
     )
 
 

@@ -34,6 +34,7 @@ def scaled_cause(numbers: Mapping[str, float]) -> dict[str, float]:
     left, law, anything = (min(max(numbers[name], 0.0), 1.0) for name in ("left", "law", "anything"))
     return {
         "left": log_above(left, LEAST_SHARE),
+        "complete": 0.0 if numbers["idealised"] else log_above(left, LEAST_SHARE) - math.log(LEAST_SHARE),
         "law": log_above(law, LEAST_SHARE),
         "foreign": max(0.0, law - anything) / max(law, LEAST_LAW),
         "spread": log_above(numbers["spread"], 0.001),

@@ -17,6 +17,12 @@ SEPARATORS = ";\t,"
 """Tried in this order: where semicolons or tabs part the cells, a comma is a decimal mark."""
 COMMENTS = ("#", "%")
 """What lines of a preamble begin with; the last of them may be the header."""
+MOST_TITLES = 50
+"""Lines of text above a table at most."""
+LONGEST_UNIT = 10
+"""Letters of a unit at most."""
+FEW = 0.02
+"""Share of the cells of a column that may be text, such as `ERR` or a line that ends the file."""
 DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+([eE][+-]?\d+)?")
 ISO_TIME = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d(:\d\d([.,]\d+)?)?(Z|[+-]\d\d:?\d\d)?")
 
@@ -33,8 +39,9 @@ def read_table(path: Path) -> dict[str, Array]:
     body = lines[preamble:]
     if not body:
         raise ValueError("no rows")
-    mark = separator(body[-1])
+    mark = separator(body[len(body) // 2])
     rows = list(csv.reader(body, delimiter=mark)) if mark else [line.split() for line in body]
+    rows = rows[_titles(rows) :]
     comma = mark in (";", "\t", None) and any(DECIMAL_COMMA.fullmatch(c.strip()) for r in rows[:50] for c in r)
     first = [value_of(cell, comma) for cell in rows[0]]
     if all(value is not None for value in first):
@@ -45,8 +52,17 @@ def read_table(path: Path) -> dict[str, Array]:
     if len(set(header)) < len(header):
         twice = next(name for name in header if header.count(name) > 1)
         raise ValueError(f"column {twice!r} is there twice")
+    if rows and _are_units(rows[0]):
+        header, rows = _with_units(header, rows[0]), rows[1:]
     found = {name: _column([r[i] if i < len(r) else "" for r in rows], comma) for i, name in enumerate(header)}
     return {name: x for name, x in found.items() if x is not None}
+
+
+def _titles(rows: list[list[str]]) -> int:
+    """Return how many lines of text stand above the header: those of fewer cells than the table has."""
+    width = len(rows[len(rows) // 2])
+    above = next((i for i, row in enumerate(rows) if len(row) >= width), 0)
+    return above if above <= MOST_TITLES else 0
 
 
 def separator(line: str) -> str | None:
@@ -90,11 +106,27 @@ def seconds(text: str) -> float | None:
     return (moment if moment.tzinfo else moment.replace(tzinfo=timezone.utc)).timestamp()
 
 
+def _are_units(row: list[str]) -> bool:
+    """Return whether a row below the header holds units: words where numbers should be, none of them long."""
+    cells = [cell.strip() for cell in row]
+    return (
+        any(cells) and all(value_of(c, True) is None or not c for c in cells) and max(map(len, cells)) <= LONGEST_UNIT
+    )
+
+
+def _with_units(header: list[str], units: list[str]) -> list[str]:
+    """Return the names of the columns with the units of the row below, as headers have them."""
+    cells = [*(u.strip().strip("[]()") for u in units), *[""] * len(header)]
+    return [f"{name} [{unit}]" if unit else name for name, unit in zip(header, cells, strict=False)]
+
+
 def _column(cells: list[str], comma: bool) -> Array | None:
-    """Cells as (n,) or, where they hold lists, (n, k); None where one of them is text."""
+    """Cells as (n,) or, where they hold lists, (n, k); None where more than a few are text, which become nan."""
     values = [value_of(cell, comma) for cell in cells]
-    if any(value is None for value in values):
+    text = sum(value is None for value in values)
+    if text > FEW * len(values):
         return None
+    values = [float("nan") if value is None else value for value in values] if text else values
     try:
         return np.array(values, dtype=float)
     except (TypeError, ValueError):

@@ -1,0 +1,117 @@
+"""Whether a cause has one size in every excitation, and holds in one left out: an effect does, a stand-in does not.
+
+Letting the coefficients of a cause differ from excitation to excitation explains hardly more when its law is right.
+The share it explains more is the parameter's spread, weighted by what each excitation tells of it.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from sher3_diagnosis.channel import Array
+from sher3_diagnosis.evidence import Evidence
+from sher3_diagnosis.fit.fitting import Fit, solve
+from sher3_diagnosis.thresholds import CERTAIN, CONSTANT, INFORMED
+
+
+@dataclass(frozen=True)
+class Steadiness:
+    """What each run tells of the coefficients of one cause, the other causes as fitted.
+
+    Attributes:
+        excitation: of every run.
+        normal: (runs, p, p) and `right` (runs, p): normal equations of every run.
+    """
+
+    excitation: tuple[str, ...]
+    normal: Array
+    right: Array
+
+    def gained(self, groups: tuple[str | int, ...]) -> float:
+        """Return the loss that the cause explains with coefficients of its own in every group of runs."""
+        sums: dict[str | int, list[Array]] = defaultdict(lambda: [0.0, 0.0])  # type: ignore[list-item]
+        for g, a, b in zip(groups, self.normal, self.right, strict=True):
+            sums[g] = [sums[g][0] + a, sums[g][1] + b]
+        return sum(float(b @ solve(a, b)) for a, b in sums.values())
+
+    @cached_property
+    def explained(self) -> float:
+        """Loss that the cause explains with the same coefficients in all runs."""
+        return self.gained((0,) * len(self.excitation))
+
+    @cached_property
+    def varying(self) -> float:
+        """Loss that it explains in addition with coefficients of its own in every excitation."""
+        return self.gained(self.excitation) - self.explained
+
+    @property
+    def spread(self) -> float:
+        """Share that coefficients of their own add."""
+        return self.varying / max(self.explained, 1.0)
+
+    @property
+    def constant(self) -> bool:
+        """Whether one set of coefficients does."""
+        return self.spread < CONSTANT or self.varying < CERTAIN
+
+    @property
+    def scatter(self) -> float:
+        """F: how much more coefficients differ between excitations than between repeats of one; 1 for a true cause.
+
+        Differences of repeats are the coefficient's own uncertainty. 1 where there is nothing to compare.
+        """
+        width = self.right.shape[1]
+        kinds = len(set(self.excitation))
+        runs = len(self.excitation)
+        if width == 0 or kinds < 2 or runs == kinds:
+            return 1.0
+        within = self.gained(tuple(range(runs))) - self.gained(self.excitation)
+        per_repeat = max(within / (runs - kinds), float(width))
+        return max(self.varying, 0.0) / (kinds - 1) / per_repeat
+
+    @property
+    def lost(self) -> float:
+        """Share of what the cause explains that is lost in excitations left out of its fit; 0 where it transfers."""
+        if self.right.shape[1] == 0 or self.explained <= 0.0:
+            return 0.0
+        all_normal, all_right = self.normal.sum(axis=0), self.right.sum(axis=0)
+        together = solve(all_normal, all_right)
+        lost = 0.0
+        for name in set(self.excitation):
+            mine = [e == name for e in self.excitation]
+            a, b = self.normal[mine].sum(axis=0), self.right[mine].sum(axis=0)
+            if np.trace(all_normal - a) < INFORMED * np.trace(all_normal):
+                continue
+            apart = solve(all_normal - a, all_right - b)
+            lost += max(0.0, _explained(a, b, together) - _explained(a, b, apart))
+        return lost / self.explained
+
+
+def _explained(normal: Array, right: Array, coefficients: Array) -> float:
+    return float(2.0 * coefficients @ right - coefficients @ normal @ coefficients)
+
+
+def steadiness_of(evidence: Evidence, fit: Fit, index: int) -> Steadiness:
+    """Return what every run tells of one cause of a fit."""
+    data, term = evidence.data, fit.terms[index]
+    offsets = np.cumsum([0, *(t.width for t in fit.terms)])
+    normal = np.zeros((len(data.target), term.width, term.width))
+    right = np.zeros((len(data.target), term.width))
+    for r in range(len(data.target)):
+        for channel, x in term.columns[r].items():
+            left = data.target[r][channel].copy()
+            for j, other in enumerate(fit.terms):
+                if channel in other.fixed[r]:
+                    left -= other.fixed[r][channel]
+                if j != index and channel in other.columns[r]:
+                    z = other.columns[r][channel]
+                    left -= z @ fit.coefficients[offsets[j] : offsets[j] + z.shape[1]]
+            wide = np.zeros((len(x), term.width))
+            wide[:, : x.shape[1]] = x
+            normal[r] += wide.T @ wide
+            right[r] += wide.T @ left
+    return Steadiness(tuple(evidence.excitations), normal, right)

@@ -1,0 +1,137 @@
+"""Fitting effects to residuals: whitened least squares with an exact leave-one-run-out loss.
+
+For a given shape an effect is linear in its coefficients. Leaving a run out of the normal equations is then a
+subtraction, and the loss of every run under the coefficients of all others costs a small solve. No score of a fit
+here was seen by that fit. Terms that share no channel do not see each other and are solved apart.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.fit.gram import products
+from sher3_diagnosis.fit.solving import RIDGE, solve, solve_within
+from sher3_diagnosis.fit.term import Term, make_term
+from sher3_diagnosis.fit.whitened import Whitened
+
+__all__ = ["RIDGE", "Fit", "Term", "fit", "make_term", "solve"]
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A set of terms fitted together.
+
+    Attributes:
+        coefficients: (p,) of all terms in order; `loro_coefficients`: (runs, p), each without its run.
+        loss: per run and channel, sum of squares under the coefficients of the other runs (held out).
+    """
+
+    terms: tuple[Term, ...]
+    coefficients: Array
+    loro_coefficients: Array
+    loss: dict[tuple[int, Channel], float]
+
+    def _columns(self, index: int) -> slice:
+        start = sum(t.width for t in self.terms[:index])
+        return slice(start, start + self.terms[index].width)
+
+    def of(self, index: int) -> Array:
+        """Coefficients of one term."""
+        return self.coefficients[self._columns(index)]
+
+    def loro_of(self, index: int) -> Array:
+        """Leave-one-run-out coefficients of one term, (runs, p)."""
+        return self.loro_coefficients[:, self._columns(index)]
+
+    @property
+    def total(self) -> float:
+        """Held-out loss over all runs and channels."""
+        return sum(self.loss.values())
+
+    @property
+    def admissible(self) -> bool:
+        """Whether every term's fit is physically possible."""
+        return all(t.effect.admissible(t.shape, self.of(i)) for i, t in enumerate(self.terms))
+
+
+@dataclass(frozen=True)
+class _Part:
+    """The fit of terms that share channels."""
+
+    terms: tuple[Term, ...]
+    coefficients: Array
+    held_out: Array
+    loss: dict[tuple[int, Channel], float]
+
+
+def fit(data: Whitened, terms: Sequence[Term]) -> Fit:
+    """Fit all terms together and score every run with the coefficients of the others."""
+    runs = len(data.target)
+    starts = np.cumsum([0, *(t.width for t in terms)])
+    coefficients, held_out = np.zeros(int(starts[-1])), np.zeros((runs, int(starts[-1])))
+    loss = dict(data.null_loss)
+    for members in connected(terms):
+        part = _part(data, tuple(terms[i] for i in members))
+        columns = np.concatenate([np.arange(starts[i], starts[i + 1]) for i in members]).astype(int)
+        coefficients[columns], held_out[:, columns] = part.coefficients, part.held_out
+        loss.update(part.loss)
+    return Fit(tuple(terms), coefficients, held_out, loss)
+
+
+def connected(terms: Sequence[Term]) -> list[list[int]]:
+    """Return the indices of terms in groups that share channels."""
+    groups: list[tuple[set[Channel], list[int]]] = []
+    for i, term in enumerate(terms):
+        touching = [g for g in groups if g[0] & term.channels]
+        channels = set(term.channels).union(*(g[0] for g in touching))
+        members = sorted([i, *(k for g in touching for k in g[1])])
+        groups = [g for g in groups if g not in touching] + [(channels, members)]
+    return [members for _, members in groups]
+
+
+def _part(data: Whitened, terms: tuple[Term, ...]) -> _Part:
+    """Fit terms that share channels; the same terms are fitted once."""
+    key = tuple(id(t) for t in terms)
+    if key not in data.fits:
+        data.fits[key] = _fit_part(data, terms)
+    found: _Part = data.fits[key]
+    return found
+
+
+def _fit_part(data: Whitened, terms: tuple[Term, ...]) -> _Part:
+    channels = sorted({c for t in terms for c in t.channels})
+    pieces = {c: products(data, terms, c) for c in channels}
+    runs, p = len(data.target), sum(t.width for t in terms)
+    normal = sum((n for n, _, _ in pieces.values()), np.zeros((runs, p, p)))
+    right = sum((b for _, b, _ in pieces.values()), np.zeros((runs, p)))
+    limit = np.repeat([t.limit for t in terms], [t.width for t in terms])
+    prior = np.diag(np.isfinite(limit).astype(float))
+    total, all_right = normal.sum(axis=0), right.sum(axis=0)
+    left_out = np.concatenate([(total + prior)[None], total - normal + prior])
+    solved = solve_within(left_out, np.concatenate([all_right[None], all_right - right]), limit)
+    held_out = _with_deviations(solved[1:], total + prior, all_right, limit)
+    loss: dict[tuple[int, Channel], float] = {}
+    for c, (a, b, energy) in pieces.items():
+        held = energy - 2.0 * np.einsum("rp,rp->r", held_out, b) + np.einsum("rp,rpq,rq->r", held_out, a, held_out)
+        loss |= {(r, c): max(0.0, float(held[r])) for r in range(runs) if (r, c) in data.null_loss}
+    return _Part(terms, solved[0], held_out, loss)
+
+
+def _with_deviations(held_out: Array, normal: Array, right: Array, limit: Array) -> Array:
+    """Replace the limited coefficients (runs, p) by those that fit all runs best beside the held-out causes.
+
+    A machine's deviations within tolerance are as much its own in the run left out: they are noise that repeats, known
+    up to their prior, and no claim that a run must confirm.
+    """
+    own = np.isfinite(limit)
+    if not own.any() or own.all():
+        return held_out if not own.any() else np.broadcast_to(solve_within(normal, right, limit), held_out.shape)
+    rest = right[own] - held_out[:, ~own] @ normal[np.ix_(~own, own)]
+    stacked = np.broadcast_to(normal[np.ix_(own, own)], (len(held_out), own.sum(), own.sum()))
+    out = held_out.copy()
+    out[:, own] = solve_within(stacked, rest, limit[own])
+    return out

@@ -1,0 +1,70 @@
+"""A term of a fit: an effect at a site with a shape, evaluated on every run."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.effect import Effect, Shape, Signature
+from sher3_diagnosis.fit.whitened import Whitened
+
+
+@dataclass(frozen=True)
+class Term:
+    """An effect at a site with a shape, evaluated on every run.
+
+    Attributes:
+        columns: per run and channel (N, p) whitened.
+        fixed: per run and channel (N,) whitened.
+        width: number of coefficients p.
+        limit: largest magnitude of a coefficient, in standard deviations: each is then expected to be normal with a
+            standard deviation of one. Infinite for coefficients of which nothing is known beforehand.
+        products: with other terms, kept by `sher3_diagnosis.fit.gram`.
+    """
+
+    effect: Effect
+    site: str
+    shape: Shape
+    columns: list[dict[Channel, Array]]
+    fixed: list[dict[Channel, Array]]
+    width: int
+    limit: float = math.inf
+    products: dict[Any, tuple[Any, Array]] = field(default_factory=dict, compare=False, repr=False)
+
+    @property
+    def key(self) -> tuple[str, str]:
+        """Effect id and site."""
+        return self.effect.id, self.site
+
+    @cached_property
+    def channels(self) -> frozenset[Channel]:
+        """Channels the term touches."""
+        return frozenset(c for part in (self.columns, self.fixed) for run in part for c in run)
+
+    @cached_property
+    def samples(self) -> list[dict[Channel, int]]:
+        """Whitened samples per run and channel."""
+        return [
+            {c: len(v) for part in (x, f) for c, v in part.items()}
+            for x, f in zip(self.columns, self.fixed, strict=True)
+        ]
+
+
+def make_term(data: Whitened, effect: Effect, site: str, shape: Shape) -> Term:
+    """Evaluate an effect's signature on every run."""
+    columns: list[dict[Channel, Array]] = []
+    fixed: list[dict[Channel, Array]] = []
+    width = 0
+    seen: dict[int, Signature] = {}  # blocks of one record share its view
+    for r, view in enumerate(data.views):
+        present = data.target[r].keys()
+        if id(view) not in seen:
+            seen[id(view)] = effect.signature(view, site, shape)
+        signature = seen[id(view)]
+        columns.append({c: data.flat(r, c, x) for c, x in signature.columns.items() if c in present})
+        fixed.append({c: data.flat(r, c, x) for c, x in signature.fixed.items() if c in present})
+        width = max([width, *(x.shape[1] for x in columns[-1].values())])
+    return Term(effect, site, shape, columns, fixed, width)

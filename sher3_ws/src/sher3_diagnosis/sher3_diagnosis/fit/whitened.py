@@ -1,0 +1,47 @@
+"""Residuals over their floor: a channel at its floor then has a mean square of one."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+from typing import Any
+
+from sher3_diagnosis.channel import Array, Channel, Floors, Residuals
+
+
+class Whitened:
+    """Residuals of all runs over their floor, ready for least squares.
+
+    Attributes:
+        views: per run, what effects see of it.
+        residuals, floors: per run and channel.
+        target: `target[r][c]` is the (N,) vector of channel c in run r: samples that count, components in turn.
+        fits: kept by `sher3_diagnosis.fit.fitting`.
+    """
+
+    def __init__(self, views: Sequence[Any], residuals: Sequence[Residuals], floors: Sequence[Floors]) -> None:
+        self.views = list(views)
+        self.residuals = list(residuals)
+        self.floors = list(floors)
+        self.fits: dict[tuple[int, ...], Any] = {}
+        self.target: list[dict[Channel, Array]] = [
+            {c: self.flat(r, c, x.values) for c, x in res.items() if x.ok.any()} for r, res in enumerate(self.residuals)
+        ]
+
+    def flat(self, run: int, channel: Channel, values: Array) -> Array:
+        """Whiten (g, d) or (g, d, p) values of a channel and flatten the samples that count -> (N,) or (N, p)."""
+        residual = self.residuals[run][channel]
+        kept = residual.relieved(values[residual.ok])
+        scale = self.floors[run][channel]
+        kept = kept / (scale[:, None] if kept.ndim == 3 else scale)
+        return kept.reshape(-1, kept.shape[2]) if kept.ndim == 3 else kept.ravel()
+
+    @cached_property
+    def null_loss(self) -> dict[tuple[int, Channel], float]:
+        """Sum of squares of every run and channel without any effect."""
+        return {(r, c): float(y @ y) for r, t in enumerate(self.target) for c, y in t.items()}
+
+    @cached_property
+    def samples(self) -> dict[tuple[int, Channel], int]:
+        """Number of whitened samples of every run and channel."""
+        return {(r, c): len(y) for r, t in enumerate(self.target) for c, y in t.items()}

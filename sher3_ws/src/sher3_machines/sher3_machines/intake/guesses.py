@@ -1,0 +1,128 @@
+"""What the numbers of a column say: whether it is a clock, in which unit it is, and how fine its encoder is."""
+
+from __future__ import annotations
+
+import numpy as np
+from sher3_diagnosis.channel import Array
+
+from sher3_machines.errors import MachineError
+from sher3_machines.intake.fields import UNITS
+from sher3_machines.intake.names import bare_and_unit, counts_samples, tells_time
+from sher3_machines.intake.tables import Tables
+
+TOO_FAR = 40.0
+"""Position beyond which the unit is hardly rad or m: more than six turns."""
+COARSE = 400.0
+"""Position beyond which the unit is hardly degrees either, but counts."""
+COARSEST_BITS = 12
+"""Bits of a turn that a counting encoder has at least, where nothing says more."""
+STEPS = 1e-3
+"""Share of the travel below which the smallest step of a signal counts as that of its encoder."""
+OUTLYING = 2.0
+"""Largest value over what nearly all stay below, from which it is a glitch."""
+FEWEST_STEPS = 10
+"""Steps from which the smallest one tells an encoder's count."""
+WHOLE, WHOLE_SHARE = 0.05, 0.9
+"""How near to a whole multiple of the count a step must be, and the share of steps that must be."""
+TIME_UNITS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
+USUAL_RATES = (5.0, 20_000.0)
+"""Rates, Hz, between which a clock is believed: of servo loops, and of slow loggers."""
+GROWING = 0.98
+"""Share of the steps of a clock that do not run backwards: logs that were cut together have a few that do."""
+EVEN = 0.05
+"""Spread of the steps over their mean up to which a column without a telling name is taken for a clock."""
+
+
+def clock_of(tables: Tables, guesses: list[str]) -> str:
+    """Return the name of the time column: one whose name says so and that grows; of several that with most samples.
+
+    Raises:
+        MachineError: nothing looks like a time.
+    """
+    growing = {n: x for n, x in tables.items() if x.ndim == 1 and grows(x)}
+    told = [n for n in growing if tells_time(n)]
+    received = [n for n in told if n.rsplit("/", 1)[-1] == "received"]
+    told = [n for n in told if n not in received] or told  # the sender's own stamp comes first
+    if told:
+        best = max(told, key=lambda n: len(growing[n]))
+        guesses.append(f"time is the column {best!r}, because of its name and because it grows")
+        return best
+    even = [n for n, x in growing.items() if np.std(np.diff(x)) < EVEN * np.mean(np.diff(x)) and not counts_samples(n)]
+    even = [n for n in even if period_of(growing[n]) < 1.0]  # a period of one is a number of the sample
+    if even:
+        guesses.append(f"time is the column {even[0]!r}, because it grows evenly")
+        return even[0]
+    raise MachineError(
+        "no column looks like a time",
+        value=", ".join(sorted(tables)[:12]) or "no column of numbers",
+        limit="a growing column named t, time or stamp",
+        remedy="name it so, or state the rate of the samples, Hz: --rate 500 (`time: {rate: 500}` in the description)",
+    )
+
+
+def grows(x: Array) -> bool:
+    """Return whether a column (n,) runs forward but for a few steps."""
+    known = x[np.isfinite(x)]
+    steps = np.diff(known)
+    return len(steps) > 1 and float(np.mean(steps >= 0.0)) > GROWING and bool(np.median(known) > known[0])
+
+
+def period_of(stamps: Array) -> float:
+    """Return the mean step of stamps (n,) that run forward: rounded stamps repeat, so that a median may be zero."""
+    steps = np.diff(stamps[np.isfinite(stamps)])
+    usual = steps[steps >= 0.0]
+    middle = usual[usual <= max(float(np.quantile(usual, 0.95)), 0.0)] if len(usual) else usual
+    return float(middle.mean()) if len(middle) and middle.mean() > 0.0 else float("nan")
+
+
+def time_unit(clock: str, period: float, guesses: list[str]) -> str:
+    """Return the unit of stamps: of the name, or the one that makes the rate usual."""
+    unit = bare_and_unit(clock.rsplit("/", 1)[-1])[1]
+    if unit in TIME_UNITS:
+        return str(unit)
+    for unit, scale in TIME_UNITS.items():
+        if USUAL_RATES[0] <= 1.0 / (period * scale) <= USUAL_RATES[1]:
+            guesses.append(f"time in {unit}: {1.0 / (period * scale):.4g} samples per second")
+            return unit
+    guesses.append(f"time in s, though a period of {period:.4g} s is unusual")
+    return "s"
+
+
+def position_unit(unit: str | None, x: Array) -> tuple[str, float, str]:
+    """Return the unit of a position, its factor, and why."""
+    if unit is not None and unit in UNITS and unit not in ("count", "%", "1"):
+        return unit, 1.0, "its name says so"
+    largest = reach(x)
+    if unit == "count" or (bool((x == np.round(x)).all()) and largest > COARSE):
+        bits = max(COARSEST_BITS, int(np.ceil(np.log2(max(float(np.ptp(x)), 2.0)))))
+        factor = float(f"{2.0 * np.pi / 2**bits:.6g}")
+        return "count", factor, f"its values are whole; `factor` is a placeholder: 2^{bits} counts a turn"
+    if largest > TOO_FAR:
+        return "deg", 1.0, f"values reach {largest:.4g}"
+    return "rad", 1.0, f"values reach {largest:.4g}; write m for an axis that slides"
+
+
+def reach(x: Array) -> float:
+    """Return the largest absolute value of a signal (n,) but for a few glitches."""
+    if not len(x):
+        return 0.0
+    largest, usual = float(np.abs(x).max()), float(np.quantile(np.abs(x), 0.995))
+    return largest if largest < OUTLYING * usual else usual
+
+
+def travel(x: Array) -> float:
+    """Return the span of a signal (n,) but for a few glitches."""
+    low, high = np.quantile(x, [0.005, 0.995]) if len(x) else (0.0, 0.0)
+    return float(high - low)
+
+
+def count_of(x: Array) -> float | None:
+    """Return the smallest step of a signal where it is one of an encoder: most steps are whole multiples of it."""
+    steps = np.abs(np.diff(x))
+    steps = steps[steps > 1e-12 * max(1.0, reach(x))]
+    if len(steps) < FEWEST_STEPS:
+        return None
+    least = float(np.quantile(steps, 0.01))
+    multiples = steps / least
+    whole = np.mean(np.abs(multiples - np.round(multiples)) < WHOLE)
+    return least if whole > WHOLE_SHARE and least > STEPS * 1e-3 * travel(x) else None

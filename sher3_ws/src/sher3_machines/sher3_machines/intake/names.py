@@ -1,0 +1,116 @@
+"""What the name of a column says: which signal it is, of which axis, in which unit.
+
+People name columns in many ways (`actual_q_2`, `Soll [mm]`, `/joint_states/elbow/position`, `present_current`), but of
+few words: one for the quantity, one for who asks or measures, a unit, and what is left is the axis.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from sher3_machines.intake.columns import IN_HEADER, spelled
+from sher3_machines.intake.fields import UNITS
+
+
+def vocabulary(text: str) -> frozenset[str]:
+    """Return the words of a text."""
+    return frozenset(text.split())
+
+
+POSITION = vocabulary("position positions pos posn q theta angle angles encoder enc lage weg winkel qm x dist")
+VELOCITY = vocabulary("velocity velocities vel speed qd dq omega qdot qvel drehzahl geschwindigkeit rate")
+EFFORT = vocabulary("effort torque tau force iq trq moment drehmoment strom kraft amps qfrc")
+CURRENT = vocabulary("current curr cur i")
+"""A current is an effort, but the current position is the measured one."""
+COMMAND = vocabulary("u voltage volt pwm duty vir")
+ASKED = vocabulary("ref reference setpoint sp desired des target goal soll demand commanded cmd command qg d")
+MEASURED = vocabulary("actual act measured meas present est estimate estimated ist feedback fb")
+SECOND = vocabulary("load output link second secondary scale abtrieb")
+IGNORED = vocabulary("acceleration acc accel qdd ddq temperature temp error err")
+PLAIN = vocabulary("motor state states joint value data real raw message msg sensor")
+"""Words that tell one axis from another only where nothing else does."""
+TIME = vocabulary("t time stamp timestamp timestamps zeit date datetime received elapsed clock")
+COUNTERS = vocabulary("sample samples index idx frame step n nr row")
+WORDS = POSITION | VELOCITY | EFFORT | CURRENT | COMMAND | ASKED | MEASURED | IGNORED
+SHORT = vocabulary("x i u n d q t")
+"""Words of one letter: beside a longer word for the quantity they are the name of the axis."""
+
+
+@dataclass(frozen=True)
+class Named:
+    """What a column's name says.
+
+    Attributes:
+        signal: of an axis, as the description names it, or `velocity`; None: no signal of an axis.
+        axis: what is left of the name; empty where nothing is.
+        unit: as descriptions have it; None where the name has none.
+    """
+
+    signal: str | None
+    axis: str
+    unit: str | None
+
+
+def named(column: str) -> Named:
+    """Return what the name of a column says, with the tables it lies in."""
+    *tables, last = column.split("/")
+    bare, unit = bare_and_unit(last)
+    words = words_of(bare)
+    table = words_of(tables[-1]) if tables else []
+    long = [w for w in words if w not in SHORT and w in WORDS - MEASURED - ASKED]
+    used = [w for w in words if w in WORDS and not (long and w in SHORT and w != "d")]
+    rest = [w for w in words if w not in used and w not in SECOND and w not in PLAIN]
+    rest = rest or (["x"] if "x" in used and len(used) > 1 else [])
+    signal = _signal(set(used) | (set(words) & SECOND), {w for w in table if w in ASKED})
+    rest = rest or [w for w in table if w not in WORDS and w not in PLAIN and w not in SECOND] or table
+    return Named(signal, "_".join(rest), unit)
+
+
+def _signal(words: set[str], above: set[str]) -> str | None:
+    """Return the signal that some words speak for; `above`: words of the table that say who asks."""
+    asked = bool(words & ASKED or above)
+    place = bool(words & POSITION)
+    if words & IGNORED:
+        return None
+    if words & VELOCITY:
+        return None if asked else "velocity"
+    if words & EFFORT or (words & CURRENT and not place):
+        return "command" if asked else "effort"
+    if words & COMMAND:
+        return None if words & MEASURED else "command"
+    if asked:
+        return "reference"
+    if words & SECOND:
+        return "load"
+    return "position" if place or words & MEASURED else None
+
+
+def words_of(text: str) -> list[str]:
+    """Return the words of a name in small letters: parted by signs, by capitals and by digits."""
+    text = text.replace("set_point", "sp").replace("Set Point", "sp")
+    parted = re.sub(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Za-z])(?=\d)|(?<=\d)(?=[A-Za-z])", " ", text)
+    return [w for w in re.split(r"[^0-9A-Za-zÀ-ÿ]+", parted.lower()) if w]
+
+
+def bare_and_unit(name: str) -> tuple[str, str | None]:
+    """Return a column's name without its unit, and the unit: in brackets, or the last word of the name."""
+    match = IN_HEADER.fullmatch(name)
+    if match and not match["unit"].strip().isdigit():
+        said = spelled(match["unit"])
+        return match["name"], said if said in UNITS else None
+    head, _, last = name.rpartition("_")
+    said = spelled(last)
+    known = head and said in UNITS and len(last) > 1 and not last.isdigit()
+    return (head, said) if known else (name, None)
+
+
+def tells_time(column: str) -> bool:
+    """Return whether a column's name says that it is a time."""
+    bare, _ = bare_and_unit(column.rsplit("/", 1)[-1])
+    return bool(set(words_of(bare)) & TIME)
+
+
+def counts_samples(column: str) -> bool:
+    """Return whether a column's name says that it numbers the samples."""
+    return bool(set(words_of(column.rsplit("/", 1)[-1])) & COUNTERS)

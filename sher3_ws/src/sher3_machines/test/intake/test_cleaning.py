@@ -1,0 +1,66 @@
+"""Small faults of logs: each is mended in the one way that is right, or refused."""
+
+import numpy as np
+import pytest
+from sher3_machines import MachineError
+from sher3_machines.intake.cleaning import even_stamps, glitches, known_readings
+from sher3_machines.intake.parts import cut
+
+TIME = 0.01 * np.arange(200)
+
+
+def test_stamps_that_are_right_stay():
+    stamps, kept, note = even_stamps(TIME, "run")
+    assert (stamps == TIME).all() and len(kept) == 200 and note == ""
+
+
+def test_a_sample_written_twice_counts_once():
+    doubled = np.insert(TIME, 50, TIME[50])
+    stamps, kept, note = even_stamps(doubled, "run")
+    assert (stamps == TIME).all() and 51 not in kept and "1 stamps are there twice" in note
+
+
+def test_rounded_stamps_lie_on_their_line():
+    stamps, _, note = even_stamps(np.floor(TIME / 0.04) * 0.04, "run")
+    assert np.diff(stamps) == pytest.approx(0.01, rel=0.05) and "rounded to 0.04 s" in note
+
+
+def test_stamps_that_are_no_line_are_refused():
+    with pytest.raises(MachineError, match="repeat the one before"):
+        even_stamps(np.floor(np.r_[TIME, 2.0 + 3.0 * TIME] / 0.04) * 0.04, "run")
+    with pytest.raises(MachineError, match="does not increase"):
+        even_stamps(np.zeros(50), "run")
+
+
+def test_samples_in_a_wrong_order_are_sorted():
+    mixed = TIME.copy()
+    mixed[[20, 21]] = mixed[[21, 20]]
+    stamps, kept, note = even_stamps(mixed, "run")
+    assert (stamps == TIME).all() and list(kept[20:22]) == [21, 20] and "wrong order" in note
+
+
+def test_missing_readings_are_few_or_refused():
+    x = np.sin(TIME)
+    x[5:8] = np.nan
+    known, note = known_readings(x, False, "run: q")
+    assert known.sum() == 197 and "3 of 200" in note
+    x[5:40] = np.nan
+    assert known_readings(x, True, "run: q")[0].sum() == 165  # with stamps a hole is judged by its length in time
+    with pytest.raises(MachineError, match="35 in a row"):
+        known_readings(x, False, "run: q")
+
+
+def test_a_glitch_stands_alone_and_a_step_does_not():
+    x = np.sin(0.01 * np.arange(1000))
+    x[60], x[130] = 7.0, -9e9
+    assert list(glitches(x)) == [60, 130]
+    assert not len(glitches(np.where(TIME > 1.0, 1.0, 0.0) + 0.01 * np.sin(9.0 * TIME)))
+    assert not len(glitches(np.random.default_rng(0).normal(size=500)))
+
+
+def test_a_log_is_cut_where_its_clock_has_a_hole_or_jumps_back():
+    time = np.r_[TIME, 30.0 + TIME, TIME]
+    parts, note = cut("log", {"t": time, "q": np.arange(600.0), "matrix": np.eye(3)}, "t")
+    assert [len(x["q"]) for x in parts.values()] == [200, 200, 200] and parts["log.part2"]["q"][0] == 200.0
+    assert all(x["matrix"].shape == (3, 3) for x in parts.values()) and "jumps back" in note
+    assert cut("log", {"t": TIME}, "t") == ({"log": {"t": TIME}}, "")

@@ -1,0 +1,66 @@
+"""Names of columns as people write them: which signal, of which axis."""
+
+import pytest
+from sher3_machines.intake.draft import together
+from sher3_machines.intake.names import bare_and_unit, named, tells_time
+
+
+@pytest.mark.parametrize(
+    ("column", "signal", "axis"),
+    [
+        ("q", "position", ""),
+        ("q_ref", "reference", ""),
+        ("tau", "effort", ""),
+        ("actual_q_2", "position", "2"),
+        ("target_q_2", "reference", "2"),
+        ("actual_qd_2", "velocity", "2"),
+        ("actual_current_2", "effort", "2"),
+        ("Soll [mm]", "reference", ""),
+        ("Ist [mm]", "position", ""),
+        ("Strom [A]", "effort", ""),
+        ("present_position", "position", ""),
+        ("present_current", "effort", ""),
+        ("current_position", "position", ""),
+        ("goal_position", "reference", ""),
+        ("pos_estimate", "position", ""),
+        ("Iq_setpoint", "command", ""),
+        ("axis1_cmd_pos", "reference", "axis_1"),
+        ("motor_pos", "position", ""),
+        ("load_pos", "load", ""),
+        ("pos_x", "position", "x"),
+        ("ref_x", "reference", "x"),
+        ("slideCurrent", "effort", "slide"),
+        ("joint_states/elbow/position", "position", "elbow"),
+        ("controller/reference/positions[0]", "reference", "0"),
+        ("motor_temperature", None, "motor"),
+    ],
+)
+def test_a_name_says_signal_and_axis(column, signal, axis):
+    found = named(column)
+    assert found.signal == signal and (signal is None or found.axis == axis)
+
+
+@pytest.mark.parametrize(
+    ("column", "unit"),
+    [("q [°]", "deg"), ("Torque (%)", "%"), ("i_mA", "mA"), ("tau (Nm)", "N*m"), ("q_1", None), ("x (inch)", None)],
+)
+def test_a_unit_stands_in_brackets_or_at_the_end(column, unit):
+    assert bare_and_unit(column)[1] == unit
+
+
+def test_names_of_time():
+    assert all(tells_time(x) for x in ("t", "Time (ms)", "__time", "t_ns", "header.stamp", "Zeit [s]"))
+    assert not any(tells_time(x) for x in ("q", "torque", "state"))
+
+
+def test_signals_without_an_axis_of_their_own_belong_to_the_only_one():
+    placed = {("q", None): ("position", ""), ("drive/torque", None): ("effort", "drive")}
+    groups, left = together(placed)
+    assert groups == {"": {"position": ("q", None), "effort": ("drive/torque", None)}} and not left
+
+
+def test_signals_of_several_axes_find_theirs_by_number():
+    placed = {("q1", None): ("position", "1"), ("q2", None): ("position", "2"), ("tau_J2", None): ("effort", "J_2")}
+    placed[("tau", None)] = ("effort", "")
+    groups, left = together(placed)
+    assert groups["2"]["effort"] == ("tau_J2", None) and "effort" not in groups["1"] and left == ["tau"]

@@ -1,0 +1,73 @@
+"""Faults of several axes at once, of both encoders alike, of what a drive says of itself, and of lively inputs.
+
+They look alike to whoever compares one axis with another, one encoder with the other, or one sample with the next.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from sher3_safety.rows.row import AIMING, DISABLED, IDLE, LIMIT, STATES, STILL, Row
+from sher3_safety.rows.slow import ALL, AXIS, FAST, LEFT, LONGEST, ROLL
+
+LEGS = "legs"
+DISOBEYS = (*LEFT, "DRIVE_DISOBEYS")
+STANDS = (*LEFT, "ENCODER_FROZEN")
+DOUBTFUL = ("HAND_DOUBTFUL",)
+WRAP = 65536.0 * 1e-8
+"""Counts of 16 bits of a load encoder of 10 nm [m]: a counter that wraps, or a homing that is off by as much."""
+WARNS = "bit 7 is a warning: it is on /diagnostics, and the drive goes on doing as it is told"
+BITS = {"remote": 0x200, "voltage": 0x10, "follows": 0x1000, "limit": 0x800}
+"""Bits of the statusword that say that a drive does not do as it is told."""
+NO_POWER = (
+    "a motor that turns without being enabled has lost its power stage or is turned by something else: the driver says "
+    "so, sends `disable voltage` and withholds its heartbeat; only safe torque off stops it"
+)
+
+
+def _creeps() -> Iterator[Row]:
+    """Yield axes that run away together: the legs then move the tip straight on, and none stands out."""
+    for speed in (1e-5, 1e-4, 4e-4, 6.5e-4):
+        duration = min(LONGEST, max(0.12, 2e-5 / speed))
+        quick = speed == 4e-4
+        yield Row(f"{LEGS}.power", "creep", {"speed": speed}, reasons=LEFT, slow=True, quiet=FAST, duration=duration,
+                  states=ALL, quick=quick)  # fmt: skip
+    for speed in (8e-6, 1.2e-5, 1e-4):
+        yield Row(f"{LEGS}.demand", "creep", {"speed": speed}, reasons=DISOBEYS, slow=True, quiet=FAST,
+                  duration=min(LONGEST, 2e-5 / speed), states=ALL)  # fmt: skip
+    for name, speed in ((LEGS, 2e-3), (AXIS, 1e-3), (ROLL, 2e-2)):
+        yield Row(f"{name}.motor", "creep", {"speed": speed}, effect="said", reasons=("MOVED_DISABLED",),
+                  states=(DISABLED,), why=NO_POWER)  # fmt: skip
+
+
+def _encoders() -> Iterator[Row]:
+    """Yield both encoders of an axis wrong alike: what the drive was told is the only other witness."""
+    yield Row("axes.encoders", "stuck", reasons=STANDS, quiet=STILL, states=(*STATES, AIMING), quick=True)
+    yield Row(f"{LEGS}.encoders", "stuck", reasons=STANDS, quiet=STILL, states=(*STATES, AIMING))
+    for rate in (1e-4, 4e-4):
+        yield Row(f"{LEGS}.encoders", "drift", {"rate": rate}, reasons=LEFT, slow=True, quiet=FAST, duration=0.2,
+                  states=(*ALL, AIMING))  # fmt: skip
+    yield Row(f"{LEGS}.load_encoder", "drift", {"rate": 2e-5}, slow=True, duration=LONGEST, states=(*STATES, AIMING))
+    for offset in (5e-5, WRAP):
+        yield Row(f"{AXIS}.encoders", "wrong", {"offset": offset}, reasons=LEFT)
+
+
+def _words() -> Iterator[Row]:
+    """Yield drives that say that they do not do as they are told, and do."""
+    for bit in BITS.values():
+        yield Row(f"{AXIS}.statusword", "wrong", {"code": float(bit)}, reasons=("DRIVE_UNWILLING",))
+    yield Row(f"{AXIS}.statusword", "wrong", {"code": float(0x80)}, effect="goes on", why=WARNS)
+
+
+def _lively() -> Iterator[Row]:
+    """Yield inputs that are alive and false."""
+    yield Row("pedal", "chatter", {"items": 5.0, "code": 1.0}, reasons=("PEDAL_INVALID",), slow=True, duration=0.6,
+              quiet=(IDLE.name,), rest=1.0)  # fmt: skip
+    yield Row("force_sensor", "chatter", {"items": 2.0, "offset": 11.0}, reasons=("WRENCH_NOT_FINITE", *DOUBTFUL))
+    yield Row("force_sensor", "held", reasons=DOUBTFUL, states=(LIMIT,), lets_go=True, quick=True)
+    yield Row("force_sensor", "wrong", {"scale": -1.0}, reasons=DOUBTFUL, states=(LIMIT,))
+    for first in (0.0, 1.0):
+        yield Row(f"{AXIS}.up", "contradicted", {"first": first}, reasons=("DRIVE_TWICE", "DRIVE_RESTARTED"))
+
+
+SEVERAL = (*_creeps(), *_encoders(), *_words(), *_lively())
