@@ -15,6 +15,7 @@ from sher3_runtime import Graph
 pytestmark = pytest.mark.graph
 OUTSIDE = {"/parameter_events", "/rosout"}
 USER = {name for name in TOPICS if name.startswith("command/")} | {
+    "mock/effects",
     "mock/fault",
     "mock/force_device",
     "mock/pedal_device",
