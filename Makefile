@@ -3,7 +3,7 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 
-.PHONY: demo test test-slow docs bench lint setup messages clean
+.PHONY: demo test test-slow docs bench bench-all lint setup messages clean
 
 demo: $(READY)  ## scripted surgeon on mocks: recorded, analysed, shown
 	$(BIN)/sher3 demo
@@ -23,8 +23,11 @@ docs: $(READY)  ## the site in build/docs, readable offline; a warning is an err
 	$(BIN)/python -m sphinx -W --keep-going -q -j auto -d build/doctrees docs build/docs
 	@echo "build/docs/index.html"
 
-bench: $(READY)  ## speed of every part that promises one
-	for script in $(filter-out bench/graph_run.py,$(wildcard bench/*.py)); do echo "== $$script"; $(BIN)/python $$script || exit 1; done
+bench: $(READY)  ## one page of speed, eleven minutes on a quiet machine; kept in docs/reference/speed.md
+	$(BIN)/python bench/page.py --write docs/reference/speed.md
+
+bench-all: $(READY)  ## everything that any page quotes a speed of: hours
+	for script in $(filter-out bench/graph_run.py bench/page.py,$(wildcard bench/*.py)); do echo "== $$script"; $(BIN)/python $$script || exit 1; done
 
 setup: $(READY)
 

@@ -8,7 +8,7 @@ Time limits are those of `--patience patient`, so that a pause of the machine sh
 
     python bench/graph.py                      # 200, 500, 1000 Hz, ours beside the default, 10 s each
     python bench/graph.py --rate 1000 --seconds 60 --only ours --json
-    python bench/graph.py --only ours --nodes plant,force_sensor+pedal+admittance+kinematics+motor_driver,supervisor
+    python bench/graph.py --only ours --layout composed
 """
 
 from __future__ import annotations
@@ -38,7 +38,9 @@ def main() -> None:
     parser.add_argument("--seconds", type=float, default=10.0)
     parser.add_argument("--only", choices=EXECUTORS)
     parser.add_argument("--realtime", type=int, default=-1, help="SCHED_FIFO priority, -1 where permitted, 0 never")
-    parser.add_argument("--nodes", help="nodes of each process as in `sher3 up --nodes`; default one process each")
+    parser.add_argument("--nodes", help="nodes of each process as in `sher3 up --nodes`, instead of a layout")
+    parser.add_argument("--layout", choices=("separate", "composed"), default="separate")
+    parser.add_argument("--domain", type=int, default=DOMAIN)
     parser.add_argument("--baseline-seconds", type=float, help="length of the runs on the default executor")
     parser.add_argument("--json", action="store_true")
     options = parser.parse_args()
@@ -46,7 +48,8 @@ def main() -> None:
     for rate in options.rate:
         for executor in [options.only] if options.only else EXECUTORS:
             seconds = options.baseline_seconds if executor == "default" else None
-            result = measure(rate, seconds or options.seconds, executor, options.realtime, options.nodes)
+            nodes = options.nodes or options.layout
+            result = measure(rate, seconds or options.seconds, executor, options.realtime, nodes, options.domain)
             results.append(result)
             if not options.json:
                 print(text(result), flush=True)
@@ -59,11 +62,29 @@ def main() -> None:
             print(f"{ours['rate']:6.0f} Hz: default {ratio:.1f} times as long in p50, {less:.1f} times the CPU")
 
 
-def measure(rate: float, seconds: float, executor: str, realtime: int, nodes: str | None) -> dict[str, Any]:
-    """Run the graph in a process of its own, which reports the processor time of each node, and read the traces."""
+def measure(
+    rate: float,
+    seconds: float,
+    executor: str = "ours",
+    realtime: int = -1,
+    nodes: str = "separate",
+    domain: int = DOMAIN,
+    record: str = "",
+) -> dict[str, Any]:
+    """Run the graph in a process of its own, which reports the processor time of each node, and read the traces.
+
+    Args:
+        rate: of control [Hz].
+        seconds: counted.
+        executor: one of `EXECUTORS`.
+        realtime: SCHED_FIFO priority, as in `sher3 up`.
+        nodes: a layout, or the nodes of each process as in `sher3 up --nodes`.
+        domain: ROS domain id.
+        record: folder of a recording; none by default.
+    """
     with tempfile.TemporaryDirectory() as folder:
         command = [sys.executable, __file__.replace("graph.py", "graph_run.py")]
-        arguments = [str(rate), str(seconds + SETTLE), str(SETTLE), str(realtime), str(DOMAIN), nodes or ""]
+        arguments = [str(rate), str(seconds + SETTLE), str(SETTLE), str(realtime), str(domain), nodes, record]
         from sher3_runtime.environment import child_environment
 
         environment = child_environment(SHER3_TRACE=folder, SHER3_EXECUTOR=EXECUTORS[executor])

@@ -52,14 +52,17 @@ def main() -> None:
     """Run the graph with a surgeon who pushes all the time."""
     rate, seconds, settle = map(float, sys.argv[1:4])
     realtime, domain = map(int, sys.argv[4:6])
-    nodes = sys.argv[6] or None
+    nodes, record = sys.argv[6:8]
+    layouts = ("separate", "composed")
+    text, layout = (None, nodes) if nodes in layouts else (nodes, "separate")
     with NamedTemporaryFile("w", suffix=".yaml") as file:
         file.write(PUSH)
         file.flush()
         script = load_script(Path(file.name))
     settings = checked(
         rate=rate,
-        processes=parse_processes(nodes, True, False),
+        processes=parse_processes(text, True, bool(record), layout=layout),
+        record=Path(record) if record else None,
         duration=seconds + 0.5,
         realtime=realtime,
         domain=domain,
@@ -77,7 +80,9 @@ def main() -> None:
     names = ["+".join(process) for process in launch_order(settings.processes)] + ["surgeon"]
     share = dict(zip(names, cpu.percent(), strict=True))
     watching, load = share.get("supervisor", 0.0), share["surgeon"]
-    sums = {"cpu_loop": sum(share.values()) - watching - load, "cpu_supervisor": watching, "cpu_bench": load}
+    recorder = share.get("recorder", 0.0)
+    loop = sum(share.values()) - watching - load - recorder
+    sums = {"cpu_loop": loop, "cpu_supervisor": watching, "cpu_bench": load, "cpu_recorder": recorder}
     print(json.dumps({"cpu": share, **sums, "wall": time.monotonic() - begin}))
 
 

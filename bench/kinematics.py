@@ -14,14 +14,16 @@ from collections.abc import Callable
 
 import numpy as np
 import pinocchio as pin
+from sher3_common.compiled import compiled_ieee
 from sher3_description import load_robot
 from sher3_kinematics import InverseVelocity, RobotKinematics
 from sher3_kinematics.arm import whole_robot_model
 from sher3_kinematics.kernel import batch as batch
+from sher3_kinematics.kernel.robot import pose_inverse_into, tip_jacobian_into, tip_pose_into
 from sher3_kinematics.tip_deflection import TipDeflection
 
-SCALAR_LIMIT_US = 10.0
-BATCH_LIMIT_MPS = 5.0
+SCALAR_LIMIT_US = 1.5
+BATCH_LIMIT_MPS = 25.0
 
 
 def best_seconds(call: Callable[[], object], count: int, repeats: int = 15) -> float:
@@ -56,7 +58,7 @@ def scalar_figures(kinematics: RobotKinematics) -> dict[str, float]:
         "delta inverse": lambda: kinematics.delta.inverse(centre),
         "Pinocchio, same tree: frame Jacobian": lambda: pin.computeFrameJacobian(model, data, x, frame, aligned),
     }
-    return {name: best_seconds(call, 2000) * 1e6 for name, call in calls.items()}
+    return {name: best_seconds(call, 200, 200) * 1e6 for name, call in calls.items()}
 
 
 def batch_figures(kinematics: RobotKinematics, q: np.ndarray) -> dict[str, float]:
@@ -74,6 +76,45 @@ def batch_figures(kinematics: RobotKinematics, q: np.ndarray) -> dict[str, float
         "tip Jacobian": lambda: batch.tip_jacobian_batch(p, q),
     }
     return {name: len(q) / best_seconds(call, 3) / 1e6 for name, call in calls.items()}
+
+
+@compiled_ieee
+def _poses(p, q, rotations, positions):
+    for i in range(len(q)):
+        tip_pose_into(p, q[i], rotations[i], positions[i])
+
+
+@compiled_ieee
+def _inverses(p, positions, axes, q):
+    for i in range(len(q)):
+        pose_inverse_into(p, positions[i, 0], positions[i, 1], positions[i, 2], axes[i], q[i])
+
+
+@compiled_ieee
+def _jacobians(p, q, jacobians):
+    for i in range(len(q)):
+        tip_jacobian_into(p, q[i], jacobians[i])
+
+
+def one_by_one(kinematics: RobotKinematics, q: np.ndarray) -> dict[str, float]:
+    """Return nanoseconds per pose of compiled loops that compute pose by pose: the peer of the batches."""
+    p, n = kinematics.parameters, len(q)
+    rotations, positions, jacobians, back = np.empty((n, 3, 3)), np.empty((n, 3)), np.empty((n, 6, 5)), np.empty((n, 5))
+    _poses(p, q, rotations, positions)
+    axes = np.ascontiguousarray(-rotations[:, :, 2])
+    calls: dict[str, Callable[[], object]] = {
+        "tip pose": lambda: _poses(p, q, rotations, positions),
+        "pose inverse": lambda: _inverses(p, positions, axes, back),
+        "tip Jacobian": lambda: _jacobians(p, q, jacobians),
+    }
+    return {name: best_seconds(call, 3) / n * 1e9 for name, call in calls.items()}
+
+
+def library_solves() -> float:
+    """Return microseconds of the two 6 x 6 solutions of a deflection in NumPy: its peer."""
+    rng = np.random.default_rng(0)
+    matrix, load = rng.standard_normal((6, 6)), rng.standard_normal(6)
+    return best_seconds(lambda: np.linalg.solve(matrix.T, np.linalg.solve(matrix, load)), 200, 200) * 1e6
 
 
 def accuracy_figures(kinematics: RobotKinematics, q: np.ndarray) -> dict[str, float]:
@@ -97,6 +138,8 @@ def main() -> None:
     figures = {
         "scalar_us": scalar_figures(kinematics),
         "batch_million_per_s": batch_figures(kinematics, q),
+        "one_by_one_ns": one_by_one(kinematics, q),
+        "library_us": library_solves(),
         "accuracy": accuracy_figures(kinematics, q),
     }
     if arguments.json:

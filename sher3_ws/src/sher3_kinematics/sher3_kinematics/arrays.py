@@ -51,7 +51,7 @@ def is_plain(values: object, size: int) -> bool:
     """
     return (
         isinstance(values, np.ndarray)
-        and values.dtype is FLOAT64
+        and values.dtype == FLOAT64
         and values.shape == (size,)
         and values.flags.c_contiguous
     )

@@ -11,8 +11,8 @@ callback raises.
 from __future__ import annotations
 
 import select
-from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager, nullcontext
+from collections.abc import Callable
+from contextlib import ExitStack, nullcontext
 from time import monotonic_ns, sleep
 from typing import Any
 
@@ -130,14 +130,12 @@ class RawExecutor(Executor):
         """Return when the next tick is due [ns], ticks of nodes at work left out."""
         return min([tick.due_ns for tick in self._ticks if tick.turn is None or not tick.turn.taken], default=NEVER_NS)
 
-    @contextmanager
-    def _asleep(self) -> Iterator[None]:
-        """Sleep so that a node in the hands of a stand-in can go on."""
-        if self.relief is not None and self.relief.away:
-            with self.relief.at_rest():
-                yield
-        else:
-            yield
+    def _asleep(self, wait: Callable[..., Any], *arguments: Any) -> Any:
+        """Wait so that a node in the hands of a stand-in can go on meanwhile."""
+        if self.relief is None or not self.relief.away:
+            return wait(*arguments)
+        with self.relief.at_rest():
+            return wait(*arguments)
 
     def _wait_and_run(self, timeout_ns: int, now: int) -> None:
         """Wait for the streams, or every `LOOK_NS` for everything, and run what is ready."""
@@ -157,15 +155,13 @@ class RawExecutor(Executor):
     def _wait_for_streams(self, timeout_ns: int) -> None:
         waking = [topic.handle for topic in self._streams if topic.subscribed.wakes]
         if not waking:
-            with self._asleep():
-                sleep(timeout_ns * 1e-9)
+            self._asleep(sleep, timeout_ns * 1e-9)
             return
         wait_set = self._stream_set
         wait_set.clear_entities()
         for handle in waking:
             wait_set.add_subscription(handle)
-        with self._asleep():
-            wait_set.wait(timeout_ns)
+        self._asleep(wait_set.wait, timeout_ns)
 
     def settle(self) -> bool:
         """Run what is ready now, without waiting; return whether there was anything (for stepped time)."""
@@ -296,16 +292,15 @@ class RawExecutor(Executor):
             self._asked = self._waitables + self._events
         else:
             self._asked = self._waitables
-        with self._asleep():
-            wait_set.wait(timeout_ns)
+        self._asleep(wait_set.wait, timeout_ns)
 
     def _wait_on_files(self, timeout_ns: int) -> bool:
         """Wait on the files instead of the wait set.
 
         The wait is no longer than a period, since the topics are only looked at afterwards.
         """
-        with self._asleep():
-            readable, _, _ = select.select(self._files, (), (), min(timeout_ns, self._period_ns) * 1e-9)
+        seconds = min(timeout_ns, self._period_ns) * 1e-9
+        readable, _, _ = self._asleep(select.select, self._files, (), (), seconds)
         # Several files may share a callback, which serves them all.
         for callback in dict.fromkeys([self._files[number] for number in readable]):
             callback()

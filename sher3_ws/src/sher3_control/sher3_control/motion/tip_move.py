@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 from sher3_kinematics import RobotKinematics
 
+from sher3_control.motion.spline import Spline, spline_through
 from sher3_control.motion.trajectory import DoubleS, double_s
 
 Array = NDArray[np.float64]
@@ -31,12 +31,10 @@ class TipMove:
 
     Attributes:
         path: curve q(s) in actuator space, (5,) for s from 0 to 1.
-        slope: its derivative dq/ds (5,).
         profile: s over time.
     """
 
-    path: Any
-    slope: Any
+    path: Spline
     profile: DoubleS
 
     @property
@@ -47,7 +45,7 @@ class TipMove:
     def at(self, t: float) -> tuple[Array, Array]:
         """Return reference positions (5,) and velocities (5,) at `t` [s] after the start."""
         s, rate = self.profile.at(t)
-        return self.path(s), rate * self.slope(s)
+        return self.path(s), rate * self.path(s, 1)
 
 
 def plan_tip_move(
@@ -79,18 +77,18 @@ def plan_tip_move(
     angle = math.atan2(float(np.linalg.norm(np.cross(toward, axis))), float(toward @ axis))
     s = np.linspace(0.0, 1.0, NODES)
     nodes = np.array([kinematics.inverse(begin + k * (position - begin), _turn(toward, axis, angle, k)) for k in s])
-    path = CubicSpline(s, nodes)
+    path = spline_through(nodes)
     first, second = np.abs(path(s, 1)).max(axis=0), np.abs(path(s, 2)).max(axis=0)
     velocity, acceleration, jerk = caps
     rate = _least(velocity, first)
     rate = min(rate, *_speed_caps(linear_speed, np.linalg.norm(position - begin), angular_speed, angle))
     rate = min(rate, math.sqrt(_least(CURVATURE_SHARE * acceleration, second)))
     if not math.isfinite(rate):
-        return TipMove(path, path.derivative(), DoubleS(0.0, 0.0, 0.0, 1.0))
+        return TipMove(path, DoubleS(0.0, 0.0, 0.0, 1.0))
     profile = double_s(
         rate, _least((1.0 - CURVATURE_SHARE) * acceleration, first), _least((1.0 - CURVATURE_SHARE) * jerk, first)
     )
-    return TipMove(path, path.derivative(), profile)
+    return TipMove(path, profile)
 
 
 def _least(cap: Array, slope: Array) -> float:

@@ -11,7 +11,8 @@ from sher3_common.compiled import compiled_ieee
 from sher3_kinematics.kernel.parameters import unpack
 from sher3_kinematics.kernel.robot import delta_forward, tip_pose_into
 
-Floats, Integers = NDArray[np.float64], NDArray[np.int64]
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
 
 
 @compiled_ieee
