@@ -79,7 +79,7 @@ class Effect:
             a force sensor by itself.
         needs: facts that must be known of an axis before the effect can be looked for: "lead" its travel per motor
             revolution, "load" a second encoder behind the transmission, "mass" its mass, "drive" the force it is
-            driven with.
+            driven with, "forces" what the motion needs of it: mass, weight or a model of the user's.
         inputs: quantities the law may depend on, of `INPUTS`; none for an error that is constant.
         units: parameter -> SI unit on a linear axis.
         discrete: parameters that are a choice (a source, a member, a number of periods) and have no interval.
@@ -131,7 +131,7 @@ class Effect:
             {**shape, name: shape[name] * factor}
             for name, factors in self.finer.items()
             for factor in factors
-            if shape[name]  # a value of zero has no neighbours
+            if shape.get(name)  # a value of zero has no neighbours, nor has one that this shape does without
         ]
 
     def signature(self, view: Any, site: str, shape: Shape) -> Signature:

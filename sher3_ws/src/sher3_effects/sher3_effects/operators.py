@@ -53,6 +53,28 @@ def play(x: Array, drive: Array, width: float, damping: float, period: float, st
 
 
 @compiled
+def flight(x: Array, width: float, braking: float, period: float, start: float) -> Array:
+    """Follower of some mass behind a gap of `width`, minus x, (n,): it flies on in the gap, and a flank takes it along.
+
+    Between the flanks it keeps its speed but for a `braking`, m/s^2, by its own friction. `start` is as for `play`.
+    """
+    out = np.empty(len(x))
+    half = 0.5 * width
+    y, v = x[0] + start * half, 0.0
+    out[0] = y - x[0]
+    for k in range(1, len(x)):
+        v -= math.copysign(min(braking * period, abs(v)), v)
+        y += period * v
+        speed = (x[k] - x[k - 1]) / period
+        if y > x[k] + half:
+            y, v = x[k] + half, min(v, speed)
+        elif y < x[k] - half:
+            y, v = x[k] - half, max(v, speed)
+        out[k] = y - x[k]
+    return out
+
+
+@compiled
 def oscillator(force: Array, frequency: float, damping: float, period: float) -> Array:
     """Response x of x'' + 2 z w x' + w^2 x = w^2 force (n, d), w = 2 pi frequency, with a static gain of one.
 

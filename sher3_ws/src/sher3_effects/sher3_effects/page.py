@@ -21,6 +21,8 @@ CONSTANTS: Mapping[str, str] = {
     "viscous": "viscous coefficient",
     "offset": "constant force against the drive",
     "weight": "relative change of the weight",
+    "arm": "largest weight of an axis that turns",
+    "hanging": "position at which that weight hangs down",
     "drive": "relative change of the drive's force",
     "inertia": "mass or inertia on the joint",
     "delay": "dead time of the command",

@@ -18,12 +18,20 @@ class NominalAxis(NamedTuple):
         viscous: viscous coefficient, N/(m/s) or N m/(rad/s).
         lead: travel per motor revolution, m or rad.
         top: largest velocity, m/s or rad/s.
+        travel: span of the positions of the run, m or rad; 0 where nothing asks for it.
+        weighed: whether an axis that turns has a weight at an arm that its description leaves open.
+        lead_known: whether `lead` is stated and no stand-in.
+        load_mass: part of the mass that moves with a second encoder, kg or kg m^2; 0 where it is not known.
     """
 
     mass: float
     viscous: float
     lead: float
     top: float
+    travel: float = 0.0
+    weighed: bool = False
+    lead_known: bool = True
+    load_mass: float = 0.0
 
 
 class RecordedRun(Protocol):

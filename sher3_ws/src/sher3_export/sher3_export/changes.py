@@ -11,6 +11,8 @@ from sher3_effects.page import CONSTANTS
 
 KINDS = ("axis", "servo", "joint", "arm", "table", "robot")
 """Kinds of machine whose pages say which constant a parameter sets."""
+NO_FORCE = ("A", "V", "%", "count", "recorded unit")
+"""How the units begin of forces that nobody made newtons."""
 FORCES = ("coulomb", "static", "offset")
 """Constants that a servo without a recorded force gives in units of its stiffness, m or rad."""
 
@@ -76,6 +78,13 @@ def changes_of(causes: Sequence[Cause], joints: Mapping[str, str] | None = None)
     changes: list[Change] = []
     untold: list[Untold] = []
     for cause in causes:
+        if cause.condition is not None:
+            untold.append(_whole(cause, joints, f"it acts under {cause.condition} alone; a model has none"))
+            continue
+        own = next((p.unit for p in cause.parameters.values() if p.unit.startswith(NO_FORCE)), None)
+        if own is not None:
+            untold.append(_whole(cause, joints, f"it is in {own}: state the gain of the drive, N or N m per unit"))
+            continue
         joint = (joints or {}).get(cause.actuator, cause.actuator)
         known = constants_of(cause)
         found = [_change(cause, joint, known[name], p) for name, p in cause.parameters.items() if name in known]
@@ -83,6 +92,10 @@ def changes_of(causes: Sequence[Cause], joints: Mapping[str, str] | None = None)
         if not found:
             untold.append(Untold(cause.effect, joint, "", None, "no constant of a joint: no target has a field for it"))
     return changes, untold
+
+
+def _whole(cause: Cause, joints: Mapping[str, str] | None, reason: str) -> Untold:
+    return Untold(cause.effect, (joints or {}).get(cause.actuator, cause.actuator), "", None, reason)
 
 
 def constants_of(cause: Cause) -> Mapping[str, str]:

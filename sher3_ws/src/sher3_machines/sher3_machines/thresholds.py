@@ -25,6 +25,10 @@ Measure: `pytest sher3_ws/src/sher3_machines/test/test_identify.py`."""
 LEAST_EXCITED = 2.0
 """Mass over its standard error that an identified mass must have: below two it may as well be none."""
 
+ALIGNED = 0.1
+"""Share of the held-out loss that reading the effort half a period earlier or later must save before it is believed.
+Set by the argument that noise alone saves a few per cent."""
+
 # -- dry friction at rest ------------------------------------------------------------------------------------------
 
 STATIC = 1.5

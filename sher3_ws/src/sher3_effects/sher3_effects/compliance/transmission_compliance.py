@@ -84,12 +84,16 @@ class ComplianceOnAxis(TransmissionCompliance):
 
     kinds = ("axis", "servo")
     units = {"stiffness": "N/m", "compliance": "m/N", "frequency": "Hz"}
+    OF_LOAD = 2.0
+    """Value of the shape `recorded` for the force that the mass of the load needs."""
 
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
         """Return the shapes of a modelled force, and one of the recorded one where there is one."""
         recorded = any(v.run.effort is not None and v.run.effort.any() for v in views)
         held: Shape = {"load_mass": 0.0, "frequency": 0.0, "damping": 0.0, "recorded": 1.0}
         modelled: list[Shape] = [{**held, "recorded": 0.0}]
+        if views[0].axis(site).load_mass > 0.0:
+            return [{**held, "recorded": self.OF_LOAD}, held]
         if views[0].axis(site).mass > 0.0:
             modelled = super().shapes(views, site)
         return [*modelled, held] if recorded else modelled
@@ -104,12 +108,17 @@ class ComplianceOnAxis(TransmissionCompliance):
         return {**super().parameters(shape, coefficients), **ringing}
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
-        """Return minus the force on the spring: as modelled, or all that the drive gave."""
+        """Return minus the force on the spring: as modelled, all that the drive gave, or what the load's mass needs."""
+        run, row = view.run, view.row(site)
         if not shape.get("recorded"):
             return super().signature(view, site, shape)
-        effort = view.run.effort
-        assert effort is not None
-        return Signature({Channel(self.stage, site): column(-view.run.to_grid(effort)[:, view.row(site)])})
+        if shape["recorded"] == self.OF_LOAD:
+            bend = np.zeros(len(run.load))
+            bend[1:-1] = np.diff(run.load[:, row], 2) / run.period**2
+            needed = view.axis(site).load_mass * run.to_grid(bend[:, None])[:, 0] + view.path.gravity[:, row]
+            return Signature({Channel(self.stage, site): column(-needed)})
+        assert run.effort is not None
+        return Signature({Channel(self.stage, site): column(-run.to_grid(run.effort)[:, row])})
 
 
 @dataclass(frozen=True)

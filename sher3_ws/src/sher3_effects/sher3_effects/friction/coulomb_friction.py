@@ -85,11 +85,13 @@ class ServoStiction(CoulombFriction):
         "loose."
     )
     siblings = {"drive_lag": "late at every amplitude"}
-    units = {"force": "m", "late": "s"}
+    units = {"force": "m", "late": "s", "displacement": "m"}
     SHARES = (0.02, 0.04, 0.07, 0.1, 0.15, 0.2, 0.3, 0.45)
     """Half widths of the play that are tried, as shares of the span of the tracking error."""
     LATE = (0.0, 2.0, 4.0)
     """Lag of what the friction sees, in periods of the record: a servo is late before it sticks."""
+    REACHES = (1e-3, 5e-3)
+    """Displacements, as shares of the travel, over which the error of a servo with a mass turns its sign."""
     MOVES = 0.45
     """Share of the reference's stroke that stiction may hold: an axis that never breaks loose tells nothing of it."""
     finer = {"force": (0.7, 0.85, 0.93, 1.07, 1.15, 1.3), "late": (0.6, 0.8, 1.25, 1.6)}
@@ -102,11 +104,15 @@ class ServoStiction(CoulombFriction):
         stroke = max(float(np.ptp(r)) for r, _ in pairs)
         late = [n * views[0].run.period for n in self.LATE]
         forces = [s * span for s in self.SHARES if 0.0 < s * span < self.MOVES * stroke]
-        return [{"force": f, "late": t} for f in forces for t in late]
+        travel = max(v.axis(site).travel for v in views)
+        steps = [{"displacement": r * travel} for r in self.REACHES if travel]
+        return [*({"force": f, "late": t} for f in forces for t in late), *steps]
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
         """Return minus the play of the lagged reference; nothing is left to fit."""
         assert view.run.reference is not None
+        if "displacement" in shape:
+            return super().signature(view, site, shape)
         x = view.run.reference[:, [view.row(site)]]
         x = (held_lag(x, shape["late"], view.run.period) if shape["late"] else x)[:, 0]
         behind = play(x, np.zeros_like(x), 2.0 * shape["force"], np.inf, view.run.period, 0.0)
@@ -114,11 +120,13 @@ class ServoStiction(CoulombFriction):
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Return friction over stiffness, and how late the servo is before it sticks."""
+        if "displacement" in shape:
+            return super().parameters(shape, coefficients)
         return {"force": shape["force"], **({"late": shape["late"]} if shape["late"] else {})}
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return True: a play of positive width always resists."""
-        return True
+        """Return whether friction resists; a play of positive width always does."""
+        return "displacement" not in shape or super().admissible(shape, coefficients)
 
 
 @dataclass(frozen=True)

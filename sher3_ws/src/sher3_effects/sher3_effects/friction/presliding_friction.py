@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import ClassVar
 
+import numpy as np
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Best, Shape, Signature, column
 from sher3_sim.effect import PlantEffect, parameter
@@ -20,7 +22,7 @@ class PreslidingFriction(Page):
 
     id, family, stage = "presliding_friction", "friction", "motor_mechanics"
     inputs = ("direction",)
-    kinds = ("robot", "axis")
+    kinds: ClassVar[tuple[str, ...]] = ("robot",)
     on_axis = {"force": "coulomb"}
     dry = True
     best = Best("reversals", "reversals of several amplitudes and speeds separate friction laws")
@@ -36,6 +38,7 @@ class PreslidingFriction(Page):
     }
     DISPLACEMENTS = (0.01, 0.02, 0.04, 0.08, 0.16, 0.32)
     """In motor revolutions: 20 um to 0.64 mm on a 2 mm lead."""
+    units: ClassVar[Mapping[str, str]] = {"stiffness": "N/m"}
     finer = {"displacement": (0.7, 0.85, 1.2, 1.4)}
 
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
@@ -55,6 +58,25 @@ class PreslidingFriction(Page):
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
         """Friction resists."""
         return bool(coefficients[0] > 0.0)
+
+
+class PreslidingOnAxis(PreslidingFriction):
+    """The same on one axis of any machine: bristles bend over a small part of its travel, never over degrees."""
+
+    kinds = ("axis",)
+    bounds = {"displacement": (0.0, np.inf), "force": (0.0, np.inf), "stiffness": (0.0, np.inf)}
+    SHARES = (0.001, 0.002, 0.004, 0.008, 0.016, 0.03)
+    """Of the travel, where the lead is not known."""
+    MOST = 0.05
+    """Share of the travel over which friction may build up; beyond it the force is one of the position."""
+
+    def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
+        """Return displacements that stay a small part of the travel after the finer search, too."""
+        axes = [v.axis(site) for v in views]
+        travel, lead = max(a.travel for a in axes), axes[0].lead
+        tried = [d * lead for d in self.DISPLACEMENTS] if axes[0].lead_known else [s * travel for s in self.SHARES]
+        most = self.MOST * travel / max(self.finer["displacement"]) ** 2
+        return [{"displacement": d} for d in tried if 0.0 < d <= most]
 
 
 @dataclass(frozen=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 from sher3_diagnosis.channel import Array, Channel
@@ -21,7 +22,7 @@ class StribeckFriction(Page):
 
     id, family, stage = "stribeck_friction", "friction", "motor_mechanics"
     inputs = ("direction", "velocity")
-    kinds = ("robot", "axis")
+    kinds: ClassVar[tuple[str, ...]] = ("robot",)
     dry = True
     best = Best("reversals", "reversals of several amplitudes and speeds separate friction laws")
     leaves_out = "how its level varies over the stroke"
@@ -60,6 +61,34 @@ class StribeckFriction(Page):
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
         """Friction resists and falls with speed, markedly."""
         return bool(coefficients[0] >= 0.0 and coefficients[1] > 0.1 * coefficients[0])
+
+
+class StribeckOnAxis(StribeckFriction):
+    """The same on one axis of any machine: the hump is below its top speed, and not many times the friction."""
+
+    kinds = ("axis",)
+    bounds = {"force": (0.0, np.inf), "static": (0.0, np.inf), "stribeck_velocity": (0.0, np.inf)}
+    SHARES = (0.02, 0.05, 0.1, 0.2)
+    """Of the top speed, where the lead is not known."""
+    MOST = 0.5
+    """Share of the top speed below which the hump lies: beyond it, it is a friction that falls throughout."""
+    HIGHEST = 3.0
+    """Friction at rest over friction in motion at most: lubricated and plastic pairs stay below it."""
+
+    def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
+        """Return Stribeck velocities below the top speed, and the displacement of Coulomb friction."""
+        axes = [v.axis(site) for v in views]
+        top, known = max(a.top for a in axes), axes[0].lead_known
+        tried = [s["stribeck_velocity"] for s in super().shapes(views, site)] if known else []
+        reach = 2.5e-3 * axes[0].lead if known else 1e-3 * max(a.travel for a in axes)
+        most = self.MOST * top / max(self.finer["stribeck_velocity"]) ** 2
+        found = [v for v in tried or [s * top for s in self.SHARES] if 0.0 < v <= most]
+        return [{"stribeck_velocity": v, "displacement": reach} for v in found] if reach > 0.0 else []
+
+    def admissible(self, shape: Shape, coefficients: Array) -> bool:
+        """Return whether friction resists, falls with speed, and is no multiple of itself at rest."""
+        sliding, more = map(float, coefficients)
+        return super().admissible(shape, coefficients) and sliding + more < self.HIGHEST * sliding
 
 
 @dataclass(frozen=True)

@@ -24,7 +24,7 @@ class GravityLoad(Page):
 
     id, family, stage = "gravity_load", "inertia", "motor_mechanics"
     inputs = ("weight",)
-    kinds: ClassVar[tuple[str, ...]] = ("robot", "axis")
+    kinds: ClassVar[tuple[str, ...]] = ("robot",)
     best = Best("steps", "accelerations separate mass from weight")
     explanation = "The axis holds more or less weight than the model says, at rest and in motion, without more inertia."
     siblings = {
@@ -63,6 +63,36 @@ class GravityLoad(Page):
         gravity_load_into(kernel_parameters(robot), np.zeros(5), weight)
         hangs = abs(weight[row]) >= 1e-6  # N: an axis that carries no weight at zero cannot carry a share of it
         return [Part(self.id, actuator, {"mass": values["force"] / weight[row] * carried if hangs else 0.0})]
+
+
+class GravityOnAxis(GravityLoad):
+    """The same on one axis of any machine; on an axis that turns it may be a weight at an arm: a sin q + b cos q."""
+
+    kinds = ("axis",)
+    units = {"relative": "1", "force": "N", "arm": "N", "hanging": "m"}
+    on_axis = {"force": "offset", "relative": "weight", "arm": "arm", "hanging": "hanging"}
+    TRAVEL = 0.3
+    """Travel, rad, from which a weight at an arm differs from a constant force."""
+
+    def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
+        """Return the shapes of every machine, and a weight at an arm (2) where the description has none."""
+        found = super().shapes(views, site)
+        axes = [v.axis(site) for v in views]
+        swings = all(a.weighed for a in axes) and max(a.travel for a in axes) > self.TRAVEL
+        return [*found, {"constant": 2.0}] if swings else found
+
+    def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
+        """Return one column, or for a weight at an arm two: sine and cosine of the position."""
+        if shape["constant"] != 2.0:
+            return super().signature(view, site, shape)
+        q = view.position[:, view.row(site)]
+        return Signature({Channel(self.stage, site): column(np.sin(q), np.cos(q))})
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Return the largest weight, and the position at which the axis hangs down."""
+        if shape["constant"] != 2.0:
+            return super().parameters(shape, coefficients)
+        return {"arm": float(np.hypot(*coefficients)), "hanging": float(np.arctan2(-coefficients[1], coefficients[0]))}
 
 
 class ServoSag(GravityLoad):

@@ -12,7 +12,7 @@ from sher3_diagnosis.effect import Best, Shape, Signature, column
 from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
-from sher3_effects.operators import play
+from sher3_effects.operators import flight, play
 from sher3_effects.page import Page
 from sher3_effects.view import AxisView
 
@@ -81,17 +81,34 @@ class BacklashOnAxis(Backlash):
     kinds = ("axis", "servo")
     SMALLER = (0.06, 0.12, 0.25, 0.45)
     """Widths in spans of the residual that are tried for a load that stays put in the gap."""
+    BRAKING = (0.03, 0.1, 0.3, 1.0)
+    """What brakes a load that flies across the gap by its own inertia, over the rms acceleration of the motor."""
     finer: ClassVar[Mapping[str, tuple[float, ...]]] = {
         "width": (0.7, 0.85, 0.94, 0.97, 1.03, 1.06, 1.2, 1.4),
         "damping": (0.5, 2.0),
         "stick": (0.8, 1.2),
+        "braking": (0.5, 2.0),
     }
 
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
-        """Return the widths around the span, and smaller ones."""
+        """Return the widths around the span and smaller ones, for loads that stay, drift, or fly on by their mass."""
         found = super().shapes(views, site)
         span = found[0]["width"] / self.WIDTHS[0] if found else 0.0
-        return [*found, *({"width": w * span, "damping": np.inf, "stick": 0.0} for w in self.SMALLER if span)]
+        small = [{"width": w * span, "damping": np.inf, "stick": 0.0} for w in self.SMALLER if span]
+        square = [np.mean(np.gradient(v.run.velocity[:, v.row(site)], v.run.period) ** 2) for v in views]
+        usual = float(np.sqrt(np.mean(square)))
+        widths = [w * span for w in (*self.SMALLER[2:], *self.WIDTHS) if span]
+        return [*found, *small, *({"width": w, "braking": b * usual} for w in widths for b in self.BRAKING if usual)]
+
+    def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
+        """Return the lag behind a gap; a load with a `braking` (m/s^2) keeps its speed in it but for that."""
+        if "braking" not in shape:
+            return super().signature(view, site, shape)
+        axis, run = view.row(site), view.run
+        first = (run.load[:25, axis] - run.motor[:25, axis]).mean() if run.load is not None else 0.0
+        start = float(np.clip(2.0 * first / shape["width"], -1.0, 1.0))
+        lag = flight(np.ascontiguousarray(run.smooth[:, axis]), shape["width"], shape["braking"], run.period, start)
+        return Signature({}, {Channel(self.stage, site): run.to_grid(lag)[:, None]})
 
 
 def resting_force(views: Sequence[AxisView], site: str) -> float:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import ClassVar
+
 import numpy as np
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Best, Shape, Signature, column
@@ -15,7 +18,7 @@ class SpringTorque(Page):
 
     id, family, stage = "spring_torque", "spring", "motor_mechanics"
     inputs = ("position",)
-    kinds = ("joint",)
+    kinds: ClassVar[tuple[str, ...]] = ("joint",)
     best = Best("sweep", "long constant-speed strokes separate ratios from offsets")
     extends = ("gravity_load",)
     explanation = (
@@ -42,3 +45,32 @@ class SpringTorque(Page):
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
         """Return whether the spring pulls back."""
         return bool(coefficients[0] > 0.0)
+
+
+class SpringOnAxis(SpringTorque):
+    """The same on one axis of any machine: a spring is told from a constant force only where it rests in the travel."""
+
+    kinds = ("axis",)
+
+    def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
+        """Return the middle and half of the travel over all runs."""
+        ends = [f(v.position[:, v.row(site)]) for v in views for f in (np.min, np.max)]
+        low, high = min(ends), max(ends)
+        return [{"middle": 0.5 * (low + high), "half": 0.5 * (high - low)}] if high > low else []
+
+    def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
+        """Return two columns: the position over its travel, and one."""
+        x = (view.position[:, view.row(site)] - shape["middle"]) / shape["half"]
+        return Signature({Channel(self.stage, site): column(x, np.ones_like(x))})
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Return the stiffness, and the position at which the spring is relaxed."""
+        end, middle = map(float, coefficients)
+        return {
+            "stiffness": end / shape["half"],
+            "rest": shape["middle"] - shape["half"] * middle / end if end else 0.0,
+        }
+
+    def admissible(self, shape: Shape, coefficients: Array) -> bool:
+        """Return whether the spring pulls back, to a place within the travel."""
+        return bool(coefficients[0] > abs(coefficients[1]))

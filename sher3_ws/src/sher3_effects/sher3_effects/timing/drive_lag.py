@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from sher3_diagnosis.channel import Array, Channel
-from sher3_diagnosis.effect import Best, Shape, Signature
+from sher3_diagnosis.effect import Best, Shape, Signature, column
 from sher3_sim.effect import EVERYWHERE, PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
-from sher3_effects.operators import first_order, held_lag
+from sher3_effects.operators import first_order, held_lag, oscillator
 from sher3_effects.page import Page
 from sher3_effects.view import AxisView, RobotView
 
@@ -58,30 +58,68 @@ class DriveLag(Page):
 
 
 class ServoLag(DriveLag):
-    """A position servo that follows its reference like a first-order filter: error = reference - filtered reference."""
+    """A position servo that follows its reference like a filter: error = reference - filtered reference.
+
+    The filter is of first order, or of second order where mass and stiffness of the servo show. A servo whose law also
+    looks at speeds is told by its balance: error = time * velocity + inertia * acceleration - rate * (its own slope).
+    """
 
     kinds = ("servo",)
     on_axis = {"time_constant": "lag"}
-    explanation = "The axis follows its reference late, like a first-order filter."
+    explanation = "The axis follows its reference late, like a filter of first order, or of second with a damping."
     siblings = {"command_delay": "the whole reference comes late, its shape unchanged"}
     PERIODS = (0.25, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0)
     """Time constants that are tried, in periods of the record."""
-    finer = {"time_constant": (0.8, 0.9, 0.95, 1.05, 1.1, 1.25)}
+    DAMPINGS = (0.4, 0.7, 0.95)
+    """Of a filter of second order."""
+    LEAST_OF_SECOND = 1.5
+    """Periods from which a filter of second order is tried: below it the record does not show the difference."""
+    MOST_DAMPED = 0.99
+    """Beyond it a filter of second order is two of the first."""
+    units = {"time_constant": "s", "inertia": "s^2", "rate": "s"}
+    finer = {"time_constant": (0.8, 0.9, 0.95, 1.05, 1.1, 1.25), "damping": (0.8, 0.9, 1.1)}
 
     def channels(self, site: str) -> tuple[Channel, ...]:
         """Return the tracking error of the servo."""
         return (Channel("motor_mechanics", site),)
 
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
-        """Return time constants, s."""
-        return [{"time_constant": n * views[0].run.period} for n in self.PERIODS]
+        """Return time constants, s, and for a filter of second order its damping."""
+        period = views[0].run.period
+        slow = [n * period for n in self.PERIODS if n >= self.LEAST_OF_SECOND]
+        first: list[Shape] = [{"time_constant": n * period} for n in self.PERIODS]
+        second = [{"time_constant": t, "damping": z} for t in slow for z in self.DAMPINGS]
+        return [*first, *second, {"balance": 1.0}]
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Return the time constant, and the damping of a filter of second order or the numbers of a balance."""
+        if "balance" in shape:
+            return dict(zip(("time_constant", "inertia", "rate"), map(float, coefficients), strict=True))
+        return dict(shape)
+
+    def admissible(self, shape: Shape, coefficients: Array) -> bool:
+        """Return whether a filter of second order is one, and mass and time of a balance are above zero."""
+        if "balance" in shape:
+            return bool(coefficients[1] > 0.0 and coefficients[0] + coefficients[2] > 0.0)
+        return shape.get("damping", 0.0) < self.MOST_DAMPED
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
         """Return reference minus filtered reference; nothing is left to fit."""
         reference = view.run.reference
         assert reference is not None
-        late = held_lag(reference[:, [view.row(site)]], shape["time_constant"], view.run.period)
-        return Signature({}, {self.channels(site)[0]: view.run.to_grid(reference[:, [view.row(site)]] - late)})
+        asked = reference[:, [view.row(site)]]
+        if "balance" in shape:
+            run, row = view.run, view.row(site)
+            slope = np.gradient(asked[:, 0] - run.motor[:, row], run.period)
+            parts = (run.velocity[:, row], run.acceleration[:, row], -slope)
+            return Signature({self.channels(site)[0]: column(*(run.to_grid(x[:, None])[:, 0] for x in parts))})
+        time = shape["time_constant"]
+        if "damping" in shape:
+            damping = min(shape["damping"], self.MOST_DAMPED)
+            late = oscillator(np.ascontiguousarray(asked), 0.5 / (np.pi * time), damping, view.run.period)
+        else:
+            late = held_lag(asked, time, view.run.period)
+        return Signature({}, {self.channels(site)[0]: view.run.to_grid(asked - late)})
 
 
 @dataclass(frozen=True)

@@ -40,6 +40,9 @@ class Isaac(Target):
         "lag": "an actuator of this kind has no first-order lag",
         "zero": "the zero of a joint belongs to the asset",
         "backlash": "an actuator has no play",
+        **dict.fromkeys(
+            ("arm", "hanging"), "a weight at an arm is mass and centre of a link, which the verdict does not give"
+        ),
         "compliance": "an actuator has no spring behind it",
         **dict.fromkeys(("spring", "rest"), "an actuator has no spring beside it"),
         **dict.fromkeys(("payload", "payload_x", "payload_y", "payload_z"), "a payload belongs to the asset"),

@@ -34,6 +34,9 @@ class Mjcf(XmlTarget):
 
     name, root_tag = "mjcf", "mujoco"
     refuses: ClassVar[Mapping[str, str]] = {
+        **dict.fromkeys(
+            ("arm", "hanging"), "a weight at an arm is mass and centre of a link, which the verdict does not give"
+        ),
         "static": "MuJoCo's frictionloss is the same at rest and in motion; only the sliding level was written",
         "stribeck": "MuJoCo's frictionloss does not depend on speed",
         "ratio": "the load encoder is no part of the joint",

@@ -20,6 +20,9 @@ class Sdf(XmlTarget):
 
     name, root_tag = "sdf", "sdf"
     refuses: ClassVar[Mapping[str, str]] = {
+        **dict.fromkeys(
+            ("arm", "hanging"), "a weight at an arm is mass and centre of a link, which the verdict does not give"
+        ),
         "static": "SDF friction is the same at rest and in motion; only the sliding level was written",
         "stribeck": "SDF friction does not depend on speed",
         "offset": "an SDF joint has no constant force",

@@ -23,6 +23,9 @@ class Urdf(XmlTarget):
 
     name, root_tag = "urdf", "robot"
     refuses: ClassVar[Mapping[str, str]] = {
+        **dict.fromkeys(
+            ("arm", "hanging"), "a weight at an arm is mass and centre of a link, which the verdict does not give"
+        ),
         "static": "URDF friction is the same at rest and in motion; only the sliding level was written",
         "stribeck": "URDF friction does not depend on speed",
         "offset": "a URDF joint has no constant force",

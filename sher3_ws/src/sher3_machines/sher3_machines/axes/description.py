@@ -9,6 +9,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
+from sher3_machines.axes.own_unit import OWN_UNITS
 from sher3_machines.contrast.conditions import Tagged
 from sher3_machines.intake.fields import Clock, Column, Strict
 
@@ -120,8 +121,21 @@ class Axis(Strict):
         return "m" if self.motion == "linear" else "rad"
 
     @property
+    def own_unit(self) -> str:
+        """Unit of forces that nobody made newtons; empty where they are, or a mass says that they are."""
+        source, gain = self.signals.effort, 1.0
+        if source is None:
+            source, gain = self.signals.command, self.command_law.gain
+        if self.servo or self.free or isinstance(self.mass, float) or source is None:
+            return ""
+        stated = source.factor != 1.0 or gain != 1.0 or self.signals.nominal_effort is not None
+        return "" if stated else OWN_UNITS.get(source.unit or "", "")
+
+    @property
     def unit_of_force(self) -> str:
         """Unit of forces."""
+        if self.own_unit:
+            return self.own_unit
         return "N" if self.motion == "linear" else "N*m"
 
 

@@ -12,7 +12,8 @@ from sher3_diagnosis.fit.whitened import Whitened
 
 from sher3_machines.axes.description import Axis
 from sher3_machines.axes.floors import floors_of
-from sher3_machines.axes.identification.identify import identify_mass
+from sher3_machines.axes.identification.align import aligned
+from sher3_machines.axes.identification.identify import identify_mass, load_mass_of
 from sher3_machines.axes.record import AxesRun
 from sher3_machines.axes.signals import signals_of
 from sher3_machines.axes.view import AxisView
@@ -33,6 +34,7 @@ class AxisEvidence(Evidence):
         mass: nominal or identified, kg or kg m^2; 0 where the force balance is not looked at.
         mass_interval: 95 %, of an identified mass.
         untold: why the force balance is not judged, where a mass could not be identified.
+        notes: what was put right of the effort.
     """
 
     axis: Axis
@@ -41,19 +43,22 @@ class AxisEvidence(Evidence):
     mass: float
     mass_interval: tuple[float, float] | None = None
     untold: str = ""
+    notes: Sequence[str] = ()
 
 
 def gather_axis(runs: Sequence[AxesRun], axis: Axis, repeats: bool) -> AxisEvidence:
     """Compute residuals and floors of one axis and cut them into blocks."""
     signals = [signals_of(run, axis, "repeats" if repeats else run.name) for run in runs]
+    signals, notes = aligned(signals, axis)
     mass, interval = (axis.mass, None) if isinstance(axis.mass, float) else (0.0, None)
-    untold = ""
+    untold, load_mass = "", 0.0
     if axis.mass == "unknown" and all(s.effort is not None for s in signals):
         try:
-            mass, interval = identify_mass([AxisView(s, axis, 0.0) for s in signals])
+            load_mass = load_mass_of([AxisView(s, axis, 0.0) for s in signals])
+            mass, interval = identify_mass([AxisView(s, axis, 0.0, load_mass) for s in signals])
         except MachineError as error:
             untold = str(error)
-    records = [AxisView(s, axis, mass) for s in signals]
+    records = [AxisView(s, axis, mass, load_mass) for s in signals]
     found = [_judged(residuals_of(view), untold) for view in records]
     floors = floors_of(records, found, repeats)
     per_record = -(-BLOCKS // len(records))
@@ -70,6 +75,7 @@ def gather_axis(runs: Sequence[AxesRun], axis: Axis, repeats: bool) -> AxisEvide
         mass=mass,
         mass_interval=interval,
         untold=untold,
+        notes=notes,
     )
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
+import numpy as np
 from sher3_diagnosis.attribute.candidates import Candidates
 from sher3_diagnosis.attribute.rivals import Attribution
 from sher3_diagnosis.attribute.search import Left, Say
@@ -18,7 +19,7 @@ from sher3_diagnosis.verdict import Cause, Interval
 from sher3_effects import library, pages
 from sher3_effects.friction.viscous_friction import ViscousOnAxis
 
-from sher3_machines.axes.description import AxesDescription, Axis
+from sher3_machines.axes.description import AxesDescription, Axis, Gravity
 from sher3_machines.axes.evidence import AxisEvidence, gather_axis
 from sher3_machines.axes.health import dead_channels, without_dead
 from sher3_machines.axes.identification.fast import requantified
@@ -26,11 +27,13 @@ from sher3_machines.axes.identification.refine import refine_free
 from sher3_machines.axes.identification.search import causes_of_axis
 from sher3_machines.axes.limits import EFFECT as LIMIT
 from sher3_machines.axes.limits import limit_finding
+from sher3_machines.axes.own_unit import in_own_unit, renamed
 from sher3_machines.axes.record import AxesRun
 from sher3_machines.axes.replay import replay
 from sher3_machines.contrast.changes import change_notes, contrasted, of_runs
 from sher3_machines.contrast.conditions import Condition, conditions_of, reference_runs, told_together
 from sher3_machines.errors import MachineError
+from sher3_machines.thresholds import BLOCKS
 
 if TYPE_CHECKING:
     from sher3_machines.axes.reporter import AxesReporter
@@ -82,8 +85,9 @@ class Axes(Machine[AxesRun, AxisEvidence]):
                 parts.append(gather_axis(heard, axis, self._repeats(runs)))
         if not parts:
             raise MachineError("no axis can be judged", value="every position is dead", remedy="connect the encoders")
-        if all(part.untold and not part.channels for part in parts):
-            raise MachineError(f"no axis can be judged: {parts[0].untold}")
+        limited = any(limit_finding(runs, axis) for axis in self.description.axes)
+        if not limited and not any(part.channels for part in parts):
+            raise nothing_judged(parts, runs)
         return parts
 
     def exact(
@@ -114,13 +118,15 @@ class Axes(Machine[AxesRun, AxisEvidence]):
         """Refine mass and forces of a free axis on its simulated motion, of a driven one away from its reversals."""
         if evidence.axis.free:
             return refine_free(evidence, causes)
-        return evidence, requantified(evidence, attribution, causes)
+        causes, own = requantified(evidence, attribution, causes), evidence.axis.own_unit
+        return evidence, [in_own_unit(cause, own) for cause in causes] if own else causes
 
     def remarks(self, finding: Finding[AxisEvidence]) -> list[str]:
         """Say which mass was found, what the recorded signals cannot tell, and how the axis runs again."""
         again = replay(finding.evidence, finding.causes) if finding.significant else None
         changes = change_notes(finding.attribution, self._conditions(finding.evidence.runs))
         untold = finding.evidence.untold
+        changes += finding.evidence.notes
         changes += [f"{untold}: its force balance is not judged"] if untold else []
         return [
             *changes,
@@ -147,6 +153,25 @@ class Axes(Machine[AxesRun, AxisEvidence]):
         return self.description.repeats and len(runs) > 1
 
 
+def nothing_judged(parts: Sequence[AxisEvidence], runs: Sequence[AxesRun]) -> MachineError:
+    """Return the refusal of records in which there is nothing to compare, with what each axis lacks."""
+    said = []
+    for part in parts:
+        dead = [what for run in runs for what in dead_channels(run, part.axis).values()]
+        said.append(part.untold or (dead[0] if dead else f"{part.axis.name}: {missing(part)}"))
+    remedy = "record the reference of a servo, the effort of a driven axis, or a second encoder"
+    return MachineError(f"no axis can be judged: {'; '.join(said[:3])}", value=f"{len(parts)} axes", remedy=remedy)
+
+
+def missing(part: AxisEvidence) -> str:
+    """Return what is missing for an axis to be judged."""
+    travel = max(float(np.ptp(view.run.motor)) for view in part.records)
+    if travel <= part.axis.encoder_resolution:
+        return f"does not move by more than one count, {part.axis.encoder_resolution:.3g} {part.axis.unit_of_position}"
+    short = all(len(view.run.grid) < 2 * BLOCKS for view in part.records)
+    return "the records are too short" if short else "nothing was recorded that its position can be compared with"
+
+
 def views_of(evidence: AxisEvidence, runs: Collection[str]) -> frozenset[int]:
     """Return the identities of the views of some runs."""
     return frozenset(id(v) for v, run in zip(evidence.records, evidence.runs, strict=True) if run.name in runs)
@@ -164,6 +189,7 @@ def facts_of(axis: Axis) -> set[str]:
         "load": axis.signals.load is not None,
         "mass": isinstance(axis.mass, float),
         "drive": not axis.free,
+        "forces": isinstance(axis.mass, float) or axis.gravity != Gravity() or axis.signals.nominal_effort is not None,
     }
     return {fact for fact, is_known in known.items() if is_known}
 
@@ -173,8 +199,11 @@ def mass_notes(evidence: AxisEvidence) -> list[str]:
     if evidence.mass_interval is None:
         return []
     axis, (low, high) = evidence.axis, evidence.mass_interval
-    unit = "kg" if axis.motion == "linear" else "kg m^2"
-    return [f"{axis.name}: mass identified as {evidence.mass:.5g} {unit} ({low:.5g} .. {high:.5g})"]
+    unit = renamed("kg" if axis.motion == "linear" else "kg*m^2", axis.own_unit) if axis.own_unit else "kg"
+    unit = "kg m^2" if unit == "kg" and axis.motion == "rotary" else unit
+    behind = max(view.load_mass for view in evidence.records)
+    share = f", of which {behind:.3g} move with the second encoder" if behind else ""
+    return [f"{axis.name}: mass identified as {evidence.mass:.5g} {unit} ({low:.5g} .. {high:.5g}){share}"]
 
 
 def blind_spots(axis: Axis) -> list[str]:

@@ -22,6 +22,8 @@ MIN_SAMPLES = 20
 """Samples a run must have: five blocks of the smallest size. Several short runs are judged together."""
 JITTER = 0.01
 """Share of the period by which stamps may be off before the record is resampled."""
+ROUNDING = 1e-6
+"""Share by which a period may be off through rounding."""
 SIGNALS = ("position", "reference", "command", "effort", "load", "nominal_effort", "applied")
 """Signals of an axis, as the description names them."""
 
@@ -160,9 +162,9 @@ def _clock(found: list[Stamped], clock: Clock, run: str) -> tuple[Array, float, 
             raise MachineError(f"{run}: columns differ in length", value=sorted(lengths), remedy="give a time column")
         return np.arange(min(lengths)) / clock.rate, 1.0 / clock.rate, []
     stamps = [_checked(t, run) for t, _ in found if t is not None]
-    period = float(np.median(np.diff(stamps[0])))
+    period = float(max(np.median(np.diff(t)) for t in stamps))  # of the slowest signal: between its samples is nothing
     start, end = max(t[0] for t in stamps), min(t[-1] for t in stamps)
-    if end - start < MIN_SAMPLES * period:
+    if end - start < (MIN_SAMPLES - 1) * period * (1.0 - ROUNDING):
         raise MachineError(
             f"{run}: the signals hardly overlap",
             value=f"{end - start:.3g} s",

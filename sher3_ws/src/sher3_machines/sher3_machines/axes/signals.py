@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 from sher3_diagnosis.channel import Array, Mask
-from sher3_diagnosis.filter import BANDWIDTH, DECIMATED_RATE, EDGE, low_pass
+from sher3_diagnosis.filter import BANDWIDTH, DECIMATED_RATE, EDGE, SHORT, low_pass
 
 from sher3_machines.axes.description import Axis
 from sher3_machines.axes.identification.noise import cut_off
@@ -61,6 +61,8 @@ class AxisSignals:
     @cached_property
     def stride(self) -> int:
         """Samples of the record per sample of the residual grid: 2.5 grid samples per period of the cut-off."""
+        if self.ticks < SHORT:
+            return 1
         return max(1, round(BANDWIDTH / self.bandwidth / (DECIMATED_RATE * self.period)))
 
     @property
@@ -76,7 +78,8 @@ class AxisSignals:
     @cached_property
     def inner(self) -> Mask:
         """(g,) False where the ends of the filter spoil a sample."""
-        edge = EDGE * BANDWIDTH / self.bandwidth / self.period
+        short = self.ticks < SHORT  # too short for the filter: only the differences lose their ends
+        edge = 2.0 if short else EDGE * BANDWIDTH / self.bandwidth / self.period
         return (self.grid >= edge) & (self.grid < self.ticks - edge)
 
     @cached_property

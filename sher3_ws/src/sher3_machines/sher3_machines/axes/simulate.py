@@ -35,6 +35,7 @@ class Law(NamedTuple):
         offset: constant force, N or N m.
         relative: share by which the weight is larger.
         scale: of the drive's force.
+        arm, hanging: largest weight at an arm, N m, and where it hangs down, rad.
     """
 
     coulomb: float = 0.0
@@ -44,6 +45,8 @@ class Law(NamedTuple):
     offset: float = 0.0
     relative: float = 0.0
     scale: float = 1.0
+    arm: float = 0.0
+    hanging: float = 0.0
 
 
 class Nominal(NamedTuple):
@@ -56,7 +59,7 @@ class Nominal(NamedTuple):
     hanging: float
 
 
-TAKEN = frozenset({"coulomb", "static", "stribeck", "viscous", "offset", "weight", "drive"})
+TAKEN = frozenset({"coulomb", "static", "stribeck", "viscous", "offset", "weight", "drive", "arm", "hanging"})
 """Constants that the simulated axis takes in."""
 
 
@@ -81,6 +84,8 @@ def law_of(causes: Sequence[Cause]) -> Law:
         offset=given.get("offset", 0.0),
         relative=given.get("weight", 0.0),
         scale=1.0 + given.get("drive", 0.0),
+        arm=given.get("arm", 0.0),
+        hanging=given.get("hanging", 0.0),
     )
 
 
@@ -131,6 +136,7 @@ def _run(
         drive = law.scale * min(max(gains[0] * (reference[k] - q) - gains[1] * speed, -top), top)
         for _ in range(substeps):
             weight = nominal.constant + nominal.arm * np.sin(q - nominal.hanging)
+            weight += law.arm * np.sin(q - law.hanging) / (1.0 + law.relative)
             push = drive - (1.0 + law.relative) * weight - law.offset - (nominal.viscous + law.viscous) * v
             budget = law.coulomb + (law.static - law.coulomb) * np.exp(-((v / law.stribeck) ** 2))
             free = v + h * push / nominal.mass

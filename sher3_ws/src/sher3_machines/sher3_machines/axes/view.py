@@ -44,12 +44,14 @@ class AxisView:
         run: signals of the axis.
         described: the axis as its description has it.
         mass: nominal mass, or the one identified, kg or kg m^2.
+        load_mass: part of it that moves with the second encoder.
     """
 
-    def __init__(self, run: AxisSignals, axis: Axis, mass: float) -> None:
+    def __init__(self, run: AxisSignals, axis: Axis, mass: float, load_mass: float = 0.0) -> None:
         self.run = run
         self.described = axis
         self.mass = mass
+        self.load_mass = load_mass
         self._sliding: dict[float, Array] = {}
 
     # what the effects read
@@ -60,7 +62,17 @@ class AxisView:
 
     def axis(self, site: str) -> NominalAxis:
         """Return the nominal constants of the axis."""
-        return NominalAxis(self.mass, max(self.described.viscous, SLIP), self.lead(site), self.top)
+        axis, known = self.described, self.described.lead is not None
+        travel = float(np.ptp(self.run.smooth))
+        return NominalAxis(
+            self.mass, max(axis.viscous, SLIP), self.lead(site), self.top, travel, self.hangs, known, self.load_mass
+        )
+
+    @property
+    def hangs(self) -> bool:
+        """Whether the axis turns and its description says nothing of a weight at an arm."""
+        axis = self.described
+        return axis.motion == "rotary" and axis.gravity.arm == 0.0 and axis.signals.nominal_effort is None
 
     def lead(self, site: str) -> float:
         """Return the travel per motor revolution, m or rad; what stands for it where it is not known."""
@@ -99,7 +111,19 @@ class AxisView:
         """Nominal force that the motion needs, (g, 1): mass * a + viscous * v + weight + the user's own model."""
         run, viscous = self.run, max(self.described.viscous, SLIP)
         needed = run.to_grid(self.mass * run.acceleration + viscous * run.velocity) + self.path.gravity
+        if self.load_mass:
+            needed = needed + self.load_mass * self.behind
         return needed if run.nominal is None else needed + run.to_grid(run.nominal)
+
+    @cached_property
+    def behind(self) -> Array:
+        """Acceleration of the second encoder less that of the first, (g, 1); zero where there is one encoder."""
+        run = self.run
+        if run.load is None:
+            return np.zeros((len(run.grid), 1))
+        bend = np.zeros_like(run.motor)
+        bend[1:-1] = np.diff(run.load, 2, axis=0) / run.period**2
+        return np.asarray(run.to_grid(bend) - run.to_grid(run.acceleration))
 
     # which samples can be judged
 
@@ -193,7 +217,7 @@ class AxisView:
     def recorded(self, channel: Channel) -> Quantities:
         """Return what was recorded that the law of a gap might depend on; not the effort, which is the output."""
         run, unit = self.run, "rad" if self.described.motion == "rotary" else "m"
-        newton = "N*m" if unit == "rad" else "N"
+        newton = self.described.unit_of_force
         weight = np.interp(run.stage_clock, run.stage_clock[run.grid], self.path.gravity[:, 0])
         acceleration = np.gradient(run.velocity[:, 0], run.period)
         force = self.mass * acceleration + self.described.viscous * run.velocity[:, 0] + weight

@@ -27,6 +27,8 @@ WIDEST = 12
 """Entries of an array column that may be axes: a humanoid's arms; wider ones are matrices."""
 GEARED = 1.5
 """Travel of one encoder over that of the other from which a gear is between them."""
+MOST_GEARED = 1e5
+"""Ratio beyond which two columns are not two encoders of one axis."""
 LISTED = 12
 """Columns that a sentence lists at most."""
 
@@ -138,7 +140,7 @@ def _axis(axis: str, signals: Mapping[str, Place], tables: Tables, guesses: list
                 guesses.append(f"{label}: {signal} is {signals[signal][0]!r}, because of its name")
     columns["position"].update({"unit": unit, **({"factor": factor} if factor != 1.0 else {})})
     if "load" in signals:
-        factor *= _gear(label, columns, travel(x), values_of(signals["load"], tables), guesses)
+        factor *= _gear(label, columns, ratio_of(signals, tables), guesses)
     count = count_of(x)
     resolution = (count or travel(x) * 1e-6 or 1e-6) * factor * UNITS[unit]
     said = "its smallest step" if count else "a millionth of its travel: no step is seen"
@@ -162,11 +164,22 @@ def _column(name: str, index: int | None, unit: str | None, factor: float) -> di
     return found
 
 
-def _gear(label: str, columns: dict[str, Any], moved: float, load: Array, guesses: list[str]) -> float:
+def ratio_of(signals: Mapping[str, Place], tables: Tables) -> float:
+    """Return how far the position moves per unit of the load; 0 where the load does not move with it."""
+    x, load = (values_of(signals[k], tables) for k in ("position", "load"))
+    if not travel(load):
+        return 0.0
+    if len(x) != len(load):
+        return travel(x) / travel(load)
+    about = load - np.median(load)
+    return float(abs(about @ (x - np.median(x))) / (about @ about))
+
+
+def _gear(label: str, columns: dict[str, Any], ratio: float, guesses: list[str]) -> float:
     """Return the factor by which the position is that of the load, where a gear is between the two encoders."""
     scales = [UNITS[columns[k]["unit"]] * columns[k].get("factor", 1.0) for k in ("position", "load")]
-    ratio = moved * scales[0] / max(travel(load) * scales[1], 1e-300)
-    if 1.0 / GEARED < ratio < GEARED or not 1e-5 < ratio < 1e5:
+    ratio *= scales[0] / scales[1]
+    if 1.0 / GEARED < ratio < GEARED or not 1.0 / MOST_GEARED < ratio < MOST_GEARED:
         return 1.0
     whole = round(ratio) if ratio > GEARED else 1.0 / round(1.0 / ratio)
     factor = float(f"{1.0 / whole:.6g}")

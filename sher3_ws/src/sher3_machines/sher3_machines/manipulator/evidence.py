@@ -13,6 +13,7 @@ from sher3_diagnosis.localise.floors import repeat_floors
 
 from sher3_machines.axes.evidence import blocks_of
 from sher3_machines.axes.floors import NOTHING, UNIFORM, foresight, innovation
+from sher3_machines.axes.own_unit import RECORDED
 from sher3_machines.axes.record import AxesRun
 from sher3_machines.errors import MachineError
 from sher3_machines.manipulator.description import ManipulatorDescription
@@ -22,9 +23,6 @@ from sher3_machines.manipulator.model import ArmModel
 from sher3_machines.manipulator.signals import joint_signals
 from sher3_machines.manipulator.view import MotionView
 from sher3_machines.thresholds import BLOCKS
-
-RECORDED = "recorded unit"
-"""Unit of a force whose gain nobody stated."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -20,13 +20,14 @@ from sher3_effects.scale.torque_constant import TorqueConstant
 from sher3_machines.axes.health import dead_channels
 from sher3_machines.axes.identification.fast import requantified
 from sher3_machines.axes.machine import NO_REPEATS
+from sher3_machines.axes.own_unit import RECORDED, in_own_unit
 from sher3_machines.axes.record import AxesRun
 from sher3_machines.contrast.changes import change_notes, contrasted, of_runs
 from sher3_machines.contrast.conditions import Condition, conditions_of, reference_runs, told_together
 from sher3_machines.manipulator.causes import causes_of_arm, centred
 from sher3_machines.manipulator.confounding import SAME, confounding_notes
 from sher3_machines.manipulator.description import ManipulatorDescription
-from sher3_machines.manipulator.evidence import RECORDED, ArmMotionEvidence, gather_arm_motion
+from sher3_machines.manipulator.evidence import ArmMotionEvidence, gather_arm_motion
 from sher3_machines.manipulator.model import ArmModel
 
 if TYPE_CHECKING:
@@ -56,7 +57,7 @@ class Manipulator(Machine[AxesRun, ArmMotionEvidence]):
 
     def effects(self, evidence: ArmMotionEvidence) -> Sequence[Effect]:
         """Return the pages that the recorded signals can show."""
-        facts = {"drive"}
+        facts = {"drive", "forces"}
         if all(j.lead is not None for j in self.described.joints):
             facts.add("lead")
         known = of_joints(facts)
@@ -102,7 +103,7 @@ class Manipulator(Machine[AxesRun, ArmMotionEvidence]):
     ) -> tuple[ArmMotionEvidence, list[Cause]]:
         """Fit friction again away from reversals; give forces of a joint with unknown gain in the recorded unit."""
         causes = requantified(evidence, attribution, causes)
-        return evidence, [with_hidden(in_own_unit(c)) if c.actuator in evidence.shares else c for c in causes]
+        return evidence, [with_hidden(in_own_unit(c, RECORDED)) if c.actuator in evidence.shares else c for c in causes]
 
     def remarks(self, finding: Finding[ArmMotionEvidence]) -> list[str]:
         """Say what cannot be told apart, which gains were found, and which joints were not judged."""
@@ -163,15 +164,3 @@ def with_hidden(cause: Cause) -> Cause:
         return cause
     hidden = [e for e in SAME.values() if e != cause.effect and e not in cause.rivals]
     return cause.model_copy(update={"rivals": [*cause.rivals, *hidden]})
-
-
-def in_own_unit(cause: Cause) -> Cause:
-    """Return a cause whose forces are in the unit that was recorded."""
-    changed = {
-        name: p.model_copy(update={"unit": p.unit.replace("N*m", RECORDED).replace("N/", f"{RECORDED}/")})
-        if p.unit.startswith("N")
-        else p
-        for name, p in cause.parameters.items()
-    }
-    changed = {n: p.model_copy(update={"unit": RECORDED}) if p.unit == "N" else p for n, p in changed.items()}
-    return cause.model_copy(update={"parameters": changed})

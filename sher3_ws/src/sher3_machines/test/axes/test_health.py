@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from sher3_diagnosis import diagnose
+from sher3_machines import MachineError
 from sher3_machines.axes.health import dead_channels, stuck
 from slides import axis_of, columns, driven, machine, run_of
 
@@ -39,9 +40,8 @@ def test_an_effort_of_zero_is_no_mass_problem(rows):
     signals = {**columns("position", "reference"), **columns("effort", unit="N")}
     run = run_of(rows, effort=np.zeros(len(rows)))
     del run.signals["slide"]["command"]
-    verdict = diagnose(machine(signals=signals, mass="unknown"), [run]).verdict
-    assert verdict.status == "no_gap" and not verdict.causes
-    assert any("slide.effort reads 0 in 100%" in n for n in verdict.notes)
+    with pytest.raises(MachineError, match=r"slide.effort reads 0 in 100%"):
+        diagnose(machine(signals=signals, mass="unknown"), [run])
 
 
 def test_a_position_that_never_moves_is_named(rows):

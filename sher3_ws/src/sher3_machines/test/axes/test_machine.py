@@ -136,7 +136,7 @@ def test_notes_say_what_cannot_be_told():
 
 
 def test_facts_are_what_the_description_states():
-    assert facts_of(axis_of()) == {"mass", "drive"}
+    assert facts_of(axis_of()) == {"mass", "drive", "forces"}
     assert facts_of(axis_of(lead=0.005, mass="unknown", command_law={"kind": "none"})) == {"lead"}
 
 

@@ -69,8 +69,18 @@ def test_intervals_hold_the_truth_over_a_ladder_of_rates_and_noises():
     assert (found.mean(axis=0) >= 0.93).all(), found.mean(axis=0)
 
 
-def test_a_mass_below_zero_is_a_wrong_model():
+def test_an_effort_of_the_opposite_sign_is_turned_and_said():
     run = slide(0.005, 1e-6)
     run.signals["slide"]["command"] *= -1.0
+    verdict = verdict_of(run)
+    assert {c.effect for c in verdict.causes} == {"coulomb_friction", "viscous_friction"}
+    assert any("recorded with the opposite sign" in note for note in verdict.notes)
+
+
+def test_a_mass_below_zero_is_a_wrong_model():
+    run = slide(0.005, 1e-6)
+    slides = run.signals["slide"]
+    acceleration = np.gradient(np.gradient(slides["position"], 0.005), 0.005)
+    slides["command"] -= 2.0 * MASS * acceleration
     with pytest.raises(MachineError, match="below zero: the model is wrong"):
         verdict_of(run)

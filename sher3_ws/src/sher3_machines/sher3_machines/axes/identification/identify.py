@@ -19,10 +19,27 @@ from sher3_machines.axes.view import AxisView
 from sher3_machines.errors import MachineError
 from sher3_machines.thresholds import BLOCKS, LEAST_EXCITED, NOISE_SHARE, SLOW
 
-RESISTING = (1, 2, 3)
-"""Columns of the equations that may be left out: viscous, dry friction, offset; column 0 is the acceleration."""
+LEFT = 1e-3
+"""Share of the force's power that must be left without them."""
+BY_PLACE = (4, 5)
+"""Columns of the position."""
+BEHIND = 6
+"""Column of what a second encoder accelerates beyond the first."""
+RESISTING = ((1,), (2,), (3,), BY_PLACE, (BEHIND,))
+"""Columns that may be left out: viscous, dry friction, offset, force by position; column 0 is the acceleration."""
+MARKED = 0.8
+"""Share of the held-out loss that forces by position must leave at most: on one sine they are the acceleration."""
+CHOICES = [
+    [0, *(k for columns in group for k in columns)]
+    for n in range(len(RESISTING) + 1)
+    for group in combinations(RESISTING, n)
+]
+"""Every choice of columns."""
 DAHL_SHARE = 2.5e-3
 """Displacement over which dry friction builds up, in shares of the lead: the middle one that the effects search."""
+
+DAHL_TRAVEL = 5e-5
+"""The same in shares of the travel, where the lead is not known."""
 
 
 def identify_mass(views: Sequence[AxisView]) -> tuple[float, tuple[float, float]]:
@@ -34,12 +51,9 @@ def identify_mass(views: Sequence[AxisView]) -> tuple[float, tuple[float, float]
     Raises:
         MachineError: the records do not accelerate enough to tell a mass.
     """
-    rows, target = zip(*(_equations(view) for view in views), strict=True)
-    x, y = np.concatenate(rows), np.concatenate(target)
-    block = np.arange(len(y)) * BLOCKS // max(len(y), 1)
-    choices = [(0, *chosen) for n in range(len(RESISTING) + 1) for chosen in combinations(RESISTING, n)]
-    losses = [_held_out(x[:, columns], y, block)[0] for columns in choices]
-    used = x[:, choices[int(np.argmin(losses))]]
+    x, y, block = _blocks(views)
+    _, columns = _best(x, y, block)
+    used = x[:, columns]
     _, draws = _held_out(used, y, block)
     mass = float(solve(used.T @ used, used.T @ y)[0])
     error = float(np.sqrt((BLOCKS - 1) / BLOCKS * np.sum((draws - draws.mean()) ** 2)))
@@ -56,17 +70,76 @@ def identify_mass(views: Sequence[AxisView]) -> tuple[float, tuple[float, float]
     return mass, (mass - half, mass + half)
 
 
+def loss_of(views: Sequence[AxisView]) -> float:
+    """Return the smallest held-out loss of the force balance, whatever of its columns is left out."""
+    x, y, block = _blocks(views)
+    return _best(x, y, block)[0] if len(y) >= BLOCKS else 0.0
+
+
+def _best(x: Array, y: Array, block: NDArray[np.int64]) -> tuple[float, list[int]]:
+    """Return the smallest held-out loss and its columns; those of the position only where they save markedly."""
+    tried = [(_held_out(x[:, columns], y, block)[0], columns) for columns in CHOICES]
+    plain = min((t for t in tried if BY_PLACE[0] not in t[1] and BEHIND not in t[1]), key=lambda t: t[0])
+    for extra in (BEHIND, BY_PLACE[0]):
+        other = min(
+            (t for t in tried if extra in t[1] and (extra == BY_PLACE[0] or BY_PLACE[0] not in t[1])),
+            key=lambda t: t[0],
+        )
+        if plain[0] > LEFT * float(y @ y) and other[0] < MARKED * plain[0]:
+            plain = other
+    return plain
+
+
+def mass_of(views: Sequence[AxisView]) -> float:
+    """Return the mass that the records tell, whatever its error, kg or kg m^2; 0 without samples in motion."""
+    x, y, block = _blocks(views)
+    if len(y) < BLOCKS:
+        return 0.0
+    used = x[:, _best(x, y, block)[1]]
+    return float(solve(used.T @ used, used.T @ y)[0])
+
+
+def load_mass_of(views: Sequence[AxisView]) -> float:
+    """Return the mass that moves with the second encoder, kg or kg m^2; 0 where the records do not tell it."""
+    if any(view.run.load is None for view in views):
+        return 0.0
+    x, y, block = _blocks(views)
+    columns = _best(x, y, block)[1] if len(y) >= BLOCKS else []
+    if BEHIND not in columns:
+        return 0.0
+    used = x[:, columns]
+    found = float(solve(used.T @ used, used.T @ y)[columns.index(BEHIND)])
+    return max(found, 0.0)
+
+
+def _blocks(views: Sequence[AxisView]) -> tuple[Array, Array, NDArray[np.int64]]:
+    """Equations of all records, and the block of each."""
+    rows, target = zip(*(_equations(view) for view in views), strict=True)
+    x, y = np.concatenate(rows), np.concatenate(target)
+    return x, y, np.arange(len(y)) * BLOCKS // max(len(y), 1)
+
+
 def _equations(view: AxisView) -> tuple[Array, Array]:
-    """Columns (n, 4) acceleration, velocity, direction, one; and the force (n,) beyond the nominal one."""
+    """Columns (n, 7) acceleration, velocity, direction, one, two of the position, and the load; force (n,) left over.
+
+    Those of the position are a weight at an arm on an axis that turns and a spring on one that slides.
+    """
     run, site = view.run, view.described.name
     speed = np.abs(view.velocity[:, 0])
     ok = view.in_motion
     if ok.any():
         ok = ok & (speed > SLOW * np.sqrt(np.mean(speed[ok] ** 2)))
-    direction = run.to_grid(view.sliding(0, DAHL_SHARE * view.lead(site))[:, None])[:, 0]
+    nominal = view.axis(site)
+    reach = DAHL_SHARE * nominal.lead if nominal.lead_known else DAHL_TRAVEL * nominal.travel
+    direction = run.to_grid(view.sliding(0, max(reach, view.described.encoder_resolution))[:, None])[:, 0]
     assert run.effort is not None
     y = run.to_grid(run.effort)[:, 0] - view.inertial[:, 0]
-    x = np.column_stack([run.to_grid(run.acceleration)[:, 0], view.velocity[:, 0], direction, np.ones(len(y))])
+    q = view.position[:, 0]
+    spring = q - q.mean() if view.described.motion == "linear" else np.zeros_like(q)
+    by_place = (np.sin(q), np.cos(q)) if view.hangs else (spring, np.zeros_like(q))
+    one = np.ones(len(y))
+    behind = np.zeros_like(one) if view.load_mass else view.behind[:, 0]
+    x = np.column_stack([run.to_grid(run.acceleration)[:, 0], view.velocity[:, 0], direction, one, *by_place, behind])
     return x[ok], y[ok]
 
 

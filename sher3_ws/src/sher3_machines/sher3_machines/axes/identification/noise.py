@@ -18,6 +18,10 @@ ORDER = 5
 """Difference of the position that leaves its noise alone: what moves slowly against the samples is gone in it."""
 GAUSSIAN = 1.4826
 """Standard deviation over the median of absolute values, of a normal distribution."""
+TOP = 0.85
+"""Share of the Nyquist frequency from which nothing of the motion is left."""
+SHORTEST = 64
+"""Samples below which a record has too few frequencies."""
 STEP = 0.8
 """Factor from one cut-off that is tried to the next."""
 ENDS = 2.0
@@ -25,13 +29,26 @@ ENDS = 2.0
 
 
 def noise_of(position: Array, period: float) -> float:
-    """Return the standard deviation of white noise in a position (n,), from its fifth difference.
+    """Return the standard deviation of white noise in a position (n,): of two figures that hold too much the smaller.
 
-    The noise of a fifth difference has the sum of squares of the binomial coefficients in power.
+    The noise of a fifth difference has the sum of squares of the binomial coefficients in power; in a slow record it
+    holds motion too, which the highest frequencies do not.
     """
     power = float(np.sum(binom(ORDER, np.arange(ORDER + 1)) ** 2))
     bend = np.diff(position, ORDER)
-    return GAUSSIAN * float(np.median(np.abs(bend))) / np.sqrt(power)
+    told = GAUSSIAN * float(np.median(np.abs(bend))) / np.sqrt(power)
+    return min(told, noise_at_the_top(position))
+
+
+def noise_at_the_top(position: Array) -> float:
+    """Return the standard deviation of white noise in a position (n,) that has the power of its highest frequencies."""
+    n = len(position)
+    if n < SHORTEST:
+        return np.inf
+    window = np.hanning(n)
+    line = np.polyval(np.polyfit(np.arange(n), position, 1), np.arange(n))
+    power = np.abs(np.fft.rfft((position - line) * window)) ** 2 / np.sum(window**2)
+    return float(np.sqrt(np.mean(power[int(TOP * len(power)) :])))
 
 
 def cut_off(position: Array, period: float, most: float) -> float:
