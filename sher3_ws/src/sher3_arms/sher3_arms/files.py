@@ -25,7 +25,7 @@ def write_case(
         folder: new.
         urdf: nominal model.
         names: of the k joints.
-        arrays: `time` (n,), s, `position` (n, k), rad, and `effort` (n, k), N m.
+        arrays: `time` (n,), s, `position` and `link` (n, k), rad, and `effort` (n, k), N m.
         count: of the encoders, rad.
         noise: (k,) resolution of the efforts, N m.
     """
@@ -36,6 +36,7 @@ def write_case(
             "signals": {
                 "position": {"column": "position", "unit": "rad", "index": i},
                 "effort": {"column": "effort", "unit": "N*m", "index": i},
+                "load": {"column": "link", "unit": "rad", "index": i},
             },
             "encoder_resolution": count,
             "effort_resolution": float(noise[i]),

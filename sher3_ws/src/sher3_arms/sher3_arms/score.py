@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass
 from sher3_diagnosis import Verdict
 
 from sher3_arms.truth.cases import Label
-from sher3_arms.truth.faults import HEALTHY, KINDS
+from sher3_arms.truth.faults import COMPOUND, HEALTHY, KINDS
 
 REFUSED = "refused"
 """Status of a case that ended in an error."""
@@ -20,6 +20,10 @@ NAMES: Mapping[str, tuple[str, ...]] = {
     "payload": ("payload_mass",),
     "gear_loss": ("gear_loss",),
     "spring": ("spring_torque", "cable_torque"),
+    "late_drive": ("sensor_delay", "command_delay"),
+    "late_effort": ("sensor_delay",),
+    "backlash": ("backlash",),
+    "elastic": ("transmission_compliance",),
 }
 """Fault -> effects that are right answers: presliding friction contains Coulomb friction, a free law a spring."""
 
@@ -32,7 +36,7 @@ class Scored:
         seed, robot, kind, joint: of the truth.
         status, effect, place: of the verdict; its first cause.
         top: whether the first cause is the fault; None where there is none to name.
-        in_set: whether the fault is the first cause or one of its rivals.
+        in_set: whether the fault is the first cause or one of its rivals; of a compound case both are among the causes.
         placed: whether the first cause sits on the right joint, a payload on its link.
         seconds: of the answer.
     """
@@ -56,43 +60,48 @@ class Scored:
 
 def scored(label: Label, verdict: Verdict | None, seconds: float) -> Scored:
     """Score one verdict; None where the case was refused, which names nothing."""
-    if verdict is None:
-        wrong = False if label.fault.kind in KINDS else None
-        return Scored(
-            label.seed, label.robot, label.fault.kind, label.joint, REFUSED, "", "", wrong, wrong, wrong, seconds
-        )
-    first = verdict.causes[0] if verdict.causes else None
-    effect, place = (first.effect, first.actuator) if first else ("", "")
-    top = in_set = placed = None
-    if label.fault.kind in KINDS:
-        right = NAMES[label.fault.kind]
-        top, in_set = effect in right, bool({effect, *(first.rivals if first else ())} & set(right))
-        placed = (place or (verdict.where[0].actuator if verdict.where else "")) in (label.joint, label.link)
-    return Scored(
-        label.seed,
-        label.robot,
-        label.fault.kind,
-        label.joint,
-        verdict.status,
-        effect,
-        place,
-        top,
-        in_set,
-        placed,
-        seconds,
-    )
+    kind = COMPOUND if label.fault.second is not None else label.fault.kind
+    status, effect, place = REFUSED, "", ""
+    top = in_set = placed = False
+    if verdict is not None:
+        status = verdict.status
+        first = verdict.causes[0] if verdict.causes else None
+        effect, place = (first.effect, first.actuator) if first else ("", "")
+        where = place or (verdict.where[0].actuator if verdict.where else "")
+        sought = _sought(label)
+        top = any(effect in names and (place in sites or kind != COMPOUND) for names, sites in sought)
+        in_set = all(_found(verdict, names, sites, kind) for names, sites in sought)
+        placed = any(where in sites for _, sites in sought)
+    told = (top, in_set, placed) if kind in (*KINDS, COMPOUND) else (None, None, None)
+    return Scored(label.seed, label.robot, kind, label.joint, status, effect, place, *told, seconds)
+
+
+def _sought(label: Label) -> list[tuple[tuple[str, ...], tuple[str, ...]]]:
+    """Return the right effects of each fault, and the names of its place."""
+    places = [(label.joint, label.link), (label.second,)]
+    return [(NAMES.get(part.kind, ()), place) for part, place in zip(label.fault.parts, places, strict=False)]
+
+
+def _found(verdict: Verdict, names: tuple[str, ...], sites: tuple[str, ...], kind: str) -> bool:
+    """Return whether a fault is among the causes of a compound case, or the first one or its rival of a single one."""
+    causes = verdict.causes if kind == COMPOUND else verdict.causes[:1]
+    here = [c for c in causes if kind != COMPOUND or c.actuator in sites]
+    return any({c.effect, *c.rivals} & set(names) for c in here)
 
 
 def shares(cases: Sequence[Scored]) -> dict[str, tuple[float, int]]:
     """Return each score as a share and the number of cases it is over."""
     known = [c for c in cases if c.kind in KINDS]
     healthy = [c for c in cases if c.kind == HEALTHY]
-    outside = [c for c in cases if c.kind not in (*KINDS, HEALTHY)]
+    compound = [c for c in cases if c.kind == COMPOUND]
+    outside = [c for c in cases if c.kind not in (*KINDS, COMPOUND, HEALTHY)]
     columns = {
         "top-1": [bool(c.top) for c in known],
         "in the set": [bool(c.in_set) for c in known],
         "joint right": [bool(c.placed) for c in known],
         "known cases called outside": [c.status == "outside_library" for c in known],
+        "compound: first one right": [bool(c.top) for c in compound],
+        "compound: both named": [bool(c.in_set) for c in compound],
         "healthy alarms": [c.status != "no_gap" for c in healthy],
         "outside abstained": [c.status in ("outside_library", "under_excited") for c in outside],
     }

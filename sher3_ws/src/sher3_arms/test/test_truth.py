@@ -6,7 +6,7 @@ import pytest
 import yaml
 from sher3_arms import ArmsError
 from sher3_arms.truth.cases import seal
-from sher3_arms.truth.faults import HEALTHY, KINDS, OUTSIDE, Fault, deal, dealt, passive
+from sher3_arms.truth.faults import COMPOUND, HEALTHY, KINDS, OUTSIDE, Fault, deal, dealt, passive
 from sher3_arms.truth.robots import FILES, OWN, urdf_of
 from sher3_arms.truth.world import inertias, inverse, load, motion, record
 
@@ -51,12 +51,32 @@ def test_faults_by_callback():
     assert not passive(Fault("coulomb", 1, 2.0), *state).any()
 
 
+def test_a_second_joint_gives_way_by_its_size():
+    """A spring of 2000 N m/rad gives what its torque over it is; a gap of 6 mrad gives its half."""
+    rng = np.random.default_rng
+    elastic = record(URDF, Fault("elastic", 1, 0.005, {"rotor": 0.02, "stiffness": 2000.0}), 6.0, rng(1))
+    given = elastic.link[500:, 1] - elastic.position[500:, 1]
+    assert np.polyfit(elastic.effort[500:, 1], given, 1)[0] == pytest.approx(-1.0 / 2000.0, rel=0.1)
+    gap = record(URDF, Fault("backlash", 1, 0.006, {"rotor": 0.02}), 6.0, rng(1))
+    assert np.abs(gap.link[500:, 1] - gap.position[500:, 1]).max() == pytest.approx(0.003, rel=0.15)
+    assert np.array_equal(gap.link[:, 0], gap.position[:, 0])
+
+
+def test_a_late_drive_and_a_late_reading_are_late_by_their_size():
+    healthy = record(URDF, Fault(HEALTHY), 6.0, np.random.default_rng(1)).effort[:, 1]
+    late = record(URDF, Fault("late_effort", 1, 0.016), 6.0, np.random.default_rng(1)).effort[:, 1]
+    assert np.abs(late[504:] - healthy[500:-4]).max() < 0.02 * np.abs(healthy).max()
+    drive = record(URDF, Fault("late_drive", 1, 0.016), 6.0, np.random.default_rng(1)).effort[:, 1]
+    assert np.isfinite(drive).all() and np.abs(drive).max() < 2.0 * np.abs(healthy).max()
+
+
 def test_every_kind_is_dealt():
     kinds = set(dealt(range(20)).values())
-    assert kinds == {*KINDS, *OUTSIDE, HEALTHY}
+    assert kinds == {*KINDS, *OUTSIDE, COMPOUND, HEALTHY}
     for kind in kinds:
         fault = deal(np.random.default_rng(3), kind, np.ones(3), np.ones(3), np.ones(3))
-        assert fault.kind == kind and (fault.joint >= 0) == (kind != HEALTHY)
+        assert fault.kind == kind or (kind == COMPOUND and fault.second.joint != fault.joint)
+        assert (fault.joint >= 0) == (kind != HEALTHY)
 
 
 def test_a_sealed_case_gives_nothing_away(tmp_path):

@@ -27,6 +27,7 @@ class Label:
         fault: what is wrong.
         joint: name of its joint; empty for a healthy arm.
         link: the link behind that joint.
+        second: the joint of the other fault of a compound case.
     """
 
     seed: int
@@ -34,6 +35,7 @@ class Label:
     fault: Fault
     joint: str = ""
     link: str = ""
+    second: str = ""
 
 
 def seal(seed: int, robots: Sequence[str], folder: Path, seconds: float) -> Label:
@@ -50,9 +52,10 @@ def seal(seed: int, robots: Sequence[str], folder: Path, seconds: float) -> Labe
     speed = np.sqrt(np.mean(v**2, axis=0))
     fault = deal(rng, dealt([seed])[seed], torque, speed, inertias(nominal, q[0]))
     found = record(urdf, fault, seconds, rng)
-    arrays = {"time": found.time, "position": found.position, "effort": found.effort}
+    arrays = {"time": found.time, "position": found.position, "effort": found.effort, "link": found.link}
     write_case(folder, urdf, found.names, arrays, COUNT, found.noise)
     if fault.joint < 0:
         return Label(seed, robot, fault)
     link = nominal.body(int(nominal.jnt_bodyid[fault.joint])).name
-    return Label(seed, robot, fault, found.names[fault.joint], link)
+    second = "" if fault.second is None else found.names[fault.second.joint]
+    return Label(seed, robot, fault, found.names[fault.joint], link, second)

@@ -7,9 +7,33 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-KINDS = ("coulomb", "viscous", "armature", "gain", "payload", "gear_loss", "spring")
+KINDS = (
+    "coulomb",
+    "viscous",
+    "armature",
+    "gain",
+    "payload",
+    "gear_loss",
+    "spring",
+    "late_drive",
+    "late_effort",
+    "backlash",
+    "elastic",
+)
 """Faults that a library may know: MuJoCo's frictionloss, damping, armature, a gain between recorded and real force, a
-body on the last link, a loss in proportion to the drive's force (by callback), stiffness with a spring reference."""
+body on the last link, a loss in proportion to the drive's force (by callback), stiffness with a spring reference, a
+force that acts late, an effort that is recorded late, and a second joint behind the motor's: with a gap between its
+stops, or with a spring."""
+COMPOUND = "compound"
+"""Two of the first faults at once, on different joints."""
+BEHIND = ("backlash", "elastic")
+"""Faults between the encoder of the motor and that of the link."""
+PAIRS = ("coulomb", "viscous", "armature", "gain", "gear_loss", "spring")
+"""Faults that a compound case is made of."""
+DELAYS = (0.005, 0.02)
+"""Shortest and longest delay, s."""
+GAPS = (0.002, 0.01)
+"""Narrowest and widest gap, rad; a spring gives way by as much under the joint's rms torque."""
 OUTSIDE = ("foreign_cable", "stick_at_place", "heavy_air")
 """Faults that none should know, by callback: torque from the position of another joint, a brake within a narrow range
 of positions, drag with the cube of speed."""
@@ -25,12 +49,19 @@ class Fault:
         joint: row of the joint; -1 for none.
         size: in the unit of the kind.
         other: further numbers by name.
+        second: another fault of a compound case.
     """
 
     kind: str
     joint: int = -1
     size: float = 0.0
     other: Mapping[str, float] = field(default_factory=dict)
+    second: Fault | None = None
+
+    @property
+    def parts(self) -> tuple[Fault, ...]:
+        """The faults of the case: itself, and the second one."""
+        return (self,) if self.second is None else (self, self.second)
 
 
 def deal(rng: np.random.Generator, kind: str, torque: np.ndarray, speed: np.ndarray, inertia: np.ndarray) -> Fault:
@@ -45,6 +76,11 @@ def deal(rng: np.random.Generator, kind: str, torque: np.ndarray, speed: np.ndar
     """
     if kind == HEALTHY:
         return Fault(HEALTHY)
+    if kind == COMPOUND:
+        first = deal(rng, str(rng.choice(PAIRS)), torque, speed, inertia)
+        while (other := deal(rng, str(rng.choice(PAIRS)), torque, speed, inertia)).joint == first.joint:
+            pass
+        return Fault(first.kind, first.joint, first.size, first.other, other)
     joint = int(rng.integers(len(torque)))
     share = float(np.exp(rng.uniform(np.log(0.08), np.log(0.30))))
     load = share * float(torque[joint])
@@ -66,12 +102,22 @@ def deal(rng: np.random.Generator, kind: str, torque: np.ndarray, speed: np.ndar
         return Fault(kind, joint, share)
     if kind == "spring":
         return Fault(kind, joint, load / 0.5, {"reference": float(rng.uniform(-0.5, 0.5))})
+    if kind in ("late_drive", "late_effort"):
+        return Fault(kind, joint, float(rng.uniform(*DELAYS)))
+    if kind in BEHIND:
+        give = float(np.exp(rng.uniform(*np.log(GAPS))))
+        stiffness = {} if kind == "backlash" else {"stiffness": float(torque[joint]) / give}
+        return Fault(kind, joint, give, {"rotor": ROTOR * float(inertia[joint]), **stiffness})
     if kind == "foreign_cable":
         other = int((joint + 1 + rng.integers(len(torque) - 1)) % len(torque))
         return Fault(kind, joint, 2.0 * load, {"from": float(other)})
     if kind == "stick_at_place":
         return Fault(kind, joint, 3.0 * load, {"at": float(rng.uniform(-0.3, 0.3))})
     return Fault("heavy_air", joint, 2.0 * load / float(speed[joint]) ** 3)
+
+
+ROTOR = 0.05
+"""Inertia of a motor with a joint of its own, over what the joint moves."""
 
 
 def passive(fault: Fault, q: np.ndarray, v: np.ndarray, drive: np.ndarray) -> np.ndarray:
@@ -97,6 +143,8 @@ def passive(fault: Fault, q: np.ndarray, v: np.ndarray, drive: np.ndarray) -> np
 
 
 def dealt(seeds: Sequence[int]) -> Mapping[int, str]:
-    """Return the kind of fault of each seed: of ten cases seven are known, one healthy, two outside."""
-    order = (*KINDS, HEALTHY, OUTSIDE[0], OUTSIDE[1], *KINDS, HEALTHY, OUTSIDE[2], OUTSIDE[0])
+    """Return the kind of fault of each seed: of twenty cases eleven are single, two compound, three healthy, four not
+    in any library.
+    """
+    order = (*KINDS, COMPOUND, COMPOUND, HEALTHY, HEALTHY, HEALTHY, *OUTSIDE, OUTSIDE[0])
     return {seed: order[seed % len(order)] for seed in seeds}

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import deque
+from collections.abc import Callable
 from dataclasses import dataclass
 from importlib import import_module
 from types import ModuleType
@@ -10,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from sher3_arms.errors import ArmsError
-from sher3_arms.truth.faults import Fault, passive
+from sher3_arms.truth.faults import BEHIND, Fault, passive
 
 STEP = 0.001
 """Time step, s."""
@@ -26,6 +28,14 @@ STIFF, DAMPED = 40.0, 0.9
 """Natural frequency, rad/s, and damping of the tracking loop."""
 COUNT = 2.0 * np.pi / 2**22
 """One count of the encoders, rad: 16 bits on the motor, behind a reduction of 64."""
+GIVING = "giving"
+"""Name of the joint behind a motor's."""
+FINE = 0.00025
+"""Time step where a motor has a joint of its own, s: its rotor is light."""
+STOPS = (0.001, 1.0)
+"""Time constant, s, and damping of a stop."""
+LOSS = 0.002
+"""Damping over stiffness of a spring behind a motor, s."""
 DUST = 1e-5
 """Inertia of a payload about its own centre, kg m^2: it is small and heavy."""
 NOISE = 0.002
@@ -34,13 +44,14 @@ NOISE = 0.002
 
 @dataclass(frozen=True)
 class Record:
-    """What is recorded: (n,) time, (n, k) positions, rad, and efforts, N m."""
+    """What is recorded: (n,) time, (n, k) positions of the motors and of the links, rad, and efforts, N m."""
 
     names: tuple[str, ...]
     time: np.ndarray
     position: np.ndarray
     effort: np.ndarray
     noise: np.ndarray
+    link: np.ndarray
 
 
 def engine() -> ModuleType:
@@ -64,20 +75,45 @@ def load(urdf: str, fault: Fault | None = None) -> Any:
         body = carrier.add_body(name="carried", pos=place)
         body.mass, body.inertia, body.explicitinertial = fault.size * mass_behind(spec), [DUST] * 3, True
         body.ipos, body.iquat = [0.0] * 3, [1.0, 0.0, 0.0, 0.0]
+    for part in fault.parts if fault is not None else ():
+        if part.kind in BEHIND:
+            _second_joint(api, spec, part)
     model = spec.compile()
-    model.jnt_limited[:] = 0  # the motion stays within the limits, and a stop is no fault of this list
-    if fault is not None and fault.joint >= 0:
-        row = int(model.jnt_dofadr[fault.joint])
-        if fault.kind == "coulomb":
-            model.dof_frictionloss[row] = fault.size
-        elif fault.kind == "viscous":
-            model.dof_damping[row] = fault.size
-        elif fault.kind == "armature":
-            model.dof_armature[row] = fault.size
-        elif fault.kind == "spring":
-            model.jnt_stiffness[fault.joint] = fault.size
-            model.qpos_spring[model.jnt_qposadr[fault.joint]] = fault.other["reference"]
+    for j in range(model.njnt):  # the motion stays within the limits, and a stop is no fault of this list
+        model.jnt_limited[j] = model.joint(j).name == GIVING and model.jnt_limited[j]
+    for part in fault.parts if fault is not None else ():
+        _set(model, part)
     return model
+
+
+def _set(model: Any, fault: Fault) -> None:
+    """Set a fault where MuJoCo has a field for it."""
+    if fault.joint < 0:
+        return
+    row = int(model.jnt_dofadr[fault.joint])
+    if fault.kind == "coulomb":
+        model.dof_frictionloss[row] = fault.size
+    elif fault.kind == "viscous":
+        model.dof_damping[row] = fault.size
+    elif fault.kind == "armature":
+        model.dof_armature[row] = fault.size
+    elif fault.kind == "spring":
+        model.jnt_stiffness[fault.joint] = fault.size
+        model.qpos_spring[model.jnt_qposadr[fault.joint]] = fault.other["reference"]
+    elif fault.kind == "elastic":
+        behind = model.joint(GIVING).id
+        model.jnt_stiffness[behind] = fault.other["stiffness"]
+        model.dof_damping[model.jnt_dofadr[behind]] = LOSS * fault.other["stiffness"]
+
+
+def _second_joint(api: ModuleType, spec: Any, fault: Fault) -> None:
+    """Put a joint behind the motor's, on the same body and axis: a gap between stops, or a spring with some damping."""
+    motor = spec.joints[fault.joint]
+    motor.armature = fault.other["rotor"]
+    behind = motor.parent.add_joint(name=GIVING, type=motor.type, axis=motor.axis, pos=motor.pos)
+    if fault.kind == "backlash":
+        behind.range, behind.limited = [-0.5 * fault.size, 0.5 * fault.size], api.mjtLimited.mjLIMITED_TRUE
+        behind.solref_limit = list(STOPS)
 
 
 def mass_behind(spec: Any) -> float:
@@ -119,34 +155,75 @@ def record(urdf: str, fault: Fault, seconds: float, rng: np.random.Generator) ->
     """Simulate an arm with a fault along a motion and return what its encoders and drives tell."""
     api = engine()
     nominal, real = load(urdf), load(urdf, fault)
+    step = FINE if any(part.kind in BEHIND for part in fault.parts) else STEP
+    real.opt.timestep = step
     time, q, v, a = motion(nominal, seconds, rng)
     ahead = inverse(nominal, q, v, a)
     data, model = api.MjData(real), api.MjData(nominal)
-    data.qpos[:], data.qvel[:] = q[0], v[0]
-    gain = np.ones(real.nv)
-    if fault.kind == "gain":
-        gain[fault.joint] += fault.size
-    position, effort = np.empty_like(q), np.empty_like(q)
-    fine = round(PERIOD / STEP)
+    names = tuple(nominal.joint(i).name for i in range(nominal.njnt))
+    at_motor = np.array([int(real.jnt_dofadr[real.joint(name).id]) for name in names])
+    data.qpos[at_motor], data.qvel[at_motor] = q[0], v[0]
+    gain = np.ones(nominal.nv)
+    for part in fault.parts:
+        if part.kind == "gain":
+            gain[part.joint] += part.size
+    given = _late(fault, step)
+    position, link, effort = np.empty_like(q), np.empty_like(q), np.empty_like(q)
+    fine = round(PERIOD / step)
     for k in range(len(time)):
-        position[k] = data.qpos
+        position[k] = data.qpos[at_motor]
+        link[k] = _of_link(real, data, fault, position[k])
         after = min(k + 1, len(time) - 1)
-        for part in range(fine):
-            share = part / fine
+        for part_of in range(fine):
+            share = part_of / fine
             at, speed, need = ((1.0 - share) * x[k] + share * x[after] for x in (q, v, ahead))
-            model.qpos[:] = data.qpos
+            motor, rate = data.qpos[at_motor], data.qvel[at_motor]
+            model.qpos[:] = motor
             api.mj_fwdPosition(nominal, model)
-            pull = np.zeros(real.nv)
-            api.mj_mulM(nominal, model, pull, STIFF**2 * (at - data.qpos) + 2.0 * DAMPED * STIFF * (speed - data.qvel))
+            pull = np.zeros(nominal.nv)
+            api.mj_mulM(nominal, model, pull, STIFF**2 * (at - motor) + 2.0 * DAMPED * STIFF * (speed - rate))
             force = need + pull
-            if part == 0:
+            if part_of == 0:
                 effort[k] = force
-            data.qfrc_applied[:] = gain * force + passive(fault, data.qpos, data.qvel, gain * force)
+            drive = gain * given(force)
+            extra = sum((passive(part, data.qpos[at_motor], data.qvel[at_motor], drive) for part in fault.parts), drive)
+            data.qfrc_applied[at_motor] = extra
             api.mj_step(real, data)
+    effort = _recorded_late(effort, fault, time)
     noise = NOISE * np.sqrt(np.mean(effort**2, axis=0))
-    names = tuple(api.mj_id2name(real, api.mjtObj.mjOBJ_JOINT, i) for i in range(real.njnt))
     effort = effort + noise * rng.standard_normal(effort.shape)
-    return Record(names, time, COUNT * np.round(position / COUNT), effort, noise)
+    return Record(names, time, COUNT * np.round(position / COUNT), effort, noise, COUNT * np.round(link / COUNT))
+
+
+def _of_link(real: Any, data: Any, fault: Fault, position: np.ndarray) -> np.ndarray:
+    """Return the positions of the links (k,): those of the motors, and what a joint behind one gives."""
+    out = position.copy()
+    if fault.kind in BEHIND:
+        out[fault.joint] += data.qpos[int(real.jnt_qposadr[real.joint(GIVING).id])]
+    return out
+
+
+def _late(fault: Fault, step: float) -> Callable[[np.ndarray], np.ndarray]:
+    """Return what turns the force that is asked for at each step into the one that acts, (k,): late on one joint."""
+    if fault.kind != "late_drive":
+        return lambda force: force
+    waiting: deque[float] = deque(maxlen=max(1, round(fault.size / step)) + 1)
+
+    def given(force: np.ndarray) -> np.ndarray:
+        waiting.append(float(force[fault.joint]))
+        out = force.copy()
+        out[fault.joint] = waiting[0]
+        return out
+
+    return given
+
+
+def _recorded_late(effort: np.ndarray, fault: Fault, time: np.ndarray) -> np.ndarray:
+    """Return the efforts (n, k) as recorded: late on one joint."""
+    if fault.kind == "late_effort":
+        effort = effort.copy()
+        effort[:, fault.joint] = np.interp(time - fault.size, time, effort[:, fault.joint])
+    return effort
 
 
 def inertias(model: Any, q: np.ndarray) -> np.ndarray:

@@ -121,6 +121,24 @@ class ComplianceOnAxis(TransmissionCompliance):
         return Signature({Channel(self.stage, site): column(-run.to_grid(run.effort)[:, row])})
 
 
+class ComplianceOfJoint(TransmissionCompliance):
+    """The same on a joint of a serial arm with a second encoder at its link: the force is what the link needs."""
+
+    kinds = ("joint",)
+
+    def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
+        """Return one shape: the rigid bodies tell the force."""
+        return [{}]
+
+    def refine(self, shape: Shape) -> list[Shape]:
+        """Return none."""
+        return []
+
+    def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
+        """Return minus the force that the link needs."""
+        return Signature({Channel(self.stage, site): column(-view.inertial[:, view.row(site)])})
+
+
 @dataclass(frozen=True)
 class TransmissionComplianceInPlant(PlantEffect, page=TransmissionCompliance):
     """Screw, bearing or flexspline give way under the load they carry, weight and contact; too stiff to swing."""

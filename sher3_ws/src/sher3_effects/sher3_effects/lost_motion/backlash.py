@@ -111,6 +111,39 @@ class BacklashOnAxis(Backlash):
         return Signature({}, {Channel(self.stage, site): run.to_grid(lag)[:, None]})
 
 
+class BacklashOfJoint(BacklashOnAxis):
+    """The same on a joint of a serial arm with a second encoder at its link: the force on the link says on which flank.
+
+    A joint whose link needs little force crosses the gap where the motor turns round, as on one axis.
+    """
+
+    kinds = ("joint",)
+    SOFT = (0.01, 0.04, 0.15)
+    """Force over the rms one within which the link is between the flanks."""
+    finer: ClassVar[Mapping[str, tuple[float, ...]]] = {**BacklashOnAxis.finer, "soft": (0.5, 2.0)}
+
+    def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
+        """Return the shapes of one axis, and those whose flank follows the force."""
+        force = [float(np.mean(v.inertial[:, v.row(site)] ** 2)) for v in views]
+        usual = float(np.sqrt(np.mean(force)))
+        return [*super().shapes(views, site), *({"soft": s * usual} for s in self.SOFT if usual)]
+
+    def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
+        """Return one column where the force tells the flank: minus half its side; else the lag behind a gap."""
+        if "soft" not in shape:
+            return super().signature(view, site, shape)
+        side = np.tanh(view.inertial[:, view.row(site)] / shape["soft"])
+        return Signature({Channel(self.stage, site): column(-0.5 * side)})
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Return the width of the gap."""
+        return {"width": float(coefficients[0]) if "soft" in shape else shape["width"]}
+
+    def admissible(self, shape: Shape, coefficients: Array) -> bool:
+        """Return whether the link lags behind the force."""
+        return "soft" not in shape or bool(coefficients[0] > 0.0)
+
+
 def resting_force(views: Sequence[AxisView], site: str) -> float:
     """Typical force against the motion beyond the nominal one, N: what holds a load that nothing else moves."""
     held = []

@@ -23,9 +23,11 @@ from sher3_effects.friction.viscous_friction import ViscousFriction
 from sher3_effects.inertia.payload_mass import PayloadOnLink
 
 from sher3_machines.axes.identification.rest import Bounded
-from sher3_machines.manipulator.evidence import ArmMotionEvidence, channel_of, of_joint
+from sher3_machines.manipulator.evidence import ArmMotionEvidence, of_joint
 from sher3_machines.thresholds import CAUSES_OF_JOINT
 
+HEAVIEST = 2.0
+"""Mass of a payload over that of the whole arm at most: what is heavier is no body on a link."""
 CENTRE_ROUNDS = 3
 """Rounds on the centre of a payload: its inertia is that of a point there, and small beside its weight."""
 
@@ -66,7 +68,7 @@ def _explained(evidence: ArmMotionEvidence, candidates: Candidates, payload: Fit
     alone: dict[str, Attribution] = {}
     for joint in evidence.judged:
         own = of_joint(evidence, joint, beside)
-        left = partial(down_to_floor, [channel_of(joint)], own)
+        left = partial(down_to_floor, own.channels, own)
         if left(own.null()):
             say(f"{joint}{' beside a payload' if payload is not None else ''}")
             alone[joint] = attribute(Bounded(own, effects), left, say, CAUSES_OF_JOINT)
@@ -88,7 +90,21 @@ def _payload(evidence: ArmMotionEvidence, candidates: Candidates) -> Fit | None:
         return None
     best = min(trials, key=cost)
     worth = NEEDED * best.terms[-1].width + PARSIMONY * (null - base.total)
-    return best if base.total - best.total > worth else None
+    worthy = base.total - best.total > worth and shows_on_enough(base, best)
+    return best if worthy else None
+
+
+def shows_on_enough(base: Fit, best: Fit) -> bool:
+    """Return whether a payload, the last term of `best`, is seen by two of the joints that carry it, or the only one.
+
+    A payload that one joint of several feels is an inertia or a force of that joint.
+    """
+    carrying = best.terms[-1].channels
+    gains = dict.fromkeys(carrying, 0.0)
+    for (run, channel), loss in best.loss.items():
+        if channel in gains:
+            gains[channel] += base.loss.get((run, channel), loss) - loss
+    return sum(gain > NEEDED for gain in gains.values()) >= min(2, len(carrying))
 
 
 def _plain(candidates: Candidates) -> list[Effect]:
@@ -106,7 +122,11 @@ def _at(
 ) -> Fit | None:
     """Fit a payload at a link."""
     trial = fit(evidence.data, [*plain, candidates.term(page, link, {})])
-    return centred(candidates, trial) if possible(trial) else None  # friction that is not there may fit below zero
+    if not possible(trial):  # friction that is not there may fit below zero
+        return None
+    found = centred(candidates, trial)
+    arm, carried = evidence.records[0].model.mass, page.parameters({}, found.of(len(plain)))["mass"]
+    return found if not arm or carried < HEAVIEST * arm else None
 
 
 def centred(candidates: Candidates, found: Fit) -> Fit:

@@ -51,6 +51,16 @@ def channel_of(joint: str) -> Channel:
     return Channel("motor_mechanics", joint)
 
 
+def between(joint: str) -> Channel:
+    """Return the difference of the two encoders of a joint."""
+    return Channel("transmission", joint)
+
+
+def channels_of(joint: str) -> list[Channel]:
+    """Return the channels that are looked at for a joint alone."""
+    return [channel_of(joint), between(joint)]
+
+
 def gather_arm_motion(
     runs: Sequence[AxesRun], described: ManipulatorDescription, model: ArmModel, judged: Sequence[str]
 ) -> ArmMotionEvidence:
@@ -93,7 +103,10 @@ def gather_arm_motion(
     return ArmMotionEvidence(
         excitations=[views[r].excitation for r, _ in blocks],
         data=Whitened([views[r] for r, _ in blocks], [b for _, b in blocks], [floors[r] for r, _ in blocks]),
-        units={channel_of(j.name): unit_of_force(j.gain == "unknown", j.motion) for j in described.joints},
+        units={
+            **{channel_of(j.name): unit_of_force(j.gain == "unknown", j.motion) for j in described.joints},
+            **{between(j.name): j.unit_of_position for j in described.joints},
+        },
         places={"axis": seen, "link": model.links},
         rotary=frozenset(j.name for j in described.joints if j.motion == "rotary"),
         described=described,
@@ -121,12 +134,12 @@ def of_joint(evidence: ArmMotionEvidence, joint: str, beside: Sequence[Mapping[C
     channel, data = channel_of(joint), evidence.data
     residuals: list[Residuals] = []
     for r, found in enumerate(data.residuals):
-        own = found.get(channel)
+        own = {c: found[c] for c in channels_of(joint) if c in found}
         known = beside[r].get(channel) if beside else None
-        if own is not None and known is not None:
-            own = replace(own, values=own.values - known)
-        residuals.append({} if own is None else {channel: own})
-    floors = [{channel: f[channel]} if channel in f else {} for f in data.floors]
+        if channel in own and known is not None:
+            own[channel] = replace(own[channel], values=own[channel].values - known)
+        residuals.append(own)
+    floors = [{c: f[c] for c in channels_of(joint) if c in f} for f in data.floors]
     return Evidence(
         excitations=evidence.excitations,
         data=Whitened(data.views, residuals, floors),
@@ -143,6 +156,8 @@ def _residuals(view: MotionView, judged: Sequence[str]) -> Residuals:
     for joint in judged:
         row = view.row(joint)
         out[channel_of(joint)] = Residual(left[:, [row]], view.in_motion(row))
+        if run.load is not None and np.isfinite(run.load[:, row]).all():
+            out[between(joint)] = Residual(run.to_grid(run.load[:, [row]] - run.motor[:, [row]]), run.inner)
     return {channel: x for channel, x in out.items() if x.ok.sum() >= BLOCKS}
 
 
@@ -154,7 +169,10 @@ def _floors(views: Sequence[MotionView], found: Sequence[Residuals], repeats: bo
         floors: Floors = {}
         told = foresight(view.run)
         for channel, x in residuals.items():
-            step = view.joints[view.row(channel.actuator)].effort_resolution / UNIFORM
+            joint = view.joints[view.row(channel.actuator)]
+            step = joint.effort_resolution / UNIFORM
+            if channel.stage == "transmission":
+                step = np.sqrt(2.0) * joint.encoder_resolution / UNIFORM
             floors[channel] = np.maximum(pooled.get(channel, innovation(x) / told), max(step, NOTHING))
         out.append(floors)
     return out

@@ -58,6 +58,8 @@ class Manipulator(Machine[AxesRun, ArmMotionEvidence]):
     def effects(self, evidence: ArmMotionEvidence) -> Sequence[Effect]:
         """Return the pages that the recorded signals can show."""
         facts = {"drive", "forces"}
+        if any(channel.stage == "transmission" for channel in evidence.channels):
+            facts.add("load")
         if all(j.lead is not None for j in self.described.joints):
             facts.add("lead")
         known = of_joints(facts)

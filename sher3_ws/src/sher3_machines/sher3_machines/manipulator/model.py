@@ -79,6 +79,11 @@ class ArmModel:
         """Inertial parameters of the model, (10 links,)."""
         return np.concatenate([b.toDynamicParameters() for b in list(self.pinocchio.inertias)[1:]])
 
+    @property
+    def mass(self) -> float:
+        """Mass of all links that move, kg."""
+        return float(sum(b.mass for b in list(self.pinocchio.inertias)[1:]))
+
     def needed(self, q: Array, v: Array, a: Array) -> Array:
         """Return the force that each recorded joint needs, (n, k): inverse dynamics, rotor inertia of the model too."""
         model, data = self.pinocchio, self.pinocchio.createData()

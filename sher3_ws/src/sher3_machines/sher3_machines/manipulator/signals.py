@@ -35,7 +35,7 @@ def joint_signals(run: AxesRun, described: ManipulatorDescription, excitation: s
         period=run.period,
         motor=np.hstack([one.motor for one in each]) @ travel.T,
         effort=effort @ force,
-        load=_beside([one.load for one in each], each[0].motor),
+        load=_beside([one.load for one in each], each[0].motor, travel),
         bandwidth=min(cut_off(one.motor[:, 0], run.period, one.bandwidth) for one in each),
     )
 
@@ -45,7 +45,9 @@ def _gained(one: AxisSignals, gain: float | str) -> Array:
     return one.effort * gain if isinstance(gain, float) else one.effort
 
 
-def _beside(found: Sequence[Array | None], like: Array) -> Array | None:
+def _beside(found: Sequence[Array | None], like: Array, travel: Array) -> Array | None:
+    """Return the second encoders (n, k) on the side of the motors, NaN where there is none; None without any."""
     if not any(x is not None for x in found):
         return None
-    return np.hstack([np.full_like(like, np.nan) if x is None else x for x in found])
+    side = np.hstack([np.full_like(like, np.nan) if x is None else x for x in found])
+    return side if np.array_equal(travel, np.eye(len(found))) else side @ travel.T

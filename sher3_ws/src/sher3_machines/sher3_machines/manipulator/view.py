@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -12,11 +13,15 @@ from sher3_diagnosis.filter import settled
 from sher3_effects.operators import dahl
 from sher3_effects.view import NominalAxis
 
+from sher3_machines.axes.identification.noise import noise_of
+from sher3_machines.axes.signals import AxisSignals
 from sher3_machines.axes.view import LEAD_OF_STROKE, SLIP, STILL, Loads
 from sher3_machines.manipulator.description import Joint
 from sher3_machines.manipulator.model import PARAMETERS, ArmModel
 from sher3_machines.manipulator.signals import JointSignals
 
+NOISIER = 2.0
+"""Noise of a second encoder over that of the first up to which the links move as it says."""
 LINKS_OF_PAYLOAD = 4
 """Leading inertial parameters of a body that a payload changes linearly: its mass, and mass times centre."""
 
@@ -113,9 +118,7 @@ class MotionView:
     @cached_property
     def rigid(self) -> Array:
         """Force that the rigid bodies of the model need on every motor, (g, k), N or N m."""
-        back = np.linalg.inv(self.coupling).T
-        q, v, a = (x @ back for x in (self.position, self.velocity, self.acceleration))
-        return self._on_motors(self.model.needed(q, v, a)[..., None])[..., 0]
+        return self._on_motors(self.model.needed(*self._of_links)[..., None])[..., 0]
 
     @cached_property
     def inertial(self) -> Array:
@@ -124,8 +127,28 @@ class MotionView:
         return self.shares * self.rigid + viscous * self.velocity
 
     @cached_property
+    def links(self) -> AxisSignals:
+        """Signals whose motion is that of the links: of a second encoder where it is as quiet as the motor's."""
+        run = self.run
+        if run.load is None:
+            return run
+        told = np.isfinite(run.load).all(axis=0)
+        for j in np.flatnonzero(told):
+            own, other = (noise_of(x[:, j], run.period) for x in (run.motor, run.load))
+            told[j] = other <= NOISIER * max(own, self.joints[j].encoder_resolution)
+        return replace(run, motor=np.where(told, run.load, run.motor)) if told.any() else run
+
+    @cached_property
+    def _of_links(self) -> tuple[Array, Array, Array]:
+        """Position, velocity and acceleration of the joints on the residual grid, (g, k) each."""
+        run, back = self.links, np.linalg.inv(self.coupling).T
+        motion = (run.smooth[run.grid], run.velocity[run.grid], run.to_grid(run.acceleration))
+        q, v, a = (x @ back for x in motion)
+        return q, v, a
+
+    @property
     def _joint_position(self) -> Array:
-        return self.position @ np.linalg.inv(self.coupling).T
+        return self._of_links[0]
 
     @cached_property
     def regressor(self) -> Array:
@@ -135,8 +158,7 @@ class MotionView:
     @cached_property
     def regressor_of_joints(self) -> Array:
         """The same on every joint."""
-        back = np.linalg.inv(self.coupling).T
-        return self.model.regressor(*(x @ back for x in (self.position, self.velocity, self.acceleration)))
+        return self.model.regressor(*self._of_links)
 
     def _on_motors(self, forces: Array) -> Array:
         """Bring forces on the joints (g, k, p) to the motors: tau_joint = coupling^T tau_motor."""
