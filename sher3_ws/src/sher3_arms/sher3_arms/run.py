@@ -5,14 +5,15 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 
 from sher3_common import Sher3Error
 
 from sher3_arms.answer.diagnosis import answer
+from sher3_arms.answer.identification import identified
 from sher3_arms.errors import ArmsError
-from sher3_arms.score import Scored, scored
+from sher3_arms.score import Scored, names_the_fault, scored
 from sher3_arms.truth.cases import seal
 
 SECONDS = 60.0
@@ -25,6 +26,7 @@ def run_arms(
     folder: Path,
     seconds: float = SECONDS,
     say: Callable[[str], None] = lambda _: None,
+    beside: bool = False,
 ) -> list[Scored]:
     """Seal, answer and score one case for each seed.
 
@@ -34,6 +36,7 @@ def run_arms(
         folder: new; keeps cases, labels, verdicts and scores.
         seconds: length of a record, s.
         say: takes a line for each case.
+        beside: whether `mujoco.sysid` answers each case too.
 
     Raises:
         ArmsError: the folder exists, no such arm, or MuJoCo or the wheel with the arms is missing.
@@ -52,6 +55,10 @@ def run_arms(
             verdict = None
             say(f"{seed}: refused: {error}")
         found = scored(label, verdict, time.perf_counter() - begun)
+        if beside:
+            other = identified(case)
+            found = replace(found, fitted=names_the_fault(label, other.effect, other.place))
+            say(f"{seed}: mujoco.sysid: {other.effect} {other.place}")
         out.append(found)
         (folder / "labels").mkdir(exist_ok=True)
         (folder / "labels" / f"{seed:05d}.json").write_text(json.dumps(asdict(label), indent=1), encoding="utf-8")

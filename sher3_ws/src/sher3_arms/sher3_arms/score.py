@@ -39,6 +39,7 @@ class Scored:
         in_set: whether the fault is the first cause or one of its rivals; of a compound case both are among the causes.
         placed: whether the first cause sits on the right joint, a payload on its link.
         seconds: of the answer.
+        fitted: whether `mujoco.sysid` names fault and place, where it was asked.
     """
 
     seed: int
@@ -52,6 +53,7 @@ class Scored:
     in_set: bool | None
     placed: bool | None
     seconds: float
+    fitted: bool | None = None
 
     def as_dict(self) -> dict[str, object]:
         """Return the case as plain data."""
@@ -74,6 +76,14 @@ def scored(label: Label, verdict: Verdict | None, seconds: float) -> Scored:
         placed = any(where in sites for _, sites in sought)
     told = (top, in_set, placed) if kind in (*KINDS, COMPOUND) else (None, None, None)
     return Scored(label.seed, label.robot, kind, label.joint, status, effect, place, *told, seconds)
+
+
+def names_the_fault(label: Label, effect: str, place: str) -> bool | None:
+    """Return whether an effect at a place is the fault of a single case; None for other cases."""
+    if label.fault.second is not None or label.fault.kind not in KINDS:
+        return None
+    ((names, sites),) = _sought(label)
+    return effect in names and place in sites
 
 
 def _sought(label: Label) -> list[tuple[tuple[str, ...], tuple[str, ...]]]:
@@ -102,6 +112,7 @@ def shares(cases: Sequence[Scored]) -> dict[str, tuple[float, int]]:
         "known cases called outside": [c.status == "outside_library" for c in known],
         "compound: first one right": [bool(c.top) for c in compound],
         "compound: both named": [bool(c.in_set) for c in compound],
+        "mujoco.sysid: top-1": [c.fitted for c in known if c.fitted is not None],
         "healthy alarms": [c.status != "no_gap" for c in healthy],
         "outside abstained": [c.status in ("outside_library", "under_excited") for c in outside],
     }

@@ -132,6 +132,7 @@ def arms(
     seeds: Annotated[str, typer.Option(help="Range A:B of seeds, one case each.")] = "0:20",
     robots: Annotated[str, typer.Option(help="Arms in turn: own, panda, ur5, ur10, kinova, xarm7, z1, so101.")] = "own",
     seconds: Annotated[float, typer.Option(min=10.0, help="Length of a record, s.")] = 60.0,
+    sysid: Annotated[bool, typer.Option("--sysid", help="Let mujoco.sysid answer the same cases.")] = False,
     out: Annotated[Path | None, typer.Option(help="New folder that keeps cases, labels and verdicts.")] = None,
     as_json: Json = False,
 ) -> None:
@@ -146,7 +147,7 @@ def arms(
     console = Console(stderr=True)
     with reported(as_json), tempfile.TemporaryDirectory() as scratch:
         names = [name for name in robots.split(",") if name]
-        found = run_arms(range(*parse_seeds(seeds)), names, out or Path(scratch) / "arms", seconds, console.log)
+        found = run_arms(range(*parse_seeds(seeds)), names, out or Path(scratch) / "arms", seconds, console.log, sysid)
         data = {"scores": {name: {"share": x, "cases": n} for name, (x, n) in shares(found).items()}}
         cases = [case.as_dict() for case in found]
         typer.echo(json.dumps({**data, "cases": cases}) if as_json else table(found))

@@ -25,6 +25,10 @@ Measure: `pytest sher3_ws/src/sher3_machines/test/test_identify.py`."""
 LEAST_EXCITED = 2.0
 """Mass over its standard error that an identified mass must have: below two it may as well be none."""
 
+NO_INERTIA = 0.1
+"""Share of the effort that a mass may need at most, where the record does not tell it, for friction and weight to be
+judged without it. Set by that argument: their intervals are not narrower than a tenth."""
+
 ALIGNED = 0.1
 """Share of the held-out loss that reading the effort half a period earlier or later must save before it is believed.
 Set by the argument that noise alone saves a few per cent."""

@@ -9,7 +9,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from sher3_machines.axes.own_unit import OWN_UNITS
+from sher3_machines.axes.quantities.own_unit import OWN_UNITS
 from sher3_machines.contrast.conditions import Tagged
 from sher3_machines.intake.fields import Clock, Column, Strict
 
@@ -95,9 +95,19 @@ class Axis(Strict):
         law, signals = self.command_law, self.signals
         if law.kind == "position" and signals.reference is None:
             raise ValueError(f"axis {self.name}: a position servo needs its recorded reference")
-        if law.kind == "force" and signals.command is None and signals.effort is None:
+        if law.kind == "force" and not self.driven and self.needs_force:
             raise ValueError(f"axis {self.name}: a force-driven axis needs its recorded command or effort")
         return self
+
+    @property
+    def driven(self) -> bool:
+        """Whether a command or an effort was recorded."""
+        return self.signals.command is not None or self.signals.effort is not None
+
+    @property
+    def needs_force(self) -> bool:
+        """Whether a force-driven axis without a recorded force is refused: by itself nothing of it can be judged."""
+        return True
 
     @property
     def servo(self) -> bool:

@@ -13,12 +13,12 @@ from sher3_diagnosis.fit.whitened import Whitened
 from sher3_machines.axes.description import Axis
 from sher3_machines.axes.floors import floors_of
 from sher3_machines.axes.identification.align import aligned
-from sher3_machines.axes.identification.identify import identify_mass, load_mass_of
+from sher3_machines.axes.identification.identify import identify_mass, load_mass_of, share_of_inertia
 from sher3_machines.axes.record import AxesRun
 from sher3_machines.axes.signals import signals_of
 from sher3_machines.axes.view import AxisView
 from sher3_machines.errors import MachineError
-from sher3_machines.thresholds import BLOCKS, MIN_BLOCK
+from sher3_machines.thresholds import BLOCKS, MIN_BLOCK, NO_INERTIA
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,7 +57,12 @@ def gather_axis(runs: Sequence[AxesRun], axis: Axis, repeats: bool) -> AxisEvide
             load_mass = load_mass_of([AxisView(s, axis, 0.0) for s in signals])
             mass, interval = identify_mass([AxisView(s, axis, 0.0, load_mass) for s in signals])
         except MachineError as error:
-            untold = str(error)
+            share = share_of_inertia([AxisView(s, axis, 0.0) for s in signals])
+            if share < NO_INERTIA:
+                told = f"the record does not tell its mass, which needs at most {share:.1%} of the force; left out"
+                notes = [*notes, f"{axis.name}: {told}"]
+            else:
+                untold = str(error)
     records = [AxisView(s, axis, mass, load_mass) for s in signals]
     found = [_judged(residuals_of(view), untold) for view in records]
     floors = floors_of(records, found, repeats)

@@ -11,8 +11,8 @@ import numpy as np
 from sher3_diagnosis.channel import Array, Mask
 
 from sher3_machines.axes.description import Axis
+from sher3_machines.axes.quantities.units import COUNTS_MOVED
 from sher3_machines.axes.record import AxesRun
-from sher3_machines.axes.units import COUNTS_MOVED
 from sher3_machines.thresholds import ALIKE, DEAD, FOLLOWS, SCALED
 
 ANSWERS = ("effort", "load")

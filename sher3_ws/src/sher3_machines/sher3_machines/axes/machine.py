@@ -27,7 +27,8 @@ from sher3_machines.axes.identification.refine import refine_free
 from sher3_machines.axes.identification.search import causes_of_axis
 from sher3_machines.axes.limits import EFFECT as LIMIT
 from sher3_machines.axes.limits import limit_finding
-from sher3_machines.axes.own_unit import in_own_unit, renamed
+from sher3_machines.axes.quantities.bounds import within_bounds
+from sher3_machines.axes.quantities.own_unit import in_own_unit, renamed
 from sher3_machines.axes.record import AxesRun
 from sher3_machines.axes.replay import replay
 from sher3_machines.contrast.changes import change_notes, contrasted, of_runs
@@ -119,6 +120,7 @@ class Axes(Machine[AxesRun, AxisEvidence]):
         if evidence.axis.free:
             return refine_free(evidence, causes)
         causes, own = requantified(evidence, attribution, causes), evidence.axis.own_unit
+        causes = within_bounds(causes, self.effects(evidence))
         return evidence, [in_own_unit(cause, own) for cause in causes] if own else causes
 
     def remarks(self, finding: Finding[AxisEvidence]) -> list[str]:
@@ -132,6 +134,7 @@ class Axes(Machine[AxesRun, AxisEvidence]):
             *changes,
             *mass_notes(finding.evidence),
             *blind_spots(finding.evidence.axis),
+            *([] if finding.significant else unseen(finding.evidence)),
             *([again.note] if again else []),
         ]
 
@@ -204,6 +207,17 @@ def mass_notes(evidence: AxisEvidence) -> list[str]:
     behind = max(view.load_mass for view in evidence.records)
     share = f", of which {behind:.3g} move with the second encoder" if behind else ""
     return [f"{axis.name}: mass identified as {evidence.mass:.5g} {unit} ({low:.5g} .. {high:.5g}){share}"]
+
+
+def unseen(evidence: AxisEvidence) -> list[str]:
+    """Return how large a gap would have to be to be seen where none was found."""
+    floors: dict[str, list[float]] = {}
+    for found in evidence.floors:
+        for channel, floor in found.items():
+            floors.setdefault(f"{evidence.unit(channel)}, {channel.stage.replace('_', ' ')}", []).append(
+                float(floor[0])
+            )
+    return [f"{evidence.axis.name}: nothing above the floor of {np.median(x):.3g} {of}" for of, x in floors.items()]
 
 
 def blind_spots(axis: Axis) -> list[str]:

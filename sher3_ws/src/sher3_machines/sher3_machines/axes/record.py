@@ -10,7 +10,7 @@ import numpy as np
 from sher3_diagnosis.channel import Array, Mask
 
 from sher3_machines.axes.description import Axis
-from sher3_machines.axes.units import check_units
+from sher3_machines.axes.quantities.units import check_units
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.cleaning import even_stamps, glitches, known_readings
 from sher3_machines.intake.columns import find, pick, stamps_of

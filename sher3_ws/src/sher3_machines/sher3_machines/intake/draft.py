@@ -69,7 +69,12 @@ def draft(path: Path, rate: float | None = None) -> Draft:
             f"{path}: no column looks like a position",
             value=", ".join(sorted(tables)[:LISTED]),
             limit="names with position, pos, q, angle, encoder",
-            remedy="write the description by hand; where a velocity was recorded, integrate it first",
+            remedy="write the description by hand: integrate a velocity first; a force sensor by itself is `kind: "
+            "force_sensor`, postures with measured poses are `kind: arm`",
+        )
+    if sum(axis["command_law"]["kind"] == "force" for axis in axes) > 1:
+        guesses.append(
+            "each axis by itself; joints of one arm carry each other: `kind: manipulator` with its URDF or MJCF"
         )
     if left:
         more = f" and {len(left) - LISTED} more" if len(left) > LISTED else ""

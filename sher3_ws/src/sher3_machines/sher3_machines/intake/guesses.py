@@ -56,7 +56,8 @@ def clock_of(tables: Tables, guesses: list[str]) -> str:
         "no column looks like a time",
         value=", ".join(sorted(tables)[:12]) or "no column of numbers",
         limit="a growing column named t, time or stamp",
-        remedy="name it so, or state the rate of the samples, Hz: --rate 500 (`time: {rate: 500}` in the description)",
+        remedy="name it so, or state the rate of the samples, Hz: --rate 500 (`time: {rate: 500}` in a description); a "
+        "table of targets and readings has no time: it is `kind: positioning`",
     )
 
 

@@ -32,6 +32,8 @@ PLAIN = vocabulary("motor state states joint value data real raw message msg sen
 """Words that tell one axis from another only where nothing else does."""
 TIME = vocabulary("t time stamp timestamp timestamps zeit date datetime received elapsed clock")
 COUNTERS = vocabulary("sample samples index idx frame step n nr row")
+FORCES = ("%", "A", "mA", "N", "kN", "N*m", "mN*m")
+"""Units of an effort."""
 WORDS = POSITION | VELOCITY | EFFORT | CURRENT | COMMAND | ASKED | MEASURED | IGNORED
 SHORT = vocabulary("x i u n d q t")
 """Words of one letter: beside a longer word for the quantity they are the name of the axis."""
@@ -62,6 +64,8 @@ def named(column: str) -> Named:
     used = [w for w in words if w in WORDS and not (long and w in SHORT and w != "d")]
     rest = [w for w in words if w not in used and w not in SECOND and w not in PLAIN]
     rest = rest or (["x"] if "x" in used and len(used) > 1 else [])
+    if unit in FORCES and set(words) & SECOND and not set(words) & POSITION:
+        return Named("effort", "_".join(rest), unit)  # a load in percent is a force
     signal = _signal(set(used) | (set(words) & SECOND), {w for w in table if w in ASKED})
     rest = rest or [w for w in table if w not in WORDS and w not in PLAIN and w not in SECOND] or table
     return Named(signal, "_".join(rest), unit)

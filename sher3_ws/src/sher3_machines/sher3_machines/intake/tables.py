@@ -30,6 +30,9 @@ READERS: dict[str, Callable[[Path], Tables]] = {
     ".csv": read_table,
     ".tsv": read_table,
     ".txt": read_table,
+    ".dat": read_table,
+    ".log": read_table,
+    ".asc": read_table,
     ".mat": read_mat,
     ".npz": read_npz,
     ".json": read_lists,
@@ -37,6 +40,10 @@ READERS: dict[str, Callable[[Path], Tables]] = {
     ".mcap": read_bag,
     ".bag": read_bag,
 }
+
+
+NOT_IN_FOLDERS = (".txt", ".dat", ".log", ".asc")
+"""Endings that are read where they are named, and passed over in a folder: there they are notes more often."""
 
 
 def read_tables(path: Path) -> Tables:
@@ -49,7 +56,9 @@ def read_tables(path: Path) -> Tables:
         return _read(path, read_bag)
     if path.is_dir():
         found = [
-            f for f in sorted(path.iterdir()) if (f.suffix.lower() in READERS and f.suffix != ".txt") or is_rosbag2(f)
+            f
+            for f in sorted(path.iterdir())
+            if (f.suffix.lower() in READERS and f.suffix not in NOT_IN_FOLDERS) or is_rosbag2(f)
         ]
         if not found:
             raise MachineError(f"{path}: no data files", limit=", ".join(READERS), remedy="give a file or its folder")

@@ -24,6 +24,11 @@ class Joint(Axis):
     command_law: CommandLaw = CommandLaw(kind="force")
     gain: float | Literal["unknown"] = 1.0
 
+    @property
+    def needs_force(self) -> bool:
+        """Whether a joint without a recorded force is refused: no, it only moves the others."""
+        return False
+
     @model_validator(mode="after")
     def _drives(self) -> Joint:
         if self.command_law.kind != "force":

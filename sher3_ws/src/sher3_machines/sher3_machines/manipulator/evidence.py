@@ -13,7 +13,7 @@ from sher3_diagnosis.localise.floors import repeat_floors
 
 from sher3_machines.axes.evidence import blocks_of
 from sher3_machines.axes.floors import NOTHING, UNIFORM, foresight, innovation
-from sher3_machines.axes.own_unit import RECORDED
+from sher3_machines.axes.quantities.own_unit import RECORDED
 from sher3_machines.axes.record import AxesRun
 from sher3_machines.errors import MachineError
 from sher3_machines.manipulator.description import ManipulatorDescription

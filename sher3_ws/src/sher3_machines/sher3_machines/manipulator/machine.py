@@ -20,7 +20,8 @@ from sher3_effects.scale.torque_constant import TorqueConstant
 from sher3_machines.axes.health import dead_channels
 from sher3_machines.axes.identification.fast import requantified
 from sher3_machines.axes.machine import NO_REPEATS
-from sher3_machines.axes.own_unit import RECORDED, in_own_unit
+from sher3_machines.axes.quantities.bounds import within_bounds
+from sher3_machines.axes.quantities.own_unit import RECORDED, in_own_unit
 from sher3_machines.axes.record import AxesRun
 from sher3_machines.contrast.changes import change_notes, contrasted, of_runs
 from sher3_machines.contrast.conditions import Condition, conditions_of, reference_runs, told_together
@@ -82,7 +83,7 @@ class Manipulator(Machine[AxesRun, ArmMotionEvidence]):
             for run in runs
             if {"effort", "position"} & dead_channels(run, j).keys()
         }
-        judged = [j.name for j in self.described.joints if j.name not in dead]
+        judged = [j.name for j in self.described.joints if j.name not in dead and j.driven]
         return [gather_arm_motion(runs, self.described, self.model, judged)]
 
     def attribute(self, evidence: ArmMotionEvidence, candidates: Candidates, left_over: Left, say: Say) -> Attribution:
@@ -104,7 +105,7 @@ class Manipulator(Machine[AxesRun, ArmMotionEvidence]):
         self, evidence: ArmMotionEvidence, causes: list[Cause], attribution: Attribution
     ) -> tuple[ArmMotionEvidence, list[Cause]]:
         """Fit friction again away from reversals; give forces of a joint with unknown gain in the recorded unit."""
-        causes = requantified(evidence, attribution, causes)
+        causes = within_bounds(requantified(evidence, attribution, causes), self.effects(evidence))
         return evidence, [with_hidden(in_own_unit(c, RECORDED)) if c.actuator in evidence.shares else c for c in causes]
 
     def remarks(self, finding: Finding[ArmMotionEvidence]) -> list[str]:

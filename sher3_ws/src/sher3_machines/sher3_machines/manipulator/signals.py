@@ -41,7 +41,8 @@ def joint_signals(run: AxesRun, described: ManipulatorDescription, excitation: s
 
 
 def _gained(one: AxisSignals, gain: float | str) -> Array:
-    assert one.effort is not None
+    if one.effort is None:
+        return np.zeros_like(one.motor)  # the joint is not judged
     return one.effort * gain if isinstance(gain, float) else one.effort
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from sher3_diagnosis import diagnose
-from sher3_machines.axes.own_unit import renamed
+from sher3_machines.axes.quantities.own_unit import renamed
 from sher3_machines.axes.record import AxesRun
 from slides import columns, described, machine
 

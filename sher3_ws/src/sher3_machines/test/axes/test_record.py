@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 from sher3_machines import MachineError
+from sher3_machines.axes.quantities.units import check_units
 from sher3_machines.axes.record import axes_run
-from sher3_machines.axes.units import check_units
 from slides import axis_of, columns, described
 
 SERVO = {"signals": columns("position", "reference"), "command_law": {"kind": "position"}}

@@ -70,6 +70,21 @@ def identify_mass(views: Sequence[AxisView]) -> tuple[float, tuple[float, float]
     return mass, (mass - half, mass + half)
 
 
+def share_of_inertia(views: Sequence[AxisView]) -> float:
+    """Return what a mass can need at most in records that do not tell it, over what the effort gives; rms of both.
+
+    The mass is taken as two standard errors above what is found.
+    """
+    x, y, block = _blocks(views)
+    if len(y) < BLOCKS or not y.any():
+        return np.inf
+    columns = _best(x, y, block)[1]
+    _, draws = _held_out(x[:, columns], y, block)
+    error = float(np.sqrt((BLOCKS - 1) / BLOCKS * np.sum((draws - draws.mean()) ** 2)))
+    most = abs(float(draws.mean())) + LEAST_EXCITED * error
+    return most * float(np.sqrt(np.mean(x[:, 0] ** 2) / np.mean(y**2)))
+
+
 def loss_of(views: Sequence[AxisView]) -> float:
     """Return the smallest held-out loss of the force balance, whatever of its columns is left out."""
     x, y, block = _blocks(views)

@@ -1,0 +1,1 @@
+"""Units of an axis, and what its quantities may be."""
