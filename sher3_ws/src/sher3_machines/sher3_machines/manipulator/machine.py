@@ -149,7 +149,8 @@ def gain_notes(evidence: ArmMotionEvidence) -> list[str]:
         return []
     notes = [
         f"{', '.join(evidence.shares)}: drive gain not stated: forces are in eu, the unit of the recorded "
-        "effort; drive gain, weight and payload are confounded unless the model's inertias are right, and no payload is looked for"
+        "effort; drive gain, weight and payload are confounded unless the model's inertias are right, and no payload "
+        "is looked for"
     ]
     for joint, share in evidence.shares.items():
         if share.told:
