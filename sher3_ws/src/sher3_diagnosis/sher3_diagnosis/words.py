@@ -7,6 +7,8 @@ import math
 _PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"), (1e-12, "p"))
 _PLAIN = frozenset({"1", "", "1/K", "1/s", "%"})
 """Units that take no prefix."""
+_COUNTED = frozenset({"%", "count", "eu"})
+"""Units that take no prefix in a product either: percent of a rated force, counts, units of the effort as recorded."""
 ROUNDS_UP = 0.9995
 """Share of a prefix from which a number of three digits is printed with it: 999.5 µm reads 1 mm."""
 WHOLE = 99.95
@@ -33,7 +35,7 @@ def quantity(value: float | None, unit: str) -> str:
     if value is None or not math.isfinite(value):
         return "–"
     shown = unit.replace("*", "·")
-    if unit in _PLAIN:
+    if unit in _PLAIN or unit.split("/", 1)[0] in _COUNTED:
         return f"{value:.3g}" + ("" if unit in ("1", "") else f" {shown}")
     if unit.startswith("kg"):
         value, shown = value * 1e3, shown[1:]

@@ -11,7 +11,7 @@ from sher3_effects.page import CONSTANTS
 
 KINDS = ("axis", "servo", "joint", "arm", "table", "robot")
 """Kinds of machine whose pages say which constant a parameter sets."""
-NO_FORCE = ("A", "V", "%", "count", "recorded unit")
+NO_FORCE = ("A", "V", "%", "count", "eu")
 """How the units begin of forces that nobody made newtons."""
 FORCES = ("coulomb", "static", "offset")
 """Constants that a servo without a recorded force gives in units of its stiffness, m or rad."""

@@ -19,11 +19,11 @@ from sher3_common import read_text, read_yaml
 from sher3_arms.errors import ArmsError
 from sher3_arms.files import DESCRIPTION, MODEL, RECORD
 
-WINDOWS, LENGTH = 24, 60
+WINDOWS, LENGTH = 12, 60
 """Windows of a record, and the samples of each: a quarter of a second at 250 Hz."""
 FINE = 4
 """Time steps per sample."""
-ITERATIONS = 12
+ITERATIONS = 10
 """Of the optimiser at most."""
 SMOOTHED = 5
 """Samples over which a velocity is taken."""

@@ -28,7 +28,7 @@ from sher3_machines.axes.identification.search import causes_of_axis
 from sher3_machines.axes.limits import EFFECT as LIMIT
 from sher3_machines.axes.limits import limit_finding
 from sher3_machines.axes.quantities.bounds import within_bounds
-from sher3_machines.axes.quantities.own_unit import in_own_unit, renamed
+from sher3_machines.axes.quantities.own_unit import in_own_unit, own_unit_note, renamed
 from sher3_machines.axes.record import AxesRun
 from sher3_machines.axes.replay import replay
 from sher3_machines.contrast.changes import change_notes, contrasted, of_runs
@@ -129,6 +129,8 @@ class Axes(Machine[AxesRun, AxisEvidence]):
         changes = change_notes(finding.attribution, self._conditions(finding.evidence.runs))
         untold = finding.evidence.untold
         changes += finding.evidence.notes
+        own = finding.evidence.axis.own_unit
+        changes += [own_unit_note(finding.evidence.axis.name, own)] if own else []
         changes += [f"{untold}: its force balance is not judged"] if untold else []
         return [
             *changes,

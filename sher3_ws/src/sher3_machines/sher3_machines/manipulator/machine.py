@@ -148,8 +148,9 @@ def gain_notes(evidence: ArmMotionEvidence) -> list[str]:
     if not evidence.shares:
         return []
     notes = [
-        f"{', '.join(evidence.shares)}: drive gain not stated: forces are in the recorded unit; drive gain, weight and "
-        "payload are confounded unless the model's inertias are right, and no payload is looked for"
+        f"{', '.join(evidence.shares)}: drive gain not stated: forces are in eu, the unit of the recorded "
+        "effort; drive gain, weight and payload are confounded unless the model's inertias are right, and no payload "
+        "is looked for"
     ]
     for joint, share in evidence.shares.items():
         if share.told:

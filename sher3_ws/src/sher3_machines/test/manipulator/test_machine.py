@@ -70,7 +70,7 @@ def test_an_unknown_gain_is_found_and_what_hides_in_it_is_said(path):
     cause = next(c for c in found.causes if c.actuator == "swing")
     assert cause.effect == "coulomb_friction"
     assert cause.parameters["force"].value == pytest.approx(0.2, rel=0.06)
-    assert cause.parameters["force"].unit == "recorded unit"
+    assert cause.parameters["force"].unit == "eu"
     told = " ".join(found.notes)
     assert "swing: effort recorded with the opposite sign" in told
     assert "gain, weight and payload are confounded" in told

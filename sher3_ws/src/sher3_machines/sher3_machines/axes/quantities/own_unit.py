@@ -4,10 +4,16 @@ from __future__ import annotations
 
 from sher3_diagnosis.verdict import Cause
 
-RECORDED = "recorded unit"
-"""Unit of a force whose gain nobody stated, and whose column has no unit either."""
+RECORDED = "eu"
+"""Unit of the effort as recorded: of a force whose gain nobody stated, and whose column has no unit either."""
 OWN_UNITS = {"A": "A", "mA": "A", "V": "V", "mV": "V", "%": "%", "count": "count", "1": RECORDED}
 """Unit of an effort that is no force -> the unit its forces are told in."""
+
+
+def own_unit_note(axis: str, unit: str) -> str:
+    """Return what the unit of an axis' forces is, in words."""
+    what = "eu, the unit of the recorded effort" if unit == RECORDED else unit
+    return f"{axis}: forces are in {what}: no gain of the drive is stated"
 
 
 def in_own_unit(cause: Cause, unit: str) -> Cause:
