@@ -109,8 +109,8 @@ def deal(rng: np.random.Generator, kind: str, torque: np.ndarray, speed: np.ndar
         stiffness = {} if kind == "backlash" else {"stiffness": float(torque[joint]) / give}
         return Fault(kind, joint, give, {"rotor": ROTOR * float(inertia[joint]), **stiffness})
     if kind == "foreign_cable":
-        other = int((joint + 1 + rng.integers(len(torque) - 1)) % len(torque))
-        return Fault(kind, joint, 2.0 * load, {"from": float(other)})
+        beside = int((joint + 1 + rng.integers(len(torque) - 1)) % len(torque))
+        return Fault(kind, joint, 2.0 * load, {"from": float(beside)})
     if kind == "stick_at_place":
         return Fault(kind, joint, 3.0 * load, {"at": float(rng.uniform(-0.3, 0.3))})
     return Fault("heavy_air", joint, 2.0 * load / float(speed[joint]) ** 3)

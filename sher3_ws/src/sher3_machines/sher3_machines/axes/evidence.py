@@ -48,7 +48,7 @@ class AxisEvidence(Evidence):
 
 def gather_axis(runs: Sequence[AxesRun], axis: Axis, repeats: bool) -> AxisEvidence:
     """Compute residuals and floors of one axis and cut them into blocks."""
-    signals = [signals_of(run, axis, "repeats" if repeats else run.name) for run in runs]
+    signals: Sequence[AxisSignals] = [signals_of(run, axis, "repeats" if repeats else run.name) for run in runs]
     signals, notes = aligned(signals, axis)
     mass, interval = (axis.mass, None) if isinstance(axis.mass, float) else (0.0, None)
     untold, load_mass = "", 0.0
