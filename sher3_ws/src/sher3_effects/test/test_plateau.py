@@ -42,6 +42,13 @@ def test_hard_flanks_and_a_pull_that_does_not_change_tell_nothing():
     assert plateau([view(k, pull=0.0) for k in range(6)], "axis", 6e-6, FRICTION) is None
 
 
+def test_a_run_at_rest_tells_nothing_and_stops_nothing():
+    rest = view(7)
+    rest.velocity[:] = 0.0
+    assert plateau([rest], "axis", 6e-6, FRICTION) is None
+    assert plateau([*(view(k) for k in range(6)), rest], "axis", 6e-6, FRICTION).width == pytest.approx(GAP, rel=0.03)
+
+
 def test_a_load_without_friction_tells_nothing():
     assert plateau([view(k) for k in range(6)], "axis", 6e-6, 0.0) is None
 

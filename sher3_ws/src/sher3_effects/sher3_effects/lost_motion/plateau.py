@@ -75,7 +75,7 @@ def _seated(view: AxisView, site: str, width: float, friction: float) -> Array:
         return np.zeros((0, 5))
     position, velocity = view.position[:, axis], view.velocity[:, axis]
     side = np.sign(velocity)
-    turned = np.flatnonzero(np.diff(side, prepend=0.0))
+    turned = np.concatenate([[0], np.flatnonzero(np.diff(side)) + 1])
     since = np.abs(position - position[turned][np.searchsorted(turned, np.arange(len(side)), side="right") - 1])
     pull = view.path.contact_force[:, axis] - view.path.gravity[:, axis]
     ok = run.inner & run.loaded_ok & (np.abs(velocity) > SLOW * view.axis(site).top) & (since > SEATED * width)
