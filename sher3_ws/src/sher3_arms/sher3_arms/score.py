@@ -74,9 +74,9 @@ def scored(label: Label, verdict: Verdict | None, seconds: float) -> Scored:
         top = any(effect in names and (place in sites or kind != COMPOUND) for names, sites in sought)
         in_set = all(_found(verdict, names, sites, kind) for names, sites in sought)
         placed = any(where in sites for _, sites in sought)
-    judged: tuple[bool, bool, bool] | tuple[None, None, None]
-    judged = (top, in_set, placed) if kind in (*KINDS, COMPOUND) else (None, None, None)
-    return Scored(label.seed, label.robot, kind, label.joint, status, effect, place, *judged, seconds)
+    if kind not in (*KINDS, COMPOUND):
+        return Scored(label.seed, label.robot, kind, label.joint, status, effect, place, None, None, None, seconds)
+    return Scored(label.seed, label.robot, kind, label.joint, status, effect, place, top, in_set, placed, seconds)
 
 
 def names_the_fault(label: Label, effect: str, place: str) -> bool | None:

@@ -15,7 +15,7 @@ from sher3_machines.axes.floors import floors_of
 from sher3_machines.axes.identification.align import aligned
 from sher3_machines.axes.identification.identify import identify_mass, load_mass_of, share_of_inertia
 from sher3_machines.axes.record import AxesRun
-from sher3_machines.axes.signals import signals_of
+from sher3_machines.axes.signals import AxisSignals, signals_of
 from sher3_machines.axes.view import AxisView
 from sher3_machines.errors import MachineError
 from sher3_machines.thresholds import BLOCKS, MIN_BLOCK, NO_INERTIA
