@@ -74,8 +74,10 @@ def scored(label: Label, verdict: Verdict | None, seconds: float) -> Scored:
         top = any(effect in names and (place in sites or kind != COMPOUND) for names, sites in sought)
         in_set = all(_found(verdict, names, sites, kind) for names, sites in sought)
         placed = any(where in sites for _, sites in sought)
-    told = (top, in_set, placed) if kind in (*KINDS, COMPOUND) else (None, None, None)
-    return Scored(label.seed, label.robot, kind, label.joint, status, effect, place, *told, seconds)
+    named = kind in (*KINDS, COMPOUND)
+    told = {"top": top, "in_set": in_set, "placed": placed} if named else {"top": None, "in_set": None, "placed": None}
+    who = {"seed": label.seed, "robot": label.robot, "kind": kind, "joint": label.joint}
+    return Scored(**who, status=status, effect=effect, place=place, **told, seconds=seconds)  # type: ignore[arg-type]
 
 
 def names_the_fault(label: Label, effect: str, place: str) -> bool | None:

@@ -78,7 +78,7 @@ class Backlash(Page):
 class BacklashOnAxis(Backlash):
     """The same on one axis of any machine, where something else may make most of the encoders' difference."""
 
-    kinds = ("axis", "servo")
+    kinds: ClassVar[tuple[str, ...]] = ("axis", "servo")
     SMALLER = (0.06, 0.12, 0.25, 0.45)
     """Widths in spans of the residual that are tried for a load that stays put in the gap."""
     BRAKING = (0.03, 0.1, 0.3, 1.0)

@@ -15,7 +15,7 @@ from sher3_machines.axes.floors import floors_of
 from sher3_machines.axes.identification.align import aligned
 from sher3_machines.axes.identification.identify import identify_mass, load_mass_of, share_of_inertia
 from sher3_machines.axes.record import AxesRun
-from sher3_machines.axes.signals import signals_of
+from sher3_machines.axes.signals import AxisSignals, signals_of
 from sher3_machines.axes.view import AxisView
 from sher3_machines.errors import MachineError
 from sher3_machines.thresholds import BLOCKS, MIN_BLOCK, NO_INERTIA
@@ -48,7 +48,7 @@ class AxisEvidence(Evidence):
 
 def gather_axis(runs: Sequence[AxesRun], axis: Axis, repeats: bool) -> AxisEvidence:
     """Compute residuals and floors of one axis and cut them into blocks."""
-    signals = [signals_of(run, axis, "repeats" if repeats else run.name) for run in runs]
+    signals: Sequence[AxisSignals] = [signals_of(run, axis, "repeats" if repeats else run.name) for run in runs]
     signals, notes = aligned(signals, axis)
     mass, interval = (axis.mass, None) if isinstance(axis.mass, float) else (0.0, None)
     untold, load_mass = "", 0.0

@@ -133,7 +133,7 @@ class MotionView:
         if run.load is None:
             return run
         told = np.isfinite(run.load).all(axis=0)
-        for j in np.flatnonzero(told):
+        for j in map(int, np.flatnonzero(told)):
             own, other = (noise_of(x[:, j], run.period) for x in (run.motor, run.load))
             told[j] = other <= NOISIER * max(own, self.joints[j].encoder_resolution)
         return replace(run, motor=np.where(told, run.load, run.motor)) if told.any() else run
