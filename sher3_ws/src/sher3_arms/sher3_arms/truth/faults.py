@@ -78,9 +78,9 @@ def deal(rng: np.random.Generator, kind: str, torque: np.ndarray, speed: np.ndar
         return Fault(HEALTHY)
     if kind == COMPOUND:
         first = deal(rng, str(rng.choice(PAIRS)), torque, speed, inertia)
-        while (other := deal(rng, str(rng.choice(PAIRS)), torque, speed, inertia)).joint == first.joint:
+        while (second := deal(rng, str(rng.choice(PAIRS)), torque, speed, inertia)).joint == first.joint:
             pass
-        return Fault(first.kind, first.joint, first.size, first.other, other)
+        return Fault(first.kind, first.joint, first.size, first.other, second)
     joint = int(rng.integers(len(torque)))
     share = float(np.exp(rng.uniform(np.log(0.08), np.log(0.30))))
     load = share * float(torque[joint])
