@@ -10,7 +10,7 @@ NODES = (
 
 setup(
     name=NAME,
-    version="0.1.0",
+    version="0.2.0",
     packages=find_packages(exclude=["test"]),
     package_data={"": ["**/*.yaml", "**/*.xml", "py.typed"]},
     data_files=[

@@ -6,7 +6,7 @@ NAME = "sher3_control"
 
 setup(
     name=NAME,
-    version="0.1.0",
+    version="0.2.0",
     packages=find_packages(exclude=["test"]),
     package_data={"": ["*.yaml", "*.xml", "*.html", "*.css", "*.json", "*.csv", "py.typed"]},
     data_files=[
