@@ -18,7 +18,7 @@ from sher3_description import load_robot
 from sher3_diagnosis.attribute.steadiness import steadiness_of
 from sher3_diagnosis.localise.pattern import AGREEMENT, pattern_of
 from sher3_gap.case.loading import load_case
-from sher3_gap.diagnose import diagnose_runs
+from sher3_gap.sher import diagnose_runs
 
 KINDS = ("single", "single", "compound", "outside")
 """Kinds of the cases, in turn."""
@@ -31,7 +31,7 @@ def measure(seed: int) -> Iterator[dict[str, Any]]:
         runs, robot = load_case(Path(scratch) / truth["case"])
     there = {e["effect"] for e in truth["effects"]}
     for without in [(), *([tuple(there)] if truth["kind"] == "single" else [])]:
-        found = diagnose_runs(runs, robot, without)
+        found = diagnose_runs(runs, robot, without).findings[0]
         for i, term in enumerate(found.attribution.fit.terms):
             pattern = pattern_of(found.evidence, found.attribution.fit, i)
             constancy = steadiness_of(found.evidence, found.attribution.fit, i)

@@ -11,6 +11,7 @@ GIVEN = {
     "backlash": ("roll", {"width": 2e-3}),
     "cable_drag": ("delta_2", {"stiffness": 400.0, "force": 0.5}),
     "command_delay": ("all", {}),
+    "encoder_scale": ("tilt", {"relative": 4e-3}),
     "force_saturation": ("delta_2", {"limit": 8.0}),
     "joint_clearance": ("delta_1", {"clearance": 8e-5}),
     "payload_mass": ("delta_3", {"mass": 1.0}),

@@ -44,7 +44,7 @@ class Local:
     @cached_property
     def _inverse(self) -> Array:
         total = self.information + np.diag(self.prior)
-        scale = np.sqrt(np.maximum(np.diag(total), 1e-300))
+        scale = np.sqrt(np.where(np.diag(total) > 0.0, np.diag(total), 1.0))
         return np.linalg.pinv(total / np.outer(scale, scale), rcond=1e-10, hermitian=True) / np.outer(scale, scale)
 
     @property
