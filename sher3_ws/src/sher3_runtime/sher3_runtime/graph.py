@@ -73,7 +73,7 @@ class Graph:
             node = factory(context=self.context)
             ports(node)
         if composition is not None:
-            composition.open()
+            composition.begin()
         self.nodes.append(node)
         self.executor.add_node(node)
         self._matched, self._routes = False, self._find_routes()

@@ -56,7 +56,7 @@ def spin(
             report_statistics(node)
         executor = make_executor(nodes, nodes[0].context)
         if (composition := ports(nodes[0]).composition) is not None:
-            composition.open()
+            composition.begin()
         # What exists now lives to the end; a collection during the run must not walk through it.
         gc.collect()
         gc.freeze()

@@ -153,7 +153,7 @@ def test_what_waits_for_a_node_at_work_is_handed_over_in_the_order_of_the_table_
     for number in range(4):
         twist(number)
     assert not got
-    turn.open()
+    turn.begin()
     assert got == [("twist", 2), ("twist", 3), ("force", 1)]
 
 

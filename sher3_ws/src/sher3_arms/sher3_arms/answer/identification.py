@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from sher3_common import read_text, read_yaml
+from sher3_common.array_files import read_arrays
 
 from sher3_arms.errors import ArmsError
 from sher3_arms.files import DESCRIPTION, MODEL, RECORD
@@ -57,8 +58,7 @@ def identified(folder: Path) -> Identified:
     names = [joint["name"] for joint in read_yaml(folder / DESCRIPTION)["joints"]]
     spec = api.MjSpec.from_string(read_text(folder / MODEL, MAX_BYTES))
     model = spec.compile()
-    with np.load(folder / RECORD) as found:
-        record = {k: found[k] for k in ("time", "position", "effort")}
+    record = read_arrays(folder / RECORD, ("time", "position", "effort"))
     model.opt.timestep = float(record["time"][1] - record["time"][0]) / FINE
     model.opt.integrator = api.mjtIntegrator.mjINT_IMPLICITFAST
     model.jnt_limited[:] = 0

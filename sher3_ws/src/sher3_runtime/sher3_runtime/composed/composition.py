@@ -53,7 +53,7 @@ class Composition:
             turn: of the subscribing node.
             receive: gets the samples, in the node's turn.
             depth: samples kept while the node is at work.
-            leave: takes the subscription off the middleware; called at `open` when the topic is published inside.
+            leave: takes the subscription off the middleware; called at `begin` when the topic is published inside.
         """
         offer = turn.inlet(_RANKS[topic.name], receive, depth)
         self.offers(topic.name).append(offer)
@@ -118,13 +118,13 @@ class Composition:
         """Whether the topic is published inside the process."""
         return name in self._published
 
-    def open(self) -> None:
+    def begin(self) -> None:
         """Take the topics that are published inside off the middleware, and let every new node begin."""
         for name in self._published:
             for leave in self._leave.pop(name, []):
                 leave()
         for turn in self._turns:
-            turn.open()
+            turn.begin()
 
     def flush(self) -> None:
         """Give the middleware what was published since the last call; called when the work of a moment is done."""

@@ -26,7 +26,7 @@ class Turn:
     """The right to run a node's code.
 
     Attributes:
-        taken: The node is at work. True until `open`, too: nothing is delivered to a node that is being made.
+        taken: The node is at work. True until `begin`, too: nothing is delivered to a node that is being made.
     """
 
     __slots__ = ("_inlets", "_opened", "taken")
@@ -50,7 +50,7 @@ class Turn:
 
         return offer
 
-    def open(self) -> None:
+    def begin(self) -> None:
         """Let the node begin."""
         if not self._opened:
             self._opened, self.taken = True, False
