@@ -1,4 +1,4 @@
-"""The commands of this package: `view`, `analyze`, `state`."""
+"""The commands of this package: `view`, `analyze`, `state`, `foxglove`."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import Annotated, Optional
 
 import typer
 from sher3_common.commands.completing import BAG, folders_with
+from sher3_common.commands.options import Domain, Json, reported
 from sher3_description.topics import NAMESPACE
 
 app = typer.Typer(rich_markup_mode="markdown")
@@ -45,11 +46,9 @@ def view(
     ] = 1.0,
     robot: Annotated[Optional[Path], typer.Option(help="Robot file; by default the one in the bag.")] = None,  # noqa: UP045
     port: Annotated[int, typer.Option(help="Port of the live page, on 127.0.0.1 alone.", min=1, max=65535)] = 8080,
-    domain: Annotated[
-        int, typer.Option(help="ROS domain id of the running robot.", min=0, max=232, envvar="ROS_DOMAIN_ID")
-    ] = 0,
+    domain: Domain = 0,
     seconds: Annotated[float | None, typer.Option("--for", help="Seconds the live page lasts; until Ctrl-C.")] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of text.")] = False,
+    as_json: Json = False,
 ) -> None:
     """Show a recording, or the running robot, in three dimensions.
 
@@ -91,14 +90,13 @@ def analyze(
         Path | None, typer.Option("--html", help="Also write figures, picture and the robot in motion into one file.")
     ] = None,
     namespace: Annotated[str, typer.Option(help="Namespace of the robot in the bag.")] = NAMESPACE,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of text.")] = False,
+    as_json: Json = False,
 ) -> None:
     """Figures of a run: tip path, force against velocity, tracking per axis, timing and drops per topic."""
     from sher3_bags.cli import printed
     from sher3_bags.figures.analysis import analyse
     from sher3_bags.figures.report import analysis_text
     from sher3_bags.reading import read_run
-    from sher3_common.commands.options import reported
 
     from sher3_view.figures import drawn, write_figures
 
@@ -121,14 +119,12 @@ def state(
         typer.Option("--urdf", help="Write the robot's description to this file, and publish nothing."),
     ] = None,
     robot: Annotated[Optional[Path], typer.Option(help="Robot file; the nominal one by default.")] = None,  # noqa: UP045
-    domain: Annotated[
-        int, typer.Option(help="ROS domain id of the running robot.", min=0, max=232, envvar="ROS_DOMAIN_ID")
-    ] = 0,
+    domain: Domain = 0,
     parameters: Annotated[
         bool, typer.Option("--parameters", help="Also serve the settings as parameters of /sher3/parameters.")
     ] = False,
     seconds: Annotated[float | None, typer.Option("--for", help="Seconds it lasts; until Ctrl-C.")] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of text.")] = False,
+    as_json: Json = False,
 ) -> None:
     """Publish the running robot for other ROS tools: description, joint states, transforms, legs, statuses, log.
 
@@ -148,6 +144,25 @@ def state(
 
     say = partial(_note, as_json)
     run(model, domain, seconds, parameters, say)
+
+
+@app.command(epilog="Example: `sher3 foxglove` beside `sher3 up`, then open ws://127.0.0.1:8765 in Foxglove")
+def foxglove(
+    port: Annotated[int, typer.Option(help="Port of the server, on 127.0.0.1 alone.", min=1, max=65535)] = 8765,
+    robot: Annotated[Optional[Path], typer.Option(help="Robot file; the nominal one by default.")] = None,  # noqa: UP045
+    domain: Domain = 0,
+    seconds: Annotated[float | None, typer.Option("--for", help="Seconds it lasts; until Ctrl-C.")] = None,
+    as_json: Json = False,
+) -> None:
+    """Serve the running robot to Foxglove: every stream, the robot as a model with its frames, statuses as messages.
+
+    It needs the extra `foxglove`. The server takes nothing from a viewer, so nothing moves by it.
+    """
+    from sher3_description import load_robot
+
+    from sher3_view.live.foxglove_node import run
+
+    run(load_robot(robot), port, domain, seconds, partial(_note, as_json))
 
 
 def _note(as_json: bool, line: str) -> None:

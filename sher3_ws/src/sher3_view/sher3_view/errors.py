@@ -10,7 +10,7 @@ class ViewError(Sher3Error):
 
 
 class ExtraMissing(Sher3Error):
-    """The live view needs a library that is installed with the extra `view`.
+    """A view needs a library that is installed with an extra.
 
     Attributes:
         module: The library that is missing.
@@ -18,9 +18,9 @@ class ExtraMissing(Sher3Error):
 
     exit_code = 3
 
-    def __init__(self, module: str) -> None:
+    def __init__(self, module: str, extra: str = "view") -> None:
         super().__init__(
-            f"the live view needs the library {module}", remedy="install the extra: pip install 'sher3[view]'"
+            f"this view needs the library {module}", remedy=f"install the extra: pip install 'sher3[{extra}]'"
         )
-        self.args = (module,)
+        self.args = (module, extra)
         self.module = module
