@@ -1,4 +1,4 @@
-"""The bridge speaks Foxglove's WebSocket protocol: a client is told the channels, and gets what was sent, late or not."""
+"""The bridge speaks the protocol of Foxglove: a client is told the channels, and gets what was sent, late or not."""
 
 import json
 import socket
