@@ -191,8 +191,8 @@ class SupervisorSettings(Settings):
         hand_force, hand_share: force [N], and share of the hand that both feel [1], by which the force sensor and the
             drives may differ; friction that turns round, inertia and noise stay below it on the nominal
             robot.
-        hand_even: largest change of a leg's velocity from one look to the next in even motion [m/s]; a slider of 10 kg
-            then needs 0.5 N for it.
+        hand_even: largest change of a leg's velocity from one look to the next in even motion, and largest difference
+            from its command [m/s]; a slider of 10 kg then needs 0.5 N for it.
         hand_jump: largest change of the sensor's force from one look to the next under an even push [N].
         hand_look: time from one look to the next, at most [s].
         hand_lag: time constant of the low pass on that difference [s].

@@ -104,3 +104,28 @@ def test_inertia_is_no_hand(detector):
         effort = (*(weight + 10.5 * faster / 0.01), 0.0, 0.0)
         detector.feed(number * TICK, (0.0,) * 6, q, effort, (speed,) * 3 + (0.0, 0.0))
         assert detector.check(0) is None
+
+
+@pytest.mark.parametrize(("speed", "objects"), [(0.0, True), (0.012, False)])
+def test_a_leg_that_leaves_its_command_is_no_false_hand(detector, speed, objects):
+    """At rest 20 N more on a leg are a hand that nobody feels; of a leg that runs away they are its own force."""
+    q, effort, objected = np.zeros(5), np.full(5, 3.0), False
+    for tick in range(60):
+        away = tick >= 40
+        q[0] += speed * TICK * 1e-9 * away
+        effort[0] = 23.0 if away else 3.0
+        detector.feed(tick * TICK, (0.0,) * 6, tuple(q), tuple(effort), STILL)
+        objected |= detector.check(tick * TICK) is not None
+    assert objected is objects
+
+
+def test_the_inertia_of_a_leg_that_does_as_commanded_is_no_hand(detector):
+    """20 N for 50 ms take a leg from rest to 5 mm/s, by 1 mm/s a look; the sensor feels nothing."""
+    q, effort, command = np.zeros(5), np.full(5, 3.0), np.zeros(5)
+    for tick in range(80):
+        hastes = 40 <= tick < 45
+        command[0] += 1e-3 * hastes
+        q += command * TICK * 1e-9
+        effort[0] = 23.0 if hastes else 3.0
+        detector.feed(tick * TICK, (0.0,) * 6, tuple(q), tuple(effort), tuple(command))
+        assert detector.check(tick * TICK) is None

@@ -42,6 +42,7 @@ class HandDetector(PlainDetector):
         self._peaks = (0.0, 0.0)
         self._command: Vector = (0.0,) * LEGS
         self._force = np.zeros(3)
+        self._legs, self._seen = np.zeros(LEGS), -1
         self._uneven = 0
         self._last = self._since = -1
         self._found = Finding(Reason.HAND_DOUBTFUL, 0.0, settings.hand_force, "N", "force sensor")
@@ -54,7 +55,8 @@ class HandDetector(PlainDetector):
     def feed(self, stamp: int, wrench: Vector, q: Vector, effort: Vector, command: Vector) -> None:
         """Take samples of one tick [ns].
 
-        They count while neither the motion nor the sensor's force changes faster than `hand_even` and `hand_jump`.
+        They count while neither the motion nor the sensor's force changes faster than `hand_even` and `hand_jump`, and
+        the legs move as commanded: a leg that does not is another watch's business, and its inertia is no hand.
 
         Args:
             stamp: of the samples.
@@ -65,18 +67,25 @@ class HandDetector(PlainDetector):
         """
         joints = np.asarray(q)
         force = self._kinematics.transform_tip_to_base(joints)[:3, :3] @ np.asarray(wrench[:3])
-        if not self._even(command[:LEGS], force):
+        if not self._even(command[:LEGS], force, self._astray(stamp, joints[:LEGS], command[:LEGS])):
             return
         jacobian = self._kinematics.jacobian(joints)[:LEGS, :LEGS]
         held = np.linalg.solve(jacobian.T, np.asarray(effort[:LEGS]))
         self.follow(stamp, force, held)
 
-    def _even(self, command: Vector, force: Array) -> bool:
+    def _astray(self, stamp: int, legs: Array, command: Vector) -> float:
+        """Return by how much the legs' speed since the last look differs from the command [m/s]; inf at the first."""
+        moved, span = legs - self._legs, seconds(stamp - self._seen)
+        known = self._seen >= 0 and span > 0.0
+        self._legs, self._seen = legs, stamp
+        return float(np.abs(moved / span - command).max()) if known else math.inf
+
+    def _even(self, command: Vector, force: Array, astray: float) -> bool:
         """Return whether motion and push have been even for a while: a hit needs time to reach the drives."""
         faster = max([abs(new - old) for new, old in zip(command, self._command, strict=True)])
         harder = float(np.linalg.norm(force - self._force))
         self._command, self._force = command, force
-        changes = faster > self._settings.hand_even or harder > self._settings.hand_jump
+        changes = max(faster, astray) > self._settings.hand_even or harder > self._settings.hand_jump
         self._uneven = CALM if changes else max(0, self._uneven - 1)
         return not self._uneven
 
