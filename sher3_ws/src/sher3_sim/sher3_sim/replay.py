@@ -31,6 +31,8 @@ keeps edges."""
 def contact_wrench(run: Run, robot: Robot, smoothing: int = SMOOTHING) -> Array:
     """Return the contact wrench (n, 6) at the tip in {b} that the recorded force sensor and load encoders imply.
 
+    It has a row for each sample of `measured_js`; where the sensor's was lost, the one before it stays.
+
     The weight of the tool is subtracted and the moment is moved from {f} to the tip (contract, section 3), all by the
     nominal model.
 
@@ -40,11 +42,16 @@ def contact_wrench(run: Run, robot: Robot, smoothing: int = SMOOTHING) -> Array:
     from scipy.signal import savgol_filter  # a second to import, and the running robot never needs it
 
     sensed = run["force/measured_cf"]
-    readings = np.column_stack([sensed.force, sensed.torque])
-    q, sensor = run["measured_js"].position, robot.force_sensor
+    joints, sensor = run["measured_js"], robot.force_sensor
+    readings, q = held(np.column_stack([sensed.force, sensed.torque]), sensed.stamp, joints.stamp), joints.position
     place, com = np.array(sensor.position), np.array(sensor.tool_com)
     raw = _to_tip(kernel_parameters(robot), q, readings, sensor.tool_mass * GRAVITY, com, place)
     return savgol_filter(raw, min(smoothing, (len(raw) - 1) // 2 * 2 + 1), min(2, len(raw) - 1), axis=0)
+
+
+def held(values: Array, stamp: NDArray[np.int64], at: NDArray[np.int64]) -> Array:
+    """Return (m, ...) the newest row of values (n, ...) with stamps (n,) at each of the stamps (m,); else the first."""
+    return values[np.maximum(np.searchsorted(stamp, at, side="right") - 1, 0)]
 
 
 @compiled
@@ -92,7 +99,8 @@ def recorded_temperature(run: Run, stamp: NDArray[np.int64]) -> Array:
 def recorded_excitation(run: Run, robot: Robot, *, open_loop: bool = False) -> Excitation:
     """Return what drove a recorded run: its set-points, wrench and temperature.
 
-    With `open_loop` its recorded commands (`servo_jv`) take the place of the set-points.
+    With `open_loop` its recorded commands (`servo_jv`) take the place of the set-points, a row for each tick from the
+    first to the last: where samples were lost, those before them stay.
 
     Raises:
         MissingTopicError: The run lacks a stream that this needs.
@@ -100,10 +108,13 @@ def recorded_excitation(run: Run, robot: Robot, *, open_loop: bool = False) -> E
     wrench = contact_wrench(run, robot)
     if open_loop:
         commands = run["servo_jv"]
-        start = np.broadcast_to(run["measured_js"].position[0], commands.velocity.shape)
-        warmth = recorded_temperature(run, commands.stamp)
-        return excitation(start, None, wrench, warmth, commands.velocity, period=robot.control_period)
+        ticks = np.arange(commands.stamp[0], commands.stamp[-1] + 1, round(robot.control_period * 1e9))
+        velocity = held(commands.velocity, commands.stamp, ticks)
+        start = np.broadcast_to(run["measured_js"].position[0], velocity.shape)
+        wrench = held(wrench, run["measured_js"].stamp, ticks)
+        return excitation(start, None, wrench, recorded_temperature(run, ticks), velocity, period=robot.control_period)
     goal = run["setpoint_js"]
+    wrench = held(wrench, run["measured_js"].stamp, goal.stamp)
     warmth = recorded_temperature(run, goal.stamp)
     return excitation(goal.position, goal.velocity, wrench, warmth, period=robot.control_period)
 
