@@ -8,9 +8,11 @@ from rosbags.highlevel import AnyReader
 from scipy.spatial.transform import Rotation
 from sher3_bags import Recorder, read_run
 from sher3_bags.codec.pack import joint_state
+from sher3_bags.messages import schema_text
 from sher3_bags.recording.beside import Beside
 from sher3_bags.recording.robot_frames import RobotFrames
 from sher3_description import ACTUATORS, load_robot
+from sher3_description.topics import TOPICS
 from sher3_kinematics import RobotKinematics
 
 ROBOT = load_robot()
@@ -92,3 +94,12 @@ def test_bytes_that_are_no_message_have_no_state():
     whole = message(1_000_000_000)
     for spoilt in (b"", whole[:9], whole[:30], whole[:12] + b"\xff" * 40):
         assert RobotFrames(ROBOT).follow(spoilt) == []
+
+
+def test_nothing_that_is_recorded_needs_a_message_package(monkeypatch):
+    """A wheel may be installed where the message files of ROS are not; a recorder that stops stops the robot."""
+    made = [m for x in (RobotFrames(ROBOT).fixed(0), RobotFrames(ROBOT).state(0, Q)) for m in x]
+    schema_text.cache_clear()
+    monkeypatch.setattr("sys.prefix", "/nowhere")
+    for kind in {topic.type for topic in TOPICS.values()} | {m.type for m in made}:
+        assert schema_text(kind)
