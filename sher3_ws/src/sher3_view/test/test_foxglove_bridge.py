@@ -8,7 +8,8 @@ import pytest
 from sher3_bags.recording.beside import Beside
 from sher3_description import load_robot
 from sher3_view.errors import ViewError
-from sher3_view.live.foxglove_bridge import LOOPBACK, FoxgloveBridge
+from sher3_view.live import LOOPBACK
+from sher3_view.live.foxglove_bridge import FoxgloveBridge
 from websockets.sync.client import connect
 
 MESSAGE_DATA = 1

@@ -8,8 +8,8 @@ from typing import Any
 from sher3_bags.messages import schema_text
 
 from sher3_view.errors import ExtraMissing, ViewError
+from sher3_view.live import LOOPBACK
 
-LOOPBACK = "127.0.0.1"
 REPEAT_NS = 1_000_000_000
 """Time [ns] after which latched messages are sent again: a viewer may come at any time, and the server keeps none."""
 
@@ -21,6 +21,7 @@ class FoxgloveBridge:
         port: it listens on.
 
     Attributes:
+        url: a viewer connects to.
         topics: topic -> number of its messages that were handed to the server.
 
     Raises:
@@ -29,6 +30,7 @@ class FoxgloveBridge:
     """
 
     def __init__(self, port: int) -> None:
+        self.url = f"ws://{LOOPBACK}:{port}"
         self.topics: dict[str, int] = {}
         self._api = _foxglove()
         self._context = self._api.Context()

@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from typing import Any
 
-import rclpy
 from rclpy.node import Node
-from rclpy.signals import SignalHandlerOptions
 from sher3_bags.recording.beside import FOLLOWED, Beside
 from sher3_bags.recording.recorder_node import Ears
 from sher3_bags.recording.robot_frames import PERIOD_NS
 from sher3_description import Robot
 from sher3_description.topics import TOPICS
-from sher3_runtime import environment
+from sher3_runtime.beside import beside
 from sher3_runtime.ports import NODE_OPTIONS, clock_of
-from sher3_runtime.process import stop_on_signals
 
 from sher3_view.live.foxglove_bridge import FoxgloveBridge
 
@@ -53,19 +49,13 @@ def run(robot: Robot, port: int, domain: int, seconds: float | None, say: Callab
         ViewError: the port is taken.
     """
     bridge = FoxgloveBridge(port)
-    environment.apply(domain)
-    rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
-    try:
-        signalled = stop_on_signals()
-        node = FoxgloveNode(robot, bridge)
-        say(f"Foxglove: open a connection to ws://127.0.0.1:{port}")
-        begin = time.monotonic()
-        while not signalled() and (seconds is None or time.monotonic() - begin < seconds):
-            now = time.monotonic()
-            node.step()
-            time.sleep(max(0.0, PERIOD_NS * 1e-9 - (time.monotonic() - now)))
-        say(f"{sum(bridge.topics.values())} messages of {len(bridge.topics)} topics")
-        node.destroy_node()
-    finally:
-        bridge.close()
-        rclpy.try_shutdown()
+    with beside(domain, PERIOD_NS * 1e-9, seconds) as moments:
+        try:
+            node = FoxgloveNode(robot, bridge)
+            say(f"Foxglove: open a connection to {bridge.url}")
+            for _ in moments:
+                node.step()
+            say(f"{sum(bridge.topics.values())} messages of {len(bridge.topics)} topics")
+            node.destroy_node()
+        finally:
+            bridge.close()

@@ -14,12 +14,12 @@ from scipy.spatial.transform import Rotation
 from sher3_kinematics import RobotKinematics
 
 from sher3_view.errors import ExtraMissing
+from sher3_view.live import LOOPBACK
 from sher3_view.live.mock_panel import MockPanel
 from sher3_view.live.plot import WINDOW, plot_svg
 from sher3_view.live.snapshot import Snapshot
 from sher3_view.scene import Primitive, RobotState, Scene
 
-LOOPBACK = "127.0.0.1"
 COLOURS = {
     "frame": (204, 212, 219),
     "rail": (158, 168, 178),

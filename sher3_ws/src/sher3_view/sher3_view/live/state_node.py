@@ -5,25 +5,21 @@ It takes the newest position 50 times a second and wakes nobody. It is no part o
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from importlib.util import find_spec
 from typing import Any
 
-import rclpy
 from rcl_interfaces.msg import Log
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
-from rclpy.signals import SignalHandlerOptions
 from rclpy.time import Time
 from sher3_bags.recording.made import Made
 from sher3_bags.recording.robot_frames import PERIOD_NS, SOURCE, RobotFrames
 from sher3_bags.recording.typed_status import SOURCES, TypedStatuses
 from sher3_description import Robot
-from sher3_runtime import environment
+from sher3_runtime.beside import beside
 from sher3_runtime.codec.messages import message_class
 from sher3_runtime.ports import NODE_OPTIONS, clock_of, latest, qos_profile
-from sher3_runtime.process import stop_on_signals
 
 from sher3_view.live.log_lines import Line, LogLines
 from sher3_view.live.parameters_node import ParametersNode
@@ -98,22 +94,14 @@ class StateNode(Node):
 
 def run(robot: Robot, domain: int, seconds: float | None, parameters: bool, say: Callable[[str], None]) -> None:
     """Publish the state of the robot of a domain until a signal, or for so many seconds; its parameters if asked."""
-    environment.apply(domain)
-    rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
-    try:
-        signalled = stop_on_signals()
+    with beside(domain, PERIOD_NS * 1e-9, seconds) as moments:
         node = StateNode(robot)
         served = ParametersNode(node.snapshot, node.listen) if parameters else None
         node.step()
         if node.left_out:
             say(f"without {', '.join(sorted(node.left_out))}: `make messages` builds their types")
-        begin = time.monotonic()
-        while not signalled() and (seconds is None or time.monotonic() - begin < seconds):
-            now = time.monotonic()
+        for _ in moments:
             node.step()
             if served is not None:
                 served.step()
-            time.sleep(max(0.0, PERIOD_NS * 1e-9 - (time.monotonic() - now)))
         node.destroy_node()
-    finally:
-        rclpy.try_shutdown()

@@ -7,15 +7,12 @@ import time
 from collections.abc import Callable, Sequence
 from typing import Any
 
-import rclpy
 from rclpy.node import Node
-from rclpy.signals import SignalHandlerOptions
 from sher3_common.samples import JoySample, TextSample, WrenchSample
 from sher3_description import TOPICS as TABLE
 from sher3_faults.requests import FaultRequest
-from sher3_runtime import environment
+from sher3_runtime.beside import beside
 from sher3_runtime.ports import NODE_OPTIONS, advertise, clock_of, latest
-from sher3_runtime.process import stop_on_signals
 
 from sher3_view.live.hand import Hand
 from sher3_view.live.mock_panel import Effect
@@ -81,27 +78,23 @@ class ViewNode(Node):
 
 def run(page: LivePage, domain: int, seconds: float | None) -> None:
     """Show the robot of a domain until a signal, or for so many seconds."""
-    environment.apply(domain)
-    rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
-    try:
-        signalled = stop_on_signals()
-        node = ViewNode()
-        begin = looked = time.monotonic()
-        mocks = exchange = False
-        while not signalled() and (seconds is None or time.monotonic() - begin < seconds):
-            if (now := time.monotonic()) - looked >= LOOK_AROUND:
-                looked, mocks, exchange = now, node.mocks(), node.mocks("mock/effects")
-            node.look()
-            page.mocks.show(mocks, exchange)
-            page.show(node.snapshot, clock_of(node).now())
-            for request in page.mocks.faults():
-                node.ask(request)
-            for effects in page.mocks.exchanges():
-                node.exchange(effects)
-            if mocks:
-                node.act(page.mocks.hand)
-            time.sleep(max(0.0, 1.0 / RATE - (time.monotonic() - now)))
-        node.destroy_node()
-    finally:
-        page.close()
-        rclpy.try_shutdown()
+    with beside(domain, 1.0 / RATE, seconds) as moments:
+        try:
+            node = ViewNode()
+            looked = time.monotonic()
+            mocks = exchange = False
+            for now in moments:
+                if now - looked >= LOOK_AROUND:
+                    looked, mocks, exchange = now, node.mocks(), node.mocks("mock/effects")
+                node.look()
+                page.mocks.show(mocks, exchange)
+                page.show(node.snapshot, clock_of(node).now())
+                for request in page.mocks.faults():
+                    node.ask(request)
+                for effects in page.mocks.exchanges():
+                    node.exchange(effects)
+                if mocks:
+                    node.act(page.mocks.hand)
+            node.destroy_node()
+        finally:
+            page.close()
