@@ -66,6 +66,14 @@ DEFINITIONS: dict[str, str] = {
         "std_msgs/Header header\nstring reason\nstring text\nbuiltin_interfaces/Time since\nbool drift_exceeded\n"
         "Refusal refused"
     ),
+    "sher3_msgs/AdmittanceTick": (
+        "std_msgs/Header header\nint64 tick\nint64 wrench_stamp\nint64 pedal_stamp\nint64 joints_stamp\n"
+        "bool enabled\nbool owner\nuint32 version"
+    ),
+    "sher3_msgs/MotionTick": (
+        "std_msgs/Header header\nint64 tick\nint64 joints_stamp\nint64 twist_stamp\n"
+        "bool enabled\nuint8 mode\nuint8 reason\nuint32 version"
+    ),
     "sher3_msgs/Settings": (
         "std_msgs/Header header\nuint32 version\nstring regime\nbool has_remote_centre\n"
         "geometry_msgs/Point remote_centre\nstring[] names\nfloat64[] values"

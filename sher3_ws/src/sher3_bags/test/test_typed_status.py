@@ -71,6 +71,21 @@ def test_garbage_has_no_typed_twin_and_the_bag_reads_as_before(recorded):
     assert json.loads(run["supervisor/status"].data[0]) == SUPERVISOR
 
 
+def test_ticks_are_typed_too(tmp_path):
+    robot = load_robot()
+    with Recorder(tmp_path / "bag", robot, beside=Beside(robot)) as recorder:
+        recorder.write("admittance/inputs", text("7 3000000009 1 2 -1 1 0 4"), 0)
+        recorder.write("motion/inputs", text("8 3000000009 -1 2 0 7 44 5"), 1)
+        recorder.write("motion/inputs", text("8 9 -1 2 0 7 44"), 2)
+    with AnyReader([tmp_path / "bag"]) as reader:
+        law, motion = (reader.deserialize(raw, c.msgtype) for c, _, raw in reader.messages() if "tick" in c.topic)
+    assert (law.header.stamp.sec, law.header.stamp.nanosec, law.header.frame_id) == (3, 9, "")
+    assert (law.tick, law.wrench_stamp, law.pedal_stamp, law.joints_stamp) == (7, 1, 2, -1)
+    assert (law.enabled, law.owner, law.version) == (True, False, 4)
+    assert (motion.tick, motion.joints_stamp, motion.twist_stamp, motion.enabled) == (8, -1, 2, False)
+    assert (motion.mode, motion.reason, motion.version) == (7, 44, 5)
+
+
 def test_every_text_has_a_type():
     assert {f"sher3_msgs/{kind}" for kind, _ in SOURCES.values()} <= set(DEFINITIONS)
     assert TypedStatuses().follow("motion/status", "[]", 0) == []

@@ -1,4 +1,4 @@
-"""What a recording holds beside the streams of the nodes: the robot for viewers, and the statuses as typed messages."""
+"""What a recording holds beside the streams: the robot for viewers, statuses and ticks as typed messages."""
 
 from __future__ import annotations
 
@@ -8,8 +8,9 @@ from sher3_bags.codec.cdr import TEXT_START
 from sher3_bags.recording.made import Made
 from sher3_bags.recording.robot_frames import SOURCE, RobotFrames
 from sher3_bags.recording.typed_status import SOURCES, TypedStatuses
+from sher3_bags.recording.typed_tick import TICKS, typed_tick
 
-FOLLOWED = frozenset((SOURCE, *SOURCES))
+FOLLOWED = frozenset((SOURCE, *SOURCES, *TICKS))
 """Topics from which something follows."""
 
 
@@ -27,4 +28,5 @@ class Beside:
         """Return what follows from a message (CDR) of one of `FOLLOWED` at `now` [ns]; nothing from garbage."""
         if topic == SOURCE:
             return self._frames.follow(data)
-        return self._statuses.follow(topic, data[TEXT_START:].rstrip(b"\0").decode("utf-8", "replace"), now)
+        text = data[TEXT_START:].rstrip(b"\0").decode("utf-8", "replace")
+        return typed_tick(topic, text) if topic in TICKS else self._statuses.follow(topic, text, now)

@@ -92,11 +92,12 @@ def _evaluate(
 ) -> dict[str, Any]:
     from sher3_bags.figures.analysis import analyse
     from sher3_bags.figures.picture import draw
-    from sher3_bags.figures.report import analysis_text
+    from sher3_bags.figures.report import Block, analysis_text
     from sher3_bags.reading import read_run
     from sher3_control.replay import replay_admittance, replay_motion
-    from sher3_view import film_of, write_page
+    from sher3_view.figures import write_figures
 
+    from sher3_bringup.demo.node_timing import node_timing
     from sher3_bringup.demo.verdict import judge
 
     robot = settings.robot()
@@ -104,17 +105,19 @@ def _evaluate(
     run = read_run(bag, check=False)
     analysis = analyse(run, robot)
     picture = draw(run, analysis, bag / "summary.png")
-    page = write_page(film_of(run, robot), bag / "view.html")
     again = {
         "servo_cv": _computed_again(replay_admittance, run, robot),
         "servo_jv": _computed_again(replay_motion, run, robot),
     }
-    say("\n" + analysis_text(analysis) + "\n")
-    say(nodes_text(nodes) + "\n")
-    for topic, found in again.items():
-        how = found.get("error") or f"{found['compared']} commands, {found['different']} differ"
-        say(f"{topic} computed again from the recording: {how}")
-    say(f"\nbag      {bag}\npicture  {picture}\npage     {page}  (the robot in three dimensions; open it in a browser)")
+    more = [
+        node_timing(nodes),
+        *(Block(f"{topic} computed again: {_outcome(found)}") for topic, found in again.items()),
+    ]
+    page = write_figures(run, analysis, bag / "summary.html", robot, more)
+    say("\n" + "\n\n".join([analysis_text(analysis), *map(str, more)]))
+    say(
+        f"\nbag      {bag}\npicture  {picture}\npage     {page}  (figures, and the robot in motion; for a browser)"
+    )
     judge(run, script, int(run["mock/pedal"].stamp[0]))
     say("the robot was enabled, moved in every step that asked for it and did not stop by itself")
     return {
@@ -136,17 +139,5 @@ def _computed_again(replay: Callable[[Any, Any], Any], run: Any, robot: Any) -> 
         return {"error": str(error)}
 
 
-def nodes_text(nodes: dict[str, dict[str, Any]]) -> str:
-    """Return a table of the nodes' timing, microseconds as p50/p99/max."""
-
-    def spread(histogram: dict[str, int]) -> str:
-        return "/".join(f"{histogram[key] / 1e3:.0f}" for key in ("p50", "p99", "max")) if histogram["count"] else "-"
-
-    lines = [f"{'node [us p50/p99/max]':22}{'period':>19}{'wake-up':>17}{'tick':>17}{'lost':>6}{'drops':>6}"]
-    for name, figures in nodes.items():
-        tick = figures["callback"].get("tick", {"count": 0})
-        lines.append(
-            f"{name:22}{spread(figures['period']):>19}{spread(figures['wakeup']):>17}{spread(tick):>17}"
-            f"{figures['lost_cycles']:>6}{sum(figures['dropped'].values()):>6}"
-        )
-    return "\n".join(lines)
+def _outcome(found: dict[str, Any]) -> str:
+    return found.get("error") or f"{found['compared']} commands, {found['different']} differ"
