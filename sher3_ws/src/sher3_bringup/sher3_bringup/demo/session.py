@@ -115,9 +115,7 @@ def _evaluate(
     ]
     page = write_figures(run, analysis, bag / "summary.html", robot, more)
     say("\n" + "\n\n".join([analysis_text(analysis), *map(str, more)]))
-    say(
-        f"\nbag      {bag}\npicture  {picture}\npage     {page}  (figures, and the robot in motion; for a browser)"
-    )
+    say(f"\nbag      {bag}\npicture  {picture}\npage     {page}  (figures, and the robot in motion; for a browser)")
     judge(run, script, int(run["mock/pedal"].stamp[0]))
     say("the robot was enabled, moved in every step that asked for it and did not stop by itself")
     return {
