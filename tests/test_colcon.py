@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 import shutil
 import subprocess
+import sys
+from pathlib import Path
 
 import pytest
 from fresh_environment import fresh_environment, see_libraries
@@ -15,7 +17,7 @@ pytestmark = [pytest.mark.slow, pytest.mark.timeout(900)]
 
 @pytest.fixture(scope="module")
 def colcon(tmp_path_factory):
-    """Return `run(*arguments)`: colcon in a copy of the workspace.
+    """Return `run(*arguments, ros=None)`: colcon in a copy of the workspace, with the prefix of a ROS for CMake.
 
     colcon needs a setuptools below 80, which this environment lacks; the new one sees our libraries behind its own.
     """
@@ -32,9 +34,12 @@ def colcon(tmp_path_factory):
         source = ROOT / name
         (shutil.copytree if source.is_dir() else shutil.copy)(source, folder / "project" / name)
 
-    def run(*arguments: str) -> subprocess.CompletedProcess:
-        environment = {**os.environ, "PATH": f"{python.parent}:{os.environ['PATH']}", "PYTHONWARNINGS": "ignore"}
-        environment["COLCON_HOME"] = str(folder / "home")
+    def run(*arguments: str, ros: Path | None = None) -> subprocess.CompletedProcess:
+        first = ":".join(map(str, [python.parent, *([] if ros is None else [ros / "bin"])]))
+        environment = {**os.environ, "PATH": f"{first}:{os.environ['PATH']}", "PYTHONWARNINGS": "ignore"}
+        environment |= {"COLCON_HOME": str(folder / "home")}
+        if ros is not None:
+            environment |= {"AMENT_PREFIX_PATH": str(ros), "CMAKE_PREFIX_PATH": str(ros)}
         result = subprocess.run(
             [python.parent / "colcon", *arguments],
             cwd=folder / "project" / "sher3_ws",
@@ -57,10 +62,21 @@ def test_colcon_knows_every_package(colcon):
 
 
 def test_colcon_builds_and_tests(colcon):
-    """Without the interfaces, which need generators, and tests that have run already: those with several packages."""
+    """Without the interfaces, which need generators (below), and tests that have run already: those with several packages."""
     colcon("build", "--base-paths", "src", "--executor", "sequential")
     select = "not graph and not slow and not shared"
     test = ["test", "--base-paths", "src", "--executor", "sequential", "--return-code-on-test-failure"]
     colcon(*test, "--pytest-args", "-m", select, "-q")
     result = colcon("test-result")
     assert "0 errors, 0 failures" in result.stdout
+
+
+@pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
+def test_colcon_builds_the_messages(colcon, tmp_path):
+    ros = tmp_path / "ros"
+    subprocess.run([ROOT / "tools" / "message-generators", sys.prefix, ros], check=True)
+    options = [f"-DPython3_EXECUTABLE={ros}/bin/python", f"-DCMAKE_PROJECT_INCLUDE={ROOT}/tools/wheel_targets.cmake"]
+    build = ["build", "--base-paths", "interfaces", "--build-base", "build_messages", "--install-base", "messages"]
+    colcon(*build, "--executor", "sequential", "--cmake-args", "-DBUILD_TESTING=OFF", *options, ros=ros)
+    listed = colcon("list", "--base-paths", "interfaces").stdout
+    assert "crtk_msgs" in listed and "sher3_msgs" in listed

@@ -52,6 +52,7 @@ DEFINITIONS: dict[str, str] = {
     ),
     "tf2_msgs/TFMessage": "geometry_msgs/TransformStamped[] transforms",
     "crtk_msgs/OperatingState": "std_msgs/Header header\nstring state\nbool is_homed\nbool is_busy",
+    "crtk_msgs/StringStamped": "std_msgs/Header header\nstring string",
     "sher3_msgs/Fault": "string code\nstring source\nfloat64 value\nfloat64 limit\nstring unit\nstring action",
     "sher3_msgs/Refusal": "string error\nstring text",
     "sher3_msgs/SupervisorStatus": (

@@ -123,6 +123,9 @@ def state(
     parameters: Annotated[
         bool, typer.Option("--parameters", help="Also serve the settings as parameters of /sher3/parameters.")
     ] = False,
+    crtk: Annotated[
+        bool, typer.Option("--crtk", help="Also speak crtk_msgs on operating_state and state_command.")
+    ] = False,
     seconds: Annotated[float | None, typer.Option("--for", help="Seconds it lasts; until Ctrl-C.")] = None,
     as_json: Json = False,
 ) -> None:
@@ -143,7 +146,8 @@ def state(
     from sher3_view.live.state_node import run
 
     say = partial(_note, as_json)
-    run(model, domain, seconds, parameters, say)
+    with reported(as_json):
+        run(model, domain, seconds, parameters, crtk, say)
 
 
 @app.command(epilog="Example: `sher3 foxglove` beside `sher3 up`, then open ws://127.0.0.1:8765 in Foxglove")

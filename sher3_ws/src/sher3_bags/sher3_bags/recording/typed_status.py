@@ -17,6 +17,7 @@ from sher3_description import NAMESPACE, Qos
 from sher3_bags.codec.packed import packed
 from sher3_bags.recording.made import Made
 
+OPERATING_STATE = "crtk_msgs/msg/OperatingState"
 LATCHED = Qos(durability="transient_local", depth=1)
 Values = dict[str, Any]
 
@@ -49,7 +50,7 @@ class TypedStatuses:
         else:
             return
         state = {"header": header, "is_busy": self._busy, **self._operating}
-        yield _message("operating_state", "crtk_msgs/OperatingState", state)
+        yield _message("operating_state", OPERATING_STATE.replace("/msg/", "/"), state)
 
 
 def _message(name: str, kind: str, values: Values) -> Made:

@@ -45,9 +45,10 @@ STREAMS = {
     PEDAL: (Reason.PEDAL_MISSING, Reason.PEDAL_STALE),
 }
 """Watched streams, each with the reason when no sample ever came and when it fell silent."""
-STEERING = ("servo_cv", "operating_state")
+OWN_STATE = "operating_state"
+STEERING = ("servo_cv",)
 BESIDE = ("drives/measured_js", "drives/setpoint_jv", "supervisor/heartbeat")
-OWN = (*STREAMS, *STEERING, *BESIDE)
+OWN = (*STREAMS, OWN_STATE, *STEERING, *BESIDE)
 """Streams that only the robot itself publishes: those that are watched, those that steer it, and the others."""
 POWERED = (OperatingState.ENABLED, OperatingState.PAUSED)
 """States in which the drives hold what pushes on the tip."""
@@ -96,7 +97,7 @@ class SupervisorNode(Node):
         self._beat = TextSample(self.supervisor.status.heartbeat)
         self._joints = JointSample(NO_STAMP)
 
-        self._publish_state = advertise(self, "operating_state")
+        self._publish_state = advertise(self, OWN_STATE)
         self._publish_status = advertise(self, "supervisor/status")
         self._publish_heartbeat = advertise(self, "supervisor/heartbeat")
         self._publish_report = advertise(self, "diagnostics")
@@ -106,7 +107,9 @@ class SupervisorNode(Node):
         self._command: Vector = (0.0,) * len(ACTUATORS)
         self._take_tip = latest(self, "tracker/measured_cp")
         subscribe(self, PEDAL, self.on_pedal)
-        self._matched = [(name, ports(self).subscriptions[name].handle.get_publisher_count) for name in STREAMS]
+        latest(self, OWN_STATE)  # never taken: it is there to know its publishers, and only those of our type
+        watched = (*STREAMS, OWN_STATE)
+        self._matched = [(name, ports(self).subscriptions[name].handle.get_publisher_count) for name in watched]
         self._names = {name: self.resolve_topic_name(TOPICS[name].full_name) for name in OWN}
         self._in_turn = cycle(BESIDE)
         subscribe(self, "diagnostics", self._on_diagnostics)
