@@ -62,7 +62,7 @@ def test_colcon_knows_every_package(colcon):
 
 
 def test_colcon_builds_and_tests(colcon):
-    """Without the interfaces, which need generators (below), and tests that have run already: those with several packages."""
+    """Without the interfaces (below), and tests that have run already: those with several packages."""
     colcon("build", "--base-paths", "src", "--executor", "sequential")
     select = "not graph and not slow and not shared"
     test = ["test", "--base-paths", "src", "--executor", "sequential", "--return-code-on-test-failure"]
