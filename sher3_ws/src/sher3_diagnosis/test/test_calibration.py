@@ -37,6 +37,14 @@ def test_a_logistic_model_by_hand():
     assert model.probabilities({"x": 3.0})["library"] == pytest.approx(1.0 / (1.0 + math.exp(3.0)))
 
 
+def test_what_is_not_known_speaks_neither_way():
+    """At its middle a number adds nothing: the scores are the offsets, -6 and 0."""
+    model = Logistic(**TWO, weights=((3.0,), (0.0,)), offset=(-6.0, 0.0))
+    assert model.probabilities({})["library"] == pytest.approx(1.0 / (1.0 + math.exp(6.0)))
+    limit = {name: x for name, x in NUMBERS.items() if name not in ("spread", "lost")}  # it has no coefficient
+    assert not {"spread", "lost"} & scaled_cause(limit).keys()
+
+
 def test_a_model_whose_numbers_do_not_fit_is_refused():
     with pytest.raises(ValidationError, match="differ in number"):
         Logistic(**TWO, weights=((3.0, 1.0), (0.0,)), offset=(0.0, 0.0))

@@ -131,14 +131,19 @@ def logistic(examples: Sequence[Example], classes: Sequence[str], inputs: Sequen
 
     The first class is the one that the inputs speak against, the second the one they speak for: weights of the other
     sign are none, so that chance in one plant's cases cannot turn evidence round on the next. An input of `LAST` speaks
-    against the last class alone.
+    against the last class alone. A number that an example lacks is at its middle, where it tells nothing.
     """
-    x = np.array([[e.numbers[name] for name in inputs] for e in examples]).reshape(len(examples), len(inputs))
+    x = np.array([[e.numbers.get(name, math.nan) for name in inputs] for e in examples], dtype=float)
+    x = x.reshape(len(examples), len(inputs))
     y = np.array([[e.answer == name for name in classes] for e in examples], dtype=float).reshape(-1, len(classes))
     if (y.sum(axis=0) > 0.0).sum() < 2:
         raise ChallengeError("cases of one kind only", value=len(examples), limit=2, remedy="healthy and foreign ones")
-    middle, spread = x.mean(axis=0), np.maximum(x.std(axis=0), 1e-9)
-    z, shares = (x - middle) / spread, weights(examples) / len(examples)
+    known = np.isfinite(x)
+    count = np.maximum(known.sum(axis=0), 1)
+    middle = np.where(known, x, 0.0).sum(axis=0) / count
+    z = np.where(known, x - middle, 0.0)
+    spread = np.maximum(np.sqrt((z**2).sum(axis=0) / count), 1e-9)
+    z, shares = z / spread, weights(examples) / len(examples)
     shape = (len(classes), len(inputs) + 1)
 
     def loss(flat: np.ndarray) -> tuple[float, np.ndarray]:

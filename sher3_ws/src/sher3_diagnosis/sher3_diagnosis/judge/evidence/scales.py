@@ -30,15 +30,17 @@ def scaled_exact(closure: float) -> dict[str, float]:
 
 
 def scaled_cause(numbers: Mapping[str, float]) -> dict[str, float]:
-    """Return what a model reads of a cause; the larger a number but the size, the less it speaks for the cause."""
+    """Return what a model reads of a cause; the larger a number but the size, the less it speaks for the cause.
+
+    What nothing tells is not there, so that it speaks neither for the cause nor against it.
+    """
     left, law, anything = (min(max(numbers[name], 0.0), 1.0) for name in ("left", "law", "anything"))
-    return {
+    steady = {name: log_above(numbers[name], 0.001) for name in ("spread", "lost") if name in numbers}
+    return steady | {
         "left": log_above(left, LEAST_SHARE),
         "complete": 0.0 if numbers["idealised"] else log_above(left, LEAST_SHARE) - math.log(LEAST_SHARE),
         "law": log_above(law, LEAST_SHARE),
         "foreign": max(0.0, law - anything) / max(law, LEAST_LAW),
-        "spread": log_above(numbers["spread"], 0.001),
-        "lost": log_above(numbers["lost"], 0.001),
         "mismatch": log_above(numbers["mismatch"], 0.01),
         "size": log_above(numbers["ratio"], 1.0),
     }
