@@ -56,9 +56,12 @@ def test_scales_end_where_they_tell_nothing_more():
     assert scaled["left"] == pytest.approx(math.log(0.003))
     assert scaled["foreign"] == pytest.approx(0.6)  # of what its own inputs leave
     assert scaled["complete"] == 0.0
+    assert scaled["floors"] == pytest.approx(math.log(0.3))
+    assert scaled_cause(NUMBERS | {"left": 0.1})["floors"] == pytest.approx(math.log(0.1 * 6.0**2))  # six floors
     complete = scaled_cause(NUMBERS | {"left": 0.03, "idealised": 0.0})
     assert complete["complete"] == pytest.approx(math.log(10.0))  # ten times the share that is nothing
     assert scaled_gap({"power": 0.5, "ratio": 1.0, "beside": -2.0}) == {"power": 0.0, "alone": 0.0}
+    assert scaled_gap({"power": 500.0, "beside": 0.0})["power"] == pytest.approx(math.log(10.0))
     assert scaled_exact(0.9) == {"missed": pytest.approx(0.1)}
 
 

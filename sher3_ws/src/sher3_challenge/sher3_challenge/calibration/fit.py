@@ -21,12 +21,14 @@ from sher3_challenge.errors import ChallengeError
 COVERAGE = 0.97
 """Share of cases whose true effect the set of rivals is to hold."""
 SAME_DATA_CROSSING = 0.5
-"""Unlikeness up to which an effect of another family gives the same data."""
-RIDGE = 0.02
-"""Weight of the squared coefficients beside the mean log likelihood. Set on: the plants other than the one quoted."""
-EVEN = 1e-4
+"""Unlikeness up to which another effect gives the same data: always a rival, and of another family one that leaves the
+cause open."""
+RIDGE = 1.0
+"""Weight of the squared coefficients beside the log likelihood of all examples: a coefficient is expected to be within
+0.7 of nothing, on inputs with a spread of one. Set by that argument."""
+EVEN = 0.01
 """The same of the constants: no answer is impossible because no case had it."""
-READ = ("left", "complete", "law", "foreign", "spread", "lost", "mismatch", "size")
+READ = ("left", "complete", "floors", "law", "foreign", "spread", "lost", "mismatch", "size")
 """Evidence that the model of a cause reads."""
 FEW = 10
 """Examples of a plant up to which each counts the same: a lone one must not speak for its plant."""
@@ -50,12 +52,12 @@ PLAIN = 5 * [
 """Exact stages whose answer needs no case: causes that reproduce the whole error to rounding, and half of it."""
 ECHOES = 3 * [
     Example("by argument", scaled_gap({"power": 1.0, "beside": 4.0}), NO_GAP),
-    Example("by argument", scaled_gap({"power": 30.0, "beside": 0.0}), OUTSIDE),
-    Example("by argument", scaled_gap({"power": 1.5, "beside": 0.0}), NO_GAP),
+    Example("by argument", scaled_gap({"power": 4.5, "beside": 0.0}), OUTSIDE),
+    Example("by argument", scaled_gap({"power": 2.0, "beside": 0.0}), NO_GAP),
 ]
-"""Gaps whose answer needs no case: one at its threshold beside one of its place fifty times as large, one of
-thirty alone, and one
-that is hardly above its threshold: of the healthy robots' many channels some are."""
+"""Gaps whose answer needs no case: one at its threshold beside one of its place fifty times as large; one of three
+floors, nine times the floor's power and half as much over its threshold; and one of two floors: of a healthy robot's
+many channels some are above their threshold."""
 
 SWAPPED = [*(5 * [(0.0, [0.0, 1.0])]), (1.0, [0.0, 1.0])]
 """Pairs of effects, one at the margin of a rival (unlikeness 1), whose answer needs no case: five to one for the
@@ -111,7 +113,7 @@ def calibrated(observations: Sequence[Observation]) -> Calibration:
         gap=logistic([*seen.gaps, *ECHOES], (NO_GAP, OUTSIDE), ("power", "alone")),
         exact=logistic([*seen.exact, *PLAIN], (LIBRARY, OUTSIDE), ("missed",)),
         sharpness=sharpness([*seen.distances, *SWAPPED]),
-        reach=conformal([d for d, _ in [*seen.distances, *SWAPPED]], COVERAGE),
+        reach=max(conformal([d for d, _ in [*seen.distances, *SWAPPED]], COVERAGE), SAME_DATA_CROSSING),
         coverage=COVERAGE,
         same=SAME_DATA_CROSSING,
         provenance=tuple(
@@ -144,16 +146,16 @@ def logistic(examples: Sequence[Example], classes: Sequence[str], inputs: Sequen
     z = np.where(known, x - middle, 0.0)
     spread = np.maximum(np.sqrt((z**2).sum(axis=0) / count), 1e-9)
     z, shares = z / spread, weights(examples) / len(examples)
-    shape = (len(classes), len(inputs) + 1)
+    shape, ridge, even = (len(classes), len(inputs) + 1), RIDGE / len(examples), EVEN / len(examples)
 
     def loss(flat: np.ndarray) -> tuple[float, np.ndarray]:
         w = flat.reshape(shape)
         score = z @ w[:, :-1].T + w[:, -1]
         share = softmax(score, axis=1)
         error = shares[:, None] * (share - y)
-        slope = np.hstack([error.T @ z + 2.0 * RIDGE * w[:, :-1], error.sum(axis=0)[:, None] + 2.0 * EVEN * w[:, -1:]])
+        slope = np.hstack([error.T @ z + 2.0 * ridge * w[:, :-1], error.sum(axis=0)[:, None] + 2.0 * even * w[:, -1:]])
         likely = float(np.sum(shares * np.log(np.sum(share * y, axis=1) + 1e-300)))
-        held = RIDGE * float(np.sum(w[:, :-1] ** 2)) + EVEN * float(np.sum(w[:, -1] ** 2))
+        held = ridge * float(np.sum(w[:, :-1] ** 2)) + even * float(np.sum(w[:, -1] ** 2))
         return held - likely, slope.ravel()
 
     bounds = [b for k in range(len(classes)) for b in [*(_bound(n, k, len(classes)) for n in inputs), (None, None)]]

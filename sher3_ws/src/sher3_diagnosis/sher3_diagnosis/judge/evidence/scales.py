@@ -7,6 +7,10 @@ from collections.abc import Mapping
 
 LEAST_SHARE = 0.003
 """Share of a gap below which a remainder is none."""
+LEAST_FLOORS = 0.3
+"""Power over the floor below which a remainder is none: a healthy robot as built leaves as much."""
+MOST_POWER = 10.0
+"""Power over its threshold above which there is a gap beyond doubt, however much larger it is."""
 LEAST_LAW = 0.02
 """Share that own inputs leave below which it does not matter what explains it."""
 
@@ -19,7 +23,7 @@ def log_above(x: float, least: float) -> float:
 def scaled_gap(numbers: Mapping[str, float]) -> dict[str, float]:
     """Return what a model reads of a gap without a cause: the larger, the less it comes from elsewhere."""
     return {
-        "power": log_above(numbers["power"], 1.0),
+        "power": log_above(min(numbers["power"], MOST_POWER), 1.0),
         "alone": -max(0.0, numbers["beside"]),
     }
 
@@ -39,6 +43,7 @@ def scaled_cause(numbers: Mapping[str, float]) -> dict[str, float]:
     return steady | {
         "left": log_above(left, LEAST_SHARE),
         "complete": 0.0 if numbers["idealised"] else log_above(left, LEAST_SHARE) - math.log(LEAST_SHARE),
+        "floors": log_above(left * numbers["ratio"] ** 2, LEAST_FLOORS),
         "law": log_above(law, LEAST_SHARE),
         "foreign": max(0.0, law - anything) / max(law, LEAST_LAW),
         "mismatch": log_above(numbers["mismatch"], 0.01),
