@@ -23,9 +23,9 @@ COVERAGE = 0.97
 SAME_DATA_CROSSING = 0.5
 """Unlikeness up to which another effect gives the same data: always a rival, and of another family one that leaves the
 cause open."""
-RIDGE = 1.0
+RIDGE = 2.0
 """Weight of the squared coefficients beside the log likelihood of all examples: a coefficient is expected to be within
-0.7 of nothing, on inputs with a spread of one. Set by that argument."""
+0.5 of nothing, on inputs with a spread of one. Set on: the plants other than the one quoted."""
 EVEN = 0.01
 """The same of the constants: no answer is impossible because no case had it."""
 READ = ("left", "complete", "floors", "law", "foreign", "spread", "lost", "mismatch", "size")
