@@ -194,7 +194,9 @@ def test_a_plant_left_out_is_judged_by_the_others():
 
 
 def test_what_gives_the_same_data_is_in_the_set_however_well_the_cases_are_told_apart():
-    told_apart = [replace(o, items=tuple(i | {"candidates": i["candidates"][:1]} for i in o.items)) for o in plants("a")]
+    told_apart = [
+        replace(o, items=tuple(i | {"candidates": i["candidates"][:1]} for i in o.items)) for o in plants("a")
+    ]
     found = calibrated(told_apart)
     assert found.reach >= found.same > 0.0
 
