@@ -55,6 +55,8 @@ def test_scales_end_where_they_tell_nothing_more():
     scaled = scaled_cause(numbers)
     assert scaled["left"] == pytest.approx(math.log(0.003))
     assert scaled["foreign"] == pytest.approx(0.6)  # of what its own inputs leave
+    small = scaled_cause(numbers | {"law": 0.01, "anything": 0.0})
+    assert small["foreign"] == pytest.approx(0.01 * 6.0**2)  # of a floor, of which it is a third
     assert scaled["complete"] == 0.0
     assert scaled["floors"] == pytest.approx(math.log(0.3))
     assert scaled_cause(NUMBERS | {"left": 0.1})["floors"] == pytest.approx(math.log(0.1 * 6.0**2))  # six floors

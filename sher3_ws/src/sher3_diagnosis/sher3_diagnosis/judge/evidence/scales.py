@@ -10,9 +10,10 @@ LEAST_SHARE = 0.003
 LEAST_FLOORS = 0.3
 """Power over the floor below which a remainder is none: a healthy robot as built leaves as much."""
 MOST_POWER = 10.0
-"""Power over its threshold above which there is a gap beyond doubt, however much larger it is."""
+"""Power over its threshold, or of a remainder over the floor, above which there is one beyond doubt: how much larger it
+is tells nothing more."""
 LEAST_LAW = 0.02
-"""Share that own inputs leave below which it does not matter what explains it."""
+"""Share that own inputs leave below which it does not matter what explains it; nor does it below the floor."""
 
 
 def log_above(x: float, least: float) -> float:
@@ -39,13 +40,14 @@ def scaled_cause(numbers: Mapping[str, float]) -> dict[str, float]:
     What nothing tells is not there, so that it speaks neither for the cause nor against it.
     """
     left, law, anything = (min(max(numbers[name], 0.0), 1.0) for name in ("left", "law", "anything"))
+    floors = numbers["ratio"] ** 2  # power of the gap
     steady = {name: log_above(numbers[name], 0.001) for name in ("spread", "lost") if name in numbers}
     return steady | {
         "left": log_above(left, LEAST_SHARE),
         "complete": 0.0 if numbers["idealised"] else log_above(left, LEAST_SHARE) - math.log(LEAST_SHARE),
-        "floors": log_above(left * numbers["ratio"] ** 2, LEAST_FLOORS),
+        "floors": log_above(min(left * floors, MOST_POWER), LEAST_FLOORS),
         "law": log_above(law, LEAST_SHARE),
-        "foreign": max(0.0, law - anything) / max(law, LEAST_LAW),
+        "foreign": max(0.0, law - anything) / max(law, LEAST_LAW, 1.0 / max(floors, 1.0)),
         "mismatch": log_above(numbers["mismatch"], 0.01),
         "size": log_above(numbers["ratio"], 1.0),
     }
