@@ -1,0 +1,100 @@
+"""How well a parameter of the library's law can stand for a truth plant's own law: its shape alone, without noise.
+
+    nice python bench/gap_labels.py --plant tables --draws 2
+
+Each fault is put into a robot that is otherwise exactly as its file says, and run without noise, rounding or scatter.
+The library's page of that fault, and nothing beside it, is fitted where the fault sits. Printed per parameter: how far
+the best fit is from the number the plant calls by that name, and the share of the gap that this fit leaves. A robot of
+the library's law with the fitted number gives the same data but for that share: no diagnosis can tell the two apart by
+more, and no interval that is to hold the plant's number may be narrower.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+from sher3_challenge.cases.calibrate import distinct_runs
+from sher3_challenge.cases.plan import CasePlan, draw_plan
+from sher3_challenge.plants.registry import plant_names, truth_plant
+from sher3_challenge.score.intervals import SYNONYMS
+from sher3_description import load_robot
+from sher3_diagnosis.attribute.candidates import Candidates
+from sher3_diagnosis.attribute.rivals import Attribution
+from sher3_diagnosis.fit.fitting import Fit
+from sher3_diagnosis.quantify.parameters import parameters
+from sher3_diagnosis.quantify.polish import polished
+from sher3_effects import library
+from sher3_gap.case.loading import signals_of
+from sher3_gap.evidence import SherEvidence
+from sher3_gap.sher import Sher
+
+Row = tuple[str, float, float]
+"""Parameter, its relative distance from the plant's number, share of the gap left."""
+
+
+def ideal(plan: CasePlan) -> tuple[SherEvidence, dict[str, float]]:
+    """Return what is seen of the robot of the file with the plan's fault alone, and the fault's parameters."""
+    robot = load_robot()
+    plant = plan.truth.make(robot, 0, plan.faults, plan.climate, built=False, region=plan.region)
+    runs = [signals_of(plant.run(run, ideal=True), robot, run.excitation.label) for run in distinct_runs(plan)]
+    (evidence,) = Sher(robot).gather(runs)
+    return evidence, plant.parameters()[0]
+
+
+def fitted(evidence: SherEvidence, effect: str, site: str) -> Fit | None:
+    """Return the best fit of a page at a site, and of nothing else; None where it does not show."""
+    candidates = Candidates(evidence, [])
+    page = library()[effect]
+    sites = candidates.sites(page)
+    found = candidates.best(page, site if site in sites else sites[0])
+    return None if found is None else polished(evidence, Attribution(found, ((),), (1.0,))).fit
+
+
+def rows_of(plan: CasePlan) -> Iterator[Row]:
+    """Yield one row per parameter that the plant names and the page states."""
+    fault = plan.faults[0]
+    evidence, true = ideal(plan)
+    found = fitted(evidence, fault.kind.effect, fault.actuator)
+    if found is None:
+        return
+    shown = found.terms[0].channels
+    gap, left = (sum(max(evidence.excess(c, f), 0.0) for c in shown) for f in (None, found))
+    stated = {name.lower(): p.value for name, p in parameters(evidence, found, 0).items()}
+    discrete = found.terms[0].effect.discrete
+    for name, number in true.items():
+        known = [stated[s] for s in SYNONYMS.get(name, name).split() if s in stated and s not in discrete]
+        if known and number:
+            value = min(known[0], -known[0], key=lambda x: abs(x - number))
+            yield name, value / number - 1.0, left / max(gap, 1.0)
+
+
+def main() -> None:
+    """Print one line per parameter, then the quantiles."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--plant", choices=plant_names(), default="tables")
+    parser.add_argument("--draws", type=int, default=1, help="robots for each kind of fault")
+    parser.add_argument("--seed", type=int, default=70000)
+    parser.add_argument("--size", type=float, default=1.0, help="of the faults, in those of the plant's sliders")
+    parser.add_argument("--only", default="", help="names of faults, parted by commas")
+    asked = parser.parse_args()
+    truth = truth_plant(asked.plant)
+    names = asked.only.split(",") if asked.only else sorted(n for n, k in truth.library.items() if not k.exact)
+    rows: list[Row] = []
+    for i, name in enumerate(names * asked.draws):
+        plan = draw_plan(load_robot(), asked.seed + i, truth, kind="single", effect=name)
+        plan = replace(plan, faults=tuple(f.scaled_by(asked.size) for f in plan.faults))
+        for row in rows_of(plan):
+            rows.append(row)
+            parameter, error, left = row
+            print(f"{asked.plant} {asked.seed + i} {name} {parameter}: {error:+.3f}, {left:.4f} left", flush=True)
+    errors = np.abs([error for _, error, _ in rows])
+    if len(errors):
+        shares = ", ".join(f"{q:.0%} within {np.quantile(errors, q):.3f}" for q in (0.5, 0.9, 0.95))
+        print(f"{asked.plant}: {shares}; {np.mean(errors > 0.05):.0%} off by more than 5 %, n {len(errors)}")
+
+
+if __name__ == "__main__":
+    main()
