@@ -2,7 +2,8 @@
 
     nice python bench/gap_labels.py --plant tables --draws 2
 
-Each fault is put into a robot that is otherwise exactly as its file says, and run without noise, rounding or scatter.
+Each fault is put into a robot that is otherwise exactly as its file says, and run without noise, rounding or scatter,
+in the size at which its gap is about ten times what the encoders' and sensors' resolution makes.
 The library's page of that fault, and nothing beside it, is fitted where the fault sits. Printed per parameter: how far
 the best fit is from the number the plant calls by that name, and the share of the gap that this fit leaves. A robot of
 the library's law with the fitted number gives the same data but for that share: no diagnosis can tell the two apart by
@@ -14,6 +15,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from sher3_challenge.cases.calibrate import distinct_runs
@@ -31,8 +33,17 @@ from sher3_gap.case.loading import signals_of
 from sher3_gap.evidence import SherEvidence
 from sher3_gap.sher import Sher
 
-Row = tuple[str, float, float]
-"""Parameter, its relative distance from the plant's number, share of the gap left."""
+GAP = 10.0
+"""Gap over floor to which a fault is scaled."""
+
+
+class Row(NamedTuple):
+    """One parameter: its relative distance from the plant's number, the share of the gap left, and gap over floor."""
+
+    name: str
+    error: float
+    left: float
+    ratio: float
 
 
 def ideal(plan: CasePlan) -> tuple[SherEvidence, dict[str, float]]:
@@ -53,22 +64,33 @@ def fitted(evidence: SherEvidence, effect: str, site: str) -> Fit | None:
     return None if found is None else polished(evidence, Attribution(found, ((),), (1.0,))).fit
 
 
+def shown(evidence: SherEvidence, found: Fit) -> tuple[float, float, float]:
+    """Return the loss over the floor without and with a fit, and the gap over the floor, where the fit shows."""
+    channels = found.terms[0].channels
+    gap, left = (sum(max(evidence.excess(c, f), 0.0) for c in channels) for f in (None, found))
+    ratio = max(1.0 + evidence.excess(c) / max(evidence.samples(c), 1) for c in channels) ** 0.5
+    return gap, left, ratio
+
+
 def rows_of(plan: CasePlan) -> Iterator[Row]:
     """Yield one row per parameter that the plant names and the page states."""
-    fault = plan.faults[0]
+    effect, site = plan.faults[0].kind.effect, plan.faults[0].actuator
     evidence, true = ideal(plan)
-    found = fitted(evidence, fault.kind.effect, fault.actuator)
+    found = fitted(evidence, effect, site)
+    if found is not None:
+        larger = plan.faults[0].scaled_by(GAP / shown(evidence, found)[2])
+        evidence, true = ideal(replace(plan, faults=(larger,)))
+        found = fitted(evidence, effect, site)
     if found is None:
         return
-    shown = found.terms[0].channels
-    gap, left = (sum(max(evidence.excess(c, f), 0.0) for c in shown) for f in (None, found))
+    gap, left, ratio = shown(evidence, found)
     stated = {name.lower(): p.value for name, p in parameters(evidence, found, 0).items()}
     discrete = found.terms[0].effect.discrete
     for name, number in true.items():
         known = [stated[s] for s in SYNONYMS.get(name, name).split() if s in stated and s not in discrete]
         if known and number:
             value = min(known[0], -known[0], key=lambda x: abs(x - number))
-            yield name, value / number - 1.0, left / max(gap, 1.0)
+            yield Row(name, value / number - 1.0, left / max(gap, 1.0), ratio)
 
 
 def main() -> None:
@@ -77,23 +99,27 @@ def main() -> None:
     parser.add_argument("--plant", choices=plant_names(), default="tables")
     parser.add_argument("--draws", type=int, default=1, help="robots for each kind of fault")
     parser.add_argument("--seed", type=int, default=70000)
-    parser.add_argument("--size", type=float, default=1.0, help="of the faults, in those of the plant's sliders")
     parser.add_argument("--only", default="", help="names of faults, parted by commas")
     asked = parser.parse_args()
     truth = truth_plant(asked.plant)
     names = asked.only.split(",") if asked.only else sorted(n for n, k in truth.library.items() if not k.exact)
     rows: list[Row] = []
     for i, name in enumerate(names * asked.draws):
-        plan = draw_plan(load_robot(), asked.seed + i, truth, kind="single", effect=name)
-        plan = replace(plan, faults=tuple(f.scaled_by(asked.size) for f in plan.faults))
-        for row in rows_of(plan):
+        for row in rows_of(draw_plan(load_robot(), asked.seed + i, truth, kind="single", effect=name)):
             rows.append(row)
-            parameter, error, left = row
-            print(f"{asked.plant} {asked.seed + i} {name} {parameter}: {error:+.3f}, {left:.4f} left", flush=True)
-    errors = np.abs([error for _, error, _ in rows])
-    if len(errors):
+            text = f"{row.name}: {row.error:+.3f}, {row.left:.2%} left of {row.ratio:.1f} floors"
+            print(f"{asked.plant} {asked.seed + i} {name} {text}", flush=True)
+    report(asked.plant, [row for row in rows if row.ratio >= GAP / 2.0])
+
+
+def report(plant: str, rows: list[Row]) -> None:
+    """Print how far the numbers are off, of gaps of at least half the size aimed at."""
+    if rows:
+        errors = np.abs([row.error for row in rows])
         shares = ", ".join(f"{q:.0%} within {np.quantile(errors, q):.3f}" for q in (0.5, 0.9, 0.95))
-        print(f"{asked.plant}: {shares}; {np.mean(errors > 0.05):.0%} off by more than 5 %, n {len(errors)}")
+        hidden = sum(abs(row.error) > 0.05 and row.left < 0.01 for row in rows)
+        far = int(np.sum(errors > 0.05))
+        print(f"{plant}: {shares}; off by more than 5 %: {far} of {len(rows)}, {hidden} of them with < 1 % left")
 
 
 if __name__ == "__main__":

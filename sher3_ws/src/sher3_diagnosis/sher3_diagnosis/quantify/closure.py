@@ -51,9 +51,9 @@ def closure(evidence: Evidence, channel: Channel, before: Fit, after: Fit) -> In
 def up_to_whole(found: Interval) -> Interval:
     """Return the closure that the causes' own laws may have, of which those of the pages are idealisations.
 
-    What the pages leave the causes' own laws close, whatever it is: on labelled cases the closure of the true law lay
-    higher by just the share left, and a free function of the law's inputs found a third of that (`bench/gap_labels.py`).
-    So nothing measured says that a cause closes less than all, and the interval is bounded below alone.
+    What the pages leave the causes' own laws close: on labelled cases the closure of the true law lay higher by just
+    the share left, and a free function of the law's inputs found only a part of that. So nothing measured says that a
+    cause closes less than all, and the interval is bounded below alone.
     """
     return found if found.high is None else found.model_copy(update={"high": 1.0})
 

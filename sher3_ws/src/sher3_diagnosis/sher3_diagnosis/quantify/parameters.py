@@ -55,8 +55,7 @@ def left_share(evidence: Evidence, fit: Fit, index: int) -> float:
 def _half_width(term: Term, best: Array, around: Local, name: str, misfit: float) -> float | None:
     """Half width of a parameter's interval; None where nothing that was fitted moves it.
 
-    Args:
-        misfit: relative error that what the law leaves may hide in its parameters.
+    `misfit` is the relative error that what the law leaves may hide in its parameters.
     """
     gradient = _gradient(term, best, around.names, name)
     if not gradient.any():
