@@ -4,10 +4,10 @@
 
 Each fault is put into a robot that is otherwise exactly as its file says, and run without noise, rounding or scatter,
 in the size at which its gap is about ten times what the encoders' and sensors' resolution makes.
-The library's page of that fault, and nothing beside it, is fitted where the fault sits. Printed per parameter: how far
-the best fit is from the number the plant calls by that name, and the share of the gap that this fit leaves. A robot of
-the library's law with the fitted number gives the same data but for that share: no diagnosis can tell the two apart by
-more, and no interval that is to hold the plant's number may be narrower.
+The library's page of that fault, and of what belongs to it, is fitted where the fault sits. Printed per parameter: how
+far the best fit is from the number the plant calls by that name, and the share of the gap that this fit leaves. A robot
+of the library's law with the fitted number gives the same data but for that share: no diagnosis can tell the two apart
+by more, and no interval that is to hold the plant's number may be narrower.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from typing import NamedTuple
 import numpy as np
 from sher3_challenge.cases.calibrate import distinct_runs
 from sher3_challenge.cases.plan import CasePlan, draw_plan
+from sher3_challenge.plants.kinds import Kind
 from sher3_challenge.plants.registry import plant_names, truth_plant
 from sher3_challenge.score.intervals import SYNONYMS
 from sher3_description import load_robot
@@ -55,18 +56,22 @@ def ideal(plan: CasePlan) -> tuple[SherEvidence, dict[str, float]]:
     return evidence, plant.parameters()[0]
 
 
-def fitted(evidence: SherEvidence, effect: str, site: str) -> Fit | None:
-    """Return the best fit of a page at a site, and of nothing else; None where it does not show."""
+def fitted(evidence: SherEvidence, kind: Kind, site: str) -> Fit | None:
+    """Return the best fit of a fault's page at a site, the last term, beside its company's; None where none shows."""
     candidates = Candidates(evidence, [])
-    page = library()[effect]
-    sites = candidates.sites(page)
-    found = candidates.best(page, site if site in sites else sites[0])
-    return None if found is None else polished(evidence, Attribution(found, ((),), (1.0,))).fit
+    found: Fit | None = None
+    for name in (*(n for n in kind.company if n == "gravity_load"), kind.effect):
+        page = library()[name]
+        sites = candidates.sites(page)
+        found = candidates.best(page, site if site in sites else sites[0], found.terms if found else ())
+    if found is None:
+        return None
+    return polished(evidence, Attribution(found, ((),) * len(found.terms), (1.0,) * len(found.terms))).fit
 
 
 def shown(evidence: SherEvidence, found: Fit) -> tuple[float, float, float]:
     """Return the loss over the floor without and with a fit, and the gap over the floor, where the fit shows."""
-    channels = found.terms[0].channels
+    channels = found.terms[-1].channels
     gap, left = (sum(max(evidence.excess(c, f), 0.0) for c in channels) for f in (None, found))
     ratio = max(1.0 + evidence.excess(c) / max(evidence.samples(c), 1) for c in channels) ** 0.5
     return gap, left, ratio
@@ -74,18 +79,18 @@ def shown(evidence: SherEvidence, found: Fit) -> tuple[float, float, float]:
 
 def rows_of(plan: CasePlan) -> Iterator[Row]:
     """Yield one row per parameter that the plant names and the page states."""
-    effect, site = plan.faults[0].kind.effect, plan.faults[0].actuator
+    kind, site = plan.faults[0].kind, plan.faults[0].actuator
     evidence, true = ideal(plan)
-    found = fitted(evidence, effect, site)
+    found = fitted(evidence, kind, site)
     if found is not None:
         larger = plan.faults[0].scaled_by(GAP / shown(evidence, found)[2])
         evidence, true = ideal(replace(plan, faults=(larger,)))
-        found = fitted(evidence, effect, site)
+        found = fitted(evidence, kind, site)
     if found is None:
         return
     gap, left, ratio = shown(evidence, found)
-    stated = {name.lower(): p.value for name, p in parameters(evidence, found, 0).items()}
-    discrete = found.terms[0].effect.discrete
+    stated = {name.lower(): p.value for name, p in parameters(evidence, found, len(found.terms) - 1).items()}
+    discrete = found.terms[-1].effect.discrete
     for name, number in true.items():
         known = [stated[s] for s in SYNONYMS.get(name, name).split() if s in stated and s not in discrete]
         if known and number:

@@ -198,10 +198,11 @@ MISFIT = 0.1
 """Share of what a law leaves of its gap, as an rms, that may be hidden in its parameters. With 0.05 to 0.13 the widths
 are alike. Set on and measured as `BEYOND`."""
 
-BEYOND = 3.5
+BEYOND = 4.0
 """Half width of a parameter's interval in standard errors of its scatter and of what its law leaves: a robot's law
-differs from the page's by more than its sizes scatter over the data. Set on the plants `lumped`, `tables` and `mujoco`
-together. Measure: `python bench/gap_intervals.py`."""
+differs from the page's by more than its sizes scatter over the data. 3.8 covers 95 % of 65 parameters of the plants
+`lumped`, `tables` and `mujoco` and of the practice cases; 4.4, 4.2 and 2.1 with the first, third and second left out.
+Measure: `python bench/gap_intervals.py`."""
 
 JACKKNIFE = 2.3
 """Half width of a 95 % interval in standard errors of a jackknife over about nine runs (Student's t, 8 degrees)."""
