@@ -28,8 +28,10 @@ RIDGE = 2.0
 0.5 of nothing, on inputs with a spread of one. Set on: the plants other than the one quoted."""
 EVEN = 0.01
 """The same of the constants: no answer is impossible because no case had it."""
-READ = ("left", "complete", "floors", "law", "foreign", "spread", "lost", "mismatch", "size")
-"""Evidence that the model of a cause reads."""
+READ = ("left", "complete", "floors", "foreign", "spread", "mismatch", "size")
+"""Evidence that the model of a cause reads. Not read, for it told nothing more of plants left out: what a free law of
+its own inputs leaves (`law`), what is lost in an excitation left out (`lost`), the next effect (`sibling`) and
+`scatter`."""
 FEW = 10
 """Examples of a plant up to which each counts the same: a lone one must not speak for its plant."""
 LAST = frozenset({"size"})

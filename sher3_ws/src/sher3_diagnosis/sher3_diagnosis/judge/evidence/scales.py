@@ -41,12 +41,11 @@ def scaled_cause(numbers: Mapping[str, float]) -> dict[str, float]:
     """
     left, law, anything = (min(max(numbers[name], 0.0), 1.0) for name in ("left", "law", "anything"))
     floors = numbers["ratio"] ** 2  # power of the gap
-    steady = {name: log_above(numbers[name], 0.001) for name in ("spread", "lost") if name in numbers}
+    steady = {"spread": log_above(numbers["spread"], 0.001)} if "spread" in numbers else {}
     return steady | {
         "left": log_above(left, LEAST_SHARE),
         "complete": 0.0 if numbers["idealised"] else log_above(left, LEAST_SHARE) - math.log(LEAST_SHARE),
         "floors": log_above(min(left * floors, MOST_POWER), LEAST_FLOORS),
-        "law": log_above(law, LEAST_SHARE),
         "foreign": max(0.0, law - anything) / max(law, LEAST_LAW, 1.0 / max(floors, 1.0)),
         "mismatch": log_above(numbers["mismatch"], 0.01),
         "size": log_above(numbers["ratio"], 1.0),
