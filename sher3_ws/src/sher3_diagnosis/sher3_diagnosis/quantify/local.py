@@ -60,7 +60,7 @@ class Local:
         Args:
             gradient: (p_own,) of the parameter.
         """
-        return float(np.sqrt(max(gradient @ self._direction(gradient)[self.own], 0.0)))
+        return float(np.sqrt(max(float(gradient @ self._direction(gradient)[self.own]), 0.0)))
 
     def scatter(self, gradient: Array) -> float:
         """Return the standard error of a parameter by its scatter over every way to cut the data.
