@@ -24,11 +24,12 @@ def main() -> None:
     """Print seconds of motion and false alarms."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--minutes", type=float, default=60.0)
+    parser.add_argument("--first", type=int, default=0, help="first seed")
     asked = parser.parse_args()
-    seconds = alarms = 0
-    for seed in range(max(1, round(asked.minutes * 60.0 / (PART * 4.6)))):
+    seconds, alarms, seed = 0, 0, asked.first
+    while seconds < 60.0 * asked.minutes:
         told = watched([], PART, seed)
-        seconds, alarms = seconds + len(told), alarms + sum(named is not None for named in told)
+        seconds, alarms, seed = seconds + len(told), alarms + sum(named is not None for named in told), seed + 1
         print(f"{seconds} s of healthy motion, {alarms} of them with a name", flush=True)
 
 

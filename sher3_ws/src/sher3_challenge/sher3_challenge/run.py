@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import Any
 
 import yaml
-from joblib import Parallel, delayed
-from joblib.externals.loky import get_reusable_executor
+from joblib import delayed
+from joblib.externals.loky import ProcessPoolExecutor
 
 from sher3_challenge.answers.diagnosis import Answers, ask
 from sher3_challenge.cases.builder import Request, build_case
@@ -31,6 +31,10 @@ RELIABILITY = "reliability.png"
 MAXIMUM_CASES = 2000
 """Cases of one challenge: an end against slips of the keyboard."""
 WITHHELD = "withheld"
+ONE_THREAD = {name: "1" for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")}
+"""Environment of a process: as many cases as processes run at once, so none of them takes a second core."""
+Task = tuple[Callable[..., Any], tuple[Any, ...], dict[str, Any]]
+"""What `joblib.delayed` makes: a function, what it is given, and what by name."""
 
 
 def requests(
@@ -97,12 +101,10 @@ def run_challenge(
     if out.exists():
         raise ChallengeError("exists already", value=str(out), remedy="choose another folder")
     say(f"building {len(todo)} cases")
-    labels = _in_parallel(jobs, (delayed(build_case)(request, out / CASES) for request in todo))
+    labels = in_processes(jobs, (delayed(build_case)(request, out / CASES) for request in todo))
     texts = {truth["case"]: yaml.safe_dump(truth, sort_keys=False) for truth in labels}
     sealed = {f"{LABELS}/{name}.yaml": hashlib.sha256(text.encode()).hexdigest() for name, text in texts.items()}
     (out / MANIFEST).write_text(json.dumps(hashes(out / CASES) | sealed, indent=1), encoding="utf-8")
-    # The processes that built the cases know the truth; the diagnosis gets new ones.
-    get_reusable_executor().shutdown(wait=True)
     say(f"diagnosing {len(todo)} cases")
     answers = diagnose_all(out / CASES, labels, jobs=jobs, baselines=baselines)
     (out / VERDICTS).mkdir()
@@ -124,7 +126,7 @@ def diagnose_all(cases: Path, labels: Sequence[dict[str, Any]], *, jobs: int, ba
     names = [truth["case"] for truth in labels]
     without = [tuple(truth.get("without", ())) for truth in labels]
     tasks = (delayed(ask)(cases / name, left_out, baselines) for name, left_out in zip(names, without, strict=True))
-    return dict(zip(names, _in_parallel(jobs, tasks), strict=True))
+    return dict(zip(names, in_processes(jobs, tasks), strict=True))
 
 
 def score_all(labels: Sequence[dict[str, Any]], answers: dict[str, Answers]) -> dict[str, list[CaseScore]]:
@@ -135,9 +137,19 @@ def score_all(labels: Sequence[dict[str, Any]], answers: dict[str, Answers]) -> 
     return scores
 
 
-def _in_parallel(jobs: int, tasks: Iterable[Any]) -> list[Any]:
-    # One job still means another process: the diagnosis must not share memory with the labels.
-    return list(Parallel(n_jobs=max(2, jobs), backend="loky", pre_dispatch="n_jobs", batch_size=1)(tasks))
+def in_processes(jobs: int, tasks: Iterable[Task]) -> list[Any]:
+    """Return what tasks give, in their order, done in `jobs` other processes, which end then.
+
+    One job still means another process, for the diagnosis must share no memory with the labels, nor with the processes
+    that built the cases.
+    """
+    with ProcessPoolExecutor(max_workers=jobs, env=ONE_THREAD) as processes:
+        return list(processes.map(_call, tasks))
+
+
+def _call(task: Task) -> Any:
+    function, given, named = task
+    return function(*given, **named)
 
 
 def _range(todo: Sequence[Request]) -> tuple[int, int]:

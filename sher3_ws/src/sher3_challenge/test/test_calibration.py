@@ -125,6 +125,15 @@ def test_a_fit_by_hand():
     assert model.probabilities({"x": 1.0})["r"] == pytest.approx(1 / 3, abs=0.05)
 
 
+def test_an_example_without_a_number_tells_nothing_of_it():
+    rows = [({"x": 0.0, "y": 0.0}, "r"), ({"x": 1.0, "y": 1.0}, "o")] * 10
+    lacking = [({"x": 0.5}, "r"), ({"x": 0.5}, "o")] * 50
+    model = logistic([Example("a", n, y) for n, y in rows + lacking], ("r", "o"), ("x", "y"))
+    assert model.middle == pytest.approx((0.5, 0.5))
+    assert model.spread[1] == pytest.approx(0.5)  # of the twenty that have it
+    assert model.probabilities({"x": 0.5})["r"] == pytest.approx(0.5, abs=1e-3)
+
+
 def test_evidence_is_not_turned_round_by_chance():
     rows = [(0.0, "o"), (1.0, "r")] * 10
     model = logistic([Example("a", {"x": x}, y) for x, y in rows], ("r", "o"), ("x",))
@@ -182,6 +191,14 @@ def test_a_plant_left_out_is_judged_by_the_others():
     assert found["top1"].n == 12 and found["top1"].value == 1.0
     text = written({"b": found})
     assert "| withheld blamed | <= 0.05 | 0.00 [0.00, 0.39] (n 6) |" in text
+
+
+def test_what_gives_the_same_data_is_in_the_set_however_well_the_cases_are_told_apart():
+    told_apart = [
+        replace(o, items=tuple(i | {"candidates": i["candidates"][:1]} for i in o.items)) for o in plants("a")
+    ]
+    found = calibrated(told_apart)
+    assert found.reach >= found.same > 0.0
 
 
 def test_a_calibration_survives_its_file(tmp_path):

@@ -1,16 +1,18 @@
 """A whole challenge: built, sealed, diagnosed in other processes, scored; labels out of sight until the end."""
 
 import json
+import os
 from io import StringIO
 
 import pytest
 import yaml
+from joblib import delayed
 from rich.console import Console
 from sher3_challenge.answers.diagnosis import Answers, ask
 from sher3_challenge.cases.builder import Request
 from sher3_challenge.cases.seal import CASES, LABELS, check_seal
 from sher3_challenge.errors import ChallengeError
-from sher3_challenge.run import run_challenge, score_all
+from sher3_challenge.run import in_processes, run_challenge, score_all
 from sher3_challenge.score.outcome import Outcome, merged
 from sher3_challenge.score.rates import summarise
 from sher3_challenge.score.tables import TARGETS, print_outcome
@@ -27,6 +29,12 @@ def test_scores_are_kept_by_competitor():
 def test_an_error_of_the_diagnosis_is_a_missing_verdict(tmp_path):
     given = ask(tmp_path / "nothing", (), False)
     assert given.verdict is None and given.error is not None and "nothing" in given.error
+
+
+def test_one_job_is_one_other_process():
+    first, second = (set(in_processes(1, [delayed(os.getpid)() for _ in range(4)])) for _ in range(2))
+    assert len(first) == len(second) == 1
+    assert not first & second and os.getpid() not in first | second
 
 
 def test_an_existing_folder_is_left_alone(tmp_path):

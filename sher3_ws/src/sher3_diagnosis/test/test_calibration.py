@@ -37,6 +37,14 @@ def test_a_logistic_model_by_hand():
     assert model.probabilities({"x": 3.0})["library"] == pytest.approx(1.0 / (1.0 + math.exp(3.0)))
 
 
+def test_what_is_not_known_speaks_neither_way():
+    """At its middle a number adds nothing: the scores are the offsets, -6 and 0."""
+    model = Logistic(**TWO, weights=((3.0,), (0.0,)), offset=(-6.0, 0.0))
+    assert model.probabilities({})["library"] == pytest.approx(1.0 / (1.0 + math.exp(6.0)))
+    limit = {name: x for name, x in NUMBERS.items() if name not in ("spread", "lost")}  # it has no coefficient
+    assert "spread" not in scaled_cause(limit)
+
+
 def test_a_model_whose_numbers_do_not_fit_is_refused():
     with pytest.raises(ValidationError, match="differ in number"):
         Logistic(**TWO, weights=((3.0, 1.0), (0.0,)), offset=(0.0, 0.0))
@@ -47,10 +55,15 @@ def test_scales_end_where_they_tell_nothing_more():
     scaled = scaled_cause(numbers)
     assert scaled["left"] == pytest.approx(math.log(0.003))
     assert scaled["foreign"] == pytest.approx(0.6)  # of what its own inputs leave
+    small = scaled_cause(numbers | {"law": 0.01, "anything": 0.0})
+    assert small["foreign"] == pytest.approx(0.01 * 6.0**2)  # of a floor, of which it is a third
     assert scaled["complete"] == 0.0
+    assert scaled["floors"] == pytest.approx(math.log(0.3))
+    assert scaled_cause(NUMBERS | {"left": 0.1})["floors"] == pytest.approx(math.log(0.1 * 6.0**2))  # six floors
     complete = scaled_cause(NUMBERS | {"left": 0.03, "idealised": 0.0})
     assert complete["complete"] == pytest.approx(math.log(10.0))  # ten times the share that is nothing
     assert scaled_gap({"power": 0.5, "ratio": 1.0, "beside": -2.0}) == {"power": 0.0, "alone": 0.0}
+    assert scaled_gap({"power": 500.0, "beside": 0.0})["power"] == pytest.approx(math.log(10.0))
     assert scaled_exact(0.9) == {"missed": pytest.approx(0.1)}
 
 

@@ -7,7 +7,7 @@ from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import fit, make_term
 from sher3_diagnosis.fit.whitened import Whitened
 from sher3_diagnosis.quantify.closure import closure, interval_of, residual_after, zeros_floor
-from sher3_diagnosis.thresholds import IDEALISED, PIECES
+from sher3_diagnosis.thresholds import PIECES
 from toy import AXIS, OFFSET, ToyRun, evidence_of
 
 
@@ -47,11 +47,20 @@ def test_few_runs_carry_an_interval_by_their_pieces():
     assert found.low is not None and found.low < found.value < found.high
 
 
-def test_five_alike_runs_carry_an_interval_of_what_the_floor_and_the_law_may_be_off_by():
+def test_five_alike_runs_carry_an_interval_of_what_the_floor_may_be_off_by():
     found = interval_of(np.array([[40.0, 4.0, 1.0]] * 5))
     assert found.value == pytest.approx(36.0 / 39.0)
     assert found.low == pytest.approx(1.0 - 4.0 / 40.0)
-    assert found.high == pytest.approx(min(1.0, found.value + IDEALISED))
+    assert found.high == found.value
+
+
+def test_what_a_page_leaves_the_causes_own_law_may_close():
+    """Below it is bounded by the runs; a fit without a cause closes nothing, and no law of its own may close more."""
+    long = [run(np.tile([2.0, 4.0], 2 * PIECES)) for _ in range(2)]
+    evidence = evidence_of(long, floor=0.5)
+    null, after = (fit(evidence.data, terms) for terms in ([], [make_term(evidence.data, OFFSET, "axis", {})]))
+    assert closure(evidence, AXIS, null, after).high == 1.0
+    assert closure(evidence, AXIS, null, null).high == 0.0
 
 
 def test_nothing_closes_a_gap_that_is_not_there_and_a_worse_fit_opens_it():

@@ -9,8 +9,10 @@ from sher3_diagnosis.effect import Signature
 from sher3_diagnosis.fit.fitting import fit, make_term
 from sher3_diagnosis.quantify.parameters import parameters
 from sher3_diagnosis.quantify.polish import polished
-from sher3_diagnosis.thresholds import BEYOND, MIN_RUNS
+from sher3_diagnosis.thresholds import BEYOND, MIN_RUNS, MISFIT, NORMAL
 from toy import AXIS, OFFSET, Column, ToyRun, evidence_of
+
+LEFT = 21.25 / 100.0
 
 
 def found(values, rotary=frozenset(), effect=OFFSET):
@@ -20,9 +22,13 @@ def found(values, rotary=frozenset(), effect=OFFSET):
 
 
 def test_the_interval_is_that_of_runs_that_differ():
-    """Offsets 1..5: mean 3, scores of the runs -4 -2 0 2 4, an information of 10; parts of the motion do not differ."""
+    """Offsets 1..5: mean 3, scores of the runs -4 -2 0 2 4, an information of 10; parts of the motion do not differ.
+
+    Of a loss of 110 of ten samples, 100 over the floor, the means of the other runs leave 31.25, so 21.25 over it.
+    """
     size = found([1.0, 2.0, 3.0, 4.0, 5.0])
-    half = BEYOND * np.sqrt(1.0 / 10.0 + 40.0 * 5.0 / 4.0 / 10.0**2)
+    noise, scatter = np.sqrt(1.0 / 10.0), np.sqrt(40.0 * 5.0 / 4.0 / 10.0**2)
+    half = np.hypot(NORMAL * noise, BEYOND * np.hypot(scatter, MISFIT * np.sqrt(LEFT) * 3.0))
     assert size.value == pytest.approx(3.0, rel=1e-5)
     assert (size.low, size.high) == (pytest.approx(3.0 - half, rel=1e-3), pytest.approx(3.0 + half, rel=1e-3))
     assert size.unit == "N"
@@ -35,6 +41,22 @@ def test_a_law_that_wants_another_size_in_each_part_of_the_motion_is_unsure_of_i
     size = parameters(evidence, fit(evidence.data, [make_term(evidence.data, OFFSET, "axis", {})]), 0)["size"]
     assert size.value == pytest.approx(3.0, rel=1e-5)
     assert size.low < 2.0 and size.high > 4.0
+
+
+def test_a_law_that_leaves_a_share_of_its_gap_is_less_sure_than_one_that_leaves_nothing():
+    """The same offset in all runs, once beside a wave that the law lacks and that no cut of the data shows."""
+    halves = []
+    for wave in (0.0, 2.0):
+        values = 3.0 + wave * np.tile([1.0, -1.0, -1.0, 1.0], 16)
+        runs = [ToyRun("a", values, np.zeros(64), np.ones(64)) for _ in range(MIN_RUNS)]
+        evidence = evidence_of(runs)
+        size = parameters(evidence, fit(evidence.data, [make_term(evidence.data, OFFSET, "axis", {})]), 0)["size"]
+        assert size.value == pytest.approx(3.0, rel=1e-5)
+        halves.append(size.high - size.value)
+    noise = NORMAL / np.sqrt(64.0 * MIN_RUNS)
+    assert halves[0] == pytest.approx(noise, rel=1e-3)
+    left = 3.0 / 12.0  # squares of 4 and a floor of 1, of squares of 9 + 4 and a floor of 1
+    assert halves[1] == pytest.approx(np.hypot(noise, BEYOND * MISFIT * np.sqrt(left) * 3.0), rel=1e-3)
 
 
 class Power(Column):

@@ -1,15 +1,18 @@
 """The page of a machine that says nothing particular: the sections it has, and numbers worked out by hand."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from sher3_diagnosis.flow import diagnose
 from sher3_diagnosis.report.causes import cause_cards, separates
 from sher3_diagnosis.report.chain import AT_FLOOR, GAP, chain
+from sher3_diagnosis.report.closures import closure_bars
 from sher3_diagnosis.report.page import render
 from sher3_diagnosis.report.traces import scale_of
 from sher3_diagnosis.reporter import Isolability, Reporter, counted
+from sher3_diagnosis.verdict import Cause, Closure, Interval, Verdict, Where
 from toy import DIRECTION, OFFSET, SPEED, Column, Toy, case
 
 
@@ -31,6 +34,26 @@ def test_the_page_stands_alone_and_answers_first(rubbing):
     for heading in ("Where the gap is", "What causes it", "How far the gap shrinks", "Real, nominal, corrected"):
         assert f"<h2>{heading}</h2>" in page
     assert "What these topics can tell apart" not in page  # the machine does not say
+
+
+def test_closures_are_bars_in_percent_of_the_gap():
+    cause = Cause(
+        effect="backlash", family="lost_motion", stage="transmission", actuator="tilt", parameters={},
+        closure=Interval(value=0.95, low=-0.1, high=1.0),
+    )  # fmt: skip
+    where = Where(stage="transmission", actuator="tilt", gap=2.0, floor=1.0, unit="m", regime="", confidence=1.0)
+    answer = Verdict(status="attributed", where=[where], causes=[cause], closure=Closure(tip=Interval(value=-0.2)))
+    one, tip = closure_bars(answer, "at the tip")
+    assert (one.name, one.text, one.value, one.low, one.high) == ("Backlash, tilt", "95 %", 95.0, 0.0, 100.0)
+    assert (tip.name, tip.text, tip.value, tip.low) == ("all causes, at the tip", "-20 %", 0.0, None)
+    assert closure_bars(Verdict(status="no_gap"), "") == []
+
+
+def test_a_gap_without_a_cause_has_no_corrected_curve():
+    """A wave of two periods that no effect of the toy has."""
+    runs = [replace(r, values=r.values + 5.0 * np.sign(np.sin(np.arange(len(r.values))))) for r in case(0.0)]
+    page = render(diagnose(Toy(), runs), "toy")
+    assert "<h2>Real and nominal</h2>" in page and "the correction was fitted" not in page
 
 
 def test_a_healthy_machine_has_no_causes(healthy):

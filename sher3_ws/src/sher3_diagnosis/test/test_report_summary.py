@@ -87,9 +87,20 @@ def test_commands_are_named_for_a_simulated_machine_only():
 def test_a_parameter_that_may_be_zero_is_not_told():
     unsure = Parameter(value=2.5e-6, low=-78e-6, high=83e-6, unit="m")
     sure = Parameter(value=-9.9e-3, low=-10.1e-3, high=-9.7e-3, unit="m")
-    cause = FRICTION.model_copy(update={"effect": "tool_offset", "parameters": {"x": unsure, "y": sure, "z": sure}})
+    other = sure.model_copy(update={"low": -10.0e-3})
+    cause = FRICTION.model_copy(update={"effect": "tool_offset", "parameters": {"x": unsure, "y": sure, "z": other}})
     assert cause_text(cause).count("-9.9 mm") == 2 and "2.5" not in cause_text(cause)
     assert headline(verdict("attributed", causes=[cause])) == "Tool offset on delta 2, -9.9 mm: 98 % of the gap."
+
+
+def test_what_one_number_tells_is_told_once_and_a_share_has_its_size():
+    """A backlash whose flanks do not give loses just its width; a torque constant 14.6 % too large is so by 0.146."""
+    wide = Parameter(value=1e-5, low=0.9e-5, high=1.1e-5, unit="m")
+    backlash = FRICTION.model_copy(update={"effect": "backlash", "parameters": {"width": wide, "lost": wide}})
+    assert cause_text(backlash) == "Backlash on delta 2, width 10 µm (9 µm … 11 µm)"
+    share = {"relative": Parameter(value=0.146, low=0.145, high=0.147, unit="1")}
+    cause = FRICTION.model_copy(update={"effect": "torque_constant", "parameters": share})
+    assert headline(verdict("attributed", causes=[cause])) == "Torque constant on delta 2, 14.6 %: 98 % of the gap."
 
 
 def test_the_headline_says_what_the_rest_is():
@@ -103,6 +114,7 @@ def test_the_headline_says_what_the_rest_is():
 def test_the_command_goes_on_from_the_verdict():
     assert command(verdict("attributed", causes=[FRICTION]), True, "c")[0].startswith("sher3 gap apply gap/c/")
     assert command(verdict("outside_library", unexplained=LEFT), True, "c")[0].startswith("sher3 gap discover c ")
+    assert command(verdict("attributed", causes=[FRICTION]), True, "c", "out")[0].startswith("sher3 gap apply out/")
     assert command(Verdict(status="no_gap"), True, "c") is None
 
 

@@ -36,9 +36,9 @@ def test_scatter_is_the_spread_between_excitations_over_that_of_repeats():
 
 def test_a_lone_excitation_or_no_coefficient_says_nothing():
     one = Steadiness(("a", "a"), np.ones((2, 1, 1)), np.ones((2, 1)))
-    assert one.scatter == 1.0
+    assert (one.scatter, one.lost, one.comparable) == (1.0, None, False)
     none = Steadiness(("a", "b"), np.zeros((2, 0, 0)), np.zeros((2, 0)))
-    assert (none.scatter, none.lost) == (1.0, 0.0)
+    assert (none.scatter, none.lost, none.comparable) == (1.0, None, False)
 
 
 def test_an_excitation_that_alone_shows_the_cause_is_not_left_out():

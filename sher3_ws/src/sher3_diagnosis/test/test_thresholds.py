@@ -32,6 +32,7 @@ def test_every_threshold_is_documented():
 ARGUED = {
     "MIN_RUNS": "a resample of four runs has too few distinct ones",
     "JACKKNIFE": "a quantile of Student's t",
+    "NORMAL": "a quantile of the normal distribution",
     "REGIME_SAMPLES": "words only",
     "STANDS_OUT": "words only",
     "REGIME_GAP": "words only",

@@ -23,12 +23,13 @@ Say = Callable[[str], None]
 
 @dataclass(frozen=True)
 class Task:
-    """One case to diagnose; paths as the worker sees them."""
+    """One case to diagnose; paths as the worker sees them, `folder` as the user named where the answer goes."""
 
     case: Path
     robot: Path | None = None
     without: tuple[str, ...] = ()
     report: bool = True
+    folder: str = ""
 
 
 @dataclass(frozen=True)
@@ -54,10 +55,14 @@ def answer(task: Task, say: Say = lambda _: None) -> Answer:
     lines = five_lines(found.verdict, found.machine.reporter().simulated, rests)
     if not task.report:
         return Answer(task, found.verdict, lines)
+    say("writing the report")
+    return Answer(task, found.verdict, lines, _page(found, task))
+
+
+def _page(found: Diagnosis[Any], task: Task) -> str:
     from sher3_diagnosis.report.page import render
 
-    say("writing the report")
-    return Answer(task, found.verdict, lines, render(found, task.case.resolve().name))
+    return render(found, task.case.resolve().name, folder=task.folder, case=str(task.case))
 
 
 def diagnosed(task: Task, say: Say) -> Diagnosis[Any]:

@@ -37,7 +37,7 @@ def diagnose(
     with reported(as_json):
         add_library(own or [])
         target, left_out = folders(case, out), check_effects(without or [])
-        tasks = [Task(c, robot, left_out, report) for c in case]
+        tasks = [Task(c, robot, left_out, report, str(target[c])) for c in case]
         data: list[dict[str, Any]] = []
         with progress(len(tasks)) as (say, done):
             for found in run_on_dask(tasks, dask) if dask else run_here(tasks, jobs, say):

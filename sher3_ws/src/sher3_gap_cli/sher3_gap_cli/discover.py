@@ -52,7 +52,8 @@ def discover(
             from sher3_diagnosis.report.page import render
 
             out.mkdir(parents=True, exist_ok=True)
-            (out / REPORT_FILE).write_text(render(diagnosis, case.resolve().name, found), encoding="utf-8")
+            page = render(diagnosis, case.resolve().name, found, case=str(case))
+            (out / REPORT_FILE).write_text(page, encoding="utf-8")
     saved = str(save) if save is not None and found.claimed else None
     if as_json:
         typer.echo(json.dumps({"case": str(case), "saved": saved, **found_data(found)}))

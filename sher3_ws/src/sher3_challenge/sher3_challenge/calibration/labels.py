@@ -34,7 +34,7 @@ def answer_of(seen: Observation, item: Row, whole: Observation) -> str | None:
     if status == "no_gap":
         return NO_GAP
     if named in company(seen) or (status == "under_excited" and named in seen.truth["rivals"]):
-        return LIBRARY if not seen.without else None
+        return None if seen.without or status == "outside_library" else LIBRARY
     if status == "outside_library":
         return OUTSIDE
     if seen.without:

@@ -111,7 +111,7 @@ def _oracles(plan: CasePlan, plant: Plant, runs: list[Run]) -> tuple[dict[str, S
     chosen = distinct_runs(plan)
     reference = nominal_residuals(robot, plan.truth.name, plan.climate, chosen)
     faulty = excess(ideal_residuals(plant, chosen), reference)
-    own = excess(ideal_residuals(plan.healthy(robot), chosen), reference)
+    own = excess(ideal_residuals(plan.healthy(robot), chosen), reference) if plan.faults else faulty
     measured = floors(runs, [stage_residuals(run, robot) for run in runs], robot)
     # A stage that no repeated excitation shows has the floor of another robot.
     every = oracle({**reference_floor(robot, plan.truth.name), **measured}, faulty, own)

@@ -52,19 +52,31 @@ def tilt_angle(robot: Robot, q: Array) -> Array:
     return np.asarray(np.arcsin(k / np.hypot(x, e)) - np.arctan2(e, x))
 
 
+def turned(robot: Robot, q: Array, rolled: Any, tilted: Any) -> Array:
+    """Return (n, 3) a point of the roll part plus a vector of the tilt part, both (3,), turned as q (n, 5) says.
+
+    Written out, because most of a case's cost would be products of rotations: the tilt about y, then the roll about x.
+    """
+    a, b = q[:, 3], tilt_angle(robot, q[:, 4])
+    x = rolled[0] + np.cos(b) * tilted[0] + np.sin(b) * tilted[2]
+    y = rolled[1] + tilted[1]
+    z = rolled[2] - np.sin(b) * tilted[0] + np.cos(b) * tilted[2]
+    return np.column_stack([x, np.cos(a) * y - np.sin(a) * z, np.sin(a) * y + np.cos(a) * z])
+
+
+def tip_position(robot: Robot, q: Array) -> Array:
+    """Return tip positions (n, 3) in {b} for actuator positions (n, 5)."""
+    arm = robot.arm
+    lifted = platform_centre(robot, q) + np.array([0.0, 0.0, arm.d1])
+    return np.asarray(lifted + turned(robot, q, [arm.d2, 0.0, arm.d3], arm.tool))
+
+
 def tip_pose(robot: Robot, q: Array) -> tuple[Array, Rotation]:
     """Return tip positions (n, 3) in {b} and rotations for actuator positions (n, 5)."""
-    arm = robot.arm
     roll = Rotation.from_rotvec(np.column_stack([q[:, 3], np.zeros((len(q), 2))]))
     angle = tilt_angle(robot, q[:, 4])
-    rotation = roll * Rotation.from_rotvec(np.column_stack([np.zeros(len(q)), angle, np.zeros(len(q))]))
-    tip = (
-        platform_centre(robot, q)
-        + np.array([0.0, 0.0, arm.d1])
-        + roll.apply([arm.d2, 0.0, arm.d3])
-        + rotation.apply(arm.tool)
-    )
-    return tip, rotation
+    tilt = Rotation.from_rotvec(np.column_stack([np.zeros(len(q)), angle, np.zeros(len(q))]))
+    return tip_position(robot, q), roll * tilt
 
 
 def tip_jacobian(robot: Robot, q: Array, step: float = 1e-6) -> Array:
@@ -74,19 +86,16 @@ def tip_jacobian(robot: Robot, q: Array, step: float = 1e-6) -> Array:
         ahead, behind = q.copy(), q.copy()
         ahead[:, j] += step
         behind[:, j] -= step
-        columns.append((tip_pose(robot, ahead)[0] - tip_pose(robot, behind)[0]) / (2 * step))
+        columns.append((tip_position(robot, ahead) - tip_position(robot, behind)) / (2 * step))
     return np.stack(columns, axis=2)
 
 
 def potential(robot: Robot, q: Array) -> Array:
     """Return (n,) the potential energy [J] of platform, roll part and tilt part, each on its own axes."""
     arm = robot.arm
-    roll = Rotation.from_rotvec(np.column_stack([q[:, 3], np.zeros((len(q), 2))]))
-    angle = tilt_angle(robot, q[:, 4])
-    turned = roll * Rotation.from_rotvec(np.column_stack([np.zeros(len(q)), angle, np.zeros(len(q))]))
     height = robot.delta.moving_mass * platform_centre(robot, q)[:, 2]
-    height = height + arm.roll_mass * roll.apply(arm.roll_com)[:, 2]
-    height = height + arm.tilt_mass * (roll.apply([arm.d2, 0.0, arm.d3]) + turned.apply(arm.tilt_com))[:, 2]
+    height = height + arm.roll_mass * turned(robot, q, arm.roll_com, [0.0, 0.0, 0.0])[:, 2]
+    height = height + arm.tilt_mass * turned(robot, q, [arm.d2, 0.0, arm.d3], arm.tilt_com)[:, 2]
     return np.asarray(GRAVITY * height)
 
 

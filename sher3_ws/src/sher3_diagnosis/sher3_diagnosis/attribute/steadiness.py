@@ -74,21 +74,29 @@ class Steadiness:
         return max(self.varying, 0.0) / (kinds - 1) / per_repeat
 
     @property
-    def lost(self) -> float:
-        """Share of what the cause explains that is lost in excitations left out of its fit; 0 where it transfers."""
-        if self.right.shape[1] == 0 or self.explained <= 0.0:
-            return 0.0
+    def comparable(self) -> bool:
+        """Whether there are coefficients that could differ, and more than one excitation in which they could."""
+        return self.right.shape[1] > 0 and len(set(self.excitation)) > 1
+
+    @property
+    def lost(self) -> float | None:
+        """Share of what the cause explains that is lost in excitations left out of its fit; 0 where it transfers.
+
+        None where nothing tells: no coefficients, or no excitation without which the others show the cause.
+        """
+        if not self.comparable or self.explained <= 0.0:
+            return None
         all_normal, all_right = self.normal.sum(axis=0), self.right.sum(axis=0)
         together = solve(all_normal, all_right)
-        lost = 0.0
-        for name in set(self.excitation):
+        lost = []
+        for name in sorted(set(self.excitation)):
             mine = [e == name for e in self.excitation]
             a, b = self.normal[mine].sum(axis=0), self.right[mine].sum(axis=0)
             if np.trace(all_normal - a) < INFORMED * np.trace(all_normal):
                 continue
             apart = solve(all_normal - a, all_right - b)
-            lost += max(0.0, _explained(a, b, together) - _explained(a, b, apart))
-        return lost / self.explained
+            lost.append(max(0.0, _explained(a, b, together) - _explained(a, b, apart)))
+        return sum(lost) / self.explained if lost else None
 
 
 def _explained(normal: Array, right: Array, coefficients: Array) -> float:

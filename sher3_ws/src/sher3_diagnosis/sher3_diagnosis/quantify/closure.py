@@ -10,7 +10,7 @@ from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import Fit
 from sher3_diagnosis.localise.gaps import PARTS
-from sher3_diagnosis.thresholds import IDEALISED, MIN_RUNS, PIECES, SHOWN
+from sher3_diagnosis.thresholds import MIN_RUNS, PIECES, SHOWN
 from sher3_diagnosis.verdict import Interval
 
 RESAMPLES = 400
@@ -44,6 +44,22 @@ def closure(evidence: Evidence, channel: Channel, before: Fit, after: Fit) -> In
 
     At the tip the position counts, as the contract's closure does.
     """
+    found = interval_of(_rows(evidence, channel, before, after))
+    return up_to_whole(found) if len(after.terms) > len(before.terms) else found
+
+
+def up_to_whole(found: Interval) -> Interval:
+    """Return the closure that the causes' own laws may have, of which those of the pages are idealisations.
+
+    What the pages leave the causes' own laws close: on labelled cases the closure of the true law lay higher by just
+    the share left, and a free function of the law's inputs found only a part of that. So nothing measured says that a
+    cause closes less than all, and the interval is bounded below alone.
+    """
+    return found if found.high is None else found.model_copy(update={"high": 1.0})
+
+
+def _rows(evidence: Evidence, channel: Channel, before: Fit, after: Fit) -> Array:
+    """Return (pieces, 3) loss before and after and floor of every run, or piece of a run, that shows a channel."""
     old, new = (residual_after(evidence, f, channel) for f in (before, after))
     repeats = zeros_floor(evidence, channel)
     cuts = 1 if len(old) >= MIN_RUNS else PIECES  # where few runs show the channel, their pieces are resampled
@@ -56,7 +72,7 @@ def closure(evidence: Evidence, channel: Channel, before: Fit, after: Fit) -> In
         base = max(1.0, repeats / float(np.mean(floor**2)))
         pieces = zip(*(np.array_split(x, cuts) for x in left), strict=True)
         rows += [[np.mean(x**2) for x in piece] + [base] for piece in pieces if len(piece[0])]
-    return interval_of(np.array(rows))
+    return np.array(rows)
 
 
 def zeros_floor(evidence: Evidence, channel: Channel) -> float:
@@ -93,8 +109,7 @@ def interval_of(rows: Array) -> Interval:
     if len(draws) < RESAMPLES // 4:
         return Interval(value=value)
     low, high = np.percentile(draws, [2.5, 97.5])
-    low, high = min(low, 1.0 - row[1] / row[0]), max(high, value + IDEALISED)
-    return Interval(value=value, low=float(low), high=float(min(1.0, high)))
+    return Interval(value=value, low=float(min(low, 1.0 - row[1] / row[0], value)), high=float(max(high, value)))
 
 
 def _gap(row: Array) -> float:

@@ -54,17 +54,28 @@ class Local:
         start = self.own.stop - len(self.names)
         return dict(zip(self.names, map(float, change[start : self.own.stop]), strict=True))
 
-    def error(self, gradient: Array) -> float:
-        """Return the standard error of a parameter with this gradient (p_own,).
+    def noise(self, gradient: Array) -> float:
+        """Return the standard error that noise at the floor and deviations within tolerance give a parameter.
 
-        Noise at the floor and deviations within tolerance, and the scatter over every way to cut the data.
+        Args:
+            gradient: (p_own,) of the parameter.
         """
-        direction = self._inverse[:, self.own] @ gradient
-        variance = float(gradient @ direction[self.own])
-        for scores in self.scores:
-            pieces = len(scores)
-            variance += float(np.sum((scores @ direction) ** 2)) * pieces / max(pieces - 1, 1)
-        return float(np.sqrt(max(variance, 0.0)))
+        return float(np.sqrt(max(float(gradient @ self._direction(gradient)[self.own]), 0.0)))
+
+    def scatter(self, gradient: Array) -> float:
+        """Return the standard error of a parameter by its scatter over every way to cut the data.
+
+        Args:
+            gradient: (p_own,) of the parameter.
+        """
+        direction = self._direction(gradient)
+        counts = (len(scores) for scores in self.scores)
+        squares = (float(np.sum((scores @ direction) ** 2)) for scores in self.scores)
+        return float(np.sqrt(sum(s * n / max(n - 1, 1) for s, n in zip(squares, counts, strict=True))))
+
+    def _direction(self, gradient: Array) -> Array:
+        out: Array = self._inverse[:, self.own] @ gradient
+        return out
 
 
 def local(evidence: Evidence, fit: Fit, index: int) -> Local:

@@ -1,7 +1,8 @@
 """Parameters of a cause with their intervals, measured from how its fit scatters over pieces of the data.
 
-Where noise averages out, what is left is the law being an idealisation: it wants another size in each piece. Deviations
-of the machine within tolerance move a parameter too, and are known up to their prior.
+Noise and deviations of the machine within tolerance move a parameter by what their size says. Where noise averages out,
+what is left is the law being an idealisation: it wants another size in each piece, and it leaves a share of its gap. A
+law that is right leaves nothing, and its parameter is narrow.
 """
 
 from __future__ import annotations
@@ -10,12 +11,13 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from sher3_diagnosis.attribute.rivals import without_term
 from sher3_diagnosis.channel import Array
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import Fit
 from sher3_diagnosis.fit.term import Term
 from sher3_diagnosis.quantify.local import Local, local
-from sher3_diagnosis.thresholds import BEYOND, JACKKNIFE, MIN_RUNS
+from sher3_diagnosis.thresholds import BEYOND, JACKKNIFE, MIN_RUNS, MISFIT, NORMAL
 from sher3_diagnosis.verdict import Parameter
 
 STEP = 1e-4
@@ -30,10 +32,11 @@ def parameters(evidence: Evidence, fit: Fit, index: int) -> dict[str, Parameter]
     term, best = fit.terms[index], fit.of(index)
     bounded = len(fit.loro_coefficients) >= MIN_RUNS
     around = local(evidence, fit, index) if bounded else None
+    misfit = MISFIT * left_share(evidence, fit, index) ** 0.5
     told = term.effect.measured(evidence.views, term.site, term.shape)
     out: dict[str, Parameter] = {}
     for name, x in term.effect.parameters(term.shape, best).items():
-        half = None if around is None or name in term.effect.discrete else _half_width(term, best, around, name)
+        half = None if around is None or name in term.effect.discrete else _half_width(term, best, around, name, misfit)
         if name in told and half is not None:
             x, half = told[name].value, max(half, JACKKNIFE * told[name].error)
         unit = term.effect.unit(name, term.site, term.site in evidence.rotary)
@@ -42,12 +45,23 @@ def parameters(evidence: Evidence, fit: Fit, index: int) -> dict[str, Parameter]
     return out
 
 
-def _half_width(term: Term, best: Array, around: Local, name: str) -> float | None:
-    """Half width of a parameter's interval; None where nothing that was fitted moves it."""
+def left_share(evidence: Evidence, fit: Fit, index: int) -> float:
+    """Return the share of its gap, above the floor and on held-out runs, that a cause leaves: 0 to 1."""
+    without = without_term(evidence, fit, index)
+    gap, left = (sum(max(evidence.excess(c, f), 0.0) for c in fit.terms[index].channels) for f in (without, fit))
+    return min(1.0, left / gap) if gap > 0.0 else 1.0
+
+
+def _half_width(term: Term, best: Array, around: Local, name: str, misfit: float) -> float | None:
+    """Half width of a parameter's interval; None where nothing that was fitted moves it.
+
+    `misfit` is the relative error that what the law leaves may hide in its parameters.
+    """
     gradient = _gradient(term, best, around.names, name)
     if not gradient.any():
         return None
-    return BEYOND * around.error(gradient)
+    value = term.effect.parameters(term.shape, best)[name]
+    return float(np.hypot(NORMAL * around.noise(gradient), BEYOND * np.hypot(around.scatter(gradient), misfit * value)))
 
 
 def _gradient(term: Term, best: Array, names: tuple[str, ...], name: str) -> Array:

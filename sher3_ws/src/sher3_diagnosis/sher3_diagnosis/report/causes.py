@@ -10,7 +10,7 @@ from sher3_diagnosis.diagnosis import Diagnosis
 from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.finding import Finding
 from sher3_diagnosis.localise.pattern import Pattern, pattern_of
-from sher3_diagnosis.report.summary import significant
+from sher3_diagnosis.report.summary import significant, told
 from sher3_diagnosis.reporter import Isolability
 from sher3_diagnosis.verdict import Cause, Parameter
 from sher3_diagnosis.words import listed, place, quantity, range_text, share, words
@@ -92,18 +92,23 @@ def _card(
         explanation="" if effect is None else effect.explanation,
         closure=share(cause.closure.value),
         interval="interval: too few runs" if low is None else f"95 %: {share(low)} … {share(high)}",
-        parameters=[
-            (name.replace("_", " "), quantity(p.value, p.unit), _interval(p))
-            for name, p in sorted(cause.parameters.items(), key=lambda x: not significant(x[1]))
-        ],
+        parameters=_parameters(cause, frozenset() if effect is None else effect.discrete),
         rivals=rivals,
         alike=sorted(words(e) for e in alike),
         pattern=pattern,
     )
 
 
-def _interval(p: Parameter) -> str:
-    """Return a parameter's interval, and whether it holds zero."""
+def _parameters(cause: Cause, choices: frozenset[str]) -> list[tuple[str, str, str]]:
+    """Return (name, value, interval) in words, those that differ from zero first."""
+    ranked = sorted(told(cause).items(), key=lambda x: not significant(x[1]))
+    return [(n.replace("_", " "), quantity(p.value, p.unit), _interval(p, n in choices)) for n, p in ranked]
+
+
+def _interval(p: Parameter, choice: bool) -> str:
+    """Return a parameter's interval, and whether it holds zero; of a choice that it is one."""
+    if choice:
+        return "a choice"
     return range_text(p.low, p.high, p.unit) + ("" if significant(p) else ", not told from zero")
 
 

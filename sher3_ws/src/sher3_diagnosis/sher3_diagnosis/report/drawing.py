@@ -32,13 +32,13 @@ STYLE: dict[Any, Any] = {
 }
 """Matplotlib settings in force while a report is drawn."""
 ABOVE: dict[str, Any] = {
-    "loc": "lower right",
-    "bbox_to_anchor": (1.0, 0.99),
+    "loc": "lower left",
+    "bbox_to_anchor": (0.0, 0.99),
     "ncols": 3,
     "fontsize": 8,
     "borderpad": 0.1,
 }
-"""A legend above its axes, where it hides no line."""
+"""A legend above its axes, where it hides no line, and on the left, where a narrow screen begins to show it."""
 MARGINS: dict[str, Any] = {"x": 0.005, "y": 0.06}
 """Room around the lines, as shares of the axes."""
 

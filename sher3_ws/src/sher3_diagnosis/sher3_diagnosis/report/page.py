@@ -22,17 +22,25 @@ from sher3_diagnosis.words import place, words
 TEMPLATE = "template.html"
 
 
-def render(diagnosis: Diagnosis, title: str, found: Discovery | None = None) -> str:
-    """Return the report of a diagnosis, with a discovered formula if one was looked for, as one HTML page without
-    external resources.
+def render(diagnosis: Diagnosis, title: str, found: Discovery | None = None, folder: str = "", case: str = "") -> str:
+    """Return the report of a diagnosis as one HTML page without external resources.
+
+    Args:
+        diagnosis: of any machine.
+        title: name of the case.
+        found: a discovered formula, if one was looked for.
+        folder: where the verdict is written; default `gap/<title>`.
+        case: folder of the case; default its name.
     """
     loader = jinja2.PackageLoader("sher3_diagnosis", "report")
     environment = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True)
     with rc_context(STYLE):
-        return environment.get_template(TEMPLATE).render(found=_formula(found), **_sections(diagnosis, title))
+        return environment.get_template(TEMPLATE).render(
+            found=_formula(found), **_sections(diagnosis, title, folder, case or title)
+        )
 
 
-def _sections(diagnosis: Diagnosis, title: str) -> dict[str, object]:
+def _sections(diagnosis: Diagnosis, title: str, folder: str, case: str) -> dict[str, object]:
     verdict, reporter = diagnosis.verdict, diagnosis.machine.reporter()
     parts = [f.evidence for f in diagnosis.findings]
     isolability = reporter.isolability(parts)
@@ -43,7 +51,7 @@ def _sections(diagnosis: Diagnosis, title: str) -> dict[str, object]:
         headline=headline(verdict, rests),
         lines=five_lines(verdict, reporter.simulated, rests),
         picture=reporter.picture(diagnosis),
-        command=command(verdict, reporter.simulated, title),
+        command=command(verdict, reporter.simulated, case, folder),
         data=reporter.data(parts),
         held_out=reporter.held_out,
         simulated=reporter.simulated,

@@ -54,11 +54,20 @@ def five_lines(
 def cause_text(cause: Cause) -> str:
     """Return a cause with every parameter that differs from zero, and its rivals."""
     text = f"{words(cause.effect)} on {place(cause.actuator)}"
-    for name, p in cause.parameters.items():
+    for name, p in told(cause).items():
         if significant(p):
             text += f", {name.replace('_', ' ')} {quantity(p.value, p.unit)}"
             text += "" if p.low is None else f" ({range_text(p.low, p.high, p.unit)})"
     return text + (f" [or {', '.join(words(r).lower() for r in cause.rivals)}]" if cause.rivals else "")
+
+
+def told(cause: Cause) -> dict[str, Parameter]:
+    """Return the parameters of a cause; of those with one value and interval, the first."""
+    out: dict[str, Parameter] = {}
+    for name, p in cause.parameters.items():
+        if p.low is None or p not in out.values():
+            out[name] = p
+    return out
 
 
 def significant(parameter: Parameter) -> bool:
@@ -75,6 +84,8 @@ def closure_text(value: Interval) -> str:
     return f"{share(value.value)} ({share(value.low)} … {share(value.high)})"
 
 
+SHARES = ("relative", "fraction")
+"""Parameters without a unit that are shares of what the model has."""
 NAMES_OF_PEOPLE = ("coulomb", "stribeck")
 """First words of effects that keep their capital inside a sentence."""
 
@@ -90,9 +101,11 @@ def _name(cause: Cause) -> str:
 
 def _sized(cause: Cause) -> str:
     """Return a cause with the first of its parameters that differs from zero."""
-    first = next((p for p in cause.parameters.values() if significant(p)), None)
-    size = "" if first is None or first.unit == "1" else f", {quantity(first.value, first.unit)}"
-    return f"{_name(cause)}{size}"
+    name, first = next(((n, p) for n, p in cause.parameters.items() if significant(p)), ("", None))
+    if first is None or (first.unit == "1" and name not in SHARES):
+        return _name(cause)
+    size = f"{100.0 * first.value:.3g} %" if first.unit == "1" else quantity(first.value, first.unit)
+    return f"{_name(cause)}, {size}"
 
 
 def _finding(verdict: Verdict) -> str:
@@ -149,15 +162,16 @@ def _closure(verdict: Verdict) -> str:
     return ", ".join(parts) or ("nothing to close" if verdict.status == "no_gap" else "nothing, without a cause")
 
 
-def command(verdict: Verdict, simulated: bool, case: str) -> tuple[str, str] | None:
+def command(verdict: Verdict, simulated: bool, case: str, folder: str = "") -> tuple[str, str] | None:
     """Return the command that goes on from a verdict and what it does; None where there is none.
 
     Args:
         verdict: of the case.
         simulated: as in `five_lines`.
-        case: name of its folder.
+        case: its folder.
+        folder: where the verdict was written; default where `sher3 gap diagnose` writes it.
     """
-    file = f"gap/{case}/verdict.json"
+    file = f"{folder or f'gap/{case}'}/verdict.json"
     if verdict.status == "attributed" and simulated:
         line = f"sher3 gap apply {file} -o corrected.yaml --case {case}"
         return line, "puts the causes into the simulator and prints the gap that is left"

@@ -75,7 +75,7 @@ def _channel(finding: Finding, channel: Channel, reporter: Reporter) -> Trace | 
     found = evidence.data.residuals[run][channel]
     best = _component(found.values[found.ok], evidence.floors[run][channel])
     shown = [r for r in reporter.together(evidence, run) if r in after]
-    lines = _lines(evidence, reporter, channel, shown, best, after)
+    lines = _lines(evidence, reporter, channel, shown, best, after, _acted_on(finding, channel))
     title = f"{words(channel.stage)}, {place(channel.actuator)}"
     if found.values.shape[1] > 1:
         title += f", {COMPONENTS[best]}"
@@ -84,6 +84,12 @@ def _channel(finding: Finding, channel: Channel, reporter: Reporter) -> Trace | 
     if not lines.changed:
         caption += f": real and nominal model alone, {_why_uncorrected(finding, channel)}."
     return Trace(title, caption, _draw(lines, title, reporter.abscissa))
+
+
+def _acted_on(finding: Finding, channel: Channel) -> bool:
+    """Return whether a cause shows on a channel."""
+    found = finding.attribution
+    return any(channel in found.fit.terms[i].channels for i in found.causes)
 
 
 def _why_uncorrected(finding: Finding, channel: Channel) -> str:
@@ -100,8 +106,12 @@ def _lines(
     runs: Sequence[int],
     best: int,
     after: dict[int, Array],
+    acted_on: bool,
 ) -> _Lines:
-    """Collect the lines of one component over the samples that count of these runs, in the order of time."""
+    """Collect the lines of one component over the samples that count of these runs, in the order of time.
+
+    What a fit without a cause changes are deviations within tolerance: no correction, and none is drawn.
+    """
     parts = []
     name = ""
     for run in runs:
@@ -113,7 +123,8 @@ def _lines(
         name = put_out.name
         before = found.values[found.ok][:, best]
         real = before if put_out.values is None else put_out.values[found.ok]
-        parts.append(np.stack([clock[found.ok], real, real - before, real - after[run][:, best]]))
+        left = after[run][:, best] if acted_on else before
+        parts.append(np.stack([clock[found.ok], real, real - before, real - left]))
     together = np.concatenate(parts, axis=1)
     time, real, nominal, corrected = together[:, np.argsort(together[0], kind="stable")]
     floor = float(evidence.floors[runs[0]][channel][best])

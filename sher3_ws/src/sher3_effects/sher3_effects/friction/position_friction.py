@@ -18,7 +18,10 @@ from sher3_effects.view import AxisView
 
 
 class PositionFriction(Page):
-    """F = z (force + a cos kx + b sin kx): odd in the direction of motion, periodic along the stroke."""
+    """F = z (force + a cos kx + b sin kx + second harmonic): odd in the direction of motion, periodic along the stroke.
+
+    Crests and hollows are seldom alike: the second harmonic lets crests be narrower than hollows, or wider.
+    """
 
     id, family, stage = "position_friction", "friction", "motor_mechanics"
     inputs = ("direction", "position")
@@ -26,7 +29,7 @@ class PositionFriction(Page):
     needs = ("lead",)
     best = Best("reversals", "reversals of several amplitudes and speeds separate friction laws")
     extends = ("coulomb_friction",)
-    leaves_out = "the shape of its peaks"
+    leaves_out = "the shape of its peaks, and that no two are alike"
     explanation = (
         "Friction changes along the stroke (seal, guide, ball return): at the same place the extra force has "
         "the opposite sign in the other direction."
@@ -43,11 +46,12 @@ class PositionFriction(Page):
         return [{"wavelength": float(n) * scale, "displacement": 2.5e-3 * scale} for n in self.WAVELENGTHS]
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
-        """Three columns: the mean force and its two quadratures."""
+        """Five columns: the mean force, its two quadratures, and those of the second harmonic."""
         axis = view.row(site)
         z = view.sliding(axis, shape["displacement"])
         phase = 2.0 * np.pi * view.run.smooth[:, axis] / shape["wavelength"]
-        parts = [view.run.to_grid(x) for x in (z, z * np.cos(phase), z * np.sin(phase))]
+        waves = (1.0, *(wave(n * phase) for n in (1, 2) for wave in (np.cos, np.sin)))
+        parts = [view.run.to_grid(z * x) for x in waves]
         return Signature({Channel(self.stage, site): column(*parts)})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:

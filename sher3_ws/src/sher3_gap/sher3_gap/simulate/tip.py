@@ -12,7 +12,7 @@ import numpy as np
 from sher3_description import Robot
 from sher3_diagnosis.channel import Array
 from sher3_diagnosis.fit.fitting import Fit, Term
-from sher3_diagnosis.quantify.closure import interval_of
+from sher3_diagnosis.quantify.closure import interval_of, up_to_whole
 from sher3_diagnosis.thresholds import NO_TIP_GAP
 from sher3_diagnosis.tolerance import NUISANCE
 from sher3_diagnosis.verdict import Cause, Interval
@@ -52,7 +52,8 @@ def tip_closure(evidence: SherEvidence, causes: Sequence[Cause], fit: Fit) -> In
     table = np.array(rows)
     if table[:, 0].mean() < NO_TIP_GAP + float(np.mean(own)):
         return None
-    return interval_of(table)
+    found = interval_of(table)
+    return up_to_whole(found) if causes else found
 
 
 def as_built_share(evidence: SherEvidence, run: int) -> float:

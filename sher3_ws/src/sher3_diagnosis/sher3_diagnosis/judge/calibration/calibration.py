@@ -35,7 +35,7 @@ class Calibration(BaseModel):
         exact: of the causes of an exact stage: whether they are the true ones.
         sharpness: by how much a candidate's probability falls with its unlikeness: exp(-sharpness * unlikeness).
         reach: unlikeness up to which a candidate is in the set of rivals; conformal, so that the true effect of a case
-            like those it was set on is in the set with probability `coverage` at least.
+            like those it was set on is in the set with probability `coverage` at least; never less than `same`.
         same: unlikeness up to which another effect gives the same data.
         provenance: the plants.
     """

@@ -35,8 +35,9 @@ class Logistic(BaseModel):
         return self
 
     def probabilities(self, numbers: Mapping[str, float]) -> dict[str, float]:
-        """Return class -> probability; they add up to one."""
-        x = (np.array([numbers[name] for name in self.inputs]) - self.middle) / self.spread
+        """Return class -> probability; they add up to one. A number that is not there counts as its middle."""
+        middles = zip(self.inputs, self.middle, strict=True)
+        x = (np.array([numbers.get(name, middle) for name, middle in middles]) - self.middle) / self.spread
         score = np.array(self.weights) @ x + self.offset
         share = np.exp(score - score.max())
         return dict(zip(self.classes, (share / share.sum()).tolist(), strict=True))

@@ -35,6 +35,8 @@ class Recorded(Protocol):
 class CauseEvidence:
     """Evidence that one cause of a fit is at work. Shares are of the gap that the other causes leave, less its floor.
 
+    What nothing tells is None: a limit has no coefficient, so that none could differ between excitations.
+
     Attributes:
         left: share left on held-out runs.
         law: share left once its law is a free function of the inputs that the effect's page states.
@@ -54,9 +56,9 @@ class CauseEvidence:
     law: float
     place: float
     anything: float
-    spread: float
+    spread: float | None
     scatter: float
-    lost: float
+    lost: float | None
     mismatch: float
     sibling: float
     ratio: float
@@ -64,8 +66,8 @@ class CauseEvidence:
     idealised: float
 
     def numbers(self) -> dict[str, float]:
-        """Return the evidence by name."""
-        return asdict(self)
+        """Return the evidence by name, without what nothing tells."""
+        return {name: x for name, x in asdict(self).items() if x is not None}
 
 
 def shown_at(evidence: Evidence, term: Term, before: Fit, after: Fit) -> Channel:
@@ -91,7 +93,7 @@ def cause_evidence(evidence: Evidence, attribution: Attribution, index: int) -> 
         law=(left - laws[0] * samples) / gap,
         place=(left - laws[1] * samples) / gap,
         anything=(left - laws[2] * samples) / gap,
-        spread=steady.spread,
+        spread=steady.spread if steady.comparable else None,
         scatter=steady.scatter,
         lost=steady.lost,
         mismatch=1.0 - pattern_of(evidence, found, index).agreement,

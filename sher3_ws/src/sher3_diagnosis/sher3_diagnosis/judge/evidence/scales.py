@@ -7,8 +7,13 @@ from collections.abc import Mapping
 
 LEAST_SHARE = 0.003
 """Share of a gap below which a remainder is none."""
+LEAST_FLOORS = 0.3
+"""Power over the floor below which a remainder is none: a healthy robot as built leaves as much."""
+MOST_POWER = 10.0
+"""Power over its threshold, or of a remainder over the floor, above which there is one beyond doubt: how much larger it
+is tells nothing more."""
 LEAST_LAW = 0.02
-"""Share that own inputs leave below which it does not matter what explains it."""
+"""Share that own inputs leave below which it does not matter what explains it; nor does it below the floor."""
 
 
 def log_above(x: float, least: float) -> float:
@@ -19,7 +24,7 @@ def log_above(x: float, least: float) -> float:
 def scaled_gap(numbers: Mapping[str, float]) -> dict[str, float]:
     """Return what a model reads of a gap without a cause: the larger, the less it comes from elsewhere."""
     return {
-        "power": log_above(numbers["power"], 1.0),
+        "power": log_above(min(numbers["power"], MOST_POWER), 1.0),
         "alone": -max(0.0, numbers["beside"]),
     }
 
@@ -30,15 +35,18 @@ def scaled_exact(closure: float) -> dict[str, float]:
 
 
 def scaled_cause(numbers: Mapping[str, float]) -> dict[str, float]:
-    """Return what a model reads of a cause; the larger a number but the size, the less it speaks for the cause."""
+    """Return what a model reads of a cause; the larger a number but the size, the less it speaks for the cause.
+
+    What nothing tells is not there, so that it speaks neither for the cause nor against it.
+    """
     left, law, anything = (min(max(numbers[name], 0.0), 1.0) for name in ("left", "law", "anything"))
-    return {
+    floors = numbers["ratio"] ** 2  # power of the gap
+    steady = {"spread": log_above(numbers["spread"], 0.001)} if "spread" in numbers else {}
+    return steady | {
         "left": log_above(left, LEAST_SHARE),
         "complete": 0.0 if numbers["idealised"] else log_above(left, LEAST_SHARE) - math.log(LEAST_SHARE),
-        "law": log_above(law, LEAST_SHARE),
-        "foreign": max(0.0, law - anything) / max(law, LEAST_LAW),
-        "spread": log_above(numbers["spread"], 0.001),
-        "lost": log_above(numbers["lost"], 0.001),
+        "floors": log_above(min(left * floors, MOST_POWER), LEAST_FLOORS),
+        "foreign": max(0.0, law - anything) / max(law, LEAST_LAW, 1.0 / max(floors, 1.0)),
         "mismatch": log_above(numbers["mismatch"], 0.01),
         "size": log_above(numbers["ratio"], 1.0),
     }
