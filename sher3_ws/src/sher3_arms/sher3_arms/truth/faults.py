@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -38,6 +38,9 @@ OUTSIDE = ("foreign_cable", "stick_at_place", "heavy_air")
 """Faults that none should know, by callback: torque from the position of another joint, a brake within a narrow range
 of positions, drag with the cube of speed."""
 HEALTHY = "healthy"
+ORDER = (*KINDS, COMPOUND, COMPOUND, HEALTHY, HEALTHY, HEALTHY, *OUTSIDE, OUTSIDE[0])
+"""Kinds of fault as seeds take them in turn: of twenty cases eleven are single, two compound, three healthy, four not in
+any library."""
 
 
 @dataclass(frozen=True)
@@ -140,11 +143,3 @@ def passive(fault: Fault, q: np.ndarray, v: np.ndarray, drive: np.ndarray) -> np
     elif fault.kind == "heavy_air":
         out[j] = -fault.size * v[j] ** 3
     return out
-
-
-def dealt(seeds: Sequence[int]) -> Mapping[int, str]:
-    """Return the kind of fault of each seed: of twenty cases eleven are single, two compound, three healthy, four not
-    in any library.
-    """
-    order = (*KINDS, COMPOUND, COMPOUND, HEALTHY, HEALTHY, HEALTHY, *OUTSIDE, OUTSIDE[0])
-    return {seed: order[seed % len(order)] for seed in seeds}

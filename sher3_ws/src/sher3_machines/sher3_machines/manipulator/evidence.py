@@ -6,17 +6,16 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from sher3_diagnosis.channel import Array, Channel, Floors, Residual, Residuals
+from sher3_diagnosis.channel import Array, Channel, Residual, Residuals
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.whitened import Whitened
-from sher3_diagnosis.localise.floors import repeat_floors
 
 from sher3_machines.axes.evidence import blocks_of
-from sher3_machines.axes.floors import NOTHING, UNIFORM, foresight, innovation
 from sher3_machines.axes.quantities.own_unit import RECORDED
 from sher3_machines.axes.record import AxesRun
 from sher3_machines.errors import MachineError
 from sher3_machines.manipulator.description import ManipulatorDescription
+from sher3_machines.manipulator.floors import floors_of
 from sher3_machines.manipulator.gains import Share, share_of
 from sher3_machines.manipulator.identify import with_identified_inertias
 from sher3_machines.manipulator.model import ArmModel
@@ -81,7 +80,8 @@ def gather_arm_motion(
     signals = [joint_signals(run, described, "repeats" if repeats else run.name) for run in runs]
     plain = [MotionView(s, described.joints, model, coupling, np.ones(n)) for s in signals]
     found = {name: share_of(plain, name) for name in judged}
-    turned = tuple(name for name in judged if found[name].backwards)
+    stated = {j.name for j in described.joints if j.gain != "unknown"}
+    turned = tuple(name for name in judged if found[name].opposite(name in stated))
     if turned:
         signs = np.array([-1.0 if j.name in turned else 1.0 for j in described.joints])
         signals = [replace(s, effort=s.effort * signs) for s in signals if s.effort is not None]
@@ -96,7 +96,7 @@ def gather_arm_motion(
     residuals = [_residuals(view, judged) for view in views]
     if not any(residuals):
         raise MachineError("no joint can be judged", value="0 joints", remedy="record efforts while the joints move")
-    floors = _floors(views, residuals, repeats)
+    floors = floors_of(views, residuals, repeats)
     per_record = -(-BLOCKS // len(views))
     blocks = [(r, block) for r, x in enumerate(residuals) for block in blocks_of(x, per_record)]
     seen = tuple(j for j in judged if any(channel_of(j) in x for x in residuals))
@@ -159,20 +159,3 @@ def _residuals(view: MotionView, judged: Sequence[str]) -> Residuals:
         if run.load is not None and np.isfinite(run.load[:, row]).all():
             out[between(joint)] = Residual(run.to_grid(run.load[:, [row]] - run.motor[:, [row]]), run.inner)
     return {channel: x for channel, x in out.items() if x.ok.sum() >= BLOCKS}
-
-
-def _floors(views: Sequence[MotionView], found: Sequence[Residuals], repeats: bool) -> list[Floors]:
-    """Floor per record and channel: between repeats, else what cannot be foreseen; never below a step of the effort."""
-    pooled = repeat_floors([view.excitation for view in views], found) if repeats else {}
-    out = []
-    for view, residuals in zip(views, found, strict=True):
-        floors: Floors = {}
-        told = foresight(view.run)
-        for channel, x in residuals.items():
-            joint = view.joints[view.row(channel.actuator)]
-            step = joint.effort_resolution / UNIFORM
-            if channel.stage == "transmission":
-                step = np.sqrt(2.0) * joint.encoder_resolution / UNIFORM
-            floors[channel] = np.maximum(pooled.get(channel, innovation(x) / told), max(step, NOTHING))
-        out.append(floors)
-    return out

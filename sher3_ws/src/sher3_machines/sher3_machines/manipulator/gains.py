@@ -21,6 +21,9 @@ from sher3_machines.thresholds import BLOCKS, LEAST_EXCITED
 DAHL_SHARE = 2.5e-3
 """Displacement over which dry friction builds up, in shares of the lead: the middle one that the effects search."""
 
+WRONG_SIGN = 2.0
+"""Factor by which the share of a stated gain may be off minus one where its sign alone is wrong."""
+
 
 class Share(NamedTuple):
     """Units of the recorded effort per newton metre; 0 where the motion does not tell it.
@@ -38,6 +41,14 @@ class Share(NamedTuple):
     def turned(self) -> Share:
         """Return the share of the effort with its sign put right."""
         return Share(abs(self.value), self.error, self.backwards)
+
+    def opposite(self, stated: bool) -> bool:
+        """Return whether the sign is to be turned.
+
+        With a stated gain a wrong sign alone makes the share about minus one; another one below zero is a force that
+        the model lacks, such as that of a payload on a light joint.
+        """
+        return self.backwards and (not (stated and self.told) or 1.0 / WRONG_SIGN < -self.value < WRONG_SIGN)
 
     @property
     def told(self) -> bool:

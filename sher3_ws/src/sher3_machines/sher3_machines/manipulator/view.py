@@ -167,7 +167,12 @@ class MotionView:
     @cached_property
     def inertia(self) -> Array:
         """Inertia that each joint moves in the middle posture, (k,)."""
-        return self.shares * self.model.inertia_at(np.median(self._joint_position, axis=0))
+        return self.shares * np.diag(self.model.inertia_matrix(np.median(self._joint_position, axis=0)))
+
+    def inertia_matrix(self, sample: int) -> Array:
+        """Return motor force by motor acceleration in the posture of a sample of the residual grid, (k, k)."""
+        back = np.linalg.inv(self.coupling)
+        return np.asarray(back.T @ self.model.inertia_matrix(self._joint_position[sample]) @ back)
 
     # which samples can be judged
 
