@@ -89,7 +89,7 @@ def identified(folder: Path) -> Identified:
 
 
 def tools() -> tuple[Any, Any]:
-    """Return MuJoCo and `mujoco.sysid`; raises ArmsError where the latter is not installed, or not with all it needs."""
+    """Return MuJoCo and `mujoco.sysid`; raises ArmsError where the latter, or a library it needs, is not installed."""
     missing = ArmsError("mujoco.sysid is not installed", remedy="install the extra: pip install 'sher3[sysid]'")
     try:
         api, sysid = import_module("mujoco"), import_module("mujoco.sysid")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,7 +15,7 @@ from sher3_arms.truth.faults import ORDER, Fault, deal
 from sher3_arms.truth.robots import urdf_of
 from sher3_arms.truth.world import COUNT, inertias, inverse, load, motion, record
 
-DRAWS = 20
+DRAWS = 50
 """Faults drawn for a case at most, until the arm follows its motion in spite of one."""
 SIZING = 20.0
 """Seconds of a motion from which the size of a fault is taken."""
@@ -43,9 +44,7 @@ class Label:
     drawn: int = 1
 
 
-def seal(
-    seed: int, robots: Sequence[str], folder: Path, seconds: float, kinds: Sequence[str] = ORDER
-) -> Label:
+def seal(seed: int, robots: Sequence[str], folder: Path, seconds: float, kinds: Sequence[str] = ORDER) -> Label:
     """Write the case of a seed into a new folder and return its label; arms and kinds of fault are taken in turn.
 
     A fault under which the arm does not follow its motion is drawn again: nobody keeps such a record.
@@ -60,16 +59,14 @@ def seal(
     torque = np.sqrt(np.mean(inverse(nominal, q, v, a) ** 2, axis=0))
     speed = np.sqrt(np.mean(v**2, axis=0))
     kind, inertia = kinds[seed % len(kinds)], inertias(nominal, q[0])
-    for drawn in range(1, DRAWS + 1):
-        fault = deal(rng, kind, torque, speed, inertia)
-        try:
+    drawn, found = 0, None
+    while found is None:
+        if drawn == DRAWS:
+            text = f"seed {seed}: {robot} is unstable with every {kind}"
+            raise ArmsError(text, value=f"{DRAWS} draws", remedy="choose another seed or arm")
+        drawn, fault = drawn + 1, deal(rng, kind, torque, speed, inertia)
+        with suppress(Unstable):
             found = record(urdf, fault, seconds, rng)
-            break
-        except Unstable:
-            continue
-    else:
-        remedy = "choose another seed or arm"
-        raise ArmsError(f"seed {seed}: {robot} is unstable with every {kind}", value=f"{DRAWS} draws", remedy=remedy)
     arrays = {"time": found.time, "position": found.position, "effort": found.effort, "link": found.link}
     write_case(folder, urdf, found.names, arrays, COUNT, found.noise)
     if fault.joint < 0:

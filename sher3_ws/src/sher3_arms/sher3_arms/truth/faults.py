@@ -39,8 +39,8 @@ OUTSIDE = ("foreign_cable", "stick_at_place", "heavy_air")
 of positions, drag with the cube of speed."""
 HEALTHY = "healthy"
 ORDER = (*KINDS, COMPOUND, COMPOUND, HEALTHY, HEALTHY, HEALTHY, *OUTSIDE, OUTSIDE[0])
-"""Kinds of fault as seeds take them in turn: of twenty cases eleven are single, two compound, three healthy, four not in
-any library."""
+"""Kinds of fault as seeds take them in turn: of twenty cases eleven are single, two compound, three healthy, four in no
+library."""
 
 
 @dataclass(frozen=True)

@@ -15,10 +15,12 @@ from sher3_machines.axes.quantities.own_unit import RECORDED
 from sher3_machines.axes.record import AxesRun
 from sher3_machines.errors import MachineError
 from sher3_machines.manipulator.description import ManipulatorDescription
+from sher3_machines.manipulator.encoders import links_of
 from sher3_machines.manipulator.floors import floors_of
 from sher3_machines.manipulator.gains import Share, share_of
 from sher3_machines.manipulator.identify import with_identified_inertias
 from sher3_machines.manipulator.model import ArmModel
+from sher3_machines.manipulator.readings import without_wrong_loads
 from sher3_machines.manipulator.signals import joint_signals
 from sher3_machines.manipulator.view import MotionView
 from sher3_machines.thresholds import BLOCKS
@@ -35,6 +37,7 @@ class ArmMotionEvidence(Evidence):
         judged: joints whose force balance is looked at.
         shares: joint -> units of its recorded effort per newton metre, where its gain was found from the data.
         turned: joints whose effort was recorded with the opposite sign, and was turned.
+        slips: joint -> times by which its effort is in another scale than its stated gain says; they are not judged.
     """
 
     described: ManipulatorDescription
@@ -43,6 +46,7 @@ class ArmMotionEvidence(Evidence):
     judged: Sequence[str]
     shares: Mapping[str, Share] = field(default_factory=dict)
     turned: Sequence[str] = ()
+    slips: Mapping[str, Share] = field(default_factory=dict)
 
 
 def channel_of(joint: str) -> Channel:
@@ -77,22 +81,30 @@ def gather_arm_motion(
     repeats = described.repeats and len(runs) > 1
     n = len(described.joints)
     coupling = np.asarray(described.coupling if described.coupling is not None else np.eye(n), dtype=float)
-    signals = [joint_signals(run, described, "repeats" if repeats else run.name) for run in runs]
-    plain = [MotionView(s, described.joints, model, coupling, np.ones(n)) for s in signals]
+    read = [without_wrong_loads(run, described) for run in runs]
+    signals = [joint_signals(run, described, "repeats" if repeats else run.name) for run in read]
+    links = [links_of(s, described.joints, model, coupling) for s in signals]
+
+    def seen_by(model: ArmModel, shares: Array) -> list[MotionView]:
+        both = zip(signals, links, strict=True)
+        return [MotionView(s, link, described.joints, model, coupling, shares) for s, link in both]
+
+    plain = seen_by(model, np.ones(n))
     found = {name: share_of(plain, name) for name in judged}
     stated = {j.name for j in described.joints if j.gain != "unknown"}
+    slips = {name: found[name] for name in judged if name in stated and found[name].slipped}
+    judged = [name for name in judged if name not in slips]
     turned = tuple(name for name in judged if found[name].opposite(name in stated))
     if turned:
         signs = np.array([-1.0 if j.name in turned else 1.0 for j in described.joints])
         signals = [replace(s, effort=s.effort * signs) for s in signals if s.effort is not None]
-        plain = [MotionView(s, described.joints, model, coupling, np.ones(n)) for s in signals]
+        plain = seen_by(model, np.ones(n))
     if described.inertias == "identified":
         model = with_identified_inertias(plain, model, judged)
-        plain = [MotionView(s, described.joints, model, coupling, np.ones(n)) for s in signals]
     unknown = [j.name for j in described.joints if j.gain == "unknown" and j.name in judged]
     shares = {name: found[name].turned() for name in unknown}
     factors = np.array([shares[j.name].value if j.name in shares else 1.0 for j in described.joints])
-    views = [MotionView(s, described.joints, model, coupling, factors) for s in signals]
+    views = seen_by(model, factors)
     residuals = [_residuals(view, judged) for view in views]
     if not any(residuals):
         raise MachineError("no joint can be judged", value="0 joints", remedy="record efforts while the joints move")
@@ -115,6 +127,7 @@ def gather_arm_motion(
         judged=seen,
         shares=shares,
         turned=turned,
+        slips=slips,
     )
 
 
@@ -123,28 +136,30 @@ def unit_of_force(own: bool, motion: str) -> str:
     return RECORDED if own else ("N" if motion == "linear" else "N*m")
 
 
-def of_joint(evidence: ArmMotionEvidence, joint: str, beside: Sequence[Mapping[Channel, Array]] = ()) -> Evidence:
-    """Return the evidence for one joint alone.
+def of_channel(
+    evidence: ArmMotionEvidence, channel: Channel, beside: Sequence[Mapping[Channel, Array]] = ()
+) -> Evidence:
+    """Return the evidence of one channel alone.
 
     Args:
         evidence: of the arm.
-        joint: to be looked at.
+        channel: of a joint to be looked at.
         beside: per block, what causes of the whole arm add to the residuals, (g, 1) in SI units; taken off.
     """
-    channel, data = channel_of(joint), evidence.data
+    data = evidence.data
     residuals: list[Residuals] = []
     for r, found in enumerate(data.residuals):
-        own = {c: found[c] for c in channels_of(joint) if c in found}
+        own = {channel: found[channel]} if channel in found else {}
         known = beside[r].get(channel) if beside else None
-        if channel in own and known is not None:
+        if own and known is not None:
             own[channel] = replace(own[channel], values=own[channel].values - known)
         residuals.append(own)
-    floors = [{c: f[c] for c in channels_of(joint) if c in f} for f in data.floors]
+    floors = [{channel: f[channel]} if channel in f else {} for f in data.floors]
     return Evidence(
         excitations=evidence.excitations,
         data=Whitened(data.views, residuals, floors),
         units=evidence.units,
-        places={"axis": (joint,)},
+        places={"axis": (channel.actuator,)},
         rotary=evidence.rotary,
     )
 

@@ -1,4 +1,4 @@
-"""Floors of an arm in motion: between repeats, else what cannot be foreseen; never below what its readings are coarse by.
+"""Floors of an arm in motion: between repeats, else what cannot be foreseen; never below what counts of readings make.
 
 A count of an encoder, differentiated twice, is an acceleration that did not happen, and the arm's inertia makes a force
 of it: on every joint, and with the posture. A median over the record sees the quiet postures alone, so it is reckoned.

@@ -16,7 +16,7 @@ from sher3_diagnosis.fit.fitting import solve
 from sher3_diagnosis.thresholds import JACKKNIFE
 
 from sher3_machines.manipulator.view import MotionView
-from sher3_machines.thresholds import BLOCKS, LEAST_EXCITED
+from sher3_machines.thresholds import BLOCKS, LEAST_EXCITED, SLIPPED, SURELY
 
 DAHL_SHARE = 2.5e-3
 """Displacement over which dry friction builds up, in shares of the lead: the middle one that the effects search."""
@@ -49,6 +49,12 @@ class Share(NamedTuple):
         the model lacks, such as that of a payload on a light joint.
         """
         return self.backwards and (not (stated and self.told) or 1.0 / WRONG_SIGN < -self.value < WRONG_SIGN)
+
+    @property
+    def slipped(self) -> bool:
+        """Whether an effort with a stated gain is so surely in another scale that its unit is wrong and no drive."""
+        size = abs(self.value)
+        return self.told and size > SURELY * self.error and not 1.0 / SLIPPED < size < SLIPPED
 
     @property
     def told(self) -> bool:

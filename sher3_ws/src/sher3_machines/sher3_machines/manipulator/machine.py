@@ -10,12 +10,13 @@ from sher3_diagnosis.attribute.candidates import Candidates
 from sher3_diagnosis.attribute.rivals import Attribution
 from sher3_diagnosis.attribute.search import Left, Say
 from sher3_diagnosis.effect import Effect
-from sher3_diagnosis.finding import Finding
+from sher3_diagnosis.finding import ExactFinding, Finding
 from sher3_diagnosis.machine import Machine, Policy
 from sher3_diagnosis.verdict import Cause
 from sher3_effects import pages
 from sher3_effects.inertia.payload_mass import PayloadOnLink
 from sher3_effects.scale.torque_constant import TorqueConstant
+from sher3_effects.timing.sensor_delay import SensorDelay
 
 from sher3_machines.axes.health import dead_channels
 from sher3_machines.axes.identification.fast import requantified
@@ -29,7 +30,9 @@ from sher3_machines.manipulator.causes import causes_of_arm, centred
 from sher3_machines.manipulator.confounding import SAME, confounding_notes
 from sher3_machines.manipulator.description import ManipulatorDescription
 from sher3_machines.manipulator.evidence import ArmMotionEvidence, gather_arm_motion
+from sher3_machines.manipulator.lateness import late_efforts
 from sher3_machines.manipulator.model import ArmModel
+from sher3_machines.manipulator.readings import level_notes, wrong_readings
 
 if TYPE_CHECKING:
     from sher3_machines.manipulator.reporter import ManipulatorReporter
@@ -72,7 +75,7 @@ class Manipulator(Machine[AxesRun, ArmMotionEvidence]):
         """Return what was done to the data, which channels are dead, and whether floors are known from repeats."""
         notes = [note for run in runs for note in run.notes] + told_together(self._conditions(runs))
         for run in runs:
-            notes += [note for joint in self.described.joints for note in dead_channels(run, joint).values()]
+            notes += [note for joint in self.described.joints for note in wrong_readings(run, joint).values()]
         return notes if self.described.repeats and len(runs) > 1 else [*notes, NO_REPEATS]
 
     def gather(self, runs: Sequence[AxesRun]) -> Sequence[ArmMotionEvidence]:
@@ -85,6 +88,12 @@ class Manipulator(Machine[AxesRun, ArmMotionEvidence]):
         }
         judged = [j.name for j in self.described.joints if j.name not in dead and j.driven]
         return [gather_arm_motion(runs, self.described, self.model, judged)]
+
+    def exact(
+        self, runs: Sequence[AxesRun], evidence: Sequence[ArmMotionEvidence], without: Collection[str]
+    ) -> list[ExactFinding]:
+        """Return the efforts that are late on an arm without any other gap."""
+        return [] if SensorDelay.id in without else [late for part in evidence for late in late_efforts(part)]
 
     def attribute(self, evidence: ArmMotionEvidence, candidates: Candidates, left_over: Left, say: Say) -> Attribution:
         """Choose the causes joint by joint, without and with a payload, and what changed between conditions."""
@@ -122,7 +131,9 @@ class Manipulator(Machine[AxesRun, ArmMotionEvidence]):
                 "and are not looked for"
             )
         notes += change_notes(finding.attribution, self._conditions(evidence.runs))
-        return [*notes, *gain_notes(evidence), *confounding_notes(evidence)]
+        for run in evidence.runs:
+            notes += level_notes(run, self.described.joints, evidence.judged)
+        return [*notes, *slip_notes(evidence), *gain_notes(evidence), *confounding_notes(evidence)]
 
     def reporter(self) -> ManipulatorReporter:
         """Return the part of this machine in a report."""
@@ -160,6 +171,14 @@ def gain_notes(evidence: ArmMotionEvidence) -> list[str]:
         else:
             notes.append(f"{joint}: the motion does not tell the drive gain; weight and inertia are left in the force")
     return notes
+
+
+def slip_notes(evidence: ArmMotionEvidence) -> list[str]:
+    """Return a sentence for each effort in another scale than its stated gain says."""
+    return [
+        f"{joint}: effort is {share.value:.4g} times what the model needs: state its `factor`, or `gain: unknown`"
+        for joint, share in evidence.slips.items()
+    ]
 
 
 def with_hidden(cause: Cause) -> Cause:
