@@ -106,6 +106,11 @@ SURELY = 50.0
 """Standard errors that such a factor must have: a payload on a light joint fits one too, badly. Measured as `DELAYED`:
 18 with 5 standard errors for a payload of 2 kg on the last joint of an arm, 1000 with thousands for a wrong unit."""
 
+LEAST_CLOSURE = 0.02
+"""Share of the gaps of all joints that carry a payload which it must explain: less is what another fault leaves.
+Set by argument: the share by which the engine calls two explanations alike.
+Measure: `pytest sher3_ws/src/sher3_machines/test/manipulator`."""
+
 CONFOUNDED = 0.1
 """Singular value of the stacked columns, each of length one, below which a combination of quantities cannot be seen: a
 change of 10 % of one quantity then hides behind 1 % in power. Set by that argument.

@@ -24,7 +24,7 @@ from sher3_effects.inertia.payload_mass import PayloadOnLink
 
 from sher3_machines.axes.identification.rest import Bounded
 from sher3_machines.manipulator.evidence import ArmMotionEvidence, channels_of, of_channel
-from sher3_machines.thresholds import CAUSES_OF_JOINT
+from sher3_machines.thresholds import CAUSES_OF_JOINT, LEAST_CLOSURE
 
 HEAVIEST = 2.0
 """Mass of a payload over that of the whole arm at most: what is heavier is no body on a link."""
@@ -57,7 +57,7 @@ def causes_of_arm(evidence: ArmMotionEvidence, candidates: Candidates, say: Say)
     if loaded is None:
         return _with_rivals(evidence, candidates, found, None)
     other = _explained(evidence, candidates, loaded, say)
-    best, second = (other, found) if other.cost < found.cost else (found, other)
+    best, second = (other, found) if other.cost < found.cost and closes(evidence, other) else (found, other)
     return _with_rivals(evidence, candidates, best, second)
 
 
@@ -108,6 +108,13 @@ def shows_on_enough(base: Fit, best: Fit) -> bool:
         if channel in gains:
             gains[channel] += base.loss.get((run, channel), loss) - loss
     return sum(gain > NEEDED for gain in gains.values()) >= min(2, len(carrying))
+
+
+def closes(evidence: ArmMotionEvidence, loaded: Explained) -> bool:
+    """Return whether a payload, the first term, shrinks the gaps of joints that carry it by a share worth a name."""
+    carrying = loaded.fit.terms[0].channels
+    gap = sum(loss for (_, channel), loss in evidence.null().loss.items() if channel in carrying)
+    return without_term(evidence, loaded.fit, 0).total - loaded.fit.total > LEAST_CLOSURE * gap
 
 
 def _plain(candidates: Candidates) -> list[Effect]:

@@ -11,11 +11,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from sher3_diagnosis.channel import Array
+from sher3_diagnosis.channel import Array, Mask
 from sher3_effects.operators import dahl
 from sher3_effects.timing.sensor_delay import SensorDelay, shifted
 
-from sher3_machines.axes.identification.noise import noise_of
+from sher3_machines.axes.identification.noise import GAUSSIAN, noise_of
 from sher3_machines.axes.signals import AxisSignals
 from sher3_machines.axes.view import LEAD_OF_STROKE
 from sher3_machines.manipulator.description import Joint
@@ -29,6 +29,11 @@ COUNTS = 3.0
 """Counts by which two encoders must differ, rms, before it matters which of them is believed."""
 SHARE_OF_SAMPLES = 4
 """One sample of the residual grid in so many is looked at to choose between two encoders."""
+FLIGHT = 5.0
+"""Speed of two encoders against each other, over its usual deviation, from which a gap is crossed: a sine of springs or
+delays stays below two."""
+AT_REST = 0.2
+"""Speed of a link over that of the two encoders against each other below which friction holds it."""
 BUILDS_UP = 2.5e-3
 """Share of a lead over which the side of a play builds up."""
 
@@ -74,6 +79,20 @@ def lateness_of_load(run: AxisSignals, row: int) -> float:
     )
     delay = -float(all_of_it[0][0] / length[0])
     return delay if left < DELAYED * before and abs(delay) < SensorDelay.LONGEST else 0.0
+
+
+def crossing(run: AxisSignals, row: int) -> Mask:
+    """Return (g,) True where a link flies across a gap: the two encoders part much faster than they usually do.
+
+    The impact at the end of the flight lasts less than a sample and is in no force balance. Springs and delays part
+    the encoders smoothly, and a link that friction holds is at rest while the motor crosses the gap.
+    """
+    if run.load is None or not np.isfinite(run.load[:, row]).all():
+        return np.zeros(len(run.grid), dtype=bool)
+    parting = np.gradient(run.filtered(run.load[:, [row]] - run.motor[:, [row]])[:, 0], run.period)
+    pace, link = np.abs(parting), np.abs(run.velocity[:, row] + parting)
+    fast = pace > FLIGHT * max(GAUSSIAN * float(np.median(pace)), np.finfo(float).tiny)
+    return np.asarray((fast & (link > AT_REST * pace))[run.grid])
 
 
 def _quiet(run: JointSignals, row: int, joint: Joint) -> bool:

@@ -169,8 +169,8 @@ def _residuals(view: MotionView, judged: Sequence[str]) -> Residuals:
     assert run.effort is not None
     left = run.to_grid(run.effort) - view.inertial
     for joint in judged:
-        row = view.row(joint)
+        row, told = view.row(joint), run.inner & ~view.impacts
         out[channel_of(joint)] = Residual(left[:, [row]], view.in_motion(row))
         if run.load is not None and np.isfinite(run.load[:, row]).all():
-            out[between(joint)] = Residual(run.to_grid(run.load[:, [row]] - run.motor[:, [row]]), run.inner)
+            out[between(joint)] = Residual(run.to_grid(run.load[:, [row]] - run.motor[:, [row]]), told)
     return {channel: x for channel, x in out.items() if x.ok.sum() >= BLOCKS}

@@ -97,8 +97,9 @@ def _delay(x: Array, y: Array) -> float:
 
 def _finding(evidence: ArmMotionEvidence, joint: str, late: Late) -> ExactFinding:
     gap, floor = abs(late.delay) * late.slope, late.half / JACKKNIFE * late.slope
-    left = (late.each - late.delay) * late.slope / floor
-    losses = np.column_stack([(late.each * late.slope / floor) ** 2, left**2, np.ones(BLOCKS)])
+    block = floor * np.sqrt(BLOCKS) / late.slope  # a block alone tells the delay by so much worse
+    left = (late.each - late.delay) / block
+    losses = np.column_stack([(late.each / block) ** 2, left**2, np.ones(BLOCKS)])
     closure, unit = interval_of(losses), evidence.unit(channel_of(joint), 0)
     low, high = late.delay - late.half, late.delay + late.half
     cause = Cause(

@@ -15,10 +15,13 @@ from sher3_effects.view import NominalAxis
 from sher3_machines.axes.signals import AxisSignals
 from sher3_machines.axes.view import LEAD_OF_STROKE, SLIP, STILL, Loads
 from sher3_machines.manipulator.description import Joint
+from sher3_machines.manipulator.encoders import crossing
 from sher3_machines.manipulator.model import PARAMETERS, ArmModel
 from sher3_machines.manipulator.readings import at_a_level
 from sher3_machines.manipulator.signals import JointSignals
 
+AROUND_IMPACT = 2
+"""Samples of the residual grid around one at which a gap is crossed: the filter smears the impact at its end."""
 LINKS_OF_PAYLOAD = 4
 """Leading inertial parameters of a body that a payload changes linearly: its mass, and mass times centre."""
 
@@ -170,7 +173,14 @@ class MotionView:
 
     def in_motion(self, row: int) -> Mask:
         """Return (g,) True where the force balance of a joint can be judged: well inside a stretch of its motion."""
-        return self.run.inner & settled(self.moving[:, row] & ~self.at_a_level[:, row], 1)
+        still = settled(self.moving[:, row] & ~self.at_a_level[:, row], 1)
+        return self.run.inner & still & ~self.impacts
+
+    @cached_property
+    def impacts(self) -> Mask:
+        """(g,) True where the link of any joint flies across a gap; the impact at its end shakes all of them."""
+        flying = np.any([crossing(self.run, row) for row in range(len(self.joints))], axis=0)
+        return ~settled(~flying, AROUND_IMPACT)
 
     @cached_property
     def at_a_level(self) -> Mask:
