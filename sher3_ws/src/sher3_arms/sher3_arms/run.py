@@ -15,7 +15,7 @@ from sher3_arms.answer.identification import identified, tools
 from sher3_arms.errors import ArmsError
 from sher3_arms.score import Scored, names_the_fault, scored
 from sher3_arms.truth.cases import seal
-from sher3_arms.truth.faults import ORDER
+from sher3_arms.truth.faults import CABLE, ORDER
 
 SECONDS = 60.0
 """Length of a record, s."""
@@ -45,9 +45,9 @@ def run_arms(
         ArmsError: the folder exists, no such arm or kind, or MuJoCo, `mujoco.sysid` or the wheel with the arms is
             missing.
     """
-    unknown = [kind for kind in kinds if kind not in ORDER]
+    unknown = [kind for kind in kinds if kind not in (*ORDER, CABLE)]
     if unknown:
-        raise ArmsError("no such kind of fault", value=unknown[0], limit=", ".join(dict.fromkeys(ORDER)))
+        raise ArmsError("no such kind of fault", value=unknown[0], limit=", ".join(dict.fromkeys((*ORDER, CABLE))))
     if beside:
         tools()
     if folder.exists():

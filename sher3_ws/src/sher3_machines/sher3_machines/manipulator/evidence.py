@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -14,14 +14,14 @@ from sher3_machines.axes.evidence import blocks_of
 from sher3_machines.axes.quantities.own_unit import RECORDED
 from sher3_machines.axes.record import AxesRun
 from sher3_machines.errors import MachineError
-from sher3_machines.manipulator.description import ManipulatorDescription
+from sher3_machines.manipulator.description import PER_RUN, ManipulatorDescription
 from sher3_machines.manipulator.encoders import links_of
 from sher3_machines.manipulator.floors import floors_of
 from sher3_machines.manipulator.gains import Share, share_of
 from sher3_machines.manipulator.identify import with_identified_inertias
 from sher3_machines.manipulator.model import ArmModel
 from sher3_machines.manipulator.readings import without_wrong_loads
-from sher3_machines.manipulator.signals import joint_signals
+from sher3_machines.manipulator.signals import JointSignals, joint_signals
 from sher3_machines.manipulator.view import MotionView
 from sher3_machines.thresholds import BLOCKS
 
@@ -37,6 +37,7 @@ class ArmMotionEvidence(Evidence):
         judged: joints whose force balance is looked at.
         shares: joint -> units of its recorded effort per newton metre, where its gain was found from the data.
         turned: joints whose effort was recorded with the opposite sign, and was turned.
+        scales: joint -> units of its recorded effort per newton metre in each record, where they differ by run.
         slips: joint -> times by which its effort is in another scale than its stated gain says; they are not judged.
     """
 
@@ -47,6 +48,7 @@ class ArmMotionEvidence(Evidence):
     shares: Mapping[str, Share] = field(default_factory=dict)
     turned: Sequence[str] = ()
     slips: Mapping[str, Share] = field(default_factory=dict)
+    scales: Mapping[str, Sequence[Share]] = field(default_factory=dict)
 
 
 def channel_of(joint: str) -> Channel:
@@ -91,13 +93,15 @@ def gather_arm_motion(
 
     plain = seen_by(model, np.ones(n))
     found = {name: share_of(plain, name) for name in judged}
-    stated = {j.name for j in described.joints if j.gain != "unknown"}
+    stated = {j.name for j in described.joints if not isinstance(j.gain, str)}
+    own = [j.name for j in described.joints if j.gain == PER_RUN and j.name in judged]
+    scales = {name: [share_of([view], name) for view in plain] for name in own}
+    judged = [name for name in judged if all(share.told for share in scales.get(name, ()))]
     slips = {name: found[name] for name in judged if name in stated and found[name].slipped}
     judged = [name for name in judged if name not in slips]
-    turned = tuple(name for name in judged if found[name].opposite(name in stated))
-    if turned:
-        signs = np.array([-1.0 if j.name in turned else 1.0 for j in described.joints])
-        signals = [replace(s, effort=s.effort * signs) for s in signals if s.effort is not None]
+    turned = tuple(name for name in judged if name not in own and found[name].opposite(name in stated))
+    if turned or own:
+        signals = _put_right(signals, described, turned, scales)
         plain = seen_by(model, np.ones(n))
     if described.inertias == "identified":
         model = with_identified_inertias(plain, model, judged)
@@ -128,7 +132,26 @@ def gather_arm_motion(
         shares=shares,
         turned=turned,
         slips=slips,
+        scales=scales,
     )
+
+
+def _put_right(
+    signals: Sequence[JointSignals],
+    described: ManipulatorDescription,
+    turned: Collection[str],
+    scales: Mapping[str, Sequence[Share]],
+) -> list[JointSignals]:
+    """Return the signals with efforts of the opposite sign turned, and those of another unit in each run in N m."""
+    out = []
+    for r, s in enumerate(signals):
+        by = [-1.0 if j.name in turned else 1.0 for j in described.joints]
+        for i, joint in enumerate(described.joints):
+            share = scales[joint.name][r] if joint.name in scales else None
+            by[i] = share.value if share is not None and share.told else by[i]
+        assert s.effort is not None
+        out.append(replace(s, effort=s.effort / np.array(by)))
+    return out
 
 
 def unit_of_force(own: bool, motion: str) -> str:

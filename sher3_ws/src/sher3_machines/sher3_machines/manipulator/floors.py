@@ -14,6 +14,7 @@ from sher3_diagnosis.localise.floors import repeat_floors
 
 from sher3_machines.axes.floors import NOISE_SAMPLES, NOTHING, UNIFORM, foresight, innovation
 from sher3_machines.axes.identification.noise import noise_of
+from sher3_machines.manipulator.description import PER_RUN
 from sher3_machines.manipulator.view import MotionView
 
 POSTURES = 100
@@ -36,7 +37,8 @@ def floors_of(views: Sequence[MotionView], found: Sequence[Residuals], repeats: 
         for channel, x in residuals.items():
             row = view.row(channel.actuator)
             joint = view.joints[row]
-            least = float(np.hypot(joint.effort_resolution / UNIFORM, coarse[row]))
+            step = 0.0 if joint.gain == PER_RUN else joint.effort_resolution  # stated in a unit that is gone
+            least = float(np.hypot(step / UNIFORM, coarse[row]))
             if channel.stage == "transmission":
                 least = np.sqrt(2.0) * joint.encoder_resolution / UNIFORM
             floors[channel] = np.maximum(pooled.get(channel, innovation(x) / told), max(least, NOTHING))

@@ -67,7 +67,7 @@ class Manipulator(Machine[AxesRun, ArmMotionEvidence]):
         if all(j.lead is not None for j in self.described.joints):
             facts.add("lead")
         known = of_joints(facts)
-        if evidence.shares or self.described.inertias == "identified":
+        if evidence.shares or evidence.scales or self.described.inertias == "identified":
             known = [e for e in known if e.id not in IN_INERTIAS]
         return known
 
@@ -156,9 +156,10 @@ def of_joints(facts: set[str] | None = None) -> list[Effect]:
 
 def gain_notes(evidence: ArmMotionEvidence) -> list[str]:
     """Return what was found of gains that nobody stated."""
+    notes = [scale_note(evidence, joint) for joint in evidence.scales]
     if not evidence.shares:
-        return []
-    notes = [
+        return notes
+    notes += [
         f"{', '.join(evidence.shares)}: drive gain not stated: forces are in eu, the unit of the recorded "
         "effort; drive gain, weight and payload are confounded unless the model's inertias are right, and no payload "
         "is looked for"
@@ -171,6 +172,16 @@ def gain_notes(evidence: ArmMotionEvidence) -> list[str]:
         else:
             notes.append(f"{joint}: the motion does not tell the drive gain; weight and inertia are left in the force")
     return notes
+
+
+def scale_note(evidence: ArmMotionEvidence, joint: str) -> str:
+    """Return what was found of a gain that differs by run."""
+    each = zip(evidence.runs, evidence.scales[joint], strict=True)
+    told = ", ".join(f"{run.name} {share.value:.4g}" if share.told else f"{run.name} not told" for run, share in each)
+    return (
+        f"{joint}: recorded units per newton metre, run by run, inertias as modelled: {told}; drive gain, weight and "
+        "payload are in them and are not looked for"
+    )
 
 
 def slip_notes(evidence: ArmMotionEvidence) -> list[str]:
