@@ -58,15 +58,21 @@ class Windows:
 
 
 class Scatter(NamedTuple):
-    """What varies from window to window, standard deviations: start speed, force, and the reading itself."""
+    """What varies from window to window, standard deviations: start speed, force, and the reading itself.
+
+    Attributes:
+        width: share of the parameters' intervals that is drawn from.
+    """
 
     speed: float
     force: float
     reading: float
+    width: float = 1.0
 
     def times(self, factor: float) -> Scatter:
-        """Return a wider or narrower scatter."""
-        return Scatter(*(factor * x for x in self))
+        """Return a wider or narrower scatter; below none at all the parameters vary less, from -1 on by nothing."""
+        more = max(factor, 0.0)
+        return Scatter(more * self.speed, more * self.force, more * self.reading, min(1.0, 1.0 + factor))
 
 
 def covered(verdict: Verdict, case: Path, model: Path | None, joints: Mapping[str, str]) -> Covered:
@@ -82,9 +88,10 @@ def covered(verdict: Verdict, case: Path, model: Path | None, joints: Mapping[st
     ranges = Ranges(worlds_of(verdict, without_each(verdict, case)))
     text = export(verdict, "mjcf", copied(bench.root), joints).text
     found = windows_of(bench, text, ranges, joints)
-    scatters = {joint: scatter_of(x) for joint, x in found.items()}
+    scatters = {joint: scatter_of(x, len(ranges.worlds) == 1) for joint, x in found.items()}
     shares = {joint: inside(x, scatters[joint])[x.held_out].mean() for joint, x in found.items()}
-    ranges = replace(ranges, remainder={joint: s.force for joint, s in scatters.items()})
+    remainder = {joint: s.force for joint, s in scatters.items()}
+    ranges = replace(ranges, remainder=remainder, width=max(s.width for s in scatters.values()))
     return Covered(ranges, {joint: float(share) for joint, share in shares.items()})
 
 
@@ -136,11 +143,12 @@ def _flat(parts: list[Array]) -> Array:
     return np.concatenate([np.ravel(x) for x in parts])
 
 
-def scatter_of(windows: Windows) -> Scatter:
+def scatter_of(windows: Windows, narrowed: bool = True) -> Scatter:
     """Return what must vary from window to window for the drawn models to cover their share of those it is set on.
 
     In each window the error is split into what a start speed and a constant force make of it, and the rest; all three
-    are then scaled by one factor.
+    are then scaled by one factor. Where the parameters' intervals alone cover more than their share, they are
+    `narrowed`; which of several worlds is at work no width changes.
     """
     seen = replace(windows, **{k: x[..., ~windows.held_out] for k, x in vars(windows).items()})
     rows = []
@@ -150,7 +158,7 @@ def scatter_of(windows: Windows) -> Scatter:
         found = np.linalg.lstsq(x, y, rcond=None)[0]
         rows.append([*found, np.std(y - x @ found)])
     usual = Scatter(*(float(x) for x in np.sqrt(np.mean(np.square(rows), axis=0))))
-    low, high = 0.0, WIDEST
+    low, high = -1.0 if narrowed else 0.0, WIDEST
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
         enough = inside(seen, usual.times(middle)).mean() >= SHARE
@@ -164,7 +172,8 @@ def inside(windows: Windows, scatter: Scatter, seed: int = 1) -> Mask:
     speed, force = (rng.standard_normal((DRAWS, int(windows.window.max()) + 1))[:, windows.window] for _ in range(2))
     reading = rng.standard_normal(windows.errors.shape)
     moved = scatter.speed * speed * windows.time + scatter.force * force * windows.answer + scatter.reading * reading
-    low, high = np.quantile(windows.errors + moved, ((1.0 - SHARE) / 2.0, (1.0 + SHARE) / 2.0), axis=0)
+    drawn = windows.central + scatter.width * (windows.errors - windows.central)
+    low, high = np.quantile(drawn + moved, ((1.0 - SHARE) / 2.0, (1.0 + SHARE) / 2.0), axis=0)
     return np.asarray((low <= 0.0) & (high >= 0.0))
 
 

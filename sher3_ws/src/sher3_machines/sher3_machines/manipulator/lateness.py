@@ -39,7 +39,7 @@ class Late(NamedTuple):
         delay: s; below zero the effort comes before the motion.
         half: half width of its 95 % interval, s, from a jackknife over blocks.
         slope: rms of the slope of the needed force, N/s or N m/s.
-        each: (BLOCKS,) the delay of each block alone, s.
+        each: (BLOCKS,) the delay of each block, all else as over the whole record, s.
     """
 
     delay: float
@@ -71,10 +71,12 @@ def lateness(evidence: ArmMotionEvidence, joint: str) -> Late | None:
     if len(y) < BLOCKS * x.shape[1]:
         return None
     block = np.arange(len(y)) * BLOCKS // len(y)
-    without = np.array([_delay(x[block != k], y[block != k]) for k in range(BLOCKS)])
-    each = np.array([_delay(x[block == k], y[block == k]) for k in range(BLOCKS)])
+    without = np.array([_fitted(x[block != k], y[block != k])[0] for k in range(BLOCKS)])
+    found = _fitted(x, y)
+    left = y - x[:, 1:] @ found[1:]
+    each = np.array([(x[block == k, 0] @ left[block == k]) / np.sum(x[block == k, 0] ** 2) for k in range(BLOCKS)])
     error = float(np.sqrt((BLOCKS - 1) / BLOCKS * np.sum((without - without.mean()) ** 2)))
-    return Late(_delay(x, y), JACKKNIFE * error, float(np.sqrt(np.mean(x[:, 0] ** 2))), each)
+    return Late(-float(found[0]), JACKKNIFE * error, float(np.sqrt(np.mean(x[:, 0] ** 2))), -each)
 
 
 def _equations(view: MotionView, joint: str) -> tuple[Array, Array]:
@@ -89,10 +91,10 @@ def _equations(view: MotionView, joint: str) -> tuple[Array, Array]:
     return slow[:, :-1], slow[:, -1]
 
 
-def _delay(x: Array, y: Array) -> float:
-    """Delay, s, by least squares: effort(t) = needed(t - delay) is less by delay times the slope."""
+def _fitted(x: Array, y: Array) -> Array:
+    """Coefficients (7,) by least squares; effort(t) = needed(t - delay) is less by delay times the slope, the first."""
     length = np.maximum(np.linalg.norm(x, axis=0), np.finfo(float).tiny)
-    return -float(np.linalg.lstsq(x / length, y, rcond=None)[0][0] / length[0])
+    return np.asarray(np.linalg.lstsq(x / length, y, rcond=None)[0] / length)
 
 
 def _finding(evidence: ArmMotionEvidence, joint: str, late: Late) -> ExactFinding:
