@@ -15,12 +15,12 @@ from sher3_machines.axes.quantities.own_unit import RECORDED
 from sher3_machines.axes.record import AxesRun
 from sher3_machines.errors import MachineError
 from sher3_machines.manipulator.description import PER_RUN, ManipulatorDescription
-from sher3_machines.manipulator.encoders import links_of
-from sher3_machines.manipulator.floors import floors_of
 from sher3_machines.manipulator.gains import Share, share_of
 from sher3_machines.manipulator.identify import with_identified_inertias
 from sher3_machines.manipulator.model import ArmModel
-from sher3_machines.manipulator.readings import without_wrong_loads
+from sher3_machines.manipulator.readings.encoders import links_of
+from sher3_machines.manipulator.readings.floors import floors_of
+from sher3_machines.manipulator.readings.wrong import without_wrong_loads
 from sher3_machines.manipulator.signals import JointSignals, joint_signals
 from sher3_machines.manipulator.view import MotionView
 from sher3_machines.thresholds import BLOCKS

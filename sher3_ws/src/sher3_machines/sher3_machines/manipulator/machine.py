@@ -30,9 +30,9 @@ from sher3_machines.manipulator.causes import causes_of_arm, centred
 from sher3_machines.manipulator.confounding import SAME, confounding_notes
 from sher3_machines.manipulator.description import ManipulatorDescription
 from sher3_machines.manipulator.evidence import ArmMotionEvidence, gather_arm_motion
-from sher3_machines.manipulator.lateness import late_efforts
 from sher3_machines.manipulator.model import ArmModel
-from sher3_machines.manipulator.readings import level_notes, wrong_readings
+from sher3_machines.manipulator.readings.lateness import late_efforts
+from sher3_machines.manipulator.readings.wrong import level_notes, wrong_readings
 
 if TYPE_CHECKING:
     from sher3_machines.manipulator.reporter import ManipulatorReporter

@@ -15,9 +15,9 @@ from sher3_effects.view import NominalAxis
 from sher3_machines.axes.signals import AxisSignals
 from sher3_machines.axes.view import LEAD_OF_STROKE, SLIP, STILL, Loads
 from sher3_machines.manipulator.description import Joint
-from sher3_machines.manipulator.encoders import crossing
 from sher3_machines.manipulator.model import PARAMETERS, ArmModel
-from sher3_machines.manipulator.readings import at_a_level
+from sher3_machines.manipulator.readings.encoders import crossing
+from sher3_machines.manipulator.readings.wrong import at_a_level
 from sher3_machines.manipulator.signals import JointSignals
 
 AROUND_IMPACT = 2
