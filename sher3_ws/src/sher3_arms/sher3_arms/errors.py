@@ -1,8 +1,12 @@
-"""The error of this package."""
+"""The errors of this package."""
 
 from __future__ import annotations
 
 from sher3_common import Sher3Error
+
+
+class Unstable(Exception):
+    """An arm with this fault cannot follow its motion: no record of it would be kept, and another one is drawn."""
 
 
 class ArmsError(Sher3Error):

@@ -11,10 +11,11 @@ from pathlib import Path
 from sher3_common import Sher3Error
 
 from sher3_arms.answer.diagnosis import answer
-from sher3_arms.answer.identification import identified
+from sher3_arms.answer.identification import identified, tools
 from sher3_arms.errors import ArmsError
 from sher3_arms.score import Scored, names_the_fault, scored
 from sher3_arms.truth.cases import seal
+from sher3_arms.truth.faults import CABLE, ORDER
 
 SECONDS = 60.0
 """Length of a record, s."""
@@ -27,6 +28,7 @@ def run_arms(
     seconds: float = SECONDS,
     say: Callable[[str], None] = lambda _: None,
     beside: bool = False,
+    kinds: Sequence[str] = ORDER,
 ) -> list[Scored]:
     """Seal, answer and score one case for each seed.
 
@@ -37,16 +39,23 @@ def run_arms(
         seconds: length of a record, s.
         say: takes a line for each case.
         beside: whether `mujoco.sysid` answers each case too.
+        kinds: of fault, taken in turn.
 
     Raises:
-        ArmsError: the folder exists, no such arm, or MuJoCo or the wheel with the arms is missing.
+        ArmsError: the folder exists, no such arm or kind, or MuJoCo, `mujoco.sysid` or the wheel with the arms is
+            missing.
     """
+    unknown = [kind for kind in kinds if kind not in (*ORDER, CABLE)]
+    if unknown:
+        raise ArmsError("no such kind of fault", value=unknown[0], limit=", ".join(dict.fromkeys((*ORDER, CABLE))))
+    if beside:
+        tools()
     if folder.exists():
         raise ArmsError(f"{folder}: exists already", value="a folder or file", remedy="choose another --out")
     out = []
     for seed in seeds:
         case = folder / "cases" / f"{seed:05d}"
-        label = seal(seed, robots, case, seconds)
+        label = seal(seed, robots, case, seconds, kinds)
         begun = time.perf_counter()
         try:
             verdict = answer(case)
@@ -64,7 +73,12 @@ def run_arms(
         (folder / "labels" / f"{seed:05d}.json").write_text(json.dumps(asdict(label), indent=1), encoding="utf-8")
         say(
             f"{seed}: {found.kind} on {found.joint or 'no joint'} of {found.robot}: "
-            f"{found.status} {found.effect} {found.place}"
+            f"{found.status} {found.effect} {found.place}{again(label.drawn)}"
         )
     (folder / "scores.json").write_text(json.dumps([c.as_dict() for c in out], indent=1), encoding="utf-8")
     return out
+
+
+def again(drawn: int) -> str:
+    """Return in words how often the fault of a case was drawn again because the arm did not follow its motion."""
+    return f" (drawn {drawn} times: unstable before)" if drawn > 1 else ""

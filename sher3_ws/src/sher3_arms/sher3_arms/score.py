@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass
 from sher3_diagnosis import Verdict
 
 from sher3_arms.truth.cases import Label
-from sher3_arms.truth.faults import COMPOUND, HEALTHY, KINDS
+from sher3_arms.truth.faults import CABLE, COMPOUND, HEALTHY, KINDS
 
 REFUSED = "refused"
 """Status of a case that ended in an error."""
@@ -20,6 +20,7 @@ NAMES: Mapping[str, tuple[str, ...]] = {
     "payload": ("payload_mass",),
     "gear_loss": ("gear_loss",),
     "spring": ("spring_torque", "cable_torque"),
+    CABLE: ("cable_torque",),
     "late_drive": ("sensor_delay", "command_delay"),
     "late_effort": ("sensor_delay",),
     "backlash": ("backlash",),
@@ -74,14 +75,14 @@ def scored(label: Label, verdict: Verdict | None, seconds: float) -> Scored:
         top = any(effect in names and (place in sites or kind != COMPOUND) for names, sites in sought)
         in_set = all(_found(verdict, names, sites, kind) for names, sites in sought)
         placed = any(where in sites for _, sites in sought)
-    if kind not in (*KINDS, COMPOUND):
+    if kind not in (*KINDS, CABLE, COMPOUND):
         return Scored(label.seed, label.robot, kind, label.joint, status, effect, place, None, None, None, seconds)
     return Scored(label.seed, label.robot, kind, label.joint, status, effect, place, top, in_set, placed, seconds)
 
 
 def names_the_fault(label: Label, effect: str, place: str) -> bool | None:
     """Return whether an effect at a place is the fault of a single case; None for other cases."""
-    if label.fault.second is not None or label.fault.kind not in KINDS:
+    if label.fault.second is not None or label.fault.kind not in (*KINDS, CABLE):
         return None
     ((names, sites),) = _sought(label)
     return effect in names and place in sites
@@ -102,10 +103,10 @@ def _found(verdict: Verdict, names: tuple[str, ...], sites: tuple[str, ...], kin
 
 def shares(cases: Sequence[Scored]) -> dict[str, tuple[float, int]]:
     """Return each score as a share and the number of cases it is over."""
-    known = [c for c in cases if c.kind in KINDS]
+    known = [c for c in cases if c.kind in (*KINDS, CABLE)]
     healthy = [c for c in cases if c.kind == HEALTHY]
     compound = [c for c in cases if c.kind == COMPOUND]
-    outside = [c for c in cases if c.kind not in (*KINDS, COMPOUND, HEALTHY)]
+    outside = [c for c in cases if c.kind not in (*KINDS, CABLE, COMPOUND, HEALTHY)]
     columns = {
         "top-1": [bool(c.top) for c in known],
         "in the set": [bool(c.in_set) for c in known],

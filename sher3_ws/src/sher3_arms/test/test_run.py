@@ -2,11 +2,14 @@
 
 import ast
 import json
+import re
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 import sher3_arms
 from sher3_arms import ArmsError, run_arms
+from sher3_arms.answer import identification
 from sher3_arms.score import Scored, shares, table
 
 
@@ -17,6 +20,19 @@ def test_a_friction_is_sealed_answered_and_scored(tmp_path):
     assert json.loads((tmp_path / "run/scores.json").read_text())[0]["effect"] == found.effect
     with pytest.raises(ArmsError, match="exists already"):
         run_arms([0], ["own"], tmp_path / "run")
+
+
+def test_a_kind_that_is_not_there_is_refused(tmp_path):
+    with pytest.raises(ArmsError, match="no such kind of fault"):
+        run_arms([0], ["own"], tmp_path / "run", kinds=["rust"])
+
+
+def test_without_the_peer_the_extra_is_named_before_anything_is_made(tmp_path, monkeypatch):
+    """`mujoco.sysid` without the libraries it needs is there and empty."""
+    monkeypatch.setattr(identification, "import_module", lambda name: ModuleType(name))
+    with pytest.raises(ArmsError, match=re.escape("sher3[sysid]")):
+        run_arms([0], ["own"], tmp_path / "run", beside=True)
+    assert not (tmp_path / "run").exists()
 
 
 def case(kind, status="attributed", effect="coulomb_friction", top=None, placed=None):

@@ -5,8 +5,9 @@ import numpy as np
 import pytest
 import yaml
 from sher3_arms import ArmsError
+from sher3_arms.truth import cases
 from sher3_arms.truth.cases import seal
-from sher3_arms.truth.faults import COMPOUND, HEALTHY, KINDS, OUTSIDE, Fault, deal, dealt, passive
+from sher3_arms.truth.faults import COMPOUND, HEALTHY, KINDS, ORDER, OUTSIDE, Fault, deal, passive
 from sher3_arms.truth.robots import FILES, OWN, urdf_of
 from sher3_arms.truth.world import inertias, inverse, load, motion, record
 
@@ -71,7 +72,8 @@ def test_a_late_drive_and_a_late_reading_are_late_by_their_size():
 
 
 def test_every_kind_is_dealt():
-    kinds = set(dealt(range(20)).values())
+    kinds = set(ORDER)
+    assert len(ORDER) == 20
     assert kinds == {*KINDS, *OUTSIDE, COMPOUND, HEALTHY}
     for kind in kinds:
         fault = deal(np.random.default_rng(3), kind, np.ones(3), np.ones(3), np.ones(3))
@@ -87,6 +89,18 @@ def test_a_sealed_case_gives_nothing_away(tmp_path):
     assert label.fault.kind == "gain" and "gain" not in str(text)
     other = seal(3, [OWN], tmp_path / "again", 12.0)
     assert other == label
+
+
+def test_a_fault_that_makes_the_arm_unstable_is_drawn_again(tmp_path, monkeypatch):
+    """A drive that is late by 80 ms makes a loop of 40 rad/s unstable; one of 5 ms does not."""
+    drawn = iter([0.08, 0.08, 0.005])
+    monkeypatch.setattr(cases, "deal", lambda *_: Fault("late_drive", 1, next(drawn)))
+    label = seal(0, [OWN], tmp_path / "case", 12.0, ["late_drive"])
+    assert label.drawn == 3 and label.fault.size == 0.005
+    assert np.isfinite(np.load(tmp_path / "case/record.npz")["position"]).all()
+    monkeypatch.setattr(cases, "deal", lambda *_: Fault("late_drive", 1, 0.08))
+    with pytest.raises(ArmsError, match="unstable with every late_drive"):
+        seal(0, [OWN], tmp_path / "again", 12.0, ["late_drive"])
 
 
 def test_an_arm_that_is_not_there_is_refused():

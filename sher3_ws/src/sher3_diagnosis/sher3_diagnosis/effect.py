@@ -101,6 +101,7 @@ class Effect:
         finer: shape value -> factors by which the best value is multiplied in the finer search.
         polished: shape values beside those of `finer` that are no choice: polished once the search is over.
         companion: family of another effect on the same axis without which this one does not show.
+        shown_by: families of effects on the same axis that bring this one to light; it comes after them.
         dry: whether it is a friction that holds an axis at rest.
         best: the excitation that shows it best.
         leaves_out: what a real machine adds to the idealised law, in words. Empty for a law of geometry, mechanics or
@@ -124,6 +125,7 @@ class Effect:
     finer: ClassVar[Mapping[str, tuple[float, ...]]] = {}
     polished: ClassVar[tuple[str, ...]] = ()
     companion: ClassVar[str] = ""
+    shown_by: ClassVar[tuple[str, ...]] = ()
     dry: ClassVar[bool] = False
     best: ClassVar[Best]
     leaves_out: ClassVar[str] = ""

@@ -25,27 +25,33 @@ class Ranges:
         worlds: sets of causes that explain the runs, the verdict's first; one of them is at work.
         remainder: joint -> force that the causes leave, standard deviation over a quarter of a second, N or N m; empty
             where it was not measured.
+        width: share of the 90 % intervals that the recorded motion needs; 1 where it was not measured.
     """
 
     worlds: Sequence[Sequence[Cause]]
     remainder: Mapping[str, float] = field(default_factory=dict)
+    width: float = 1.0
 
     def draw(self, rng: np.random.Generator) -> list[Cause]:
         """Return the causes of one world with parameters drawn from their intervals."""
-        world = self.worlds[int(rng.integers(len(self.worlds)))]
-        return [c.model_copy(update={"parameters": {n: drawn(p, rng) for n, p in c.parameters.items()}}) for c in world]
+        world, w = self.worlds[int(rng.integers(len(self.worlds)))], self.width
+        return [
+            c.model_copy(update={"parameters": {n: drawn(p, rng, w) for n, p in c.parameters.items()}}) for c in world
+        ]
 
     def text(self) -> str:
         """Return the ranges as YAML, `schema: sher3.ranges/1`."""
-        worlds = [[_entry(cause) for cause in world] for world in self.worlds]
+        worlds = [[_entry(cause, self.width) for cause in world] for world in self.worlds]
         data = {
             "schema": "sher3.ranges/1",
             "share": SHARE,
+            "width": float(self.width),
             "one_of": worlds,
             "remainder": {j: float(s) for j, s in self.remainder.items()},
         }
         remarks = (
             "One of these sets of causes is at work; values add to the nominal ones.",
+            "width: of the verdict's 90 % intervals, as much as the recorded motion needs.",
             "remainder: force that the causes leave, standard deviation, constant for 0.25 s at a time.",
         )
         return "".join(f"# {line}\n" for line in remarks) + dump_yaml(data)
@@ -63,17 +69,21 @@ def interval(p: Parameter) -> tuple[float, float]:
     return float(low), float(high)
 
 
-def drawn(p: Parameter, rng: np.random.Generator) -> Parameter:
-    """Return a parameter drawn from its interval as from two half normal distributions."""
-    step = float(rng.standard_normal())
+def drawn(p: Parameter, rng: np.random.Generator, width: float = 1.0) -> Parameter:
+    """Return a parameter drawn from a share of its interval as from two half normal distributions."""
+    step = width * float(rng.standard_normal())
     side = p.low if step < 0.0 else p.high
     return p if side is None else p.model_copy(update={"value": p.value + abs(step) * (side - p.value) / 1.960})
 
 
-def _entry(cause: Cause) -> dict[str, object]:
+def _entry(cause: Cause, width: float) -> dict[str, object]:
     known = constants_of(cause)
     ranges = {
-        known.get(name, name): {"range": list(interval(p)), "value": float(p.value), "unit": p.unit}
+        known.get(name, name): {
+            "range": [float(p.value + width * (end - p.value)) for end in interval(p)],
+            "value": float(p.value),
+            "unit": p.unit,
+        }
         for name, p in cause.parameters.items()
     }
     return {"effect": cause.effect, "joint": cause.actuator, **ranges}

@@ -10,11 +10,14 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from sher3_common.commands.options import Json
 
-from sher3_gap_cli.options import Library, RobotFile, VerdictFile, case_argument, reported
+from sher3_gap_cli.options import Library, RobotFile, VerdictFile, case_argument, of_the_robot, reported
 
 if TYPE_CHECKING:
     from sher3_gap.simulate.apply import StageGap
     from sher3_sim import PlantEffect
+
+TAGS = "import both records into one case and tag them (`conditions` in its description): the diagnosis contrasts them"
+"""What takes the place of a comparison for another machine."""
 
 
 def apply(
@@ -29,11 +32,11 @@ def apply(
     from sher3_description import load_robot
     from sher3_effects import add_library
     from sher3_gap.case.loading import load_case
-    from sher3_gap.simulate.apply import apply_verdict, compare_case
+    from sher3_gap.simulate.apply import EXPORT, apply_verdict, compare_case
 
     with reported(as_json):
         add_library(own or [])
-        runs, model = load_case(case, robot) if case else ([], load_robot(robot))
+        runs, model = load_case(of_the_robot(case, EXPORT), robot) if case else ([], load_robot(robot))
         effects = apply_verdict(verdict, output, model)
         stages = compare_case(runs, model, effects) if runs else []
         if as_json:
@@ -56,8 +59,8 @@ def compare(
     from sher3_gap.simulate.apply import compare_cases
 
     with reported(as_json):
-        runs, model = load_case(case, robot)
-        stages = compare_cases(runs, model, load_case(other, robot)[0])
+        runs, model = load_case(of_the_robot(case, TAGS), robot)
+        stages = compare_cases(runs, model, load_case(of_the_robot(other, TAGS), robot)[0])
         typer.echo(json.dumps({"stages": stages_data(stages)}) if as_json else stages_text(stages))
 
 

@@ -140,8 +140,11 @@ def calibrate(
 def arms(
     seeds: Annotated[str, typer.Option(help="Range A:B of seeds, one case each.")] = "0:20",
     robots: Annotated[str, typer.Option(help="Arms in turn: own, panda, ur5, ur10, kinova, xarm7, z1, so101.")] = "own",
+    kinds: Annotated[str | None, typer.Option(help="Kinds of fault in turn; default all.")] = None,
     seconds: Annotated[float, typer.Option(min=10.0, help="Length of a record, s.")] = 60.0,
-    sysid: Annotated[bool, typer.Option("--sysid", help="Let mujoco.sysid answer the same cases.")] = False,
+    sysid: Annotated[
+        bool, typer.Option("--sysid", help="Let mujoco.sysid answer the same cases (extra `sysid`).")
+    ] = False,
     out: Annotated[Path | None, typer.Option(help="New folder that keeps cases, labels and verdicts.")] = None,
     as_json: Json = False,
 ) -> None:
@@ -152,11 +155,14 @@ def arms(
     from rich.console import Console
     from sher3_arms.run import run_arms
     from sher3_arms.score import shares, table
+    from sher3_arms.truth.faults import ORDER
 
     console = Console(stderr=True)
     with reported(as_json), tempfile.TemporaryDirectory() as scratch:
         names = [name for name in robots.split(",") if name]
-        found = run_arms(range(*parse_seeds(seeds)), names, out or Path(scratch) / "arms", seconds, console.log, sysid)
+        dealt = tuple(kinds.split(",")) if kinds else ORDER
+        folder = out or Path(scratch) / "arms"
+        found = run_arms(range(*parse_seeds(seeds)), names, folder, seconds, console.log, sysid, dealt)
         data = {"scores": {name: {"share": x, "cases": n} for name, (x, n) in shares(found).items()}}
         cases = [case.as_dict() for case in found]
         typer.echo(json.dumps({**data, "cases": cases}) if as_json else table(found))

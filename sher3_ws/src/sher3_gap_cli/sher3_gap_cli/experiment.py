@@ -9,11 +9,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from sher3_common.commands.options import Json
 
-from sher3_gap_cli.options import RobotFile, VerdictFile, case_argument, reported
+from sher3_gap_cli.options import RobotFile, VerdictFile, case_argument, of_the_robot, reported
 
 if TYPE_CHECKING:
     from sher3_gap.experiments.design import Experiment
     from sher3_gap.experiments.separation import Separation
+
+RECORD = "record the motion that the verdict's `next_experiment` names, and diagnose the new case"
+"""What takes the place of a designed experiment for another machine."""
 
 
 def experiment(
@@ -49,9 +52,10 @@ def design_command(verdict: Path, case: Path | None, output: Path, robot: Path |
 
     from sher3_gap_cli.printing import steps
 
-    runs, model = load_case(case, robot) if case else ([], load_robot(robot))
+    found = read_verdict(verdict, RECORD)
+    runs, model = load_case(of_the_robot(case, RECORD), robot) if case else ([], load_robot(robot))
     with steps() as say:
-        made = design_experiment(read_verdict(verdict), model, say, runs=runs)
+        made = design_experiment(found, model, say, runs=runs)
     data = experiment_data(made)
     save_excitation(output, made.excitation, data)
     return json.dumps({"file": str(output), **data}) if as_json else experiment_text(made, output)
@@ -65,8 +69,9 @@ def realised_command(verdict: Path, experiment: Path, ran: Path, robot: Path | N
     from sher3_gap.simulate.apply import read_verdict
 
     about = about_excitation(experiment)
-    runs, model = load_case(ran, robot)
-    found = realised(read_verdict(verdict), model, runs)
+    asked = read_verdict(verdict, RECORD)
+    runs, model = load_case(of_the_robot(ran, RECORD), robot)
+    found = realised(asked, model, runs)
     data = {
         "predicted_separation": about.get("predicted_separation"),
         "spread": about.get("spread"),

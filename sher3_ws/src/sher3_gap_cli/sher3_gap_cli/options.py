@@ -43,3 +43,20 @@ def case_argument(text: str) -> Any:
 
 class RequestError(Sher3Error):
     """What was asked for makes no sense: no such effect, two cases of one name, a cluster that does not answer."""
+
+
+def of_the_robot(case: Path, instead: str) -> Path:
+    """Return a case of the SHER.
+
+    Args:
+        case: folder.
+        instead: what to do with a case of another machine.
+
+    Raises:
+        RequestError: it is a case of another machine.
+    """
+    from sher3_machines import is_machine_case
+
+    if is_machine_case(case):
+        raise RequestError(f"{case}: is a case of another machine", limit="cases of the SHER", remedy=instead)
+    return case

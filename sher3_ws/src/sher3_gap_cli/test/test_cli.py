@@ -6,7 +6,7 @@ import shutil
 
 import pytest
 from sher3_bags import write_case
-from sher3_diagnosis.verdict import Verdict
+from sher3_diagnosis.verdict import Cause, Interval, Parameter, Verdict, Where
 from sher3_effects import library, load_effects, plants
 from sher3_effects.registry import every
 from sher3_gap_cli.answers import Task, check_effects, folders, run_on_dask
@@ -107,6 +107,35 @@ def test_bad_requests_end_with_one_sentence_and_code_2(arguments, words, tmp_pat
     result = CliRunner().invoke(app, arguments)
     assert result.exit_code == 2
     assert words in result.stderr and "Traceback" not in result.output
+
+
+@pytest.mark.parametrize(
+    ("arguments", "remedy"),
+    [
+        (["apply", "arm.json"], "sher3 gap export"),
+        (["apply", "arm.json", "--case", "arm"], "sher3 gap export"),
+        (["compare", "arm", "arm"], "conditions"),
+        (["experiment", "arm.json"], "next_experiment"),
+        (["experiment", "arm.json", "arm"], "next_experiment"),
+    ],
+)
+def test_another_machine_is_refused_with_what_to_do_instead(arguments, remedy, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "arm").mkdir()
+    (tmp_path / "arm/machine.yaml").write_text("kind: manipulator\n")
+    cause = Cause(
+        effect="backlash",
+        family="lost_motion",
+        stage="transmission",
+        actuator="elbow",
+        parameters={"width": Parameter(value=1e-3, unit="rad")},
+        closure=Interval(value=0.9, low=0.8, high=1.0),
+    )
+    at = {"stage": "transmission", "actuator": "elbow", "regime": "everywhere", "confidence": 1.0}
+    where = Where(gap=1e-3, floor=1e-6, unit="rad", **at)
+    Verdict(status="attributed", where=[where], causes=[cause]).write(tmp_path / "arm.json")
+    result = CliRunner().invoke(app, arguments)
+    assert result.exit_code == 2 and "another machine" in result.stderr and remedy in result.stderr
 
 
 def test_a_verdict_without_causes_has_nothing_to_apply(tmp_path):

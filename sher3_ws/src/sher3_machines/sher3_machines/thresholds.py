@@ -90,6 +90,27 @@ CAUSES_OF_JOINT = 5
 """Causes named of one joint at most: dry and viscous friction, a constant force, the drive's gain, and one more.
 Set by that count."""
 
+DELAYED = 0.5
+"""Share of the difference of two encoders, beside play, spring and scale, that a delay may leave. Set by that argument:
+it is most of it. Measure: `pytest sher3_ws/src/sher3_machines/test/manipulator/test_wrong_readings.py`."""
+
+STAYS = 0.1
+"""Share of a joint's travel over which a second encoder may stay at one reading: no play is as wide. Set by that
+argument. Measured as `DELAYED`."""
+
+SLIPPED = 5.0
+"""Factor between an effort and what the model needs, either way, from which its unit is wrong: drives are off by less.
+Set by that argument. Measured as `DELAYED`."""
+
+SURELY = 50.0
+"""Standard errors that such a factor must have: a payload on a light joint fits one too, badly. Measured as `DELAYED`:
+18 with 5 standard errors for a payload of 2 kg on the last joint of an arm, 1000 with thousands for a wrong unit."""
+
+LEAST_CLOSURE = 0.02
+"""Share of the gaps of all joints that carry a payload which it must explain: less is what another fault leaves.
+Set by argument: the share by which the engine calls two explanations alike.
+Measure: `pytest sher3_ws/src/sher3_machines/test/manipulator`."""
+
 CONFOUNDED = 0.1
 """Singular value of the stacked columns, each of length one, below which a combination of quantities cannot be seen: a
 change of 10 % of one quantity then hides behind 1 % in power. Set by that argument.

@@ -54,7 +54,7 @@ class Identified(NamedTuple):
 
 def identified(folder: Path) -> Identified:
     """Fit the parameters of a sealed case's model; raises ArmsError where `mujoco.sysid` is not installed."""
-    api, sysid = _tools()
+    api, sysid = tools()
     names = [joint["name"] for joint in read_yaml(folder / DESCRIPTION)["joints"]]
     spec = api.MjSpec.from_string(read_text(folder / MODEL, MAX_BYTES))
     model = spec.compile()
@@ -88,16 +88,16 @@ def identified(folder: Path) -> Identified:
     return Identified(effect, joint or names[-1], before, after)
 
 
-def _tools() -> tuple[Any, Any]:
+def tools() -> tuple[Any, Any]:
+    """Return MuJoCo and `mujoco.sysid`; raises ArmsError where the latter, or a library it needs, is not installed."""
+    missing = ArmsError("mujoco.sysid is not installed", remedy="install the extra: pip install 'sher3[sysid]'")
     try:
         api, sysid = import_module("mujoco"), import_module("mujoco.sysid")
-        return api, sysid if hasattr(sysid, "optimize") else _missing()
-    except ImportError:
-        return _missing()
-
-
-def _missing() -> Any:
-    raise ArmsError("mujoco.sysid is not installed", remedy="pip install 'mujoco[sysid]'")
+    except ImportError as error:
+        raise missing from error
+    if not hasattr(sysid, "optimize"):  # without the libraries it needs, the module is there and empty
+        raise missing
+    return api, sysid
 
 
 def _parameters(sysid: Any, names: list[str]) -> Any:

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from sher3_arms.errors import ArmsError
+from sher3_arms.errors import ArmsError, Unstable
 from sher3_arms.truth.faults import BEHIND, Fault, passive
 
 STEP = 0.001
@@ -38,6 +38,8 @@ LOSS = 0.002
 """Damping over stiffness of a spring behind a motor, s."""
 DUST = 1e-5
 """Inertia of a payload about its own centre, kg m^2: it is small and heavy."""
+ASTRAY = 0.5
+"""Tracking error, rad, beyond which an arm no longer follows: a drive would have stopped it."""
 NOISE = 0.002
 """Standard deviation of a recorded torque over the joint's rms torque: the resolution of a drive's current."""
 
@@ -152,7 +154,11 @@ def inverse(model: Any, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarr
 
 
 def record(urdf: str, fault: Fault, seconds: float, rng: np.random.Generator) -> Record:
-    """Simulate an arm with a fault along a motion and return what its encoders and drives tell."""
+    """Simulate an arm with a fault along a motion and return what its encoders and drives tell.
+
+    Raises:
+        Unstable: the arm does not follow the motion.
+    """
     api = engine()
     nominal, real = load(urdf), load(urdf, fault)
     step = FINE if any(part.kind in BEHIND for part in fault.parts) else STEP
@@ -172,6 +178,8 @@ def record(urdf: str, fault: Fault, seconds: float, rng: np.random.Generator) ->
     fine = round(PERIOD / step)
     for k in range(len(time)):
         position[k] = data.qpos[at_motor]
+        if not (np.abs(position[k] - q[k]) < ASTRAY).all():
+            raise Unstable
         link[k] = _of_link(real, data, fault, position[k])
         after = min(k + 1, len(time) - 1)
         for part_of in range(fine):

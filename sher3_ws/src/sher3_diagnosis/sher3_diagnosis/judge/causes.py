@@ -74,7 +74,9 @@ def _where(finding: Finding, channel: Channel, gap: Gap) -> Where:
 
 
 def ordered(causes: list[Cause], findings: list[Finding]) -> list[Cause]:
-    """Return the causes with most closure first; the companion of another cause comes after that one."""
+    """Return the causes with most closure first; what another cause accompanies or brings to light comes after it."""
     terms = [t for f in findings for t in f.attribution.fit.terms]
     behind = {(t.effect.companion, t.site) for t in terms if t.effect.companion}
+    have = {(t.effect.family, t.site) for t in terms}
+    behind |= {(t.effect.family, t.site) for t in terms if {(f, t.site) for f in t.effect.shown_by} & have}
     return sorted(causes, key=lambda c: ((c.family, c.actuator) in behind, -round(c.closure.value, 2)))

@@ -15,6 +15,7 @@ class RotorInertia(Page):
     id, family, stage = "rotor_inertia", "inertia", "motor_mechanics"
     inputs = ("acceleration",)
     kinds = ("joint",)
+    shown_by = ("lost_motion", "compliance")  # a rotor that moves otherwise than its link is told from it
     best = Best("steps", "accelerations separate mass from weight")
     explanation = (
         "The motor's own rotor must be accelerated, gear ratio squared: force by acceleration, whatever the posture."

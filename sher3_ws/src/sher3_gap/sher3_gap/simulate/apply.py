@@ -37,6 +37,10 @@ class ApplyError(Sher3Error):
     """A verdict that cannot be put into the simulator."""
 
 
+EXPORT = "write it into a model of that machine: `sher3 gap export`; its `--check CASE` runs that model on the records"
+"""What takes the place of the SHER's simulator for another machine."""
+
+
 @dataclass(frozen=True)
 class StageGap:
     """Gap of one stage between robot and simulator before and after, and what the readings resolve; rms, SI units."""
@@ -55,8 +59,12 @@ class StageGap:
         return None if above <= self.floor**2 else (self.before**2 - self.after**2) / above
 
 
-def read_verdict(path: Path) -> Verdict:
+def read_verdict(path: Path, instead: str = EXPORT) -> Verdict:
     """Read a verdict file.
+
+    Args:
+        path: of the file.
+        instead: what to do with a verdict on another machine.
 
     Raises:
         ApplyError: it cannot be read, is not a verdict, or is one on another machine than the SHER.
@@ -74,7 +82,7 @@ def read_verdict(path: Path) -> Verdict:
             f"{path}: is a verdict on another machine",
             value=foreign[0],
             limit=", ".join(PLACES),
-            remedy="write it into a model of that machine: `sher3 gap export`",
+            remedy=instead,
         )
     return found
 

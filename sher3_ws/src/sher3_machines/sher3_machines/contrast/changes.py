@@ -39,7 +39,7 @@ class Changed(Effect):
     def __init__(self, of: Effect, condition: Condition, views: frozenset[int], common: Common | None) -> None:
         self.of, self.views, self.common = of, views, common
         self.condition = str(condition)
-        for name in ("id", "family", "stage", "explanation", "places", "units", "companion", "dry", "best"):
+        for name in ("id", "family", "stage", "explanation", "places", "units", "companion", "shown_by", "dry", "best"):
             setattr(self, name, getattr(of, name))
 
     def channels(self, site: str) -> tuple[Channel, ...]:

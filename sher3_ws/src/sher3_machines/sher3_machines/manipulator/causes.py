@@ -23,8 +23,8 @@ from sher3_effects.friction.viscous_friction import ViscousFriction
 from sher3_effects.inertia.payload_mass import PayloadOnLink
 
 from sher3_machines.axes.identification.rest import Bounded
-from sher3_machines.manipulator.evidence import ArmMotionEvidence, of_joint
-from sher3_machines.thresholds import CAUSES_OF_JOINT
+from sher3_machines.manipulator.evidence import ArmMotionEvidence, channels_of, of_channel
+from sher3_machines.thresholds import CAUSES_OF_JOINT, LEAST_CLOSURE
 
 HEAVIEST = 2.0
 """Mass of a payload over that of the whole arm at most: what is heavier is no body on a link."""
@@ -38,11 +38,11 @@ class Explained:
 
     Attributes:
         fit: all terms together; the payload first where there is one.
-        alone: joint -> what the engine's search said of it alone.
+        alone: what the engine's search said of each force balance, and of each pair of encoders, alone.
     """
 
     fit: Fit
-    alone: dict[str, Attribution]
+    alone: Sequence[Attribution]
 
     @property
     def cost(self) -> float:
@@ -57,23 +57,26 @@ def causes_of_arm(evidence: ArmMotionEvidence, candidates: Candidates, say: Say)
     if loaded is None:
         return _with_rivals(evidence, candidates, found, None)
     other = _explained(evidence, candidates, loaded, say)
-    best, second = (other, found) if other.cost < found.cost else (found, other)
+    best, second = (other, found) if other.cost < found.cost and closes(evidence, other) else (found, other)
     return _with_rivals(evidence, candidates, best, second)
 
 
 def _explained(evidence: ArmMotionEvidence, candidates: Candidates, payload: Fit | None, say: Say) -> Explained:
-    """Search every joint for causes beside a payload, and fit all of them together."""
+    """Search every joint for causes beside a payload, and fit all of them together.
+
+    What lies between two encoders says nothing of a force balance, since the links move as their own encoders say.
+    """
     effects = [e for e in candidates.effects if e.places == ("axis",)]
     beside = _added(evidence, payload) if payload is not None else ()
-    alone: dict[str, Attribution] = {}
-    for joint in evidence.judged:
-        own = of_joint(evidence, joint, beside)
+    alone: list[Attribution] = []
+    for channel in (c for joint in evidence.judged for c in channels_of(joint)):
+        own = of_channel(evidence, channel, beside)
         left = partial(down_to_floor, own.channels, own)
         if left(own.null()):
-            say(f"{joint}{' beside a payload' if payload is not None else ''}")
-            alone[joint] = attribute(Bounded(own, effects), left, say, CAUSES_OF_JOINT)
+            say(f"{channel}{' beside a payload' if payload is not None else ''}")
+            alone.append(attribute(Bounded(own, effects), left, say, CAUSES_OF_JOINT))
     terms = [payload.terms[-1]] if payload is not None else []
-    for found in alone.values():
+    for found in alone:
         terms += [candidates.term(t.effect, t.site, t.shape) for t in found.fit.terms]
     return Explained(fit(evidence.data, terms), alone)
 
@@ -105,6 +108,13 @@ def shows_on_enough(base: Fit, best: Fit) -> bool:
         if channel in gains:
             gains[channel] += base.loss.get((run, channel), loss) - loss
     return sum(gain > NEEDED for gain in gains.values()) >= min(2, len(carrying))
+
+
+def closes(evidence: ArmMotionEvidence, loaded: Explained) -> bool:
+    """Return whether a payload, the first term, shrinks the gaps of joints that carry it by a share worth a name."""
+    carrying = loaded.fit.terms[0].channels
+    gap = sum(loss for (_, channel), loss in evidence.null().loss.items() if channel in carrying)
+    return without_term(evidence, loaded.fit, 0).total - loaded.fit.total > LEAST_CLOSURE * gap
 
 
 def _plain(candidates: Candidates) -> list[Effect]:
@@ -160,11 +170,11 @@ def _with_rivals(
     """Add to every cause what would explain as much: rivals at its joint, and for a payload what takes its place."""
     terms, rivals, ranking = best.fit.terms, [], []
     alike = second is not None and _alike(evidence, best, second)
-    of_joints = {t.key: i for found in best.alone.values() for i, t in enumerate(found.fit.terms)}
+    of_joints = {_name(t): (found, i) for found in best.alone for i, t in enumerate(found.fit.terms)}
     for i, term in enumerate(terms):
         others = [t for j, t in enumerate(terms) if j != i]
-        if term.key in of_joints:
-            found, k = best.alone[term.site], of_joints[term.key]
+        if _name(term) in of_joints:
+            found, k = of_joints[_name(term)]
             own = [f.terms[-1] for f in found.rivals[k]]
             ranking.append(found.ranking[k])
         else:
@@ -180,6 +190,11 @@ def _with_rivals(
         rivals.append(tuple(trials))
     explained = tuple(without_term(evidence, best.fit, i).total - best.fit.total for i in range(len(terms)))
     return Attribution(best.fit, tuple(rivals), explained, tuple(ranking), len(evidence.nuisance))
+
+
+def _name(term: Term) -> tuple[object, ...]:
+    """Return what tells a term from all others: a late effort and a late encoder of one joint differ by shape alone."""
+    return (*term.key, *sorted(term.shape.items()))
 
 
 def _alike(evidence: ArmMotionEvidence, best: Explained, second: Explained) -> bool:

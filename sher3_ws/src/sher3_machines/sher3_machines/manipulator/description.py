@@ -11,6 +11,8 @@ from sher3_machines.contrast.conditions import Tagged
 from sher3_machines.intake.fields import Clock
 
 Row = tuple[float, ...]
+PER_RUN = "per_run"
+"""Gain of a joint whose effort is in another unit in every run."""
 
 
 class Joint(Axis):
@@ -18,11 +20,12 @@ class Joint(Axis):
 
     Attributes:
         gain: N, or N m, per unit of the recorded effort or command; `unknown`: the effort is recorded in units of its
-            own, such as a motor current, and the model's inertias tell how many of them a newton metre is.
+            own, such as a motor current, and the model's inertias tell how many of them a newton metre is; `per_run`:
+            they tell it run by run, and the efforts are brought to newton metres.
     """
 
     command_law: CommandLaw = CommandLaw(kind="force")
-    gain: float | Literal["unknown"] = 1.0
+    gain: float | Literal["unknown", "per_run"] = 1.0
 
     @property
     def needs_force(self) -> bool:

@@ -2,25 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from sher3_diagnosis.channel import Array, Channel, Floors, Residual, Residuals
+from sher3_diagnosis.channel import Array, Channel, Residual, Residuals
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.whitened import Whitened
-from sher3_diagnosis.localise.floors import repeat_floors
 
 from sher3_machines.axes.evidence import blocks_of
-from sher3_machines.axes.floors import NOTHING, UNIFORM, foresight, innovation
 from sher3_machines.axes.quantities.own_unit import RECORDED
 from sher3_machines.axes.record import AxesRun
 from sher3_machines.errors import MachineError
-from sher3_machines.manipulator.description import ManipulatorDescription
+from sher3_machines.manipulator.description import PER_RUN, ManipulatorDescription
 from sher3_machines.manipulator.gains import Share, share_of
 from sher3_machines.manipulator.identify import with_identified_inertias
 from sher3_machines.manipulator.model import ArmModel
-from sher3_machines.manipulator.signals import joint_signals
+from sher3_machines.manipulator.readings.encoders import links_of
+from sher3_machines.manipulator.readings.floors import floors_of
+from sher3_machines.manipulator.readings.wrong import without_wrong_loads
+from sher3_machines.manipulator.signals import JointSignals, joint_signals
 from sher3_machines.manipulator.view import MotionView
 from sher3_machines.thresholds import BLOCKS
 
@@ -36,6 +37,8 @@ class ArmMotionEvidence(Evidence):
         judged: joints whose force balance is looked at.
         shares: joint -> units of its recorded effort per newton metre, where its gain was found from the data.
         turned: joints whose effort was recorded with the opposite sign, and was turned.
+        scales: joint -> units of its recorded effort per newton metre in each record, where they differ by run.
+        slips: joint -> times by which its effort is in another scale than its stated gain says; they are not judged.
     """
 
     described: ManipulatorDescription
@@ -44,6 +47,8 @@ class ArmMotionEvidence(Evidence):
     judged: Sequence[str]
     shares: Mapping[str, Share] = field(default_factory=dict)
     turned: Sequence[str] = ()
+    slips: Mapping[str, Share] = field(default_factory=dict)
+    scales: Mapping[str, Sequence[Share]] = field(default_factory=dict)
 
 
 def channel_of(joint: str) -> Channel:
@@ -78,25 +83,36 @@ def gather_arm_motion(
     repeats = described.repeats and len(runs) > 1
     n = len(described.joints)
     coupling = np.asarray(described.coupling if described.coupling is not None else np.eye(n), dtype=float)
-    signals = [joint_signals(run, described, "repeats" if repeats else run.name) for run in runs]
-    plain = [MotionView(s, described.joints, model, coupling, np.ones(n)) for s in signals]
+    read = [without_wrong_loads(run, described) for run in runs]
+    signals = [joint_signals(run, described, "repeats" if repeats else run.name) for run in read]
+    links = [links_of(s, described.joints, model, coupling) for s in signals]
+
+    def seen_by(model: ArmModel, shares: Array) -> list[MotionView]:
+        both = zip(signals, links, strict=True)
+        return [MotionView(s, link, described.joints, model, coupling, shares) for s, link in both]
+
+    plain = seen_by(model, np.ones(n))
     found = {name: share_of(plain, name) for name in judged}
-    turned = tuple(name for name in judged if found[name].backwards)
-    if turned:
-        signs = np.array([-1.0 if j.name in turned else 1.0 for j in described.joints])
-        signals = [replace(s, effort=s.effort * signs) for s in signals if s.effort is not None]
-        plain = [MotionView(s, described.joints, model, coupling, np.ones(n)) for s in signals]
+    stated = {j.name for j in described.joints if not isinstance(j.gain, str)}
+    own = [j.name for j in described.joints if j.gain == PER_RUN and j.name in judged]
+    scales = {name: [share_of([view], name) for view in plain] for name in own}
+    judged = [name for name in judged if all(share.told for share in scales.get(name, ()))]
+    slips = {name: found[name] for name in judged if name in stated and found[name].slipped}
+    judged = [name for name in judged if name not in slips]
+    turned = tuple(name for name in judged if name not in own and found[name].opposite(name in stated))
+    if turned or own:
+        signals = _put_right(signals, described, turned, scales)
+        plain = seen_by(model, np.ones(n))
     if described.inertias == "identified":
         model = with_identified_inertias(plain, model, judged)
-        plain = [MotionView(s, described.joints, model, coupling, np.ones(n)) for s in signals]
     unknown = [j.name for j in described.joints if j.gain == "unknown" and j.name in judged]
     shares = {name: found[name].turned() for name in unknown}
     factors = np.array([shares[j.name].value if j.name in shares else 1.0 for j in described.joints])
-    views = [MotionView(s, described.joints, model, coupling, factors) for s in signals]
+    views = seen_by(model, factors)
     residuals = [_residuals(view, judged) for view in views]
     if not any(residuals):
         raise MachineError("no joint can be judged", value="0 joints", remedy="record efforts while the joints move")
-    floors = _floors(views, residuals, repeats)
+    floors = floors_of(views, residuals, repeats)
     per_record = -(-BLOCKS // len(views))
     blocks = [(r, block) for r, x in enumerate(residuals) for block in blocks_of(x, per_record)]
     seen = tuple(j for j in judged if any(channel_of(j) in x for x in residuals))
@@ -115,7 +131,27 @@ def gather_arm_motion(
         judged=seen,
         shares=shares,
         turned=turned,
+        slips=slips,
+        scales=scales,
     )
+
+
+def _put_right(
+    signals: Sequence[JointSignals],
+    described: ManipulatorDescription,
+    turned: Collection[str],
+    scales: Mapping[str, Sequence[Share]],
+) -> list[JointSignals]:
+    """Return the signals with efforts of the opposite sign turned, and those of another unit in each run in N m."""
+    out = []
+    for r, s in enumerate(signals):
+        by = [-1.0 if j.name in turned else 1.0 for j in described.joints]
+        for i, joint in enumerate(described.joints):
+            share = scales[joint.name][r] if joint.name in scales else None
+            by[i] = share.value if share is not None and share.told else by[i]
+        assert s.effort is not None
+        out.append(replace(s, effort=s.effort / np.array(by)))
+    return out
 
 
 def unit_of_force(own: bool, motion: str) -> str:
@@ -123,28 +159,30 @@ def unit_of_force(own: bool, motion: str) -> str:
     return RECORDED if own else ("N" if motion == "linear" else "N*m")
 
 
-def of_joint(evidence: ArmMotionEvidence, joint: str, beside: Sequence[Mapping[Channel, Array]] = ()) -> Evidence:
-    """Return the evidence for one joint alone.
+def of_channel(
+    evidence: ArmMotionEvidence, channel: Channel, beside: Sequence[Mapping[Channel, Array]] = ()
+) -> Evidence:
+    """Return the evidence of one channel alone.
 
     Args:
         evidence: of the arm.
-        joint: to be looked at.
+        channel: of a joint to be looked at.
         beside: per block, what causes of the whole arm add to the residuals, (g, 1) in SI units; taken off.
     """
-    channel, data = channel_of(joint), evidence.data
+    data = evidence.data
     residuals: list[Residuals] = []
     for r, found in enumerate(data.residuals):
-        own = {c: found[c] for c in channels_of(joint) if c in found}
+        own = {channel: found[channel]} if channel in found else {}
         known = beside[r].get(channel) if beside else None
-        if channel in own and known is not None:
+        if own and known is not None:
             own[channel] = replace(own[channel], values=own[channel].values - known)
         residuals.append(own)
-    floors = [{c: f[c] for c in channels_of(joint) if c in f} for f in data.floors]
+    floors = [{channel: f[channel]} if channel in f else {} for f in data.floors]
     return Evidence(
         excitations=evidence.excitations,
         data=Whitened(data.views, residuals, floors),
         units=evidence.units,
-        places={"axis": (joint,)},
+        places={"axis": (channel.actuator,)},
         rotary=evidence.rotary,
     )
 
@@ -154,25 +192,8 @@ def _residuals(view: MotionView, judged: Sequence[str]) -> Residuals:
     assert run.effort is not None
     left = run.to_grid(run.effort) - view.inertial
     for joint in judged:
-        row = view.row(joint)
+        row, told = view.row(joint), run.inner & ~view.impacts
         out[channel_of(joint)] = Residual(left[:, [row]], view.in_motion(row))
         if run.load is not None and np.isfinite(run.load[:, row]).all():
-            out[between(joint)] = Residual(run.to_grid(run.load[:, [row]] - run.motor[:, [row]]), run.inner)
+            out[between(joint)] = Residual(run.to_grid(run.load[:, [row]] - run.motor[:, [row]]), told)
     return {channel: x for channel, x in out.items() if x.ok.sum() >= BLOCKS}
-
-
-def _floors(views: Sequence[MotionView], found: Sequence[Residuals], repeats: bool) -> list[Floors]:
-    """Floor per record and channel: between repeats, else what cannot be foreseen; never below a step of the effort."""
-    pooled = repeat_floors([view.excitation for view in views], found) if repeats else {}
-    out = []
-    for view, residuals in zip(views, found, strict=True):
-        floors: Floors = {}
-        told = foresight(view.run)
-        for channel, x in residuals.items():
-            joint = view.joints[view.row(channel.actuator)]
-            step = joint.effort_resolution / UNIFORM
-            if channel.stage == "transmission":
-                step = np.sqrt(2.0) * joint.encoder_resolution / UNIFORM
-            floors[channel] = np.maximum(pooled.get(channel, innovation(x) / told), max(step, NOTHING))
-        out.append(floors)
-    return out

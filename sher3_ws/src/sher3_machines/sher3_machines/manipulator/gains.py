@@ -16,10 +16,13 @@ from sher3_diagnosis.fit.fitting import solve
 from sher3_diagnosis.thresholds import JACKKNIFE
 
 from sher3_machines.manipulator.view import MotionView
-from sher3_machines.thresholds import BLOCKS, LEAST_EXCITED
+from sher3_machines.thresholds import BLOCKS, LEAST_EXCITED, SLIPPED, SURELY
 
 DAHL_SHARE = 2.5e-3
 """Displacement over which dry friction builds up, in shares of the lead: the middle one that the effects search."""
+
+WRONG_SIGN = 2.0
+"""Factor by which the share of a stated gain may be off minus one where its sign alone is wrong."""
 
 
 class Share(NamedTuple):
@@ -38,6 +41,20 @@ class Share(NamedTuple):
     def turned(self) -> Share:
         """Return the share of the effort with its sign put right."""
         return Share(abs(self.value), self.error, self.backwards)
+
+    def opposite(self, stated: bool) -> bool:
+        """Return whether the sign is to be turned.
+
+        With a stated gain a wrong sign alone makes the share about minus one; another one below zero is a force that
+        the model lacks, such as that of a payload on a light joint.
+        """
+        return self.backwards and (not (stated and self.told) or 1.0 / WRONG_SIGN < -self.value < WRONG_SIGN)
+
+    @property
+    def slipped(self) -> bool:
+        """Whether an effort with a stated gain is so surely in another scale that its unit is wrong and no drive."""
+        size = abs(self.value)
+        return self.told and size > SURELY * self.error and not 1.0 / SLIPPED < size < SLIPPED
 
     @property
     def told(self) -> bool:

@@ -10,12 +10,13 @@ from sher3_diagnosis.attribute.candidates import Candidates
 from sher3_diagnosis.attribute.rivals import Attribution
 from sher3_diagnosis.attribute.search import Left, Say
 from sher3_diagnosis.effect import Effect
-from sher3_diagnosis.finding import Finding
+from sher3_diagnosis.finding import ExactFinding, Finding
 from sher3_diagnosis.machine import Machine, Policy
 from sher3_diagnosis.verdict import Cause
 from sher3_effects import pages
 from sher3_effects.inertia.payload_mass import PayloadOnLink
 from sher3_effects.scale.torque_constant import TorqueConstant
+from sher3_effects.timing.sensor_delay import SensorDelay
 
 from sher3_machines.axes.health import dead_channels
 from sher3_machines.axes.identification.fast import requantified
@@ -30,6 +31,8 @@ from sher3_machines.manipulator.confounding import SAME, confounding_notes
 from sher3_machines.manipulator.description import ManipulatorDescription
 from sher3_machines.manipulator.evidence import ArmMotionEvidence, gather_arm_motion
 from sher3_machines.manipulator.model import ArmModel
+from sher3_machines.manipulator.readings.lateness import late_efforts
+from sher3_machines.manipulator.readings.wrong import level_notes, wrong_readings
 
 if TYPE_CHECKING:
     from sher3_machines.manipulator.reporter import ManipulatorReporter
@@ -64,7 +67,7 @@ class Manipulator(Machine[AxesRun, ArmMotionEvidence]):
         if all(j.lead is not None for j in self.described.joints):
             facts.add("lead")
         known = of_joints(facts)
-        if evidence.shares or self.described.inertias == "identified":
+        if evidence.shares or evidence.scales or self.described.inertias == "identified":
             known = [e for e in known if e.id not in IN_INERTIAS]
         return known
 
@@ -72,7 +75,7 @@ class Manipulator(Machine[AxesRun, ArmMotionEvidence]):
         """Return what was done to the data, which channels are dead, and whether floors are known from repeats."""
         notes = [note for run in runs for note in run.notes] + told_together(self._conditions(runs))
         for run in runs:
-            notes += [note for joint in self.described.joints for note in dead_channels(run, joint).values()]
+            notes += [note for joint in self.described.joints for note in wrong_readings(run, joint).values()]
         return notes if self.described.repeats and len(runs) > 1 else [*notes, NO_REPEATS]
 
     def gather(self, runs: Sequence[AxesRun]) -> Sequence[ArmMotionEvidence]:
@@ -85,6 +88,12 @@ class Manipulator(Machine[AxesRun, ArmMotionEvidence]):
         }
         judged = [j.name for j in self.described.joints if j.name not in dead and j.driven]
         return [gather_arm_motion(runs, self.described, self.model, judged)]
+
+    def exact(
+        self, runs: Sequence[AxesRun], evidence: Sequence[ArmMotionEvidence], without: Collection[str]
+    ) -> list[ExactFinding]:
+        """Return the efforts that are late on an arm without any other gap."""
+        return [] if SensorDelay.id in without else [late for part in evidence for late in late_efforts(part)]
 
     def attribute(self, evidence: ArmMotionEvidence, candidates: Candidates, left_over: Left, say: Say) -> Attribution:
         """Choose the causes joint by joint, without and with a payload, and what changed between conditions."""
@@ -122,7 +131,9 @@ class Manipulator(Machine[AxesRun, ArmMotionEvidence]):
                 "and are not looked for"
             )
         notes += change_notes(finding.attribution, self._conditions(evidence.runs))
-        return [*notes, *gain_notes(evidence), *confounding_notes(evidence)]
+        for run in evidence.runs:
+            notes += level_notes(run, self.described.joints, evidence.judged)
+        return [*notes, *slip_notes(evidence), *gain_notes(evidence), *confounding_notes(evidence)]
 
     def reporter(self) -> ManipulatorReporter:
         """Return the part of this machine in a report."""
@@ -145,9 +156,10 @@ def of_joints(facts: set[str] | None = None) -> list[Effect]:
 
 def gain_notes(evidence: ArmMotionEvidence) -> list[str]:
     """Return what was found of gains that nobody stated."""
+    notes = [scale_note(evidence, joint) for joint in evidence.scales]
     if not evidence.shares:
-        return []
-    notes = [
+        return notes
+    notes += [
         f"{', '.join(evidence.shares)}: drive gain not stated: forces are in eu, the unit of the recorded "
         "effort; drive gain, weight and payload are confounded unless the model's inertias are right, and no payload "
         "is looked for"
@@ -160,6 +172,24 @@ def gain_notes(evidence: ArmMotionEvidence) -> list[str]:
         else:
             notes.append(f"{joint}: the motion does not tell the drive gain; weight and inertia are left in the force")
     return notes
+
+
+def scale_note(evidence: ArmMotionEvidence, joint: str) -> str:
+    """Return what was found of a gain that differs by run."""
+    each = zip(evidence.runs, evidence.scales[joint], strict=True)
+    told = ", ".join(f"{run.name} {share.value:.4g}" if share.told else f"{run.name} not told" for run, share in each)
+    return (
+        f"{joint}: recorded units per newton metre, run by run, inertias as modelled: {told}; drive gain, weight and "
+        "payload are in them and are not looked for"
+    )
+
+
+def slip_notes(evidence: ArmMotionEvidence) -> list[str]:
+    """Return a sentence for each effort in another scale than its stated gain says."""
+    return [
+        f"{joint}: effort is {share.value:.4g} times what the model needs: state its `factor`, or `gain: unknown`"
+        for joint, share in evidence.slips.items()
+    ]
 
 
 def with_hidden(cause: Cause) -> Cause:

@@ -93,11 +93,11 @@ class ArmModel:
         forces = [pin.rnea(model, data, self._configuration(qi), vi, ai) for qi, vi, ai in zip(*full, strict=True)]
         return np.array(forces)[:, self.rows]
 
-    def inertia_at(self, q: Array) -> Array:
-        """Return the inertia that each recorded joint moves in one posture q (k,), (k,)."""
+    def inertia_matrix(self, q: Array) -> Array:
+        """Return the joint-space inertia of the recorded joints in one posture q (k,), (k, k)."""
         model = self.pinocchio
-        matrix = pin.crba(model, model.createData(), self._configuration(self._full(q[None])[0]))
-        return np.asarray(np.diag(matrix)[self.rows])
+        upper = np.triu(pin.crba(model, model.createData(), self._configuration(self._full(q[None])[0])))
+        return np.asarray(upper + np.triu(upper, 1).T)[np.ix_(self.rows, self.rows)]
 
     def _full(self, x: Array) -> Array:
         """Spread the recorded joints (n, k) over the degrees of freedom of the model (n, nv)."""

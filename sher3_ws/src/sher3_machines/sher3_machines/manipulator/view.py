@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -13,15 +12,16 @@ from sher3_diagnosis.filter import settled
 from sher3_effects.operators import dahl
 from sher3_effects.view import NominalAxis
 
-from sher3_machines.axes.identification.noise import noise_of
 from sher3_machines.axes.signals import AxisSignals
 from sher3_machines.axes.view import LEAD_OF_STROKE, SLIP, STILL, Loads
 from sher3_machines.manipulator.description import Joint
 from sher3_machines.manipulator.model import PARAMETERS, ArmModel
+from sher3_machines.manipulator.readings.encoders import crossing
+from sher3_machines.manipulator.readings.wrong import at_a_level
 from sher3_machines.manipulator.signals import JointSignals
 
-NOISIER = 2.0
-"""Noise of a second encoder over that of the first up to which the links move as it says."""
+AROUND_IMPACT = 2
+"""Samples of the residual grid around one at which a gap is crossed: the filter smears the impact at its end."""
 LINKS_OF_PAYLOAD = 4
 """Leading inertial parameters of a body that a payload changes linearly: its mass, and mass times centre."""
 
@@ -30,7 +30,7 @@ class MotionView:
     """A run of k joints with their nominal forces; on the side of the motors where a transmission couples them.
 
     Attributes:
-        run: signals of the joints.
+        run: signals of the joints; `links`: the same with the positions of the links.
         joints: as described.
         model: of the arm.
         coupling: motor travel = coupling * joint travel, (k, k).
@@ -40,9 +40,16 @@ class MotionView:
     """
 
     def __init__(
-        self, run: JointSignals, joints: Sequence[Joint], model: ArmModel, coupling: Array, shares: Array
+        self,
+        run: JointSignals,
+        links: AxisSignals,
+        joints: Sequence[Joint],
+        model: ArmModel,
+        coupling: Array,
+        shares: Array,
     ) -> None:
         self.run = run
+        self.links = links
         self.joints = joints
         self.model = model
         self.coupling = coupling
@@ -127,18 +134,6 @@ class MotionView:
         return self.shares * self.rigid + viscous * self.velocity
 
     @cached_property
-    def links(self) -> AxisSignals:
-        """Signals whose motion is that of the links: of a second encoder where it is as quiet as the motor's."""
-        run = self.run
-        if run.load is None:
-            return run
-        told = np.isfinite(run.load).all(axis=0)
-        for j in map(int, np.flatnonzero(told)):
-            own, other = (noise_of(x[:, j], run.period) for x in (run.motor, run.load))
-            told[j] = other <= NOISIER * max(own, self.joints[j].encoder_resolution)
-        return replace(run, motor=np.where(told, run.load, run.motor)) if told.any() else run
-
-    @cached_property
     def _of_links(self) -> tuple[Array, Array, Array]:
         """Position, velocity and acceleration of the joints on the residual grid, (g, k) each."""
         run, back = self.links, np.linalg.inv(self.coupling).T
@@ -167,13 +162,32 @@ class MotionView:
     @cached_property
     def inertia(self) -> Array:
         """Inertia that each joint moves in the middle posture, (k,)."""
-        return self.shares * self.model.inertia_at(np.median(self._joint_position, axis=0))
+        return self.shares * np.diag(self.model.inertia_matrix(np.median(self._joint_position, axis=0)))
+
+    def inertia_matrix(self, sample: int) -> Array:
+        """Return motor force by motor acceleration in the posture of a sample of the residual grid, (k, k)."""
+        back = np.linalg.inv(self.coupling)
+        return np.asarray(back.T @ self.model.inertia_matrix(self._joint_position[sample]) @ back)
 
     # which samples can be judged
 
     def in_motion(self, row: int) -> Mask:
         """Return (g,) True where the force balance of a joint can be judged: well inside a stretch of its motion."""
-        return self.run.inner & settled(self.moving[:, row], 1)
+        still = settled(self.moving[:, row] & ~self.at_a_level[:, row], 1)
+        return self.run.inner & still & ~self.impacts
+
+    @cached_property
+    def impacts(self) -> Mask:
+        """(g,) True where the link of any joint flies across a gap; the impact at its end shakes all of them."""
+        flying = np.any([crossing(self.run, row) for row in range(len(self.joints))], axis=0)
+        return ~settled(~flying, AROUND_IMPACT)
+
+    @cached_property
+    def at_a_level(self) -> Mask:
+        """(g, k) True where an effort lies flat at its largest reading."""
+        effort = self.run.effort
+        assert effort is not None
+        return np.column_stack([at_a_level(x) for x in effort.T])[self.run.grid]
 
     @cached_property
     def moving(self) -> Mask:

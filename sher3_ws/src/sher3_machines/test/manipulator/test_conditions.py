@@ -42,6 +42,30 @@ def test_a_repaired_joint_has_less_friction_than_before(tmp_path):
     assert found["coulomb_friction", "swing"].parameters["force"].value == pytest.approx(-0.3, rel=0.1)
 
 
+def test_drift_between_temperatures_is_the_change_alone(tmp_path):
+    """The grease of the lift is warmer: 20 N/(m/s) become 12; its dry friction stays."""
+    arm = machine(tmp_path / "lift.urdf", conditions={"a": {"temperature": "20"}, "b": {"temperature": "35"}})
+    verdict = diagnose(arm, [recorded("a", 0.0), recorded("b", 0.7, viscous=(12.0, 0.4))]).verdict
+    found = changes(verdict)
+    assert set(found) == {("viscous_friction", "lift")} and found["viscous_friction", "lift"].condition
+    assert found["viscous_friction", "lift"].parameters["extra"].value == pytest.approx(-8.0, rel=0.1)
+
+
+def test_the_reply_of_another_simulator_is_the_nominal_one(tmp_path):
+    """A simulator with viscous friction of its own replied to one motion; the robot has dry friction beside it."""
+    arm = machine(tmp_path / "lift.urdf", conditions={"a": {"simulator": "gazebo"}, "b": {"simulator": "robot"}})
+    reply = recorded("a", 0.0, coulomb=(0.0, 0.0))
+    verdict = diagnose(arm, [reply, recorded("b", 0.7, coulomb=(8.0, 0.0))]).verdict
+    found = changes(verdict)
+    assert set(found) == {("coulomb_friction", "lift")}
+    assert found["coulomb_friction", "lift"].parameters["force"].value == pytest.approx(8.0, rel=0.06)
+    assert {(c.effect, c.actuator) for c in verdict.causes if not c.condition} == {
+        ("viscous_friction", "lift"),
+        ("viscous_friction", "swing"),
+    }
+    assert any("simulator robot against gazebo" in n for n in verdict.notes)
+
+
 def test_nothing_changed_is_said(tmp_path):
     arm = machine(tmp_path / "lift.urdf", conditions={"a": {"day": "Monday"}, "b": {"day": "Friday"}})
     verdict = diagnose(arm, [recorded("a", 0.0), recorded("b", 0.7)]).verdict

@@ -1,5 +1,7 @@
 """A lift with a pendulum, both joints moving at once: what the engine says of it."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from lifts import L, described, friction, machine, motion, needed, run_of, values
@@ -76,6 +78,29 @@ def test_an_unknown_gain_is_found_and_what_hides_in_it_is_said(path):
     assert "gain, weight and payload are confounded" in told
     share = next(n for n in found.notes if "per N m" in n)
     assert float(share.split()[1]) == pytest.approx(0.4, rel=0.01)
+
+
+def test_gains_that_differ_by_run_are_found_run_by_run(path):
+    """0.4 and 1.7 units a newton metre; the second run has the opposite sign too. The friction is common to both."""
+    arm, runs = machine(path, joint={"swing": {"gain": "per_run"}}), []
+    for name, units, seed in (("a", 0.4, 0.0), ("b", -1.7, 0.7)):
+        q, v, a = motion(16.0, seed=seed)
+        runs.append(run_of(q, (needed(q, v, a) + friction(v, (0.0, 0.5))) * np.array([1.0, units]), name=name))
+    found = diagnose(arm, runs).verdict
+    (cause,) = found.causes
+    assert found.status == "attributed" and (cause.effect, cause.actuator) == ("coulomb_friction", "swing")
+    assert cause.parameters["force"].value == pytest.approx(0.5, rel=0.06) and cause.parameters["force"].unit == "N*m"
+    note = next(n for n in found.notes if "run by run" in n)
+    told = {word: float(x.strip(",;")) for word, x in pairwise(note.split()) if word in ("a", "b")}
+    assert told["a"] == pytest.approx(0.4, rel=0.01) and told["b"] == pytest.approx(-1.7, rel=0.01)
+
+
+def test_a_cable_pulls_over_position_going_and_coming_alike(path):
+    """A cable that stiffens towards one end: no line, so no spring; 3 (q - 0.2)^2 N m on the swing."""
+    effort = needed(Q, V, A) + np.stack([0.0 * Q[:, 0], 3.0 * (Q[:, 1] - 0.2) ** 2], axis=1)
+    found = verdict(path, effort)
+    (cause,) = found.causes
+    assert (cause.effect, cause.actuator) == ("cable_torque", "swing") and cause.closure.value > 0.98
 
 
 def test_a_dead_effort_is_named_and_the_other_joint_judged(path):

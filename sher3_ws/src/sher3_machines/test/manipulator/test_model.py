@@ -25,14 +25,14 @@ def test_the_regressor_times_the_model_s_inertias_is_the_force(model):
 
 def test_kinds_links_and_inertias(model):
     assert model.linear == (True, False) and model.links == ("carriage", "pendulum")
-    assert model.inertia_at(np.zeros(2)) == pytest.approx([M1 + M2, 0.01 + M2 * L**2])
+    assert np.diag(model.inertia_matrix(np.zeros(2))) == pytest.approx([M1 + M2, 0.01 + M2 * L**2])
 
 
 def test_a_joint_that_was_not_recorded_is_locked(tmp_path):
     path = tmp_path / "lift.urdf"
     path.write_text(URDF)
     alone = load_model(path, ["swing"], None)
-    assert alone.names == ("swing",) and alone.inertia_at(np.zeros(1)) == pytest.approx([0.01 + M2 * L**2])
+    assert alone.names == ("swing",) and alone.inertia_matrix(np.zeros(1))[0] == pytest.approx([0.01 + M2 * L**2])
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,1 @@
+"""What the readings of an arm are worth: wrong ones, late ones, which encoder is believed, and their floors."""
