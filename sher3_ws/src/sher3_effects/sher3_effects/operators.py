@@ -31,6 +31,24 @@ def dahl(x: Array, displacement: float) -> Array:
 
 
 @compiled
+def sheath(tension: Array, wrap: float, pieces: int = 16) -> Array:
+    """Logarithm of the tension in each piece of a sheath (n, pieces), from that at its beginning, (n,).
+
+    A piece holds its tension until its neighbour's is larger or smaller by exp(wrap / pieces): there it slides (capstan,
+    Euler 1769). A chain of plays in the logarithm: after a reversal the sliding part grows from the beginning on.
+    """
+    out = np.empty((len(tension), pieces))
+    step = wrap / pieces
+    for k in range(len(tension)):
+        before = tension[k]
+        for i in range(pieces):
+            held = out[k - 1, i] if k else tension[0]
+            before = min(max(held, before - step), before + step)
+            out[k, i] = before
+    return out
+
+
+@compiled
 def play(x: Array, drive: Array, width: float, damping: float, period: float, start: float) -> Array:
     """Follower behind a gap of `width`, minus x, (n,): -width/2..width/2.
 

@@ -94,6 +94,8 @@ class BacklashOnAxis(Backlash):
     units: ClassVar[Mapping[str, str]] = {}
     SMALLER = (0.06, 0.12, 0.25, 0.45)
     """Widths in spans of the residual that are tried for a load that stays put in the gap."""
+    PUSHED = (200.0, 0.0)
+    """How a load moves in the gap that a known force from outside pushes across."""
     BRAKING = (0.03, 0.1, 0.3, 1.0)
     """What brakes a load that flies across the gap by its own inertia, over the rms acceleration of the motor."""
     finer: ClassVar[Mapping[str, tuple[float, ...]]] = {
@@ -107,7 +109,9 @@ class BacklashOnAxis(Backlash):
         """Return the widths around the span and smaller ones, for loads that stay, drift, or fly on by their mass."""
         found = super().shapes(views, site)
         span = found[0]["width"] / self.WIDTHS[0] if found else 0.0
-        small = [{"width": w * span, "damping": np.inf, "stick": 0.0} for w in self.SMALLER if span]
+        loaded = any(v.path.contact_force.any() for v in views)
+        drifts = ((np.inf, 0.0), self.PUSHED) if loaded else ((np.inf, 0.0),)
+        small = [{"width": w * span, "damping": d, "stick": s} for w in self.SMALLER if span for d, s in drifts]
         square = [np.mean(np.gradient(v.run.velocity[:, v.row(site)], v.run.period) ** 2) for v in views]
         usual = float(np.sqrt(np.mean(square)))
         widths = [w * span for w in (*self.SMALLER[2:], *self.WIDTHS) if span]

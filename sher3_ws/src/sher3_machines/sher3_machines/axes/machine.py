@@ -192,6 +192,7 @@ def facts_of(axis: Axis) -> set[str]:
     known = {
         "lead": axis.lead is not None,
         "load": axis.signals.load is not None,
+        "temperature": axis.signals.temperature is not None,
         "mass": isinstance(axis.mass, float),
         "drive": not axis.free,
         "forces": isinstance(axis.mass, float) or axis.gravity != Gravity() or axis.signals.nominal_effort is not None,
