@@ -31,6 +31,28 @@ def dahl(x: Array, displacement: float) -> Array:
 
 
 @compiled
+def dahl_turned(x: Array, v: Array, displacement: float, period: float) -> Array:
+    """Dahl's state as `dahl`, of a path x (n,) with velocities v (n,) that turns round between its samples.
+
+    Where the velocity changes its sign from one sample to the next, the path goes on to where it is zero and comes back
+    from there. By the samples alone the state would turn half a period late on average.
+    """
+    out = np.zeros(len(x))
+    z = 0.0
+    for k in range(1, len(x)):
+        on = 0.0
+        if v[k - 1] * v[k] < 0.0:
+            on = 0.5 * period * v[k - 1] * v[k - 1] / (v[k - 1] - v[k])
+        for step in (on, x[k] - x[k - 1] - on):
+            if step > 0.0:
+                z = 1.0 - (1.0 - z) * math.exp(-step / displacement)
+            elif step < 0.0:
+                z = -1.0 + (1.0 + z) * math.exp(step / displacement)
+        out[k] = z
+    return out
+
+
+@compiled
 def sheath(tension: Array, wrap: float, pieces: int = 16) -> Array:
     """Logarithm of the tension in each piece of a sheath (n, pieces), from that at its beginning, (n,).
 

@@ -10,7 +10,7 @@ from sher3_diagnosis.channel import Array, Channel, Mask
 from sher3_diagnosis.discover.feature import Quantities, Quantity
 from sher3_diagnosis.evidence import Motion
 from sher3_diagnosis.filter import EDGE, settled
-from sher3_effects.operators import dahl
+from sher3_effects.operators import dahl_turned
 from sher3_effects.view import NominalAxis
 
 from sher3_machines.axes.description import Axis
@@ -28,6 +28,10 @@ STIRRING = 0.01
 """Share of the travel above which a change is no noise: what a slow record moves by is not taken for one."""
 REFERENCE = 20.0
 """Temperature, deg C, at which lengths are stated (ISO 1)."""
+SPREAD = 0.5
+"""Periods of the cut-off by which the filter spreads a step."""
+ENOUGH = 0.5
+"""Share of the samples in motion that must be away from such reversals for the others to be left out."""
 STILL = 1e-12
 """Top speed in place of none, m/s or rad/s: shares of the top speed are taken."""
 
@@ -93,7 +97,8 @@ class AxisView:
     def sliding(self, axis: int, displacement: float) -> Array:
         """Return the Dahl state of the axis, -1..1, (n,): +1 after moving forward by a few `displacement`, m or rad."""
         if displacement not in self._sliding:
-            self._sliding[displacement] = dahl(self.run.smooth[:, 0], displacement)
+            path, pace = (np.ascontiguousarray(x[:, 0]) for x in (self.run.smooth, self.run.velocity))
+            self._sliding[displacement] = dahl_turned(path, pace, displacement, self.run.period)
         return self._sliding[displacement]
 
     @cached_property
@@ -145,11 +150,16 @@ class AxisView:
         return np.abs(after - before) > max(self.described.encoder_resolution, self._jitter)
 
     @cached_property
+    def _noise(self) -> float:
+        """Standard deviation of the encoder's noise, m or rad."""
+        return noise_of(self.run.motor[:, 0], self.run.period)
+
+    @cached_property
     def _jitter(self) -> float:
         """Change of the smoothed position that the encoder's noise makes, m or rad; a small part of the travel."""
         run = self.run
         white = np.random.default_rng(0).normal(size=(run.ticks, 1))
-        left = noise_of(run.motor[:, 0], run.period) * float(run.filtered(white).std())
+        left = self._noise * float(run.filtered(white).std())
         return min(SEEN * left, STIRRING * float(np.ptp(run.smooth)))
 
     @cached_property
@@ -171,7 +181,25 @@ class AxisView:
     @cached_property
     def in_motion(self) -> Mask:
         """(g,) True where the force balance can be judged: well inside a stretch of motion."""
-        return self.run.inner & self.released & settled(self.moving, 1)
+        inside = self.run.inner & self.released & settled(self.moving, 1)
+        clear = inside & self.clear
+        return clear if clear.sum() >= ENOUGH * inside.sum() and not self.described.free else inside
+
+    @cached_property
+    def clear(self) -> Mask:
+        """(g,) False about a reversal that the samples pass over by more than a count or the noise: friction turns between.
+
+        Half a sample more or less then is the whole step of the friction, and the filter spreads it.
+        """
+        run = self.run
+        pace, turn = run.velocity[:, 0], np.gradient(run.velocity[:, 0])
+        seen = max(self.described.encoder_resolution, self._noise)
+        at = np.flatnonzero((pace[1:] * pace[:-1] < 0.0) & (run.period * np.abs(turn[1:]) > seen))
+        reach = SPREAD / (run.bandwidth * run.period)
+        near = np.searchsorted(at, run.grid)
+        after = run.grid - np.concatenate([[-np.inf], at + 0.5])[near]
+        before = np.concatenate([at + 0.5, [np.inf]])[near] - run.grid
+        return np.asarray(np.minimum(after, before) > reach)
 
     @cached_property
     def at_rest(self) -> Mask:
