@@ -197,6 +197,19 @@ def held_lag(x: Array, time_constant: float, period: float) -> Array:
 
 
 @compiled
+def rate_limited(x: Array, start: float, limit: float, time_constant: float, period: float) -> Array:
+    """Path (n,) from `start` that follows x (n,), held between samples, like a first-order lag but at most at `limit`."""
+    out = np.empty(len(x))
+    y = start
+    share = 1.0 - math.exp(-period / time_constant)
+    for k in range(len(x)):
+        out[k] = y
+        step = share * (x[k] - y)
+        y += min(max(step, -limit * period), limit * period)
+    return out
+
+
+@compiled
 def _follow(x: Array, keep: float) -> Array:
     """Return x (n, d) one sample late through y <- keep y + (1 - keep) x, at rest at first."""
     out = np.empty_like(x)

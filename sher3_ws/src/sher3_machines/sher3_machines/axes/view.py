@@ -150,7 +150,7 @@ class AxisView:
         return np.abs(after - before) > max(self.described.encoder_resolution, self._jitter)
 
     @cached_property
-    def _noise(self) -> float:
+    def noise(self) -> float:
         """Standard deviation of the encoder's noise, m or rad."""
         return noise_of(self.run.motor[:, 0], self.run.period)
 
@@ -159,7 +159,7 @@ class AxisView:
         """Change of the smoothed position that the encoder's noise makes, m or rad; a small part of the travel."""
         run = self.run
         white = np.random.default_rng(0).normal(size=(run.ticks, 1))
-        left = self._noise * float(run.filtered(white).std())
+        left = self.noise * float(run.filtered(white).std())
         return min(SEEN * left, STIRRING * float(np.ptp(run.smooth)))
 
     @cached_property
@@ -193,7 +193,7 @@ class AxisView:
         """
         run = self.run
         pace, turn = run.velocity[:, 0], np.gradient(run.velocity[:, 0])
-        seen = max(self.described.encoder_resolution, self._noise)
+        seen = max(self.described.encoder_resolution, self.noise)
         at = np.flatnonzero((pace[1:] * pace[:-1] < 0.0) & (run.period * np.abs(turn[1:]) > seen))
         reach = SPREAD / (run.bandwidth * run.period)
         near = np.searchsorted(at, run.grid)
