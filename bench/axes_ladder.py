@@ -1,4 +1,4 @@
-"""Do the intervals of an axis' mass and friction hold the truth, at which rate and noise of its encoder?
+"""Bench: do the intervals of an axis' mass and friction hold the truth, at which rate and noise of its encoder.
 
 Two simulated slides of 8 kg with 6 N of dry and 12 N/(m/s) of viscous friction: one that follows sines and whose mass
 is not stated, one that is sent to and fro with stretches of even speed and whose mass is. Their drives run at 1 kHz;
@@ -34,12 +34,12 @@ SAME = {"presliding_friction": "coulomb_friction"}
 
 
 def sines(t: np.ndarray, seed: int) -> np.ndarray:
-    """Reference of the first slide, m."""
+    """Return the reference of the first slide, m."""
     return 0.08 * np.sin(1.3 * t + seed) + 0.03 * np.sin(4.1 * t + 0.4) + 0.006 * np.sin(9.0 * t)
 
 
 def strokes(t: np.ndarray, seed: int) -> np.ndarray:
-    """Reference of the second slide, m: strokes of 0.1 and 0.2 m, a third of each at an even speed."""
+    """Return the reference of the second slide, m: strokes of 0.1 and 0.2 m at speeds of their own."""
     times, places = [0.0], [0.0]
     rng = np.random.default_rng(seed)
     while times[-1] < t[-1] + 2.0:

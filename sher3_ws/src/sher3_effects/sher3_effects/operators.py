@@ -56,8 +56,8 @@ def dahl_turned(x: Array, v: Array, displacement: float, period: float) -> Array
 def sheath(tension: Array, wrap: float, pieces: int = 16) -> Array:
     """Logarithm of the tension in each piece of a sheath (n, pieces), from that at its beginning, (n,).
 
-    A piece holds its tension until its neighbour's is larger or smaller by exp(wrap / pieces): there it slides (capstan,
-    Euler 1769). A chain of plays in the logarithm: after a reversal the sliding part grows from the beginning on.
+    A piece holds its tension until its neighbour's is larger or smaller by exp(wrap / pieces): there it slides
+    (capstan, Euler 1769). A chain of plays in the logarithm: after a reversal the sliding part grows from the beginning on.
     """
     out = np.empty((len(tension), pieces))
     step = wrap / pieces
@@ -198,7 +198,7 @@ def held_lag(x: Array, time_constant: float, period: float) -> Array:
 
 @compiled
 def rate_limited(x: Array, start: float, limit: float, time_constant: float, period: float) -> Array:
-    """Path (n,) from `start` that follows x (n,), held between samples, like a first-order lag but at most at `limit`."""
+    """Path (n,) from `start` that follows x (n,), held between samples: a first-order lag, no faster than `limit`."""
     out = np.empty(len(x))
     y = start
     share = 1.0 - math.exp(-period / time_constant)

@@ -51,7 +51,9 @@ class SpeedLimit(Page):
         row, reference = view.row(site), view.run.reference
         assert reference is not None
         asked = np.ascontiguousarray(reference[:, row])
-        path = rate_limited(asked, float(view.run.motor[0, row]), shape["limit"], shape["time_constant"], view.run.period)
+        path = rate_limited(
+            asked, float(view.run.motor[0, row]), shape["limit"], shape["time_constant"], view.run.period
+        )
         return Signature({}, {Channel(self.stage, site): view.run.to_grid((asked - path)[:, None])})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:

@@ -41,7 +41,7 @@ class SensorDelay(Page):
     """Share of a searched delay that its coefficient may add; a finer delay is searched for what lies beyond."""
     UNSAID = 2.0
     """Delay of an effort, in periods, from which it is searched: within one period nobody states its moment."""
-    UNSEEN = 0.05
+    UNSEEN = 0.1
     """The same in periods of the cut-off: what a noisy encoder does to the moment of a reversal."""
     LONGEST = 0.25
     """Delay, s, beyond which two recordings are not of the same moment at all."""

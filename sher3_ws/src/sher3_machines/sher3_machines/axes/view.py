@@ -76,7 +76,14 @@ class AxisView:
         axis, known = self.described, self.described.lead is not None
         travel = float(np.ptp(self.run.smooth))
         return NominalAxis(
-            self.mass, max(axis.viscous, SLIP), self.lead(site), self.top, travel, self.hangs, known, self.load_mass,
+            self.mass,
+            max(axis.viscous, SLIP),
+            self.lead(site),
+            self.top,
+            travel,
+            self.hangs,
+            known,
+            self.load_mass,
             axis.motion == "rotary",
         )
 
@@ -187,9 +194,9 @@ class AxisView:
 
     @cached_property
     def clear(self) -> Mask:
-        """(g,) False about a reversal that the samples pass over by more than a count or the noise: friction turns between.
+        """(g,) False about a reversal that the samples pass over by more than a count: friction turns in between.
 
-        Half a sample more or less then is the whole step of the friction, and the filter spreads it.
+        A count, or the noise. Half a sample more or less then is the whole step of the friction, and the filter spreads it.
         """
         run = self.run
         pace, turn = run.velocity[:, 0], np.gradient(run.velocity[:, 0])

@@ -22,7 +22,6 @@ SPELLINGS = {
     "deg": "° degree degrees degs grad",
     "arcmin": "arcminute arcminutes amin",
     "arcsec": "arcsecond arcseconds asec as",
-    "inch": "in inches",
     "rev": "turn turns revolution revolutions revs rot",
     "N": "newton newtons",
     "N*m": "Nm N·m N⋅m N.m N-m newton-meter",

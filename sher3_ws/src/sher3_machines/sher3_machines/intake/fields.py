@@ -14,7 +14,6 @@ UNITS: Mapping[str, float] = {
     "mm": 1e-3,
     "um": 1e-6,
     "nm": 1e-9,
-    "inch": 25.4e-3,
     "rad": 1.0,
     "mrad": 1e-3,
     "deg": math.pi / 180.0,
