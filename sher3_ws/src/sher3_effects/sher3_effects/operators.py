@@ -57,7 +57,8 @@ def sheath(tension: Array, wrap: float, pieces: int = 16) -> Array:
     """Logarithm of the tension in each piece of a sheath (n, pieces), from that at its beginning, (n,).
 
     A piece holds its tension until its neighbour's is larger or smaller by exp(wrap / pieces): there it slides
-    (capstan, Euler 1769). A chain of plays in the logarithm: after a reversal the sliding part grows from the beginning on.
+    (capstan, Euler 1769). That is a chain of plays in the logarithm: after a reversal the sliding part grows from the
+    beginning on.
     """
     out = np.empty((len(tension), pieces))
     step = wrap / pieces

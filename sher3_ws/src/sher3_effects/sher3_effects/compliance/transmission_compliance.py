@@ -79,8 +79,8 @@ class TransmissionCompliance(Page):
 class ComplianceOnAxis(TransmissionCompliance):
     """load = motor - force / stiffness on one axis of any machine; the force as modelled or as the drive recorded it.
 
-    Without a recorded force a ringing load tells its frequency, and its stiffness only with its share of the mass. Where
-    the mass of the load is known its own friction bends the spring too; half a gap times the stiffness adds to it.
+    Without a recorded force a ringing load tells its frequency, and its stiffness only with its share of the mass.
+    Where the mass of the load is known its friction bends the spring too; half a gap times the stiffness adds to it.
     """
 
     kinds = ("axis", "servo")
@@ -127,7 +127,7 @@ class ComplianceOnAxis(TransmissionCompliance):
 
 
 def carried(view: AxisView, site: str, recorded: float) -> Array:
-    """Return the force (g,) that a transmission carries: weight and known loads (0), recorded (1), or of the load (2)."""
+    """Return the force (g,) on a transmission: weight and known loads (0), as recorded (1), or of the load (2)."""
     run, row = view.run, view.row(site)
     if recorded == ComplianceOnAxis.OF_LOAD:
         bend = np.zeros(len(run.load))

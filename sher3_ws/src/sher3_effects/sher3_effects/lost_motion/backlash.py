@@ -13,8 +13,8 @@ from sher3_diagnosis.effect import Best, Measured, Shape, Signature, column
 from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
-from sher3_effects.lost_motion.plateau import plateau
 from sher3_effects.compliance.transmission_compliance import carried
+from sher3_effects.lost_motion.plateau import plateau
 from sher3_effects.operators import flight, play
 from sher3_effects.page import Page, Part, Values
 from sher3_effects.view import AxisView

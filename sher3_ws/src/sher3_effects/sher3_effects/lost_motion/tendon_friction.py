@@ -29,7 +29,7 @@ class TendonFriction(Page):
     leaves_out = "how its friction differs along the sheath"
     extends = ("transmission_hysteresis", "transmission_compliance")
     explanation = (
-        "A cable rubs where it is led round: it is stretched by less of its tension going than coming, so that the loop "
+        "A cable rubs where it is led round: it is stretched by less of its tension going than coming: the loop "
         "between motor and joint is wide where the cable is tight, and closes where it is slack."
     )
     siblings = {

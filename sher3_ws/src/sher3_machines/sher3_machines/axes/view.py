@@ -196,7 +196,7 @@ class AxisView:
     def clear(self) -> Mask:
         """(g,) False about a reversal that the samples pass over by more than a count: friction turns in between.
 
-        A count, or the noise. Half a sample more or less then is the whole step of the friction, and the filter spreads it.
+        A count, or the noise. Half a sample more or less then is the whole step of the friction, spread by the filter.
         """
         run = self.run
         pace, turn = run.velocity[:, 0], np.gradient(run.velocity[:, 0])

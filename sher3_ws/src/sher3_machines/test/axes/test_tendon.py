@@ -1,4 +1,4 @@
-"""A cable in its sheath: told from play and from a plain hysteresis, by its tension or by its growth along the travel."""
+"""A cable in its sheath: told from play and hysteresis by its tension, or by a loop that grows along the travel."""
 
 import numpy as np
 import pytest

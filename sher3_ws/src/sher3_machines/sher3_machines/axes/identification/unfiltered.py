@@ -14,7 +14,6 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-from scipy.interpolate import make_interp_spline
 from sher3_diagnosis.channel import Array
 
 from sher3_machines.axes.description import Axis
@@ -47,6 +46,8 @@ class Filter(NamedTuple):
         if self.order == 0:
             before: Array = np.interp(clock + pace, clock, effort)
         else:
+            from scipy.interpolate import make_interp_spline
+
             spline = make_interp_spline(clock, effort, k=min(SPLINE, len(clock) - 1))
             if self.order == 1:
                 before = effort + pace * spline(clock, 1)
