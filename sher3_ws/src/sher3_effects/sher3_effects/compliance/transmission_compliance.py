@@ -85,6 +85,10 @@ class ComplianceOnAxis(TransmissionCompliance):
 
     kinds = ("axis", "servo")
     units = {"stiffness": "N/m", "compliance": "m/N", "frequency": "Hz", "load_friction": "N"}
+    DAMPINGS = (0.03, 0.1, 0.3)
+    """Of a load that rings behind the motor, whose mass and spring nobody knows."""
+    MOST_DAMPED = 0.95
+    """Damping beyond which nothing rings."""
     OF_LOAD = 2.0
     """Value of the shape `recorded` for the force that the mass of the load needs."""
 
@@ -97,14 +101,23 @@ class ComplianceOnAxis(TransmissionCompliance):
             return [{**held, "recorded": self.OF_LOAD}, {**held, "recorded": self.OF_LOAD, "rubbed": 1.0}, held]
         if views[0].axis(site).mass > 0.0:
             modelled = super().shapes(views, site)
+        elif not recorded:
+            modelled += [
+                {"ringing": 1.0, "frequency": f, "damping": z} for f in self.FREQUENCIES for z in self.DAMPINGS
+            ]
         return [*modelled, held] if recorded else modelled
 
     def refine(self, shape: Shape) -> list[Shape]:
         """Return neighbours of a modelled force; a recorded one has none."""
+        if "ringing" in shape:
+            near = [{**shape, "frequency": shape["frequency"] * f} for f in (0.9, 0.95, 0.98, 1.02, 1.05, 1.1)]
+            return [*near, *({**shape, "damping": shape["damping"] * z} for z in (0.5, 0.8, 1.25, 2.0))]
         return [] if "recorded" in shape else super().refine(shape)
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Return stiffness and compliance, and the frequency of a load that rings."""
+        if "ringing" in shape:
+            return {"frequency": shape["frequency"], "damping": shape["damping"]}
         more = {"frequency": shape["frequency"]} if shape["frequency"] else {}
         if "rubbed" in shape and coefficients[0]:
             more = {"load_friction": float(coefficients[1] / coefficients[0])}
@@ -112,13 +125,20 @@ class ComplianceOnAxis(TransmissionCompliance):
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
         """Return whether it is a spring whose load resists."""
+        if "ringing" in shape:
+            return shape["damping"] < self.MOST_DAMPED
         return bool(coefficients[0] > 0.0 and (coefficients[1:] >= 0.0).all())
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
         """Return minus the force on the spring: as modelled, all that the drive gave, or what the load's mass needs."""
+        run, row = view.run, view.row(site)
+        if "ringing" in shape:
+            pace = 2.0 * np.pi * shape["frequency"]
+            shaken = np.gradient(run.velocity[:, [row]], run.period, axis=0) / pace**2
+            swing = oscillator(-shaken, shape["frequency"], min(shape["damping"], self.MOST_DAMPED), run.period)
+            return Signature({}, {Channel(self.stage, site): run.to_grid(swing)})
         if not shape.get("recorded"):
             return super().signature(view, site, shape)
-        run, row = view.run, view.row(site)
         parts = [carried(view, site, shape["recorded"])]
         if "rubbed" in shape:
             pace = np.gradient(run.filtered(run.load)[:, row], run.period)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from sher3_description import ACTUATORS, Robot
@@ -77,7 +77,8 @@ class TableExpansion(Page):
     """A positioning table that grows with its own temperature: deviation = coefficient * (T - reference) * target."""
 
     id, family, best = ThermalExpansion.id, ThermalExpansion.family, ThermalExpansion.best
-    stage, kinds, places = "transmission", ("table",), ("axis",)
+    stage, places = "transmission", ("axis",)
+    kinds: ClassVar[tuple[str, ...]] = ("table",)
     inputs = ("temperature", "position")
     units = {"coefficient": "1/K"}
     explanation = "The table moves too far by a share of its travel that follows its temperature."
