@@ -31,6 +31,47 @@ def dahl(x: Array, displacement: float) -> Array:
 
 
 @compiled
+def dahl_turned(x: Array, v: Array, displacement: float, period: float) -> Array:
+    """Dahl's state as `dahl`, of a path x (n,) with velocities v (n,) that turns round between its samples.
+
+    Where the velocity changes its sign from one sample to the next, the path goes on to where it is zero and comes back
+    from there. By the samples alone the state would turn half a period late on average.
+    """
+    out = np.zeros(len(x))
+    z = 0.0
+    for k in range(1, len(x)):
+        on = 0.0
+        if v[k - 1] * v[k] < 0.0:
+            on = 0.5 * period * v[k - 1] * v[k - 1] / (v[k - 1] - v[k])
+        for step in (on, x[k] - x[k - 1] - on):
+            if step > 0.0:
+                z = 1.0 - (1.0 - z) * math.exp(-step / displacement)
+            elif step < 0.0:
+                z = -1.0 + (1.0 + z) * math.exp(step / displacement)
+        out[k] = z
+    return out
+
+
+@compiled
+def sheath(tension: Array, wrap: float, pieces: int = 16) -> Array:
+    """Logarithm of the tension in each piece of a sheath (n, pieces), from that at its beginning, (n,).
+
+    A piece holds its tension until its neighbour's is larger or smaller by exp(wrap / pieces): there it slides
+    (capstan, Euler 1769). That is a chain of plays in the logarithm: after a reversal the sliding part grows from the
+    beginning on.
+    """
+    out = np.empty((len(tension), pieces))
+    step = wrap / pieces
+    for k in range(len(tension)):
+        before = tension[k]
+        for i in range(pieces):
+            held = out[k - 1, i] if k else tension[0]
+            before = min(max(held, before - step), before + step)
+            out[k, i] = before
+    return out
+
+
+@compiled
 def play(x: Array, drive: Array, width: float, damping: float, period: float, start: float) -> Array:
     """Follower behind a gap of `width`, minus x, (n,): -width/2..width/2.
 
@@ -154,6 +195,19 @@ def held_lag(x: Array, time_constant: float, period: float) -> Array:
     """First-order lag of x (n, d), exact for an input that is held from one sample to the next; at rest at first."""
     keep = math.exp(-period / time_constant)
     return _follow(np.ascontiguousarray(x, dtype=float), keep)
+
+
+@compiled
+def rate_limited(x: Array, start: float, limit: float, time_constant: float, period: float) -> Array:
+    """Path (n,) from `start` that follows x (n,), held between samples: a first-order lag, no faster than `limit`."""
+    out = np.empty(len(x))
+    y = start
+    share = 1.0 - math.exp(-period / time_constant)
+    for k in range(len(x)):
+        out[k] = y
+        step = share * (x[k] - y)
+        y += min(max(step, -limit * period), limit * period)
+    return out
 
 
 @compiled

@@ -21,6 +21,7 @@ class NominalAxis(NamedTuple):
         travel: span of the positions of the run, m or rad; 0 where nothing asks for it.
         weighed: whether an axis that turns has a weight at an arm that its description leaves open.
         lead_known: whether `lead` is stated and no stand-in.
+        rotary: whether the axis turns.
         load_mass: part of the mass that moves with a second encoder, kg or kg m^2; 0 where it is not known.
     """
 
@@ -32,6 +33,7 @@ class NominalAxis(NamedTuple):
     weighed: bool = False
     lead_known: bool = True
     load_mass: float = 0.0
+    rotary: bool = False
 
 
 class RecordedRun(Protocol):

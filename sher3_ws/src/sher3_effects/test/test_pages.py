@@ -24,7 +24,7 @@ def test_the_data_sheet_is_complete(page):
     assert page.explanation.endswith(".") and page.best.why
     assert set(page.kinds) <= set(KINDS) and page.places
     assert set(page.inputs) <= set(INPUTS) and (page.inputs or page.id in CONSTANT or page.kinds == ("arm",))
-    assert set(page.needs) <= {"lead", "load", "mass", "drive", "forces"}
+    assert set(page.needs) <= {"lead", "load", "temperature", "mass", "drive", "forces"}
     assert page.breaks in RELATIONS
     assert set(page.extends) <= KNOWN
     assert type(page).__doc__

@@ -81,7 +81,7 @@ FOLLOWS = 0.01
 SCALED = 0.2
 """Ratio of two encoders, less one, from which it is their scale and no error of the machine. Set by that argument."""
 
-ALIKE = 0.99
+ALIKE = 0.999
 """Correlation with the axis from which a second encoder follows it, in whatever scale. Set by that argument."""
 
 # -- a serial arm in motion ----------------------------------------------------------------------------------------

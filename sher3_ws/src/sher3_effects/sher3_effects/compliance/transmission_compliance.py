@@ -80,10 +80,15 @@ class ComplianceOnAxis(TransmissionCompliance):
     """load = motor - force / stiffness on one axis of any machine; the force as modelled or as the drive recorded it.
 
     Without a recorded force a ringing load tells its frequency, and its stiffness only with its share of the mass.
+    Where the mass of the load is known its friction bends the spring too; half a gap times the stiffness adds to it.
     """
 
     kinds = ("axis", "servo")
-    units = {"stiffness": "N/m", "compliance": "m/N", "frequency": "Hz"}
+    units = {"stiffness": "N/m", "compliance": "m/N", "frequency": "Hz", "load_friction": "N"}
+    DAMPINGS = (0.03, 0.1, 0.3)
+    """Of a load that rings behind the motor, whose mass and spring nobody knows."""
+    MOST_DAMPED = 0.95
+    """Damping beyond which nothing rings."""
     OF_LOAD = 2.0
     """Value of the shape `recorded` for the force that the mass of the load needs."""
 
@@ -93,32 +98,65 @@ class ComplianceOnAxis(TransmissionCompliance):
         held: Shape = {"load_mass": 0.0, "frequency": 0.0, "damping": 0.0, "recorded": 1.0}
         modelled: list[Shape] = [{**held, "recorded": 0.0}]
         if views[0].axis(site).load_mass > 0.0:
-            return [{**held, "recorded": self.OF_LOAD}, held]
+            return [{**held, "recorded": self.OF_LOAD}, {**held, "recorded": self.OF_LOAD, "rubbed": 1.0}, held]
         if views[0].axis(site).mass > 0.0:
             modelled = super().shapes(views, site)
+        elif not recorded:
+            modelled += [
+                {"ringing": 1.0, "frequency": f, "damping": z} for f in self.FREQUENCIES for z in self.DAMPINGS
+            ]
         return [*modelled, held] if recorded else modelled
 
     def refine(self, shape: Shape) -> list[Shape]:
         """Return neighbours of a modelled force; a recorded one has none."""
+        if "ringing" in shape:
+            near = [{**shape, "frequency": shape["frequency"] * f} for f in (0.9, 0.95, 0.98, 1.02, 1.05, 1.1)]
+            return [*near, *({**shape, "damping": shape["damping"] * z} for z in (0.5, 0.8, 1.25, 2.0))]
         return [] if "recorded" in shape else super().refine(shape)
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Return stiffness and compliance, and the frequency of a load that rings."""
-        ringing = {"frequency": shape["frequency"]} if shape["frequency"] else {}
-        return {**super().parameters(shape, coefficients), **ringing}
+        if "ringing" in shape:
+            return {"frequency": shape["frequency"], "damping": shape["damping"]}
+        more = {"frequency": shape["frequency"]} if shape["frequency"] else {}
+        if "rubbed" in shape and coefficients[0]:
+            more = {"load_friction": float(coefficients[1] / coefficients[0])}
+        return {**super().parameters(shape, coefficients), **more}
+
+    def admissible(self, shape: Shape, coefficients: Array) -> bool:
+        """Return whether it is a spring whose load resists."""
+        if "ringing" in shape:
+            return shape["damping"] < self.MOST_DAMPED
+        return bool(coefficients[0] > 0.0 and (coefficients[1:] >= 0.0).all())
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
         """Return minus the force on the spring: as modelled, all that the drive gave, or what the load's mass needs."""
         run, row = view.run, view.row(site)
+        if "ringing" in shape:
+            pace = 2.0 * np.pi * shape["frequency"]
+            shaken = np.gradient(run.velocity[:, [row]], run.period, axis=0) / pace**2
+            swing = oscillator(-shaken, shape["frequency"], min(shape["damping"], self.MOST_DAMPED), run.period)
+            return Signature({}, {Channel(self.stage, site): run.to_grid(swing)})
         if not shape.get("recorded"):
             return super().signature(view, site, shape)
-        if shape["recorded"] == self.OF_LOAD:
-            bend = np.zeros(len(run.load))
-            bend[1:-1] = np.diff(run.load[:, row], 2) / run.period**2
-            needed = view.axis(site).load_mass * run.to_grid(bend[:, None])[:, 0] + view.path.gravity[:, row]
-            return Signature({Channel(self.stage, site): column(-needed)})
+        parts = [carried(view, site, shape["recorded"])]
+        if "rubbed" in shape:
+            pace = np.gradient(run.filtered(run.load)[:, row], run.period)
+            parts += [run.to_grid(x[:, None])[:, 0] for x in (np.sign(pace), pace)]
+        return Signature({Channel(self.stage, site): column(*(-x for x in parts))})
+
+
+def carried(view: AxisView, site: str, recorded: float) -> Array:
+    """Return the force (g,) on a transmission: weight and known loads (0), as recorded (1), or of the load (2)."""
+    run, row = view.run, view.row(site)
+    if recorded == ComplianceOnAxis.OF_LOAD:
+        bend = np.zeros(len(run.load))
+        bend[1:-1] = np.diff(run.load[:, row], 2) / run.period**2
+        return np.asarray(view.axis(site).load_mass * run.to_grid(bend[:, None])[:, 0] + view.path.gravity[:, row])
+    if recorded:
         assert run.effort is not None
-        return Signature({Channel(self.stage, site): column(-run.to_grid(run.effort)[:, row])})
+        return np.asarray(run.to_grid(run.effort)[:, row])
+    return np.asarray(view.path.gravity[:, row] - view.path.contact_force[:, row])
 
 
 class ComplianceOfJoint(TransmissionCompliance):

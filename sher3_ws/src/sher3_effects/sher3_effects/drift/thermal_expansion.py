@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from sher3_description import ACTUATORS, Robot
@@ -13,7 +13,7 @@ from sher3_diagnosis.effect import Best, Shape, Signature, column
 from sher3_sim.effect import SLIDERS, PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
-from sher3_effects.drift.warmth import warm
+from sher3_effects.drift.warmth import warm, warming
 from sher3_effects.page import Page, Tolerated
 from sher3_effects.table_view import TableView
 from sher3_effects.view import RobotView
@@ -77,7 +77,8 @@ class TableExpansion(Page):
     """A positioning table that grows with its own temperature: deviation = coefficient * (T - reference) * target."""
 
     id, family, best = ThermalExpansion.id, ThermalExpansion.family, ThermalExpansion.best
-    stage, kinds, places = "transmission", ("table",), ("axis",)
+    stage, places = "transmission", ("axis",)
+    kinds: ClassVar[tuple[str, ...]] = ("table",)
     inputs = ("temperature", "position")
     units = {"coefficient": "1/K"}
     explanation = "The table moves too far by a share of its travel that follows its temperature."
@@ -94,6 +95,28 @@ class TableExpansion(Page):
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Return the coefficient of expansion beyond that of the reading."""
         return {"coefficient": float(coefficients[0])}
+
+
+class ExpansionOnAxis(TableExpansion):
+    """The same between two encoders of any axis: load - motor = coefficient * (T - 20 deg C) * (position - rest)."""
+
+    kinds, needs = ("axis", "servo"), ("load", "temperature")
+    units = {"coefficient": "1/K", "rest": "m"}
+    explanation = "Screw, belt or frame grow between the two encoders, in proportion to their warmth and to the travel."
+
+    def shapes(self, views: Sequence[Any], site: str) -> list[Shape]:
+        """Return one shape, where the temperature changed: else it is the ratio of the axis."""
+        return [{}] if warming(views) else []
+
+    def signature(self, view: Any, site: str, shape: Shape) -> Signature:
+        """Return two columns: the warmth times the position, and the warmth."""
+        place = view.position[:, view.row(site)]
+        return Signature({Channel(self.stage, site): column(place * view.warmth, view.warmth)})
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Return the coefficient of expansion, and the position that does not move with the warmth."""
+        a, b = map(float, coefficients)
+        return {"coefficient": a, "rest": -b / a if a else 0.0}
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,7 @@ from sher3_diagnosis.effect import Best, Measured, Shape, Signature, column
 from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
+from sher3_effects.compliance.transmission_compliance import carried
 from sher3_effects.lost_motion.plateau import plateau
 from sher3_effects.operators import flight, play
 from sher3_effects.page import Page, Part, Values
@@ -94,6 +95,8 @@ class BacklashOnAxis(Backlash):
     units: ClassVar[Mapping[str, str]] = {}
     SMALLER = (0.06, 0.12, 0.25, 0.45)
     """Widths in spans of the residual that are tried for a load that stays put in the gap."""
+    SOFT = (0.001, 0.01, 0.05)
+    """Known force from outside over its rms within which the load is between the flanks."""
     BRAKING = (0.03, 0.1, 0.3, 1.0)
     """What brakes a load that flies across the gap by its own inertia, over the rms acceleration of the motor."""
     finer: ClassVar[Mapping[str, tuple[float, ...]]] = {
@@ -101,6 +104,7 @@ class BacklashOnAxis(Backlash):
         "damping": (0.5, 2.0),
         "stick": (0.8, 1.2),
         "braking": (0.5, 2.0),
+        "soft": (0.5, 2.0),
     }
 
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
@@ -108,13 +112,22 @@ class BacklashOnAxis(Backlash):
         found = super().shapes(views, site)
         span = found[0]["width"] / self.WIDTHS[0] if found else 0.0
         small = [{"width": w * span, "damping": np.inf, "stick": 0.0} for w in self.SMALLER if span]
+        loaded = any(v.path.contact_force.any() for v in views)
+        usual = float(np.sqrt(np.mean([np.mean(carried(v, site, 0.0) ** 2) for v in views]))) if loaded else 0.0
+        small += [{"soft": s * usual} for s in self.SOFT if usual and span]
         square = [np.mean(np.gradient(v.run.velocity[:, v.row(site)], v.run.period) ** 2) for v in views]
         usual = float(np.sqrt(np.mean(square)))
         widths = [w * span for w in (*self.SMALLER[2:], *self.WIDTHS) if span]
         return [*found, *small, *({"width": w, "braking": b * usual} for w in widths for b in self.BRAKING if usual)]
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
-        """Return the lag behind a gap; a load with a `braking` (m/s^2) keeps its speed in it but for that."""
+        """Return the lag behind a gap; a load with a `braking` (m/s^2) keeps its speed in it but for that.
+
+        Where a known force says on which flank the load lies, one column: minus half its side.
+        """
+        if "soft" in shape:
+            side = np.tanh(carried(view, site, 0.0) / shape["soft"])
+            return Signature({Channel(self.stage, site): column(-0.5 * side)})
         if "braking" not in shape:
             return super().signature(view, site, shape)
         axis, run = view.row(site), view.run
@@ -124,8 +137,12 @@ class BacklashOnAxis(Backlash):
         return Signature({}, {Channel(self.stage, site): run.to_grid(lag)[:, None]})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Width of the gap."""
-        return {"width": shape["width"]}
+        """Return the width of the gap."""
+        return {"width": float(coefficients[0]) if "soft" in shape else shape["width"]}
+
+    def admissible(self, shape: Shape, coefficients: Array) -> bool:
+        """Return whether the load gives way to the force."""
+        return "soft" not in shape or bool(coefficients[0] > 0.0)
 
     def measured(self, views: Sequence[AxisView], site: str, shape: Shape) -> Mapping[str, Measured]:
         """Return none: what else makes most of the encoders' difference stands on the plateaus as well."""
@@ -141,7 +158,6 @@ class BacklashOfJoint(BacklashOnAxis):
     kinds = ("joint",)
     SOFT = (0.01, 0.04, 0.15)
     """Force over the rms one within which the link is between the flanks."""
-    finer: ClassVar[Mapping[str, tuple[float, ...]]] = {**BacklashOnAxis.finer, "soft": (0.5, 2.0)}
 
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
         """Return the shapes of one axis, and those whose flank follows the force."""
@@ -155,14 +171,6 @@ class BacklashOfJoint(BacklashOnAxis):
             return super().signature(view, site, shape)
         side = np.tanh(view.inertial[:, view.row(site)] / shape["soft"])
         return Signature({Channel(self.stage, site): column(-0.5 * side)})
-
-    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the width of the gap."""
-        return {"width": float(coefficients[0]) if "soft" in shape else shape["width"]}
-
-    def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether the link lags behind the force."""
-        return "soft" not in shape or bool(coefficients[0] > 0.0)
 
 
 def resting_force(views: Sequence[AxisView], site: str) -> float:

@@ -63,7 +63,31 @@ class EccentricityOnAxis(EncoderEccentricity):
     """The same on one axis of any machine, whose tip nobody sees."""
 
     kinds = ("axis", "servo")
-    needs = ("load", "lead")
+    needs = ("load",)
+    discrete = frozenset({"turn"})
+    units = {"amplitude": "m", "turn": "m"}
+    TURNS = 0.75
+    """Whole turns of a load that must be recorded before once per turn is told from a bend."""
+
+    def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
+        """Return once per motor revolution where that is known, and once per turn of a load that turns."""
+        axes, found = [v.axis(site) for v in views], []
+        if axes[0].lead_known:
+            found += super().shapes(views, site)
+        if axes[0].rotary and max(a.travel for a in axes) > self.TURNS * 2.0 * np.pi:
+            found += [{"side": s, "turn": 2.0 * np.pi} for s in (0.0, 2.0)]
+        return found
+
+    def _waves(self, view: AxisView, site: str, shape: Shape) -> Array:
+        """Quadratures at every tick, (n, p)."""
+        turn = 2.0 * np.pi * view.run.smooth[:, view.row(site)] / shape.get("turn", view.lead(site))
+        orders = (1.0, shape["side"]) if shape["side"] else (1.0,)
+        return np.stack([f(n * turn) for n in orders for f in (np.sin, np.cos)], axis=-1)
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Return amplitude, phase, and the turn where it is that of the load."""
+        turn = {"turn": shape["turn"]} if "turn" in shape else {}
+        return {**super().parameters(shape, coefficients), **turn}
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
         """Return the quadratures of the reading."""

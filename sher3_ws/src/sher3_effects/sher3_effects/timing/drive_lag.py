@@ -72,12 +72,18 @@ class ServoLag(DriveLag):
     """Time constants that are tried, in periods of the record."""
     DAMPINGS = (0.4, 0.7, 0.95)
     """Of a filter of second order."""
+    LAGS, LATE = (1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0), (1.0, 2.0, 3.0, 4.0, 6.0, 8.0)
+    """Time constants and dead times that are tried together, in periods of the record."""
     LEAST_OF_SECOND = 1.5
     """Periods from which a filter of second order is tried: below it the record does not show the difference."""
     MOST_DAMPED = 0.99
     """Beyond it a filter of second order is two of the first."""
-    units = {"time_constant": "s", "inertia": "s^2", "rate": "s"}
-    finer = {"time_constant": (0.8, 0.9, 0.95, 1.05, 1.1, 1.25), "damping": (0.8, 0.9, 1.1)}
+    units = {"time_constant": "s", "delay": "s", "inertia": "s^2", "rate": "s"}
+    finer = {
+        "time_constant": (0.8, 0.9, 0.95, 1.05, 1.1, 1.25),
+        "damping": (0.8, 0.9, 1.1),
+        "delay": (0.7, 0.85, 1.2, 1.4),
+    }
 
     def channels(self, site: str) -> tuple[Channel, ...]:
         """Return the tracking error of the servo."""
@@ -89,7 +95,8 @@ class ServoLag(DriveLag):
         slow = [n * period for n in self.PERIODS if n >= self.LEAST_OF_SECOND]
         first: list[Shape] = [{"time_constant": n * period} for n in self.PERIODS]
         second = [{"time_constant": t, "damping": z} for t in slow for z in self.DAMPINGS]
-        return [*first, *second, {"balance": 1.0}]
+        both = [{"time_constant": n * period, "delay": d * period} for n in self.LAGS for d in self.LATE]
+        return [*first, *second, *both, {"balance": 1.0}]
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Return the time constant, and the damping of a filter of second order or the numbers of a balance."""
@@ -114,7 +121,11 @@ class ServoLag(DriveLag):
             parts = (run.velocity[:, row], run.acceleration[:, row], -slope)
             return Signature({self.channels(site)[0]: column(*(run.to_grid(x[:, None])[:, 0] for x in parts))})
         time = shape["time_constant"]
-        if "damping" in shape:
+        if "delay" in shape:
+            clock = view.run.stage_clock
+            before = np.interp(clock - shape["delay"], clock, asked[:, 0])[:, None]
+            late = held_lag(before, time, view.run.period) - before[0] + asked[0]
+        elif "damping" in shape:
             damping = min(shape["damping"], self.MOST_DAMPED)
             late = oscillator(np.ascontiguousarray(asked), 0.5 / (np.pi * time), damping, view.run.period)
         else:

@@ -39,6 +39,10 @@ class SensorDelay(Page):
     finer = {"delay": (0.85, 0.95, 1.05, 1.2)}
     REST = (-0.5, 1.0)
     """Share of a searched delay that its coefficient may add; a finer delay is searched for what lies beyond."""
+    UNSAID = 2.0
+    """Delay of an effort, in periods, from which it is searched: within one period nobody states its moment."""
+    UNSEEN = 0.1
+    """The same in periods of the cut-off: what a noisy encoder does to the moment of a reversal."""
     LONGEST = 0.25
     """Delay, s, beyond which two recordings are not of the same moment at all."""
 
@@ -51,7 +55,8 @@ class SensorDelay(Page):
         row, run = views[0].row(site), views[0].run
         late = [s * n * run.period for n in self.PERIODS for s in (1.0, -1.0) if n * run.period <= self.LONGEST]
         which = [float(k) for k, x in enumerate((run.load, run.effort)) if x is not None and np.any(x[:, row])]
-        return [{"delay": t, "of_effort": k} for k in which for t in late]
+        unsaid = max(self.UNSAID * run.period, self.UNSEEN / run.bandwidth)
+        return [{"delay": t, "of_effort": k} for k in which for t in late if not k or abs(t) >= unsaid]
 
     def refine(self, shape: Shape) -> list[Shape]:
         """Return neighbours of a delay; which reading is late has none."""

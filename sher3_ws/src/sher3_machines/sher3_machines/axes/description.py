@@ -27,6 +27,7 @@ class Signals(Strict):
     effort: Column | None = None
     load: Column | None = Field(default=None, description="position of a second encoder at the load")
     nominal_effort: Column | None = Field(default=None, description="force that the user's own model asks for")
+    temperature: Column | None = Field(default=None, description="of screw, gear or frame, deg C")
     applied: Column | None = Field(default=None, description="known force on the axis, positive along its motion")
 
 

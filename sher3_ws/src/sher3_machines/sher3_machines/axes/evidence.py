@@ -7,8 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from sher3_diagnosis.channel import Channel, Residual, Residuals
+from sher3_diagnosis.effect import Effect, Shape, Signature, column
 from sher3_diagnosis.evidence import Evidence
+from sher3_diagnosis.fit.fitting import make_term
 from sher3_diagnosis.fit.whitened import Whitened
+from sher3_diagnosis.tolerance import NUISANCE
 
 from sher3_machines.axes.description import Axis
 from sher3_machines.axes.floors import floors_of
@@ -25,7 +28,7 @@ from sher3_machines.thresholds import BLOCKS, MIN_BLOCK, NO_INERTIA
 class AxisEvidence(Evidence):
     """The engine's evidence for one axis; a block of a record is a run.
 
-    Nothing says where two encoders have their zeros, so that `counts` is empty and no mean of theirs is a gap.
+    Nothing says where two encoders have their zeros, so that `counts` is empty and their difference is free.
 
     Attributes:
         axis: as described.
@@ -44,6 +47,17 @@ class AxisEvidence(Evidence):
     mass_interval: tuple[float, float] | None = None
     untold: str = ""
     notes: Sequence[str] = ()
+
+
+class ZeroOfEncoders(Effect):
+    """The difference of two encoders' zeros: a column that every fit carries."""
+
+    id, family, stage = "zero_of_the_encoders", NUISANCE, "transmission"
+    explanation = "Nobody says where two encoders have their zeros."
+
+    def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
+        """Return one column: one."""
+        return Signature({Channel(self.stage, site): column(np.ones(len(view.run.grid)))})
 
 
 def gather_axis(runs: Sequence[AxesRun], axis: Axis, repeats: bool) -> AxisEvidence:
@@ -68,9 +82,11 @@ def gather_axis(runs: Sequence[AxesRun], axis: Axis, repeats: bool) -> AxisEvide
     floors = floors_of(records, found, repeats)
     per_record = -(-BLOCKS // len(records))
     blocks = [(r, block) for r, x in enumerate(found) for block in blocks_of(x, per_record)]
+    data = Whitened([records[r] for r, _ in blocks], [b for _, b in blocks], [floors[r] for r, _ in blocks])
     return AxisEvidence(
         excitations=[records[r].excitation for r, _ in blocks],
-        data=Whitened([records[r] for r, _ in blocks], [b for _, b in blocks], [floors[r] for r, _ in blocks]),
+        data=data,
+        nuisance=(make_term(data, ZeroOfEncoders(), axis.name, {}),) if axis.signals.load is not None else (),
         units=units_of(axis),
         places={"axis": (axis.name,)},
         rotary=frozenset({axis.name} if axis.motion == "rotary" else ()),

@@ -22,7 +22,7 @@ from sher3_effects.friction.viscous_friction import ViscousOnAxis
 from sher3_machines.axes.description import AxesDescription, Axis, Gravity
 from sher3_machines.axes.evidence import AxisEvidence, gather_axis
 from sher3_machines.axes.health import dead_channels, without_dead
-from sher3_machines.axes.identification.fast import requantified
+from sher3_machines.axes.identification.fast import requantified, with_unseen
 from sher3_machines.axes.identification.refine import refine_free
 from sher3_machines.axes.identification.search import causes_of_axis
 from sher3_machines.axes.limits import EFFECT as LIMIT
@@ -120,6 +120,7 @@ class Axes(Machine[AxesRun, AxisEvidence]):
         if evidence.axis.free:
             return refine_free(evidence, causes)
         causes, own = requantified(evidence, attribution, causes), evidence.axis.own_unit
+        causes = causes if evidence.axis.servo else with_unseen(evidence, attribution, causes)
         causes = within_bounds(causes, self.effects(evidence))
         return evidence, [in_own_unit(cause, own) for cause in causes] if own else causes
 
@@ -192,6 +193,7 @@ def facts_of(axis: Axis) -> set[str]:
     known = {
         "lead": axis.lead is not None,
         "load": axis.signals.load is not None,
+        "temperature": axis.signals.temperature is not None,
         "mass": isinstance(axis.mass, float),
         "drive": not axis.free,
         "forces": isinstance(axis.mass, float) or axis.gravity != Gravity() or axis.signals.nominal_effort is not None,

@@ -24,7 +24,7 @@ JITTER = 0.01
 """Share of the period by which stamps may be off before the record is resampled."""
 ROUNDING = 1e-6
 """Share by which a period may be off through rounding."""
-SIGNALS = ("position", "reference", "command", "effort", "load", "nominal_effort", "applied")
+SIGNALS = ("position", "reference", "command", "effort", "load", "nominal_effort", "applied", "temperature")
 """Signals of an axis, as the description names them."""
 
 POSITIONS = ("position", "reference", "load")

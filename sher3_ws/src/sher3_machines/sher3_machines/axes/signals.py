@@ -33,6 +33,7 @@ class AxisSignals:
         load: position of the second encoder.
         nominal: force that the user's own model asks for, less what is known to be applied from outside.
         applied: known force from outside, positive along the motion.
+        temperature: of the axis, deg C.
         bandwidth: cut-off of the low-pass, Hz.
     """
 
@@ -46,6 +47,7 @@ class AxisSignals:
     load: Array | None = None
     nominal: Array | None = None
     applied: Array | None = None
+    temperature: Array | None = None
     bandwidth: float = BANDWIDTH
 
     @property
@@ -75,12 +77,16 @@ class AxisSignals:
         """Samples of the record that are on the residual grid, (g,)."""
         return np.arange(0, self.ticks, self.stride)
 
+    @property
+    def edge(self) -> float:
+        """Samples at each end of the record, and at each side of a step, that the filter spoils."""
+        short = self.ticks < SHORT  # too short for the filter: only the differences lose their ends
+        return 2.0 if short else EDGE * BANDWIDTH / self.bandwidth / self.period
+
     @cached_property
     def inner(self) -> Mask:
         """(g,) False where the ends of the filter spoil a sample."""
-        short = self.ticks < SHORT  # too short for the filter: only the differences lose their ends
-        edge = 2.0 if short else EDGE * BANDWIDTH / self.bandwidth / self.period
-        return (self.grid >= edge) & (self.grid < self.ticks - edge)
+        return (self.grid >= self.edge) & (self.grid < self.ticks - self.edge)
 
     @cached_property
     def loaded_ok(self) -> Mask:
@@ -134,6 +140,7 @@ def signals_of(run: AxesRun, axis: Axis, excitation: str) -> AxisSignals:
         load=found.get("load"),
         nominal=_nominal(found),
         applied=found.get("applied"),
+        temperature=found.get("temperature"),
         bandwidth=most if axis.servo or axis.mass is None else cut_off(found["position"][:, 0], run.period, most),
     )
 

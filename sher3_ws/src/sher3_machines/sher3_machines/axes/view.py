@@ -9,11 +9,12 @@ import numpy as np
 from sher3_diagnosis.channel import Array, Channel, Mask
 from sher3_diagnosis.discover.feature import Quantities, Quantity
 from sher3_diagnosis.evidence import Motion
-from sher3_diagnosis.filter import settled
-from sher3_effects.operators import dahl
+from sher3_diagnosis.filter import EDGE, settled
+from sher3_effects.operators import dahl_turned
 from sher3_effects.view import NominalAxis
 
 from sher3_machines.axes.description import Axis
+from sher3_machines.axes.identification.noise import noise_of
 from sher3_machines.axes.signals import AxisSignals
 
 LEAD_OF_STROKE = 0.02
@@ -21,6 +22,16 @@ LEAD_OF_STROKE = 0.02
 shares of the lead; of a turning axis one turn stands for it."""
 SLIP = 1e-9
 """Viscous coefficient in place of none, N/(m/s) or N m/(rad/s): effects take it as a scale."""
+SEEN = 5.0
+"""Standard deviations of a noise that nothing passes by chance."""
+STIRRING = 0.01
+"""Share of the travel above which a change is no noise: what a slow record moves by is not taken for one."""
+REFERENCE = 20.0
+"""Temperature, deg C, at which lengths are stated (ISO 1)."""
+SPREAD = 0.5
+"""Periods of the cut-off by which the filter spreads a step."""
+ENOUGH = 0.5
+"""Share of the samples in motion that must be away from such reversals for the others to be left out."""
 STILL = 1e-12
 """Top speed in place of none, m/s or rad/s: shares of the top speed are taken."""
 
@@ -65,7 +76,15 @@ class AxisView:
         axis, known = self.described, self.described.lead is not None
         travel = float(np.ptp(self.run.smooth))
         return NominalAxis(
-            self.mass, max(axis.viscous, SLIP), self.lead(site), self.top, travel, self.hangs, known, self.load_mass
+            self.mass,
+            max(axis.viscous, SLIP),
+            self.lead(site),
+            self.top,
+            travel,
+            self.hangs,
+            known,
+            self.load_mass,
+            axis.motion == "rotary",
         )
 
     @property
@@ -85,7 +104,8 @@ class AxisView:
     def sliding(self, axis: int, displacement: float) -> Array:
         """Return the Dahl state of the axis, -1..1, (n,): +1 after moving forward by a few `displacement`, m or rad."""
         if displacement not in self._sliding:
-            self._sliding[displacement] = dahl(self.run.smooth[:, 0], displacement)
+            path, pace = (np.ascontiguousarray(x[:, 0]) for x in (self.run.smooth, self.run.velocity))
+            self._sliding[displacement] = dahl_turned(path, pace, displacement, self.run.period)
         return self._sliding[displacement]
 
     @cached_property
@@ -134,14 +154,28 @@ class AxisView:
         half = max(1, run.stride)
         before = run.smooth[np.maximum(run.grid - half, 0), 0]
         after = run.smooth[np.minimum(run.grid + half, run.ticks - 1), 0]
-        return np.abs(after - before) > self.described.encoder_resolution
+        return np.abs(after - before) > max(self.described.encoder_resolution, self._jitter)
+
+    @cached_property
+    def noise(self) -> float:
+        """Standard deviation of the encoder's noise, m or rad."""
+        return noise_of(self.run.motor[:, 0], self.run.period)
+
+    @cached_property
+    def _jitter(self) -> float:
+        """Change of the smoothed position that the encoder's noise makes, m or rad; a small part of the travel."""
+        run = self.run
+        white = np.random.default_rng(0).normal(size=(run.ticks, 1))
+        left = self.noise * float(run.filtered(white).std())
+        return min(SEEN * left, STIRRING * float(np.ptp(run.smooth)))
 
     @cached_property
     def released(self) -> Mask:
-        """(g,) False for an undriven axis before it is let go: until then something else holds it."""
+        """(g,) False for an undriven axis until the filter has forgotten what held it before it was let go."""
         if not self.described.free:
             return np.ones(len(self.run.grid), dtype=bool)
-        return self.run.grid >= self.release
+        smeared = self.run.edge - EDGE / self.run.period  # what a lower cut-off than the engine's spoils more
+        return self.run.grid >= self.release + max(smeared, 0.0)
 
     @cached_property
     def release(self) -> int:
@@ -154,7 +188,25 @@ class AxisView:
     @cached_property
     def in_motion(self) -> Mask:
         """(g,) True where the force balance can be judged: well inside a stretch of motion."""
-        return self.run.inner & self.released & settled(self.moving, 1)
+        inside = self.run.inner & self.released & settled(self.moving, 1)
+        clear = inside & self.clear
+        return clear if clear.sum() >= ENOUGH * inside.sum() and not self.described.free else inside
+
+    @cached_property
+    def clear(self) -> Mask:
+        """(g,) False about a reversal that the samples pass over by more than a count: friction turns in between.
+
+        A count, or the noise. Half a sample more or less then is the whole step of the friction, spread by the filter.
+        """
+        run = self.run
+        pace, turn = run.velocity[:, 0], np.gradient(run.velocity[:, 0])
+        seen = max(self.described.encoder_resolution, self.noise)
+        at = np.flatnonzero((pace[1:] * pace[:-1] < 0.0) & (run.period * np.abs(turn[1:]) > seen))
+        reach = SPREAD / (run.bandwidth * run.period)
+        near = np.searchsorted(at, run.grid)
+        after = run.grid - np.concatenate([[-np.inf], at + 0.5])[near]
+        before = np.concatenate([at + 0.5, [np.inf]])[near] - run.grid
+        return np.asarray(np.minimum(after, before) > reach)
 
     @cached_property
     def at_rest(self) -> Mask:
@@ -188,15 +240,16 @@ class AxisView:
         """(g,) True where a known force from outside acts."""
         return np.abs(self.path.contact_force[:, 0]) > 0.0
 
-    @property
+    @cached_property
     def warmth(self) -> Array:
-        """(g,) zero: temperatures are not recorded."""
-        return np.zeros(len(self.run.grid))
+        """(g,) temperature above the reference, K; zero where it was not recorded."""
+        warm = self.run.temperature
+        return np.zeros(len(self.run.grid)) if warm is None else self.run.to_grid(warm - REFERENCE)[:, 0]
 
     @property
     def temperature_known(self) -> bool:
-        """False: temperatures are not recorded."""
-        return False
+        """Whether the temperature was recorded."""
+        return self.run.temperature is not None
 
     def motion(self, actuator: str) -> Motion | None:
         """Return the motion of the axis."""

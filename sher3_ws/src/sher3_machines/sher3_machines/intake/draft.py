@@ -14,11 +14,11 @@ from sher3_diagnosis.channel import Array
 
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.fields import UNITS
-from sher3_machines.intake.guesses import clock_of, count_of, period_of, position_unit, time_unit, travel
-from sher3_machines.intake.names import counts_samples, named
+from sher3_machines.intake.guesses import clock_of, count_of, period_of, position_unit, scatter, time_unit, travel
+from sher3_machines.intake.names import DRIVING, counts_samples, named, words_of
 from sher3_machines.intake.tables import Tables, read_tables
 
-SIGNALS = ("position", "reference", "command", "effort", "load")
+SIGNALS = ("position", "reference", "command", "effort", "load", "applied", "temperature")
 """Signals of an axis that a draft looks for, in the order they are written."""
 PLACES = ("reference", "load")
 """Signals that are in the unit of the position where their name says no other."""
@@ -29,6 +29,8 @@ GEARED = 1.5
 """Travel of one encoder over that of the other from which a gear is between them."""
 MOST_GEARED = 1e5
 """Ratio beyond which two columns are not two encoders of one axis."""
+FOLLOWS = 0.9
+"""Correlation of two encoders below which one does not move with the other: a held axis."""
 LISTED = 12
 """Columns that a sentence lists at most."""
 
@@ -60,9 +62,14 @@ def draft(path: Path, rate: float | None = None) -> Draft:
     if clock is None:
         time: dict[str, Any] = {"rate": rate}
     else:
-        time = {"column": clock.rsplit("/", 1)[-1]}
-        time["unit"] = time_unit(clock, period_of(tables[clock]), guesses)
-    groups, left = together(_placed(tables, clock))
+        table = table_of(clock)
+        alone = table and sum(n.startswith(table + "/") for n in tables) == 1  # a name with a slash, and no table
+        time = {"column": clock if alone else bare(clock)}
+        time["unit"] = time_unit(clock, period_of(tables[clock]), guesses, float(tables[clock][-1]))
+    placed = with_loads(_placed(tables, clock))
+    groups, left = together(placed)
+    known = {name for name, _ in placed}
+    left += [n for n, x in tables.items() if n not in known and n != clock and x.ndim == 1 and np.ptp(x) > 0.0]
     axes = [_axis(axis, signals, tables, guesses) for axis, signals in groups.items()]
     if not axes:
         raise MachineError(
@@ -99,6 +106,17 @@ def _placed(tables: Tables, clock: str | None) -> dict[Place, tuple[str, str]]:
                 axis = "_".join(w for w in (what.axis, "" if index is None else str(index + 1)) if w)
                 found[name, index] = what.signal, axis
     return found
+
+
+def with_loads(placed: Mapping[Place, tuple[str, str]]) -> dict[Place, tuple[str, str]]:
+    """Return the signals with the second of two places of one axis as that of its load: the drive moves the other."""
+    out = dict(placed)
+    for axis in {axis for _, axis in placed.values()}:
+        places = [p for p, found in placed.items() if found == ("position", axis)]
+        driven = [p for p in places if set(words_of(bare(p[0]))) & DRIVING]
+        if len(places) == 2 and len(driven) == 1 and ("load", axis) not in placed.values():
+            out[next(p for p in places if p != driven[0])] = "load", axis
+    return out
 
 
 def together(placed: Mapping[Place, tuple[str, str]]) -> tuple[dict[str, dict[str, Place]], list[str]]:
@@ -143,12 +161,16 @@ def _axis(axis: str, signals: Mapping[str, Place], tables: Tables, guesses: list
             columns[signal] = _column(*signals[signal], unit if place else None, factor if place else 1.0)
             if signal != "position":
                 guesses.append(f"{label}: {signal} is {signals[signal][0]!r}, because of its name")
+    own = unit
     columns["position"].update({"unit": unit, **({"factor": factor} if factor != 1.0 else {})})
     if "load" in signals:
-        factor *= _gear(label, columns, ratio_of(signals, tables), guesses)
-    count = count_of(x)
-    resolution = (count or travel(x) * 1e-6 or 1e-6) * factor * UNITS[unit]
-    said = "its smallest step" if count else "a millionth of its travel: no step is seen"
+        sliding = columns["load"]["unit"] not in ROTARY_UNITS
+        exact = "placeholder" in why or sliding == (unit in ROTARY_UNITS)
+        factor *= _gear(label, columns, ratio_of(signals, tables), exact, guesses)
+        unit, own = columns["load"]["unit"] if sliding else unit, unit
+    count = 1.0 if own == "count" and bool((x == np.round(x)).all()) else count_of(x)
+    resolution = (count or scatter(x) or 1e-6) * factor * UNITS[own]
+    said = "its smallest step" if count else "its scatter: no step is seen"
     guesses.append(f"{label}: encoder_resolution {resolution:.3g}, {said}")
     law = _law(label, columns, guesses)
     out = {"name": label, "motion": "rotary" if unit in ROTARY_UNITS else "linear", "signals": columns}
@@ -177,16 +199,22 @@ def ratio_of(signals: Mapping[str, Place], tables: Tables) -> float:
     if len(x) != len(load):
         return travel(x) / travel(load)
     about = load - np.median(load)
+    if abs(np.corrcoef(x, load)[0, 1]) < FOLLOWS:
+        return 0.0
     return float(abs(about @ (x - np.median(x))) / (about @ about))
 
 
-def _gear(label: str, columns: dict[str, Any], ratio: float, guesses: list[str]) -> float:
-    """Return the factor by which the position is that of the load, where a gear is between the two encoders."""
+def _gear(label: str, columns: dict[str, Any], ratio: float, exact: bool, guesses: list[str]) -> float:
+    """Return the factor by which the position is that of the load, where a gear is between the two encoders.
+
+    Counts of a turn that nobody knows, and the lead of a screw, are told by the load in the same factor: it is then
+    `exact` and no whole number.
+    """
     scales = [UNITS[columns[k]["unit"]] * columns[k].get("factor", 1.0) for k in ("position", "load")]
     ratio *= scales[0] / scales[1]
     if 1.0 / GEARED < ratio < GEARED or not 1.0 / MOST_GEARED < ratio < MOST_GEARED:
         return 1.0
-    whole = round(ratio) if ratio > GEARED else 1.0 / round(1.0 / ratio)
+    whole = ratio if exact else round(ratio) if ratio > GEARED else 1.0 / round(1.0 / ratio)
     factor = float(f"{1.0 / whole:.6g}")
     columns["position"]["factor"] = columns["position"].get("factor", 1.0) * factor
     guesses.append(f"{label}: a gear of {whole:.6g} between the encoders, because the position moves {ratio:.4g} times")

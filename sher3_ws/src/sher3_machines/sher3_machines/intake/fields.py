@@ -13,9 +13,12 @@ UNITS: Mapping[str, float] = {
     "cm": 1e-2,
     "mm": 1e-3,
     "um": 1e-6,
+    "nm": 1e-9,
     "rad": 1.0,
     "mrad": 1e-3,
     "deg": math.pi / 180.0,
+    "arcmin": math.pi / 180.0 / 60.0,
+    "arcsec": math.pi / 180.0 / 3600.0,
     "rev": 2.0 * math.pi,
     "m/s": 1.0,
     "mm/s": 1e-3,
@@ -33,10 +36,13 @@ UNITS: Mapping[str, float] = {
     "%": 1.0,
     "1": 1.0,
     "count": 1.0,
+    "degC": 1.0,
     "s": 1.0,
     "ms": 1e-3,
     "us": 1e-6,
     "ns": 1e-9,
+    "min": 60.0,
+    "h": 3600.0,
 }
 """Unit -> factor to SI; a percentage stays one, of a rated value that nobody stated."""
 
@@ -104,7 +110,7 @@ class Clock(Strict):
     """
 
     column: str | None = None
-    unit: Literal["s", "ms", "us", "ns"] = "s"
+    unit: Literal["s", "ms", "us", "ns", "min", "h"] = "s"
     rate: float | None = Field(default=None, gt=0.0)
     offsets: Mapping[str, float] = {}
 

@@ -25,6 +25,8 @@ FEWEST_STEPS = 10
 WHOLE, WHOLE_SHARE = 0.05, 0.9
 """How near to a whole multiple of the count a step must be, and the share of steps that must be."""
 TIME_UNITS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
+EPOCH = (9e8, 4e9)
+"""Seconds since 1970 of the years 1998 to 2096, which dates are read as."""
 USUAL_RATES = (5.0, 20_000.0)
 """Rates, Hz, between which a clock is believed: of servo loops, and of slow loggers."""
 GROWING = 0.98
@@ -76,11 +78,14 @@ def period_of(stamps: Array) -> float:
     return float(middle.mean()) if len(middle) and middle.mean() > 0.0 else float("nan")
 
 
-def time_unit(clock: str, period: float, guesses: list[str]) -> str:
-    """Return the unit of stamps: of the name, or the one that makes the rate usual."""
+def time_unit(clock: str, period: float, guesses: list[str], latest: float | None = None) -> str:
+    """Return the unit of stamps: of the name, or the one that makes the rate usual; `latest`: the last of them."""
     unit = bare_and_unit(clock.rsplit("/", 1)[-1])[1]
     if unit in TIME_UNITS:
         return str(unit)
+    if latest is not None and EPOCH[0] < latest < EPOCH[1]:
+        guesses.append("time in s since 1970")
+        return "s"
     for unit, scale in TIME_UNITS.items():
         if USUAL_RATES[0] <= 1.0 / (period * scale) <= USUAL_RATES[1]:
             guesses.append(f"time in {unit}: {1.0 / (period * scale):.4g} samples per second")
@@ -115,6 +120,18 @@ def travel(x: Array) -> float:
     """Return the span of a signal (n,) but for a few glitches."""
     low, high = np.quantile(x, [0.005, 0.995]) if len(x) else (0.0, 0.0)
     return float(high - low)
+
+
+def scatter(x: Array) -> float:
+    """Return by how much neighbouring samples of a signal (n,) scatter, but between 1e-6 and 1e-4 of its travel.
+
+    A held axis has no travel but its scatter, of which all is then noise.
+    """
+    if len(x) < FEWEST_STEPS:
+        return 0.0
+    bend = 1.4826 * float(np.median(np.abs(np.diff(x, 2)))) / float(np.sqrt(6.0))
+    still = 0.1 * travel(x)
+    return bend if bend > still else float(np.clip(bend, 1e-6 * travel(x), 1e-4 * travel(x)))
 
 
 def count_of(x: Array) -> float | None:

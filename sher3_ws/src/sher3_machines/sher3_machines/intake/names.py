@@ -27,13 +27,20 @@ COMMAND = vocabulary("u voltage volt pwm duty vir")
 ASKED = vocabulary("ref reference setpoint sp desired des target goal soll demand commanded cmd command qg d")
 MEASURED = vocabulary("actual act measured meas present est estimate estimated ist feedback fb")
 SECOND = vocabulary("load output link second secondary scale abtrieb")
-IGNORED = vocabulary("acceleration acc accel qdd ddq temperature temp error err")
+IGNORED = vocabulary("acceleration acc accel qdd ddq error err bus supply battery versorgung")
+TEMPERATURE = vocabulary("temperature temp temperatur")
+APPLIED = vocabulary("hung applied external disturbance weight brake bremsmoment last")
+"""A force from outside that is known, where the column has the unit of one."""
 PLAIN = vocabulary("motor state states joint value data real raw message msg sensor")
 """Words that tell one axis from another only where nothing else does."""
 TIME = vocabulary("t time stamp timestamp timestamps zeit date datetime received elapsed clock")
 COUNTERS = vocabulary("sample samples index idx frame step n nr row")
 FORCES = ("%", "A", "mA", "N", "kN", "N*m", "mN*m")
 """Units of an effort."""
+PLACES = ("m", "cm", "mm", "um", "rad", "mrad", "deg", "arcmin", "arcsec", "rev", "count")
+"""Units of a position."""
+DRIVING = vocabulary("motor antrieb drive")
+"""The one of two places of an axis that the drive moves; the other one is that of the load."""
 WORDS = POSITION | VELOCITY | EFFORT | CURRENT | COMMAND | ASKED | MEASURED | IGNORED
 SHORT = vocabulary("x i u n d q t")
 """Words of one letter: beside a longer word for the quantity they are the name of the axis."""
@@ -64,10 +71,17 @@ def named(column: str) -> Named:
     used = [w for w in words if w in WORDS and not (long and w in SHORT and w != "d")]
     rest = [w for w in words if w not in used and w not in SECOND and w not in PLAIN]
     rest = rest or (["x"] if "x" in used and len(used) > 1 else [])
+    if unit in FORCES and set(words) & APPLIED:
+        return Named("applied", "_".join(w for w in rest if w not in APPLIED), unit)
     if unit in FORCES and set(words) & SECOND and not set(words) & POSITION:
         return Named("effort", "_".join(rest), unit)  # a load in percent is a force
+    if unit == "degC" or set(words) & TEMPERATURE:
+        return Named("temperature", "_".join(w for w in rest if w not in TEMPERATURE), unit or "degC")
     signal = _signal(set(used) | (set(words) & SECOND), {w for w in table if w in ASKED})
     rest = rest or [w for w in table if w not in WORDS and w not in PLAIN and w not in SECOND] or table
+    if signal is None and not set(words) & IGNORED:
+        plain = unit in PLACES and set(words) <= PLAIN
+        signal = "position" if plain else "effort" if unit in FORCES and not set(words) & WORDS else None
     return Named(signal, "_".join(rest), unit)
 
 
@@ -105,8 +119,9 @@ def bare_and_unit(name: str) -> tuple[str, str | None]:
         return match["name"], said if said in UNITS else None
     head, _, last = name.rpartition("_")
     said = spelled(last)
-    known = head and said in UNITS and len(last) > 1 and not last.isdigit()
-    return (head, said) if known else (name, None)
+    stated = head.endswith("_in") or (len(last) > 1 and not last.isdigit())
+    known = head and said in UNITS and stated
+    return (head.removesuffix("_in"), said) if known else (name, None)
 
 
 def tells_time(column: str) -> bool:
@@ -117,4 +132,5 @@ def tells_time(column: str) -> bool:
 
 def counts_samples(column: str) -> bool:
     """Return whether a column's name says that it numbers the samples."""
-    return bool(set(words_of(column.rsplit("/", 1)[-1])) & COUNTERS)
+    bare, _ = bare_and_unit(column.rsplit("/", 1)[-1])
+    return bool(set(words_of(bare)) & COUNTERS)

@@ -8,6 +8,8 @@ from pydantic import Field, model_validator
 
 from sher3_machines.intake.fields import Column, Description, Strict
 
+FORCES = ("N", "kN", "N*m", "mN*m", "A", "mA", "V", "mV", "%")
+"""Units that no position has."""
 REFERENCE = 20.0
 """Temperature, deg C, at which lengths are stated (ISO 1)."""
 
@@ -44,6 +46,12 @@ class AxisTest(Strict):
     def _either(self) -> AxisTest:
         if (self.reading is None) == (self.deviation is None):
             raise ValueError("state either `reading` or `deviation`")
+        for column in (self.target, self.reading, self.deviation):
+            if column is not None and column.unit in FORCES:
+                raise ValueError(
+                    f"{column.column!r} is in {column.unit}, and a positioning test has lengths or angles; a force "
+                    "sensor is `kind: force_sensor`"
+                )
         return self
 
 

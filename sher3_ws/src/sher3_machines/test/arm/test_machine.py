@@ -58,3 +58,16 @@ def test_left_out_joint_zeros_leave_the_gap_to_others_or_open():
 def test_the_wrong_number_of_joints_is_named():
     with pytest.raises(MachineError, match="do not fit the arm"):
         diagnose(machine(ROWS[:5]), [measured(np.zeros(6))])
+
+
+@pytest.mark.parametrize("wrong", [0.003, 0.02])
+def test_a_wrong_drawing_is_no_surer_than_the_right_one(wrong):
+    """A link stated longer than it is: less is explained of a larger error, and the verdict does not say more."""
+    right = diagnose(machine(), [measured(OFFSETS)]).verdict
+    rows = [(a + (wrong if i == 2 else 0.0), d, alpha) for i, (a, d, alpha) in enumerate(ROWS)]
+    told = diagnose(machine(rows), [measured(OFFSETS)]).verdict
+    sure = {"no_gap": 2, "attributed": 1, "under_excited": 0, "outside_library": 0}
+    assert sure[told.status] <= sure[right.status]
+    assert told.closure.stage.low <= right.closure.stage.high
+    named = {c.effect for c in told.causes}
+    assert told.status != "attributed" or "link_length_error" in named

@@ -37,6 +37,32 @@ def test_counts_are_seen(tmp_path):
     assert "unit: count" in found.text and any("placeholder" in x for x in found.guesses)
 
 
+def test_motor_and_joint_force_and_load_are_told_by_name_and_unit(tmp_path):
+    wave = np.sin(TIME)
+    found = written(tmp_path, "time_s,motor_mm,joint_mm,tension_in_N,T Nut [°C]", TIME, wave, 0.9 * wave, wave, wave)
+    assert {"position", "load", "effort", "temperature"} == set(signals_of(found, tmp_path))
+
+
+def test_a_load_that_is_hung_on_a_held_axis_is_known(tmp_path):
+    noise = 1e-3 * np.random.default_rng(0).normal(size=len(TIME))
+    found = written(tmp_path, "t,q_deg,q_cmd_deg,q_link_deg,hung_load_Nm", TIME, noise, 0 * TIME, TIME, 5.0 * TIME)
+    signals = signals_of(found, tmp_path)
+    assert signals["applied"]["column"] == "hung_load_Nm" and signals["position"]["factor"] == 1.0
+
+
+def test_a_screw_is_told_by_its_scale(tmp_path):
+    """10 mm a turn: 1.59 mm a radian."""
+    turns = np.round(1e4 * np.sin(TIME)) / 1e4
+    signals = signals_of(written(tmp_path, "t,Motor [rev],Linear Scale [mm]", TIME, turns, 10.0 * turns), tmp_path)
+    assert signals["position"]["factor"] == pytest.approx(0.01 / (2.0 * np.pi), rel=1e-3)
+
+
+def signals_of(found, tmp_path):
+    (tmp_path / "a.yaml").write_text(found.text)
+    (axis,) = load_description(tmp_path / "a.yaml").axes
+    return axis.signals.model_dump(exclude_none=True)
+
+
 def test_without_a_clock_or_a_position_it_says_what_is_missing(tmp_path):
     with pytest.raises(MachineError, match=r"looks like a time.*rate"):
         written(tmp_path, "a,b", np.sin(TIME), np.sin(TIME))

@@ -32,7 +32,7 @@ from sher3_machines.intake.names import bare_and_unit, named, tells_time
         ("slideCurrent", "effort", "slide"),
         ("joint_states/elbow/position", "position", "elbow"),
         ("controller/reference/positions[0]", "reference", "0"),
-        ("motor_temperature", None, "motor"),
+        ("motor_temperature", "temperature", ""),
     ],
 )
 def test_a_name_says_signal_and_axis(column, signal, axis):

@@ -45,6 +45,12 @@ def found(verdict):
     return {c.effect: {name: p.value for name, p in c.parameters.items()} for c in verdict.causes}
 
 
+def test_a_table_of_forces_is_no_positioning_test():
+    columns = {"target": {"column": "applied", "unit": "N"}, "reading": {"column": "read", "unit": "N"}}
+    with pytest.raises(ValueError, match=r"'applied' is in N.*force_sensor"):
+        PositioningDescription.model_validate({"kind": "positioning", "name": "x", "axes": [{"name": "x", **columns}]})
+
+
 def test_a_healthy_table_has_no_gap():
     alarms = sum(verdict_of(table(seed=seed)).status != "no_gap" for seed in range(10))
     assert alarms <= 1

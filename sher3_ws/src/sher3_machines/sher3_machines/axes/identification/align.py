@@ -15,6 +15,7 @@ from sher3_diagnosis.channel import Array
 
 from sher3_machines.axes.description import Axis
 from sher3_machines.axes.identification.identify import loss_of, mass_of
+from sher3_machines.axes.identification.unfiltered import unfiltered
 from sher3_machines.axes.signals import AxisSignals
 from sher3_machines.axes.view import AxisView
 from sher3_machines.thresholds import ALIGNED
@@ -31,7 +32,9 @@ def aligned(signals: Sequence[AxisSignals], axis: Axis) -> tuple[Sequence[AxisSi
     if takes_energy(signals) and mass_of([AxisView(s, axis, 0.0) for s in signals]) < 0.0:
         signals = [replace(s, effort=-s.effort) for s in signals if s.effort is not None]
         notes.append(f"{axis.name}: effort recorded with the opposite sign: it would take energy; it was turned")
-    shift = best_shift(signals, axis)
+    signals, note = unfiltered(signals, axis)
+    notes += [note] if note else []
+    shift = 0.0 if note else best_shift(signals, axis)
     if shift != 0.0:
         signals = [shifted(s, shift) for s in signals]
         when = "before" if shift > 0.0 else "after"

@@ -24,6 +24,7 @@ from sher3_diagnosis.quantify.parameters import parameters
 from sher3_diagnosis.verdict import Cause, Parameter
 from sher3_effects.friction.presliding_friction import PreslidingFriction
 from sher3_effects.friction.stribeck_friction import StribeckFriction
+from sher3_effects.friction.viscous_friction import ViscousFriction
 
 from sher3_machines.thresholds import MIN_BLOCK, SLOW
 
@@ -55,6 +56,26 @@ def requantified(evidence: Evidence, attribution: Attribution, causes: Sequence[
             new = parameters(away, again, i)
             told = new if smeared else {n: _holding(p, new[n]) for n, p in cause.parameters.items() if n in new}
             cause = cause.model_copy(update={"parameters": told})
+        out.append(cause)
+    return out
+
+
+def with_unseen(evidence: Evidence, attribution: Attribution, causes: Sequence[Cause]) -> list[Cause]:
+    """Return the causes with intervals of dry friction that hold what it is beside a viscous one too slight to be seen.
+
+    Under noise the one stands in for a part of the other: at one speed they are the same.
+    """
+    terms = attribution.fit.terms
+    rubbed = {t.site for t in terms if isinstance(t.effect, ViscousFriction)}
+    out = []
+    for i, cause in zip(attribution.causes, causes, strict=True):
+        term = terms[i]
+        if term.effect.dry and term.site not in rubbed and "force" in cause.parameters and cause.condition is None:
+            again = fit(evidence.data, [*terms, make_term(evidence.data, ViscousFriction(), term.site, {})])
+            if again.of(len(terms))[0] > 0.0 and term.effect.admissible(term.shape, again.of(i)):
+                beside = parameters(evidence, again, i)["force"]
+                told = {**cause.parameters, "force": _holding(cause.parameters["force"], beside)}
+                cause = cause.model_copy(update={"parameters": told})
         out.append(cause)
     return out
 

@@ -54,8 +54,9 @@ def identify_mass(views: Sequence[AxisView]) -> tuple[float, tuple[float, float]
     x, y, block = _blocks(views)
     _, columns = _best(x, y, block)
     used = x[:, columns]
-    _, draws = _held_out(used, y, block)
-    mass = float(solve(used.T @ used, used.T @ y)[0])
+    noise = noise_share(views, used[:, 0])
+    _, draws = _held_out(used, y, block, noise)
+    mass = float(solve(_relieved(used, noise), used.T @ y)[0])
     error = float(np.sqrt((BLOCKS - 1) / BLOCKS * np.sum((draws - draws.mean()) ** 2)))
     if not mass > LEAST_EXCITED * error:
         wrong = mass < -LEAST_EXCITED * error
@@ -66,8 +67,31 @@ def identify_mass(views: Sequence[AxisView]) -> tuple[float, tuple[float, float]
             limit=f"{LEAST_EXCITED:g} standard errors above 0",
             remedy="check sign and gain of the force, and weight" if wrong else "state `mass`",
         )
-    half = JACKKNIFE * error + NOISE_SHARE * mass
+    half = JACKKNIFE * error + 2.0 * NOISE_SHARE * mass  # what is taken off is known to as much again
     return mass, (mass - half, mass + half)
+
+
+def noise_share(views: Sequence[AxisView], acceleration: Array) -> float:
+    """Return the share of the power of an acceleration (n,) that is the encoder's noise; at most `NOISE_SHARE`."""
+    false, power = [], float(np.mean(acceleration**2))
+    for view in views:
+        run = view.run
+        white = np.random.default_rng(0).normal(size=(run.ticks, 1))
+        bend = np.zeros_like(white)
+        bend[1:-1] = np.diff(white, 2, axis=0) / run.period**2
+        false.append(float(np.mean(run.to_grid(view.noise * bend) ** 2)))
+    return min(NOISE_SHARE, float(np.mean(false)) / power) if power else 0.0
+
+
+def _relieved(x: Array, noise: float) -> Array:
+    """Return the normal matrix (p, p) without what the noise adds to the power of the acceleration, its first column.
+
+    Least squares on a noisy regressor give too small a coefficient (attenuation); the more so, the more of the
+    acceleration the other columns can stand for.
+    """
+    normal = np.asarray(x.T @ x)
+    normal[0, 0] *= 1.0 - noise
+    return normal
 
 
 def share_of_inertia(views: Sequence[AxisView]) -> float:
@@ -158,12 +182,12 @@ def _equations(view: AxisView) -> tuple[Array, Array]:
     return x[ok], y[ok]
 
 
-def _held_out(x: Array, y: Array, block: NDArray[np.int64]) -> tuple[float, Array]:
+def _held_out(x: Array, y: Array, block: NDArray[np.int64], noise: float = 0.0) -> tuple[float, Array]:
     """Loss of every block under the others' coefficients, and the mass without each block, (BLOCKS,)."""
     loss, draws = 0.0, []
     for k in range(BLOCKS):
         out = block == k
-        beta = solve(x[~out].T @ x[~out], x[~out].T @ y[~out])
+        beta = solve(_relieved(x[~out], noise), x[~out].T @ y[~out])
         loss += float(np.sum((y[out] - x[out] @ beta) ** 2))
         draws.append(beta[0])
     return loss, np.array(draws)
