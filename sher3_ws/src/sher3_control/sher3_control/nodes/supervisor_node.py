@@ -19,9 +19,10 @@ from sher3_common.reasons import Reason, reading
 from sher3_common.samples import DiagnosticSample, JointSample, JoySample, PoseSample, TextSample, WrenchSample
 from sher3_common.stamps import NO_STAMP
 from sher3_common.vectors import Vector
-from sher3_description import ACTUATORS, TOPICS, Robot
+from sher3_description import ACTUATORS, Robot
 from sher3_kinematics import RobotKinematics
 from sher3_runtime.ports import NODE_OPTIONS, advertise, clock_of, latest, on_tick, ports, subscribe
+from sher3_runtime.publishers import Publishers
 
 from sher3_control.settings import ControlSettings
 from sher3_control.supervision.detectors import (
@@ -107,7 +108,7 @@ class SupervisorNode(Node):
         self._take_tip = latest(self, "tracker/measured_cp")
         subscribe(self, PEDAL, self.on_pedal)
         self._matched = [(name, ports(self).subscriptions[name].handle.get_publisher_count) for name in STREAMS]
-        self._names = {name: self.resolve_topic_name(TOPICS[name].full_name) for name in OWN}
+        self._living = Publishers(self)
         self._in_turn = cycle(BESIDE)
         subscribe(self, "diagnostics", self._on_diagnostics)
         subscribe(self, "command/state_command", self._on_command)
@@ -145,13 +146,14 @@ class SupervisorNode(Node):
                 self._hand.feed(forces.stamp, self._wrench.wrench, self._joints.position, forces.effort, self._command)
 
     def _count_publishers(self, *beside: str) -> None:
-        """Count the publishers of the streams that move the robot, and of the streams `beside`.
+        """Count the living publishers of the streams that move the robot, and of the streams `beside`.
 
         A subscription knows its publishers. Where there is no subscription the graph is asked, which costs twenty times
         as much.
         """
-        counts = {name: count() for name, count in self._matched}
-        counts.update((name, self.count_publishers(self._names[name])) for name in (*STEERING, *beside))
+        count, now = self._living.count, self._now()
+        counts = {name: count(name, now, known) for name, known in self._matched}
+        counts.update((name, count(name, now)) for name in (*STEERING, *beside))
         self._twins.feed(counts)
 
     def on_pedal(self, sample: JoySample) -> None:
