@@ -50,9 +50,10 @@ as fast as at the speed limit were there no end."""
 PAUSED = State("paused", 0.0, 0.6, 0.0, 25e-6, operating=OperatingState.PAUSED)
 DISABLED = State("disabled", 0.0, 0.6, 0.0, 25e-6, operating=OperatingState.DISABLED)
 AIMING = State("aiming", 0.0, 0.0, 0.0, 25e-6, aim=15e-6)
-FURTHER = (PAUSED, DISABLED, AIMING)
+FIRM = State("firm", 0.5e-3, 1.0, 0.5 / 0.9, 25e-6)
+FURTHER = (PAUSED, DISABLED, AIMING, FIRM)
 """States for some rows only: held by the drives while motion is paused; without power; a position mode with an aim that
-the axes are not at yet."""
+the axes are not at yet; at the speed near tissue, with a firmer hand and a lighter foot."""
 STILL = (IDLE.name, END.name)
 """States in which nothing moves."""
 AT_END = 1e-3
