@@ -217,7 +217,7 @@ class SupervisorSettings(Settings):
     hand_astray: Annotated[Number, Field(gt=0.0, le=0.05)] = 5e-4
     hand_gap: Annotated[Number, Field(ge=1e-3, le=1.0)] = 0.01
     hand_memory: Annotated[Number, Field(ge=1e-2, le=100.0)] = 2.0
-    hand_settling: Seconds = 0.4
+    hand_settling: Seconds = 0.2
 
 
 class ControlSettings(Settings):

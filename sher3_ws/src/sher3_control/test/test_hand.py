@@ -42,7 +42,7 @@ def test_a_hand_that_both_feel_comes_goes_and_turns_round(detector, force):
 
 @pytest.mark.parametrize(
     ("sensor", "hand", "limit"),
-    [(0.3, 0.0, 0.45), (0.4, 0.0, 0.2), (0.6, 0.0, 0.065), (1.0, 0.0, 0.03), (-1.0, 1.0, 0.02), (6.0, 2.0, 0.02)],
+    [(0.3, 0.0, 0.45), (0.4, 0.0, 0.2), (0.6, 0.0, 0.07), (1.0, 0.0, 0.03), (-1.0, 1.0, 0.02), (6.0, 2.0, 0.02)],
 )
 def test_a_hand_that_only_one_feels_is_none(detector, sensor, hand, limit):
     """0.6 N passes 0.46 N behind 40 ms after 40 ms ln(1 / (1 - 0.46/0.6)) = 58 ms, and the share."""
@@ -67,8 +67,9 @@ def test_a_bias_that_drifts_is_taken_for_granted(detector):
 
 
 def test_after_enabling_the_drives_take_over_a_hand_that_is_there_already(detector):
+    """They take it within some kp/ki = 20 ms."""
     detector.begin()
-    _, stamp = feel(detector, 0.15, 3.0, 0.0)
+    _, stamp = feel(detector, 0.08, 3.0, 0.0)
     assert feel(detector, 1.0, 3.0, 3.0, stamp)[0] is None
     detector.recover(0)
     assert detector.look(0).value == 0.0
@@ -95,7 +96,7 @@ def test_the_legs_hold_what_virtual_work_says(detector):
 
 
 def test_a_hit_is_no_false_hand(detector):
-    """A hand of 6 N that turns round at once is felt by the sensor at once, and held by the drives m/kp = 4 ms later."""
+    """The sensor feels at once a hand of 6 N that turns round; the drives hold it m/kp = 4 ms later."""
     q, held = (0.0,) * 5, 6.0
     for number in range(1000):
         hand = 6.0 if number // 200 % 2 == 0 else -6.0
@@ -111,7 +112,7 @@ def drive_legs(detector, ticks, acceleration, force, strays=0.0):
     """
     q, command, speed, objected = np.zeros(5), np.zeros(5), np.zeros(5), False
     for tick in range(ticks):
-        begun = 400 <= tick
+        begun = tick >= 400
         before = speed.copy()
         speed[:3] += 0.5 * (command - speed)[:3]
         q += speed * TICK * 1e-9

@@ -10,8 +10,6 @@ granted.
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 from sher3_common.reasons import Reason
@@ -70,7 +68,7 @@ class HandDetector(PlainDetector):
         self._lags, self._limits = np.array(lags), np.array(limits)
         self._force: Array | None = None
         self._quick, self._slow = np.zeros((len(lags), 3)), np.zeros(3)
-        self._peaks = (0.0, 0.0)
+        self._both = np.zeros(len(lags))
         self._last = self._since = self._astray = -1
         self._found = Finding(Reason.HAND_DOUBTFUL, 0.0, min(limits), "N", "force sensor")
 
@@ -117,21 +115,20 @@ class HandDetector(PlainDetector):
         total, settings = force + held, self._settings
         step, self._last = min(settings.hand_gap, seconds(stamp - self._last)), stamp
         if self._since < 0:
-            self._since, self._slow, self._peaks = stamp, total, (0.0, 0.0)
-            self._quick = np.tile(total, (len(self._lags), 1))
+            self._since, self._slow = stamp, total
+            self._quick, self._both = np.tile(total, (len(self._lags), 1)), np.zeros(len(self._lags))
         self._quick = self._quick + np.minimum(1.0, step / self._lags)[:, None] * (total - self._quick)
         known = seconds(stamp - self._since) - 0.5 * settings.hand_settling
         settled = known >= 0.5 * settings.hand_settling
         # The mean of the second half of the settling time, then with a memory.
         self._slow = self._slow + step / (settings.hand_memory if settled else max(step, known)) * (total - self._slow)
-        keep = math.exp(-step / float(self._lags[0]))
-        felt = float(np.linalg.norm(force)), float(np.linalg.norm(held - self._slow))
-        self._peaks = max(felt[0], keep * self._peaks[0]), max(felt[1], keep * self._peaks[1])
+        both = min(float(np.linalg.norm(force)), float(np.linalg.norm(self._quick[0] - self._slow - force)))
+        self._both = np.maximum(both, np.exp(-step / self._lags) * self._both)
         if not settled:
             self._quick = np.tile(self._slow, (len(self._lags), 1))
             return
         doubt = np.linalg.norm(self._quick - self._slow, axis=1)
-        limits = self._limits + settings.hand_share * min(self._peaks)
+        limits = self._limits + settings.hand_share * self._both
         worst = int(np.argmax(doubt / limits))
         self._found = self._found._replace(value=float(doubt[worst]), limit=float(limits[worst]))
 

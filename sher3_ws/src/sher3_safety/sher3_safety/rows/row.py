@@ -15,6 +15,9 @@ DETECTION_LIMIT, STOP_LIMIT = 0.050, 0.100
 """Longest times [s] from the onset of a fault to the first reaction and to rest. In 50 ms the tip travels the whole
 budget: 250 um at 5 mm/s, 25 um at 0.5 mm/s."""
 
+LOST = 0.1
+"""Time for which frames are lost in a recovery [s]: fifty of them, a fifth of the time that a drive has for it."""
+
 
 @dataclass(frozen=True)
 class State:
@@ -80,8 +83,10 @@ class Row:
         slow: the fault grows so slowly that its distance counts, not its time: how far the tip is off its undisturbed
             path, against the budget, whenever that is noticed.
         budget: travel allowed instead of the budget of the state, m; `why` gives the reason.
+        later: how much later than usual it may be noticed and stop, s; for a budget of its own.
         rest: how much longer than usual the foot stays off the pedal before it is pressed again, s.
         lets_go: the hand leaves as the fault sets in.
+        loses: component that is off when the operator recovers the robot, for `LOST` seconds.
         states: in which it is tried.
         why: why the robot may go on, a sentence for the report.
     """
@@ -97,8 +102,10 @@ class Row:
     release: bool = False
     slow: bool = False
     budget: float | None = None
+    later: float = 0.0
     rest: float = 0.0
     lets_go: bool = False
+    loses: str = ""
     states: tuple[State, ...] = STATES
     why: str = ""
 
@@ -107,7 +114,12 @@ class Row:
         """Component, fault, parameters, and what the operator does."""
         parts = [f"{name} {value:g}" for name, value in self.parameters.items()]
         name = f"{self.component} {self.fault}" + (f" ({', '.join(parts)})" if parts else "")
-        return name + ", pedal released" * self.release + ", hand gone" * self.lets_go
+        return (
+            name
+            + ", pedal released" * self.release
+            + ", hand gone" * self.lets_go
+            + f", {self.loses} lost" * bool(self.loses)
+        )
 
     @property
     def final(self) -> bool:
