@@ -96,10 +96,10 @@ def test_the_legs_hold_what_virtual_work_says(detector):
 
 
 def test_a_hit_is_no_false_hand(detector):
-    """The sensor feels at once a hand of 6 N that turns round; the drives hold it m/kp = 4 ms later."""
-    q, held = (0.0,) * 5, 6.0
+    """The sensor feels at once a hand of 12 N that turns round; the drives hold it m/kp = 4 ms later."""
+    q, held = (0.0,) * 5, 12.0
     for number in range(1000):
-        hand = 6.0 if number // 200 % 2 == 0 else -6.0
+        hand = 12.0 if number // 200 % 2 == 0 else -12.0
         held += 2.0 / 4.0 * (hand - held)
         detector.feed(number * TICK, sense(q, hand), q, (*legs_hold(q, held), 0.0, 0.0), STILL)
         assert detector.check(0) is None

@@ -277,6 +277,5 @@ def _concerns(item: bytes, drive: MockDrive) -> bool:
 
 def _resets(item: bytes, drive: MockDrive) -> bool:
     """Whether a frame asks a drive to leave FAULT; no two drives have the same node id."""
-    return (
-        int.from_bytes(item[:4], "little") == od.RPDO_BASE + drive.node_id and item[8] == Controlword.FAULT_RESET.value
-    )
+    can_id = int.from_bytes(item[:4], "little")
+    return can_id == od.RPDO_BASE + drive.node_id and item[8] == Controlword.FAULT_RESET.value

@@ -37,21 +37,22 @@ class Motion:
         legs = kinematics.robot.actuators[:LEGS]
         self._mass, self._drag = np.array([leg.mass for leg in legs]), np.array([leg.viscous for leg in legs])
         self.lag = float(np.mean([leg.mass / leg.drive.kp for leg in legs]))
-        self._meant, self._true = np.zeros(LEGS), np.zeros(LEGS)
-        self._legs = np.zeros(LEGS)
+        self.begin(np.zeros(LEGS))
 
     def begin(self, legs: Array) -> None:
         """Take the legs' positions (3,), m, as those at rest."""
-        self._meant, self._true, self._legs = np.zeros(LEGS), np.zeros(LEGS), legs
+        self._meant, self._expected, self._true, self._legs = *np.zeros((3, LEGS)), legs
 
     def advance(self, span: float, legs: Array, command: Array) -> tuple[Array, float]:
         """Go on by `span` [s]; return what the motion takes (3,), N, and how far the speed is off its command [m/s]."""
         share = min(1.0, span / self.lag)
         faster = share * (command - self._meant)
         self._meant = self._meant + faster
+        # The noise of an encoder is kept from the true speed by the same low pass.
+        self._expected = self._expected + share * (self._meant - self._expected)
         self._true = self._true + share * ((legs - self._legs) / span - self._true)
         self._legs = legs
-        return self._mass * faster / span + self._drag * self._meant, float(np.abs(self._true - self._meant).max())
+        return self._mass * faster / span + self._drag * self._meant, float(np.abs(self._true - self._expected).max())
 
 
 class HandDetector(PlainDetector):

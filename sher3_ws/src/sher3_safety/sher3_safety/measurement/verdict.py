@@ -83,7 +83,7 @@ def _of_a_stop(row: Row, state: State, o: Outcome, budget: float) -> Iterator[st
         return
     if o.travel > budget:
         yield f"travelled {o.travel * 1e6:.0f} um (budget {budget * 1e6:.0f} um)"
-    rest, notice = STOP_LIMIT + row.later, DETECTION_LIMIT + row.later
+    rest, notice = STOP_LIMIT + state.later, DETECTION_LIMIT + state.later
     if o.stop is None or o.stop > rest:
         yield "did not stop" if o.stop is None else f"stood after {o.stop * 1e3:.0f} ms (limit {rest * 1e3:.0f})"
     if row.release or state.name in row.quiet:

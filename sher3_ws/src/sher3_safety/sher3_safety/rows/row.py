@@ -31,6 +31,7 @@ class State:
         end: the hand has pushed the sliders against the end of their travel, and still pushes.
         operating: operating state.
         aim: how far from where they are `command/servo_jp` asks the sliders to be, from the onset on, m.
+        later: how much later than usual a fault may be noticed and the tip rest, s; with a budget of its own.
     """
 
     name: str
@@ -41,6 +42,7 @@ class State:
     end: bool = False
     operating: OperatingState = OperatingState.ENABLED
     aim: float = 0.0
+    later: float = 0.0
 
 
 IDLE = State("idle", 0.0, 0.6, 0.0, 25e-6)
@@ -54,9 +56,11 @@ PAUSED = State("paused", 0.0, 0.6, 0.0, 25e-6, operating=OperatingState.PAUSED)
 DISABLED = State("disabled", 0.0, 0.6, 0.0, 25e-6, operating=OperatingState.DISABLED)
 AIMING = State("aiming", 0.0, 0.0, 0.0, 25e-6, aim=15e-6)
 FIRM = State("firm", 0.5e-3, 1.0, 0.5 / 0.9, 25e-6)
-FURTHER = (PAUSED, DISABLED, AIMING, FIRM)
+LIGHT = State("light", 0.5e-3, 0.6, 1.0, 60e-6, later=0.08)
+FURTHER = (PAUSED, DISABLED, AIMING, FIRM, LIGHT)
 """States for some rows only: held by the drives while motion is paused; without power; a position mode with an aim that
-the axes are not at yet; at the speed near tissue, with a firmer hand and a lighter foot."""
+the axes are not at yet; at the speed near tissue under a hand that is to leave, a firm and a light one, of which
+the noise of the drives' forces does not allow to be sure any sooner."""
 STILL = (IDLE.name, END.name)
 """States in which nothing moves."""
 AT_END = 1e-3
@@ -83,7 +87,6 @@ class Row:
         slow: the fault grows so slowly that its distance counts, not its time: how far the tip is off its undisturbed
             path, against the budget, whenever that is noticed.
         budget: travel allowed instead of the budget of the state, m; `why` gives the reason.
-        later: how much later than usual it may be noticed and stop, s; for a budget of its own.
         rest: how much longer than usual the foot stays off the pedal before it is pressed again, s.
         lets_go: the hand leaves as the fault sets in.
         loses: component that is off when the operator recovers the robot, for `LOST` seconds.
@@ -102,7 +105,6 @@ class Row:
     release: bool = False
     slow: bool = False
     budget: float | None = None
-    later: float = 0.0
     rest: float = 0.0
     lets_go: bool = False
     loses: str = ""
@@ -114,12 +116,8 @@ class Row:
         """Component, fault, parameters, and what the operator does."""
         parts = [f"{name} {value:g}" for name, value in self.parameters.items()]
         name = f"{self.component} {self.fault}" + (f" ({', '.join(parts)})" if parts else "")
-        return (
-            name
-            + ", pedal released" * self.release
-            + ", hand gone" * self.lets_go
-            + f", {self.loses} lost" * bool(self.loses)
-        )
+        lost = f", {self.loses} lost" if self.loses else ""
+        return name + ", pedal released" * self.release + ", hand gone" * self.lets_go + lost
 
     @property
     def final(self) -> bool:

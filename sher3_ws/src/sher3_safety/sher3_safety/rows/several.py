@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from sher3_safety.rows.row import AIMING, DISABLED, FIRM, IDLE, LIMIT, MOVING, STATES, STILL, Row
+from sher3_safety.rows.row import AIMING, DISABLED, FIRM, IDLE, LIGHT, LIMIT, STATES, STILL, Row
 from sher3_safety.rows.slow import ALL, AXIS, FAST, LEFT, LONGEST, ROLL
 
 LEGS = "legs"
@@ -16,8 +16,6 @@ STANDS = (*LEFT, "ENCODER_FROZEN")
 DOUBTFUL = ("HAND_DOUBTFUL",)
 WRAP = 65536.0 * 1e-8
 """Counts of 16 bits of a load encoder of 10 nm [m]: a counter that wraps, or a homing that is off by as much."""
-LIGHT = 60e-6
-"""Budget where a hand of 0.6 N leaves [m]: noise of the drives' forces does not allow to be sure of it any sooner."""
 WARNS = "bit 7 is a warning: it is on /diagnostics, and the drive goes on doing as it is told"
 BITS = {"remote": 0x200, "voltage": 0x10, "follows": 0x1000, "limit": 0x800}
 """Bits of the statusword that say that a drive does not do as it is told."""
@@ -66,9 +64,8 @@ def _lively() -> Iterator[Row]:
     yield Row("pedal", "chatter", {"items": 5.0, "code": 1.0}, reasons=("PEDAL_INVALID",), slow=True, duration=0.6,
               quiet=(IDLE.name,), rest=1.0)  # fmt: skip
     yield Row("force_sensor", "chatter", {"items": 2.0, "offset": 11.0}, reasons=("WRENCH_NOT_FINITE", *DOUBTFUL))
-    yield Row("force_sensor", "held", reasons=DOUBTFUL, states=(FIRM, LIMIT), lets_go=True, quick=True)
-    yield Row("force_sensor", "held", reasons=DOUBTFUL, states=(MOVING,), lets_go=True, duration=0.4, budget=LIGHT,
-              later=0.08)  # fmt: skip
+    yield Row("force_sensor", "held", reasons=DOUBTFUL, states=(LIGHT, FIRM, LIMIT), lets_go=True, duration=0.4,
+              quick=True)  # fmt: skip
     yield Row("force_sensor", "wrong", {"scale": -1.0}, reasons=DOUBTFUL, states=(LIMIT,), slow=True)
     for first in (0.0, 1.0):
         yield Row(f"{AXIS}.up", "contradicted", {"first": first}, reasons=("DRIVE_TWICE", "DRIVE_RESTARTED"))
