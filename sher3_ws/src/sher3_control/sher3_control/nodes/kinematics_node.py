@@ -18,11 +18,12 @@ from sher3_common.reasons import TEXT, Reason
 from sher3_common.samples import DiagnosticSample, JointSample, PoseSample, TextSample, TwistSample, WrenchSample
 from sher3_common.stamps import NO_STAMP, nanoseconds
 from sher3_common.vectors import ZERO_TWIST
-from sher3_description import ACTUATORS, TOPICS, Robot
+from sher3_description import ACTUATORS, Robot
 from sher3_kinematics.direct import direct
 from sher3_kinematics.kernel import kernel_parameters
 from sher3_runtime.on_demand import advertise_on_demand
 from sher3_runtime.ports import NODE_OPTIONS, advertise, clock_of, latest, on_tick, subscribe
+from sher3_runtime.publishers import Publishers
 
 from sher3_control.law.live_parameters import from_json
 from sher3_control.motion.controller import MotionController, MotionInput, MotionOutput
@@ -88,6 +89,7 @@ class KinematicsNode(Node):
         subscribe(self, "servo_cv", self.on_twist)
         subscribe(self, "operating_state", self.on_state)
         self._take_heartbeat = latest(self, "supervisor/heartbeat")
+        self._living = Publishers(self)
         subscribe(self, "admittance/status", self._on_admittance)
         subscribe(self, "command/rcm", self._on_rcm)
         subscribe(self, "command/regime", self._on_regime)
@@ -174,13 +176,17 @@ class KinematicsNode(Node):
         self._tick_count += 1
 
     def _command(self, mode: Mode) -> Callable[[Any], None]:
-        topic = self.resolve_topic_name(TOPICS[f"command/{mode.value}"].full_name)
+        topic = f"command/{mode.value}"
 
         def on_command(sample: Any) -> None:
+            now = self._now()
             try:
-                self.motion.command(mode, sample, self._input(self._now()), self.count_publishers(topic))
+                self.motion.command(mode, sample, self._input(now), self._living.count(topic, now))
             except Sher3Error as error:
-                self._refuse(error)
+                self._refuse(error, mode.value)
+            else:
+                if self._refused is not None and self._refused["command"] == mode.value:
+                    self._refused, self._shown = None, ()
 
         return on_command
 
@@ -214,15 +220,15 @@ class KinematicsNode(Node):
         try:
             change()
         except Sher3Error as error:
-            self._refuse(error)
+            self._refuse(error, "settings")
             return
         self._version += 1
         self._refused, self._shown = None, ()
         self._report_settings()
 
-    def _refuse(self, error: Sher3Error) -> None:
-        """Show a refusal in the status; a stream that is refused at every sample shows it once."""
-        shown = {"error": type(error).__name__, "text": str(error)}
+    def _refuse(self, error: Sher3Error, command: str) -> None:
+        """Show a refusal in the status until such a command is taken; a stream that is refused shows it once."""
+        shown = {"command": command, "error": type(error).__name__, "text": str(error)}
         if self._refused is None or self._refused["text"] != shown["text"]:
             self._refused = shown
             self._shown = ()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from sher3_description import ACTUATORS
 
-from sher3_safety.rows.row import LIMIT, PAUSED, STATES, STILL, Row
+from sher3_safety.rows.row import LIMIT, PAUSED, SIDEWAYS, STATES, STILL, Row
 
 AXIS, ROLL, TILT = ACTUATORS[0], ACTUATORS[3], ACTUATORS[4]
 LEFT = ("POSITION_LEFT",)
@@ -30,12 +30,18 @@ SLOW = (
             duration=min(LONGEST, 1e-3 / speed), states=ALL)
         for speed in (1e-3, 1e-2, 1e-1)
     ),
+    *(
+        Row(f"{name}.demand", "creep", {"speed": speed}, reasons=(*LEFT, "DRIVE_DISOBEYS"), slow=True, quiet=FAST,
+            duration=min(LONGEST, 2e-5 / speed if name != ROLL else 1e-3 / speed), states=ALL)
+        for name, speed in ((AXIS, 2e-5), (AXIS, 1e-3), (TILT, 2e-5), (TILT, 1e-3), (ROLL, 1e-3), (ROLL, 1e-1))
+    ),
     Row(f"{AXIS}.power", "creep", {"speed": 0.0122}, slow=True, budget=250e-6, why=AT_ITS_LIMIT),
     *(Row(f"{name}.load_encoder", "drift", {"rate": 2e-5}, slow=True, duration=LONGEST) for name in (AXIS, TILT)),
     Row(f"{ROLL}.load_encoder", "drift", {"rate": 1e-3}, slow=True, duration=LONGEST),
     Row(f"{AXIS}.motor_encoder", "drift", {"rate": 2e-5}, slow=True, duration=LONGEST),
     Row(f"{AXIS}.motor_encoder", "ramp", {"rate": 0.5}, slow=True, effect="either", why=STATED),
     *(Row("bus.up", "late", {"items": age}, reasons=("FEEDBACK_STALE",)) for age in (1.0, 3.0)),
-    Row("bus0.up", "swap", reasons=("FEEDBACK_SWAPPED",), quick=True),
+    Row("bus0.up", "swap", reasons=("FEEDBACK_SWAPPED",), states=(*STATES, SIDEWAYS), quick=True),
     Row(f"{AXIS}.echo", "wrong", {"scale": 0.0}, reasons=("DRIVE_DISOBEYS",), quiet=STILL),
+    Row(f"{AXIS}.echo", "stuck", release=True),
 )  # fmt: skip
