@@ -116,8 +116,15 @@ def evaluate(folder: Path, rate: float, seconds: float) -> dict[str, Any]:
         "lost_samples": grid - len(window),
         "lost_frames": grid - len(latency),
         "enabled": enabled,
+        "published": published(nodes),
         "nodes": {name: node["statistics"] for name, node in sorted(nodes.items())},
     }
+
+
+def published(nodes: dict[str, Any]) -> dict[str, int]:
+    """Return how many samples were published on each topic with stamps, from the first tick to the last."""
+    points = {point: len(data["stamps"]) for node in nodes.values() for point, data in node["traces"].items()}
+    return {point.removeprefix("publish "): count for point, count in points.items() if point.startswith("publish ")}
 
 
 def trace(node: dict[str, Any], point: str) -> dict[int, int]:

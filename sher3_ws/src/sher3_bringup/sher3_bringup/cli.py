@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import json
 import sys
 from enum import Enum
@@ -88,6 +89,7 @@ def up(
     Exit codes: 0 stopped as asked, 2 wrong option, 1 bad file, 3 not started (a device is missing), 4 a process died,
     5 a process had to be killed.
     """
+    gc.disable()  # nothing that is imported until the processes are forked is garbage; `preload` enables it again
     from sher3_bringup.processes.onlooker import onlooker
     from sher3_bringup.processes.up import run_graph
     from sher3_bringup.settings.run_settings import checked, parse_processes

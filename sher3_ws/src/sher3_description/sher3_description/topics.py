@@ -148,5 +148,8 @@ _TABLE = (
     Topic("mock/true_js", _JOINT, "", STREAM, "true load position and executed demand, from the first fault on"),
 )
 
+MANY_SENDERS = frozenset({"diagnostics"})
+"""Topics on which every node publishes; all others have one sender."""
+
 TOPICS: dict[str, Topic] = {topic.name: topic for topic in _TABLE}
 """Every topic by its name relative to `NAMESPACE`."""

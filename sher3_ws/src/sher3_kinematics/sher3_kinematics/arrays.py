@@ -23,6 +23,8 @@ from sher3_kinematics.kernel.parameters import unpack as unpack
 
 Floats = NDArray[np.float64]
 FLOAT64 = np.dtype(np.float64)
+_ARRAY = np.ndarray
+PARAMETERS = len(KernelParameters._fields)
 
 
 def vector(values: Sequence[float] | Floats, size: int, name: str) -> Floats:
@@ -49,12 +51,7 @@ def is_plain(values: object, size: int) -> bool:
 
     This is the case of the control loop, and the test is several times faster than a conversion.
     """
-    return (
-        isinstance(values, np.ndarray)
-        and values.dtype == FLOAT64
-        and values.shape == (size,)
-        and values.flags.c_contiguous
-    )
+    return type(values) is _ARRAY and values.dtype == FLOAT64 and values.shape == (size,) and values.flags.c_contiguous
 
 
 def rows(values: Sequence[Sequence[float]] | Floats, size: int, name: str) -> Floats:
@@ -82,16 +79,17 @@ def tip_jacobian(parameters: Floats, q: Floats) -> Floats:
 
 
 @compiled_ieee
-def pose_inverse(parameters: Floats, position: Floats, axis: Floats, bounds: Floats) -> tuple[Floats, bool]:
+def pose_inverse(parameters: Floats, position: Floats, axis: Floats) -> tuple[Floats, bool]:
     """Return q (5,) for a tip position and a distal tool axis, and whether it is within travel and workspace.
 
-    `bounds` (11,): lower ends, upper ends, least elevation of the legs. Whatever is not finite is not within.
+    Behind the parameters stand eleven bounds: lower ends, upper ends, least elevation of the legs. Whatever is not
+    finite is not within.
     """
     p = unpack(parameters)
     q, margins = np.empty(5), np.empty(5)
     kernel.pose_inverse_into(p, position[0], position[1], position[2], axis, q)
     kernel_reach.singularity_margins_into(p, q, margins)
-    inside = True
+    bounds, inside = parameters[PARAMETERS:], True
     for k in range(5):
         inside = inside and bounds[k] <= q[k] <= bounds[5 + k]
     for k in range(3):
@@ -126,5 +124,5 @@ def delta_jacobian(parameters: Floats, q: Floats) -> Floats:
 @functools.cache
 def entry(name: str) -> Callable[..., Any]:
     """Return the machine code of one of the functions above that the control loop calls; see `direct`."""
-    vectors = {"tip_transform": (5,), "tip_jacobian": (5,), "pose_inverse": (3, 3, 11)}[name]
-    return direct(globals()[name], np.zeros(len(KernelParameters._fields)), *map(np.zeros, vectors))
+    vectors = {"tip_transform": (5,), "tip_jacobian": (5,), "pose_inverse": (3, 3)}[name]
+    return direct(globals()[name], np.zeros(PARAMETERS), *map(np.zeros, vectors))

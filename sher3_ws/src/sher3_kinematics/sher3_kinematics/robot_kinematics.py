@@ -53,7 +53,7 @@ class RobotKinematics:
         self.tilt_linkage = TiltLinkage(self.robot, self.parameters)
         self._values = np.array(self.parameters)
         self._lower, self._upper = self.lower - TOLERANCE, self.upper + TOLERANCE
-        self._bounds = np.array([*self._lower, *self._upper, self.delta.least_elevation])
+        self._bounded = np.array([*self._values, *self._lower, *self._upper, self.delta.least_elevation])
 
     def transform_tip_to_base(self, q: Sequence[float] | Floats) -> Floats:
         """Return T_bt (4, 4), recorded-run contract version 1, section 2.
@@ -93,7 +93,7 @@ class RobotKinematics:
         point = position if is_plain(position, 3) else vector(position, 3, "tip position")
         direction = axis if is_plain(axis, 3) else vector(axis, 3, "tool axis")
         q: Floats
-        q, inside = arrays.entry("pose_inverse")(self._values, point, direction, self._bounds)
+        q, inside = arrays.entry("pose_inverse")(self._bounded, point, direction)
         if not inside:
             point, direction = vector(position, 3, "tip position"), vector(axis, 3, "tool axis")
             length = math.hypot(*direction)

@@ -48,9 +48,9 @@ def advertise_on_demand(node: Node, name: str) -> OnDemand:
     publish, port = advertise(node, name), ports(node)
     count: Callable[[], int] = port.publishers[name].get_subscription_count
     if (composition := port.composition) is not None:
-        offers, outside = composition.offers(name), count
+        offers, outside, beside = composition.offers(name), count, composition.beside(name)
 
         def count() -> int:
-            return len(offers) + outside()
+            return len(offers) + outside() + beside()
 
     return OnDemand(publish, count, port.clock.stepped)

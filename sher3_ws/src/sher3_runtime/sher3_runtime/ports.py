@@ -20,6 +20,7 @@ from sher3_description.topics import Topic
 from sher3_runtime.codec.cdr import CdrError, as_sent, codec
 from sher3_runtime.codec.messages import from_message, message_class, to_message
 from sher3_runtime.composed.composition import Composition
+from sher3_runtime.composed.newest import newest_of_rings
 from sher3_runtime.port import EXECUTOR_VARIABLE as EXECUTOR_VARIABLE
 from sher3_runtime.port import GAPLESS
 from sher3_runtime.port import NODE_OPTIONS as NODE_OPTIONS
@@ -154,7 +155,7 @@ def advertise(node: Node, name: str) -> Publish:
     # The handle's own method: rclpy's wrapper would enter the handle's context at each call.
     send = publisher.handle.publish_raw if raw else publisher.publish
     if composition is not None:
-        return _publish_inside(port, topic, composition, lambda sample: send(encode(sample)), trace)
+        return _publish_inside(port, topic, composition, encode, send, trace)
 
     def publish(sample: Any) -> None:
         sent[name] += 1
@@ -167,18 +168,25 @@ def advertise(node: Node, name: str) -> Publish:
     return publish
 
 
-def _publish_inside(port: Ports, topic: Topic, composition: Composition, send: Publish, trace: Trace | None) -> Publish:
+def _publish_inside(
+    port: Ports,
+    topic: Topic,
+    composition: Composition,
+    encode: Callable[[Any], bytes],
+    send: Callable[[bytes], None],
+    trace: Trace | None,
+) -> Publish:
     """Return `publish(sample)` for a node that shares its process."""
     name, now, sent = topic.name, port.clock.now, port.sent
     stepped, publisher = port.clock.stepped, port.publishers[name]
 
-    def send_outside(sample: Any) -> None:
+    def send_outside(data: bytes) -> None:
         sent[name] += 1
-        send(sample)
+        send(data)
 
     # In stepped time all that is sent is counted, so nothing may be left out.
-    listens = (lambda: True) if stepped else publisher.get_subscription_count
-    publish = composition.publisher(topic, as_sent(topic.type), send_outside, listens)
+    listens = (lambda: 1) if stepped else publisher.get_subscription_count
+    publish = composition.publisher(topic, as_sent(topic.type), encode, send_outside, listens, now)
     if trace is None:
         return publish
 
@@ -210,18 +218,22 @@ def latest(node: Node, name: str) -> Callable[[], Any]:
     garbage = port.statistics.garbage
 
     composition = port.composition
-    if composition is None:
-        inside = None
-    else:
+    inside = rings = None
+    if composition is not None:
         inside = composition.keep_newest(topic, partial(port.leave, node, name, subscription))
+    elif (rings := newest_of_rings()) is not None:
+        rank = rings.look_at(name)
 
     def take_newest() -> Any:
         if inside is not None and composition is not None and composition.inner(name):
             return inside()
-        if (taken := take(kind, True)) is None:
-            return None
+        data = None if rings is None else rings.take(rank)
+        if data is None:
+            if (taken := take(kind, True)) is None:
+                return None
+            data = taken[0]
         try:
-            return decode(taken[0])
+            return decode(data)
         except CdrError:
             garbage[name] = garbage.get(name, 0) + 1
             return None
@@ -287,13 +299,17 @@ def on_tick(node: Node, callback: Callable[[int], None], phase: float = 0.0, eve
         node: The node.
         callback: Gets the grid stamp `t_k` [ns], which is the same in every process.
         phase: Delay behind the stamp [s].
-        every: Call only at stamps that are a multiple of `every` periods.
+        every: Call only at stamps that are a multiple of `every` periods; in wall time, of nodes that share a process,
+            at stamps some periods later, so that reports of a second do not all come in one period.
 
     Returns:
         The tick. A node whose tick only looks for late samples calls its `done(stamp)` when they were in time.
     """
     port = ports(node)
-    tick = Tick(callback, round(phase * 1e9), every, port.clock, port.statistics, port.turn)
+    offset = 0
+    if every > 1 and port.composition is not None and not port.clock.stepped:
+        offset = port.composition.offset(every)
+    tick = Tick(callback, round(phase * 1e9), every, port.clock, port.statistics, port.turn, offset)
     port.ticks.append(tick)
     if node.executor is not None:
         node.executor.wake()

@@ -24,6 +24,7 @@ from rclpy.signals import SignalHandlerOptions
 from sher3_common import Sher3Error
 
 from sher3_runtime.composed.composition import Composition
+from sher3_runtime.composed.ring import Ring
 from sher3_runtime.ports import clock_of, ports
 from sher3_runtime.spinning import spin
 
@@ -42,12 +43,13 @@ class NotStarted(Sher3Error):
     """The processes of the graph did not find each other in time."""
 
 
-def run(make_nodes: Callable[[], Sequence[Node]], together: bool = False) -> None:
+def run(make_nodes: Callable[[], Sequence[Node]], together: bool = False, ring: Ring | None = None) -> None:
     """Make nodes and run them until they are told to stop; the process must end soon after (see `leave_in_time`).
 
     Args:
         make_nodes: returns the nodes.
         together: they hear each other within the process, see `composition`.
+        ring: then, for those beside the process that look at their own pace.
 
     Raises:
         Exception: Whatever making or running a node raises; the supervising process has been told by then.
@@ -57,7 +59,7 @@ def run(make_nodes: Callable[[], Sequence[Node]], together: bool = False) -> Non
     rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
     stop = stop_on_signals()
     try:
-        with Composition() if together else nullcontext():
+        with Composition(ring) if together else nullcontext():
             nodes = make_nodes()
         make_logging_prompt()
         barrier = None if control is None else Barrier(nodes, control, stop)

@@ -16,6 +16,8 @@ class Tick:
         phase_ns: Delay behind the stamp [ns].
         due_ns: Time of the next call [ns]; `due_ns - phase_ns` is its stamp.
         turn: Of the node, where it shares a process: while another callback of the node is at work, the call waits.
+
+    Its stamps are the multiples of `every` periods, `offset` periods later.
     """
 
     def __init__(
@@ -26,12 +28,14 @@ class Tick:
         clock: Clock,
         statistics: Statistics,
         turn: Turn | None = None,
+        offset: int = 0,
     ) -> None:
         self.callback = callback
         self.phase_ns = phase_ns
         self.period_ns = every * clock.period_ns
         self.due_ns = 0
         self.turn = turn
+        self._offset_ns = offset * clock.period_ns
         self._clock = clock
         self._statistics = statistics
         self._duration = statistics.callback.setdefault("tick", Histogram())
@@ -40,10 +44,10 @@ class Tick:
         self._counts = every == 1
 
     def schedule(self) -> None:
-        """Set `due_ns` to the first grid stamp from now on."""
+        """Set `due_ns` to the first stamp of this tick from now on."""
         after = self._clock.now() - self.phase_ns
-        stamp = max(after + 1, self._clock.start_ns)
-        self.due_ns = -(-stamp // self.period_ns) * self.period_ns + self.phase_ns
+        earliest = max(after + 1, self._clock.start_ns) - self._offset_ns
+        self.due_ns = -(-earliest // self.period_ns) * self.period_ns + self._offset_ns + self.phase_ns
 
     def done(self, stamp: int) -> None:
         """Skip the call for `stamp`, whose work has been done already; this saves one wake-up a period."""

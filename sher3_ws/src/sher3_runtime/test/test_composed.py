@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 import os
 import time
+from contextlib import contextmanager
 from itertools import pairwise
 
 import pytest
 from rclpy.context import Context
 from rclpy.node import Node
 from sher3_common.samples import JointSample, JoySample, TextSample, TwistSample, WrenchSample
-from sher3_common.waiting import wait_readable
+from sher3_common.waiting import let_others_go_on, wait_readable
 from sher3_description.topics import TOPICS
 from sher3_runtime import (
     NODE_OPTIONS,
@@ -25,11 +26,14 @@ from sher3_runtime import (
     subscribe,
     use_clock,
 )
+from sher3_runtime.clock import SteppedClock
 from sher3_runtime.codec.cdr import as_sent, codec
 from sher3_runtime.composed.composition import Composition
 from sher3_runtime.composed.turn import Turn
 from sher3_runtime.domains import own_domain
 from sher3_runtime.ports import ports
+from sher3_runtime.tick import Tick
+from sher3_runtime.timing import Statistics
 
 pytestmark = pytest.mark.graph
 ZERO = (0.0,) * 6
@@ -199,6 +203,48 @@ def test_a_node_that_waits_for_its_device_does_not_hold_up_the_others():
     assert len(late) >= 80 and sorted(gaps)[len(gaps) // 2] < 15.0
     # What came while the device was waited for was handed over afterwards, in order; none was lost.
     assert hears == sorted(hears) and len(hears) >= len(late) - 10
+
+
+@pytest.mark.parametrize("shortest", [10, 25, 50])
+def test_slow_callbacks_of_one_process_come_in_different_periods(shortest):
+    """Reports of a second that all came in one period would take longer than the period, and a cycle would be lost."""
+    together, clock = Composition(), SteppedClock(1_000_000)
+    ticks = []
+    for every in (2 * shortest, 20 * shortest, *(shortest,) * 8):
+        ticks.append(Tick(print, 0, every, clock, Statistics(), None, together.offset(every)))
+        ticks[-1].schedule()
+        assert 0 < ticks[-1].due_ns - clock.now() <= 1_000_000 * every
+    assert len({tick.due_ns % (1_000_000 * shortest) for tick in ticks}) == 10
+
+
+@pytest.mark.parametrize(("limit", "first", "again"), [(0.002, 0.0, 0.0014), (0.05, 0.048, 0.048)])
+def test_a_device_that_answered_last_time_is_waited_for_in_place(limit, first, again):
+    """Time [s] left to the others: less of the first wait than of the next, when the device is known to be silent."""
+    left, (device, other_end) = [], os.pipe()
+
+    @contextmanager
+    def others():
+        begin = time.monotonic()
+        yield
+        left.append(time.monotonic() - begin)
+
+    def wait():
+        left[:] = [0.0]
+        found = wait_readable((device,), limit)
+        return bool(found), left[-1] >= 0.9 * again
+
+    let_others_go_on(others)
+    try:
+        silent = [wait(), wait()]
+        os.write(other_end, b"x")
+        answered = wait()
+        os.read(device, 1)
+        after = wait()
+    finally:
+        let_others_go_on(None)
+        os.close(device), os.close(other_end)
+    assert silent == [(False, first > 0.0), (False, True)]
+    assert answered == (True, False) and after == (False, first > 0.0)
 
 
 def test_a_callback_that_raises_in_a_stand_in_ends_the_process():

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from sher3_common.stamps import SECOND
 from sher3_description import TOPICS, Robot
+from sher3_description.topics import MANY_SENDERS
 
 from sher3_bags.messages import TEXT
 from sher3_bags.run import CONTRACT_TOPICS
@@ -16,15 +17,12 @@ PAUSE_NS = 250_000_000
 """A gap longer than this [ns] means that the source was switched off (`servo_cv` outside cooperative mode); it is not a
 loss of samples."""
 
-MANY_SENDERS = frozenset({"diagnostics"})
-"""Topics on which every node publishes. Stamps of different senders repeat and overtake each other, so their order
-tells nothing."""
-
 
 def is_stamped(topic: str) -> bool:
     """Return whether the stamps of a topic's messages are in an order that can be judged.
 
-    Where they are not, only the times of arrival can be judged.
+    Stamps of different senders repeat and overtake each other. Where the order tells nothing, only the times of arrival
+    can be judged.
     """
     return topic not in MANY_SENDERS and TOPICS[topic].type != TEXT
 

@@ -18,10 +18,12 @@ import rclpy
 from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
+from rclpy.subscription import Subscription
 from sher3_common.samples import DiagnosticSample
 from sher3_description import TOPICS, Robot, load_robot
 from sher3_runtime import advertise, environment
 from sher3_runtime.codec.messages import message_class
+from sher3_runtime.composed.ring import shared_rings
 from sher3_runtime.ports import NODE_OPTIONS, clock_of, find_topic, on_tick, ports, qos_profile, subscribe_raw
 from sher3_runtime.process import stop_on_signals
 from sher3_runtime.spinning import spin
@@ -31,7 +33,7 @@ from sher3_bags.recording.beside import Beside
 from sher3_bags.recording.recorder import Recorder
 from sher3_bags.run import RunMetadata
 
-POLL_NS = 5_000_000
+POLL_NS = 10_000_000
 REPORT_NS = 1_000_000_000
 OK, ERROR = 0, 2
 
@@ -39,18 +41,22 @@ DEPTH = 2000
 """Samples that may wait while a chunk is compressed or the disk is slow: four seconds of a 500 Hz stream."""
 
 
+Heard = tuple[int, str, bytes, int]
+"""Arrival [ns], topic, data and time of sending [ns] of a sample."""
+
+
 class Ears(Node):
     """The subscriptions of the recorder: a node that no executor waits on, emptied by `listen`.
 
     Waking up for each of thousands of samples a second would cost the recorder five times the work of writing them. The
-    middleware notes when a sample arrived, so looking later loses nothing.
+    middleware notes when a sample arrived, so looking later loses nothing. What a process of several nodes says is read
+    from its ring instead (`sher3_runtime.composed.ring`), so that it need not send it.
     """
 
     def __init__(self, owner: Node, names: Iterable[str], **options: Any) -> None:
         super().__init__(f"{owner.get_name()}_ears", **{**NODE_OPTIONS, **options})
         self._now = clock_of(owner).now
-        self._received = ports(owner).received
-        self._takes: list[tuple[str, Callable[..., Any], Any]] = []
+        self._owner, self._streams = ports(owner), dict[str, Subscription]()
         for name in names:
             topic, kind = find_topic(name), message_class(find_topic(name).type)
             profile = qos_profile(topic.qos)
@@ -60,21 +66,40 @@ class Ears(Node):
                 kind, topic.full_name, _never, profile, raw=True, event_callbacks=events
             )
             # The start barrier counts the owner's subscriptions.
-            ports(owner).subscriptions[name] = subscription
-            self._received[name] = 0
-            self._takes.append((name, subscription.handle.take_message, kind))
+            self._owner.subscriptions[name] = self._streams[name] = subscription
+            self._owner.received[name] = 0
+        self._rings = [ring.join() for ring in shared_rings()]
+        self._by_ring: dict[int, str] | None = None
 
-    def listen(self) -> list[tuple[int, str, bytes, int]]:
-        """Return (arrival [ns], topic, data, time of sending [ns]) of all samples since the last call, by arrival."""
-        shift = self._shift()
-        samples = []
-        for name, take, kind in self._takes:
+    def listen(self) -> list[Heard]:
+        """Return all samples since the last call, by arrival."""
+        shift, received = self._shift(), self._owner.received
+        samples = self._read_rings()
+        for name, stream in self._streams.items():
+            take, kind = stream.handle.take_message, stream.msg_type
             while (taken := take(kind, True)) is not None:
                 data, info = taken
                 samples.append((info["received_timestamp"] + shift, name, data, info["source_timestamp"] + shift))
-                self._received[name] += 1
+                received[name] += 1
         samples.sort(key=itemgetter(0))
         return samples
+
+    def _read_rings(self) -> list[Heard]:
+        """Return what has come by ring; the first call, when all have met, takes those streams off the middleware."""
+        names = self._leave_streams() if self._by_ring is None else self._by_ring
+        return [
+            (sent, names[rank], data, sent) for ring in self._rings for rank, sent, data in ring.read() if rank in names
+        ]
+
+    def _leave_streams(self) -> dict[int, str]:
+        offered = set[int]().union(*[reader.ring.offered for reader in self._rings])
+        names = self._by_ring = {
+            rank: name for rank, name in enumerate(TOPICS) if rank in offered and name in self._streams
+        }
+        for name in names.values():
+            self.destroy_subscription(self._streams.pop(name))
+            del self._owner.subscriptions[name]
+        return names
 
     def _shift(self) -> int:
         """Return the clock of the graph minus the system time, with which the middleware stamps [ns].

@@ -22,6 +22,7 @@ from typing import Any
 
 from sher3_common import Sher3Error
 from sher3_runtime.clock import OFFSET_VARIABLE, system_offset
+from sher3_runtime.composed.ring import Ring
 from sher3_runtime.process import CONTROL_VARIABLE, REALTIME_VARIABLE, die_with_parent, run
 
 from sher3_bringup.errors import NotStopped, ProcessDied, StartError
@@ -81,10 +82,18 @@ class Fleet:
         self.members: list[Member] = []
         os.environ[OFFSET_VARIABLE] = str(system_offset())
 
-    def launch(self, name: str, make_nodes: Callable[[], Any], realtime: int = 0, together: bool = False) -> Member:
+    def launch(
+        self,
+        name: str,
+        make_nodes: Callable[[], Any],
+        realtime: int = 0,
+        together: bool = False,
+        ring: Ring | None = None,
+    ) -> Member:
         """Fork a process that makes and runs nodes, under SCHED_FIFO from its first tick on (see `use_realtime`).
 
-        With `together` its nodes hear each other within the process.
+        With `together` its nodes hear each other within the process, and `ring` is for those beside it that look at
+        their own pace.
         """
         ours, theirs = socket.socketpair()
         sys.stdout.flush()
@@ -95,7 +104,7 @@ class Fleet:
             die_with_parent(parent)
             os.environ[REALTIME_VARIABLE] = str(realtime)
             others = [ours, *(member.control for member in self.members)]
-            _child(partial(run, make_nodes, together), theirs, others)
+            _child(partial(run, make_nodes, together, ring), theirs, others)
         theirs.close()
         ours.setblocking(False)
         member = Member(name, pid, ours)

@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from functools import partial
 
 from sher3_runtime import environment
+from sher3_runtime.composed.ring import Ring, share
 from sher3_runtime.ports import PERIOD_VARIABLE
 from sher3_runtime.process import realtime_permitted
 
@@ -72,11 +73,15 @@ def launch_nodes(fleet: Fleet, settings: RunSettings, realtime: int, patience: f
     Raises:
         StartError: the plant's process failed, or did not answer in time.
     """
-    for process in launch_order(settings.processes):
-        make = partial(make_nodes, settings, process)
-        fleet.launch("+".join(process), make, priority(process, realtime), together=len(process) > 1)
+    processes = launch_order(settings.processes)
+    rings = {process: Ring() for process in processes if len(process) > 1}
+    share(rings.values())
+    for process in processes:
+        make, together = partial(make_nodes, settings, process), len(process) > 1
+        fleet.launch("+".join(process), make, priority(process, realtime), together, rings.get(process))
         if "plant" in process:
             fleet.gather("publishes", patience)
+    share(())
 
 
 def priority(process: Sequence[str], realtime: int) -> int:

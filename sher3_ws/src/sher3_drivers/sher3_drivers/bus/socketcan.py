@@ -5,8 +5,6 @@ from __future__ import annotations
 import errno
 import socket
 
-import can
-
 from sher3_drivers.bus.frame import FRAME_SIZE, check_frames
 from sher3_drivers.errors import LinkError
 
@@ -24,6 +22,8 @@ class SocketCanLink:
     def __init__(self, channel: str) -> None:
         self.name = f"socketcan:{channel}"
         self.dropped = 0
+        import can  # only who has the hardware waits for it
+
         try:
             self._bus = can.Bus(interface="socketcan", channel=channel)
         except (OSError, can.CanError) as error:

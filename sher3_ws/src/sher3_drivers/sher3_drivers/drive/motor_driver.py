@@ -313,8 +313,9 @@ class MotorDriver:
     def _watch(self, now: int) -> None:
         """Look for what has fallen silent: drives, and while they are to be enabled supervisor and commands."""
         session = self.session
-        for trip in self.watches.drives.check(session.heading, now):
-            self.stop_for(trip)
+        if self.watches.drives.is_due(now):
+            for trip in self.watches.drives.check(session.heading, now):
+                self.stop_for(trip)
         if session.goal is Goal.ENABLED:
             self._stop_if(self.watches.loop.supervisor(now))
             for trip in session.objections():

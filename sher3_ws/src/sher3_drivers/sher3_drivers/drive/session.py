@@ -54,7 +54,7 @@ class DriveSession:
     @property
     def setup_due(self) -> bool:
         """Whether a recovery has still to configure a drive again."""
-        return any(drive.setup_due for drive in self.drives)
+        return any([drive.setup_due for drive in self.drives])
 
     @property
     def heading(self) -> Goal:

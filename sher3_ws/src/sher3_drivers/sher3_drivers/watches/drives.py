@@ -205,10 +205,12 @@ class DrivesWatch:
         """Note the first tick: the silence of a drive that was never heard counts from there."""
         self._started_at = self._started_at or now
 
+    def is_due(self, now: int) -> bool:
+        """Whether it is time for the next look."""
+        return now >= self._next_look
+
     def check(self, goal: Goal, now: int) -> list[Trip]:
-        """Return what is to be said against the drives on their way to `goal`; nothing between two looks."""
-        if now < self._next_look:
-            return []
+        """Return what is to be said against the drives on their way to `goal`: a look."""
         self._next_look = now + _LOOK_NS
         since, settings = self._started_at, self._settings
         found = []

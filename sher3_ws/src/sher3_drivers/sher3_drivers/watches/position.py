@@ -54,7 +54,7 @@ class AxisPosition:
         """Add the `command` [m/s, rad/s] that held for `since` s, and take the readings after it."""
         self._path += command * since
         self._by_motor, by_load = self._path + self._motor - motor, self._path + self._load - load
-        self.left = min(self._by_motor, by_load, key=abs)
+        self.left = by_load if abs(by_load) < abs(self._by_motor) else self._by_motor
         self._force += min(1.0, since / self._time) * (effort / self._scale.hold - self._force)
         self.explained = max(-self._elastic, min(self._elastic, self._force - self._base))
         self._peak = max(abs(command), self._keep * self._peak)

@@ -2,7 +2,8 @@
 
 A topic with both ends in the process has no reader of the middleware there: nobody outside can speak on it, and no
 sample comes twice. The middleware gets the sample only while somebody outside listens, and not before the nodes of
-the process have done their work. Latched topics keep their last sample for a node that is made later.
+the process have done their work. Latched topics keep their last sample for a node that is made later. Those that look
+at their own pace (`ring`) are no reason to send anything through the middleware.
 """
 
 from __future__ import annotations
@@ -12,27 +13,41 @@ from collections.abc import Callable
 from time import monotonic_ns
 from typing import Any
 
-from sher3_description.topics import TOPICS, Topic
+from sher3_description.topics import MANY_SENDERS, TOPICS, Topic
 
+from sher3_runtime.composed.ring import Ring
 from sher3_runtime.composed.turn import Turn
 
 ASK_NS = 50_000_000
 """Time [ns] after which a publisher asks again whether somebody outside listens."""
+STRIDE = 3
+"""Periods between the slow callbacks of a process; prime to 10, 25 and 50, the periods of a twentieth of a second."""
 _RANKS = {name: rank for rank, name in enumerate(TOPICS)}
 
 Offer = Callable[[Any], object]
 
 
 class Composition:
-    """The nodes of one process. Nodes made while it is entered (`with composition:`) belong to it."""
+    """The nodes of one process. Nodes made while it is entered (`with composition:`) belong to it.
 
-    def __init__(self) -> None:
+    Args:
+        ring: for those beside the process that look at their own pace; None where there are none.
+    """
+
+    def __init__(self, ring: Ring | None = None) -> None:
+        self._ring = ring
         self._offers: dict[str, list[Offer]] = {}
         self._published: set[str] = set()
         self._latched: dict[str, Any] = {}
         self._leave: dict[str, list[Callable[[], None]]] = {}
         self._turns: list[Turn] = []
-        self._outbox: deque[tuple[Callable[[Any], None], Any]] = deque()
+        self._slow_ticks = 0
+        self._outbox: deque[tuple[Callable[[Any, bool, bool], None], Any, bool, bool]] = deque()
+
+    def offset(self, every: int) -> int:
+        """Return by how many periods a callback of every so many periods is late: no two of ten by the same number."""
+        self._slow_ticks += 1
+        return STRIDE * self._slow_ticks % every
 
     def turn(self) -> Turn:
         """Return the turn of a new node."""
@@ -79,38 +94,57 @@ class Composition:
 
         return take
 
+    def beside(self, name: str) -> Callable[[], bool]:
+        """Return what tells whether somebody reads the topic from the ring."""
+        ring = self._ring if _goes_by_ring(TOPICS[name]) else None
+        rank = _RANKS[name]
+        return (lambda: False) if ring is None else lambda: ring.readers(rank)[0] > 0
+
     def publisher(
         self,
         topic: Topic,
         as_sent: Callable[[Any], Any] | None,
-        send: Callable[[Any], None],
-        listens: Callable[[], Any],
+        encode: Callable[[Any], bytes],
+        send: Callable[[bytes], None],
+        listens: Callable[[], int],
+        now: Callable[[], int],
     ) -> Callable[[Any], None]:
         """Return `publish(sample)`.
 
         Args:
             topic: of the table.
             as_sent: gives a sample as a receiver outside would get it, where its numbers have fewer bits on the wire.
-            send: encodes and gives a sample to the middleware.
-            listens: tells whether somebody outside listens; asked every `ASK_NS`.
+            encode: gives the bytes of a sample.
+            send: gives bytes to the middleware.
+            listens: tells how many outside listen; asked every `ASK_NS`.
+            now: time of the graph [ns].
         """
         self._published.add(topic.name)
-        offers, outbox, name = self.offers(topic.name), self._outbox, topic.name
+        offers, outbox, name, rank = self.offers(topic.name), self._outbox, topic.name, _RANKS[topic.name]
         latched = topic.qos.durability == "transient_local"
-        ask_at, wanted = 0, True
+        ring = self._ring if _goes_by_ring(topic) else None
+        ask_at, outside, beside = 0, True, False
 
         def publish(sample: Any) -> None:
-            nonlocal ask_at, wanted
+            nonlocal ask_at, outside, beside
             if as_sent is not None:
                 sample = as_sent(sample)
             if latched:
                 self._latched[name] = sample
             for offer in offers:
                 offer(sample)
-            if not latched and (now := monotonic_ns()) >= ask_at:
-                ask_at, wanted = now + ASK_NS, bool(listens())
-            if wanted:
-                outbox.append((send, sample))
+            if not latched and (at := monotonic_ns()) >= ask_at:
+                takes, subscribed = (0, 0) if ring is None else ring.readers(rank)
+                ask_at, outside, beside = at + ASK_NS, listens() > subscribed, takes > 0
+            if outside or beside:
+                outbox.append((leave, sample, outside, beside))
+
+        def leave(sample: Any, outside: bool, beside: bool) -> None:
+            data = encode(sample)
+            if beside and ring is not None:
+                ring.put(rank, now(), data)
+            if outside:
+                send(data)
 
         return publish
 
@@ -123,15 +157,17 @@ class Composition:
         for name in self._published:
             for leave in self._leave.pop(name, []):
                 leave()
+        if self._ring is not None:
+            self._ring.offer(_RANKS[name] for name in self._published if _goes_by_ring(TOPICS[name]))
         for turn in self._turns:
             turn.begin()
 
     def flush(self) -> None:
-        """Give the middleware what was published since the last call; called when the work of a moment is done."""
+        """Let out what was published since the last call; called when the work of a moment is done."""
         outbox = self._outbox
         while outbox:
-            send, sample = outbox.popleft()
-            send(sample)
+            leave, *what = outbox.popleft()
+            leave(*what)
 
     def __enter__(self) -> Composition:
         _composing.append(self)
@@ -139,6 +175,11 @@ class Composition:
 
     def __exit__(self, *_: object) -> None:
         _composing.pop()
+
+
+def _goes_by_ring(topic: Topic) -> bool:
+    """Whether a topic can be read from the ring alone: a stream of one sender, who is in this process."""
+    return topic.qos.durability == "volatile" and topic.name not in MANY_SENDERS
 
 
 _composing: list[Composition] = []
