@@ -58,7 +58,8 @@ class Told:
 
     def get_publishers_info_by_topic(self, name):
         self.looks += 1
-        return [type("Info", (), {"endpoint_gid": list(identity)}) for identity in self.identities]
+        kind = {"topic_type": "geometry_msgs/msg/TwistStamped"}
+        return [type("Info", (), {"endpoint_gid": list(identity), **kind}) for identity in self.identities]
 
 
 def test_only_a_process_that_was_seen_here_can_be_gone():
