@@ -58,7 +58,7 @@ class Told:
 
     def get_publishers_info_by_topic(self, name):
         self.looks += 1
-        kind = {"topic_type": "geometry_msgs/msg/TwistStamped"}
+        kind = {"topic_type": "sensor_msgs/msg/JointState"}
         return [type("Info", (), {"endpoint_gid": list(identity), **kind}) for identity in self.identities]
 
 

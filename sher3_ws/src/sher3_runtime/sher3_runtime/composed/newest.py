@@ -36,8 +36,8 @@ class Newest:
             if reader.ring.offers(rank):
                 for number, _, data in reader.read(kept):
                     kept[number] = data
-        data, kept[rank] = kept[rank], None
-        return data
+        newest, kept[rank] = kept[rank], None
+        return newest
 
 
 @cache
