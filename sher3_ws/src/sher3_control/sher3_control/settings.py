@@ -16,6 +16,7 @@ from sher3_control.errors import SettingsError
 Number = Annotated[float, Field(allow_inf_nan=False)]
 Seconds = Annotated[Number, Field(gt=0.0, le=10.0)]
 Fraction = Annotated[Number, Field(ge=0.0, le=1.0)]
+Force = Annotated[Number, Field(gt=0.0, le=100.0)]
 CUTOFF_SHARE = 0.8
 """Highest cut-off of the low-pass as a share of half the control rate; nearer to it the filter would hardly filter."""
 
@@ -188,14 +189,12 @@ class SupervisorSettings(Settings):
             has slipped [m]; a push of 1 N bends the structure of the paper by up to 0.35 mm.
         leg_latency: how long that motion must last [s].
         leg_memory: time constant with which slow changes of it are taken for granted [s].
-        hand_force, hand_share: force [N], and share of the hand that both feel [1], by which the force sensor and the
-            drives may differ; friction that turns round, inertia and noise stay below it on the nominal
-            robot.
-        hand_even: largest change of a leg's velocity from one look to the next in even motion, and largest difference
-            from its command [m/s]; a slider of 10 kg then needs 0.5 N for it.
-        hand_jump: largest change of the sensor's force from one look to the next under an even push [N].
-        hand_look: time from one look to the next, at most [s].
-        hand_lag: time constant of the low pass on that difference [s].
+        hand_limits: low passes on the difference of force sensor and drives, each with its time constant [s] and the
+            difference that is too much behind it [N]; on the nominal robot healthy running stays
+            below four fifths of it.
+        hand_share: what they may differ by besides, as a share of the hand that both feel [1].
+        hand_astray: difference of a leg's speed from its command [m/s] beyond which nothing is compared.
+        hand_gap: longest time from one tick to the next after which the legs' motion is known [s].
         hand_memory: time constant with which slow changes of it are taken for granted [s].
         hand_settling: how long after enabling all of it is [s].
     """
@@ -208,12 +207,15 @@ class SupervisorSettings(Settings):
     leg_distance: Annotated[Number, Field(gt=0.0, le=0.01)] = 1e-3
     leg_latency: Seconds = 0.1
     leg_memory: Seconds = 1.0
-    hand_force: Annotated[Number, Field(gt=0.0, le=100.0)] = 0.8
-    hand_share: Fraction = 0.25
-    hand_even: Annotated[Number, Field(gt=0.0, le=0.05)] = 5e-4
-    hand_jump: Annotated[Number, Field(gt=0.0, le=100.0)] = 0.5
-    hand_look: Annotated[Number, Field(ge=1e-3, le=1.0)] = 0.01
-    hand_lag: Annotated[Number, Field(ge=1e-3, le=1.0)] = 0.05
+    hand_limits: Annotated[tuple[tuple[Seconds, Force], ...], Field(min_length=1, max_length=8)] = (
+        (0.02, 0.65),
+        (0.04, 0.46),
+        (0.1, 0.3),
+        (0.2, 0.2),
+    )
+    hand_share: Fraction = 0.12
+    hand_astray: Annotated[Number, Field(gt=0.0, le=0.05)] = 5e-4
+    hand_gap: Annotated[Number, Field(ge=1e-3, le=1.0)] = 0.01
     hand_memory: Annotated[Number, Field(ge=1e-2, le=100.0)] = 2.0
     hand_settling: Seconds = 0.2
 

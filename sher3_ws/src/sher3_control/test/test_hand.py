@@ -12,7 +12,7 @@ from sher3_kinematics import RobotKinematics
 
 KINEMATICS = RobotKinematics(load_robot())
 SETTINGS = SupervisorSettings()
-TICK = 10_000_000
+TICK = 2_000_000
 STILL = (0.0,) * 5
 WEIGHT = np.array([0.0, 0.0, 9.8])
 
@@ -40,92 +40,104 @@ def test_a_hand_that_both_feel_comes_goes_and_turns_round(detector, force):
         assert objected is None
 
 
-@pytest.mark.parametrize(("sensor", "hand"), [(1.0, 0.0), (-1.0, 1.0), (6.0, 0.0), (6.0, 2.0)])
-def test_a_hand_that_only_one_feels_is_none(detector, sensor, hand):
-    """Low pass of 50 ms: 1 N passes the limit of 0.8 N after 50 ms ln(1 / 0.2) = 80 ms."""
+@pytest.mark.parametrize(
+    ("sensor", "hand", "limit"),
+    [(0.3, 0.0, 0.45), (0.4, 0.0, 0.2), (0.6, 0.0, 0.07), (1.0, 0.0, 0.03), (-1.0, 1.0, 0.02), (6.0, 2.0, 0.02)],
+)
+def test_a_hand_that_only_one_feels_is_none(detector, sensor, hand, limit):
+    """0.6 N passes 0.46 N behind 40 ms after 40 ms ln(1 / (1 - 0.46/0.6)) = 58 ms, and the share."""
     _, stamp = feel(detector, 1.0, 0.0, 0.0)
     objected, _ = feel(detector, 1.0, sensor, hand, stamp)
-    assert objected is not None and objected - stamp <= 0.15 * 1e9
+    assert objected is not None and objected - stamp <= limit * 1e9
     found = detector.check(objected)
-    assert found.reason is Reason.HAND_DOUBTFUL and found.value > found.limit >= SETTINGS.hand_force
+    assert found.reason is Reason.HAND_DOUBTFUL and found.value > found.limit >= min(n for _, n in SETTINGS.hand_limits)
 
 
 def test_a_small_false_force_is_believed(detector):
-    """What is stated: up to 0.8 N nothing tells a false force from friction and inertia."""
+    """What is stated: up to 0.2 N nothing tells a false force from noise and friction."""
     _, stamp = feel(detector, 1.0, 0.0, 0.0)
-    assert feel(detector, 5.0, 0.75, 0.0, stamp)[0] is None
+    assert feel(detector, 5.0, 0.19, 0.0, stamp)[0] is None
 
 
 def test_a_bias_that_drifts_is_taken_for_granted(detector):
     stamp = 0
     for step in range(100):
-        objected, stamp = feel(detector, 0.2, 0.05 * step, 0.0, stamp)
-        assert objected is None, "0.25 N/s against a memory of 2 s is 0.5 N"
+        objected, stamp = feel(detector, 0.2, 0.015 * step, 0.0, stamp)
+        assert objected is None, "0.075 N/s against a memory of 2 s is 0.15 N"
 
 
 def test_after_enabling_the_drives_take_over_a_hand_that_is_there_already(detector):
+    """They take it within some kp/ki = 20 ms."""
     detector.begin()
-    _, stamp = feel(detector, 0.15, 3.0, 0.0)
+    _, stamp = feel(detector, 0.08, 3.0, 0.0)
     assert feel(detector, 1.0, 3.0, 3.0, stamp)[0] is None
     detector.recover(0)
     assert detector.look(0).value == 0.0
 
 
+def legs_hold(q, hand):
+    """Return what the drives push with while a hand pushes with `hand` along z (N): J^T of both forces."""
+    return KINEMATICS.jacobian(np.asarray(q))[:3, :3].T @ (WEIGHT - [0.0, 0.0, hand])
+
+
+def sense(q, hand):
+    """Return what the force sensor reads of a hand along z of {b} (N)."""
+    rotation = KINEMATICS.transform_tip_to_base(np.asarray(q))[:3, :3]
+    return (*(rotation.T @ [0.0, 0.0, hand]), 0.0, 0.0, 0.0)
+
+
 def test_the_legs_hold_what_virtual_work_says(detector):
     """A push along z of 3 N is held by J^T F: the sum with the sensor stays what the platform weighs."""
     q = (1e-3, -2e-3, 3e-3, 0.2, 1e-3)
-    jacobian = KINEMATICS.jacobian(np.array(q))[:3, :3]
-    for number, hand in enumerate((0.0, 3.0, -3.0) * 40):
-        effort = jacobian.T @ (WEIGHT - [0.0, 0.0, hand])
-        rotation = KINEMATICS.transform_tip_to_base(np.array(q))[:3, :3]
-        wrench = (*(rotation.T @ [0.0, 0.0, hand]), 0.0, 0.0, 0.0)
-        detector.feed(number * TICK, wrench, q, (*effort, 0.0, 0.0), STILL)
-        assert detector.look(0).value < 1e-9
+    smooth = 3.0 * np.sin(np.linspace(0.0, 20.0, 2000))
+    for number, hand in enumerate(smooth):
+        detector.feed(number * TICK, sense(q, hand), q, (*legs_hold(q, hand), 0.0, 0.0), STILL)
+        assert detector.look(0).value < 0.15, "the sensor's low pass of 4 ms, at 15 N/s"
 
 
-def test_a_hit_that_the_drives_feel_late_is_no_false_hand(detector):
-    """A hand of 6 N that turns round at once reaches the drives 10 ms later."""
-    q, jacobian = (0.0,) * 5, KINEMATICS.jacobian(np.zeros(5))[:3, :3]
-    sensor = held = 6.0
-    for number in range(200):
-        effort = (*(jacobian.T @ (WEIGHT - [0.0, 0.0, held])), 0.0, 0.0)
-        detector.feed(number * TICK, (0.0, 0.0, sensor, 0.0, 0.0, 0.0), q, effort, STILL)
-        assert detector.check(0) is None, number
-        held, sensor = sensor, 6.0 if number // 40 % 2 == 0 else -6.0
-
-
-def test_inertia_is_no_hand(detector):
-    """A slider of 10.5 kg needs 5 N to gain 5 mm/s in 10 ms; the sensor feels nothing of it."""
-    q, jacobian = (0.0,) * 5, KINEMATICS.jacobian(np.zeros(5))[:3, :3]
-    weight, speed = jacobian.T @ WEIGHT, 0.0
-    for number in range(200):
-        faster = 5e-3 * (number % 40 == 0) - 5e-3 * (number % 40 == 20)
-        speed += faster
-        effort = (*(weight + 10.5 * faster / 0.01), 0.0, 0.0)
-        detector.feed(number * TICK, (0.0,) * 6, q, effort, (speed,) * 3 + (0.0, 0.0))
+def test_a_hit_is_no_false_hand(detector):
+    """The sensor feels at once a hand of 12 N that turns round; the drives hold it m/kp = 4 ms later."""
+    q, held = (0.0,) * 5, 12.0
+    for number in range(1000):
+        hand = 12.0 if number // 200 % 2 == 0 else -12.0
+        held += 2.0 / 4.0 * (hand - held)
+        detector.feed(number * TICK, sense(q, hand), q, (*legs_hold(q, held), 0.0, 0.0), STILL)
         assert detector.check(0) is None
 
 
-@pytest.mark.parametrize(("speed", "objects"), [(0.0, True), (0.012, False)])
-def test_a_leg_that_leaves_its_command_is_no_false_hand(detector, speed, objects):
-    """At rest 20 N more on a leg are a hand that nobody feels; of a leg that runs away they are its own force."""
-    q, effort, objected = np.zeros(5), np.full(5, 3.0), False
-    for tick in range(60):
-        away = tick >= 40
-        q[0] += speed * TICK * 1e-9 * away
-        effort[0] = 23.0 if away else 3.0
-        detector.feed(tick * TICK, (0.0,) * 6, tuple(q), tuple(effort), STILL)
+def drive_legs(detector, ticks, acceleration, force, strays=0.0):
+    """Let the legs follow commands that begin after 400 ticks, m/s^2; they are also pushed by `force` (N) each.
+
+    `strays`: speed by which the first leg leaves its command then, m/s. Returns whether the detector objected.
+    """
+    q, command, speed, objected = np.zeros(5), np.zeros(5), np.zeros(5), False
+    for tick in range(ticks):
+        begun = tick >= 400
+        before = speed.copy()
+        speed[:3] += 0.5 * (command - speed)[:3]
+        q += speed * TICK * 1e-9
+        q[0] += strays * TICK * 1e-9 * begun
+        motion = 10.5 * (speed - before)[:3] / (TICK * 1e-9) + 60.0 * speed[:3]
+        effort = legs_hold(q, 0.0) + motion + np.array([force, 0.0, 0.0]) * begun
+        detector.feed(tick * TICK, (0.0,) * 6, tuple(q), (*effort, 0.0, 0.0), tuple(command))
         objected |= detector.check(tick * TICK) is not None
-    assert objected is objects
+        command[:3] = min(5e-3, acceleration * TICK * 1e-9 * max(0, tick - 400))
+    return objected
 
 
-def test_the_inertia_of_a_leg_that_does_as_commanded_is_no_hand(detector):
-    """20 N for 50 ms take a leg from rest to 5 mm/s, by 1 mm/s a look; the sensor feels nothing."""
-    q, effort, command = np.zeros(5), np.full(5, 3.0), np.zeros(5)
-    for tick in range(80):
-        hastes = 40 <= tick < 45
-        command[0] += 1e-3 * hastes
-        q += command * TICK * 1e-9
-        effort[0] = 23.0 if hastes else 3.0
-        detector.feed(tick * TICK, (0.0,) * 6, tuple(q), tuple(effort), tuple(command))
-        assert detector.check(tick * TICK) is None
+def test_what_the_legs_own_motion_takes_is_no_hand(detector):
+    """19 N take a slider of 10.5 kg to 5 mm/s in 3 ms, and 0.3 N of friction stay; the sensor feels neither."""
+    assert not drive_legs(detector, 800, acceleration=1.83, force=0.0)
+
+
+@pytest.mark.parametrize(("strays", "objects"), [(0.0, True), (0.012, False)])
+def test_a_leg_that_leaves_its_command_is_no_false_hand(strays, objects):
+    """At rest 20 N more on a leg are a hand that nobody feels; of a leg that runs away they are its own force."""
+    assert drive_legs(HandDetector(KINEMATICS, SETTINGS), 500, 0.0, 20.0, strays) is objects
+
+
+def test_numbers_that_are_none_are_not_judged(detector):
+    feel(detector, 1.0, 0.0, 0.0)
+    detector.feed(10**10, (np.nan,) * 6, (0.0,) * 5, (0.0,) * 5, STILL)
+    detector.feed(10**10 + TICK, (0.0,) * 6, (0.0,) * 5, (np.nan,) * 5, STILL)
+    assert detector.check(0) is None

@@ -13,6 +13,7 @@ from typing import NamedTuple, Protocol
 from sher3_description import ACTUATORS
 from sher3_drivers.bus.frame import FRAME_SIZE
 from sher3_drivers.canopen import objects as od
+from sher3_drivers.canopen.cia402 import Controlword
 from sher3_drivers.mock.bus import MockDriveBus
 from sher3_drivers.mock.drive import AxisReading, MockDrive
 from sher3_drivers.pedal.device import PedalState
@@ -21,7 +22,7 @@ from sher3_drivers.sensor.device import WrenchRecord
 from sher3_faults.errors import FaultRefused
 from sher3_faults.items import BusFrames, DriveFrames, Numbers, PedalStates, WrenchRecords
 from sher3_faults.kinds import KINDS, OFF, OK, Items, Kind
-from sher3_faults.requests import DEVICES, GROUPS, FaultRequest, parse_request
+from sher3_faults.requests import DEVICES, GROUPS, RESETS, FaultRequest, parse_request
 
 _UP, _DOWN = "up", "down"
 _TORQUE = "safe_torque_off"
@@ -176,7 +177,7 @@ class FaultInjector:
             drive.turned = partial(self._number, name, "motor") if self._faulty(name, "motor") else None
         parts = [name.partition(".")[::2] for name in names if name not in _NO_LINES]
         up = any(part in ("", _UP) for _, part in parts)
-        down = any(part in ("", _DOWN) for _, part in parts)
+        down = any(part in ("", _DOWN, RESETS) for _, part in parts)
         self._drives.tamper_frames = self._frames(_UP) if up else None
         self._drives.tamper_received = self._frames(_DOWN) if down else None
 
@@ -232,7 +233,9 @@ class FaultInjector:
                 unit = component.partition(".")[0]
                 if unit in _NO_LINES or not active.acts(now):
                     continue
-                if way in active.ways and unit in ("bus", f"bus{channel}"):
+                if way == _DOWN and RESETS in active.ways:
+                    items = [item for item in items if not _resets(item, self._drives.drives[unit])]
+                elif way in active.ways and unit in ("bus", f"bus{channel}"):
                     items = self._of_bus(active, way, channel, items, now)
                 elif way in active.ways and unit in ACTUATORS:
                     items = self._of_drive(unit, channel, active.kind(way, DriveFrames()), items, now)
@@ -270,3 +273,9 @@ def _concerns(item: bytes, drive: MockDrive) -> bool:
     """Whether a frame is of one drive and no other: SYNC and NMT belong to all."""
     can_id = int.from_bytes(item[:4], "little")
     return can_id not in (od.SYNC_ID, od.NMT_ID) and can_id & 0x7F == drive.node_id
+
+
+def _resets(item: bytes, drive: MockDrive) -> bool:
+    """Whether a frame asks a drive to leave FAULT; no two drives have the same node id."""
+    can_id = int.from_bytes(item[:4], "little")
+    return can_id == od.RPDO_BASE + drive.node_id and item[8] == Controlword.FAULT_RESET.value

@@ -20,6 +20,7 @@ LINES = ("bus", *(f"bus{i}" for i in range(5)), *ACTUATORS)
 PARTS = ("load_encoder", "motor_encoder", "encoders", "demand", "power", "motor", "echo")
 """What each axis has: its two encoders, both alike (`encoders`), the velocity demand in its drive, what the power stage
 does while it has power, what the motor does with power or without (`motor`), and what the drive says of its demand."""
+STATUSWORD, RESETS = "statusword", "resets"
 GROUPS = {"legs": ACTUATORS[:3], "axes": ACTUATORS}
 """Several axes that have the same fault at the same time."""
 DEVICES = (
@@ -30,11 +31,11 @@ DEVICES = (
     "safe_torque_off",
     *(name + way for name in LINES for way in ("", ".up", ".down")),
     *(f"{name}.{part}" for name in (*ACTUATORS, *GROUPS) for part in PARTS),
-    *(f"{name}.statusword" for name in ACTUATORS),
+    *(f"{name}.{part}" for name in ACTUATORS for part in (STATUSWORD, RESETS)),
 )
 """What the plant process can break: `.up` is towards the host, `.down` towards the drives; without either, both.
 `safe_torque_off` is the line that takes the torque from all motors: `off`. A `statusword` is wrong by the bits of
-`code`."""
+`code`. `resets` are the frames that ask a drive to leave FAULT: `off`."""
 PROCESSES = ("force_sensor", "pedal", "admittance", "kinematics", "motor_driver", "supervisor", "plant", "recorder")
 OTHERS = ("all", "clock", *(f"clock.{name}" for name in PROCESSES), *(f"process.{name}" for name in PROCESSES))
 """`all` goes with `ok`; clock and processes are broken from outside, by `sher3 safety`: the plant only notes them."""
@@ -102,9 +103,10 @@ def checked(request: FaultRequest) -> FaultRequest:
         raise FaultRefused(component, fault, "no such component", value=component, limit=known)
     if fault not in KINDS and fault != OK:
         raise FaultRefused(component, fault, "no such fault", value=fault, limit=", ".join((*KINDS, OK)))
-    if component == "safe_torque_off" and fault not in (OFF, OK):
-        raise FaultRefused(component, fault, "a line is open or whole", value=fault, limit=f"{OFF}, {OK}")
-    if component.endswith(".statusword") and fault not in ("wrong", OK):
+    part = component.partition(".")[2]
+    if (component == "safe_torque_off" or part == RESETS) and fault not in (OFF, OK):
+        raise FaultRefused(component, fault, "it comes or it does not", value=fault, limit=f"{OFF}, {OK}")
+    if part == STATUSWORD and fault not in ("wrong", OK):
         raise FaultRefused(component, fault, "a drive tells its own state", value=fault, limit=f"wrong, {OK}")
     if component == "all" and fault != OK:
         raise FaultRefused(component, fault, "only ok goes with all", remedy="name one component")

@@ -6,7 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from sher3_description import load_robot
+from sher3_drivers.bus.frame import pack_frame
 from sher3_drivers.bus.link import open_link
+from sher3_drivers.canopen import objects as od
 from sher3_drivers.mock.bus import MockDriveBus
 from sher3_drivers.mock.drive import AxisReading
 from sher3_drivers.mock.plant import IntegratorPlant
@@ -160,6 +162,17 @@ def test_a_statusword_is_misstated_while_the_fault_lasts(devices, injector):
     injector.poll(20_000_000)
     injector.poll(20_000_000)
     assert drive.statusword == true
+
+
+def test_a_lost_reset_leaves_all_other_frames_of_all_drives(devices, injector):
+    first, second = (devices.drives.drives[name] for name in ("delta_1", "delta_2"))
+    reset, other = bytes([0x80, 0, 0, 0, 0, 0]), bytes([0x0F, 0, 1, 2, 3, 4])
+    frames = [pack_frame(od.RPDO_BASE + drive.node_id, data) for drive in (first, second) for data in (reset, other)]
+    injector.take(make_request(component="delta_1.resets", fault="off").to_json(), 0)
+    assert devices.drives.tamper_frames is None
+    assert devices.drives.tamper_received(0, b"".join(frames), 0) == b"".join(frames[1:])
+    with pytest.raises(FaultRefused, match="it comes or it does not"):
+        make_request(component="delta_1.resets", fault="stuck")
 
 
 def test_a_count_beyond_its_register_wraps_as_in_a_drive(devices, injector):

@@ -1,4 +1,4 @@
-"""A publisher that was killed counts as dead at once; one whose process cannot be told lives until its lease is over."""
+"""A publisher that was killed counts as dead at once; one whose process is unknown lives until its lease ends."""
 
 from __future__ import annotations
 

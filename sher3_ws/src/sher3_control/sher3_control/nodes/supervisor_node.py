@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from functools import partial
 from itertools import cycle
 from typing import Any
 
@@ -16,7 +17,7 @@ from rclpy.node import Node
 from sher3_common import Sher3Error
 from sher3_common.operating_state import OperatingState
 from sher3_common.reasons import Reason, reading
-from sher3_common.samples import DiagnosticSample, JointSample, JoySample, PoseSample, TextSample, WrenchSample
+from sher3_common.samples import DiagnosticSample, JointSample, JoySample, PoseSample, TextSample
 from sher3_common.stamps import NO_STAMP
 from sher3_common.vectors import Vector
 from sher3_description import ACTUATORS, Robot
@@ -24,6 +25,7 @@ from sher3_kinematics import RobotKinematics
 from sher3_runtime.ports import NODE_OPTIONS, advertise, clock_of, latest, on_tick, ports, subscribe
 from sher3_runtime.publishers import Publishers
 
+from sher3_control.nodes.same_tick import SameTick
 from sher3_control.settings import ControlSettings
 from sher3_control.supervision.detectors import (
     Detector,
@@ -50,6 +52,10 @@ STEERING = ("servo_cv", "operating_state")
 BESIDE = ("drives/measured_js", "drives/setpoint_jv", "supervisor/heartbeat")
 OWN = (*STREAMS, *STEERING, *BESIDE)
 """Streams that only the robot itself publishes: those that are watched, those that steer it, and the others."""
+FELT = ("force/measured_cf", "measured_js", "drives/measured_js", "servo_jv")
+"""Streams that tell of a hand; all that is watched but the pedal is among them."""
+DEPTH = 32
+"""Samples of each that wait for the next look: 32 ms of the fastest robot."""
 POWERED = (OperatingState.ENABLED, OperatingState.PAUSED)
 """States in which the drives hold what pushes on the tip."""
 LEVELS = {OperatingState.FAULT: 2, OperatingState.PAUSED: 1}
@@ -101,9 +107,9 @@ class SupervisorNode(Node):
         self._publish_status = advertise(self, "supervisor/status")
         self._publish_heartbeat = advertise(self, "supervisor/heartbeat")
         self._publish_report = advertise(self, "diagnostics")
-        self._watched = [(name, self._silence[name], latest(self, name)) for name in STREAMS if name != PEDAL]
-        self._take_forces = None if self._hand is None else latest(self, "drives/measured_js")
-        self._wrench: WrenchSample | None = None
+        self._ticks = SameTick(*FELT)
+        for name in FELT:
+            subscribe(self, name, partial(self._on_stream, name), depth=DEPTH).wakes = False
         self._command: Vector = (0.0,) * len(ACTUATORS)
         self._take_tip = latest(self, "tracker/measured_cp")
         subscribe(self, PEDAL, self.on_pedal)
@@ -118,32 +124,32 @@ class SupervisorNode(Node):
         on_tick(self, self._repeat, phase=0.5 * period, every=max(1, round(self.settings.publish_period / period)))
         self._publish()
 
-    def _look(self) -> None:
-        """Note the newest sample of each watched stream; to wake up for every sample would cost more than the rest."""
-        for name, detector, take in self._watched:
-            if (sample := take()) is not None:
-                detector.last = sample.stamp
-                if name == "measured_js":
-                    self._joints = sample
-                elif name == "force/measured_cf":
-                    self._wrench = sample
-                elif name == "servo_jv" and sample.velocity is not None:
-                    self._command = sample.velocity
+    def _on_stream(self, name: str, sample: Any) -> None:
+        """Note a sample of a watched stream, and keep it for the hand; it wakes nobody, which would cost more."""
+        if name in self._silence:
+            self._silence[name].last = sample.stamp
+        if name == "measured_js":
+            self._joints = sample
+        if self._hand is not None:
+            self._ticks.put(name, sample)
+
+    def _look_at_leg(self) -> None:
+        """Compare the newest sample of the tracker with that of the axes where both are of one tick."""
         tip: PoseSample | None = self._take_tip()
         if tip is not None and tip.stamp == self._joints.stamp and self._joints.position is not None:
             self._leg.feed(tip.stamp, tip.position, self._joints.position)
 
     def _look_at_hand(self) -> None:
-        """Compare the newest samples of force sensor and drives where both are of one tick."""
-        if self._hand is None or self._take_forces is None:
+        """Compare what force sensor and drives felt in each tick since the last look."""
+        if self._hand is None:
             return
-        forces: JointSample | None = self._take_forces()
-        if self.supervisor.state not in POWERED:
+        powered = self.supervisor.state in POWERED
+        if not powered:
             self._hand.begin()
-        elif forces is not None and forces.effort is not None and self._wrench is not None:
-            same = forces.stamp == self._wrench.stamp == self._joints.stamp
-            if same and self._joints.position is not None:
-                self._hand.feed(forces.stamp, self._wrench.wrench, self._joints.position, forces.effort, self._command)
+        for wrench, joints, forces, command in self._ticks.take():
+            if powered and None not in (joints.position, forces.effort):
+                self._hand.feed(wrench.stamp, wrench.wrench, joints.position, forces.effort, self._command)
+            self._command = command.velocity or self._command
 
     def _count_publishers(self, *beside: str) -> None:
         """Count the living publishers of the streams that move the robot, and of the streams `beside`.
@@ -172,7 +178,6 @@ class SupervisorNode(Node):
             self._overruns.feed(sample.name, *counts, self._now())
 
     def _judge(self) -> None:
-        self._look()
         if self.supervisor.check(self._now()):
             self._publish()
             self._publish_heartbeat(self._beat)
@@ -180,7 +185,7 @@ class SupervisorNode(Node):
     def check(self, _stamp: int) -> None:
         """Count publishers, ask the detectors and send the heartbeat."""
         self._count_publishers(next(self._in_turn))
-        self._look()
+        self._look_at_leg()
         self._look_at_hand()
         if self.supervisor.check(self._now()):
             self._publish()
@@ -188,7 +193,6 @@ class SupervisorNode(Node):
 
     def _on_command(self, sample: TextSample) -> None:
         self._count_publishers(*BESIDE)
-        self._look()
         try:
             self.supervisor.command(sample.text, self._now())
             self._refused = None

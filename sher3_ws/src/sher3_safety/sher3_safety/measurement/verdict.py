@@ -83,16 +83,17 @@ def _of_a_stop(row: Row, state: State, o: Outcome, budget: float) -> Iterator[st
         return
     if o.travel > budget:
         yield f"travelled {o.travel * 1e6:.0f} um (budget {budget * 1e6:.0f} um)"
-    if o.stop is None or o.stop > STOP_LIMIT:
-        yield "did not stop" if o.stop is None else f"stood after {o.stop * 1e3:.0f} ms (limit {STOP_LIMIT * 1e3:.0f})"
+    rest, notice = STOP_LIMIT + state.later, DETECTION_LIMIT + state.later
+    if o.stop is None or o.stop > rest:
+        yield "did not stop" if o.stop is None else f"stood after {o.stop * 1e3:.0f} ms (limit {rest * 1e3:.0f})"
     if row.release or state.name in row.quiet:
         return
     if not o.tripped:
         yield "nobody noticed"
     elif row.reasons and o.reason not in row.reasons:
         yield f"reason {o.reason} instead of {' or '.join(row.reasons)}"
-    if o.detection is not None and o.detection > DETECTION_LIMIT and state.speed:
-        yield f"noticed after {o.detection * 1e3:.0f} ms (limit {DETECTION_LIMIT * 1e3:.0f})"
+    if o.detection is not None and o.detection > notice and state.speed:
+        yield f"noticed after {o.detection * 1e3:.0f} ms (limit {notice * 1e3:.0f})"
 
 
 def _of_a_report(row: Row, o: Outcome) -> Iterator[str]:

@@ -15,6 +15,9 @@ DETECTION_LIMIT, STOP_LIMIT = 0.050, 0.100
 """Longest times [s] from the onset of a fault to the first reaction and to rest. In 50 ms the tip travels the whole
 budget: 250 um at 5 mm/s, 25 um at 0.5 mm/s."""
 
+LOST = 0.1
+"""Time for which frames are lost in a recovery [s]: fifty of them, a fifth of the time that a drive has for it."""
+
 
 @dataclass(frozen=True)
 class State:
@@ -28,6 +31,7 @@ class State:
         end: the hand has pushed the sliders against the end of their travel, and still pushes.
         operating: operating state.
         aim: how far from where they are `command/servo_jp` asks the sliders to be, from the onset on, m.
+        later: how much later than usual a fault may be noticed and the tip rest, s; with a budget of its own.
     """
 
     name: str
@@ -38,6 +42,7 @@ class State:
     end: bool = False
     operating: OperatingState = OperatingState.ENABLED
     aim: float = 0.0
+    later: float = 0.0
 
 
 IDLE = State("idle", 0.0, 0.6, 0.0, 25e-6)
@@ -50,9 +55,12 @@ as fast as at the speed limit were there no end."""
 PAUSED = State("paused", 0.0, 0.6, 0.0, 25e-6, operating=OperatingState.PAUSED)
 DISABLED = State("disabled", 0.0, 0.6, 0.0, 25e-6, operating=OperatingState.DISABLED)
 AIMING = State("aiming", 0.0, 0.0, 0.0, 25e-6, aim=15e-6)
-FURTHER = (PAUSED, DISABLED, AIMING)
+FIRM = State("firm", 0.5e-3, 1.0, 0.5 / 0.9, 25e-6)
+LIGHT = State("light", 0.5e-3, 0.6, 1.0, 60e-6, later=0.08)
+FURTHER = (PAUSED, DISABLED, AIMING, FIRM, LIGHT)
 """States for some rows only: held by the drives while motion is paused; without power; a position mode with an aim that
-the axes are not at yet."""
+the axes are not at yet; at the speed near tissue under a hand that is to leave, a firm and a light one, of which
+the noise of the drives' forces does not allow to be sure any sooner."""
 STILL = (IDLE.name, END.name)
 """States in which nothing moves."""
 AT_END = 1e-3
@@ -81,6 +89,7 @@ class Row:
         budget: travel allowed instead of the budget of the state, m; `why` gives the reason.
         rest: how much longer than usual the foot stays off the pedal before it is pressed again, s.
         lets_go: the hand leaves as the fault sets in.
+        loses: component that is off when the operator recovers the robot, for `LOST` seconds.
         states: in which it is tried.
         why: why the robot may go on, a sentence for the report.
     """
@@ -98,6 +107,7 @@ class Row:
     budget: float | None = None
     rest: float = 0.0
     lets_go: bool = False
+    loses: str = ""
     states: tuple[State, ...] = STATES
     why: str = ""
 
@@ -106,7 +116,8 @@ class Row:
         """Component, fault, parameters, and what the operator does."""
         parts = [f"{name} {value:g}" for name, value in self.parameters.items()]
         name = f"{self.component} {self.fault}" + (f" ({', '.join(parts)})" if parts else "")
-        return name + ", pedal released" * self.release + ", hand gone" * self.lets_go
+        lost = f", {self.loses} lost" if self.loses else ""
+        return name + ", pedal released" * self.release + ", hand gone" * self.lets_go + lost
 
     @property
     def final(self) -> bool:

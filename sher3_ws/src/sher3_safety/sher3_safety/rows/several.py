@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from sher3_safety.rows.row import AIMING, DISABLED, IDLE, LIMIT, STATES, STILL, Row
+from sher3_safety.rows.row import AIMING, DISABLED, FIRM, IDLE, LIGHT, LIMIT, STATES, STILL, Row
 from sher3_safety.rows.slow import ALL, AXIS, FAST, LEFT, LONGEST, ROLL
 
 LEGS = "legs"
@@ -64,7 +64,8 @@ def _lively() -> Iterator[Row]:
     yield Row("pedal", "chatter", {"items": 5.0, "code": 1.0}, reasons=("PEDAL_INVALID",), slow=True, duration=0.6,
               quiet=(IDLE.name,), rest=1.0)  # fmt: skip
     yield Row("force_sensor", "chatter", {"items": 2.0, "offset": 11.0}, reasons=("WRENCH_NOT_FINITE", *DOUBTFUL))
-    yield Row("force_sensor", "held", reasons=DOUBTFUL, states=(LIMIT,), lets_go=True, quick=True)
+    yield Row("force_sensor", "held", reasons=DOUBTFUL, states=(LIGHT, FIRM, LIMIT), lets_go=True, duration=0.4,
+              quick=True)  # fmt: skip
     yield Row("force_sensor", "wrong", {"scale": -1.0}, reasons=DOUBTFUL, states=(LIMIT,), slow=True)
     for first in (0.0, 1.0):
         yield Row(f"{AXIS}.up", "contradicted", {"first": first}, reasons=("DRIVE_TWICE", "DRIVE_RESTARTED"))

@@ -133,6 +133,7 @@ DRIVE = (
     Row(f"{AXIS}.demand", "wrong", {"scale": 2.0}, quiet=STILL),
     Row(f"{AXIS}.demand", "wrong", {"code": float(0x4210)}, reasons=("DRIVE_OVER_TEMPERATURE",)),
     Row(f"{AXIS}.demand", "wrong", {"code": float(0x8611)}, reasons=("DRIVE_EMERGENCY",)),
+    Row(f"{AXIS}.demand", "wrong", {"code": float(0x2310)}, reasons=("DRIVE_EMERGENCY",), loses=f"{AXIS}.resets"),
     Row(f"{AXIS}.demand", "slow", {"every": 4.0}, release=True),
     Row(f"{AXIS}.demand", "delayed", {"delay": 0.02}, release=True),
     Row(f"{AXIS}.demand", "intermittent", release=True),

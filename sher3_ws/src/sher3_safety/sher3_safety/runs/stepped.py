@@ -24,13 +24,13 @@ from sher3_control.settings import ControlSettings
 from sher3_description import Robot
 from sher3_drivers.settings import default_settings
 from sher3_faults.items import Numbers, Stamps
-from sher3_faults.kinds import KINDS, OK, Kind
+from sher3_faults.kinds import KINDS, OFF, OK, Kind
 from sher3_faults.requests import make_request
 from sher3_runtime import Graph
 from sher3_runtime.ports import ports
 
 from sher3_safety.measurement.recording import STANDS, Outcome, Recording
-from sher3_safety.rows.row import FURTHER, STATES, Row, State
+from sher3_safety.rows.row import FURTHER, LOST, STATES, Row, State
 from sher3_safety.runs.operator_node import OperatorNode
 
 SETTLE, APPROACH, OBSERVE, HELD, RELEASED, AGAIN = 60, 90, 40, 25, 15, 40
@@ -92,6 +92,8 @@ class MatrixRun:
         if row.final:
             self.graph.step(5)
             return False
+        if row.loses:
+            self._inject(make_request(component=row.loses, fault=OFF, duration=LOST).to_json())
         if row.effect == "goes on" and operator.state == OperatingState.ENABLED:
             self.graph.step(5)
             operator.pedal = 0.0
