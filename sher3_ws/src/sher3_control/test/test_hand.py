@@ -100,7 +100,7 @@ def test_a_hit_is_no_false_hand(detector):
     q, held = (0.0,) * 5, 12.0
     for number in range(1000):
         hand = 12.0 if number // 200 % 2 == 0 else -12.0
-        held += 2.0 / 4.0 * (hand - held)
+        held += 0.4 * (hand - held)  # 2 ms of 4 ms: 1 - exp(-0.5)
         detector.feed(number * TICK, sense(q, hand), q, (*legs_hold(q, held), 0.0, 0.0), STILL)
         assert detector.check(0) is None
 

@@ -5,9 +5,11 @@ from __future__ import annotations
 import math
 
 import pytest
-from sher3_common.reasons import Reason
+from sher3_common.reasons import ACTION, Action, Reason
 from sher3_description import ACTUATORS, load_robot
-from sher3_drivers.canopen.cia402 import Goal
+from sher3_drivers.bus.frame import iter_frames, pack_frame
+from sher3_drivers.canopen import objects as od
+from sher3_drivers.canopen.cia402 import Controlword, Goal
 from sher3_drivers.canopen.tpdo import DriveFeedback
 from sher3_drivers.settings import default_settings
 from sher3_drivers.units import AxisScale
@@ -22,6 +24,7 @@ PERIOD = SETTINGS.period
 KI, KP = 132700.0, 2640.0
 REST = (0.0,) * 5
 LEG, ROLL = 0, 3
+RESET_OF_ROLL = od.RPDO_BASE + 1 + ROLL
 
 
 def travel_until_trip(axis, speed, effort=0.0, limit=2_000_000):
@@ -159,6 +162,69 @@ def test_a_drive_that_leaves_its_place_loses_its_power_at_once_the_others_brake(
     rig.tick()
     states = [drive.state.name for drive in rig.driver.session.drives]
     assert states == ["SWITCH_ON_DISABLED", *["QUICK_STOP_ACTIVE"] * (len(ACTUATORS) - 1)]
+
+
+def words_and_beats(rig):
+    """Return lists that grow with the controlwords that delta_1 is sent, and with the host's heartbeats."""
+    words, beats = [], []
+
+    def listen(channel, frames, now):
+        for can_id, data in iter_frames(frames):
+            if can_id == od.RPDO_BASE + 1:
+                words.append(int.from_bytes(data[:2], "little"))
+            elif can_id == od.HEARTBEAT_BASE + rig.settings.host_id:
+                beats.append(now)
+        return frames
+
+    rig.mock.tamper_received = listen
+    return words, beats
+
+
+def turn_until_found(rig):
+    """Let the motor of delta_1 turn at 2 mm/s, whatever its drive does, until the driver says so."""
+    rig.mock.drives["delta_1"].turned = lambda velocity: 2e-3
+    for tick in range(20):
+        rig.tick()
+        if rig.driver.stop.first is not None:
+            return tick
+    raise AssertionError("nobody noticed")
+
+
+def test_a_disabled_robot_that_moves_has_its_power_cut_and_says_so(make_rig):
+    """7 um at 2 mm/s are 1.8 ticks, after the 0.1 s of a rest; then no heartbeat, and *disable voltage* alone."""
+    rig = make_rig()
+    rig.enable()
+    rig.driver.disable()
+    for _ in range(60):
+        rig.tick()
+    assert turn_until_found(rig) <= 4
+    words, beats = words_and_beats(rig)
+    for _ in range(20):
+        rig.tick()
+    stop = rig.driver.stop
+    assert stop.code is Reason.MOVED_DISABLED and ACTION[stop.code] is Action.POWER_OFF
+    assert "delta_1" in stop.first.text and not beats
+    assert set(words) <= {Controlword.DISABLE_VOLTAGE.value}
+
+
+def test_a_robot_that_moves_while_its_fault_is_being_reset_is_found(make_rig):
+    rig = make_rig()
+    rig.enable()
+    rig.mock.drives["roll"].fault(0x2310)
+    for _ in range(60):
+        rig.tick()
+
+    def lose_resets(channel, frames, now):
+        kept = [(number, data) for number, data in iter_frames(frames) if number != RESET_OF_ROLL or data[0] != 0x80]
+        return b"".join(pack_frame(number, data) for number, data in kept)
+
+    rig.mock.tamper_received = lose_resets
+    rig.driver.reset()
+    for _ in range(60):
+        rig.tick()
+    assert rig.driver.stop.first is None and "FAULT" in rig.states()
+    assert turn_until_found(rig) <= 4
+    assert rig.driver.stop.code is Reason.MOVED_DISABLED
 
 
 def test_an_axis_that_was_pushed_before_it_is_enabled_again_is_not_accused(make_rig):

@@ -6,18 +6,19 @@ travel = speed (detection + stop) + parting. `stop` is the time at full speed th
 
 from __future__ import annotations
 
+from itertools import groupby
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from sher3_common import Sher3Error
-from sher3_common.vectors import Vector
 from sher3_control.motion.speed_cap import Regime, SpeedCap, axis_caps, speed_cap
 from sher3_control.settings import ControlSettings
-from sher3_description import ACTUATORS, Robot
+from sher3_description import Robot
 from sher3_drivers.settings import MotorDriverSettings
+from sher3_kinematics import RobotKinematics
 
-from sher3_faults.braking import Braking, braking_of
+from sher3_faults.braking import braking_of
+from sher3_faults.creep import SPEEDS, Creep, FalseForce, creeps, false_forces, per_axis
 from sher3_faults.fault_classes import FaultClass, fault_classes
 
 GUARDED = (Regime.NEAR_TISSUE, Regime.FREE)
@@ -67,16 +68,21 @@ class TravelBudget:
 
     Attributes:
         rows: every fault in every regime.
+        creeps: tip travel with an axis that goes by itself, per regime: every axis, speed and echo.
         runaway: tip travel [m] per regime and axis when its drive does not obey and runs at its own speed limit, which
             is the cap of the regime.
     """
 
     def __init__(self, robot: Robot, control: ControlSettings, drives: MotorDriverSettings) -> None:
-        self._braking = braking_of(robot.to_yaml())
+        self._braking, self._robot = braking_of(robot.to_yaml()), robot
         self._control, self._drives = control, drives
         self._classes = fault_classes(control, drives)
         self.rows = [row for regime in Regime for row in self._rows(regime, self._cap(regime))]
-        self.runaway = {regime.value: self._runaway(regime) for regime in Regime}
+        self.creeps = {regime.value: self._creeps(regime) for regime in Regime}
+        self.runaway = {
+            regime: {creep.axis: creep.travel for creep in found if creep.echo == "false"}
+            for regime, found in self.creeps.items()
+        }
 
     def _cap(self, regime: Regime) -> SpeedCap:
         cap = speed_cap(self._control.motion, regime)
@@ -84,10 +90,18 @@ class TravelBudget:
             return SpeedCap(self._braking.top_speed(), float(self._braking.velocity[3]))
         return cap
 
-    def _runaway(self, regime: Regime) -> dict[str, float]:
+    def _creeps(self, regime: Regime) -> list[Creep]:
+        motion = self._control.motion
+        caps = axis_caps(motion, speed_cap(motion, regime), self._braking.velocity.tolist())
+        return creeps(self._braking, self._drives, caps, self._cap(regime))
+
+    def false_forces(self, regime: Regime) -> list[FalseForce]:
+        """Return what comes of a false force in a regime; on the bench, where nobody watches, nothing is stated."""
+        if regime is Regime.BENCH:
+            return []
         cap = self._cap(regime)
-        caps = axis_caps(self._control.motion, speed_cap(self._control.motion, regime), self._braking.velocity.tolist())
-        return _runaway(self._braking, self._drives, caps, cap)
+        ramp = self._braking.distances(cap.linear, cap.angular)[1] / cap.linear
+        return false_forces(self._control, RobotKinematics(self._robot), cap, ramp, self._drives.period)
 
     def _rows(self, regime: Regime, cap: SpeedCap) -> list[BudgetRow]:
         motion = self._control.motion
@@ -95,8 +109,8 @@ class TravelBudget:
         zero, ramp = self._braking.distances(cap.linear, cap.angular)
         distance = {"zero": zero, "ramp": ramp}
         drives = self._drives
-        encoders = _per_axis(drives.encoder_distance, drives.encoder_angle)
-        position = _per_axis(drives.position_distance, drives.position_angle)
+        encoders = per_axis(drives.encoder_distance, drives.encoder_angle)
+        position = per_axis(drives.position_distance, drives.position_angle)
         position = position + drives.position_lag * self._braking.axis_speeds(cap.linear, cap.angular)
         reach = self._braking.reach()
         parting = {"": 0.0, "encoders": float((reach * encoders).max()), "position": float((reach * position).max())}
@@ -138,7 +152,9 @@ class TravelBudget:
     def to_dict(self) -> dict[str, Any]:
         """Return everything as plain data; an infinite budget is None."""
         rows = [{**row._asdict(), "budget": row.budget if np.isfinite(row.budget) else None} for row in self.rows]
-        return {"rows": rows, "runaway": self.runaway}
+        creep = {regime: [found._asdict() for found in self.creeps[regime]] for regime in self.creeps}
+        forces = {regime.value: [_plain(found) for found in self.false_forces(regime)] for regime in GUARDED}
+        return {"rows": rows, "runaway": self.runaway, "creep": creep, "false_force": forces}
 
     def as_text(self) -> str:
         """Return the tables."""
@@ -154,9 +170,29 @@ class TravelBudget:
                 for row in rows
             ]
         for regime in Regime:
-            away = ", ".join(f"{name} {way * 1e6:.0f} um" for name, way in self.runaway[regime.value].items())
-            parts.append(f"an axis that runs at its drive's own limit, {regime.value}: {away}")
+            parts += self._stated(regime)
         return "\n".join(parts)
+
+    def _stated(self, regime: Regime) -> list[str]:
+        """Return the lines on axes that go by themselves, and on false forces."""
+        found = self.creeps[regime.value]
+        lines = [f"{regime.value}: an axis that goes by itself, up to its drive's own limit; travel of the tip [um]"]
+        lines.append(f"  {'axis, echo of its drive':34}" + "".join(f"{speed:>9g}" for speed in SPEEDS) + "    limit")
+        for (axis, echo), some in groupby(found, key=lambda one: (one.axis, one.echo)):
+            lines.append(f"  {axis + ', ' + echo:34}" + "".join(f"{1e6 * one.travel:9.1f}" for one in some))
+        forces = self.false_forces(regime)
+        if forces:
+            lines.append(f"{regime.value}: a hand that has left a sensor that stays where it was")
+        for one in forces:
+            never = one.travel if np.isfinite(one.travel) else None
+            far = "believed until the pedal is released" if never is None else f"{never * 1e6:8.1f} um"
+            lines.append(f"  {one.force:4.1f} N, noticed after {one.detection * 1e3:6.0f} ms  {far}")
+        return lines
+
+
+def _plain(found: FalseForce) -> dict[str, float | None]:
+    """Return a false force as plain data; what never ends is None."""
+    return {name: value if np.isfinite(value) else None for name, value in found._asdict().items()}
 
 
 def _row(
@@ -172,21 +208,3 @@ def _row(
     return BudgetRow(
         regime.value, item.fault, item.reason.name, item.detection, stop, speed, parting, travel, budget, item.setting
     )
-
-
-def _per_axis(distance: float, angle: float) -> NDArray[np.float64]:
-    """Return a limit of sliders [m] and roll [rad] in the order of ACTUATORS."""
-    return np.array([distance] * 3 + [angle, distance])
-
-
-def _runaway(braking: Braking, drives: MotorDriverSettings, caps: Vector, cap: SpeedCap) -> dict[str, float]:
-    """Return the tip's travel [m] per axis that runs as fast as its drive lets it, `caps` (5,), whatever it is told.
-
-    It is noticed when it has left its commands by the limit at the speeds that the regime allows, and two periods
-    later; then it brakes on its ramp.
-    """
-    v, a, lag = np.array(caps), braking.deceleration, braking.lag
-    allowed = _per_axis(drives.position_distance, drives.position_angle)
-    allowed = allowed + drives.position_lag * np.minimum(braking.axis_speeds(cap.linear, cap.angular), v)
-    way = braking.reach() * (allowed + 2.0 * v * drives.period + v * v / (2.0 * a) + v * lag)
-    return dict(zip(ACTUATORS, way.tolist(), strict=True))

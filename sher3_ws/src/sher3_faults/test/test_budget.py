@@ -10,6 +10,7 @@ from sher3_description import load_robot
 from sher3_drivers.settings import default_settings
 from sher3_faults.braking import Braking
 from sher3_faults.budget import GUARDED, BudgetExceeded, TravelBudget
+from sher3_faults.creep import ECHOES
 
 ROBOT = load_robot()
 
@@ -104,3 +105,35 @@ def test_a_disobedient_drive_is_stated():
     assert set(near) == {a.name for a in ROBOT.actuators}
     assert max(near.values()) <= 40e-6 and max(free.values()) <= 250e-6 < max(bench.values())
     assert "no travel guarantee" in budget().as_text()
+
+
+def test_every_axis_at_every_speed_and_with_every_echo_is_stated():
+    """From 1 um/s to the drive's own limit the tip travels at most 40 um near tissue and 250 um free."""
+    found = budget()
+    for regime, most in ((Regime.NEAR_TISSUE, 40e-6), (Regime.FREE, 250e-6)):
+        creeps = found.creeps[regime.value]
+        assert {(c.axis, c.echo) for c in creeps} == {(a.name, e) for a in ROBOT.actuators for e in ECHOES}
+        assert min(c.speed for c in creeps) == 1e-6 and max(c.travel for c in creeps) <= most
+        assert all(c.speed >= 0.0 and np.isfinite(c.travel) for c in creeps)
+        assert {c.axis: c.travel for c in creeps if c.echo == "false"} == found.runaway[regime.value]
+
+
+def test_a_creep_by_hand():
+    """A leg at 1 mm/s near tissue: 7 um, 3 ms of the 1.6 mm/s it may need there, 4 ms of lag and 4 ms of periods."""
+    found = budget()
+    reach = Braking(ROBOT).reach()[0]
+    leg = {c.echo: c.travel for c in found.creeps["near_tissue"] if (c.axis, c.speed) == ("delta_1", 1e-3)}
+    speeds = Braking(ROBOT).axis_speeds(5e-4, 0.03)
+    way = 7e-6 + 3e-3 * min(speeds[0], 2e-3) + 1e-3 * (4e-3 + 10.5 / 2640.0) + 1e-6 / (2 * 1.83)
+    assert leg["false"] == leg["missing"] == pytest.approx(reach * way, rel=1e-3)
+    assert leg["honest"] < 0.5 * leg["false"]
+
+
+def test_a_false_force_is_stated():
+    """1 N is found in time for the budget of 25 um, and 0.2 N never."""
+    near = {f.force: f for f in budget().false_forces(Regime.NEAR_TISSUE)}
+    assert near[1.0].travel <= 25e-6 and near[0.6].travel <= 50e-6
+    assert near[0.2].travel == near[0.2].detection == float("inf")
+    assert all(f.travel <= 250e-6 for f in budget().false_forces(Regime.FREE) if f.force >= 0.3)
+    assert budget().false_forces(Regime.BENCH) == []
+    json.dumps(budget().to_dict(), allow_nan=False)

@@ -30,6 +30,11 @@ SLOW = (
             duration=min(LONGEST, 1e-3 / speed), states=ALL)
         for speed in (1e-3, 1e-2, 1e-1)
     ),
+    *(
+        Row(f"{name}.demand", "creep", {"speed": speed}, reasons=(*LEFT, "DRIVE_DISOBEYS"), slow=True, quiet=FAST,
+            duration=min(LONGEST, 2e-5 / speed if name != ROLL else 1e-3 / speed), states=ALL)
+        for name, speed in ((AXIS, 2e-5), (AXIS, 1e-3), (TILT, 2e-5), (TILT, 1e-3), (ROLL, 1e-3), (ROLL, 1e-1))
+    ),
     Row(f"{AXIS}.power", "creep", {"speed": 0.0122}, slow=True, budget=250e-6, why=AT_ITS_LIMIT),
     *(Row(f"{name}.load_encoder", "drift", {"rate": 2e-5}, slow=True, duration=LONGEST) for name in (AXIS, TILT)),
     Row(f"{ROLL}.load_encoder", "drift", {"rate": 1e-3}, slow=True, duration=LONGEST),
@@ -38,4 +43,5 @@ SLOW = (
     *(Row("bus.up", "late", {"items": age}, reasons=("FEEDBACK_STALE",)) for age in (1.0, 3.0)),
     Row("bus0.up", "swap", reasons=("FEEDBACK_SWAPPED",), quick=True),
     Row(f"{AXIS}.echo", "wrong", {"scale": 0.0}, reasons=("DRIVE_DISOBEYS",), quiet=STILL),
+    Row(f"{AXIS}.echo", "stuck", release=True),
 )  # fmt: skip
