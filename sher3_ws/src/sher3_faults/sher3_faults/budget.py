@@ -13,12 +13,12 @@ import numpy as np
 from sher3_common import Sher3Error
 from sher3_control.motion.speed_cap import Regime, SpeedCap, axis_caps, speed_cap
 from sher3_control.settings import ControlSettings
-from sher3_description import Robot
+from sher3_description import ACTUATORS, Robot
 from sher3_drivers.settings import MotorDriverSettings
 from sher3_kinematics import RobotKinematics
 
 from sher3_faults.braking import braking_of
-from sher3_faults.creep import SPEEDS, Creep, FalseForce, creeps, false_forces, per_axis
+from sher3_faults.creep import SPEEDS, Creep, FalseForce, creeps, false_forces, given_way, per_axis
 from sher3_faults.fault_classes import FaultClass, fault_classes
 
 GUARDED = (Regime.NEAR_TISSUE, Regime.FREE)
@@ -76,6 +76,7 @@ class TravelBudget:
     def __init__(self, robot: Robot, control: ControlSettings, drives: MotorDriverSettings) -> None:
         self._braking, self._robot = braking_of(robot.to_yaml()), robot
         self._control, self._drives = control, drives
+        self._ki = np.array([actuator.drive.ki for actuator in robot.actuators])
         self._classes = fault_classes(control, drives)
         self.rows = [row for regime in Regime for row in self._rows(regime, self._cap(regime))]
         self.creeps = {regime.value: self._creeps(regime) for regime in Regime}
@@ -180,6 +181,11 @@ class TravelBudget:
         lines.append(f"  {'axis, echo of its drive':34}" + "".join(f"{speed:>9g}" for speed in SPEEDS) + "    limit")
         for (axis, echo), some in groupby(found, key=lambda one: (one.axis, one.echo)):
             lines.append(f"  {axis + ', ' + echo:34}" + "".join(f"{1e6 * one.travel:9.1f}" for one in some))
+        gives = given_way(self._braking, self._ki, self._drives.position_force)
+        lines.append(
+            "  each newton of a hand adds"
+            + ",".join(f" {1e6 * way:.1f} um by {name}" for name, way in zip(ACTUATORS, gives, strict=True))
+        )
         forces = self.false_forces(regime)
         if forces:
             lines.append(f"{regime.value}: a hand that has left a sensor that stays where it was")

@@ -68,6 +68,15 @@ def creeps(braking: Braking, drives: MotorDriverSettings, caps: Vector, cap: Spe
     ]
 
 
+def given_way(braking: Braking, ki: Array, share: float) -> Array:
+    """Return what a newton at the tip adds to the tip's travel per axis (5,) [m/N].
+
+    It pushes an axis off by its force over `ki`, and the drive's force explains that to all but a `share`.
+    """
+    reach = np.linalg.norm(braking.jacobians[:, :3], axis=1)
+    return np.asarray(share * (reach * reach / ki).max(axis=0))
+
+
 def _told(v: Array, drives: MotorDriverSettings) -> Array:
     """Return how far axes go at speeds `v` (n, 5) until their honest echoes give them away; inf: they never do."""
     limit, memory = per_axis(drives.obey_distance, drives.obey_angle), drives.following_memory

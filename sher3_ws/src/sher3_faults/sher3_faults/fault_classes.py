@@ -11,6 +11,7 @@ from typing import Literal, NamedTuple
 
 from sher3_common.reasons import Reason
 from sher3_control.settings import ControlSettings
+from sher3_drivers.sensor.health import SensorLimits
 from sher3_drivers.settings import MotorDriverSettings
 
 
@@ -42,6 +43,7 @@ def fault_classes(control: ControlSettings, drives: MotorDriverSettings) -> list
     drives_alone = drives.host_heartbeat_limit + late
     stalled = max(drives.stall_limit, drives.host_heartbeat_limit) + late
     frozen = wrench.frozen_samples * period + late
+    jumping = 2.0 * SensorLimits._field_defaults["jumps"] * period + late
     user = motion.servo_timeout + late
     r, heartbeat = Reason, "drives.host_heartbeat_limit"
     return [
@@ -51,6 +53,7 @@ def fault_classes(control: ControlSettings, drives: MotorDriverSettings) -> list
         FaultClass("force sensor silent, dead", r.WRENCH_STALE, wrench.age_limit + late, "zero", "wrench.age_limit"),
         FaultClass("force sensor frozen", r.WRENCH_FROZEN, frozen, "zero", "wrench.frozen_samples"),
         FaultClass("force not finite, out of range", r.WRENCH_NOT_FINITE, late, "zero", "control period"),
+        FaultClass("force to and fro every other tick", r.WRENCH_NOT_FINITE, jumping, "zero", "SensorLimits.jumps"),
         FaultClass(
             "joint positions silent", r.JOINTS_STALE, motion.joints_age_limit + late, "zero", "motion.joints_age_limit"
         ),

@@ -61,9 +61,10 @@ HAZARDS = (
         "age, range, repetition and jumps judged in the same tick; the drives' forces as a second witness; speed cap",
         ("force_sensor",),
         (f"{_DRIVERS}/test_force_sensor.py", "sher3_ws/src/sher3_control/test/test_hand.py"),
-        ("force sensor silent, dead", "force sensor frozen", "force not finite, out of range"),
-        "a false force below 0.8 N or a quarter of the hand: 500 um/s near tissue, 800 um/s free, until the pedal is "
-        "released; one of 1 N: 35 um near tissue",
+        ("force sensor silent, dead", "force sensor frozen", "force not finite, out of range",
+         "force to and fro every other tick"),
+        "a false force of 0.25 N and less, or below 12 % of the hand: 150 um/s until the pedal is released; 0.3 to 0.6 "
+        "N: noticed late, 90 to 45 um, which near tissue is more than the budget",
     ),
     Hazard(
         "an axis moves by itself",
