@@ -193,6 +193,21 @@ def test_a_second_publisher_of_a_command_is_refused():
         assert g.last("servo_jv").velocity == REST
 
 
+def test_a_refusal_ends_when_such_a_command_is_taken():
+    with control_graph() as g:
+        g.step(5)
+        still = JointSample(g.now, velocity=REST)
+        g.probe.send("command/servo_jv", still)
+        g.step(2)
+        g.graph.until(lambda: g.status("motion/status")["refused"], "refusal")
+        assert g.status("motion/status")["refused"]["command"] == "servo_jv"
+        g.enable()
+        g.probe.send("command/servo_jv", still._replace(stamp=g.now))
+        g.graph.settle()
+        g.step(2)
+        g.graph.until(lambda: g.status("motion/status")["refused"] is None, "end of the refusal")
+
+
 def test_a_second_publisher_of_a_stream_of_the_robots_own_is_a_fault():
     """Every stream of its own that has a publisher here; whether the twin ever says a word makes no difference."""
     for name in OWN:

@@ -183,7 +183,10 @@ class KinematicsNode(Node):
             try:
                 self.motion.command(mode, sample, self._input(now), self._living.count(topic, now))
             except Sher3Error as error:
-                self._refuse(error)
+                self._refuse(error, mode.value)
+            else:
+                if self._refused is not None and self._refused["command"] == mode.value:
+                    self._refused, self._shown = None, ()
 
         return on_command
 
@@ -217,15 +220,15 @@ class KinematicsNode(Node):
         try:
             change()
         except Sher3Error as error:
-            self._refuse(error)
+            self._refuse(error, "settings")
             return
         self._version += 1
         self._refused, self._shown = None, ()
         self._report_settings()
 
-    def _refuse(self, error: Sher3Error) -> None:
-        """Show a refusal in the status; a stream that is refused at every sample shows it once."""
-        shown = {"error": type(error).__name__, "text": str(error)}
+    def _refuse(self, error: Sher3Error, command: str) -> None:
+        """Show a refusal in the status until such a command is taken; a stream that is refused shows it once."""
+        shown = {"command": command, "error": type(error).__name__, "text": str(error)}
         if self._refused is None or self._refused["text"] != shown["text"]:
             self._refused = shown
             self._shown = ()
