@@ -12,7 +12,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from fnmatch import fnmatchcase
 from typing import Any, NamedTuple
 
-from sher3_faults.budget import TravelBudget
+import numpy as np
+from sher3_faults.budget import GUARDED, TravelBudget
 
 from sher3_safety.rows.processes import WALL
 from sher3_safety.rows.row import Row
@@ -20,6 +21,8 @@ from sher3_safety.rows.stepped import ROWS
 
 RUNAWAY = "runaway"
 """In place of a fault of the budget: an axis as fast as its drive lets it be."""
+FALSE_FORCE = "false force"
+"""In place of a fault of the budget: a hand that has left a sensor that stays where it was, where that is noticed."""
 _DRIVERS = "sher3_ws/src/sher3_drivers/test"
 
 
@@ -62,9 +65,9 @@ HAZARDS = (
         ("force_sensor",),
         (f"{_DRIVERS}/test_force_sensor.py", "sher3_ws/src/sher3_control/test/test_hand.py"),
         ("force sensor silent, dead", "force sensor frozen", "force not finite, out of range",
-         "force to and fro every other tick"),
-        "a false force of 0.25 N and less, or below 12 % of the hand: 150 um/s until the pedal is released; 0.3 to 0.6 "
-        "N: noticed late, 90 to 45 um, which near tissue is more than the budget",
+         "force to and fro every other tick", FALSE_FORCE),
+        "a false force of 0.25 N and less, or below 12 % of the hand: 150 um/s until the pedal is released; one of "
+        "0.3 to 0.9 N is noticed so late that the travel near tissue is beyond the budget of 25 um",
     ),
     Hazard(
         "an axis moves by itself",
@@ -128,10 +131,11 @@ HAZARDS = (
         ("safe_torque_off",),
         (f"{_DRIVERS}/test_closed_drives.py",),
         ("drive reports a fault or restarts",),
-        "how far an axis without torque coasts: to be measured at the robot",
+        "the residual is that of the software's answer alone; how far an axis without torque coasts, and sinks under "
+        "its load, is to be measured at the robot",
     ),
     Hazard(
-        "is another robot than the software believes",
+        "goes elsewhere, since the robot is another one than the software believes",
         "drive exchanged, configured by somebody else; robot file wrong",
         "name plates (`sher3 up --drives`), every object that shapes motion read back; impossible numbers refused",
         (),
@@ -142,13 +146,40 @@ HAZARDS = (
             "tests/test_fuzz_files.py",
         ),
         (),
-        "a robot file that is plausible and wrong",
+        "a robot file that is plausible and wrong: travel and direction are not bounded by anything here",
+    ),
+    Hazard(
+        "is faster than the tissue allows",
+        "nobody said that tissue is near; a cap that is not kept",
+        "regimes, of which a faster one begins at rest alone; cap in law, gate and drive",
+        (),
+        ("sher3_ws/src/sher3_control/test/test_speed_cap.py", "tests/test_regime_in_drives.py"),
+        (),
+        "no sensor tells where the tissue is: in the regime free every residual is the one on the right",
+    ),
+    Hazard(
+        "presses on tissue",
+        "a hand that pushes; a drive that holds against it",
+        "v = gain force of the hand, cap of the regime; largest torque of the drives written and read back",
+        (),
+        (f"{_DRIVERS}/test_closed_drives.py", "sher3_ws/src/sher3_control/test/test_admittance.py"),
+        (),
+        "the sensor is at the handle: a force between tip and tissue is not measured, and nothing limits it",
+    ),
+    Hazard(
+        "follows somebody else's commands",
+        "a second process, program or host that publishes what moves the robot",
+        "loopback alone; one publisher of each stream and command; no other host on CAN; policy file of the middleware",
+        (),
+        ("tests/test_security.py", "tests/test_privacy.py", "sher3_ws/src/sher3_control/test/test_nodes.py"),
+        (),
+        "whoever runs programs on the robot's computer as its user may do anything",
     ),
     Hazard(
         "moves when a fault is cleared",
         "recovery, enabling, late or lost frames",
         "one recovery a fault, disabled first; release then press; fault reset held until the drive has left FAULT",
-        (),
+        ("*.resets",),
         ("tests/test_product_machine.py", "sher3_ws/src/sher3_control/test/test_supervisor_histories.py"),
         ("pedal released",),
     ),
@@ -157,7 +188,11 @@ HAZARDS = (
 
 def rows_of(hazard: Hazard) -> list[Row]:
     """Return the rows of the matrix, in stepped and in wall time, that belong to a hazard."""
-    return [row for row in (*ROWS, *WALL) if any(fnmatchcase(row.component, name) for name in hazard.components)]
+    return [row for row in (*ROWS, *WALL) if _concerns(hazard, row.component) or _concerns(hazard, row.loses)]
+
+
+def _concerns(hazard: Hazard, component: str) -> bool:
+    return any(fnmatchcase(component, name) for name in hazard.components)
 
 
 def _bounds(hazard: Hazard, budget: TravelBudget) -> Iterator[tuple[str, float]]:
@@ -165,6 +200,9 @@ def _bounds(hazard: Hazard, budget: TravelBudget) -> Iterator[tuple[str, float]]
     for row in budget.rows:
         if row.fault in hazard.faults:
             yield row.regime, row.travel
+    if FALSE_FORCE in hazard.faults:
+        for regime in GUARDED:
+            yield regime.value, max(f.travel for f in budget.false_forces(regime) if np.isfinite(f.travel))
     if RUNAWAY in hazard.faults:
         for regime, ways in budget.runaway.items():
             yield regime, max(ways.values())
@@ -182,8 +220,7 @@ def measured(hazard: Hazard, cells: Sequence[Mapping[str, Any]]) -> dict[str, fl
     """Return the longest measured travel [m] by state, of cells of a report of the matrix that had to stop."""
     found: dict[str, float] = {}
     for cell in cells:
-        mine = any(fnmatchcase(cell["component"], name) for name in hazard.components)
-        if mine and cell["effect"] == "stops" and cell["outcome"] is not None:
+        if _concerns(hazard, cell["component"]) and cell["effect"] == "stops" and cell["outcome"] is not None:
             found[cell["state"]] = max(found.get(cell["state"], 0.0), cell["outcome"]["travel"] or 0.0)
     return found
 
@@ -194,7 +231,7 @@ def hazard_table(budget: TravelBudget, cells: Sequence[Mapping[str, Any]] = ()) 
     for hazard in HAZARDS:
         lines = rows_of(hazard)
         table.append({
-            "hazard": f"the tip {hazard.name}" if not hazard.name.startswith(("the ", "time", "an ")) else hazard.name,
+            "hazard": hazard.name if hazard.name.startswith(("the ", "time", "an ")) else f"the tip {hazard.name}",
             "cause": hazard.cause,
             "control": hazard.control,
             "rows": len(lines),

@@ -26,7 +26,7 @@ def hazards(
         return
     for row in table:
         left = row["residual"]
-        travel = f"{left['near_tissue']:.0f} um near tissue, {left['free']:.0f} um free" if left else "no motion"
+        travel = f"{left['near_tissue']:.0f} um near tissue, {left['free']:.0f} um free" if left else "not computed"
         typer.echo(f"{row['hazard']}\n  cause     {row['cause']}\n  control   {row['control']}")
         typer.echo(f"  verified  {row['rows']} rows of the matrix; {', '.join(row['tests']) or 'no other test'}")
         typer.echo(f"  residual  {travel}")
