@@ -31,6 +31,7 @@ class State:
         end: the hand has pushed the sliders against the end of their travel, and still pushes.
         operating: operating state.
         aim: how far from where they are `command/servo_jp` asks the sliders to be, from the onset on, m.
+        across: force of the hand along x, N.
         later: how much later than usual a fault may be noticed and the tip rest, s; with a budget of its own.
     """
 
@@ -43,6 +44,7 @@ class State:
     operating: OperatingState = OperatingState.ENABLED
     aim: float = 0.0
     later: float = 0.0
+    across: float = 0.0
 
 
 IDLE = State("idle", 0.0, 0.6, 0.0, 25e-6)
@@ -57,10 +59,12 @@ DISABLED = State("disabled", 0.0, 0.6, 0.0, 25e-6, operating=OperatingState.DISA
 AIMING = State("aiming", 0.0, 0.0, 0.0, 25e-6, aim=15e-6)
 FIRM = State("firm", 0.5e-3, 1.0, 0.5 / 0.9, 25e-6)
 LIGHT = State("light", 0.5e-3, 0.6, 1.0, 60e-6, later=0.08)
-FURTHER = (PAUSED, DISABLED, AIMING, FIRM, LIGHT)
+SIDEWAYS = State("sideways", 0.5e-3, 0.0, 1.0, 25e-6, across=0.6)
+FURTHER = (PAUSED, DISABLED, AIMING, FIRM, LIGHT, SIDEWAYS)
 """States for some rows only: held by the drives while motion is paused; without power; a position mode with an aim that
 the axes are not at yet; at the speed near tissue under a hand that is to leave, a firm and a light one, of which
-the noise of the drives' forces does not allow to be sure any sooner."""
+the noise of the drives' forces does not allow to be sure any sooner; at that speed along x, where each leg moves at
+another speed."""
 STILL = (IDLE.name, END.name)
 """States in which nothing moves."""
 AT_END = 1e-3

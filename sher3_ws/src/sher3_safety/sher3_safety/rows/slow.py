@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from sher3_description import ACTUATORS
 
-from sher3_safety.rows.row import LIMIT, PAUSED, STATES, STILL, Row
+from sher3_safety.rows.row import LIMIT, PAUSED, SIDEWAYS, STATES, STILL, Row
 
 AXIS, ROLL, TILT = ACTUATORS[0], ACTUATORS[3], ACTUATORS[4]
 LEFT = ("POSITION_LEFT",)
@@ -41,7 +41,7 @@ SLOW = (
     Row(f"{AXIS}.motor_encoder", "drift", {"rate": 2e-5}, slow=True, duration=LONGEST),
     Row(f"{AXIS}.motor_encoder", "ramp", {"rate": 0.5}, slow=True, effect="either", why=STATED),
     *(Row("bus.up", "late", {"items": age}, reasons=("FEEDBACK_STALE",)) for age in (1.0, 3.0)),
-    Row("bus0.up", "swap", reasons=("FEEDBACK_SWAPPED",), quick=True),
+    Row("bus0.up", "swap", reasons=("FEEDBACK_SWAPPED",), states=(*STATES, SIDEWAYS), quick=True),
     Row(f"{AXIS}.echo", "wrong", {"scale": 0.0}, reasons=("DRIVE_DISOBEYS",), quiet=STILL),
     Row(f"{AXIS}.echo", "stuck", release=True),
 )  # fmt: skip

@@ -20,6 +20,7 @@ class OperatorNode(Node):
     Attributes:
         pedal: travel.
         force: of the hand along z of {b} [N].
+        across: along x [N].
         state: newest operating state heard.
         height: newest z of the tip heard [m].
         aim: how far from where the axes are the position commands ask them to be (5,) [m, rad]; None: no such command.
@@ -28,6 +29,7 @@ class OperatorNode(Node):
     def __init__(self, **options: Any) -> None:
         super().__init__("operator", **{**NODE_OPTIONS, **options})
         self.pedal, self.force, self.state, self.height = 0.0, 0.0, "", 0.0
+        self.across = 0.0
         self.aim: Vector | None = None
         self._goal: Vector | None = None
         self._take_joints = latest(self, "measured_js")
@@ -67,7 +69,7 @@ class OperatorNode(Node):
     def _tick(self, stamp: int) -> None:
         self._follow_aim(stamp)
         self._publish_pedal(JoySample(stamp, (self.pedal,), (0,)))
-        self._publish_wrench(WrenchSample(stamp, (0.0, 0.0, self.force, 0.0, 0.0, 0.0)))
+        self._publish_wrench(WrenchSample(stamp, (self.across, 0.0, self.force, 0.0, 0.0, 0.0)))
 
 
 FIRST, PRESS = 100, 1000

@@ -74,6 +74,7 @@ class MatrixRun:
         if state.end:
             self._go_to_end(self._sign * state.force)
         operator.force, operator.pedal = self._sign * state.force, state.pedal
+        operator.across = self._sign * state.across
         self.graph.step(APPROACH if state.pedal else SETTLE)
         if state.operating is not OperatingState.ENABLED:
             operator.command(LEAVES[state.operating])
