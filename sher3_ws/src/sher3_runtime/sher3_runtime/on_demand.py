@@ -28,7 +28,7 @@ class OnDemand:
     def wanted(self) -> bool:
         """Return whether there is a subscriber; to be asked once for each sample."""
         if self._stepped:
-            return True
+            return self._count() > 0
         if self._ask_in == 0:
             self._ask_in, self._wanted = COUNT_EVERY, self._count() > 0
         self._ask_in -= 1

@@ -18,5 +18,11 @@ def test_nothing_is_wanted_while_nobody_listens_and_a_listener_is_noticed():
     assert sum(publish.wanted() for _ in range(2 * COUNT_EVERY)) == COUNT_EVERY - 1
 
 
-def test_in_stepped_time_every_sample_is_wanted():
-    assert OnDemand(lambda _: None, lambda: 0, stepped=True).wanted()
+def test_in_stepped_time_a_listener_is_noticed_at_once():
+    listeners = [0]
+    publish = OnDemand(lambda _: None, lambda: listeners[0], stepped=True)
+    assert not publish.wanted()
+    listeners[0] = 1
+    assert publish.wanted()
+    listeners[0] = 0
+    assert not publish.wanted()
