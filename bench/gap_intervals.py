@@ -20,7 +20,8 @@ from typing import NamedTuple
 import numpy as np
 from sher3_challenge.cases.builder import Request, build_case
 from sher3_challenge.plants.registry import plant_names, truth_plant
-from sher3_challenge.score.intervals import SYNONYMS, wilson
+from sher3_challenge.score.intervals import SYNONYMS
+from sher3_common.shares import wilson
 from sher3_gap import diagnose_case
 
 GAP = (5.0, 20.0)

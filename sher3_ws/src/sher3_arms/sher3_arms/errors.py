@@ -11,3 +11,7 @@ class Unstable(Exception):
 
 class ArmsError(Sher3Error):
     """A robot that is not there, a kind of fault that is not known, or MuJoCo missing."""
+
+
+class NeverStable(ArmsError):
+    """No draw of a kind of fault lets the arm follow its motion; the case is left out."""

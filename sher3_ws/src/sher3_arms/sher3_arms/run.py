@@ -12,7 +12,7 @@ from sher3_common import Sher3Error
 
 from sher3_arms.answer.diagnosis import answer
 from sher3_arms.answer.identification import identified, tools
-from sher3_arms.errors import ArmsError
+from sher3_arms.errors import ArmsError, NeverStable
 from sher3_arms.score import Scored, names_the_fault, scored
 from sher3_arms.truth.cases import seal
 from sher3_arms.truth.faults import CABLE, ORDER
@@ -52,10 +52,15 @@ def run_arms(
         tools()
     if folder.exists():
         raise ArmsError(f"{folder}: exists already", value="a folder or file", remedy="choose another --out")
+    folder.mkdir(parents=True)
     out = []
     for seed in seeds:
         case = folder / "cases" / f"{seed:05d}"
-        label = seal(seed, robots, case, seconds, kinds)
+        try:
+            label = seal(seed, robots, case, seconds, kinds)
+        except NeverStable as error:
+            say(f"{error}; left out")
+            continue
         begun = time.perf_counter()
         try:
             verdict = answer(case)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 
+from sher3_common.shares import wilson
 from sher3_diagnosis import Verdict
 
 from sher3_arms.truth.cases import Label
@@ -123,7 +124,7 @@ def shares(cases: Sequence[Scored]) -> dict[str, tuple[float, int]]:
 
 def table(cases: Sequence[Scored]) -> str:
     """Return the scores, overall and for each kind of fault, as text."""
-    lines = [f"{name:<28} {share:6.2f}  of {n}" for name, (share, n) in shares(cases).items()]
+    lines = [_line(name, share, n) for name, (share, n) in shares(cases).items() if n]
     worst = max((c.seconds for c in cases), default=0.0)
     lines.append(f"{'slowest answer':<28} {worst:6.1f} s")
     lines.append("")
@@ -132,3 +133,8 @@ def table(cases: Sequence[Scored]) -> str:
         named = ", ".join(f"{c.effect or c.status}" for c in found)
         lines.append(f"{kind:<16} {sum(c.top is True for c in found)} of {len(found)}: {named}")
     return "\n".join(lines)
+
+
+def _line(name: str, share: float, n: int) -> str:
+    low, high = wilson(share, n)
+    return f"{name:<28} {share:6.2f}  ({low:.2f} .. {high:.2f})  of {n}"

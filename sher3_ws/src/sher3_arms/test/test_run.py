@@ -11,6 +11,8 @@ import sher3_arms
 from sher3_arms import ArmsError, run_arms
 from sher3_arms.answer import identification
 from sher3_arms.score import Scored, shares, table
+from sher3_arms.truth import cases
+from sher3_arms.truth.faults import Fault
 
 
 def test_a_friction_is_sealed_answered_and_scored(tmp_path):
@@ -20,6 +22,13 @@ def test_a_friction_is_sealed_answered_and_scored(tmp_path):
     assert json.loads((tmp_path / "run/scores.json").read_text())[0]["effect"] == found.effect
     with pytest.raises(ArmsError, match="exists already"):
         run_arms([0], ["own"], tmp_path / "run")
+
+
+def test_a_case_that_no_draw_makes_stable_is_left_out_and_said(tmp_path, monkeypatch):
+    monkeypatch.setattr(cases, "deal", lambda *_: Fault("late_drive", 1, 0.08))
+    told = []
+    assert not run_arms([0], ["own"], tmp_path / "run", 12.0, told.append, kinds=["late_drive"])
+    assert "unstable with every late_drive" in told[0] and "left out" in told[0]
 
 
 def test_a_kind_that_is_not_there_is_refused(tmp_path):
@@ -40,17 +49,18 @@ def case(kind, status="attributed", effect="coulomb_friction", top=None, placed=
 
 
 def test_shares_are_of_the_cases_they_are_over():
-    cases = [
+    found_cases = [
         case("coulomb", top=True, placed=True),
         case("gain", top=False, placed=True),
         case("healthy", status="no_gap"),
         case("heavy_air", status="outside_library"),
         case("foreign_cable"),
     ]
-    found = shares(cases)
+    found = shares(found_cases)
     assert found["top-1"] == (0.5, 2) and found["joint right"] == (1.0, 2)
     assert found["healthy alarms"] == (0.0, 1) and found["outside abstained"] == (0.5, 2)
-    assert "slowest answer" in table(cases)
+    assert "slowest answer" in table(found_cases)
+    assert "joint right                    1.00  (0.34 .. 1.00)  of 2" in table(found_cases)
 
 
 SEALED = {"truth": ("sher3_diagnosis", "sher3_machines", "answer"), "answer": ("truth", "score", "run")}

@@ -1,7 +1,8 @@
 """Intervals of shares and of parameters, worked out by hand."""
 
 import pytest
-from sher3_challenge.score.intervals import Z, parameter_coverage, wilson
+from sher3_challenge.score.intervals import parameter_coverage
+from sher3_common.shares import Z, wilson
 
 
 def test_wilson_of_a_half_of_four():

@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 import yaml
 from sher3_challenge.score.case import same_place, score_case
-from sher3_challenge.score.intervals import parameter_coverage, wilson
+from sher3_challenge.score.intervals import parameter_coverage
 from sher3_challenge.score.rates import summarise
+from sher3_common.shares import wilson
 
 SHARED = Path(os.environ.get("SHER3_SHARED", Path(__file__).resolve().parents[5] / "shared"))
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from sher3_arms.errors import ArmsError, Unstable
+from sher3_arms.errors import NeverStable, Unstable
 from sher3_arms.files import write_case
 from sher3_arms.truth.faults import ORDER, Fault, deal
 from sher3_arms.truth.robots import urdf_of
@@ -50,7 +50,8 @@ def seal(seed: int, robots: Sequence[str], folder: Path, seconds: float, kinds: 
     A fault under which the arm does not follow its motion is drawn again: nobody keeps such a record.
 
     Raises:
-        ArmsError: no such arm, MuJoCo or the wheel with the arms is missing, or no draw is stable.
+        ArmsError: no such arm, or MuJoCo or the wheel with the arms is missing.
+        NeverStable: no draw is stable.
     """
     robot = robots[seed % len(robots)]
     urdf = urdf_of(robot)
@@ -63,7 +64,7 @@ def seal(seed: int, robots: Sequence[str], folder: Path, seconds: float, kinds: 
     while found is None:
         if drawn == DRAWS:
             text = f"seed {seed}: {robot} is unstable with every {kind}"
-            raise ArmsError(text, value=f"{DRAWS} draws", remedy="choose another seed or arm")
+            raise NeverStable(text, value=f"{DRAWS} draws", remedy="choose another seed or arm")
         drawn, fault = drawn + 1, deal(rng, kind, torque, speed, inertia)
         with suppress(Unstable):
             found = record(urdf, fault, seconds, rng)

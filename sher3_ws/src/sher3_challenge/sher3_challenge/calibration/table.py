@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from sher3_common.shares import wilson
+
 from sher3_challenge.calibration.held_out import Judgement
-from sher3_challenge.score.intervals import wilson
 from sher3_challenge.score.rates import Rate
 from sher3_challenge.score.reliability import calibration_error
 

@@ -1,12 +1,9 @@
-"""Intervals: of shares, and whether stated parameter intervals hold the truth."""
+"""Intervals: whether stated ones of parameters hold the truth."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from typing import Any
-
-Z = 1.959963984540054
 
 SYNONYMS = {
     "delay": "delay latency dead_time tau",
@@ -34,13 +31,6 @@ SYNONYMS = {
     "z": "z dz",
 }
 """Names under which a verdict may state a parameter of the truth."""
-
-
-def wilson(share: float, n: int) -> tuple[float, float]:
-    """Return the 95 % Wilson score interval of a share of `n` cases (Wilson 1927)."""
-    centre = (share + Z * Z / (2 * n)) / (1 + Z * Z / n)
-    half = Z / (1 + Z * Z / n) * math.sqrt(share * (1 - share) / n + Z * Z / (4 * n * n))
-    return max(0.0, centre - half), min(1.0, centre + half)
 
 
 def parameter_coverage(effect: Mapping[str, Any], cause: Mapping[str, Any]) -> tuple[int, int]:

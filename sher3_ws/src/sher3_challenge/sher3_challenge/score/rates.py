@@ -10,8 +10,9 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
+from sher3_common.shares import wilson
+
 from sher3_challenge.score.case import CaseScore
-from sher3_challenge.score.intervals import wilson
 from sher3_challenge.score.reliability import calibration_error
 
 BINS = ((0.0, 1.5), (1.5, 2.0), (2.0, 3.0), (3.0, 5.0), (5.0, 12.0), (12.0, math.inf))
