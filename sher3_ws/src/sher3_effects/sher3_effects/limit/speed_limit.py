@@ -34,6 +34,9 @@ class SpeedLimit(Page):
     PERIODS = (1.0, 2.0, 4.0, 8.0, 16.0)
     """Time constants that are tried, in periods of the record."""
     finer = {"limit": (0.93, 0.97, 0.99, 1.01, 1.03), "time_constant": (0.7, 0.85, 1.2, 1.4)}
+    MOVING, AT_TOP, MUCH = 0.2, 0.93, 0.4
+    """Shares of the top speed from which the axis moves and is at its top, and of its motion that it must be there: a
+    sine spends 0.28 of it there."""
     BINDS = 0.02
     """Share of the samples in which the reference must be further away than the limit reaches in its time."""
 
@@ -43,8 +46,16 @@ class SpeedLimit(Page):
         errors = [np.abs(v.run.reference[:, row] - v.run.motor[:, row]) for v in views if v.run.reference is not None]
         far = np.concatenate(errors) if errors else np.zeros(1)
         period = views[0].run.period
+        if not self._held(views, row):
+            return []
         times = [n * period for n in self.PERIODS if np.mean(far > top * n * period) > self.BINDS]
         return [{"limit": s * top, "time_constant": t} for s in self.LEVELS for t in times if top > 0.0]
+
+    def _held(self, views: Sequence[AxisView], row: int) -> bool:
+        """Return whether the axis spends much of its motion at one speed; one that follows a wave does not."""
+        speed = np.concatenate([np.abs(v.run.velocity[:, row]) for v in views])
+        moving = speed[speed > self.MOVING * speed.max(initial=0.0)]
+        return len(moving) > 0 and bool(np.mean(moving > self.AT_TOP * np.quantile(moving, 0.98)) > self.MUCH)
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
         """Return reference minus the path that follows it no faster than the limit; nothing is left to fit."""
