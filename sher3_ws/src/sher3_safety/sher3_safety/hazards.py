@@ -201,8 +201,8 @@ def _bounds(hazard: Hazard, budget: TravelBudget) -> Iterator[tuple[str, float]]
         if row.fault in hazard.faults:
             yield row.regime, row.travel
     if FALSE_FORCE in hazard.faults:
-        for regime in GUARDED:
-            yield regime.value, max(f.travel for f in budget.false_forces(regime) if np.isfinite(f.travel))
+        for guarded in GUARDED:
+            yield guarded.value, max(f.travel for f in budget.false_forces(guarded) if np.isfinite(f.travel))
     if RUNAWAY in hazard.faults:
         for regime, ways in budget.runaway.items():
             yield regime, max(ways.values())
