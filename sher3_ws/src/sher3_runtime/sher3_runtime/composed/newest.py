@@ -34,10 +34,9 @@ class Newest:
         kept = self._data
         for reader in self._readers:
             if reader.ring.offers(rank):
-                for number, _, data in reader.read(kept):
-                    kept[number] = data
-        data, kept[rank] = kept[rank], None
-        return data
+                kept.update({number: data for number, _, data in reader.read(kept)})
+        newest, kept[rank] = kept[rank], None
+        return newest
 
 
 @cache
