@@ -218,11 +218,11 @@ def latest(node: Node, name: str) -> Callable[[], Any]:
     garbage = port.statistics.garbage
 
     composition = port.composition
-    inside = rings = None
+    inside: Callable[[], Any] | None = None
     if composition is not None:
         inside = composition.keep_newest(topic, partial(port.leave, node, name, subscription))
-    elif (rings := newest_of_rings()) is not None:
-        rank = rings.look_at(name)
+    rings = newest_of_rings() if composition is None else None
+    rank = -1 if rings is None else rings.look_at(name)
 
     def take_newest() -> Any:
         if inside is not None and composition is not None and composition.inner(name):

@@ -166,8 +166,8 @@ class Composition:
         """Let out what was published since the last call; called when the work of a moment is done."""
         outbox = self._outbox
         while outbox:
-            leave, *what = outbox.popleft()
-            leave(*what)
+            leave, sample, outside, beside = outbox.popleft()
+            leave(sample, outside, beside)
 
     def __enter__(self) -> Composition:
         _composing.append(self)
