@@ -34,12 +34,7 @@ class Newest:
         kept = self._data
         for reader in self._readers:
             if reader.ring.offers(rank):
-<<<<<<< HEAD
-                for number, _, data in reader.read(kept):
-                    kept[number] = data
-=======
                 kept.update({number: data for number, _, data in reader.read(kept)})
->>>>>>> speed
         newest, kept[rank] = kept[rank], None
         return newest
 
