@@ -8,6 +8,7 @@ executor.
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable
 from functools import partial
 from typing import Any
@@ -205,9 +206,26 @@ def latest(node: Node, name: str) -> Callable[[], Any]:
     Raises:
         UnknownTopic: The name is not in the table.
     """
+    take = gathered(node, name, 1)
+
+    def take_newest() -> Any:
+        samples = take()
+        return samples[-1] if samples else None
+
+    return take_newest
+
+
+def gathered(node: Node, name: str, depth: int) -> Callable[[], list[Any]]:
+    """Return `take()` of a topic of the table: the samples since the last call, the oldest first.
+
+    For a node that looks at its own pace: no sample wakes it. At most `depth` samples wait, the newest.
+
+    Raises:
+        UnknownTopic: The name is not in the table.
+    """
     topic, port = find_topic(name), ports(node)
     kind, profile = message_class(topic.type), qos_profile(topic.subscriber_qos)
-    profile.depth = 1
+    profile.depth = depth
     events = SubscriptionEventCallbacks(use_default_callbacks=False)
     subscription = node.create_subscription(
         kind, topic.full_name, lambda _: None, profile, raw=True, event_callbacks=events
@@ -218,27 +236,34 @@ def latest(node: Node, name: str) -> Callable[[], Any]:
     garbage = port.statistics.garbage
 
     composition = port.composition
-    inside: Callable[[], Any] | None = None
-    if composition is not None:
-        inside = composition.keep_newest(topic, partial(port.leave, node, name, subscription))
+    leave = partial(port.leave, node, name, subscription)
+    inside = deque[Any]() if composition is None else composition.keep(topic, depth, leave)
     rings = newest_of_rings() if composition is None else None
-    rank = -1 if rings is None else rings.look_at(name)
+    rank = -1 if rings is None else rings.look_at(name, depth)
 
-    def take_newest() -> Any:
-        if inside is not None and composition is not None and composition.inner(name):
-            return inside()
-        data = None if rings is None else rings.take(rank)
-        if data is None:
-            if (taken := take(kind, True)) is None:
-                return None
-            data = taken[0]
-        try:
-            return decode(data)
-        except CdrError:
-            garbage[name] = garbage.get(name, 0) + 1
-            return None
+    def sent() -> list[bytes]:
+        # A stream that comes by a ring may come by the middleware as well, later, where somebody else listens there.
+        if rings is not None and rings.offers(rank):
+            return rings.take(rank)
+        found: list[bytes] = []
+        while len(found) < depth and (taken := take(kind, True)) is not None:
+            found.append(taken[0])
+        return found
 
-    return take_newest
+    def take_all() -> list[Any]:
+        if composition is not None and composition.inner(name):
+            samples = list(inside)
+            inside.clear()
+            return samples
+        samples = []
+        for data in sent():
+            try:
+                samples.append(decode(data))
+            except CdrError:
+                garbage[name] = garbage.get(name, 0) + 1
+        return samples
+
+    return take_all
 
 
 def subscribe_raw(node: Node, name: str, callback: Callable[[bytes], None], depth: int | None = None) -> None:

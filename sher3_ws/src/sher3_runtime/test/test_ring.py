@@ -137,21 +137,21 @@ def test_a_stream_that_is_made_on_demand_is_made_for_a_reader_of_the_ring():
     assert wanted()
 
 
-def test_a_node_that_looks_finds_the_newest_sample_of_each_topic_once():
+def test_a_node_that_looks_finds_the_newest_samples_of_each_topic_once():
     ring = Ring()
     share([ring])
     try:
         newest = Newest()
     finally:
         share(())
-    force, joints = newest.look_at("force/measured_cf"), newest.look_at("measured_js")
+    force, joints = newest.look_at("force/measured_cf", 2), newest.look_at("measured_js", 1)
     ring.offer([force, joints])
     for number in range(3):
         ring.put(force, number, b"force %d" % number)
         ring.put(RANKS["servo_cv"], number, b"not looked at")
     ring.put(joints, 3, b"joints")
-    assert newest.take(force) == b"force 2" and newest.take(force) is None
-    assert newest.take(joints) == b"joints" and newest.take(joints) is None
+    assert newest.take(force) == [b"force 1", b"force 2"] and newest.take(force) == []
+    assert newest.take(joints) == [b"joints"] and newest.take(joints) == []
 
 
 def test_a_topic_that_does_not_come_by_ring_is_left_to_the_subscription():
@@ -159,6 +159,6 @@ def test_a_topic_that_does_not_come_by_ring_is_left_to_the_subscription():
     share([ring])
     newest = Newest()
     share(())
-    beat = newest.look_at("supervisor/heartbeat")
+    beat = newest.look_at("supervisor/heartbeat", 1)
     ring.put(beat, 1, b"of somebody else")
-    assert newest.take(beat) is None
+    assert newest.take(beat) == [] and not newest.offers(beat)

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from functools import partial
 from itertools import cycle
 from typing import Any
 
@@ -22,7 +21,7 @@ from sher3_common.stamps import NO_STAMP
 from sher3_common.vectors import Vector
 from sher3_description import ACTUATORS, Robot
 from sher3_kinematics import RobotKinematics
-from sher3_runtime.ports import NODE_OPTIONS, advertise, clock_of, latest, on_tick, ports, subscribe
+from sher3_runtime.ports import NODE_OPTIONS, advertise, clock_of, gathered, latest, on_tick, ports, subscribe
 from sher3_runtime.publishers import Publishers
 
 from sher3_control.nodes.same_tick import SameTick
@@ -109,8 +108,7 @@ class SupervisorNode(Node):
         self._publish_heartbeat = advertise(self, "supervisor/heartbeat")
         self._publish_report = advertise(self, "diagnostics")
         self._ticks = SameTick(*FELT)
-        for name in FELT:
-            subscribe(self, name, partial(self._on_stream, name), depth=DEPTH).wakes = False
+        self._felt = [(name, gathered(self, name, DEPTH)) for name in FELT]
         self._command: Vector = (0.0,) * len(ACTUATORS)
         self._take_tip = latest(self, "tracker/measured_cp")
         subscribe(self, PEDAL, self.on_pedal)
@@ -127,14 +125,16 @@ class SupervisorNode(Node):
         on_tick(self, self._repeat, phase=0.5 * period, every=max(1, round(self.settings.publish_period / period)))
         self._publish()
 
-    def _on_stream(self, name: str, sample: Any) -> None:
-        """Note a sample of a watched stream, and keep it for the hand; it wakes nobody, which would cost more."""
-        if name in self._silence:
-            self._silence[name].last = sample.stamp
-        if name == "measured_js":
-            self._joints = sample
-        if self._hand is not None:
-            self._ticks.put(name, sample)
+    def _look(self) -> None:
+        """Note what came on the watched streams; to wake up for every sample would cost more than the rest."""
+        for name, take in self._felt:
+            for sample in take():
+                if name in self._silence:
+                    self._silence[name].last = sample.stamp
+                if name == "measured_js":
+                    self._joints = sample
+                if self._hand is not None:
+                    self._ticks.put(name, sample)
 
     def _look_at_leg(self) -> None:
         """Compare the newest sample of the tracker with that of the axes where both are of one tick."""
@@ -181,6 +181,7 @@ class SupervisorNode(Node):
             self._overruns.feed(sample.name, *counts, self._now())
 
     def _judge(self) -> None:
+        self._look()
         if self.supervisor.check(self._now()):
             self._publish()
             self._publish_heartbeat(self._beat)
@@ -188,6 +189,7 @@ class SupervisorNode(Node):
     def check(self, _stamp: int) -> None:
         """Count publishers, ask the detectors and send the heartbeat."""
         self._count_publishers(next(self._in_turn))
+        self._look()
         self._look_at_leg()
         self._look_at_hand()
         if self.supervisor.check(self._now()):
@@ -196,6 +198,7 @@ class SupervisorNode(Node):
 
     def _on_command(self, sample: TextSample) -> None:
         self._count_publishers(*BESIDE)
+        self._look()
         try:
             self.supervisor.command(sample.text, self._now())
             self._refused = None

@@ -77,22 +77,15 @@ class Composition:
             offer(self._latched[topic.name])
         return offer
 
-    def keep_newest(self, topic: Topic, leave: Callable[[], None]) -> Callable[[], Any]:
-        """Return `take()`: the newest sample since the last call, or None."""
-        slot: deque[Any] = deque(maxlen=1)
+    def keep(self, topic: Topic, depth: int, leave: Callable[[], None]) -> deque[Any]:
+        """Return a queue of the newest samples, at most `depth`; who looks at its own pace empties it."""
+        queue: deque[Any] = deque(maxlen=depth)
         # First of all: the sample is there when another node's callback asks for it.
-        self.offers(topic.name).insert(0, slot.append)
+        self.offers(topic.name).insert(0, queue.append)
         self._leave.setdefault(topic.name, []).append(leave)
         if topic.name in self._latched:
-            slot.append(self._latched[topic.name])
-
-        def take() -> Any:
-            try:
-                return slot.pop()
-            except IndexError:
-                return None
-
-        return take
+            queue.append(self._latched[topic.name])
+        return queue
 
     def beside(self, name: str) -> Callable[[], bool]:
         """Return what tells whether somebody reads the topic from the ring."""

@@ -5,6 +5,7 @@ Such a node has its subscription all the same: it knows by it how many speak on 
 
 from __future__ import annotations
 
+from collections import deque
 from functools import cache
 
 from sher3_description.topics import TOPICS
@@ -15,28 +16,34 @@ _RANKS = {name: rank for rank, name in enumerate(TOPICS)}
 
 
 class Newest:
-    """The newest sample of each topic that somebody in this process looks at."""
+    """The newest samples of each topic that somebody in this process looks at."""
 
     def __init__(self) -> None:
         self._readers: list[Reader] = [ring.join(()) for ring in shared_rings()]
-        self._data: dict[int, bytes | None] = {}
+        self._queues: dict[int, deque[bytes]] = {}
 
-    def look_at(self, name: str) -> int:
-        """Keep the newest sample of a topic; return its rank."""
+    def look_at(self, name: str, depth: int) -> int:
+        """Keep the newest samples of a topic, at most `depth`; return its rank."""
         rank = _RANKS[name]
-        self._data[rank] = None
+        self._queues[rank] = deque(maxlen=depth)
         for reader in self._readers:
             reader.take_too(rank)
         return rank
 
-    def take(self, rank: int) -> bytes | None:
-        """Return the newest sample (CDR bytes) since the last call; None without one."""
-        kept = self._data
+    def offers(self, rank: int) -> bool:
+        """Whether a topic comes by a ring."""
+        return any(reader.ring.offers(rank) for reader in self._readers)
+
+    def take(self, rank: int) -> list[bytes]:
+        """Return the samples (CDR bytes) since the last call, the oldest first."""
+        queues = self._queues
         for reader in self._readers:
             if reader.ring.offers(rank):
-                kept.update({number: data for number, _, data in reader.read(kept)})
-        newest, kept[rank] = kept[rank], None
-        return newest
+                for number, _, data in reader.read(queues):
+                    queues[number].append(data)
+        taken = list(queues[rank])
+        queues[rank].clear()
+        return taken
 
 
 @cache
