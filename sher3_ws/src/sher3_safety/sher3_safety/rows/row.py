@@ -58,7 +58,7 @@ PAUSED = State("paused", 0.0, 0.6, 0.0, 25e-6, operating=OperatingState.PAUSED)
 DISABLED = State("disabled", 0.0, 0.6, 0.0, 25e-6, operating=OperatingState.DISABLED)
 AIMING = State("aiming", 0.0, 0.0, 0.0, 25e-6, aim=15e-6)
 FIRM = State("firm", 0.5e-3, 1.0, 0.5 / 0.9, 25e-6)
-LIGHT = State("light", 0.5e-3, 0.6, 1.0, 60e-6, later=0.08)
+LIGHT = State("light", 0.5e-3, 0.6, 1.0, 140e-6, later=0.22)
 SIDEWAYS = State("sideways", 0.5e-3, 0.0, 1.0, 25e-6, across=0.6)
 FURTHER = (PAUSED, DISABLED, AIMING, FIRM, LIGHT, SIDEWAYS)
 """States for some rows only: held by the drives while motion is paused; without power; a position mode with an aim that
