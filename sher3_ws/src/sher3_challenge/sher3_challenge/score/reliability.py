@@ -62,5 +62,6 @@ def diagram(answers: Mapping[str, Sequence[Stated]], path: Path) -> None:
             for b in found:
                 axes.annotate(str(b.n), (b.stated, b.met), textcoords="offset points", xytext=(5, -9), fontsize=7)
     axes.set(xlim=(0, 1), ylim=(0, 1), xlabel="stated probability", ylabel="share that was right")
-    axes.legend(loc="lower right", fontsize=8)
+    if any(answers.values()):
+        axes.legend(loc="lower right", fontsize=8)
     figure.savefig(path, dpi=120)
