@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from sher3_diagnosis import diagnose
 from sher3_machines import MachineError
-from sher3_machines.axes.health import dead_channels
+from sher3_machines.axes.readings.wrong import wrong_readings
 from sher3_machines.axes.record import AxesRun
 from slides import axis_of, columns, machine
 
@@ -83,6 +83,6 @@ def _acceleration(size, pace, phase, t=T):
 
 def test_another_scale_is_named_and_no_lead_error():
     run = AxesRun("run", PERIOD, {"slide": {"position": moved(T), "load": 0.5 * moved(T)}})
-    assert "moves 0.5 times as far" in dead_channels(run, axis_of(**LOADED))["load"]
+    assert "moves 0.5 times as far" in wrong_readings(run, axis_of(**LOADED))["load"]
     with pytest.raises(MachineError, match=r"moves 0.5 times as far"):
         verdict_of(0.5 * moved(T))
