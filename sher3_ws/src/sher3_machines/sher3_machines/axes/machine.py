@@ -20,7 +20,7 @@ from sher3_effects import library, pages
 from sher3_effects.friction.viscous_friction import ViscousOnAxis
 
 from sher3_machines.axes.description import AxesDescription, Axis, Gravity
-from sher3_machines.axes.evidence import AxisEvidence, gather_axis
+from sher3_machines.axes.evidence import AxisEvidence, gather_axis, levels_of
 from sher3_machines.axes.identification.fast import requantified, with_unseen
 from sher3_machines.axes.identification.refine import refine_free
 from sher3_machines.axes.identification.search import causes_of_axis
@@ -164,7 +164,8 @@ def nothing_judged(parts: Sequence[AxisEvidence], runs: Sequence[AxesRun]) -> Ma
     said = []
     for part in parts:
         dead = [what for run in runs for what in wrong_readings(run, part.axis).values()]
-        said.append(part.untold or (dead[0] if dead else f"{part.axis.name}: {missing(part)}"))
+        flat = levels_of([view.run for view in part.records], part.axis)
+        said.append("; ".join([*flat[:1], part.untold or (dead[0] if dead else f"{part.axis.name}: {missing(part)}")]))
     remedy = "record the reference of a servo, the effort of a driven axis, or a second encoder"
     return MachineError(f"no axis can be judged: {'; '.join(said[:3])}", value=f"{len(parts)} axes", remedy=remedy)
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 from sher3_diagnosis.channel import Array, Mask
 
-from sher3_machines.axes.limits import longest
 from sher3_machines.thresholds import LONGEST, PINNED
 
 STEPS = 0.5
@@ -34,3 +33,9 @@ def level_note(what: str, at: Mask) -> str:
         f"{what} lies flat at its largest reading in {at.mean():.0%} of the samples: its reading or the drive is at a "
         "limit; these samples are not judged"
     )
+
+
+def longest(mask: Mask) -> int:
+    """Return the largest number of samples in a row for which a mask (n,) holds."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], mask.astype(int), [0]])))
+    return int((edges[1::2] - edges[::2]).max()) if len(edges) else 0
