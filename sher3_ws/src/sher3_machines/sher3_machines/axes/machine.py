@@ -97,7 +97,7 @@ class Axes(Machine[AxesRun, AxisEvidence]):
         """Look for drives at their limit."""
         if LIMIT in without:
             return []
-        found = (limit_finding(runs, axis) for axis in self.description.axes)
+        found = (limit_finding(part.runs, part.axis) for part in evidence)
         return [limit for limit in found if limit is not None]
 
     def attribute(self, evidence: AxisEvidence, candidates: Candidates, left_over: Left, say: Say) -> Attribution:
@@ -166,7 +166,9 @@ def nothing_judged(parts: Sequence[AxisEvidence], runs: Sequence[AxesRun]) -> Ma
         dead = [what for run in runs for what in wrong_readings(run, part.axis).values()]
         flat = levels_of([view.run for view in part.records], part.axis)
         said.append("; ".join([*flat[:1], part.untold or (dead[0] if dead else f"{part.axis.name}: {missing(part)}")]))
-    remedy = "record the reference of a servo, the effort of a driven axis, or a second encoder"
+    remedy = (
+        "correct what is named, or record the reference of a servo, the effort of a driven axis, or a second encoder"
+    )
     return MachineError(f"no axis can be judged: {'; '.join(said[:3])}", value=f"{len(parts)} axes", remedy=remedy)
 
 
