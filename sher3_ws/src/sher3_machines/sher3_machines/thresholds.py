@@ -102,6 +102,11 @@ SLIPPED = 5.0
 """Factor between an effort and what the model needs, either way, from which its unit is wrong: drives are off by less.
 Set by that argument. Measured as `DELAYED`."""
 
+HEAVIEST = 20.0
+"""The same factor upwards on a single axis: a payload scales all that is known of it, and drives move no twenty times
+their own mass. Set by that argument.
+Measure: `pytest sher3_ws/src/sher3_machines/test/axes/test_effort_in_units.py`."""
+
 SURELY = 50.0
 """Standard errors that such a factor must have: a payload on a light joint fits one too, badly. Measured as `DELAYED`:
 18 with 5 standard errors for a payload of 2 kg on the last joint of an arm, 1000 with thousands for a wrong unit."""

@@ -25,7 +25,6 @@ class PositionFriction(Page):
 
     id, family, stage = "position_friction", "friction", "motor_mechanics"
     inputs = ("direction", "position")
-    kinds = ("robot", "axis")
     needs = ("lead",)
     best = Best("reversals", "reversals of several amplitudes and speeds separate friction laws")
     extends = ("coulomb_friction",)
@@ -70,6 +69,16 @@ class PositionFriction(Page):
         """Return the wavelength as periods per motor revolution."""
         lead = robot.actuators[ACTUATORS.index(actuator)].lead
         return [Part(self.id, actuator, {**values, "periods_per_rev": lead / values["wavelength"]})]
+
+
+class PositionFrictionOnAxis(PositionFriction):
+    """The same on one axis of any machine, whose friction nowhere pushes."""
+
+    kinds = ("axis",)
+
+    def admissible(self, shape: Shape, coefficients: Array) -> bool:
+        """Return whether friction resists on the whole, and its variation is a marked one."""
+        return bool(coefficients[0] > 0.0) and super().admissible(shape, coefficients)
 
 
 @dataclass(frozen=True)

@@ -75,14 +75,18 @@ class MassOnAxis(PayloadMass):
     on_axis = {"mass": "inertia"}
 
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
-        """Return one shape: there is nothing to search."""
-        return [{}]
+        """Return one shape: it holds the stated mass, kg or kg m^2, which bounds what may be missing."""
+        return [{"stated": min(view.axis(site).mass for view in views)}]
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
         """Return one column: the acceleration."""
         return Signature(
             {Channel(self.stage, site): column(view.run.to_grid(view.run.acceleration)[:, view.row(site)])}
         )
+
+    def admissible(self, shape: Shape, coefficients: Array) -> bool:
+        """Return whether a mass is left: none is below zero."""
+        return bool(shape["stated"] + coefficients[0] > 0.0)
 
     def unlikely(self, shape: Shape, coefficients: Array) -> bool:
         """Return False: a description may state too large a mass as well as too small a one."""

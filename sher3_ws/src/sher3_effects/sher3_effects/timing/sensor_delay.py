@@ -41,6 +41,8 @@ class SensorDelay(Page):
     """Share of a searched delay that its coefficient may add; a finer delay is searched for what lies beyond."""
     UNSAID = 2.0
     """Delay of an effort, in periods, from which it is searched: within one period nobody states its moment."""
+    LEAST = 1.0
+    """Delay of an effort, in periods, that is one: what is less is the shape of a friction at a reversal."""
     UNSEEN = 0.1
     """The same in periods of the cut-off: what a noisy encoder does to the moment of a reversal."""
     LONGEST = 0.25
@@ -51,12 +53,15 @@ class SensorDelay(Page):
         return (Channel("transmission", site), Channel("motor_mechanics", site))
 
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
-        """Return delays of the load encoder (0) and of the effort (1), s."""
+        """Return delays of the load encoder (0) and of the effort (1), s, and the least that is one."""
         row, run = views[0].row(site), views[0].run
         late = [s * n * run.period for n in self.PERIODS for s in (1.0, -1.0) if n * run.period <= self.LONGEST]
         which = [float(k) for k, x in enumerate((run.load, run.effort)) if x is not None and np.any(x[:, row])]
         unsaid = max(self.UNSAID * run.period, self.UNSEEN / run.bandwidth)
-        return [{"delay": t, "of_effort": k} for k in which for t in late if not k or abs(t) >= unsaid]
+        least = self.LEAST * run.period
+        return [
+            {"delay": t, "of_effort": k, "least": k * least} for k in which for t in late if not k or abs(t) >= unsaid
+        ]
 
     def refine(self, shape: Shape) -> list[Shape]:
         """Return neighbours of a delay; which reading is late has none."""
@@ -83,8 +88,12 @@ class SensorDelay(Page):
         return {name: shape["delay"] + float(coefficients[0])}
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether the coefficient takes up a rest: neither most of the delay, nor more than another one."""
-        return bool(self.REST[0] < coefficients[0] / shape["delay"] < self.REST[1])
+        """Return whether the coefficient takes up a rest, neither most of the delay nor more than another one.
+
+        What it leaves must be no less than the least that is a delay.
+        """
+        whole = abs(shape["delay"] + float(coefficients[0]))
+        return bool(self.REST[0] < coefficients[0] / shape["delay"] < self.REST[1] and whole >= shape["least"])
 
 
 def shifted(x: Array, clock: Array, delay: float) -> Array:

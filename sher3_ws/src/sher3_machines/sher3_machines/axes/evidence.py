@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from sher3_diagnosis.channel import Channel, Residual, Residuals
@@ -17,6 +17,9 @@ from sher3_machines.axes.description import Axis
 from sher3_machines.axes.floors import floors_of
 from sher3_machines.axes.identification.align import aligned
 from sher3_machines.axes.identification.identify import identify_mass, load_mass_of, share_of_inertia
+from sher3_machines.axes.readings.level import level_note
+from sher3_machines.axes.readings.scale import slip_of
+from sher3_machines.axes.readings.wrong import without_effort
 from sher3_machines.axes.record import AxesRun
 from sher3_machines.axes.signals import AxisSignals, signals_of
 from sher3_machines.axes.view import AxisView
@@ -63,9 +66,14 @@ class ZeroOfEncoders(Effect):
 def gather_axis(runs: Sequence[AxesRun], axis: Axis, repeats: bool) -> AxisEvidence:
     """Compute residuals and floors of one axis and cut them into blocks."""
     signals: Sequence[AxisSignals] = [signals_of(run, axis, "repeats" if repeats else run.name) for run in runs]
+    slip = slip_of(signals, axis) or ""
+    if slip:
+        runs = [without_effort(run, axis) for run in runs]
+        signals = [replace(s, effort=None) for s in signals]
     signals, notes = aligned(signals, axis)
+    notes = [*levels_of(signals, axis), *notes]
     mass, interval = (axis.mass, None) if isinstance(axis.mass, float) else (0.0, None)
-    untold, load_mass = "", 0.0
+    untold, load_mass = slip, 0.0
     if axis.mass == "unknown" and all(s.effort is not None for s in signals):
         try:
             load_mass = load_mass_of([AxisView(s, axis, 0.0) for s in signals])
@@ -98,6 +106,11 @@ def gather_axis(runs: Sequence[AxesRun], axis: Axis, repeats: bool) -> AxisEvide
         untold=untold,
         notes=notes,
     )
+
+
+def levels_of(signals: Sequence[AxisSignals], axis: Axis) -> list[str]:
+    """Return a sentence for each record whose effort lies flat at its largest reading."""
+    return [level_note(f"{s.name}: {axis.name}.effort", s.limited) for s in signals if s.limited is not None]
 
 
 def _judged(found: Residuals, untold: str) -> Residuals:

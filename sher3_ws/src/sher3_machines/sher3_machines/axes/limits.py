@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from sher3_diagnosis.channel import Array, Mask
+from sher3_diagnosis.channel import Array
 from sher3_diagnosis.finding import ExactFinding
 from sher3_diagnosis.quantify.closure import interval_of
 from sher3_diagnosis.thresholds import MIN_RUNS
@@ -20,6 +20,7 @@ from sher3_effects.limit.force_saturation import ForceSaturation
 
 from sher3_machines.axes.description import Axis
 from sher3_machines.axes.floors import UNIFORM
+from sher3_machines.axes.readings.level import longest
 from sher3_machines.axes.record import AxesRun
 from sher3_machines.axes.signals import signals_of
 from sher3_machines.thresholds import BLOCKS, FLAT, LIMIT_UNCERTAINTY, LONGEST, PINNED
@@ -126,9 +127,3 @@ def needed_force(run: AxesRun, axis: Axis) -> Array:
     way = np.linspace(0.0, 1.0, ON_THE_WAY)[:, None] * (goal - q) + q
     weight = gravity.constant + gravity.arm * np.sin(way - gravity.hanging)
     return np.asarray(np.take_along_axis(weight, np.abs(weight).argmax(axis=0)[None], 0)[0])
-
-
-def longest(mask: Mask) -> int:
-    """Return the largest number of samples in a row for which a mask (n,) holds."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], mask.astype(int), [0]])))
-    return int((edges[1::2] - edges[::2]).max()) if len(edges) else 0

@@ -20,8 +20,7 @@ from sher3_effects import library, pages
 from sher3_effects.friction.viscous_friction import ViscousOnAxis
 
 from sher3_machines.axes.description import AxesDescription, Axis, Gravity
-from sher3_machines.axes.evidence import AxisEvidence, gather_axis
-from sher3_machines.axes.health import dead_channels, without_dead
+from sher3_machines.axes.evidence import AxisEvidence, gather_axis, levels_of
 from sher3_machines.axes.identification.fast import requantified, with_unseen
 from sher3_machines.axes.identification.refine import refine_free
 from sher3_machines.axes.identification.search import causes_of_axis
@@ -29,6 +28,7 @@ from sher3_machines.axes.limits import EFFECT as LIMIT
 from sher3_machines.axes.limits import limit_finding
 from sher3_machines.axes.quantities.bounds import within_bounds
 from sher3_machines.axes.quantities.own_unit import in_own_unit, own_unit_note, renamed
+from sher3_machines.axes.readings.wrong import without_wrong, wrong_readings
 from sher3_machines.axes.record import AxesRun
 from sher3_machines.axes.replay import replay
 from sher3_machines.contrast.changes import change_notes, contrasted, of_runs
@@ -74,14 +74,14 @@ class Axes(Machine[AxesRun, AxisEvidence]):
         """Return what was done to the data, and whether floors are known from repeats."""
         notes = [note for run in runs for note in run.notes] + told_together(self._conditions(runs))
         for run in runs:
-            notes += [said for axis in self.description.axes for said in dead_channels(run, axis).values()]
+            notes += [said for axis in self.description.axes for said in wrong_readings(run, axis).values()]
         return notes if self._repeats(runs) else [*notes, NO_REPEATS]
 
     def gather(self, runs: Sequence[AxesRun]) -> Sequence[AxisEvidence]:
         """Compute residuals and floors of every axis; raises MachineError where an unknown mass cannot be found."""
         parts = []
         for axis in self.description.axes:
-            heard = [without_dead(run, axis) for run in runs]
+            heard = [without_wrong(run, axis) for run in runs]
             if all("position" in run.signals[axis.name] for run in heard):
                 parts.append(gather_axis(heard, axis, self._repeats(runs)))
         if not parts:
@@ -97,7 +97,7 @@ class Axes(Machine[AxesRun, AxisEvidence]):
         """Look for drives at their limit."""
         if LIMIT in without:
             return []
-        found = (limit_finding(runs, axis) for axis in self.description.axes)
+        found = (limit_finding(part.runs, part.axis) for part in evidence)
         return [limit for limit in found if limit is not None]
 
     def attribute(self, evidence: AxisEvidence, candidates: Candidates, left_over: Left, say: Say) -> Attribution:
@@ -163,9 +163,12 @@ def nothing_judged(parts: Sequence[AxisEvidence], runs: Sequence[AxesRun]) -> Ma
     """Return the refusal of records in which there is nothing to compare, with what each axis lacks."""
     said = []
     for part in parts:
-        dead = [what for run in runs for what in dead_channels(run, part.axis).values()]
-        said.append(part.untold or (dead[0] if dead else f"{part.axis.name}: {missing(part)}"))
-    remedy = "record the reference of a servo, the effort of a driven axis, or a second encoder"
+        dead = [what for run in runs for what in wrong_readings(run, part.axis).values()]
+        flat = levels_of([view.run for view in part.records], part.axis)
+        said.append("; ".join([*flat[:1], part.untold or (dead[0] if dead else f"{part.axis.name}: {missing(part)}")]))
+    remedy = (
+        "correct what is named, or record the reference of a servo, the effort of a driven axis, or a second encoder"
+    )
     return MachineError(f"no axis can be judged: {'; '.join(said[:3])}", value=f"{len(parts)} axes", remedy=remedy)
 
 

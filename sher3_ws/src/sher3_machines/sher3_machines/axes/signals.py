@@ -12,6 +12,7 @@ from sher3_diagnosis.filter import BANDWIDTH, DECIMATED_RATE, EDGE, SHORT, low_p
 
 from sher3_machines.axes.description import Axis
 from sher3_machines.axes.identification.noise import cut_off
+from sher3_machines.axes.readings.level import at_a_level
 from sher3_machines.axes.record import AxesRun
 
 NYQUIST_SHARE = 0.4
@@ -35,6 +36,7 @@ class AxisSignals:
         applied: known force from outside, positive along the motion.
         temperature: of the axis, deg C.
         bandwidth: cut-off of the low-pass, Hz.
+        limited: (n,) True where the measured force lies flat at its largest reading, which the command does not ask.
     """
 
     name: str
@@ -49,6 +51,7 @@ class AxisSignals:
     applied: Array | None = None
     temperature: Array | None = None
     bandwidth: float = BANDWIDTH
+    limited: Mask | None = None
 
     @property
     def ticks(self) -> int:
@@ -141,6 +144,7 @@ def signals_of(run: AxesRun, axis: Axis, excitation: str) -> AxisSignals:
         nominal=_nominal(found),
         applied=found.get("applied"),
         temperature=found.get("temperature"),
+        limited=None if axis.servo or axis.free else limited_by_reading(run.signals[axis.name]),
         bandwidth=most if axis.servo or axis.mass is None else cut_off(found["position"][:, 0], run.period, most),
     )
 
@@ -159,6 +163,19 @@ def _nominal(found: dict[str, Array]) -> Array | None:
     """The force (n, 1) that the user's model asks of the drive, which need not give what is applied from outside."""
     parts = [sign * found[name] for name, sign in (("nominal_effort", 1.0), ("applied", -1.0)) if name in found]
     return np.sum(parts, axis=0) if parts else None
+
+
+def limited_by_reading(found: dict[str, Array]) -> Mask | None:
+    """Return (n,) True where an effort is at a level; not where its command is, too: it is then what the drive gives.
+
+    None where there is no effort, or none of it is at a level.
+    """
+    if "effort" not in found:
+        return None
+    at = at_a_level(found["effort"])
+    if "command" in found:
+        at &= ~at_a_level(found["command"])
+    return at if at.any() else None
 
 
 def held_mean(command: Array) -> Array:

@@ -188,7 +188,9 @@ class AxisView:
     @cached_property
     def in_motion(self) -> Mask:
         """(g,) True where the force balance can be judged: well inside a stretch of motion."""
-        inside = self.run.inner & self.released & settled(self.moving, 1)
+        limited = self.run.limited
+        told = self.moving if limited is None else self.moving & ~limited[self.run.grid]
+        inside = self.run.inner & self.released & settled(told, 1)
         clear = inside & self.clear
         return clear if clear.sum() >= ENOUGH * inside.sum() and not self.described.free else inside
 

@@ -12,10 +12,11 @@ from sher3_diagnosis.fit.whitened import Whitened
 
 from sher3_machines.axes.evidence import blocks_of
 from sher3_machines.axes.quantities.own_unit import RECORDED
+from sher3_machines.axes.readings.share import Share
 from sher3_machines.axes.record import AxesRun
 from sher3_machines.errors import MachineError
 from sher3_machines.manipulator.description import PER_RUN, ManipulatorDescription
-from sher3_machines.manipulator.gains import Share, share_of
+from sher3_machines.manipulator.gains import share_of
 from sher3_machines.manipulator.identify import with_identified_inertias
 from sher3_machines.manipulator.model import ArmModel
 from sher3_machines.manipulator.readings.encoders import links_of

@@ -18,11 +18,11 @@ from sher3_effects.inertia.payload_mass import PayloadOnLink
 from sher3_effects.scale.torque_constant import TorqueConstant
 from sher3_effects.timing.sensor_delay import SensorDelay
 
-from sher3_machines.axes.health import dead_channels
 from sher3_machines.axes.identification.fast import requantified
 from sher3_machines.axes.machine import NO_REPEATS
 from sher3_machines.axes.quantities.bounds import within_bounds
 from sher3_machines.axes.quantities.own_unit import RECORDED, in_own_unit
+from sher3_machines.axes.readings.wrong import wrong_readings
 from sher3_machines.axes.record import AxesRun
 from sher3_machines.contrast.changes import change_notes, contrasted, of_runs
 from sher3_machines.contrast.conditions import Condition, conditions_of, reference_runs, told_together
@@ -32,7 +32,7 @@ from sher3_machines.manipulator.description import ManipulatorDescription
 from sher3_machines.manipulator.evidence import ArmMotionEvidence, gather_arm_motion
 from sher3_machines.manipulator.model import ArmModel
 from sher3_machines.manipulator.readings.lateness import late_efforts
-from sher3_machines.manipulator.readings.wrong import level_notes, wrong_readings
+from sher3_machines.manipulator.readings.wrong import level_notes
 
 if TYPE_CHECKING:
     from sher3_machines.manipulator.reporter import ManipulatorReporter
@@ -84,7 +84,7 @@ class Manipulator(Machine[AxesRun, ArmMotionEvidence]):
             j.name
             for j in self.described.joints
             for run in runs
-            if {"effort", "position"} & dead_channels(run, j).keys()
+            if {"effort", "position"} & wrong_readings(run, j).keys()
         }
         judged = [j.name for j in self.described.joints if j.name not in dead and j.driven]
         return [gather_arm_motion(runs, self.described, self.model, judged)]

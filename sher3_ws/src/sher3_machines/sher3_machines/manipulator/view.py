@@ -12,12 +12,12 @@ from sher3_diagnosis.filter import settled
 from sher3_effects.operators import dahl
 from sher3_effects.view import NominalAxis
 
+from sher3_machines.axes.readings.level import at_a_level
 from sher3_machines.axes.signals import AxisSignals
 from sher3_machines.axes.view import LEAD_OF_STROKE, SLIP, STILL, Loads
 from sher3_machines.manipulator.description import Joint
 from sher3_machines.manipulator.model import PARAMETERS, ArmModel
 from sher3_machines.manipulator.readings.encoders import crossing
-from sher3_machines.manipulator.readings.wrong import at_a_level
 from sher3_machines.manipulator.signals import JointSignals
 
 AROUND_IMPACT = 2

@@ -94,7 +94,7 @@ WRONG = {
     "half": (0.5 * SWING, "swing.load moves 0.5 times as far"),
     "backwards": (-SWING, "swing.load moves -1 times as far"),
     "degrees": (np.degrees(SWING), "swing.load moves 57.3 times as far"),
-    "flat": (np.minimum(SWING, 0.2), "swing.load stays at one reading while the joint moves over"),
+    "flat": (np.minimum(SWING, 0.2), "swing.load stays at one reading while the axis moves over"),
 }
 
 

@@ -8,9 +8,14 @@ from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.verdict import Cause, Parameter
 
 NEVER_BELOW_ZERO = frozenset(
-    {"displacement", "static", "stribeck_velocity", "width", "stiffness", "compliance", "time_constant", "frequency"}
+    {
+        *("displacement", "static", "stribeck_velocity", "width", "stiffness", "compliance", "time_constant"),
+        *("frequency", "inertia", "mass", "load_friction", "limit"),
+    }
 )
-"""Parameters of any effect that have no sign."""
+"""Parameters of any effect that have no sign; a mass beside a stated one may be less, see `SIGNED`."""
+SIGNED = frozenset({("payload_mass", "mass"), ("tool_gravity", "mass")})
+"""What is added to a stated value, which its page bounds by that."""
 FRICTION = "friction"
 """Family whose forces resist."""
 
@@ -28,11 +33,19 @@ def within_bounds(causes: Sequence[Cause], effects: Sequence[Effect]) -> list[Ca
     ]
 
 
+def least_of(effect: Effect, name: str) -> float | None:
+    """Return the smallest value of a parameter that is physically possible; None where it may have any sign."""
+    return effect.bounds[name][0] if name in effect.bounds else _least(effect.id, effect.family, name)
+
+
+def _least(effect: str, family: str, name: str) -> float | None:
+    resists = family == FRICTION and name in ("force", "share")
+    return 0.0 if (name in NEVER_BELOW_ZERO and (effect, name) not in SIGNED) or resists else None
+
+
 def _cut(cause: Cause, name: str, p: Parameter, stated: dict) -> Parameter:
     """Return a parameter with its interval cut; that of a change between conditions may have any sign."""
-    resists = cause.family == FRICTION and name == "force"
-    least = 0.0 if name in NEVER_BELOW_ZERO or resists else None
-    low, high = stated.get(cause.effect, {}).get(name, (least, None))
+    low, high = stated.get(cause.effect, {}).get(name, (_least(cause.effect, cause.family, name), None))
     if cause.condition is not None or p.low is None or p.high is None:
         return p
     found = {"low": p.low if low is None else max(p.low, low), "high": p.high if high is None else min(p.high, high)}

@@ -1,4 +1,4 @@
-"""Channels that say nothing or in a wrong scale: an encoder that reads 0.0, an effort that stays at one value.
+"""Channels that say nothing, fall silent or are in a wrong scale: an encoder that reads 0.0, an effort of one value.
 
 A channel that is not connected must not become a cause. It is named and left out; the other channels are judged.
 """
@@ -6,6 +6,8 @@ A channel that is not connected must not become a cause. It is named and left ou
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 from sher3_diagnosis.channel import Array, Mask
@@ -13,18 +15,20 @@ from sher3_diagnosis.channel import Array, Mask
 from sher3_machines.axes.description import Axis
 from sher3_machines.axes.quantities.units import COUNTS_MOVED
 from sher3_machines.axes.record import AxesRun
-from sher3_machines.thresholds import ALIKE, DEAD, FOLLOWS, SCALED
+from sher3_machines.thresholds import ALIKE, DEAD, FOLLOWS, LONGEST, SCALED, STAYS
 
 ANSWERS = ("effort", "load")
 """Signals that must change while the axis moves; a reference or a command may well be constant."""
 OTHERS = ("reference", "load")
 """Signals whose motion shows that a position that does not move is dead."""
+HALF = 0.5
+"""Share of the travel from which a load that rests is no play's, however the motor went before."""
 AT_THE_END = 0.9
 """Share of its largest reading above which a constant reading is a limit and no dead channel."""
 
 
-def dead_channels(run: AxesRun, axis: Axis) -> Mapping[str, str]:
-    """Return the signals of an axis that say nothing, each with a sentence that names it."""
+def wrong_readings(run: AxesRun, axis: Axis) -> Mapping[str, str]:
+    """Return the signals of an axis that are wrong in themselves, each with a sentence that names it."""
     found = run.signals[axis.name]
     position, out = found["position"], {}
     travel = float(np.ptp(position))
@@ -46,6 +50,7 @@ def dead_channels(run: AxesRun, axis: Axis) -> Mapping[str, str]:
             if what is None and name == "load" and np.ptp(found[name]) < FOLLOWS * travel:
                 what = f"moves by {np.ptp(found[name]):.3g} while the axis moves by {travel:.3g}: a dead channel"
             what = wrong_scale(found[name], position) if what is None and name == "load" else what
+            what = flat(found[name], position) if what is None and name == "load" else what
             if what is not None:
                 out[name] = _sentence(run, axis, name, what, "it is left out")
     return out
@@ -72,13 +77,48 @@ def wrong_scale(load: Array, position: Array) -> str | None:
     return f"moves {ratio:.4g} times as far as the axis: state its `factor`"
 
 
-def without_dead(run: AxesRun, axis: Axis) -> AxesRun:
-    """Return the run without the dead signals of an axis."""
-    dead = dead_channels(run, axis)
-    if not dead:
+def flat(load: Array, position: Array) -> str | None:
+    """Return over how much of the travel a second encoder stays at one reading, (n,) each; None where it does not."""
+    share = stays_over(load, position)
+    return f"stays at one reading while the axis moves over {share:.0%} of its travel: flat" if share > STAYS else None
+
+
+def stays_over(load: Array, position: Array) -> float:
+    """Return the share of an axis' travel over which a second encoder stays at one reading, (n,) each.
+
+    Behind a play or at a reversal the load rests too, but only after the motor has turned round. A motor that goes on
+    the way it went does not leave its load: only what it does so counts, or what is beyond half of the travel.
+    """
+    travel, most = max(float(np.ptp(position)), np.finfo(float).tiny), 0.0
+    for first, last in stays(load):
+        stay = position[first:last]
+        before = np.flatnonzero(position[:first] != position[first])
+        way = float(np.sign(position[first] - position[before[-1]])) if len(before) else 0.0
+        onward, whole = float(np.max(way * (stay - stay[0]))) / travel, float(np.ptp(stay)) / travel
+        if onward > STAYS or whole > HALF:
+            most = max(most, whole)
+    return most
+
+
+def stays(x: Array) -> list[tuple[int, int]]:
+    """Return the first sample of every long stretch at one reading, and the first sample after it."""
+    edges = np.concatenate([[0], np.flatnonzero(np.diff(x) != 0.0) + 1, [len(x)]])
+    return [(int(a), int(b)) for a, b in pairwise(edges) if b - a >= LONGEST]
+
+
+def without_wrong(run: AxesRun, axis: Axis) -> AxesRun:
+    """Return the run without the wrong signals of an axis."""
+    wrong = wrong_readings(run, axis)
+    if not wrong:
         return run
-    kept = {k: x for k, x in run.signals[axis.name].items() if k not in dead}
+    kept = {k: x for k, x in run.signals[axis.name].items() if k not in wrong}
     return AxesRun(run.name, run.period, {**run.signals, axis.name: kept}, run.notes)
+
+
+def without_effort(run: AxesRun, axis: Axis) -> AxesRun:
+    """Return the run without the effort of an axis."""
+    kept = {k: x for k, x in run.signals[axis.name].items() if k != "effort"}
+    return replace(run, signals={**run.signals, axis.name: kept})
 
 
 def _sentence(run: AxesRun, axis: Axis, signal: str, what: str, so: str) -> str:
