@@ -40,9 +40,9 @@ class SensorDelay(Page):
     REST = (-0.5, 1.0)
     """Share of a searched delay that its coefficient may add; a finer delay is searched for what lies beyond."""
     UNSAID = 2.0
-    """Delay of an effort, in periods, from which it is searched: within one period nobody states its moment."""
+    """Delay of an effort, in periods, from which it is searched where nobody states its moment within one period."""
     LEAST = 1.0
-    """Delay of an effort, in periods, that is one: what is less is the shape of a friction at a reversal."""
+    """The same, that is one: what is less is the shape of a friction at a reversal."""
     UNSEEN = 0.1
     """The same in periods of the cut-off: what a noisy encoder does to the moment of a reversal."""
     LONGEST = 0.25
@@ -57,8 +57,8 @@ class SensorDelay(Page):
         row, run = views[0].row(site), views[0].run
         late = [s * n * run.period for n in self.PERIODS for s in (1.0, -1.0) if n * run.period <= self.LONGEST]
         which = [float(k) for k, x in enumerate((run.load, run.effort)) if x is not None and np.any(x[:, row])]
-        unsaid = max(self.UNSAID * run.period, self.UNSEEN / run.bandwidth)
-        least = self.LEAST * run.period
+        unsaid = run.UNSTATED * max(self.UNSAID * run.period, self.UNSEEN / run.bandwidth)
+        least = run.UNSTATED * self.LEAST * run.period
         return [
             {"delay": t, "of_effort": k, "least": k * least} for k in which for t in late if not k or abs(t) >= unsaid
         ]

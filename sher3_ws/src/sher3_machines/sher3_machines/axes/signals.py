@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,7 +38,10 @@ class AxisSignals:
         temperature: of the axis, deg C.
         bandwidth: cut-off of the low-pass, Hz.
         limited: (n,) True where the measured force lies flat at its largest reading, which the command does not ask.
+        UNSTATED: periods within which nobody states the moment of an effort; it is put right before anything is judged.
     """
+
+    UNSTATED: ClassVar[float] = 1.0
 
     name: str
     excitation: str

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import ClassVar
 
 import numpy as np
 from sher3_diagnosis.channel import Array
@@ -15,6 +16,8 @@ from sher3_machines.manipulator.description import ManipulatorDescription
 
 class JointSignals(AxisSignals):
     """Signals of one axis, with a column for each joint; `load` is NaN where a joint has no second encoder."""
+
+    UNSTATED: ClassVar[float] = 0.0
 
 
 def joint_signals(run: AxesRun, described: ManipulatorDescription, excitation: str) -> JointSignals:
