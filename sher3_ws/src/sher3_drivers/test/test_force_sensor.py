@@ -57,9 +57,22 @@ def test_no_reading_beyond_the_range_passes(wrench, status):
 
 
 def test_a_force_that_jumps_to_and_fro_is_no_hand():
-    """11 N either way at 125 Hz stays within the range; the third jump within 20 ms gives it away."""
+    """11 N either way at 125 Hz stays within the range; the third jump within 50 ms gives it away."""
     square = [WrenchRecord(with_component(2, 11.0 if k // 2 % 2 else -11.0), k) for k in range(12)]
     assert judge(*square)[:7] == [SensorFault.NONE] * 6 + [SensorFault.ABSURD]
+
+
+def test_a_sine_that_jumps_is_no_hand():
+    sine = [WrenchRecord(with_component(0, 11.5 * math.sin(2.0 * math.pi * 25.0 * 0.002 * k)), k) for k in range(40)]
+    assert SensorFault.ABSURD in judge(*sine)
+
+
+def test_a_firm_push_that_is_turned_round_is_one_movement():
+    """5 N on the tip's lever, turned round within 24 ms, jumps in several records and in one direction."""
+    ramp = [0.8 * max(-1.0, 1.0 - k / 6.0) for k in range(40)]
+    turned = [WrenchRecord(tuple(share * rated for rated in LIMITS.rated), k) for k, share in enumerate(ramp)]
+    noisy = [r._replace(wrench=with_component(2, r.wrench[2] + 1e-3 * (r.sequence % 2))) for r in turned]
+    assert set(judge(*turned)[:18]) == {SensorFault.NONE} == set(judge(*noisy))
 
 
 def test_a_hit_on_the_tool_is_one_jump_or_two():

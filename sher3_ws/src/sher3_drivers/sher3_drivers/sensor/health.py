@@ -10,6 +10,7 @@ call a good sensor defective.
 from __future__ import annotations
 
 import math
+from collections import Counter
 from enum import Enum
 from typing import NamedTuple
 
@@ -48,8 +49,10 @@ class SensorLimits(NamedTuple):
         frozen: number of bit-identical readings in a row that make a frozen sensor, 1. The noise of the nominal sensor
             repeats all six components with a chance of about 2e-4 a sample: eight in a row do not occur in its life.
         jump: change of a component between two records that counts as a jump, as a share of the rated range: 3 N.
-        jumps: number of jumps within `span` records that no hand makes; a hit on the tool is one, or two.
-        span: number of records, 20 ms at 500 Hz.
+        jumps: number of jumps of one component within `span` records, each against the one before, that no hand makes.
+            A hit on the tool is two, up and down. A firm push that is turned round within 25 ms is one: it goes on in
+            one direction for several records.
+        span: number of records, 50 ms at 500 Hz: a sine that jumps at all, one of 20 Hz or more, turns twice in it.
     """
 
     rated: tuple[float, ...]
@@ -57,12 +60,20 @@ class SensorLimits(NamedTuple):
     frozen: int = 8
     jump: float = 0.25
     jumps: int = 3
-    span: int = 10
+    span: int = 25
 
     @classmethod
     def of(cls, sensor: ForceSensor) -> SensorLimits:
         """Return the limits of a sensor."""
         return cls((*sensor.range_force, *sensor.range_torque))
+
+
+class Jump(NamedTuple):
+    """A component that jumped: its index, whether it went up, and how many records ago."""
+
+    component: int
+    up: bool
+    age: int
 
 
 class SensorHealth(NamedTuple):
@@ -72,13 +83,13 @@ class SensorHealth(NamedTuple):
         last: newest record, None before the first.
         repeats: how often its wrench has repeated in a row.
         lost: number of records that never arrived.
-        jumped: how many records ago each of the newest jumps was, newest last.
+        jumped: the jumps of the newest `span` records that went against the one before, newest last.
     """
 
     last: WrenchRecord | None = None
     repeats: int = 0
     lost: int = 0
-    jumped: tuple[int, ...] = ()
+    jumped: tuple[Jump, ...] = ()
 
 
 def judge_record(
@@ -102,16 +113,14 @@ def judge_record(
     lost = health.lost
     if last is not None and in_order:
         lost += _steps(record.sequence, last.sequence) - record.drained
-    jumped = tuple([age + 1 for age in health.jumped if age + 1 < limits.span])
-    if last is not None and _jumps(record.wrench, last.wrench, limits):
-        jumped += (0,)
+    jumped = health.jumped if last is None else _turns(health.jumped, record.wrench, last.wrench, limits)
     health = SensorHealth(record, repeats, lost, jumped)
     if record.status:
         return health, SensorFault.DEVICE
     magnitude = _magnitude_fault(record.wrench, limits)
     if magnitude is not SensorFault.NONE:
         return health, magnitude
-    if len(jumped) >= limits.jumps:
+    if len(jumped) >= limits.jumps and _to_and_fro(jumped) >= limits.jumps:
         return health, SensorFault.ABSURD
     if repeats + 1 >= limits.frozen:
         return health, SensorFault.FROZEN
@@ -130,11 +139,27 @@ def _magnitude_fault(wrench: Wrench, limits: SensorLimits) -> SensorFault:
     return SensorFault.SATURATED if share >= 1.0 else SensorFault.NONE
 
 
-def _jumps(wrench: Wrench, last: Wrench, limits: SensorLimits) -> bool:
-    """Return whether a component of the wrench has jumped; what is not finite is judged elsewhere."""
-    return any(
-        [abs(new - old) > limits.jump * rated for new, old, rated in zip(wrench, last, limits.rated, strict=True)]
-    )
+def _turns(jumped: tuple[Jump, ...], wrench: Wrench, last: Wrench, limits: SensorLimits) -> tuple[Jump, ...]:
+    """Return the jumps to remember; one in the direction of the one before is the same movement, and not counted.
+
+    What is not finite is judged elsewhere.
+    """
+    if jumped:
+        jumped = tuple([jump._replace(age=jump.age + 1) for jump in jumped if jump.age + 1 < limits.span])
+    steps = [(new - old) / rated for new, old, rated in zip(wrench, last, limits.rated, strict=True)]
+    if max(steps) <= limits.jump and min(steps) >= -limits.jump:
+        return jumped
+    heading = {jump.component: jump.up for jump in jumped}
+    return jumped + tuple([
+        Jump(component, step > 0.0, 0)
+        for component, step in enumerate(steps)
+        if abs(step) > limits.jump and heading.get(component) is not (step > 0.0)
+    ])
+
+
+def _to_and_fro(jumped: tuple[Jump, ...]) -> int:
+    """Return the most jumps of one component."""
+    return max(Counter([jump.component for jump in jumped]).values())
 
 
 def sensor_readings(health: SensorHealth, limits: SensorLimits) -> list[tuple[str, str]]:
