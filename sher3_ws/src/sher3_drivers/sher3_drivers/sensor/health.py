@@ -150,11 +150,13 @@ def _turns(jumped: tuple[Jump, ...], wrench: Wrench, last: Wrench, limits: Senso
     if max(steps) <= limits.jump and min(steps) >= -limits.jump:
         return jumped
     heading = {jump.component: jump.up for jump in jumped}
-    return jumped + tuple([
-        Jump(component, step > 0.0, 0)
-        for component, step in enumerate(steps)
-        if abs(step) > limits.jump and heading.get(component) is not (step > 0.0)
-    ])
+    return jumped + tuple(
+        [
+            Jump(component, step > 0.0, 0)
+            for component, step in enumerate(steps)
+            if abs(step) > limits.jump and heading.get(component) is not (step > 0.0)
+        ]
+    )
 
 
 def _to_and_fro(jumped: tuple[Jump, ...]) -> int:
