@@ -69,7 +69,8 @@ class Terminal:
             timeout=self.limit,
             check=False,
         )
-        story = f"{command.line}\n{done.stdout[-3000:]}\n{done.stderr[-3000:]}"
+        said = "\n".join(log.read_text()[-2000:] for _, log in self.running)
+        story = f"{command.line}\n{done.stdout[-3000:]}\n{done.stderr[-3000:]}\nmeanwhile:\n{said}"
         assert done.returncode == command.exit_code, f"exit code {done.returncode}: {story}"
         assert "Traceback" not in done.stderr, story
 

@@ -31,13 +31,16 @@ DRIVES: dict[str, Any] = {
     "host_heartbeat_limit": 0.6,
     "drive_heartbeat_limit": 1.0,
     "missing_limit": 200,
+    "report_limit": 200,
     "stop_age": 300,
     "transition_limit": 2.0,
     "supervisor_limit": 0.6,
     "stall_limit": 0.5,
 }
-"""Overrides of `MotorDriverSettings` [s; ticks]; strict: 0.03, 0.2, 10, 50, 0.5, 0.03, 0.02. Zero velocity is still
-sent to the drives once a command is `zero_age` ticks old, and motion goes on with the next command."""
+"""Overrides of `MotorDriverSettings` [s; ticks]; strict: 0.03, 0.2, 10, 3, 50, 0.5, 0.03, 0.02.
+
+Reports of a drive that was held up come late and fail their check: they are dropped, as missing ones are. Zero velocity
+is still sent to the drives once a command is `zero_age` ticks old, and motion goes on with the next command."""
 
 BENCH: dict[str, Any] = {
     "encoder_distance": 5e-4,
