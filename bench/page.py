@@ -168,7 +168,7 @@ def start_rows(rounds: int) -> Iterator[Row]:
         value = median(seconds_to("-m", "sher3_cli", "gap", "diagnose", folder, "--no-report", "reading the bags")
                        for _ in range(rounds))  # fmt: skip
     numba = median(seconds_to("-c", "import numba; print('ready')", "ready") for _ in range(rounds))
-    yield Row("`sher3 gap diagnose` to the first case read [s]", value, 1.5, numba, "import numba")
+    yield Row("diagnosis, from the command to the first case read [s]", value, 1.5, numba, "import numba")
 
 
 def seconds_to(*words: str) -> float:
