@@ -108,7 +108,8 @@ class SupervisorNode(Node):
         self._publish_heartbeat = advertise(self, "supervisor/heartbeat")
         self._publish_report = advertise(self, "diagnostics")
         self._ticks = SameTick(*FELT)
-        self._felt = [(name, gathered(self, name, DEPTH)) for name in FELT]
+        heard = FELT if self._hand is not None else [name for name in FELT if name in STREAMS]
+        self._felt = [(name, gathered(self, name, DEPTH)) for name in heard]
         self._command: Vector = (0.0,) * len(ACTUATORS)
         self._take_tip = latest(self, "tracker/measured_cp")
         subscribe(self, PEDAL, self.on_pedal)
