@@ -262,13 +262,14 @@ def gathered(node: Node, name: str, depth: int) -> Callable[[], list[Any]]:
 def by_ring(node: Node, name: str, depth: int) -> Callable[[], list[Any]]:
     """Return `take()` of a topic that the node subscribes to: the samples since the last call that came by a ring.
 
-    The middleware then brings only samples with a change that is to be heard at once (`topics.AT_ONCE`). Where there is
-    no ring it brings all of them, and nothing comes here.
+    The middleware then brings only samples with a change that is to be heard at once (`topics.AT_ONCE`), and the node
+    wakes up for each. Where there is no ring it brings all of them, and nothing comes here.
     """
     topic, port = find_topic(name), ports(node)
     rings = newest_of_rings() if port.composition is None else None
     if rings is None:
         return list
+    port.subscribed[port.subscriptions[name].handle.pointer].urgent = True
     rank, decode = rings.look_at(name, depth), codec(topic.type, topic.frame_id, ACTUATORS).decode
     return lambda: _decoded(port, name, decode, rings.take(rank) if rings.offers(rank) else [])
 
