@@ -51,8 +51,8 @@ def watch(run: Any) -> tuple[Trip | None, dict[str, float]]:
         if trip is not None:
             return trip, shares
         for axis in checks.joints.axes:
-            shares["encoders"] = max(shares["encoders"], abs(axis.gap) / axis.limit)
-            shares["following"] = max(shares["following"], abs(axis.error) / axis.error_limit)
+            shares["encoders"] = max(shares["encoders"], abs(axis["gap"]) / axis.limit)
+            shares["following"] = max(shares["following"], abs(axis["error"]) / axis["error_limit"])
         for place in checks.position.axes:
             shares["position"] = max(shares["position"], abs(place.departure) / place.limit)
         checks.demand.sent([round(v / s.velocity) for v, s in zip(command[k].tolist(), SCALES, strict=True)])

@@ -159,9 +159,10 @@ def start_rows(rounds: int) -> Iterator[Row]:
     note("starts")
     bare = median(seconds_to("-c", "import rclpy; rclpy.init(); rclpy.create_node('a'); print('ready')", "ready")
                   for _ in range(rounds))  # fmt: skip
-    for layout in ("composed", "separate"):
-        up = ("-m", "sher3_cli", "up", "--duration", "0.2", "--layout", layout, "--domain", str(DOMAIN))
-        value = median(seconds_to(*up, "ready") for _ in range(rounds))
+    up = ("-m", "sher3_cli", "up", "--duration", "0.2", "--domain", str(DOMAIN), "--layout")
+    layouts = ("composed", "separate")
+    ready = medians([{layout: seconds_to(*up, layout, "ready") for layout in layouts} for _ in range(rounds)])
+    for layout, value in ready.items():
         yield Row(f"`sher3 up --layout {layout}` to the ready line [s]", value, 1.5, bare, "one rclpy node")
     with tempfile.TemporaryDirectory() as folder:
         (Path(folder) / "case.yaml").write_text(CASE)

@@ -63,6 +63,28 @@ compiled_ieee = functools.partial(compiled, error_model="numpy", nogil=True)
 """`compiled` for mathematics: a division by zero gives infinity or NaN, and other threads run meanwhile."""
 
 
+def direct(function: Any, *example: Any) -> Callable[..., Any]:
+    """Return the machine code of a compiled function for arguments of the types of `example`, called by position.
+
+    A call of a compiled function first finds out the type of every argument, down to the last member of nested tuples.
+    That takes 11 us of the 15 us of one tick of the admittance law. Where the types never change, once is enough.
+    The caller vouches for the types: dtype and shape of arrays and length of tuples must be those of the example.
+
+    Returns:
+        The machine code; the function itself when it is not compiled, as with numba switched off.
+
+    Raises:
+        ValueError, TypeError: In a call, for a tuple of another length or a value that is not a number.
+    """
+    if not hasattr(function, "overloads"):
+        return function
+    import numba
+
+    types = tuple(numba.typeof(value) for value in example)
+    function.compile(types)
+    return function.overloads[types].entry_point
+
+
 def cache_root() -> Path:
     """Return the folder of all compiled code: the user's `NUMBA_CACHE_DIR`, or one below the user's cache folder.
 

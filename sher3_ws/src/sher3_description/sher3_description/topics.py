@@ -148,6 +148,8 @@ _TABLE = (
     Topic("mock/true_js", _JOINT, "", STREAM, "true load position and executed demand, from the first fault on"),
 )
 
+AT_ONCE = {"pedal/measured": "buttons"}
+"""Field of a stream whose change is heard at once by those, too, that look at the stream at their own pace."""
 MANY_SENDERS = frozenset({"diagnostics"})
 """Topics on which every node publishes; all others have one sender."""
 

@@ -7,10 +7,11 @@ import math
 import pytest
 from sher3_common.reasons import Reason
 from sher3_description import load_robot
+from sher3_drivers.canopen.tpdo import DriveFeedback
 from sher3_drivers.settings import default_settings
 from sher3_drivers.units import AxisScale
-from sher3_drivers.watches.axis import AxisCheck, AxisLimits
 from sher3_drivers.watches.fingerprint import FingerprintCheck
+from sher3_drivers.watches.joints import JointWatch
 
 ROBOT = load_robot()
 SCALES = [AxisScale.from_actuator(actuator) for actuator in ROBOT.actuators]
@@ -67,12 +68,12 @@ def test_a_wrong_echo_is_the_business_of_another_check():
 
 def drift(rate, motor_rate=0.0, ticks=100_000):
     """Return where a load encoder is when its drift [m/s] is found, and the trip."""
-    check = AxisCheck("delta_1", "m", AxisLimits.of(SCALES[0], SETTINGS))
-    check.begin(0.0, 0.0)
-    for tick in range(1, ticks):
+    check = JointWatch(SCALES[:1], SETTINGS)
+    for tick in range(ticks):
         motor = motor_rate * SETTINGS.period * tick
         load = motor + rate * SETTINGS.period * tick
-        if trip := check.check(motor, load, motor_rate * SETTINGS.period, motor_rate):
+        said = DriveFeedback(tick, (load,), (motor,), (0.0,), (0.0,), (motor_rate,))
+        if trip := check.check(said, SETTINGS.period if tick else 0.0):
             return load - motor, trip
     return math.inf, None
 

@@ -14,7 +14,7 @@ from sher3_drivers.canopen.tpdo import DriveFeedback
 from sher3_drivers.settings import default_settings
 from sher3_drivers.units import AxisScale
 from sher3_drivers.watches.motion import MotionWatch
-from sher3_drivers.watches.position import AxisPosition
+from sher3_drivers.watches.position import PositionWatch
 from sher3_drivers.watches.trips import StopLog
 
 ROBOT = load_robot()
@@ -27,15 +27,31 @@ LEG, ROLL = 0, 3
 RESET_OF_ROLL = od.RPDO_BASE + 1 + ROLL
 
 
+class Place:
+    """The sum of one axis."""
+
+    def __init__(self, axis, motor, load, effort):
+        self._watch = PositionWatch(SCALES[axis : axis + 1], SETTINGS)
+        self.advance(motor, load, effort, 0.0, 0.0)
+
+    def advance(self, motor, load, effort, command, since=PERIOD):
+        """Take readings and the command before them; the first ones are the beginning."""
+        readings = DriveFeedback(0, (load,), (motor,), (0.0,), (effort,), (0.0,))
+        self._watch.follow(readings, (command,), since)
+
+    def __getattr__(self, name):
+        axis = self._watch.axes[0]
+        return axis[name] if name in ("left", "explained") else getattr(axis, name)
+
+
 def travel_until_trip(axis, speed, effort=0.0, limit=2_000_000):
     """Let an axis that is told to rest creep at `speed`; return how far it is when it is found."""
-    place = AxisPosition(SCALES[axis], SETTINGS)
-    place.begin(0.0, 0.0, effort)
+    place = Place(axis, 0.0, 0.0, effort)
     count = SCALES[axis].motor_encoder
     for tick in range(1, limit):
         went = speed * PERIOD * tick
         reading = round(went / count) * count
-        place.advance(reading, reading, effort, 0.0, PERIOD)
+        place.advance(reading, reading, effort, 0.0)
         if abs(place.departure) > place.limit:
             return abs(went)
     return math.inf
@@ -54,22 +70,20 @@ def test_nor_a_roll(speed):
 
 
 def test_an_axis_that_does_what_it_is_told_is_where_it_should_be():
-    place = AxisPosition(SCALES[LEG], SETTINGS)
-    place.begin(0.001, 0.001, 3.0)
+    place = Place(LEG, 0.001, 0.001, 3.0)
     went = 0.001
     for tick in range(10_000):
         command = 0.005 * math.sin(0.01 * tick)
         went += command * PERIOD
-        place.advance(went, went, 3.0, command, PERIOD)
+        place.advance(went, went, 3.0, command)
     assert abs(place.left) < 1e-12 and abs(place.explained) < 1e-12
 
 
 def test_what_a_hand_pushes_the_drive_off_is_explained_by_its_force():
     """13.27 N over ki are 100 um; the low pass of kp / ki = 19.9 ms has taken all of it but e^-50 after 1 s."""
-    place = AxisPosition(SCALES[LEG], SETTINGS)
-    place.begin(0.0, 0.0, 0.0)
+    place = Place(LEG, 0.0, 0.0, 0.0)
     for _ in range(500):
-        place.advance(-1e-4, -1e-4, 13.27, 0.0, PERIOD)
+        place.advance(-1e-4, -1e-4, 13.27, 0.0)
     assert place.left == pytest.approx(1e-4)
     assert place.explained == pytest.approx(1e-4, rel=1e-6)
     assert abs(place.departure) < 1e-9
@@ -78,29 +92,26 @@ def test_what_a_hand_pushes_the_drive_off_is_explained_by_its_force():
 
 def test_the_low_pass_is_that_of_the_drives_law():
     """A step of force F: after one period of 2 ms it has explained F / ki * 2 / 19.89 of the way."""
-    place = AxisPosition(SCALES[LEG], SETTINGS)
-    place.begin(0.0, 0.0, 0.0)
-    place.advance(0.0, 0.0, 13.27, 0.0, PERIOD)
+    place = Place(LEG, 0.0, 0.0, 0.0)
+    place.advance(0.0, 0.0, 13.27, 0.0)
     assert place.explained == pytest.approx(1e-4 * PERIOD / (KP / KI))
 
 
 def test_a_force_explains_no_more_than_the_bound():
     """150 N over ki would be 1.13 mm; the bound is 0.2 mm, so an axis 0.25 mm off is 50 um beyond what is believed."""
-    place = AxisPosition(SCALES[LEG], SETTINGS)
-    place.begin(0.0, 0.0, 0.0)
+    place = Place(LEG, 0.0, 0.0, 0.0)
     for _ in range(500):
-        place.advance(-2.5e-4, -2.5e-4, 150.0, 0.0, PERIOD)
+        place.advance(-2.5e-4, -2.5e-4, 150.0, 0.0)
     assert place.departure == pytest.approx(5e-5) and place.departure > place.limit
 
 
 def test_the_limit_grows_with_the_commanded_speed_and_falls_back():
     """5 mm/s add 3 ms of it, 15 um; 0.5 s later e^-5 of that is left."""
-    place = AxisPosition(SCALES[LEG], SETTINGS)
-    place.begin(0.0, 0.0, 0.0)
-    place.advance(0.005 * PERIOD, 0.005 * PERIOD, 0.0, 0.005, PERIOD)
+    place = Place(LEG, 0.0, 0.0, 0.0)
+    place.advance(0.005 * PERIOD, 0.005 * PERIOD, 0.0, 0.005)
     assert place.limit == pytest.approx(22e-6)
     for _ in range(250):
-        place.advance(0.005 * PERIOD, 0.005 * PERIOD, 0.0, 0.0, PERIOD)
+        place.advance(0.005 * PERIOD, 0.005 * PERIOD, 0.0, 0.0)
     assert place.limit == pytest.approx(7e-6 + 15e-6 * 0.98**250)
 
 

@@ -12,10 +12,9 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from sher3_common.compiled import compiled_ieee
+from sher3_common.compiled import compiled_ieee, direct
 
 from sher3_kinematics import kernel
-from sher3_kinematics.direct import direct
 from sher3_kinematics.errors import BadInput
 from sher3_kinematics.kernel import reach as kernel_reach
 from sher3_kinematics.kernel.parameters import KernelParameters

@@ -6,11 +6,10 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from sher3_common.compiled import compiled_ieee
+from sher3_common.compiled import compiled_ieee, direct
 from sher3_description import ACTUATORS
 
 from sher3_kinematics.arrays import Floats, unpack, vector
-from sher3_kinematics.direct import direct
 from sher3_kinematics.errors import BadInput
 from sher3_kinematics.kernel import velocity as codes
 from sher3_kinematics.robot_kinematics import RobotKinematics

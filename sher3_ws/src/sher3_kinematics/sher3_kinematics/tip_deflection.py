@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from sher3_common import Sher3Error
+from sher3_common.compiled import direct
 from sher3_description import Robot
 
 from sher3_kinematics.arrays import vector
 from sher3_kinematics.deflection import DeltaDeflection
-from sher3_kinematics.direct import direct
 from sher3_kinematics.kernel.deflection import tip_deflection
 from sher3_kinematics.link_law import LinkLaw
 from sher3_kinematics.robot_kinematics import RobotKinematics

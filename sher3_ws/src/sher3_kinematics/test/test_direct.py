@@ -3,8 +3,8 @@
 import numba
 import numpy as np
 import pytest
+from sher3_common.compiled import direct
 from sher3_kinematics import InverseVelocity, RobotKinematics
-from sher3_kinematics.direct import direct
 from sher3_kinematics.inverse_velocity import describe
 
 

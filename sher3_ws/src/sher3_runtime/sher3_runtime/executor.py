@@ -145,7 +145,8 @@ class RawExecutor(Executor):
             self._take_topics()
             self._run_others()
             self._look_due_ns = now + LOOK_NS
-            self._streams = [topic for topic in self._topics.values() if now - topic.heard_ns < QUIET_NS]
+            topics = self._topics.values()
+            self._streams = [t for t in topics if now - t.heard_ns < QUIET_NS or t.subscribed.urgent]
             return
         if timeout_ns > 0:
             self._wait_for_streams(min(timeout_ns, left))

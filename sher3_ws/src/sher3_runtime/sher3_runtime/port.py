@@ -49,12 +49,13 @@ class Subscribed:
         wakes: Whether a sample wakes the process. A node that has nothing to do before some other sample comes sets
             this to False, and gets the sample, in the order of its subscriptions, once something else has woken the
             process.
+        urgent: Whether a sample wakes the process though the topic was silent, see `topics.AT_ONCE`.
     """
 
-    __slots__ = ("wakes",)
+    __slots__ = ("urgent", "wakes")
 
     def __init__(self) -> None:
-        self.wakes = True
+        self.wakes, self.urgent = True, False
 
 
 _clocks: WeakKeyDictionary[Context, Clock] = WeakKeyDictionary()

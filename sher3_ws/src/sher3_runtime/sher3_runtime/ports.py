@@ -233,7 +233,6 @@ def gathered(node: Node, name: str, depth: int) -> Callable[[], list[Any]]:
     port.subscriptions[name] = subscription
     port.polled.add(subscription.handle.pointer)
     decode, take = codec(topic.type, topic.frame_id, ACTUATORS).decode, subscription.handle.take_message
-    garbage = port.statistics.garbage
 
     composition = port.composition
     leave = partial(port.leave, node, name, subscription)
@@ -255,15 +254,35 @@ def gathered(node: Node, name: str, depth: int) -> Callable[[], list[Any]]:
             samples = list(inside)
             inside.clear()
             return samples
-        samples = []
-        for data in sent():
-            try:
-                samples.append(decode(data))
-            except CdrError:
-                garbage[name] = garbage.get(name, 0) + 1
-        return samples
+        return _decoded(port, name, decode, sent())
 
     return take_all
+
+
+def by_ring(node: Node, name: str, depth: int) -> Callable[[], list[Any]]:
+    """Return `take()` of a topic that the node subscribes to: the samples since the last call that came by a ring.
+
+    The middleware then brings only samples with a change that is to be heard at once (`topics.AT_ONCE`), and the node
+    wakes up for each. Where there is no ring it brings all of them, and nothing comes here.
+    """
+    topic, port = find_topic(name), ports(node)
+    rings = newest_of_rings() if port.composition is None else None
+    if rings is None:
+        return list
+    port.subscribed[port.subscriptions[name].handle.pointer].urgent = True
+    rank, decode = rings.look_at(name, depth), codec(topic.type, topic.frame_id, ACTUATORS).decode
+    return lambda: _decoded(port, name, decode, rings.take(rank) if rings.offers(rank) else [])
+
+
+def _decoded(port: Ports, name: str, decode: Callable[[bytes], Any], sent: list[bytes]) -> list[Any]:
+    """Return the samples; bytes that are none are counted and left out."""
+    samples, garbage = [], port.statistics.garbage
+    for data in sent:
+        try:
+            samples.append(decode(data))
+        except CdrError:
+            garbage[name] = garbage.get(name, 0) + 1
+    return samples
 
 
 def subscribe_raw(node: Node, name: str, callback: Callable[[bytes], None], depth: int | None = None) -> None:

@@ -10,10 +10,10 @@ import time
 from multiprocessing import get_context
 
 import pytest
-from sher3_common.samples import TwistSample
+from sher3_common.samples import JoySample, TwistSample
 from sher3_description.topics import TOPICS
 from sher3_runtime.codec.cdr import codec
-from sher3_runtime.composed.composition import Composition
+from sher3_runtime.composed.composition import REPEATS, Composition
 from sher3_runtime.composed.newest import Newest
 from sher3_runtime.composed.ring import Ring, share
 
@@ -163,3 +163,21 @@ def test_a_topic_that_does_not_come_by_ring_is_left_to_the_subscription():
     beat = newest.look_at("supervisor/heartbeat", 1)
     ring.put(beat, 1, b"of somebody else")
     assert newest.take(beat) == [] and not newest.offers(beat)
+
+
+def test_a_change_of_the_emergency_stop_is_sent_at_once_to_who_reads_the_ring():
+    """All samples are in the ring; the first one, each change and a few behind it are messages too."""
+    ring, sent = Ring(), []
+    together, topic = Composition(ring), TOPICS["pedal/measured"]
+    codec_of_pedal = codec(topic.type, topic.frame_id)
+    ring.join([RANKS[topic.name]]).take_too(RANKS[topic.name])
+    reader = ring.join()
+    publish = together.publisher(topic, None, codec_of_pedal.encode, sent.append, lambda: 1, lambda: 42)
+    together.begin()
+    samples = [JoySample(k, (0.25,), (int(200 <= k < 203),)) for k in range(400)]
+    for sample in samples:
+        publish(sample)
+        together.flush()
+    assert [codec_of_pedal.decode(data) for _, _, data in reader.read()] == samples
+    expected = [*range(REPEATS), *range(200, 203 + REPEATS)]
+    assert [codec_of_pedal.decode(data).stamp for data in sent] == expected

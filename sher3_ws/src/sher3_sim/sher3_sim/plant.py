@@ -8,9 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from sher3_common.compiled import direct
 from sher3_description import Robot
 from sher3_description.contract import REFERENCE_TEMPERATURE
-from sher3_kinematics.direct import direct
 
 from sher3_sim import kernel
 from sher3_sim.axis import AXIS_STATE, propagators

@@ -34,7 +34,7 @@ def grid_periods(robot: Robot) -> dict[str, int]:
     return {topic: others.get(topic, host) for topic in CONTRACT_TOPICS if topic != "operating_state"}
 
 
-@dataclass
+@dataclass(slots=True)
 class GapCounter:
     """Counts of one source.
 
@@ -62,7 +62,7 @@ class GapCounter:
         self.messages += 1
         if self.last is not None:
             step = stamp - self.last
-            if step == self.period and step <= self.longest:  # nearly always
+            if 0 < step <= self.longest and (step == self.period or self.period is None):  # nearly always
                 self.last = stamp
                 return
             if step <= 0:

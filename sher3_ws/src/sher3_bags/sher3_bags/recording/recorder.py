@@ -40,7 +40,7 @@ _LEAST = STAMP + 8
 """Bytes of the shortest message with a stamp."""
 
 
-@dataclass
+@dataclass(slots=True)
 class _Source:
     topic: Topic
     channel: int
@@ -50,7 +50,14 @@ class _Source:
     sequence: int = 0
 
 
-@dataclass
+@dataclass(slots=True)
+class _MadeSource:
+    first: Made
+    channel: int
+    count: int = 0
+
+
+@dataclass(slots=True)
 class _OpenChunk:
     body: bytearray = field(default_factory=bytearray)
     channel: list[int] = field(default_factory=list)
@@ -92,7 +99,7 @@ class Recorder:
         self._periods = grid_periods(robot)
         self._sources: dict[str, _Source] = {}
         self._beside = beside
-        self._made: dict[str, TopicCount] = {}
+        self._made: dict[str, _MadeSource] = {}
         self._chunk = _OpenChunk()
         self.closed = False
         self._file.flush()
@@ -133,11 +140,12 @@ class Recorder:
 
     def _add_made(self, message: Made, log_time: int) -> None:
         """Record a message that was made beside the streams."""
-        channel = self._writer.channel(message.topic, message.type, message.qos)
         known = self._made.get(message.topic)
-        count = 0 if known is None else known.count
-        self._append(channel, count, message.data, log_time, log_time)
-        self._made[message.topic] = TopicCount(message.type, count + 1, message.qos)
+        if known is None:
+            channel = self._writer.channel(message.topic, message.type, message.qos)
+            known = self._made[message.topic] = _MadeSource(message, channel)
+        self._append(known.channel, known.count, message.data, log_time, log_time)
+        known.count += 1
 
     def _append(self, channel: int, sequence: int, data: bytes, log_time: int, sent: int) -> None:
         chunk = self._chunk
@@ -199,7 +207,8 @@ class Recorder:
             source.topic.recorded_name: TopicCount(source.topic.type, source.gaps.messages, source.topic.qos)
             for source in self._sources.values()
         }
-        topics |= self._made
+        for name, made in self._made.items():
+            topics[name] = TopicCount(made.first.type, made.count, made.first.qos)
         write_metadata(self.folder, f"{self.folder.name}.mcap", self._writer.start, self._writer.end, topics)
         return counts
 

@@ -33,7 +33,8 @@ from sher3_bags.recording.beside import Beside
 from sher3_bags.recording.recorder import Recorder
 from sher3_bags.run import RunMetadata
 
-POLL_NS = 10_000_000
+POLL_NS = 40_000_000
+"""Time between two looks [ns]: the more come at once, the less each costs; ring and queues hold seconds."""
 REPORT_NS = 1_000_000_000
 OK, ERROR = 0, 2
 

@@ -60,6 +60,14 @@ def _kinematics(robot: Robot) -> None:
     tip_pose_sample(np.array(kernel_parameters(robot)), q)
 
 
+def _motor_driver(robot: Robot) -> None:
+    from sher3_drivers.settings import default_settings
+    from sher3_drivers.units import AxisScale
+    from sher3_drivers.watches.motion import MotionWatch
+
+    MotionWatch([AxisScale.from_actuator(a) for a in robot.actuators], default_settings(robot.control_period))
+
+
 def _plant(robot: Robot) -> None:
     from sher3_sim.plant import Plant
 
@@ -68,7 +76,12 @@ def _plant(robot: Robot) -> None:
         plant.step([0.001] * 5, PUSH)
 
 
-_WARM: dict[str, Callable[[Robot], None]] = {"admittance": _admittance, "kinematics": _kinematics, "plant": _plant}
+_WARM: dict[str, Callable[[Robot], None]] = {
+    "admittance": _admittance,
+    "kinematics": _kinematics,
+    "motor_driver": _motor_driver,
+    "plant": _plant,
+}
 
 
 def main() -> None:

@@ -7,10 +7,10 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from sher3_common.compiled import direct
 from sher3_common.reasons import Reason
 from sher3_common.vectors import ZERO_TWIST, Vector
 from sher3_kinematics import InverseVelocity, LimitedVelocity, RobotKinematics
-from sher3_kinematics.direct import direct
 from sher3_kinematics.inverse_velocity import describe
 from sher3_kinematics.kernel.velocity import NOT_FINITE
 

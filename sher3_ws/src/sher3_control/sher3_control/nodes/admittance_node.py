@@ -12,12 +12,12 @@ from typing import Any, cast
 import numpy as np
 from rclpy.node import Node
 from sher3_common import Sher3Error
+from sher3_common.compiled import direct
 from sher3_common.reasons import TEXT, Reason
 from sher3_common.samples import DiagnosticSample, JointSample, JoySample, TextSample, TwistSample, WrenchSample
 from sher3_common.stamps import NO_STAMP, nanoseconds
 from sher3_common.vectors import Wrench
 from sher3_description import ACTUATORS, Robot
-from sher3_kinematics.direct import direct
 from sher3_kinematics.kernel import kernel_parameters
 from sher3_runtime.on_demand import advertise_on_demand
 from sher3_runtime.ports import NODE_OPTIONS, advertise, clock_of, latest, on_tick, subscribe

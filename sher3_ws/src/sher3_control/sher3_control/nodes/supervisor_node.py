@@ -21,7 +21,7 @@ from sher3_common.stamps import NO_STAMP
 from sher3_common.vectors import Vector
 from sher3_description import ACTUATORS, Robot
 from sher3_kinematics import RobotKinematics
-from sher3_runtime.ports import NODE_OPTIONS, advertise, clock_of, gathered, latest, on_tick, ports, subscribe
+from sher3_runtime.ports import NODE_OPTIONS, advertise, by_ring, clock_of, gathered, latest, on_tick, ports, subscribe
 from sher3_runtime.publishers import Publishers
 
 from sher3_control.nodes.same_tick import SameTick
@@ -108,10 +108,12 @@ class SupervisorNode(Node):
         self._publish_heartbeat = advertise(self, "supervisor/heartbeat")
         self._publish_report = advertise(self, "diagnostics")
         self._ticks = SameTick(*FELT)
-        self._felt = [(name, gathered(self, name, DEPTH)) for name in FELT]
+        heard = FELT if self._hand is not None else [name for name in FELT if name in STREAMS]
+        self._felt = [(name, gathered(self, name, DEPTH)) for name in heard]
         self._command: Vector = (0.0,) * len(ACTUATORS)
         self._take_tip = latest(self, "tracker/measured_cp")
         subscribe(self, PEDAL, self.on_pedal)
+        self._take_pedal = by_ring(self, PEDAL, DEPTH)
         latest(self, OWN_STATE)  # never taken: it is there to know its publishers, and only those of our type
         watched = (*STREAMS, OWN_STATE)
         self._matched = [(name, ports(self).subscriptions[name].handle.get_publisher_count) for name in watched]
@@ -127,6 +129,8 @@ class SupervisorNode(Node):
 
     def _look(self) -> None:
         """Note what came on the watched streams; to wake up for every sample would cost more than the rest."""
+        for sample in self._take_pedal():
+            self._note_pedal(sample)
         for name, take in self._felt:
             for sample in take():
                 if name in self._silence:
@@ -167,11 +171,16 @@ class SupervisorNode(Node):
 
     def on_pedal(self, sample: JoySample) -> None:
         """Take the pedal's sample; a change of the emergency stop is judged at once."""
+        if self._note_pedal(sample):
+            self._judge()
+
+    def _note_pedal(self, sample: JoySample) -> bool:
+        """Note a sample of the pedal; return whether its emergency stop has changed."""
         self._silence[PEDAL].last = sample.stamp
         pressed = bool(sample.buttons[0]) if sample.buttons else True
-        if pressed != self._button.pressed:
-            self._button.feed(pressed)
-            self._judge()
+        changed = pressed != self._button.pressed
+        self._button.feed(pressed)
+        return changed
 
     def _on_diagnostics(self, sample: DiagnosticSample) -> None:
         if sample.name == DRIVES:

@@ -118,11 +118,9 @@ class NetFtSensor:
     def read(self, since: int, timeout: float) -> WrenchRecord | None:
         """Return the newest record that arrived at or after `since`; see `sensor.device.ForceSensorDevice`."""
         deadline = time.monotonic() + timeout
-        while True:
-            wait_readable((self._socket.fileno(),), deadline - time.monotonic())
-            record = self._newest(since)
-            if record is not None or time.monotonic() >= deadline:
-                return record
+        while (record := self._newest(since)) is None and (left := deadline - time.monotonic()) > 0.0:
+            wait_readable((self._socket.fileno(),), left)
+        return record
 
     def _newest(self, since: int) -> WrenchRecord | None:
         """Take every waiting record; return the newest one, unless it arrived before `since` (ns)."""

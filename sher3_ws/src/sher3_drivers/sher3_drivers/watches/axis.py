@@ -4,14 +4,20 @@ Motor encoder, load encoder and the integral of the velocity demand tell the sam
 have a slow part: lead error, temperature, the elastic deflection under a steady load. It is followed with a time
 constant, the memory, and only the rest is judged: a distance that must last longer than a latency. Limit and latency
 per joint are the two numbers of dVRK's encoder check.
+
+The axes of a robot are rows of one table (`AXIS`), which compiled code goes through in every tick.
 """
 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+from sher3_common.compiled import compiled
 from sher3_common.reasons import Reason, reading
+from sher3_common.vectors import Vector
 
 from sher3_drivers.settings import MotorDriverSettings
 from sher3_drivers.units import AxisScale
@@ -19,6 +25,8 @@ from sher3_drivers.watches.trips import Trip
 
 _ROUNDING = 1e-9
 """Slack of a quotient before it is rounded up to whole ticks: 10 ms over 2 ms must be five of them, not six."""
+AGREES, LOAD_FROZEN, MOTOR_FROZEN, APART, ASTRAY = range(5)
+"""What there is to say of an axis in a tick."""
 
 
 class AxisLimits(NamedTuple):
@@ -70,138 +78,165 @@ def _ticks(latency: float, period: float) -> int:
     return max(1, math.ceil(latency / period - _ROUNDING))
 
 
-class AxisCheck:
-    """The check of one axis; positions in m or rad.
+_MEMORY = (
+    "motor", "load", "motor_mark", "load_mark", "gap_at_start", "slow_gap", "gap", "error", "load_error", "peak_speed",
+    "low", "high", "drift_limit", "error_limit",
+)  # fmt: skip
+_COUNTS = ("apart_ticks", "astray_ticks", "gap_ticks", "drift_ticks", "stray_ticks")
+AXIS = np.dtype(
+    [(name, np.float64) for name in (*AxisLimits._fields, *_MEMORY) if name not in _COUNTS]
+    + [(name, np.int64) for name in _COUNTS]
+)
+"""A row: the limits of an axis and what is remembered of it. `gap` is the newest motor minus load position without its
+slow part, `drift_limit` the limit of that since the beginning, over the range of positions so far; `error` the newest
+following error, demand minus motor motion, without its slow part, `error_limit` its limit at the demanded speed."""
+
+
+def begin_axes(axes: NDArray[Any], motor: Vector, load: Vector) -> None:
+    """Start afresh, in place: these readings (n,) belong together."""
+    for name in (*_MEMORY, "gap_ticks", "drift_ticks", "stray_ticks"):
+        axes[name] = 0
+    for name in ("motor", "motor_mark", "low", "high"):
+        axes[name] = motor
+    axes["load"] = axes["load_mark"] = load
+    axes["gap_at_start"] = axes["slow_gap"] = axes["motor"] - axes["load"]
+    axes["drift_limit"], axes["error_limit"] = axes["drift"], axes["astray"]
+
+
+@compiled(error_model="numpy")
+def judge_axes(axes: Any, motor: Vector, load: Vector, demand: Vector, since: float) -> int:
+    """Judge one tick of every axis, in place.
 
     Args:
-        name: actuator.
-        unit: `m` or `rad`.
-        limits: its limits.
+        axes: (n,) rows.
+        motor: readings of the motor encoders (n,).
+        load: readings of the load encoders (n,).
+        demand: demanded velocities (n,), m/s or rad/s.
+        since: time since the last readings, s.
 
-    Attributes:
-        gap: newest motor minus load position without its slow part.
-        drift_limit: limit of motor minus load position since the beginning, over the range of positions so far.
-        error: newest following error, demand minus motor motion, without its slow part.
-        error_limit: limit of `error` at the demanded speed.
+    Returns:
+        Of the last axis that objects, its number times 8 plus what it says; 0 when none does.
+    """
+    said = 0
+    for number in range(len(axes)):
+        what = _judge_axis(axes[number], motor[number], load[number], demand[number] * since, demand[number])
+        if what != AGREES:
+            said = 8 * number + what
+    return said
+
+
+@compiled(error_model="numpy")
+def _judge_axis(axis: Any, motor: float, load: float, advance: float, speed: float) -> int:
+    """Judge one tick of an axis; `advance` is the demanded `speed` integrated since the last readings."""
+    motor_step, load_step = motor - axis["motor"], load - axis["load"]
+    axis["motor"], axis["load"] = motor, load
+    if motor_step != 0.0:
+        axis["load_mark"] = load
+    if load_step != 0.0:
+        axis["motor_mark"] = motor
+    _follow(axis, motor_step, load_step, advance, speed)
+    gap = motor - load
+    _part(axis, gap)
+    one_moved = (motor_step == 0.0) != (load_step == 0.0)
+    far = abs(gap - axis["gap_at_start"]) > axis["apart_total"]
+    if one_moved or far or axis["gap_ticks"] or axis["drift_ticks"] or axis["stray_ticks"]:
+        return _say(axis, far)
+    return AGREES
+
+
+@compiled(error_model="numpy")
+def _follow(axis: Any, motor_step: float, load_step: float, advance: float, speed: float) -> None:
+    """Add one tick's demand and the steps of motor and load to what is remembered of their following errors."""
+    keep = 1.0 - axis["forget_astray"]
+    axis["error"] = keep * axis["error"] + advance - motor_step
+    axis["load_error"] = keep * axis["load_error"] + advance - load_step
+    axis["peak_speed"] = max(abs(speed), keep * axis["peak_speed"])
+    axis["error_limit"] = axis["astray"] + axis["lag"] * axis["peak_speed"]
+    axis["stray_ticks"] = axis["stray_ticks"] + 1 if abs(axis["error"]) > axis["error_limit"] else 0
+
+
+@compiled(error_model="numpy")
+def _part(axis: Any, gap: float) -> None:
+    """Take the newest difference of the encoders apart into its slow part and the rest."""
+    axis["gap"] = fast = gap - axis["slow_gap"]
+    axis["slow_gap"] += axis["forget_apart"] * fast
+    axis["gap_ticks"] = axis["gap_ticks"] + 1 if abs(fast) > axis["apart"] else 0
+    axis["low"], axis["high"] = min(axis["low"], axis["motor"]), max(axis["high"], axis["motor"])
+    axis["drift_limit"] = axis["drift"] + axis["drift_share"] * (axis["high"] - axis["low"])
+    axis["drift_ticks"] = axis["drift_ticks"] + 1 if abs(gap - axis["gap_at_start"]) > axis["drift_limit"] else 0
+
+
+@compiled(error_model="numpy")
+def _say(axis: Any, far: bool) -> int:
+    """Return what there is to say; `far`: the encoders are too far apart since the drives were enabled.
+
+    One encoder that has not changed while the other one moved by more than the limit comes first, since it also drives
+    the other differences apart. Then encoders that are apart for too long or too far, then a motor off its demand.
+    """
+    if abs(axis["motor"] - axis["motor_mark"]) > axis["apart"]:
+        return LOAD_FROZEN
+    if abs(axis["load"] - axis["load_mark"]) > axis["apart"]:
+        return MOTOR_FROZEN
+    if max(axis["gap_ticks"], axis["drift_ticks"]) >= axis["apart_ticks"] or far:
+        return APART
+    return ASTRAY if axis["stray_ticks"] >= axis["astray_ticks"] else AGREES
+
+
+class AxisCheck:
+    """One axis in words; positions in m or rad.
+
+    Args:
+        scale: of the axis.
+        settings: its limits.
+        axes: rows of all axes.
+        number: of its row.
     """
 
-    __slots__ = (
-        "_drift_ticks", "_gap_at_start", "_gap_ticks", "_high", "_limits", "_load", "_load_error", "_load_mark", "_low",
-        "_motor", "_motor_mark", "_name", "_peak_speed", "_slow_gap", "_stray_ticks", "_unit", "drift_limit", "error",
-        "error_limit", "gap",
-    )  # fmt: skip
+    __slots__ = ("_axes", "_name", "_number", "_unit")
 
-    def __init__(self, name: str, unit: str, limits: AxisLimits) -> None:
-        self._name, self._unit, self._limits = name, unit, limits
-        self._motor = self._load = 0.0
-        self._motor_mark = self._load_mark = 0.0
-        self._gap_at_start = self._slow_gap = 0.0
-        self._load_error = self._peak_speed = 0.0
-        self._gap_ticks = self._drift_ticks = self._stray_ticks = 0
-        self._low = self._high = 0.0
-        self.gap = self.error = 0.0
-        self.drift_limit, self.error_limit = limits.drift, limits.astray
+    def __init__(self, scale: AxisScale, settings: MotorDriverSettings, axes: NDArray[Any], number: int) -> None:
+        self._name, self._unit, self._axes, self._number = scale.name, scale.unit, axes, number
+        for name, value in AxisLimits.of(scale, settings)._asdict().items():
+            axes[name][number] = value
+
+    def __getitem__(self, name: str) -> float:
+        """Return a field of its row."""
+        return self._axes[name][self._number].item()
 
     @property
     def limit(self) -> float:
         """Limit of `gap`, m or rad."""
-        return self._limits.apart
+        return self["apart"]
 
-    def begin(self, motor: float, load: float) -> None:
-        """Start afresh: these readings belong together."""
-        self._motor = self._motor_mark = motor
-        self._load = self._load_mark = load
-        self._gap_at_start = self._slow_gap = motor - load
-        self._load_error = self._peak_speed = 0.0
-        self._gap_ticks = self._drift_ticks = self._stray_ticks = 0
-        self._low = self._high = motor
-        self.gap = self.error = 0.0
-        self.drift_limit, self.error_limit = self._limits.drift, self._limits.astray
+    def trip(self, what: int) -> Trip:
+        """Return the objection to what there is to say."""
+        if what == APART:
+            return self._apart()
+        if what == ASTRAY:
+            error, limit, unit = self["error"], self["error_limit"], self._unit
+            text = f"{self._name}: {error:.3g} {unit} off its demand (limit {limit:.3g})"
+            return Trip(Reason.FOLLOWING_ERROR, text, abs(error), limit, unit)
+        frozen, other = ("load", "motor") if what == LOAD_FROZEN else ("motor", "load")
+        moved, limit, unit = self[other] - self[f"{other}_mark"], self["apart"], self._unit
+        text = f"{self._name}: {frozen} encoder stands still while the other one moved {moved:.3g} {unit}"
+        return Trip(Reason.ENCODER_FROZEN, text, abs(moved), limit, unit)
 
-    def check(self, motor: float, load: float, advance: float, speed: float) -> Trip | None:
-        """Judge one tick.
-
-        Args:
-            motor: reading of the motor encoder.
-            load: reading of the load encoder.
-            advance: velocity demand integrated since the last readings.
-            speed: the demanded velocity, m/s or rad/s.
-        """
-        motor_step, load_step = motor - self._motor, load - self._load
-        self._motor, self._load = motor, load
-        if motor_step:
-            self._load_mark = load
-        if load_step:
-            self._motor_mark = motor
-        self._follow(motor_step, load_step, advance, speed)
-        gap = motor - load
-        self._part(gap)
-        one_moved = (motor_step == 0.0) != (load_step == 0.0)
-        far = abs(gap - self._gap_at_start) > self._limits.apart_total
-        return (
-            self._judge(gap) if one_moved or far or self._gap_ticks or self._drift_ticks or self._stray_ticks else None
+    def _apart(self) -> Trip:
+        """Return the objection to encoders that are apart for too long, or too far since the drives were enabled."""
+        suspect = "load side" if abs(self["error"]) <= abs(self["load_error"]) else "motor encoder"
+        value, limit = self["gap"], self["apart"]
+        if not self["gap_ticks"]:
+            value = self["motor"] - self["load"] - self["gap_at_start"]
+            limit = min(self["drift_limit"], self["apart_total"])
+        text = (
+            f"{self._name}: encoders {value:.3g} {self._unit} apart (limit {limit:.3g}); the {suspect} left the demand"
         )
-
-    def _follow(self, motor_step: float, load_step: float, advance: float, speed: float) -> None:
-        """Add one tick's demand and the steps of motor and load to what is remembered of their following errors."""
-        limits = self._limits
-        keep = 1.0 - limits.forget_astray
-        self.error = error = keep * self.error + advance - motor_step
-        self._load_error = keep * self._load_error + advance - load_step
-        self._peak_speed = peak = max(abs(speed), keep * self._peak_speed)
-        self.error_limit = limit = limits.astray + limits.lag * peak
-        self._stray_ticks = self._stray_ticks + 1 if abs(error) > limit else 0
-
-    def _part(self, gap: float) -> None:
-        """Take the newest difference of the encoders apart into its slow part and the rest."""
-        limits = self._limits
-        self.gap = fast = gap - self._slow_gap
-        self._slow_gap += limits.forget_apart * fast
-        self._gap_ticks = self._gap_ticks + 1 if abs(fast) > limits.apart else 0
-        self._low, self._high = min(self._low, self._motor), max(self._high, self._motor)
-        self.drift_limit = limits.drift + limits.drift_share * (self._high - self._low)
-        self._drift_ticks = self._drift_ticks + 1 if abs(gap - self._gap_at_start) > self.drift_limit else 0
-
-    def _judge(self, gap: float) -> Trip | None:
-        """Return the trip, if there is one.
-
-        A frozen encoder comes first, since it also drives the other differences apart.
-        """
-        return self._judge_frozen() or self._judge_apart(gap - self._gap_at_start) or self._judge_astray()
-
-    def _judge_frozen(self) -> Trip | None:
-        """Object when one encoder has not changed while the other one moved by more than the limit."""
-        limit, unit = self._limits.apart, self._unit
-        for frozen, moved in (("load", self._motor - self._motor_mark), ("motor", self._load - self._load_mark)):
-            if abs(moved) > limit:
-                text = f"{self._name}: {frozen} encoder stands still while the other one moved {moved:.3g} {unit}"
-                return Trip(Reason.ENCODER_FROZEN, text, abs(moved), limit, unit)
-        return None
-
-    def _judge_apart(self, total: float) -> Trip | None:
-        """Object when the encoders are apart for too long, or too far since the drives were enabled (`total`)."""
-        limits, unit = self._limits, self._unit
-        lasting = max(self._gap_ticks, self._drift_ticks)
-        if lasting < limits.apart_ticks and abs(total) <= limits.apart_total:
-            return None
-        suspect = "load side" if abs(self.error) <= abs(self._load_error) else "motor encoder"
-        value, limit = (
-            (self.gap, limits.apart) if self._gap_ticks else (total, min(self.drift_limit, limits.apart_total))
-        )
-        text = f"{self._name}: encoders {value:.3g} {unit} apart (limit {limit:.3g}); the {suspect} left the demand"
-        return Trip(Reason.ENCODERS_DISAGREE, text, abs(value), limit, unit)
-
-    def _judge_astray(self) -> Trip | None:
-        """Object when the motor is off its demand for too long."""
-        if self._stray_ticks < self._limits.astray_ticks:
-            return None
-        text = f"{self._name}: {self.error:.3g} {self._unit} off its demand (limit {self.error_limit:.3g})"
-        return Trip(Reason.FOLLOWING_ERROR, text, abs(self.error), self.error_limit, self._unit)
+        return Trip(Reason.ENCODERS_DISAGREE, text, abs(value), limit, self._unit)
 
     def readings(self) -> list[tuple[str, str]]:
         """Return the two differences with their limits, for the diagnostics."""
         name, unit = self._name, self._unit
         return [
-            reading(Reason.ENCODERS_DISAGREE, name, abs(self.gap), self._limits.apart, unit),
-            reading(Reason.FOLLOWING_ERROR, name, abs(self.error), self.error_limit, unit),
+            reading(Reason.ENCODERS_DISAGREE, name, abs(self["gap"]), self["apart"], unit),
+            reading(Reason.FOLLOWING_ERROR, name, abs(self["error"]), self["error_limit"], unit),
         ]

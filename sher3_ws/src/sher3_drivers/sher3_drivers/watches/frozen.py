@@ -7,6 +7,7 @@ frozen and not the axis. An axis held by friction is not mistaken for it, becaus
 from __future__ import annotations
 
 from collections.abc import Sequence
+from operator import eq
 
 from sher3_common.reasons import Reason
 
@@ -47,7 +48,10 @@ class FrozenCheck:
         """
         reports = list(zip(feedback.motor_position, feedback.load_position, feedback.effort, strict=True))
         before, self._last = self._last, reports
-        for axis, report in enumerate(reports if before else ()):
+        if not any(map(eq, reports, before)):  # nearly always
+            self.travel = [0.0] * len(self._scales) if before else self.travel
+            return None
+        for axis, report in enumerate(reports):
             if report != before[axis]:
                 self.travel[axis] = 0.0
                 continue

@@ -2,16 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import cache
+from typing import Any
+
+import numpy as np
+from sher3_common.compiled import direct
 
 from sher3_drivers.canopen.tpdo import DriveFeedback
 from sher3_drivers.settings import MotorDriverSettings
 from sher3_drivers.units import AxisScale
-from sher3_drivers.watches.axis import AxisCheck, AxisLimits
+from sher3_drivers.watches.axis import AXIS, AxisCheck, begin_axes, judge_axes
 from sher3_drivers.watches.trips import Trip
 
 _HOLE = 10
 """Lost ticks that are bridged at most: after as many (`missing_limit`) the driver has stopped the robot."""
+
+
+@cache
+def _judge(count: int) -> Callable[..., int]:
+    """Return the compiled judgement of so many axes; not kept in the watch, which can be copied."""
+    zeros = (0.0,) * count
+    return direct(judge_axes, np.zeros(count, AXIS), zeros, zeros, zeros, 0.0)
 
 
 class JointWatch:
@@ -23,7 +35,10 @@ class JointWatch:
 
     def __init__(self, scales: Sequence[AxisScale], settings: MotorDriverSettings) -> None:
         self._hole = max(_HOLE * settings.period, settings.stall_limit)
-        self.axes = [AxisCheck(scale.name, scale.unit, AxisLimits.of(scale, settings)) for scale in scales]
+        self._rows = np.zeros(len(scales), AXIS)
+        self.axes = [AxisCheck(scale, settings, self._rows, number) for number, scale in enumerate(scales)]
+        begin_axes(self._rows, (0.0,) * len(scales), (0.0,) * len(scales))
+        _judge(len(scales))
 
     def check(self, feedback: DriveFeedback, since: float) -> Trip | None:
         """Judge a feedback that came `since` s after the one before; 0 means that there was none before.
@@ -32,12 +47,9 @@ class JointWatch:
         more time than the loop may hang, the axes start afresh: the robot has been stopped for that reason by then.
         They start afresh at the first feedback too.
         """
-        found = None
-        for axis, motor, load, demand in zip(
-            self.axes, feedback.motor_position, feedback.load_position, feedback.velocity_demand, strict=True
-        ):
-            if 0.0 < since <= self._hole:
-                found = axis.check(motor, load, demand * since, demand) or found
-            else:
-                axis.begin(motor, load)
-        return found
+        motor, load = feedback.motor_position, feedback.load_position
+        if not 0.0 < since <= self._hole:
+            begin_axes(self._rows, motor, load)
+            return None
+        said: Any = _judge(len(self.axes))(self._rows, motor, load, feedback.velocity_demand, since)
+        return self.axes[said >> 3].trip(said & 7) if said else None

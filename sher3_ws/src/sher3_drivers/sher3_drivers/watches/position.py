@@ -9,8 +9,13 @@ law solved for e is a low pass of the force, e + (kp / ki) de/dt = u / ki. What 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import cache
+from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+from sher3_common.compiled import compiled, direct
 from sher3_common.reasons import Reason, reading
 from sher3_common.vectors import Vector
 
@@ -19,51 +24,95 @@ from sher3_drivers.settings import MotorDriverSettings
 from sher3_drivers.units import AxisScale
 from sher3_drivers.watches.trips import Trip
 
+_LIMITS = ("plain", "elastic", "lag", "share", "time", "keep", "hold")
+_MEMORY = ("motor", "load", "path", "peak", "base", "force", "left", "by_motor", "explained", "limit")
+PLACE = np.dtype([(name, np.float64) for name in (*_LIMITS, *_MEMORY)])
+"""A row: the limits of an axis and what is remembered of it, in m or rad. `left` is how far it is from the sum of its
+commands since the beginning, by the encoder that says less; `explained` how much of that its force explains, at most
+`elastic`; `limit` the largest departure at the newest speeds and force."""
+
+
+def begin_places(places: NDArray[Any], motor: Vector, load: Vector, effort: Vector) -> None:
+    """Take these readings (n,) as the beginning, in place; the force `effort` [N, N m] is what holds an axis there."""
+    for name in _MEMORY:
+        places[name] = 0.0
+    places["motor"], places["load"] = motor, load
+    places["base"] = places["force"] = np.divide(effort, places["hold"])
+    places["limit"] = places["plain"]
+
+
+@compiled(error_model="numpy")
+def follow_places(places: Any, motor: Vector, load: Vector, effort: Vector, command: Vector, since: float) -> bool:
+    """Add the commands (n,) [m/s, rad/s] that held for `since` s, in place, and take the readings (n,) after them.
+
+    Returns:
+        Whether an axis is further from where commands and force put it than its limit.
+    """
+    departed = False
+    for number in range(len(places)):
+        place = places[number]
+        _advance(place, motor[number], load[number], effort[number], command[number], since)
+        departed = departed or abs(place["left"] - place["explained"]) > place["limit"]
+    return departed
+
+
+@compiled(error_model="numpy")
+def _advance(place: Any, motor: float, load: float, effort: float, command: float, since: float) -> None:
+    place["path"] += command * since
+    by_motor, by_load = place["path"] + place["motor"] - motor, place["path"] + place["load"] - load
+    place["by_motor"], place["left"] = by_motor, by_load if abs(by_load) < abs(by_motor) else by_motor
+    place["force"] += min(1.0, since / place["time"]) * (effort / place["hold"] - place["force"])
+    place["explained"] = max(-place["elastic"], min(place["elastic"], place["force"] - place["base"]))
+    place["peak"] = max(abs(command), place["keep"] * place["peak"])
+    place["limit"] = place["plain"] + place["lag"] * place["peak"] + place["share"] * abs(place["explained"])
+
+
+@cache
+def _follow(count: int) -> Callable[..., bool]:
+    """Return the compiled sums of so many axes; not kept in the watch, which can be copied."""
+    zeros = (0.0,) * count
+    return direct(follow_places, np.ones(count, PLACE), zeros, zeros, zeros, zeros, 0.0)
+
 
 class AxisPosition:
-    """The sum of one axis.
+    """The sum of one axis in words.
 
-    Attributes:
-        left: how far it is from the sum of its commands since the beginning, by the encoder that says less, m or rad.
-        explained: how much of that its force explains, at most `position_elastic`, m or rad.
-        limit: largest departure at the newest speeds and force, m or rad.
+    Args:
+        scale: of the axis.
+        settings: its limits.
+        places: rows of all axes.
+        number: of its row.
     """
 
-    __slots__ = (
-        "_base", "_by_motor", "_elastic", "_force", "_keep", "_lag", "_load", "_motor", "_name", "_path", "_peak",
-        "_plain", "_scale", "_share", "_time", "explained", "left", "limit",
-    )  # fmt: skip
+    __slots__ = ("_name", "_number", "_places", "_unit")
 
-    def __init__(self, scale: AxisScale, settings: MotorDriverSettings) -> None:
-        self._scale, self._name = scale, scale.name
-        self._plain = settings.position_angle if scale.revolute else settings.position_distance
-        self._elastic = settings.elastic_angle if scale.revolute else settings.elastic_distance
-        self._lag, self._share = settings.position_lag, settings.position_force
-        self._time = scale.settling
-        self._keep = 1.0 - min(1.0, settings.period / settings.following_memory)
-        self.begin(0.0, 0.0, 0.0)
+    def __init__(self, scale: AxisScale, settings: MotorDriverSettings, places: NDArray[Any], number: int) -> None:
+        self._name, self._unit, self._places, self._number = scale.name, scale.unit, places, number
+        limits = {
+            "plain": settings.position_angle if scale.revolute else settings.position_distance,
+            "elastic": settings.elastic_angle if scale.revolute else settings.elastic_distance,
+            "lag": settings.position_lag,
+            "share": settings.position_force,
+            "time": scale.settling,
+            "keep": 1.0 - min(1.0, settings.period / settings.following_memory),
+            "hold": scale.hold,
+        }
+        for name, value in limits.items():
+            places[name][number] = value
 
-    def begin(self, motor: float, load: float, effort: float) -> None:
-        """Take these readings as the beginning; the force `effort` [N, N m] is what holds the axis there."""
-        self._motor, self._load, self._path, self._peak = motor, load, 0.0, 0.0
-        self._base = self._force = effort / self._scale.hold
-        self.left = self.explained = self._by_motor = 0.0
-        self.limit = self._plain
-
-    def advance(self, motor: float, load: float, effort: float, command: float, since: float) -> None:
-        """Add the `command` [m/s, rad/s] that held for `since` s, and take the readings after it."""
-        self._path += command * since
-        self._by_motor, by_load = self._path + self._motor - motor, self._path + self._load - load
-        self.left = by_load if abs(by_load) < abs(self._by_motor) else self._by_motor
-        self._force += min(1.0, since / self._time) * (effort / self._scale.hold - self._force)
-        self.explained = max(-self._elastic, min(self._elastic, self._force - self._base))
-        self._peak = max(abs(command), self._keep * self._peak)
-        self.limit = self._plain + self._lag * self._peak + self._share * abs(self.explained)
+    def __getitem__(self, name: str) -> float:
+        """Return a field of its row."""
+        return self._places[name][self._number].item()
 
     @property
     def departure(self) -> float:
         """How far the axis is from where commands and force put it, m or rad."""
-        return self.left - self.explained
+        return self["left"] - self["explained"]
+
+    @property
+    def limit(self) -> float:
+        """Largest departure at the newest speeds and force, m or rad."""
+        return self["limit"]
 
     @property
     def moved(self) -> float:
@@ -71,11 +120,12 @@ class AxisPosition:
 
         Its drive may hold it or not, as without power, so the force counts only where it explains something.
         """
-        return min(self._by_motor, self._by_motor - self.explained, key=abs)
+        by_motor = self["by_motor"]
+        return min(by_motor, by_motor - self["explained"], key=abs)
 
     def reading(self) -> tuple[str, str]:
         """Return what is looked at now, with its limit, for the diagnostics."""
-        return reading(Reason.POSITION_LEFT, self._name, abs(self.departure), self.limit, self._scale.unit)
+        return reading(Reason.POSITION_LEFT, self._name, abs(self.departure), self.limit, self._unit)
 
 
 class PositionWatch:
@@ -87,8 +137,12 @@ class PositionWatch:
 
     def __init__(self, scales: Sequence[AxisScale], settings: MotorDriverSettings) -> None:
         self._scales = tuple(scales)
-        self.axes = [AxisPosition(scale, settings) for scale in scales]
-        self._begun = False
+        self._rows = np.zeros(len(scales), PLACE)
+        self.axes = [AxisPosition(scale, settings, self._rows, number) for number, scale in enumerate(scales)]
+        zeros = (0.0,) * len(scales)
+        begin_places(self._rows, zeros, zeros, zeros)
+        self._begun = self._departed = False
+        _follow(len(scales))
 
     def begin(self) -> None:
         """Begin at the next feedback."""
@@ -96,16 +150,17 @@ class PositionWatch:
 
     def follow(self, feedback: DriveFeedback, held: Vector, since: float) -> None:
         """Take a feedback and the commands (5,) [m/s, rad/s] held over the `since` s before it."""
-        readings = zip(feedback.motor_position, feedback.load_position, feedback.effort, strict=True)
-        for axis, encoders_and_force, command in zip(self.axes, readings, held, strict=True):
-            if self._begun:
-                axis.advance(*encoders_and_force, command, since)
-            else:
-                axis.begin(*encoders_and_force)
-        self._begun = True
+        motor, load, effort = feedback.motor_position, feedback.load_position, feedback.effort
+        if self._begun:
+            self._departed = _follow(len(self.axes))(self._rows, motor, load, effort, held, since)
+        else:
+            begin_places(self._rows, motor, load, effort)
+            self._begun, self._departed = True, False
 
     def judge(self) -> Trip | None:
         """Object to an axis that is not where its commands put it; whoever is halfway there is suspected too."""
+        if not self._departed:
+            return None
         for axis, scale in zip(self.axes, self._scales, strict=True):
             value = abs(axis.departure)
             if value > axis.limit:

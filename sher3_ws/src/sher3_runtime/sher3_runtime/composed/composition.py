@@ -10,16 +10,19 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
+from operator import attrgetter
 from time import monotonic_ns
 from typing import Any
 
-from sher3_description.topics import MANY_SENDERS, TOPICS, Topic
+from sher3_description.topics import AT_ONCE, MANY_SENDERS, TOPICS, Topic
 
 from sher3_runtime.composed.ring import Ring
 from sher3_runtime.composed.turn import Turn
 
 ASK_NS = 50_000_000
 """Time [ns] after which a publisher asks again whether somebody outside listens."""
+REPEATS = 10
+"""Samples after a change of what is heard `AT_ONCE` that the middleware gets too: any one of them may be lost."""
 STRIDE = 3
 """Periods between the slow callbacks of a process; prime to 10, 25 and 50, the periods of a twentieth of a second."""
 _RANKS = {name: rank for rank, name in enumerate(TOPICS)}
@@ -117,9 +120,10 @@ class Composition:
         latched = topic.qos.durability == "transient_local"
         ring = self._ring if _goes_by_ring(topic) else None
         ask_at, outside, beside = 0, True, False
+        of_note, noted, left = attrgetter(AT_ONCE[name]) if name in AT_ONCE else None, None, 0
 
         def publish(sample: Any) -> None:
-            nonlocal ask_at, outside, beside
+            nonlocal ask_at, outside, beside, noted, left
             if as_sent is not None:
                 sample = as_sent(sample)
             if latched:
@@ -129,8 +133,12 @@ class Composition:
             if not latched and (at := monotonic_ns()) >= ask_at:
                 takes, subscribed = (0, 0) if ring is None else ring.readers(rank)
                 ask_at, outside, beside = at + ASK_NS, listens() > subscribed, takes > 0
+            if of_note is not None:
+                left -= 1
+                if (value := of_note(sample)) != noted:
+                    noted, left = value, REPEATS
             if outside or beside:
-                outbox.append((leave, sample, outside, beside))
+                outbox.append((leave, sample, outside or left > 0, beside))
 
         def leave(sample: Any, outside: bool, beside: bool) -> None:
             data = encode(sample)

@@ -29,11 +29,12 @@ class Turn:
         taken: The node is at work. True until `begin`, too: nothing is delivered to a node that is being made.
     """
 
-    __slots__ = ("_inlets", "_opened", "taken")
+    __slots__ = ("_inlets", "_opened", "_waits", "taken")
 
     def __init__(self, opened: bool = False) -> None:
         self.taken = not opened
         self._opened = opened
+        self._waits = False
         self._inlets: list[Inlet] = []
 
     def inlet(self, rank: int, receive: Callable[[Any], None], depth: int) -> Callable[[Any], None]:
@@ -44,8 +45,16 @@ class Turn:
         self._inlets.sort(key=lambda i: i.rank)
 
         def offer(sample: Any) -> None:
-            inlet.samples.append(sample)
-            if not self.taken:
+            if self.taken or self._waits:
+                inlet.samples.append(sample)
+                self._waits = True
+            else:  # nearly always: nothing has to be put in order
+                self.taken = True
+                try:
+                    receive(sample)
+                finally:
+                    self.taken = False
+            if self._waits and not self.taken:
                 self.serve()
 
         return offer
@@ -54,7 +63,8 @@ class Turn:
         """Let the node begin."""
         if not self._opened:
             self._opened, self.taken = True, False
-            self.serve()
+            if self._waits:
+                self.serve()
 
     def serve(self) -> None:
         """Hand over what waits; called while the node is at rest."""
@@ -64,6 +74,7 @@ class Turn:
                 inlet.receive(inlet.samples.popleft())
             finally:
                 self.taken = False
+        self._waits = False
 
     def _next(self) -> Inlet | None:
         for inlet in self._inlets:
@@ -86,4 +97,5 @@ class Turn:
 
     def __exit__(self, *_: object) -> None:
         self.taken = False
-        self.serve()
+        if self._waits:
+            self.serve()
