@@ -114,8 +114,8 @@ HALF_CLOSED = 0.75
 argument. Measure: `pytest sher3_ws/src/sher3_machines/test/axes/test_foreign_law.py`."""
 
 FOREIGN_SIZE = 0.05
-"""Size, over that of the gap, of what follows quantities that no cause may depend on, from which another law is at work:
-laws are off by a few per cent. Set by that argument and measured as `HALF_CLOSED`."""
+"""Size, over that of the gap, of what follows quantities that no cause may depend on, from which another law is at
+work: laws are off by a few per cent. Set by that argument and measured as `HALF_CLOSED`."""
 
 FOREIGN_SHARE = 0.5
 """Share of what a free law of the causes' own inputs leaves that such quantities must tell: most of it. Set by that

@@ -18,9 +18,8 @@ from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.judge.evidence.free_law import ROWS, loss_left
 from sher3_diagnosis.quantify.closure import residual_after
 
-
 OF_FAMILY: Mapping[str, tuple[str, ...]] = {"friction": ("direction", "velocity")}
-"""Inputs that the laws of a family share, whichever of them was chosen: any friction may rise or fall with the speed."""
+"""Inputs that the laws of a family share, whichever was chosen: any friction may rise or fall with the speed."""
 
 
 @dataclass(frozen=True)

@@ -61,8 +61,8 @@ class TransmissionHysteresis(Page):
 class HysteresisOnAxis(TransmissionHysteresis):
     """The same on one axis of any machine; where a force was recorded, friction may lie beside the spring itself.
 
-    Then the loop follows the force and no path: twist = (force - friction * z) / stiffness, z a Dahl state of the force,
-    so that the load leads what the spring alone would give by `amplitude` after the force grew.
+    Then the loop follows the force and no path: twist = (force - friction * z) / stiffness, z a Dahl state of the
+    force, so that the load leads what the spring alone would give by `amplitude` after the force grew.
     """
 
     kinds = ("axis", "servo")

@@ -36,7 +36,7 @@ APPLIED = vocabulary("hung applied external disturbance weight brake bremsmoment
 """A force from outside that is known, where the column has the unit of one."""
 PLAIN = vocabulary("motor state states joint value wert data real raw message msg sensor")
 """Words that tell one axis from another only where nothing else does."""
-TIME = vocabulary("t time stamp timestamp timestamps zeit date datetime received elapsed clock")
+TIME = vocabulary("t time stamp timestamp timestamps zeit date datetime utc received elapsed clock")
 COUNTERS = vocabulary("sample samples index idx frame step n nr row")
 FORCES = ("%", "A", "mA", "N", "kN", "N*m", "mN*m")
 """Units of an effort."""
