@@ -17,16 +17,21 @@ from sher3_diagnosis.finding import Finding
 from sher3_diagnosis.fit.fitting import Fit, fit
 from sher3_diagnosis.judge.foreign import foreign_in
 from sher3_diagnosis.quantify.closure import closure
-from sher3_diagnosis.thresholds import AT_FLOOR, FOREIGN_SHARE, FOREIGN_SIZE, HALF_CLOSED
+from sher3_diagnosis.thresholds import AT_FLOOR, FOREIGN_SHARE, FOREIGN_SIZE, HALF_CLOSED, PARSIMONY
 from sher3_diagnosis.verdict import Cause, Imitation
 
 
 def significant_causes(
     evidence: Evidence, attribution: Attribution, causes: Sequence[Cause], left: Callable[[Fit], Collection[Channel]]
 ) -> Attribution:
-    """Return the attribution without causes of which no size differs from zero, and whose gap stays closed without."""
-    for i, cause in zip(reversed(attribution.causes), reversed(causes), strict=True):
-        if len(attribution.causes) > 1 and holds_zero(cause):
+    """Return the attribution without causes that say nothing, where their gap stays closed without them.
+
+    No size of such a cause differs from zero; or it is worth next to nothing, and an effect of another family, where
+    nobody can tell which, is worth as much: what the law of a larger cause leaves out.
+    """
+    idle = [holds_zero(c) or untold(evidence, attribution, i) for i, c in zip(attribution.causes, causes, strict=True)]
+    for i, says_nothing in zip(reversed(attribution.causes), reversed(idle), strict=True):
+        if len(attribution.causes) > 1 and says_nothing:
             fewer = kept(evidence, attribution, [k for k in attribution.causes if k != i])
             if set(left(fewer.fit)) <= set(left(attribution.fit)):
                 attribution = fewer
@@ -37,6 +42,14 @@ def holds_zero(cause: Cause) -> bool:
     """Return whether every interval of a cause holds zero; one without any interval is not judged so."""
     told = [(p.low, p.high) for p in cause.parameters.values() if p.low is not None and p.high is not None]
     return bool(told) and all(low <= 0.0 <= high for low, high in told)
+
+
+def untold(evidence: Evidence, attribution: Attribution, index: int) -> bool:
+    """Return whether a cause is worth less than laws are off by, and as much as one of another family."""
+    family = attribution.fit.terms[index].effect.family
+    others = any(f.terms[-1].effect.family != family for f in attribution.rivals[index])
+    whole = evidence.null().total - attribution.fit.total
+    return others and attribution.explained[index] < PARSIMONY * whole
 
 
 def without_imitations(finding: Finding, free_laws: bool) -> Finding:
