@@ -77,7 +77,7 @@ def draft(path: Path, rate: float | None = None) -> Draft:
             value=", ".join(sorted(tables)[:LISTED]),
             limit="names with position, pos, q, angle, encoder",
             remedy="write the description by hand: integrate a velocity first; a force sensor by itself is `kind: "
-            "force_sensor`, postures with measured poses are `kind: arm`; levels, flows and temperatures are no machine",
+            "force_sensor`, postures with measured poses are `kind: arm`; levels and temperatures are no machine",
         )
     if sum(axis["command_law"]["kind"] == "force" for axis in axes) > 1:
         guesses.append(
