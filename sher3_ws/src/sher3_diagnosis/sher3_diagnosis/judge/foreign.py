@@ -11,6 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sher3_diagnosis.attribute.rivals import Attribution
 from sher3_diagnosis.channel import Array, Channel
@@ -73,6 +74,6 @@ def foreign_in(evidence: Evidence, attribution: Attribution, channel: Channel) -
     return Foreign(float(np.mean(np.concatenate(before) ** 2)), float(np.mean(y**2)), losses[0], losses[1])
 
 
-def _stacked(columns: Mapping[str, Array], rows: Array) -> Array:
+def _stacked(columns: Mapping[str, Array], rows: NDArray[np.int64]) -> Array:
     parts = [np.asarray(x)[rows] for x in columns.values()]
     return np.hstack(parts) if parts else np.zeros((len(rows), 0))
