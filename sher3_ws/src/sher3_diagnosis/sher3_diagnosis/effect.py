@@ -37,6 +37,7 @@ INPUTS: Mapping[str, str] = {
     "force": "force that the drive gives or the axis carries",
     "weight": "weight that the axis carries",
     "load": "load on the tip",
+    "loading": "force that it went through before",
     "posture": "posture of the whole machine",
     "temperature": "temperature of the machine",
     "time": "time since the run or the session began",

@@ -19,6 +19,7 @@ from sher3_diagnosis.judge.calibration.calibration import in_force
 from sher3_diagnosis.judge.causes import causes_of
 from sher3_diagnosis.judge.judge import judge
 from sher3_diagnosis.judge.left_over import down_to_floor, left_over
+from sher3_diagnosis.judge.supported import significant_causes, without_imitations
 from sher3_diagnosis.judge.weigh import weighed
 from sher3_diagnosis.localise.gaps import localise
 from sher3_diagnosis.machine import Machine
@@ -76,8 +77,15 @@ def find(machine: Machine[R, E], evidence: E, without: Collection[str], say: Say
     say("quantifying")
     attribution = polished(evidence, attribution)
     refined, causes = machine.refine(evidence, causes_of(evidence, attribution), attribution)
-    left = left_over(significant, evidence, attribution.fit)
-    finding = Finding(refined, gaps, attribution, causes, left)
+    remains = partial(left_over, significant, evidence)
+    if not machine.policy.calibrated:
+        fewer = significant_causes(evidence, attribution, causes, remains)
+        if fewer is not attribution:
+            attribution = fewer
+            refined, causes = machine.refine(evidence, causes_of(evidence, attribution), attribution)
+    finding = Finding(refined, gaps, attribution, causes, remains(attribution.fit))
+    if not machine.policy.calibrated:
+        finding = without_imitations(finding, machine.policy.free_laws)
     return replace(finding, notes=machine.remarks(finding))
 
 

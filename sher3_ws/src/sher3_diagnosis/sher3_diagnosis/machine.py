@@ -44,6 +44,7 @@ class Policy:
     constancy: bool = True
     spill_over: bool = True
     calibrated: bool = False
+    free_laws: bool = False
 
 
 class Machine(ABC, Generic[R, E]):

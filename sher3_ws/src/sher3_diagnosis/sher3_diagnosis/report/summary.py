@@ -148,7 +148,9 @@ def _where(verdict: Verdict) -> str:
 def _unknown(verdict: Verdict) -> str:
     if verdict.unexplained is None:
         return "none needed"
-    return f"none of the library; what is left: {verdict.unexplained.signature}"
+    alike = [f"{_lower(i.effect)} ({share(i.closure.value)})" for i in verdict.unexplained.imitated_by]
+    nearest = f", though {listed(alike)} imitate{'s' * (len(alike) == 1)} it" if alike else ""
+    return f"none of the library{nearest}; what is left: {verdict.unexplained.signature}"
 
 
 def _closure(verdict: Verdict) -> str:

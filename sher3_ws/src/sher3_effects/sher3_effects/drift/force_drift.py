@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 from sher3_diagnosis.channel import Array, Channel
-from sher3_diagnosis.effect import Best, Shape, Signature
+from sher3_diagnosis.effect import Best, Shape, Signature, column
 from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
@@ -80,6 +80,27 @@ class SensorDrift(Page):
         """Return the drift over the whole test by component."""
         names = ("fx", "fy", "fz", "tx", "ty", "tz")
         return {**{n: float(c) for n, c in zip(names, coefficients, strict=True)}, "with_time": shape["with_time"]}
+
+
+class CellDrift(SensorDrift):
+    """The zero of a load cell wanders, with its temperature or with time."""
+
+    kinds, places = ("cell",), ("load_cell",)
+    explanation = "The zero of the load cell wanders during the test, under every force alike."
+    units = {"over_test": "N"}
+
+    def channels(self, site: str) -> tuple[Channel, ...]:
+        """Return the reading of the cell."""
+        return (Channel(self.stage, site),)
+
+    def signature(self, view: Any, site: str, shape: Shape) -> Signature:
+        """Return one column: the share of the test that has passed, or of the warming."""
+        (columns,) = super().signature(view, site, shape).columns.values()
+        return Signature({Channel(self.stage, site): column(columns[:, 0, 0])})
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Return the drift over the whole test."""
+        return {"over_test": float(coefficients[0]), "with_time": shape["with_time"]}
 
 
 @dataclass(frozen=True)

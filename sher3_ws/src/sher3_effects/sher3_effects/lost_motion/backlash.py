@@ -118,7 +118,9 @@ class BacklashOnAxis(Backlash):
         square = [np.mean(np.gradient(v.run.velocity[:, v.row(site)], v.run.period) ** 2) for v in views]
         usual = float(np.sqrt(np.mean(square)))
         widths = [w * span for w in (*self.SMALLER[2:], *self.WIDTHS) if span]
-        return [*found, *small, *({"width": w, "braking": b * usual} for w in widths for b in self.BRAKING if usual)]
+        found = [*found, *small, *({"width": w, "braking": b * usual} for w in widths for b in self.BRAKING if usual)]
+        seen = np.inf if loaded else max(v.axis(site).travel for v in views)
+        return [shape for shape in found if shape.get("width", 0.0) < seen]  # no motion shows a gap wider than itself
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
         """Return the lag behind a gap; a load with a `braking` (m/s^2) keeps its speed in it but for that.

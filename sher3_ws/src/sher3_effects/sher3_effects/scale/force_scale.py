@@ -8,10 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from sher3_description import Robot
 from sher3_diagnosis.channel import Array, Channel
-from sher3_diagnosis.effect import Best, Shape, Signature
+from sher3_diagnosis.effect import Best, Shape, Signature, column
 from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
+from sher3_effects.cell_view import CellView
 from sher3_effects.page import Page, Tolerated
 from sher3_effects.view import AxisView
 
@@ -61,6 +62,31 @@ class ForceScale(Page):
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Ratio error and the axis it is of."""
         return {"relative": float(coefficients[0]), "axis": shape["axis"]}
+
+
+class CellScale(Page):
+    """The sensitivity of a load cell: reading = (1 + relative) * force."""
+
+    id, family, stage, best = ForceScale.id, ForceScale.family, ForceScale.stage, ForceScale.best
+    kinds, places, inputs = ("cell",), ("load_cell",), ForceScale.inputs
+    units = {"relative": "1"}
+    explanation = "The load cell reads too much or too little in proportion to the force."
+    siblings = {
+        "force_bias": "does not depend on the force",
+        "force_nonlinearity": "largest in the middle of the range",
+    }
+
+    def signature(self, view: CellView, site: str, shape: Shape) -> Signature:
+        """Return one column: the known force."""
+        return Signature({Channel(self.stage, site): column(view.applied)})
+
+    def admissible(self, shape: Shape, coefficients: Array) -> bool:
+        """A sensitivity keeps its sign."""
+        return bool(coefficients[0] > -1.0)
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Return the ratio error."""
+        return {"relative": float(coefficients[0])}
 
 
 @dataclass(frozen=True)

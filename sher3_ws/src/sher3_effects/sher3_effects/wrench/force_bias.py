@@ -8,10 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from sher3_description import Robot
 from sher3_diagnosis.channel import Array, Channel
-from sher3_diagnosis.effect import Best, Shape, Signature
+from sher3_diagnosis.effect import Best, Shape, Signature, column
 from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
+from sher3_effects.cell_view import CellView
 from sher3_effects.page import Page, Tolerated
 from sher3_effects.view import AxisView
 
@@ -46,6 +47,24 @@ class ForceBias(Page):
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Bias per component."""
         return {n: float(c) for n, c in zip(self.specification, coefficients, strict=True)}
+
+
+class CellBias(Page):
+    """The zero of a load cell, which has one component: reading = force + bias."""
+
+    id, family, stage, best = ForceBias.id, ForceBias.family, ForceBias.stage, ForceBias.best
+    kinds, places = ("cell",), ("load_cell",)
+    units = {"force": "N"}
+    explanation = "The load cell reads a constant at no force."
+    siblings = {"force_scale": "grows with the force", "force_drift": "wanders during the test"}
+
+    def signature(self, view: CellView, site: str, shape: Shape) -> Signature:
+        """Return one column: one."""
+        return Signature({Channel(self.stage, site): column(np.ones(len(view.applied)))})
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Return the zero."""
+        return {"force": float(coefficients[0])}
 
 
 @dataclass(frozen=True)

@@ -31,7 +31,7 @@ class SensorFrame(Page):
         """Return every frame of the list, and each turned by what fits the forces best, rad."""
         plain: list[Shape] = [{"frame": float(k)} for k in range(views[0].frames)]
         turns = [views[0].turn(k) for k in range(views[0].frames)]
-        small = [(k, turn) for k, turn in enumerate(turns) if np.linalg.norm(turn) < self.SMALL]
+        small = [(k, turn) for k, turn in enumerate(turns) if np.linalg.norm(turn) < self.FURTHEST]
         return plain + [{"frame": float(k), "rx": t[0], "ry": t[1], "rz": t[2]} for k, t in small]
 
     def signature(self, view: SensorView, site: str, shape: Shape) -> Signature:
@@ -56,5 +56,7 @@ class SensorFrame(Page):
         """Return whether the further turn is small: what is larger is another frame of the list."""
         return bool(np.abs(coefficients).max() < self.SMALL)
 
+    FURTHEST = 1.1
+    """Largest turn to the nearest quarter turns, rad: 62.8 degrees, about an axis through the corner of a cube."""
     SMALL = 0.5
-    """Largest further turn, rad: quarter turns about all axes leave none larger than 45 degrees to the next."""
+    """Largest turn beyond the one that fits the forces, rad: what is larger is another frame."""

@@ -57,7 +57,7 @@ class Axes(Machine[AxesRun, AxisEvidence]):
     """
 
     description: AxesDescription
-    policy = Policy(down_to_floor=True, constancy=False, spill_over=False)
+    policy = Policy(down_to_floor=True, constancy=False, spill_over=False, free_laws=True)
 
     def library(self) -> Sequence[Effect]:
         """Return the pages for these kinds of axes, and that of the limit, which is read off without a fit."""

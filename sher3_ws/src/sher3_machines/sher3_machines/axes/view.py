@@ -30,6 +30,8 @@ REFERENCE = 20.0
 """Temperature, deg C, at which lengths are stated (ISO 1)."""
 SPREAD = 0.5
 """Periods of the cut-off by which the filter spreads a step."""
+PAST = (0.003, 0.03, 0.3)
+"""Shares of a range over which a state forgets: what went before within a fine, a usual and a coarse stroke."""
 ENOUGH = 0.5
 """Share of the samples in motion that must be away from such reversals for the others to be left out."""
 STILL = 1e-12
@@ -261,6 +263,32 @@ class AxisView:
         """Return (g, 3): position, velocity, and direction of the motion, 0 at rest."""
         velocity = self.velocity[:, 0]
         return np.column_stack([self.position[:, 0], velocity, np.sign(velocity) * self.moving])
+
+    def quantities(self, site: str) -> dict[str, Array]:
+        """Return quantity, of `sher3_diagnosis.effect.INPUTS`, -> (g, k) columns, as the axis feels them.
+
+        The past of force and path is in Dahl states, which turn over a share of what each goes through. The force is
+        the one that the motion needs; where no mass is known and no force balance judged, the recorded one.
+        """
+        run, needed = self.run, self.inertial
+        if not self.mass and run.effort is not None and run.nominal is None:
+            needed = run.to_grid(run.effort)
+        force = np.interp(run.stage_clock, run.stage_clock[run.grid], needed[:, 0])
+        reach = float(np.ptp(force)) or 1.0
+        pace = np.gradient(force, run.period)
+        loops = [dahl_turned(force, pace, share * reach, run.period)[run.grid] for share in PAST]
+        travel = max(float(np.ptp(run.smooth)), self.described.encoder_resolution)
+        turned = [self.sliding(0, share * travel)[run.grid] for share in PAST]
+        return {
+            "position": self.position,
+            "velocity": self.velocity,
+            "direction": np.column_stack(turned),
+            "acceleration": run.to_grid(run.acceleration),
+            "force": needed,
+            "loading": np.column_stack(loops),
+            "load": self.path.contact_force,
+            "temperature": self.warmth[:, None],
+        }
 
     # what discovery reads
 

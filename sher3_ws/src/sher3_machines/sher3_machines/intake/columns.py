@@ -25,11 +25,15 @@ SPELLINGS = {
     "rev": "turn turns revolution revolutions revs rot",
     "N": "newton newtons",
     "N*m": "Nm N·m N⋅m N.m N-m newton-meter",
-    "mN*m": "mNm mN·m mN.m",
+    "mN*m": "mNm mN·m mN.m Nmm N·mm N.mm N*mm",
     "A": "amp amps ampere amperes Arms",
     "V": "volt volts Volt",
     "%": "pct percent prozent",
-    "count": "counts cnt cnts inc incr increments ticks tick pulses",
+    "bar": "bars",
+    "kPa": "kpa",
+    "MPa": "Mpa mpa",
+    "kg": "kilogram kilograms",
+    "count": "counts cnt cnts inc incr increments ticks tick pulses steps ink inkremente schritte impulse",
     "degC": "°C C celsius Celsius",
     "s": "sec secs second seconds",
     "ms": "msec msecs millis milliseconds",
@@ -76,7 +80,18 @@ def pick(column: Column, tables: Tables, run: str, finite: bool = True) -> Array
             value=f"{int(bad.sum())} of {len(x)} samples",
             remedy="cut the record before or after",
         )
-    return x * scale(column, name, run)
+    return _with_others(x * scale(column, name, run), column, tables, run, finite)
+
+
+def _with_others(x: Array, column: Column, tables: Tables, run: str, finite: bool) -> Array:
+    """Return samples with those of the columns that the description adds to them."""
+    for other in column.plus:
+        more = pick(other, tables, run, finite)
+        if more.shape != x.shape:
+            remedy = "add columns of one table"
+            raise MachineError(f"{run}: {other.column} has other rows", value=more.shape, limit=x.shape, remedy=remedy)
+        x = x + more
+    return x
 
 
 def find(name: str, tables: Tables, run: str) -> str:

@@ -22,7 +22,7 @@ SIGNALS = ("position", "reference", "command", "effort", "load", "applied", "tem
 """Signals of an axis that a draft looks for, in the order they are written."""
 PLACES = ("reference", "load")
 """Signals that are in the unit of the position where their name says no other."""
-ROTARY_UNITS = ("rad", "mrad", "deg", "rev", "count")
+ROTARY_UNITS = ("rad", "mrad", "deg", "arcmin", "arcsec", "rev", "count")
 WIDEST = 12
 """Entries of an array column that may be axes: a humanoid's arms; wider ones are matrices."""
 GEARED = 1.5
@@ -77,7 +77,7 @@ def draft(path: Path, rate: float | None = None) -> Draft:
             value=", ".join(sorted(tables)[:LISTED]),
             limit="names with position, pos, q, angle, encoder",
             remedy="write the description by hand: integrate a velocity first; a force sensor by itself is `kind: "
-            "force_sensor`, postures with measured poses are `kind: arm`",
+            "force_sensor`, postures with measured poses are `kind: arm`; levels and temperatures are no machine",
         )
     if sum(axis["command_law"]["kind"] == "force" for axis in axes) > 1:
         guesses.append(
@@ -167,6 +167,8 @@ def _axis(axis: str, signals: Mapping[str, Place], tables: Tables, guesses: list
         sliding = columns["load"]["unit"] not in ROTARY_UNITS
         exact = "placeholder" in why or sliding == (unit in ROTARY_UNITS)
         factor *= _gear(label, columns, ratio_of(signals, tables), exact, guesses)
+        if _beside(signals, columns, tables):  # a reference of the motor, in its counts
+            columns["reference"]["factor"] = columns["position"]["factor"]
         unit, own = columns["load"]["unit"] if sliding else unit, unit
     count = 1.0 if own == "count" and bool((x == np.round(x)).all()) else count_of(x)
     resolution = (count or scatter(x) or 1e-6) * factor * UNITS[own]
@@ -219,6 +221,14 @@ def _gear(label: str, columns: dict[str, Any], ratio: float, exact: bool, guesse
     columns["position"]["factor"] = columns["position"].get("factor", 1.0) * factor
     guesses.append(f"{label}: a gear of {whole:.6g} between the encoders, because the position moves {ratio:.4g} times")
     return factor
+
+
+def _beside(signals: Mapping[str, Place], columns: Mapping[str, Any], tables: Tables) -> bool:
+    """Return whether a reference moves by as many of its units as the position does, behind a gear of the load."""
+    if "reference" not in signals or "factor" not in columns["position"]:
+        return False
+    x, asked = (travel(values_of(signals[k], tables)) for k in ("position", "reference"))
+    return columns["reference"]["unit"] == columns["position"]["unit"] and x < GEARED * asked < GEARED**2 * x
 
 
 def _law(axis: str, columns: Mapping[str, Any], guesses: list[str]) -> dict[str, Any]:

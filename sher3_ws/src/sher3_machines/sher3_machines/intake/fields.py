@@ -29,6 +29,11 @@ UNITS: Mapping[str, float] = {
     "kN": 1e3,
     "N*m": 1.0,
     "mN*m": 1e-3,
+    "Pa": 1.0,
+    "kPa": 1e3,
+    "bar": 1e5,
+    "MPa": 1e6,
+    "kg": 1.0,
     "V": 1.0,
     "mV": 1e-3,
     "A": 1.0,
@@ -45,6 +50,10 @@ UNITS: Mapping[str, float] = {
     "h": 3600.0,
 }
 """Unit -> factor to SI; a percentage stays one, of a rated value that nobody stated."""
+
+
+PRESSURES = ("Pa", "kPa", "bar", "MPa")
+"""Units that become a force by the area they act on."""
 
 
 class Strict(BaseModel):
@@ -78,12 +87,15 @@ class Column(Strict):
         factor: turns the SI value of that unit into what the signal stands for, such as N m per A of a current, or rad
             per count of an encoder.
         index: entry to pick where each sample is a list.
+        plus: columns that are added to it, each with its own factor: the pressure on the other side of a piston, the
+            second motor of a portal.
     """
 
     column: str
     unit: str | None = None
     factor: float = 1.0
     index: int | None = None
+    plus: tuple[Column, ...] = ()
 
     @model_validator(mode="after")
     def _known(self) -> Column:
@@ -91,6 +103,8 @@ class Column(Strict):
             raise ValueError(f"unit {self.unit!r} is not known; units are {', '.join(UNITS)}")
         if self.unit == "count" and self.factor == 1.0:
             raise ValueError("a count needs its `factor`: m or rad per count, as 2 pi over the counts of a turn")
+        if self.unit in PRESSURES and self.factor == 1.0:
+            raise ValueError("a pressure needs its `factor`: the area it acts on, m^2; below zero on the other side")
         return self
 
     @property

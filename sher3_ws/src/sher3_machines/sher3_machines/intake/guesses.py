@@ -59,7 +59,8 @@ def clock_of(tables: Tables, guesses: list[str]) -> str:
         value=", ".join(sorted(tables)[:12]) or "no column of numbers",
         limit="a growing column named t, time or stamp",
         remedy="name it so, or state the rate of the samples, Hz: --rate 500 (`time: {rate: 500}` in a description); a "
-        "table of targets and readings has no time: it is `kind: positioning`",
+        "table without a time is of another kind: targets and readings `kind: positioning`, known loads and readings "
+        "`kind: load_cell`, wrenches in orientations `kind: force_sensor`, postures with measured poses `kind: arm`",
     )
 
 

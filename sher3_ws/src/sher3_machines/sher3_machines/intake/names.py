@@ -18,32 +18,39 @@ def vocabulary(text: str) -> frozenset[str]:
     return frozenset(text.split())
 
 
-POSITION = vocabulary("position positions pos posn q theta angle angles encoder enc lage weg winkel qm x dist")
+POSITION = vocabulary(
+    "position positions pos posn q theta angle angles encoder enc lage weg winkel qm x dist displacement displ stroke "
+    "gap hub verschiebung schrittzähler steps schritte"
+)
 VELOCITY = vocabulary("velocity velocities vel speed qd dq omega qdot qvel drehzahl geschwindigkeit rate")
 EFFORT = vocabulary("effort torque tau force iq trq moment drehmoment strom kraft amps qfrc")
 CURRENT = vocabulary("current curr cur i")
 """A current is an effort, but the current position is the measured one."""
-COMMAND = vocabulary("u voltage volt pwm duty vir")
+COMMAND = vocabulary("u voltage volt spannung pwm duty vir valve ventil")
 ASKED = vocabulary("ref reference setpoint sp desired des target goal soll demand commanded cmd command qg d")
 MEASURED = vocabulary("actual act measured meas present est estimate estimated ist feedback fb")
-SECOND = vocabulary("load output link second secondary scale abtrieb")
+SECOND = vocabulary("load output link second secondary scale abtrieb maßstab massstab glasmaßstab glasmassstab")
 IGNORED = vocabulary("acceleration acc accel qdd ddq error err bus supply battery versorgung")
 TEMPERATURE = vocabulary("temperature temp temperatur")
 APPLIED = vocabulary("hung applied external disturbance weight brake bremsmoment last")
 """A force from outside that is known, where the column has the unit of one."""
-PLAIN = vocabulary("motor state states joint value data real raw message msg sensor")
+PLAIN = vocabulary("motor state states joint value wert data real raw message msg sensor")
 """Words that tell one axis from another only where nothing else does."""
-TIME = vocabulary("t time stamp timestamp timestamps zeit date datetime received elapsed clock")
+TIME = vocabulary("t time stamp timestamp timestamps zeit date datetime utc received elapsed clock")
 COUNTERS = vocabulary("sample samples index idx frame step n nr row")
 FORCES = ("%", "A", "mA", "N", "kN", "N*m", "mN*m")
 """Units of an effort."""
 PLACES = ("m", "cm", "mm", "um", "rad", "mrad", "deg", "arcmin", "arcsec", "rev", "count")
 """Units of a position."""
-DRIVING = vocabulary("motor antrieb drive")
+DRIVING = vocabulary("motor antrieb drive schrittzähler steps schritte")
 """The one of two places of an axis that the drive moves; the other one is that of the load."""
 WORDS = POSITION | VELOCITY | EFFORT | CURRENT | COMMAND | ASKED | MEASURED | IGNORED
 SHORT = vocabulary("x i u n d q t")
 """Words of one letter: beside a longer word for the quantity they are the name of the axis."""
+FORCEFUL = EFFORT | CURRENT | COMMAND | APPLIED
+"""Words beside which a single letter at the end is a unit: `force_N`, `iq_A`, `u_V`; `enc_A` is the encoder of A."""
+PREFIXES = re.compile(r"(soll|ist)(?=\w{3})")
+"""Who asks or measures, as German joins it to the quantity: `Sollposition`, `Istwert`."""
 
 
 @dataclass(frozen=True)
@@ -108,7 +115,15 @@ def words_of(text: str) -> list[str]:
     """Return the words of a name in small letters: parted by signs, by capitals and by digits."""
     text = text.replace("set_point", "sp").replace("Set Point", "sp")
     parted = re.sub(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Za-z])(?=\d)|(?<=\d)(?=[A-Za-z])", " ", text)
-    return [w for w in re.split(r"[^0-9A-Za-zÀ-ÿ]+", parted.lower()) if w]
+    words = [w for w in re.split(r"[^0-9A-Za-zÀ-ÿ]+", parted.lower()) if w]
+    return [part for w in words for part in _joined(w)]
+
+
+def _joined(word: str) -> list[str]:
+    """Return who asks and what is asked of a joined word; any other word by itself."""
+    match = PREFIXES.match(word)
+    rest = word[match.end() :] if match else ""
+    return [word[: match.end()], rest] if match and rest in WORDS | PLAIN else [word]
 
 
 def bare_and_unit(name: str) -> tuple[str, str | None]:
@@ -119,7 +134,8 @@ def bare_and_unit(name: str) -> tuple[str, str | None]:
         return match["name"], said if said in UNITS else None
     head, _, last = name.rpartition("_")
     said = spelled(last)
-    stated = head.endswith("_in") or (len(last) > 1 and not last.isdigit())
+    letter = len(last) == 1 and last.isupper() and bool(set(words_of(head)) & FORCEFUL)
+    stated = head.endswith("_in") or letter or (len(last) > 1 and not last.isdigit())
     known = head and said in UNITS and stated
     return (head.removesuffix("_in"), said) if known else (name, None)
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 from sher3_diagnosis.attribute.rivals import Attribution
-from sher3_diagnosis.channel import Array
+from sher3_diagnosis.channel import Array, Mask
 
 from sher3_machines.positioning.description import AxisTest
 from sher3_machines.positioning.evidence import TableEvidence
@@ -15,12 +15,28 @@ from sher3_machines.positioning.iso import Circular, Positioning, circular, posi
 UNITS = {"linear": "um", "rotary": "urad"}
 
 
+POLE = 1.5
+"""Points on either side of a pole at which nobody knows whether the axis had turned round when the point was taken."""
+
+
 def figures(evidence: TableEvidence, part: Array) -> Positioning | Circular:
-    """Return the figures of a test after a part (g,) of its deviations is taken off."""
+    """Return the figures of a test after a part (g,) of its deviations is taken off.
+
+    A step at a pole of a circle that is taken off a point too early or too late would be the largest deviation by
+    itself, so that these points are left out then.
+    """
     rows = evidence.rows
     if isinstance(evidence.test, AxisTest):
         return positioning(rows["target"], rows["deviation"] - part, rows["direction"])
-    return circular(rows["angle"], rows["radius"] - part, rows["turning"])
+    kept = away_from_poles(rows["angle"]) if part.any() else np.ones(len(part), dtype=bool)
+    return circular(rows["angle"][kept], (rows["radius"] - part)[kept], rows["turning"][kept])
+
+
+def away_from_poles(angle: Array) -> Mask:
+    """Return (g,) False at the points of a circle next to a pole, where one of its axes turns round."""
+    step = float(np.median(np.abs(np.angle(np.exp(1j * np.diff(angle))))))
+    quarter = 0.5 * np.pi
+    return np.asarray(np.abs(angle - quarter * np.round(angle / quarter)) > POLE * step)
 
 
 def parts(evidence: TableEvidence, attribution: Attribution) -> list[tuple[str, str, Array]]:

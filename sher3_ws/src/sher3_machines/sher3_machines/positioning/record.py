@@ -53,28 +53,17 @@ def read_tests(name: str, tables: Tables, machine: PositioningDescription) -> Te
 
 def axis_rows(run: str, tables: Tables, test: AxisTest, notes: list[str]) -> dict[str, Array]:
     """Return the rows of one axis; raises MachineError."""
+    if test.passes is not None:
+        return pass_rows(run, tables, test, test.passes)
     target = pick(test.target, tables, run)
     _one_column(run, test.target, target)
     _enough(run, test.name, len(target))
-    if len(targets := np.unique(target)) < LEAST_TARGETS:
-        raise MachineError(
-            f"{run}: {test.name}: too few targets",
-            value=len(targets),
-            limit=LEAST_TARGETS,
-            remedy="measure more targets",
-        )
+    _enough_targets(run, test.name, target)
     column = test.reading or test.deviation
     assert column is not None
     value = _like(target, column, tables, run)
     deviation = value - target if test.reading is not None else value
-    worst = int(np.argmax(np.abs(deviation)))
-    if abs(deviation[worst]) > LIKELY_SLIP * np.ptp(target):
-        raise MachineError(
-            f"{run}: {test.name}: {column.column} deviates by more than its travel allows at row {worst + 1}",
-            value=f"{deviation[worst]:.4g}",
-            limit=f"{LIKELY_SLIP * np.ptp(target):.4g}",
-            remedy="correct the units of target and reading in the description",
-        )
+    _likely(run, test, column, target, deviation)
     rows = {"target": target, "deviation": deviation}
     if test.direction is not None:
         rows["direction"] = np.sign(_like(target, test.direction, tables, run))
@@ -93,6 +82,37 @@ def axis_rows(run: str, tables: Tables, test: AxisTest, notes: list[str]) -> dic
     if test.temperature is not None:
         rows["temperature"] = _like(target, test.temperature, tables, run)
     return rows
+
+
+def pass_rows(run: str, tables: Tables, test: AxisTest, passes: Sequence[Column]) -> dict[str, Array]:
+    """Return the rows of a table with a column for each pass: from below, from above and so on, in turn."""
+    target = pick(test.target, tables, run)
+    _one_column(run, test.target, target)
+    _enough(run, test.name, len(target) * len(passes))
+    _enough_targets(run, test.name, target)
+    found = [_like(target, column, tables, run) for column in passes]
+    for column, deviation in zip(passes, found, strict=True):
+        _likely(run, test, column, target, deviation)
+    warm = None if test.temperature is None else _like(target, test.temperature, tables, run)
+    parts = []
+    for k, deviation in enumerate(found):  # each in the order in which it was measured
+        there = np.argsort(target) if k % 2 == 0 else np.argsort(-target)
+        side = np.full(len(target), 1.0 if k % 2 == 0 else -1.0)
+        part = {"target": target[there], "deviation": deviation[there], "direction": side}
+        part["cycle"] = np.full(len(target), float(k // 2))
+        parts.append(part if warm is None else {**part, "temperature": warm[there]})
+    return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+
+
+def _likely(run: str, test: AxisTest, column: Column, target: Array, deviation: Array) -> None:
+    worst = int(np.argmax(np.abs(deviation)))
+    if abs(deviation[worst]) > LIKELY_SLIP * np.ptp(target):
+        raise MachineError(
+            f"{run}: {test.name}: {column.column} deviates by more than its travel allows at row {worst + 1}",
+            value=f"{deviation[worst]:.4g}",
+            limit=f"{LIKELY_SLIP * np.ptp(target):.4g}",
+            remedy="correct the units of target and reading in the description",
+        )
 
 
 def directions(target: Array) -> Array:
@@ -116,9 +136,13 @@ def cycles(target: Array, direction: Array) -> Array:
 
 def circle_rows(run: str, tables: Tables, test: CircleTest) -> dict[str, Array]:
     """Return the points of one circle; raises MachineError."""
-    x = pick(test.x, tables, run)
-    _one_column(run, test.x, x)
-    y = _like(x, test.y, tables, run)
+    first, second = (test.x, test.y) if test.x is not None else (test.angle, test.deviation)
+    assert first is not None and second is not None
+    x = pick(first, tables, run)
+    _one_column(run, first, x)
+    y = _like(x, second, tables, run)
+    if test.angle is not None:
+        x, y = (test.radius + y) * np.cos(x), (test.radius + y) * np.sin(x)
     _enough(run, test.name, len(x))
     size = float(np.hypot(x - x.mean(), y - y.mean()).mean())
     if not 0.5 < size / test.radius < 2.0:
@@ -152,3 +176,9 @@ def _enough(run: str, name: str, rows: int) -> None:
     if rows < LEAST_ROWS:
         remedy = "measure more cycles: five targets from both sides, twice, are enough"
         raise MachineError(f"{run}: {name}: too few rows", value=rows, limit=LEAST_ROWS, remedy=remedy)
+
+
+def _enough_targets(run: str, name: str, target: Array) -> None:
+    if (targets := len(np.unique(target))) < LEAST_TARGETS:
+        remedy = "measure more targets"
+        raise MachineError(f"{run}: {name}: too few targets", value=targets, limit=LEAST_TARGETS, remedy=remedy)

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 from sher3_diagnosis.channel import Array, Channel, Residual
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.whitened import Whitened
@@ -68,17 +69,31 @@ def gather_sensor(description: SensorDescription, runs: Sequence[SensorRun]) -> 
 
 
 def identify(wrench: Array, turn: Array) -> tuple[float, Array]:
-    """Return mass, kg, and first moment (3,), kg m, in the stated frame, from the frame in which readings fit best."""
-    fits = [load_in(frame, wrench, turn) for frame in frames()]
+    """Return mass, kg, and first moment (3,), kg m, in the stated frame, from the frame in which readings fit best.
+
+    A frame may be turned by any angle: each is tried as it is, and turned by what fits the forces best.
+    """
+    tried = [(frame, np.eye(3)) for frame in frames()]
+    view = ReadingsView(turn, 0.0, np.zeros(3), np.zeros(len(wrench)), wrench[:, :3])
+    tried += [(f, Rotation.from_rotvec(view.turn(k)).as_matrix()) for k, f in enumerate(frames())]
+    fits = [load_in(frame, wrench, turn, further) for frame, further in tried]
     best = min(range(len(fits)), key=lambda k: fits[k][0])
     chosen = 0 if fits[0][0] < STATED * fits[best][0] and fits[0][1] > 0.0 else best
     _, mass, moment = fits[chosen]
-    return mass, frames()[chosen].turn.T @ moment
+    frame, further = tried[chosen]
+    return mass, frame.turn.T @ further.T @ moment
 
 
-def load_in(frame: Frame, wrench: Array, turn: Array) -> tuple[float, float, Array]:
-    """Return the rms error of the forces, N, mass and first moment of readings in one frame, with a free bias."""
-    gravity = frame.gravity(turn)
+def load_in(frame: Frame, wrench: Array, turn: Array, further: Array) -> tuple[float, float, Array]:
+    """Return the rms error of the forces, N, mass and first moment of readings in one frame, with a free bias.
+
+    Args:
+        frame: of the list.
+        wrench: (n, 6) readings.
+        turn: (n, 3, 3) stated orientations.
+        further: (3, 3) turn of the readings beyond that frame.
+    """
+    gravity = frame.gravity(turn) @ further.T
     centred, force = gravity - gravity.mean(axis=0), wrench[:, :3] - wrench[:, :3].mean(axis=0)
     mass = max(float(np.sum(centred * force) / np.sum(centred**2)), 0.0)
     rows = np.concatenate([np.cross(axis, centred)[:, :, None] for axis in np.eye(3)], axis=2)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import lru_cache
 from itertools import permutations, product
 from typing import NamedTuple
@@ -37,14 +38,21 @@ class Frame(NamedTuple):
         parts = []
         turn = Rotation.from_matrix(self.turn).as_rotvec(degrees=True)
         size = float(np.linalg.norm(turn))
+        if size > 179.0:  # a half turn has two axes: the one that points along its largest component is given
+            turn = turn * np.sign(turn[np.argmax(np.abs(turn))])
         if size > 1.0:
-            axis = ", ".join(f"{x:.2g}" for x in turn / size)
+            axis = ", ".join(f"{round(x, 2) + 0.0:g}" for x in turn / size)
             parts.append(f"its axes are turned by {size:.0f} degrees about ({axis})")
         if self.inverted:
             parts.append("its orientation is stated the other way round")
         if self.sign < 0.0:
             parts.append("it reads the reaction, with the opposite sign")
         return ", and ".join(parts) or "as stated"
+
+
+def turned(frame: Frame, further: Sequence[float]) -> Frame:
+    """Return a frame whose readings are turned further by a rotation vector (3,), rad."""
+    return frame._replace(turn=Rotation.from_rotvec(further).as_matrix() @ frame.turn)
 
 
 @lru_cache(maxsize=1)

@@ -17,7 +17,7 @@ from sher3_effects import pages
 
 from sher3_machines.wrench.description import SensorDescription
 from sher3_machines.wrench.evidence import SensorEvidence, gather_sensor
-from sher3_machines.wrench.frames import frames
+from sher3_machines.wrench.frames import frames, turned
 from sher3_machines.wrench.record import SensorRun
 
 if TYPE_CHECKING:
@@ -64,8 +64,9 @@ class ForceSensor(Machine[SensorRun, SensorEvidence]):
             values = {name: p.value for name, p in cause.parameters.items()}
             if cause.effect == LOAD:
                 mass, moment = mass + values["mass"], moment + np.array([values[f"com_{x}"] for x in "xyz"])
-            if cause.effect == FRAME and values["frame"]:
-                notes.append(f"the frame of the sensor is stated wrongly: {frames()[round(values['frame'])]}")
+            if cause.effect == FRAME:
+                said = str(turned(frames()[round(values["frame"])], [values[f"r{x}"] for x in "xyz"]))
+                notes += [f"the frame of the sensor is stated wrongly: {said}"] if said != str(frames()[0]) else []
         if mass > 0.0:
             centre = ", ".join(f"{1e3 * x:.1f}" for x in moment / mass)
             notes.insert(0, f"load on the sensor: {mass:.4g} kg, centre ({centre}) mm in its frame")

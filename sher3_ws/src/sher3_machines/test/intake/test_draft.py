@@ -9,7 +9,8 @@ TIME = np.arange(0.0, 4.0, 0.002)
 
 
 def written(tmp_path, header, *columns):
-    np.savetxt(tmp_path / "a.csv", np.column_stack(columns), delimiter=",", header=header, comments="")
+    text = {"delimiter": ",", "header": header, "comments": "", "encoding": "utf-8"}
+    np.savetxt(tmp_path / "a.csv", np.column_stack(columns), **text)
     return draft(tmp_path / "a.csv")
 
 
@@ -17,7 +18,7 @@ def test_the_draft_of_a_slide_can_be_imported(tmp_path):
     q = np.round(np.sin(TIME) / 1e-4) * 1e-4
     header = "time_ms,slide_pos [mm],slide_ref [mm],slide_current [A]"
     found = written(tmp_path, header, 1e3 * TIME, 1e3 * q, 1e3 * np.sin(TIME), np.cos(TIME))
-    (tmp_path / "a.yaml").write_text(found.text)
+    (tmp_path / "a.yaml").write_text(found.text, encoding="utf-8")
     (axis,) = load_description(tmp_path / "a.yaml").axes
     assert axis.motion == "linear" and axis.encoder_resolution == pytest.approx(1e-4, rel=1e-3)
     assert set(axis.signals.model_dump(exclude_none=True)) == {"position", "reference", "effort"}
@@ -57,8 +58,22 @@ def test_a_screw_is_told_by_its_scale(tmp_path):
     assert signals["position"]["factor"] == pytest.approx(0.01 / (2.0 * np.pi), rel=1e-3)
 
 
+def test_steps_of_a_motor_and_of_its_reference_have_one_size(tmp_path):
+    steps = np.round(3000.0 * np.sin(TIME))
+    header = "Zeit [s],Sollposition [Schritte],Schrittzähler [Schritte],Glasmaßstab [Ink]"
+    signals = signals_of(written(tmp_path, header, TIME, steps, steps, 3.0 * steps), tmp_path)
+    assert signals["load"]["column"] == "Glasmaßstab [Ink]"
+    assert signals["reference"]["factor"] == signals["position"]["factor"] != signals["load"]["factor"]
+
+
+def test_small_angles_turn(tmp_path):
+    header = "t,motor angle [deg],output angle [arcsec]"
+    found = written(tmp_path, header, TIME, 100 * np.sin(TIME), 3600 * np.sin(TIME))
+    assert "motion: rotary" in found.text and "a gear of 100 between" in found.text
+
+
 def signals_of(found, tmp_path):
-    (tmp_path / "a.yaml").write_text(found.text)
+    (tmp_path / "a.yaml").write_text(found.text, encoding="utf-8")
     (axis,) = load_description(tmp_path / "a.yaml").axes
     return axis.signals.model_dump(exclude_none=True)
 

@@ -33,6 +33,15 @@ from sher3_machines.intake.names import bare_and_unit, named, tells_time
         ("joint_states/elbow/position", "position", "elbow"),
         ("controller/reference/positions[0]", "reference", "0"),
         ("motor_temperature", "temperature", ""),
+        ("force_N", "effort", ""),
+        ("drive_force_N", "effort", "drive"),
+        ("iq_A", "effort", ""),
+        ("u_V", "command", ""),
+        ("enc_A", "position", "a"),
+        ("displacement(um)", "position", ""),
+        ("Sollposition [Schritte]", "reference", ""),
+        ("Istwert [mm]", "position", ""),
+        ("Glasmaßstab [Ink]", "load", ""),
     ],
 )
 def test_a_name_says_signal_and_axis(column, signal, axis):
@@ -42,7 +51,17 @@ def test_a_name_says_signal_and_axis(column, signal, axis):
 
 @pytest.mark.parametrize(
     ("column", "unit"),
-    [("q [°]", "deg"), ("Torque (%)", "%"), ("i_mA", "mA"), ("tau (Nm)", "N*m"), ("q_1", None), ("x (inch)", None)],
+    [
+        ("q [°]", "deg"),
+        ("Torque (%)", "%"),
+        ("i_mA", "mA"),
+        ("tau (Nm)", "N*m"),
+        ("q_1", None),
+        ("x (inch)", None),
+        ("M_Nmm", "mN*m"),
+        ("force_N", "N"),
+        ("q_A", None),
+    ],
 )
 def test_a_unit_stands_in_brackets_or_at_the_end(column, unit):
     assert bare_and_unit(column)[1] == unit

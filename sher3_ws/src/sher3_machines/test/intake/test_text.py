@@ -62,3 +62,37 @@ def test_tables_that_are_none_say_why(tmp_path, text, said):
 def test_a_missing_column_names_its_neighbours():
     with pytest.raises(MachineError, match=r"no column 'positon'.*position.*name it as the data do"):
         pick(Column(column="positon", unit="m"), {"position": np.zeros(3), "time": np.zeros(3)}, "a")
+
+
+HEAD = "Prüfprotokoll;;\nDatum;14.03.2024;\nZeit [ms];Sollposition [Schritte];Glasmaßstab [µm]\n"
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "cp1252", "utf-16"])
+def test_a_table_of_a_german_spreadsheet(tmp_path, encoding):
+    """Titles are filled up with empty cells to the width of the table."""
+    (tmp_path / "a.csv").write_bytes((HEAD + "0,0;0;1,5\n4,0;10;2,5\n8,0;20;3,5\n").encode(encoding))
+    found = read_tables(tmp_path / "a.csv")
+    assert found["Glasmaßstab [µm]"].tolist() == [1.5, 2.5, 3.5] and found["Zeit [ms]"].tolist() == [0.0, 4.0, 8.0]
+
+
+def test_an_index_without_a_name_is_a_column_and_no_title(tmp_path):
+    assert tables(tmp_path, ",t,q\n0,0.0,1.5\n1,0.1,2.5\n")["q"].tolist() == [1.5, 2.5]
+
+
+def test_bytes_that_are_no_text_are_refused(tmp_path):
+    (tmp_path / "a.csv").write_bytes(b"\x00\x01\x81\x8d" * 40)
+    with pytest.raises(MachineError, match=r"is no text; limit UTF-8, UTF-16, Windows-1252; save the table"):
+        read_tables(tmp_path / "a.csv")
+
+
+def test_columns_that_are_added():
+    """A piston of 1 m^2 with 2 bar on one side and 1 bar on half of it on the other."""
+    other = {"column": "pb", "unit": "bar", "factor": -0.5}
+    force = Column.model_validate({"column": "pa", "unit": "bar", "factor": 1.0e-3, "plus": [other]})
+    data = {"pa": np.full(3, 2000.0), "pb": np.full(3, 1.0), "short": np.zeros(2)}
+    assert pick(force, data, "a") == pytest.approx(np.full(3, 150e3))
+    other["column"] = "short"
+    with pytest.raises(MachineError, match=r"a: short has other rows; value \(2,\); limit \(3,\); add columns"):
+        pick(Column.model_validate({"column": "pa", "unit": "bar", "factor": 1e-3, "plus": [other]}), data, "a")
+    with pytest.raises(ValueError, match="a pressure needs its `factor`"):
+        Column(column="pa", unit="bar")

@@ -87,3 +87,25 @@ def test_the_figures_of_iso_230_4_by_hand():
     radius = 1.0 + 3e-6 * np.cos(angle) + 2e-6 * np.sin(2 * angle)
     found = circular(angle, radius, np.ones(400))
     assert found.both == pytest.approx(4e-6, rel=1e-3) and found.forward == found.both and np.isnan(found.backward)
+
+
+def test_a_ball_bar_gives_angle_and_deviation():
+    plane = {"name": "xy", "angle": {"column": "a", "unit": "deg"}, "deviation": {"column": "r", "unit": "um"}}
+    text = {"kind": "positioning", "name": "bar", "planes": [{**plane, "radius": RADIUS}]}
+    described = PositioningDescription.model_validate(text)
+    runs = []
+    for sense in (1, -1):
+        angle = sense * np.arange(0.0, 360.0, 0.5)
+        noise = np.random.default_rng(7 + sense).normal(0.0, 0.2, len(angle))
+        across, moving = np.sin(np.radians(angle)), np.sign(sense * np.cos(np.radians(angle)))
+        data = {"a": angle % 360.0, "r": 2.0 * np.cos(np.radians(angle)) - 4.0 * across * moving + noise}
+        runs.append(read_tests(f"turn {sense}", data, described))
+    (cause,) = diagnose(Positioning(described), runs).verdict.causes
+    assert cause.effect == "backlash" and cause.actuator == "xy.y"
+    assert cause.parameters["width"].value == pytest.approx(8e-6, rel=0.1)
+    (line,) = [n for n in diagnose(Positioning(described), runs).verdict.notes if "contribution 1" in n]
+    assert float(line.split("G(b) ")[1].split(",")[0]) < 2.0, line
+    with pytest.raises(ValueError, match="either `x` and `y`, or `angle` and `deviation`"):
+        PositioningDescription.model_validate(
+            {**text, "planes": [{"name": "xy", "angle": plane["angle"], "radius": RADIUS}]}
+        )

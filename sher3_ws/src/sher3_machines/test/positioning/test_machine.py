@@ -121,3 +121,15 @@ def test_directions_and_cycles_come_from_the_order_of_rows():
     target = np.array([0.0, 1.0, 2.0, 2.0, 1.0, 0.0, 0.0, 1.0])
     assert directions(target).tolist() == [1, 1, 1, -1, -1, -1, 1, 1]
     assert cycles(target, directions(target)).tolist() == [0, 0, 0, 0, 0, 0, 1, 1]
+
+
+def test_a_table_with_a_column_for_each_pass():
+    """As test protocols have it: a row for each target, columns up 1, down 1, up 2, ..."""
+    long = table(cycles=3, reversal=6e-6)
+    deviation = (long["reading"] - long["target"]).reshape(6, len(TARGETS))
+    wide = {f"p{k}": x if k % 2 == 0 else x[::-1] for k, x in enumerate(deviation)} | {"target": TARGETS}
+    passes = [{"column": f"p{k}", "unit": "m"} for k in range(6)]
+    verdict = verdict_of(wide, reading=None, temperature=None, passes=passes)
+    assert found(verdict)["backlash"]["width"] == pytest.approx(6e-6, rel=0.1) and len(verdict.causes) == 1
+    with pytest.raises(ValueError, match="either `reading`, `deviation` or `passes`"):
+        description(passes=passes)

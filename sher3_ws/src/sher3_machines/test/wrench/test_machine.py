@@ -93,10 +93,12 @@ def test_a_drift_over_the_record():
     [
         ({"turn": Rotation.from_euler("z", 90, degrees=True)}, "90 degrees about (0, 0, 1)"),
         ({"turn": Rotation.from_euler("x", 180, degrees=True)}, "180 degrees about (1, 0, 0)"),
+        ({"turn": Rotation.from_euler("z", 30, degrees=True)}, "30 degrees about (0, 0, 1)"),
+        ({"turn": Rotation.from_rotvec(np.radians(50.0) * np.array([0.6, 0.0, 0.8]))}, "50 degrees about (0.6, "),
         ({"inverted": True}, "orientation is stated the other way round"),
         ({"sign": -1.0}, "reads the reaction"),
     ],
-    ids=["z", "x", "inverted", "reaction"],
+    ids=["z", "x", "by 30", "askew", "inverted", "reaction"],
 )
 @pytest.mark.parametrize("mass", [MASS, "unknown"])
 def test_a_wrong_frame_is_named(wrong, said, mass):
@@ -109,6 +111,7 @@ def test_a_sensor_mounted_askew_by_five_degrees():
     verdict = verdict_of(readings(turn=Rotation.from_rotvec([0.0, 0.0, np.radians(5.0)])))
     assert effects(verdict) == ["sensor_frame"]
     assert abs(verdict.causes[0].parameters["rz"].value) == pytest.approx(np.radians(5.0), rel=0.03)
+    assert any("5 degrees about" in note for note in verdict.notes)
 
 
 def test_a_load_that_nobody_stated_is_identified():

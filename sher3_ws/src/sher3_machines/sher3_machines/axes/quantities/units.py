@@ -14,6 +14,8 @@ SLIP_TOLERANCE = 1.25
 """Factor within which a ratio of two signals counts as that of a wrong unit."""
 FURTHEST = {"linear": 10.0, "rotary": 40.0}
 """Travel, m or rad, beyond which an axis without a stated range is taken for a unit slip."""
+TURNS = ("count", "rev")
+"""Units of a position in which nobody slips to degrees: a motor may well make a hundred turns."""
 BEYOND = 0.1
 """Share of the range by which a position may leave it: stated ranges are rounded."""
 COUNTS_MOVED = 100.0
@@ -46,6 +48,8 @@ def check_units(axis: Axis, signals: dict[str, Array], run: str) -> None:
 
 
 def _check_range(axis: Axis, position: Array, run: str) -> None:
+    if axis.range is None and axis.motion == "rotary" and axis.signals.position.unit in TURNS:
+        return
     lowest, highest = axis.range or (-FURTHEST[axis.motion], FURTHEST[axis.motion])
     worst = float(position[np.argmax(np.abs(position))])
     span = max(abs(lowest), abs(highest))

@@ -23,6 +23,9 @@ OTHERS = ("reference", "load")
 """Signals whose motion shows that a position that does not move is dead."""
 HALF = 0.5
 """Share of the travel from which a load that rests is no play's, however the motor went before."""
+RELATED = 0.7
+"""Correlation of two encoders of one axis below which one of them reads something else: more than half of its power is
+not that of the axis."""
 AT_THE_END = 0.9
 """Share of its largest reading above which a constant reading is a limit and no dead channel."""
 
@@ -50,6 +53,8 @@ def wrong_readings(run: AxesRun, axis: Axis) -> Mapping[str, str]:
             if what is None and name == "load" and np.ptp(found[name]) < FOLLOWS * travel:
                 what = f"moves by {np.ptp(found[name]):.3g} while the axis moves by {travel:.3g}: a dead channel"
             what = wrong_scale(found[name], position) if what is None and name == "load" else what
+            if what is None and name == "load" and "applied" not in found:
+                what = unrelated(found[name], position)
             what = flat(found[name], position) if what is None and name == "load" else what
             if what is not None:
                 out[name] = _sentence(run, axis, name, what, "it is left out")
@@ -75,6 +80,15 @@ def wrong_scale(load: Array, position: Array) -> str | None:
     if not alike or abs(ratio - 1.0) < SCALED:
         return None
     return f"moves {ratio:.4g} times as far as the axis: state its `factor`"
+
+
+def unrelated(load: Array, position: Array) -> str | None:
+    """Return how little a second encoder follows the axis, (n,) each; None where it does.
+
+    Play, springs and delays leave most of a motion as it is; what has nothing of it is another quantity.
+    """
+    alike = float(np.corrcoef(load, position)[0, 1])
+    return f"does not follow the axis (correlation {alike:.2f}): another quantity" if abs(alike) < RELATED else None
 
 
 def flat(load: Array, position: Array) -> str | None:

@@ -8,7 +8,7 @@ from datetime import datetime, timezone
 from pathlib import Path
 
 import numpy as np
-from sher3_common import parse_json, read_text
+from sher3_common import FileError, parse_json, read_bytes
 from sher3_diagnosis.channel import Array
 
 MAX_BYTES = 500_000_000
@@ -19,10 +19,18 @@ COMMENTS = ("#", "%")
 """What lines of a preamble begin with; the last of them may be the header."""
 MOST_TITLES = 50
 """Lines of text above a table at most."""
+ENCODINGS = ("utf-8-sig", "cp1252")
+"""Of text, tried in this order: loggers of today, and spreadsheets of Windows in western Europe."""
+BYTE_ORDER_MARKS = (b"\xff\xfe", b"\xfe\xff")
+"""What a text begins with that a spreadsheet saved as "Unicode": two bytes a letter."""
+FILLED = 0.5
+"""Share of the numbers of a usual row from which a row belongs to the table and no longer to its titles."""
 LONGEST_UNIT = 10
 """Letters of a unit at most."""
 FEW = 0.02
 """Share of the cells of a column that may be text, such as `ERR` or a line that ends the file."""
+FIRST = 50
+"""Rows that tell whether a comma is a decimal mark."""
 DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+([eE][+-]?\d+)?")
 ISO_TIME = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d(:\d\d([.,]\d+)?)?(Z|[+-]\d\d:?\d\d)?")
 
@@ -32,7 +40,7 @@ def read_table(path: Path) -> dict[str, Array]:
 
     ISO times become seconds since 1970, UTC where no zone is given. Columns of text are left out; empty cells are nan.
     """
-    lines = [line for line in read_text(path, MAX_BYTES, "utf-8-sig").splitlines() if line.strip()]
+    lines = [line for line in decoded(path).splitlines() if line.strip()]
     preamble = 0
     while preamble < len(lines) and lines[preamble].lstrip().startswith(COMMENTS):
         preamble += 1
@@ -41,8 +49,8 @@ def read_table(path: Path) -> dict[str, Array]:
         raise ValueError("no rows")
     mark = separator(body[len(body) // 2])
     rows = list(csv.reader(body, delimiter=mark)) if mark else [line.split() for line in body]
-    rows = rows[_titles(rows) :]
-    comma = mark in (";", "\t", None) and any(DECIMAL_COMMA.fullmatch(c.strip()) for r in rows[:50] for c in r)
+    comma = mark in (";", "\t", None) and any(DECIMAL_COMMA.fullmatch(c.strip()) for r in rows[:FIRST] for c in r)
+    rows = rows[_titles(rows, comma) :]
     first = [value_of(cell, comma) for cell in rows[0]]
     if all(value is not None for value in first):
         header = _names(lines[preamble - 1], mark, len(rows[0])) if preamble else None
@@ -58,11 +66,40 @@ def read_table(path: Path) -> dict[str, Array]:
     return {name: x for name, x in found.items() if x is not None}
 
 
-def _titles(rows: list[list[str]]) -> int:
-    """Return how many lines of text stand above the header: those of fewer cells than the table has."""
-    width = len(rows[len(rows) // 2])
-    above = next((i for i, row in enumerate(rows) if len(row) >= width), 0)
-    return above if above <= MOST_TITLES else 0
+def decoded(path: Path) -> str:
+    """Return the text of a file in whichever of the usual encodings it is.
+
+    Raises:
+        FileError: it cannot be read, or is no text.
+    """
+    data = read_bytes(path, MAX_BYTES)
+    wide = data.startswith(BYTE_ORDER_MARKS)
+    if b"\0" not in data or wide:
+        for encoding in ("utf-16",) if wide else ENCODINGS:
+            try:
+                return data.decode(encoding)
+            except UnicodeDecodeError:
+                continue
+    raise FileError("is no text", path=path, limit="UTF-8, UTF-16, Windows-1252", remedy="save the table as UTF-8")
+
+
+def _titles(rows: list[list[str]], comma: bool) -> int:
+    """Return how many rows of text stand above the header, which is the fullest row above the numbers.
+
+    A spreadsheet fills the lines above its table up with empty cells, so that they are as wide as the table.
+    """
+    usual = sum(map(_filled, rows[len(rows) // 2]))
+    least = FILLED * sum(_filled(c) and value_of(c, comma) is not None for c in rows[len(rows) // 2])
+    numbers = (sum(_filled(c) and value_of(c, comma) is not None for c in row) >= max(least, 1.0) for row in rows)
+    above = [sum(map(_filled, row)) for row in rows[: next((i for i, told in enumerate(numbers) if told), 0)]]
+    if not above or len(above) > MOST_TITLES:
+        return 0
+    header = above.index(max(above))
+    return header if 2 * above[header] > usual else len(above)
+
+
+def _filled(cell: str) -> bool:
+    return bool(cell.strip())
 
 
 def separator(line: str) -> str | None:

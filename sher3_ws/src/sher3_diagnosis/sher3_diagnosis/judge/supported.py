@@ -1,0 +1,107 @@
+"""Which causes the data bear out, where no calibration weighs them.
+
+Three things are asked of a cause: that one of its sizes differs from zero; that the causes of a gap which is not closed
+take at least half of its size; and that what they leave does not follow quantities which none of them may depend on.
+What fails the first is left out; what fails the others imitates an effect that the library does not have.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import replace
+
+from sher3_diagnosis.attribute.rivals import Attribution
+from sher3_diagnosis.channel import Channel
+from sher3_diagnosis.evidence import Evidence
+from sher3_diagnosis.finding import Finding
+from sher3_diagnosis.fit.fitting import Fit, fit
+from sher3_diagnosis.judge.foreign import foreign_in
+from sher3_diagnosis.quantify.closure import closure
+from sher3_diagnosis.thresholds import AT_FLOOR, FOREIGN_SHARE, FOREIGN_SIZE, HALF_CLOSED, PARSIMONY
+from sher3_diagnosis.verdict import Cause, Imitation
+
+
+def significant_causes(
+    evidence: Evidence, attribution: Attribution, causes: Sequence[Cause], left: Callable[[Fit], Collection[Channel]]
+) -> Attribution:
+    """Return the attribution without causes that say nothing, where their gap stays closed without them.
+
+    No size of such a cause differs from zero; or it is worth next to nothing, and an effect of another family, where
+    nobody can tell which, is worth as much: what the law of a larger cause leaves out.
+    """
+    idle = [holds_zero(c) or untold(evidence, attribution, i) for i, c in zip(attribution.causes, causes, strict=True)]
+    for i, says_nothing in zip(reversed(attribution.causes), reversed(idle), strict=True):
+        if len(attribution.causes) > 1 and says_nothing:
+            fewer = kept(evidence, attribution, [k for k in attribution.causes if k != i])
+            if set(left(fewer.fit)) <= set(left(attribution.fit)):
+                attribution = fewer
+    return attribution
+
+
+def holds_zero(cause: Cause) -> bool:
+    """Return whether every interval of a cause holds zero; one without any interval is not judged so."""
+    told = [(p.low, p.high) for p in cause.parameters.values() if p.low is not None and p.high is not None]
+    return bool(told) and all(low <= 0.0 <= high for low, high in told)
+
+
+def untold(evidence: Evidence, attribution: Attribution, index: int) -> bool:
+    """Return whether a cause is worth less than laws are off by, and as much as one of another family."""
+    family = attribution.fit.terms[index].effect.family
+    others = any(f.terms[-1].effect.family != family for f in attribution.rivals[index])
+    whole = evidence.null().total - attribution.fit.total
+    return others and attribution.explained[index] < PARSIMONY * whole
+
+
+def without_imitations(finding: Finding, free_laws: bool) -> Finding:
+    """Return a finding whose causes are borne out; the others are its imitations, and their gaps are left.
+
+    Args:
+        finding: on a part of a machine.
+        free_laws: whether what the causes leave is looked at by free laws.
+    """
+    evidence, found = finding.evidence, finding.attribution
+    fake, left = [], dict(finding.left)
+    for channel in finding.significant:
+        own = [i for i in found.causes if channel in found.fit.terms[i].channels]
+        if not own:
+            continue
+        half = channel in left and closure(evidence, channel, evidence.null(), found.fit).value < HALF_CLOSED
+        if half or (free_laws and foreign_law(evidence, found, channel)):
+            fake += own
+            left[channel] = max(1.0, evidence.excess(channel))
+    if not fake:
+        return finding
+    place = dict(zip(found.causes, finding.causes, strict=True))
+    true = [i for i in found.causes if i not in fake]
+    imitations = [
+        Imitation(effect=c.effect, actuator=c.actuator, closure=c.closure) for i, c in place.items() if i in fake
+    ]
+    return replace(
+        finding,
+        attribution=kept(evidence, found, true),
+        causes=[place[i] for i in true],
+        left=left,
+        imitations=(*finding.imitations, *imitations),
+    )
+
+
+def foreign_law(evidence: Evidence, attribution: Attribution, channel: Channel) -> bool:
+    """Return whether what is left of a gap follows quantities that none of its causes may depend on."""
+    found = foreign_in(evidence, attribution, channel)
+    if found is None or found.own < AT_FLOOR:
+        return False
+    return found.size > FOREIGN_SIZE and found.share > FOREIGN_SHARE
+
+
+def kept(evidence: Evidence, attribution: Attribution, causes: Sequence[int]) -> Attribution:
+    """Return the attribution with some of its causes alone, fitted again; their rivals stay."""
+    indices = [*range(attribution.nuisance), *causes]
+    if len(indices) == len(attribution.fit.terms):
+        return attribution
+    return replace(
+        attribution,
+        fit=fit(evidence.data, [attribution.fit.terms[i] for i in indices]),
+        rivals=tuple(attribution.rivals[i] for i in indices),
+        explained=tuple(attribution.explained[i] for i in indices),
+        ranking=tuple(attribution.ranking[i] for i in indices),
+    )

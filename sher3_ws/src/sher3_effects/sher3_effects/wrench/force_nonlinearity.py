@@ -1,0 +1,45 @@
+"""Force nonlinearity: the curve of a load cell is bent."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.effect import Best, Shape, Signature, column
+
+from sher3_effects.cell_view import CellView
+from sher3_effects.page import Page
+
+
+class ForceNonlinearity(Page):
+    """reading = force + a curve of second or third order that is zero at both ends of the range."""
+
+    id, family, stage = "force_nonlinearity", "scale", "sensing"
+    kinds, places = ("cell",), ("load_cell",)
+    inputs = ("load",)
+    units = {"largest": "N", "order": "1"}
+    discrete = frozenset({"order"})
+    best = Best("loads", "five forces or more separate a bent curve from a wrong scale")
+    explanation = (
+        "The reading bends away from the force in the middle of the range, in both directions of loading alike."
+    )
+    siblings = {"force_scale": "grows up to the largest force", "force_hysteresis": "shows when unloading only"}
+
+    def shapes(self, views: Sequence[CellView], site: str) -> list[Shape]:
+        """Return the orders that so many different forces can tell."""
+        told = len(np.unique(np.round(views[0].share, 2)))
+        return [{"order": float(n)} for n in (2, 3) if told > n + 1]
+
+    def signature(self, view: CellView, site: str, shape: Shape) -> Signature:
+        """Return the curves up to an order, one at their largest."""
+        u = view.share
+        curves = [4.0 * u * (1.0 - u), 12.0 * np.sqrt(3.0) * u * (1.0 - u) * (0.5 - u)]
+        return Signature({Channel(self.stage, site): column(*curves[: round(shape["order"]) - 1])})
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Return the largest deviation from the line through both ends, with its sign, and the order."""
+        u = np.linspace(0.0, 1.0, 101)
+        curves = [4.0 * u * (1.0 - u), 12.0 * np.sqrt(3.0) * u * (1.0 - u) * (0.5 - u)]
+        whole = sum(c * x for c, x in zip(coefficients, curves, strict=False))
+        return {"largest": float(whole[np.argmax(np.abs(whole))]), "order": shape["order"]}

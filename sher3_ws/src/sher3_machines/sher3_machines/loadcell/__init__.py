@@ -1,0 +1,1 @@
+"""A load cell: readings under known forces along its one axis."""
