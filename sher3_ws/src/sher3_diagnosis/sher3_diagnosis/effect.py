@@ -92,7 +92,7 @@ class Effect:
         needs: facts that must be known of an axis before the effect can be looked for: "lead" its travel per motor
             revolution, "load" a second encoder behind the transmission, "temperature" of the axis, "mass" its mass,
             "drive" the force it is driven with, "forces" what the motion needs of it: mass, weight or a model of the
-            user's.
+            user's, "alone" that its only encoder is at the motor, "behind" that it is at the load.
         inputs: quantities the law may depend on, of `INPUTS`; none for an error that is constant.
         units: parameter -> SI unit on a linear axis.
         discrete: parameters that are a choice (a source, a member, a number of periods) and have no interval.

@@ -23,6 +23,7 @@ class NominalAxis(NamedTuple):
         lead_known: whether `lead` is stated and no stand-in.
         rotary: whether the axis turns.
         load_mass: part of the mass that moves with a second encoder, kg or kg m^2; 0 where it is not known.
+        seen: one count of the encoder or its noise, the larger, m or rad; 0 where nothing asks for it.
     """
 
     mass: float
@@ -34,6 +35,7 @@ class NominalAxis(NamedTuple):
     lead_known: bool = True
     load_mass: float = 0.0
     rotary: bool = False
+    seen: float = 0.0
 
 
 class RecordedRun(Protocol):

@@ -74,6 +74,7 @@ class Axis(Strict):
         mass: kg or kg m^2; `unknown`: identified from the data; None: the force balance is not looked at.
         viscous: viscous coefficient, N/(m/s) or N m/(rad/s).
         encoder_resolution: one count, m or rad.
+        encoder_at: side of the transmission that `position` is read on; with one encoder it says what that one hides.
         effort_resolution: one step of the measured force, N or N m.
         lead: travel per motor revolution, m or rad; without it no period is named.
         range: positions the axis can reach, m or rad; what lies outside is taken for a wrong unit.
@@ -87,6 +88,7 @@ class Axis(Strict):
     viscous: float = Field(default=0.0, ge=0.0)
     gravity: Gravity = Gravity()
     encoder_resolution: float = Field(gt=0.0)
+    encoder_at: Literal["motor", "load"] = "motor"
     effort_resolution: float = Field(default=0.0, ge=0.0)
     lead: float | None = Field(default=None, gt=0.0)
     range: tuple[float, float] | None = None

@@ -17,13 +17,16 @@ from sher3_diagnosis.judge.left_over import down_to_floor
 from sher3_diagnosis.machine import Machine, Policy
 from sher3_diagnosis.verdict import Cause, Interval
 from sher3_effects import library, pages
+from sher3_effects.compliance.unseen_compliance import ComplianceBehindMotor
 from sher3_effects.friction.viscous_friction import ViscousOnAxis
+from sher3_effects.lost_motion.unseen_backlash import BacklashBehindMotor
 
 from sher3_machines.axes.description import AxesDescription, Axis, Gravity
 from sher3_machines.axes.evidence import AxisEvidence, gather_axis, levels_of
 from sher3_machines.axes.identification.fast import requantified, with_unseen
 from sher3_machines.axes.identification.refine import refine_free
 from sher3_machines.axes.identification.search import causes_of_axis
+from sher3_machines.axes.identification.unseen import unseen_note
 from sher3_machines.axes.limits import EFFECT as LIMIT
 from sher3_machines.axes.limits import limit_finding
 from sher3_machines.axes.quantities.bounds import within_bounds
@@ -66,9 +69,8 @@ class Axes(Machine[AxesRun, AxisEvidence]):
 
     def effects(self, evidence: AxisEvidence) -> Sequence[Effect]:
         """Return the pages that can show in what was recorded of an axis."""
-        own = ViscousOnAxis(evidence.axis.viscous)
         found = pages(kind_of(evidence.axis), facts_of(evidence.axis))
-        return [own if isinstance(page, ViscousOnAxis) else page for page in found]
+        return [_of_axis(page, evidence) for page in found]
 
     def audit(self, runs: Sequence[AxesRun]) -> list[str]:
         """Return what was done to the data, and whether floors are known from repeats."""
@@ -136,7 +138,7 @@ class Axes(Machine[AxesRun, AxisEvidence]):
         return [
             *changes,
             *mass_notes(finding.evidence),
-            *blind_spots(finding.evidence.axis),
+            *blind_spots(finding),
             *([] if finding.significant else unseen(finding.evidence)),
             *([again.note] if again else []),
         ]
@@ -157,6 +159,15 @@ class Axes(Machine[AxesRun, AxisEvidence]):
 
     def _repeats(self, runs: Sequence[AxesRun]) -> bool:
         return self.description.repeats and len(runs) > 1
+
+
+def _of_axis(page: Effect, evidence: AxisEvidence) -> Effect:
+    """Return a page with what it must know of the axis to say what is possible."""
+    if isinstance(page, ViscousOnAxis):
+        return ViscousOnAxis(evidence.axis.viscous)
+    if isinstance(page, BacklashBehindMotor | ComplianceBehindMotor):
+        return type(page)(evidence.mass)
+    return page
 
 
 def nothing_judged(parts: Sequence[AxisEvidence], runs: Sequence[AxesRun]) -> MachineError:
@@ -196,6 +207,8 @@ def facts_of(axis: Axis) -> set[str]:
     known = {
         "lead": axis.lead is not None,
         "load": axis.signals.load is not None,
+        "alone": axis.signals.load is None and axis.encoder_at == "motor",
+        "behind": axis.signals.load is None and axis.encoder_at == "load",
         "temperature": axis.signals.temperature is not None,
         "mass": isinstance(axis.mass, float),
         "drive": not axis.free,
@@ -227,11 +240,10 @@ def unseen(evidence: AxisEvidence) -> list[str]:
     return [f"{evidence.axis.name}: nothing above the floor of {np.median(x):.3g} {of}" for of, x in floors.items()]
 
 
-def blind_spots(axis: Axis) -> list[str]:
-    """Return what the recorded signals cannot tell, which is known before any fit."""
-    out = []
-    if axis.signals.load is None:
-        out.append(f"{axis.name}: one encoder: backlash and compliance behind it cannot be seen and are not looked for")
+def blind_spots(finding: Finding[AxisEvidence]) -> list[str]:
+    """Return what the recorded signals cannot tell."""
+    axis = finding.evidence.axis
+    out = [] if axis.signals.load is not None else [unseen_note(finding.evidence, finding.attribution.fit)]
     if axis.servo:
         out.append(f"{axis.name}: force not recorded: forces are given in units of the servo's stiffness")
-    return out
+    return [said for said in out if said]
