@@ -1,7 +1,7 @@
 """Bench: which gaps and springs does one encoder show, and what is called one that is none.
 
-Simulated motors with a load behind a gap, on a spring, rigidly coupled, or with a friction that builds up slowly; masses,
-frictions, gap and frequency are drawn, each record of 16 s at 500 Hz. `test/two_masses.py` holds the simulators.
+Simulated motors with a load behind a gap, on a spring, rigidly coupled, or with a friction that builds up slowly;
+masses, frictions, gap and frequency are drawn, each record of 16 s at 500 Hz. `test/two_masses.py` simulates them.
 
     nice python bench/one_encoder.py --seeds 700:712
 """
@@ -32,9 +32,11 @@ def drawn(kind: str, seed: int):
         return two_masses.on_spring(frequency, seed, motor, load, rng.uniform(0.02, 0.1)), motor[0] + load[0], frequency
     if kind == "slow friction":
         reach = 10.0 ** rng.uniform(-5.0, -3.5)
-        return two_masses.slowly_stuck(reach, seed, motor[0] + load[0], motor[1] + load[1], noise), sum(
-            (motor[0], load[0])
-        ), reach
+        return (
+            two_masses.slowly_stuck(reach, seed, motor[0] + load[0], motor[1] + load[1], noise),
+            sum((motor[0], load[0])),
+            reach,
+        )
     gap = 10.0 ** rng.uniform(-4.3, -3.0) if kind == "gap" else 0.0
     return two_masses.behind_gap(gap, seed, motor, load, noise), motor[0] + load[0], gap
 

@@ -85,7 +85,8 @@ class Effect:
         explanation: plain language: what it is and how it shows.
         places: kinds of place it may sit on; a machine says which of its sites are such a place.
         kinds: kinds of machine this form of the effect is written for: "robot" the SHER; "axis" one axis of any
-            machine; "servo" a position servo whose force was not recorded; "joint" a joint of a serial arm in motion,
+            machine; "servo" a position servo whose force was not recorded; "law" the command of an axis against its
+            stated law; "joint" a joint of a serial arm in motion,
             which has the pages of an axis too; "arm" the geometry of a serial arm;
             "table" an axis in a positioning test without a clock, "circle" two axes on a circle, "sensor"
             a force sensor by itself.

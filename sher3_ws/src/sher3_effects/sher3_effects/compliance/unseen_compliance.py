@@ -38,8 +38,9 @@ class ComplianceBehindMotor(Page):
     OF_RATE = 0.3
     """Share of the sampling rate that a resonance stays below."""
     DAMPINGS = (0.03, 0.1, 0.3)
-    MOST_DAMPED = 0.9
-    """Damping beyond which nothing rings."""
+    MOST_DAMPED = 0.35
+    """Damping beyond which no resonance stands out, which alone tells a spring from a late effort: it swings out by a
+    half more than its motor there."""
     finer: ClassVar[Mapping[str, tuple[float, ...]]] = {
         "frequency": (0.85, 0.9, 0.95, 0.98, 1.02, 1.05, 1.1, 1.18),
         "damping": (0.5, 0.8, 1.25, 2.0),

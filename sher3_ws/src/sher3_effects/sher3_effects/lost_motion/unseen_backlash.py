@@ -85,10 +85,7 @@ class BacklashBehindMotor(Page):
         crossing = np.abs(lag) < 0.5 * shape["width"] * (1.0 - 1e-9)
         pace = np.gradient(path, run.period)
         mass, rubs = bent(lag, run.period), (np.sign(pace + np.gradient(lag, run.period)) - np.sign(pace)) * crossing
-        if "braking" in shape:
-            parts = [mass + shape["braking"] * rubs]
-        else:
-            parts = [mass, -np.sign(pace) * crossing]
+        parts = [mass + shape["braking"] * rubs] if "braking" in shape else [mass, -np.sign(pace) * crossing]
         return Signature({self.channels(site)[0]: column(*(run.to_grid(x[:, None])[:, 0] for x in parts))})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:

@@ -12,11 +12,13 @@ from dataclasses import replace
 from sher3_diagnosis.attribute.candidates import Candidates, cost
 from sher3_diagnosis.attribute.rivals import Attribution, with_rivals
 from sher3_diagnosis.attribute.search import Left, Say, attribute
+from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.fit.fitting import Fit, Term, fit
-from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.thresholds import NEEDED, WORTH
+from sher3_effects.compliance.unseen_compliance import ComplianceBehindMotor
 from sher3_effects.friction.coulomb_friction import CoulombFriction
+from sher3_effects.timing.sensor_delay import SensorDelay
 
 from sher3_machines.axes.evidence import AxisEvidence
 from sher3_machines.axes.identification.rest import Bounded, DryFirst, rest_loss
@@ -32,9 +34,10 @@ def causes_of_axis(evidence: AxisEvidence, candidates: Candidates, left_over: Le
     the one with the smaller loss is taken, in motion and at rest together.
     """
     candidates = Bounded(evidence, candidates.effects, candidates.terms)
-    found = attribute(candidates, left_over, say)
+    seen = [e for e in candidates.effects if not isinstance(e, Bounded.UNSEEN)]
+    found = attribute(Bounded(evidence, seen, candidates.terms), left_over, say)
     if rest_loss(evidence, found.fit) > 0.0:
-        dry = DryFirst(evidence, candidates.effects, candidates.terms)
+        dry = DryFirst(evidence, seen, candidates.terms)
         other = attribute(dry, left_over, say)
         found = min((found, other), key=lambda a: a.fit.total + rest_loss(evidence, a.fit))
     behind = Behind(evidence, candidates.effects, candidates.terms)
@@ -51,9 +54,13 @@ def causes_of_axis(evidence: AxisEvidence, candidates: Candidates, left_over: Le
 
 
 class Behind(Bounded):
-    """Candidates of which plain dry friction is the first cause and what hides behind one encoder the second."""
+    """Candidates of which the first two causes are plain dry friction and what hides behind one encoder."""
 
-    ORDER: tuple[tuple[type[Effect], ...], ...] = ((CoulombFriction,), Bounded.UNSEEN)
+    ORDER: tuple[tuple[type[Effect], ...], ...] = (
+        (CoulombFriction, ComplianceBehindMotor),
+        (CoulombFriction, *Bounded.UNSEEN, SensorDelay),
+    )
+    """Friction, or a spring that rings; then what else hides, or a late effort: a load that gives way is late too."""
 
     @property
     def looks(self) -> bool:
@@ -73,7 +80,7 @@ class Behind(Bounded):
         return sorted((self._beside(trial, given) for trial in [*of_order, *sharp]), key=cost)
 
     def _sharp(self, given: Sequence[Term]) -> Sequence[Term]:
-        """Return terms with a friction that reverses at once: alone it would build up as slowly as the load comes in."""
+        """Return terms with a friction that reverses at once: alone it builds up as slowly as the load comes in."""
         *before, friction = given
         shapes = friction.effect.shapes(self.evidence.views, friction.site)
         return [*before, self.term(friction.effect, friction.site, shapes[0])]

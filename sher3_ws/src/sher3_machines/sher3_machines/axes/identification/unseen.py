@@ -71,7 +71,9 @@ def _spring(evidence: AxisEvidence, after: Fit) -> str:
     if not paces:
         return "no spring would show"
     stiffness = BEHIND * evidence.mass * (2.0 * np.pi * max(paces)) ** 2
-    return f"a spring below {stiffness:.2g} {axis.unit_of_force}/{axis.unit_of_position} ({max(paces):.2g} Hz) would show"
+    return (
+        f"a spring below {stiffness:.2g} {axis.unit_of_force}/{axis.unit_of_position} ({max(paces):.2g} Hz) would show"
+    )
 
 
 def shows(evidence: AxisEvidence, after: Fit, page: Effect, shape: Shape) -> bool:
