@@ -10,8 +10,7 @@ from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Best, Shape, Signature, column
 
 from sher3_effects.compliance.transmission_compliance import TransmissionCompliance
-from sher3_effects.lost_motion.unseen_backlash import BacklashBehindMotor, bent
-from sher3_effects.operators import oscillator
+from sher3_effects.operators import bent, oscillator
 from sher3_effects.page import Page
 from sher3_effects.view import AxisView
 
@@ -37,6 +36,8 @@ class ComplianceBehindMotor(Page):
     """Hz; twice the engine's bandwidth beyond which nothing is left of a resonance is above them."""
     OF_RATE = 0.3
     """Share of the sampling rate that a resonance stays below."""
+    LEAST_SHARE = 0.05
+    """Share of the mass that must hang on the spring, at least: less is an error of the mass."""
     DAMPINGS = (0.03, 0.1, 0.3)
     MOST_DAMPED = 0.35
     """Damping beyond which no resonance stands out, which alone tells a spring from a late effort: it swings out by a
@@ -78,5 +79,5 @@ class ComplianceBehindMotor(Page):
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
         """Return whether the load has a mass worth the name and no more than all, and its spring rings."""
-        least = BacklashBehindMotor.LEAST_SHARE * self.mass if np.isfinite(self.mass) else 0.0
+        least = self.LEAST_SHARE * self.mass if np.isfinite(self.mass) else 0.0
         return bool(least < coefficients[0] < self.mass and shape["damping"] < self.MOST_DAMPED)

@@ -11,7 +11,7 @@ from sher3_diagnosis.effect import Best, Shape, Signature, column
 
 from sher3_effects.friction.coulomb_friction import ServoStiction
 from sher3_effects.lost_motion.backlash import Backlash
-from sher3_effects.operators import flight, play
+from sher3_effects.operators import bent, flight, play
 from sher3_effects.page import Page
 from sher3_effects.view import AxisView
 
@@ -138,10 +138,3 @@ class BacklashBeforeEncoder(Page):
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Return the width, and how late the servo is before the gap."""
         return {"width": 2.0 * shape["force"], **({"late": shape["late"]} if shape["late"] else {})}
-
-
-def bent(lag: Array, period: float) -> Array:
-    """Return the second difference of a path (n,), per s^2: the blow of a flank is in it."""
-    out = np.zeros_like(lag)
-    out[1:-1] = np.diff(lag, 2) / period**2
-    return out
