@@ -1,12 +1,16 @@
 """How much held-out motion 90 % ranges of a verdict cover: simulated slides, and published machines where at hand.
 
     python bench/gap_ranges.py [FOLDER]
+    python bench/gap_ranges.py --fresh 6
 
-FOLDER holds the published data sets (`emps`, `rhoban_mx_drop`).
+FOLDER holds the published data sets (`emps`, `rhoban_mx_drop`). With `--fresh N` the ranges of each slide are set on
+its record, and counted on N further records with other motions: what is left of the spread is then no longer that of a
+few held-out windows. The standard error is that of windows as the units that are drawn.
 """
 
 import sys
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -45,7 +49,48 @@ def cover(name, machine, runs):
     return list(found.coverage.values())
 
 
+def fresh(number):
+    """Set the ranges of each slide on one record, and count what they cover of `number` others with other motions."""
+    shares = []
+    usual = slides.reference
+    for k, (seconds, coulomb, viscous, offset) in enumerate(SLIDES):
+        runs = []
+        for motion in range(number + 1):
+            a, b = np.random.default_rng(900 + 10 * k + motion).uniform(0.0, 2.0 * np.pi, 2) if motion else (0.0, 0.4)
+            slides.reference = lambda t, a=a, b=b: 0.04 * np.sin(1.3 * t + a) + 0.015 * np.sin(4.1 * t + b)
+            runs.append(slides.run_of(slides.driven(seconds=seconds, coulomb=coulomb, viscous=viscous, offset=offset)))
+        slides.reference = usual
+        machine = slides.machine()
+        verdict = diagnose(machine, runs[:1]).verdict
+        share, error = counted(verdict, machine, runs)
+        shares.append(share)
+        print(
+            f"slide {seconds:.0f} s {coulomb:g} N {viscous:g} N s/m {offset:+g} N: {share:6.1%} +- {error:.1%}",
+            flush=True,
+        )
+    inside = sum(0.85 <= s <= 0.95 for s in shares)
+    print(f"{len(shares)} slides: mean {np.mean(shares):.1%}, {inside} in 85 to 95 %")
+
+
+def counted(verdict, machine, runs):
+    """Return the share of all records but the first that the ranges cover, set on the first, and its standard error."""
+    for module in (checking, covering):
+        module.open_case = lambda path: (machine, runs)
+    bench = covering.bench_of(verdict, Path("case"), None, {})
+    ranges = covering.Ranges(covering.worlds_of(verdict, []))
+    text = covering.export(verdict, "mjcf", covering.copied(bench.root), {}).text
+    (found,) = covering.windows_of(bench, text, ranges, {}).values()
+    of_window = np.array([len(x) for x in np.split(found.window, np.flatnonzero(np.diff(found.window)) + 1)])
+    first = round(len(of_window) / len(runs))
+    found = replace(found, held_out=found.window >= first)
+    told = covering.inside(found, covering.scatter_of(found))[found.held_out]
+    each = np.array([told[found.window[found.held_out] == w].mean() for w in np.unique(found.window[found.held_out])])
+    return float(told.mean()), float(each.std() / np.sqrt(len(each)))
+
+
 def main():
+    if "--fresh" in sys.argv:
+        return fresh(int(sys.argv[sys.argv.index("--fresh") + 1]))
     shares = []
     for seconds, coulomb, viscous, offset in SLIDES:
         rows = slides.driven(seconds=seconds, coulomb=coulomb, viscous=viscous, offset=offset)

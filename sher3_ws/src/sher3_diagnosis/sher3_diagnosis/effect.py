@@ -86,14 +86,15 @@ class Effect:
         explanation: plain language: what it is and how it shows.
         places: kinds of place it may sit on; a machine says which of its sites are such a place.
         kinds: kinds of machine this form of the effect is written for: "robot" the SHER; "axis" one axis of any
-            machine; "servo" a position servo whose force was not recorded; "joint" a joint of a serial arm in motion,
+            machine; "servo" a position servo whose force was not recorded; "law" the command of an axis against its
+            stated law; "joint" a joint of a serial arm in motion,
             which has the pages of an axis too; "arm" the geometry of a serial arm;
             "table" an axis in a positioning test without a clock, "circle" two axes on a circle, "sensor"
             a force sensor by itself.
         needs: facts that must be known of an axis before the effect can be looked for: "lead" its travel per motor
             revolution, "load" a second encoder behind the transmission, "temperature" of the axis, "mass" its mass,
             "drive" the force it is driven with, "forces" what the motion needs of it: mass, weight or a model of the
-            user's.
+            user's, "alone" that its only encoder is at the motor, "behind" that it is at the load.
         inputs: quantities the law may depend on, of `INPUTS`; none for an error that is constant.
         units: parameter -> SI unit on a linear axis.
         discrete: parameters that are a choice (a source, a member, a number of periods) and have no interval.

@@ -19,6 +19,7 @@ WITHIN = 2.0
 # -- localise: is there a gap? -------------------------------------------------------------------------------------
 
 POOLED = {
+    "controller": 1.3,
     "drive": 1.3,
     "motor_mechanics": 1.3,
     "transmission": 1.25,

@@ -191,6 +191,13 @@ def frozen_integral(
     return out
 
 
+def bent(lag: Array, period: float) -> Array:
+    """Return the second difference of a path (n,), per s^2: the blow of a flank is in it."""
+    out = np.zeros_like(lag)
+    out[1:-1] = np.diff(lag, 2) / period**2
+    return out
+
+
 def held_lag(x: Array, time_constant: float, period: float) -> Array:
     """First-order lag of x (n, d), exact for an input that is held from one sample to the next; at rest at first."""
     keep = math.exp(-period / time_constant)

@@ -27,6 +27,9 @@ from sher3_effects.page import Page
 VARIABLE = "SHER3_LIBRARY"
 """Environment variable that names files and folders with pages of the user's own."""
 
+ONE_ENCODER = frozenset({"alone", "behind"})
+"""Facts that an axis has one encoder, at its motor or at its load; pages ask for them that look for what it hides."""
+
 
 def library() -> Mapping[str, Page]:
     """Return the pages of the robot by effect id, in alphabetical order."""
@@ -52,13 +55,19 @@ def pages(kind: str, facts: Collection[str] | None = None) -> list[Page]:
 
     Args:
         kind: "robot", "axis", "servo", "joint" or "arm"; see `Effect.kinds`.
-        facts: what is known, see `Effect.needs`; pages that need more are left out. None: everything is known.
+        facts: what is known, see `Effect.needs`; pages that need more are left out. None: everything is known, so that
+            no encoder is alone.
 
     Raises:
         FileError: a file of the user's own cannot be read.
     """
-    found = {e.id: e for e in _pages(os.environ.get(VARIABLE, "")) if kind in e.kinds}
-    return [found[i] for i in sorted(found) if facts is None or set(found[i].needs) <= set(facts)]
+    found = {e.id: e for e in _pages(os.environ.get(VARIABLE, "")) if kind in e.kinds and _told(e, facts)}
+    return [found[i] for i in sorted(found)]
+
+
+def _told(page: Page, facts: Collection[str] | None) -> bool:
+    """Whether all that a page needs is known."""
+    return not ONE_ENCODER & set(page.needs) if facts is None else set(page.needs) <= set(facts)
 
 
 def add_library(paths: Sequence[Path]) -> None:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple, Protocol
 
+import numpy as np
 from sher3_diagnosis.channel import Array, Channel, Mask
 
 
@@ -23,6 +24,7 @@ class NominalAxis(NamedTuple):
         lead_known: whether `lead` is stated and no stand-in.
         rotary: whether the axis turns.
         load_mass: part of the mass that moves with a second encoder, kg or kg m^2; 0 where it is not known.
+        seen: one count of the encoder or its noise, the larger, m or rad; 0 where nothing asks for it.
     """
 
     mass: float
@@ -34,6 +36,43 @@ class NominalAxis(NamedTuple):
     lead_known: bool = True
     load_mass: float = 0.0
     rotary: bool = False
+    seen: float = 0.0
+
+
+class StatedLaw(NamedTuple):
+    """The command that a description states, part by part, at every sample; in units of the command.
+
+    Attributes:
+        error: reference less reading, (n,), m or rad.
+        parts: of position, speed and integral, (n, 3); the law is their sum.
+        limit: largest command.
+        gain: of the error, command per m or rad.
+    """
+
+    error: Array
+    parts: Array
+    limit: float
+    gain: float
+
+    @property
+    def command(self) -> Array:
+        """Return what the law asks for, (n,)."""
+        return self.clipped(self.parts.sum(axis=1))
+
+    def clipped(self, command: Array) -> Array:
+        """Return a command (n,) within its limit."""
+        return np.clip(command, -self.limit, self.limit)
+
+
+class LawView(Protocol):
+    """A run of one axis with the law that its command was stated to follow."""
+
+    run: Any
+    """Signals of the run: see `RecordedRun`."""
+
+    @property
+    def stated(self) -> StatedLaw:
+        """The stated law on what was recorded."""
 
 
 class RecordedRun(Protocol):

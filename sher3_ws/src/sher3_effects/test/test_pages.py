@@ -9,7 +9,7 @@ from sher3_diagnosis.effect import INPUTS, ROTARY
 from sher3_effects import library, load_effects, pages, plants, save_effects
 from sher3_sim.effect import REVOLUTE, SITES
 
-KINDS = ("robot", "axis", "servo", "joint", "arm", "table", "circle", "sensor")
+KINDS = ("robot", "axis", "servo", "law", "joint", "arm", "table", "circle", "sensor")
 KNOWN = {page.id for kind in KINDS for page in pages(kind)}
 EVERY = [pytest.param(page, id=f"{kind}-{page.id}") for kind in KINDS for page in pages(kind)]
 ROBOT_PAGES = [pytest.param(page, id=page.id) for page in library().values()]
@@ -24,7 +24,7 @@ def test_the_data_sheet_is_complete(page):
     assert page.explanation.endswith(".") and page.best.why
     assert set(page.kinds) <= set(KINDS) and page.places
     assert set(page.inputs) <= set(INPUTS) and (page.inputs or page.id in CONSTANT or page.kinds == ("arm",))
-    assert set(page.needs) <= {"lead", "load", "temperature", "mass", "drive", "forces"}
+    assert set(page.needs) <= {"lead", "load", "temperature", "mass", "drive", "forces", "alone", "behind"}
     assert page.breaks in RELATIONS
     assert set(page.extends) <= KNOWN
     assert type(page).__doc__
@@ -73,6 +73,8 @@ def test_pages_that_need_more_than_is_known_are_left_out():
     assert {"coulomb_friction", "viscous_friction", "gravity_load"} <= bare
     assert not bare & {"payload_mass", "torque_constant", "cogging", "backlash"}
     assert "backlash" in {page.id for page in pages("axis", {"load"})}
+    assert {p.id for p in pages("axis", {"alone", "drive"})} - bare >= {"backlash", "transmission_compliance"}
+    assert {p.id for p in pages("servo", {"behind"})} - {p.id for p in pages("servo", ())} == {"backlash"}
     assert {page.id for page in pages("arm")} == {"encoder_offset", "link_length_error", "rail_tilt"}
 
 

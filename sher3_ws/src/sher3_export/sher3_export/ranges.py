@@ -13,6 +13,8 @@ from sher3_export.changes import constants_of
 
 SHARE = 0.90
 """Probability of a range."""
+LEAST = 5e-4
+"""Probability of a cause that a verdict does not list: below it none is listed."""
 NARROWER = 1.645 / 1.960
 """Half width of a normal distribution's 90 % interval over that of its 95 % interval, which verdicts give."""
 
@@ -23,21 +25,29 @@ class Ranges:
 
     Attributes:
         worlds: sets of causes that explain the runs, the verdict's first; one of them is at work.
+        shares: probability of each world; empty: each is as probable as the others.
         remainder: joint -> force that the causes leave, standard deviation over a quarter of a second, N or N m; empty
             where it was not measured.
         width: share of the 90 % intervals that the recorded motion needs; 1 where it was not measured.
     """
 
     worlds: Sequence[Sequence[Cause]]
+    shares: Sequence[float] = ()
     remainder: Mapping[str, float] = field(default_factory=dict)
     width: float = 1.0
 
     def draw(self, rng: np.random.Generator) -> list[Cause]:
         """Return the causes of one world with parameters drawn from their intervals."""
-        world, w = self.worlds[int(rng.integers(len(self.worlds)))], self.width
+        world, w = self.worlds[int(rng.choice(len(self.worlds), p=self.probabilities))], self.width
         return [
             c.model_copy(update={"parameters": {n: drawn(p, rng, w) for n, p in c.parameters.items()}}) for c in world
         ]
+
+    @property
+    def probabilities(self) -> list[float]:
+        """Probability of each world."""
+        known = list(self.shares) or [1.0] * len(self.worlds)
+        return [share / sum(known) for share in known]
 
     def text(self) -> str:
         """Return the ranges as YAML, `schema: sher3.ranges/1`."""
@@ -47,10 +57,11 @@ class Ranges:
             "share": SHARE,
             "width": float(self.width),
             "one_of": worlds,
+            "probability": [round(p, 4) for p in self.probabilities],
             "remainder": {j: float(s) for j, s in self.remainder.items()},
         }
         remarks = (
-            "One of these sets of causes is at work; values add to the nominal ones.",
+            "One of these sets of causes is at work, with its probability; values add to the nominal ones.",
             "width: of the verdict's 90 % intervals, as much as the recorded motion needs.",
             "remainder: force that the causes leave, standard deviation, constant for 0.25 s at a time.",
         )
@@ -60,6 +71,27 @@ class Ranges:
 def worlds_of(verdict: Verdict, others: Sequence[Verdict] = ()) -> list[Sequence[Cause]]:
     """Return the sets of causes that may be at work: those of a verdict and of verdicts without one of its causes."""
     return [verdict.causes, *(x.causes for x in others if x.causes)]
+
+
+def shares_of(verdict: Verdict, worlds: Sequence[Sequence[Cause]]) -> list[float]:
+    """Return how probable each world is, over the verdict's own: by the causes in which the two differ.
+
+    Without probabilities (they are calibrated on the robot alone) rivals explain as much, and each world counts alike.
+    """
+    own, known = {_key(c) for c in verdict.causes}, verdict.probabilities
+
+    def likely(keys: set[str]) -> float:
+        return float(np.prod([known.get(key, LEAST) for key in sorted(keys)]))
+
+    if not known:
+        return [1.0] * len(worlds)
+    each = [{_key(c) for c in world} for world in worlds]
+    return [likely(keys - own) / likely(own - keys) for keys in each]
+
+
+def _key(cause: Cause) -> str:
+    """Return the name under which a verdict lists the probability of a cause."""
+    return f"{cause.effect}:{cause.actuator}"
 
 
 def interval(p: Parameter) -> tuple[float, float]:

@@ -12,7 +12,7 @@ from sher3_export.check import engine
 from sher3_export.check.check import check
 from sher3_export.check.coverage import DRAWS, Windows, covered, inside, scatter_of
 from sher3_export.errors import MujocoMissing
-from sher3_export.ranges import Ranges, interval, worlds_of
+from sher3_export.ranges import Ranges, interval, shares_of, worlds_of
 from slides import driven, machine, run_of
 from verdicts import cause, verdict
 
@@ -82,6 +82,21 @@ def test_rivals_are_worlds_of_their_own():
     rng = np.random.default_rng(1)
     assert {ranges.draw(rng)[0].effect for _ in range(40)} == {"coulomb_friction", "gravity_load"}
     assert "one_of" in ranges.text()
+
+
+def test_rivals_are_drawn_by_their_probability():
+    """Where the verdict knows it: 0.6 against 0.2 is three draws in four."""
+    own = verdict(cause("coulomb_friction", force=1.0))
+    (site,) = {c.actuator for c in own.causes}
+    own = own.model_copy(update={"probabilities": {f"coulomb_friction:{site}": 0.6, f"gravity_load:{site}": 0.2}})
+    worlds = worlds_of(own, [verdict(cause("gravity_load", force=2.0))])
+    ranges = Ranges(worlds, shares_of(own, worlds))
+    assert ranges.probabilities == pytest.approx([0.75, 0.25])
+    rng = np.random.default_rng(1)
+    drawn = [ranges.draw(rng)[0].effect for _ in range(400)]
+    assert drawn.count("coulomb_friction") == pytest.approx(300, abs=27)  # three standard deviations
+    assert "probability" in ranges.text()
+    assert shares_of(verdict(cause("coulomb_friction", force=1.0)), worlds) == [1.0, 1.0]
 
 
 def test_without_mujoco_the_extra_is_named(case, monkeypatch):

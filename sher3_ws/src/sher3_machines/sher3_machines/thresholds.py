@@ -59,6 +59,10 @@ LONGEST = 10
 LIMIT_UNCERTAINTY = 0.06
 """Relative half width of a limit's interval at least: the engine's for any parameter of an idealised law."""
 
+LAW_ROUNDED = 1e-3
+"""Share of a command below which it is what its law states: gains are written down with three digits. Set by that
+argument. Measure: `pytest sher3_ws/src/sher3_machines/test/axes/test_law.py`."""
+
 # -- a serial arm --------------------------------------------------------------------------------------------------
 
 FOLDS = 10

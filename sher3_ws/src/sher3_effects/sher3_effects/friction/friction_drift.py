@@ -20,7 +20,7 @@ from sher3_effects.view import AxisView
 
 
 class FrictionDrift(Page):
-    """F = z (force + drift * s), s the warmth or the run-in 1 - exp(-t / tau)."""
+    """F = z (force + drift * s), s the warmth or the run-in 1 - exp(-t / tau); it never pushes, cold or warm."""
 
     id, family, stage = "friction_drift", "friction", "motor_mechanics"
     inputs = ("direction", "time", "temperature")
@@ -35,11 +35,18 @@ class FrictionDrift(Page):
     units = {"drift": "N"}
     TIMES = (0.5, 1.0, 2.0, 4.0, 10.0, 60.0, 300.0)
     finer = {"time_constant": (0.7, 0.85, 1.2, 1.4)}
+    SLACK = 0.1
+    """Share of the larger level by which the smaller may come out below zero: one that runs in to nothing scatters."""
 
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
         """Run-in within a run, over the session, or warmth (time constant 0)."""
         fine = 2.5e-3 * views[0].lead(site)
-        return [{"time_constant": t, "displacement": fine} for t in (0.0, *self.TIMES)]
+        running_in: list[Shape] = [{"time_constant": t, "displacement": fine} for t in self.TIMES]
+        warm = [v.run.temperature - REFERENCE_TEMPERATURE for v in views if v.run.temperature is not None]
+        cold, hot = min((float(x.min()) for x in warm), default=0.0), max((float(x.max()) for x in warm), default=0.0)
+        if cold == hot:
+            return running_in
+        return [{"time_constant": 0.0, "displacement": fine, "coldest": cold, "warmest": hot}, *running_in]
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
         """Two columns: the constant part and the changing one."""
@@ -62,8 +69,11 @@ class FrictionDrift(Page):
         }
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """The change is a marked one."""
-        return bool(abs(coefficients[1]) > 0.2 * abs(coefficients[0]))
+        """Return whether the change is a marked one, and friction resists from its beginning to its end."""
+        marked = abs(coefficients[1]) > 0.2 * abs(coefficients[0])
+        ends = [shape.get("coldest", 0.0), shape.get("warmest", 1.0)]
+        levels = sorted(float(coefficients[0] + coefficients[1] * s) for s in ends)
+        return bool(marked and levels[1] > 0.0 and levels[0] >= -self.SLACK * levels[1])
 
     def to_simulator(self, actuator: str, values: Values, robot: Robot) -> list[Part]:
         """Return f + d (1 - exp(-t / T)) as a constant level f + d and one of -d that decays."""

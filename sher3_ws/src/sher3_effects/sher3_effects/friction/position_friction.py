@@ -20,7 +20,9 @@ from sher3_effects.view import AxisView
 class PositionFriction(Page):
     """F = z (force + a cos kx + b sin kx + second harmonic): odd in the direction of motion, periodic along the stroke.
 
-    Crests and hollows are seldom alike: the second harmonic lets crests be narrower than hollows, or wider.
+    Crests and hollows are seldom alike: the second harmonic lets crests be narrower than hollows, or wider. Friction
+    nowhere pushes: mean and harmonics are those of some function that is nowhere negative (Caratheodory, Toeplitz: the
+    matrix of its Fourier coefficients has no eigenvalue below zero), though two harmonics alone may dip below zero.
     """
 
     id, family, stage = "position_friction", "friction", "motor_mechanics"
@@ -37,6 +39,8 @@ class PositionFriction(Page):
     units = {"wavelength": "m"}
     WAVELENGTHS = tuple(np.geomspace(0.2, 8.0, 28))
     """In motor revolutions."""
+    SLACK = 0.1
+    """Share of the mean by which that eigenvalue may be below zero: a fit to part of a stroke is off by as much."""
     finer = {"wavelength": (0.91, 0.94, 0.96, 0.98, 0.99, 1.01, 1.02, 1.04, 1.06, 1.1), "displacement": (0.4,)}
 
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
@@ -62,8 +66,9 @@ class PositionFriction(Page):
         }
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """The variation is a marked one."""
-        return bool(np.hypot(coefficients[1], coefficients[2]) > 0.2 * abs(coefficients[0]))
+        """Return whether the variation is a marked one, and friction may be nowhere below zero."""
+        marked = np.hypot(coefficients[1], coefficients[2]) > 0.2 * abs(coefficients[0])
+        return bool(coefficients[0] > 0.0 and marked and least_of(coefficients) >= -self.SLACK * coefficients[0])
 
     def to_simulator(self, actuator: str, values: Values, robot: Robot) -> list[Part]:
         """Return the wavelength as periods per motor revolution."""
@@ -71,14 +76,25 @@ class PositionFriction(Page):
         return [Part(self.id, actuator, {**values, "periods_per_rev": lead / values["wavelength"]})]
 
 
+def least_of(coefficients: Array) -> float:
+    """Return the least eigenvalue of the Toeplitz matrix of a mean and two harmonics a cos + b sin, (5,).
+
+    It is not below zero if, and only if, some function that is nowhere negative has them.
+    """
+    first, second = (0.5 * complex(coefficients[k], -coefficients[k + 1]) for k in (1, 3))
+    mean = complex(coefficients[0])
+    rows = [
+        [mean, first, second],
+        [first.conjugate(), mean, first],
+        [second.conjugate(), first.conjugate(), mean],
+    ]
+    return float(np.linalg.eigvalsh(np.array(rows))[0])
+
+
 class PositionFrictionOnAxis(PositionFriction):
-    """The same on one axis of any machine, whose friction nowhere pushes."""
+    """The same on one axis of any machine."""
 
     kinds = ("axis",)
-
-    def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether friction resists on the whole, and its variation is a marked one."""
-        return bool(coefficients[0] > 0.0) and super().admissible(shape, coefficients)
 
 
 @dataclass(frozen=True)

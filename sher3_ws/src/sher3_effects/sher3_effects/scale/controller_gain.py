@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
-from sher3_diagnosis.channel import Channel
-from sher3_diagnosis.effect import Best
+import numpy as np
+from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.effect import Best, Shape, Signature, column
 from sher3_sim.effect import EVERYWHERE, PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.page import Page
+from sher3_effects.view import LawView
 
 
 class ControllerGain(Page):
@@ -26,6 +29,48 @@ class ControllerGain(Page):
     def channels(self, site: str) -> tuple[Channel, ...]:
         """Return none: the exact stage is judged without residuals."""
         return ()
+
+
+class GainOfLaw(ControllerGain):
+    """command = (1 + relative) times the stated law, or times one of its parts."""
+
+    kinds = ("law",)
+    discrete = frozenset({"part"})
+    siblings = {
+        "command_delay": "the command is right and arrives late",
+        "command_deadband": "small errors do nothing, large ones are answered less by a constant",
+    }
+    explanation = "The recorded command is the stated law with another gain, of all of it or of one part."
+    PARTS = ("position", "velocity", "integral")
+    """Parts of a law, in the order of its columns."""
+    LEAST = -1.0
+    """Relative change at which nothing of a gain is left."""
+
+    def channels(self, site: str) -> tuple[Channel, ...]:
+        """Return the command less the law."""
+        return (Channel(self.stage, site),)
+
+    def shapes(self, views: Sequence[LawView], site: str) -> list[Shape]:
+        """Return all of the law (-1), or one of its parts where there are several."""
+        there = [k for k in range(len(self.PARTS)) if any(v.stated.parts[:, k].any() for v in views)]
+        return [{"part": float(k)} for k in ((-1, *there) if len(there) > 1 else (-1,))]
+
+    def signature(self, view: LawView, site: str, shape: Shape) -> Signature:
+        """Return one column: the part, where the command is not at its limit."""
+        law, part = view.stated, int(shape["part"])
+        all_of_it = law.parts.sum(axis=1)
+        chosen = all_of_it if part < 0 else law.parts[:, part]
+        free = np.abs(all_of_it) < law.limit
+        return Signature({self.channels(site)[0]: column(view.run.to_grid((chosen * free)[:, None])[:, 0])})
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Return the relative change, named after its part."""
+        part = int(shape["part"])
+        return {"relative" if part < 0 else f"{self.PARTS[part]}_relative": float(coefficients[0])}
+
+    def admissible(self, shape: Shape, coefficients: Array) -> bool:
+        """Return whether something of the gain is left: what answers the other way round is no gain."""
+        return bool(coefficients[0] > self.LEAST)
 
 
 @dataclass(frozen=True)

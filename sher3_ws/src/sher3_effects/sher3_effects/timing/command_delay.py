@@ -12,7 +12,7 @@ from sher3_sim.effect import EVERYWHERE, PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.page import Page
-from sher3_effects.view import AxisView
+from sher3_effects.view import AxisView, LawView
 
 
 class CommandDelay(Page):
@@ -57,6 +57,40 @@ class ServoDelay(CommandDelay):
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Return the dead time."""
+        return {"delay": shape["delay"]}
+
+
+class DelayOfLaw(CommandDelay):
+    """The recorded command is that of the stated law some time ago."""
+
+    kinds = ("law",)
+    explanation = "The recorded command is the stated law's, a fixed time late."
+    siblings = {"controller_gain": "right in time, and too large or too small"}
+    units = {"delay": "s"}
+    PERIODS = (1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0)
+    """Delays that are tried, in periods of the record: nobody states the moment of a command within one."""
+    finer = {"delay": (0.85, 0.92, 0.97, 1.03, 1.08, 1.2)}
+
+    def channels(self, site: str) -> tuple[Channel, ...]:
+        """Return the command less the law."""
+        return (Channel("controller", site),)
+
+    def stage_at(self, channel: Channel) -> str:
+        """Return the controller."""
+        return channel.stage
+
+    def shapes(self, views: Sequence[LawView], site: str) -> list[Shape]:
+        """Return delays, s."""
+        return [{"delay": n * views[0].run.period} for n in self.PERIODS]
+
+    def signature(self, view: LawView, site: str, shape: Shape) -> Signature:
+        """Return the law of a while ago less the law; nothing is left to fit."""
+        clock, law = view.run.stage_clock, view.stated.command
+        late = np.interp(clock - shape["delay"], clock, law)
+        return Signature({}, {self.channels(site)[0]: view.run.to_grid((late - law)[:, None])})
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Return the delay."""
         return {"delay": shape["delay"]}
 
 

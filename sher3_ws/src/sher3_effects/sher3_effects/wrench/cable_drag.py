@@ -19,6 +19,9 @@ from sher3_effects.view import RobotView
 class CableDrag(Page):
     """On an axis: k q + k0 + hysteresis over a long stroke; on the force sensor: the same of roll and tilt (as
     angles), per component.
+
+    On an axis a cable pulls back and drags: k and the hysteresis have no sign. Its pull at rest k0 may have either, and
+    so has each component at the force sensor: it depends on which way the cable hangs.
     """
 
     id, family, stage = "cable_drag", "wrench", "motor_mechanics"
@@ -82,6 +85,10 @@ class CableDrag(Page):
             return out if len(coefficients) == 6 else {**out, "force": float(np.abs(coefficients[6:]).max())}
         out = {"preload": float(coefficients[0]), "stiffness": float(coefficients[1])}
         return out if len(coefficients) == 2 else {**out, "force": float(coefficients[2])}
+
+    def admissible(self, shape: Shape, coefficients: Array) -> bool:
+        """Return whether a cable on an axis pulls back and drags; on the force sensor its pull may have any sign."""
+        return len(coefficients) > 3 or bool((coefficients[1:] >= 0.0).all())
 
     def unit(self, name: str, site: str, rotary: bool) -> str:
         """A stiffness is per angle on the force sensor."""

@@ -16,7 +16,7 @@ from sher3_machines import open_case
 
 from sher3_export.check.check import Bench, bench_of
 from sher3_export.check.engine import Engine, copied
-from sher3_export.ranges import SHARE, Ranges, worlds_of
+from sher3_export.ranges import SHARE, Ranges, shares_of, worlds_of
 from sher3_export.writing import export, put
 
 DRAWS = 60
@@ -85,7 +85,8 @@ def covered(verdict: Verdict, case: Path, model: Path | None, joints: Mapping[st
         MachineError, ExportError: see `check`.
     """
     bench = bench_of(verdict, case, model, joints)
-    ranges = Ranges(worlds_of(verdict, without_each(verdict, case)))
+    worlds = worlds_of(verdict, without_each(verdict, case))
+    ranges = Ranges(worlds, shares_of(verdict, worlds))
     text = export(verdict, "mjcf", copied(bench.root), joints).text
     found = windows_of(bench, text, ranges, joints)
     scatters = {joint: scatter_of(x, len(ranges.worlds) == 1) for joint, x in found.items()}

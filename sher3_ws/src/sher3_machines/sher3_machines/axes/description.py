@@ -38,7 +38,9 @@ class CommandLaw(Strict):
         kind: `force`: command times `gain` is the force; `position`: a servo that takes the reference and whose force
             is not recorded; `none`: nothing drives the axis.
         gain: N, or N m, per unit of the command.
-        position_gain, velocity_gain: of command = position_gain * (reference - q) - velocity_gain * v, where known.
+        position_gain, velocity_gain: of command = position_gain * (reference - q) - velocity_gain * v, where known; the
+            recorded command is compared with it.
+        integral_gain: of the error's integral over time, added to that, per s.
         limit: largest command, where known.
         held: whether a command acts from its stamp to the next one; otherwise it is the force at its stamp.
         goal: constant reference, m or rad, where none was recorded.
@@ -48,6 +50,7 @@ class CommandLaw(Strict):
     gain: float = 1.0
     position_gain: float | None = None
     velocity_gain: float = 0.0
+    integral_gain: float = 0.0
     limit: float | None = Field(default=None, gt=0.0)
     held: bool = False
     goal: float | None = None
@@ -74,6 +77,7 @@ class Axis(Strict):
         mass: kg or kg m^2; `unknown`: identified from the data; None: the force balance is not looked at.
         viscous: viscous coefficient, N/(m/s) or N m/(rad/s).
         encoder_resolution: one count, m or rad.
+        encoder_at: side of the transmission that `position` is read on; with one encoder it says what that one hides.
         effort_resolution: one step of the measured force, N or N m.
         lead: travel per motor revolution, m or rad; without it no period is named.
         range: positions the axis can reach, m or rad; what lies outside is taken for a wrong unit.
@@ -87,6 +91,7 @@ class Axis(Strict):
     viscous: float = Field(default=0.0, ge=0.0)
     gravity: Gravity = Gravity()
     encoder_resolution: float = Field(gt=0.0)
+    encoder_at: Literal["motor", "load"] = "motor"
     effort_resolution: float = Field(default=0.0, ge=0.0)
     lead: float | None = Field(default=None, gt=0.0)
     range: tuple[float, float] | None = None
@@ -122,9 +127,13 @@ class Axis(Strict):
 
     @property
     def replayable(self) -> bool:
-        """Whether the axis can be run again in its control loop: the loop's gains and its reference are known."""
+        """Whether the axis can be run again in its control loop: the loop's gains and its reference are known.
+
+        The simulated loop has no integral, whose start nobody knows.
+        """
         law = self.command_law
-        return law.kind == "force" and law.position_gain is not None and self.signals.reference is not None
+        known = law.position_gain is not None and not law.integral_gain
+        return law.kind == "force" and known and self.signals.reference is not None
 
     @property
     def unit_of_position(self) -> str:

@@ -17,13 +17,17 @@ from sher3_diagnosis.judge.left_over import down_to_floor
 from sher3_diagnosis.machine import Machine, Policy
 from sher3_diagnosis.verdict import Cause, Interval
 from sher3_effects import library, pages
+from sher3_effects.compliance.unseen_compliance import ComplianceBehindMotor
 from sher3_effects.friction.viscous_friction import ViscousOnAxis
+from sher3_effects.lost_motion.unseen_backlash import BacklashBehindMotor
 
 from sher3_machines.axes.description import AxesDescription, Axis, Gravity
 from sher3_machines.axes.evidence import AxisEvidence, gather_axis, levels_of
 from sher3_machines.axes.identification.fast import requantified, with_unseen
 from sher3_machines.axes.identification.refine import refine_free
 from sher3_machines.axes.identification.search import causes_of_axis
+from sher3_machines.axes.identification.unseen import unseen_note
+from sher3_machines.axes.law import causes_of_law, is_law, law_of_axis
 from sher3_machines.axes.limits import EFFECT as LIMIT
 from sher3_machines.axes.limits import limit_finding
 from sher3_machines.axes.quantities.bounds import within_bounds
@@ -62,13 +66,14 @@ class Axes(Machine[AxesRun, AxisEvidence]):
     def library(self) -> Sequence[Effect]:
         """Return the pages for these kinds of axes, and that of the limit, which is read off without a fit."""
         kinds = sorted({kind_of(axis) for axis in self.description.axes}, reverse=True)
-        return [*(page for kind in kinds for page in pages(kind)), library()[LIMIT]]
+        return [*(page for kind in kinds for page in pages(kind)), *pages("law"), library()[LIMIT]]
 
     def effects(self, evidence: AxisEvidence) -> Sequence[Effect]:
         """Return the pages that can show in what was recorded of an axis."""
-        own = ViscousOnAxis(evidence.axis.viscous)
+        if is_law(evidence):
+            return pages("law")
         found = pages(kind_of(evidence.axis), facts_of(evidence.axis))
-        return [own if isinstance(page, ViscousOnAxis) else page for page in found]
+        return [_of_axis(page, evidence) for page in found]
 
     def audit(self, runs: Sequence[AxesRun]) -> list[str]:
         """Return what was done to the data, and whether floors are known from repeats."""
@@ -79,11 +84,13 @@ class Axes(Machine[AxesRun, AxisEvidence]):
 
     def gather(self, runs: Sequence[AxesRun]) -> Sequence[AxisEvidence]:
         """Compute residuals and floors of every axis; raises MachineError where an unknown mass cannot be found."""
-        parts = []
+        parts: list[AxisEvidence] = []
         for axis in self.description.axes:
             heard = [without_wrong(run, axis) for run in runs]
             if all("position" in run.signals[axis.name] for run in heard):
                 parts.append(gather_axis(heard, axis, self._repeats(runs)))
+                law = law_of_axis(heard, axis)
+                parts += [law] if law is not None else []
         if not parts:
             raise MachineError("no axis can be judged", value="every position is dead", remedy="connect the encoders")
         limited = any(limit_finding(runs, axis) for axis in self.description.axes)
@@ -97,11 +104,13 @@ class Axes(Machine[AxesRun, AxisEvidence]):
         """Look for drives at their limit."""
         if LIMIT in without:
             return []
-        found = (limit_finding(part.runs, part.axis) for part in evidence)
+        found = (limit_finding(part.runs, part.axis) for part in evidence if not is_law(part))
         return [limit for limit in found if limit is not None]
 
     def attribute(self, evidence: AxisEvidence, candidates: Candidates, left_over: Left, say: Say) -> Attribution:
         """Choose the causes of one axis, and what changed between conditions; what it does at rest counts too."""
+        if is_law(evidence):
+            return causes_of_law(candidates, left_over, say)
         conditions = self._conditions(evidence.runs)
         if not conditions:
             return causes_of_axis(evidence, candidates, left_over, say)
@@ -117,6 +126,8 @@ class Axes(Machine[AxesRun, AxisEvidence]):
         self, evidence: AxisEvidence, causes: list[Cause], attribution: Attribution
     ) -> tuple[AxisEvidence, list[Cause]]:
         """Refine mass and forces of a free axis on its simulated motion, of a driven one away from its reversals."""
+        if is_law(evidence):
+            return evidence, causes
         if evidence.axis.free:
             return refine_free(evidence, causes)
         causes, own = requantified(evidence, attribution, causes), evidence.axis.own_unit
@@ -126,6 +137,8 @@ class Axes(Machine[AxesRun, AxisEvidence]):
 
     def remarks(self, finding: Finding[AxisEvidence]) -> list[str]:
         """Say which mass was found, what the recorded signals cannot tell, and how the axis runs again."""
+        if is_law(finding.evidence):
+            return law_notes(finding)
         again = replay(finding.evidence, finding.causes) if finding.significant else None
         changes = change_notes(finding.attribution, self._conditions(finding.evidence.runs))
         untold = finding.evidence.untold
@@ -136,7 +149,7 @@ class Axes(Machine[AxesRun, AxisEvidence]):
         return [
             *changes,
             *mass_notes(finding.evidence),
-            *blind_spots(finding.evidence.axis),
+            *blind_spots(finding),
             *([] if finding.significant else unseen(finding.evidence)),
             *([again.note] if again else []),
         ]
@@ -149,7 +162,7 @@ class Axes(Machine[AxesRun, AxisEvidence]):
 
     def end_to_end(self, findings: Sequence[Finding[AxisEvidence]], causes: Sequence[Cause]) -> Interval | None:
         """Return the closure of the position of the first axis that can be run again."""
-        runs_again = (replay(f.evidence, f.causes) for f in findings if f.significant)
+        runs_again = (replay(f.evidence, f.causes) for f in findings if f.significant and not is_law(f.evidence))
         return next((again.closure for again in runs_again if again is not None), None)
 
     def _conditions(self, runs: Sequence[AxesRun]) -> list[Condition]:
@@ -157,6 +170,15 @@ class Axes(Machine[AxesRun, AxisEvidence]):
 
     def _repeats(self, runs: Sequence[AxesRun]) -> bool:
         return self.description.repeats and len(runs) > 1
+
+
+def _of_axis(page: Effect, evidence: AxisEvidence) -> Effect:
+    """Return a page with what it must know of the axis to say what is possible."""
+    if isinstance(page, ViscousOnAxis):
+        return ViscousOnAxis(evidence.axis.viscous)
+    if isinstance(page, BacklashBehindMotor | ComplianceBehindMotor):
+        return type(page)(evidence.mass)
+    return page
 
 
 def nothing_judged(parts: Sequence[AxisEvidence], runs: Sequence[AxesRun]) -> MachineError:
@@ -196,12 +218,24 @@ def facts_of(axis: Axis) -> set[str]:
     known = {
         "lead": axis.lead is not None,
         "load": axis.signals.load is not None,
+        "alone": axis.signals.load is None and axis.encoder_at == "motor",
+        "behind": axis.signals.load is None and axis.encoder_at == "load",
         "temperature": axis.signals.temperature is not None,
         "mass": isinstance(axis.mass, float),
         "drive": not axis.free,
         "forces": isinstance(axis.mass, float) or axis.gravity != Gravity() or axis.signals.nominal_effort is not None,
     }
     return {fact for fact, is_known in known.items() if is_known}
+
+
+def law_notes(finding: Finding[AxisEvidence]) -> list[str]:
+    """Return whether the command is what its law states."""
+    axis = finding.evidence.axis
+    floors = [float(x[0]) for floors in finding.evidence.floors for x in floors.values()]
+    if finding.significant or not floors:
+        return list(finding.evidence.notes)
+    held = f"{axis.name}: its command is what the stated law asks for, within {np.median(floors):.2g}"
+    return [held, *finding.evidence.notes]
 
 
 def mass_notes(evidence: AxisEvidence) -> list[str]:
@@ -227,11 +261,10 @@ def unseen(evidence: AxisEvidence) -> list[str]:
     return [f"{evidence.axis.name}: nothing above the floor of {np.median(x):.3g} {of}" for of, x in floors.items()]
 
 
-def blind_spots(axis: Axis) -> list[str]:
-    """Return what the recorded signals cannot tell, which is known before any fit."""
-    out = []
-    if axis.signals.load is None:
-        out.append(f"{axis.name}: one encoder: backlash and compliance behind it cannot be seen and are not looked for")
+def blind_spots(finding: Finding[AxisEvidence]) -> list[str]:
+    """Return what the recorded signals cannot tell."""
+    axis = finding.evidence.axis
+    out = [] if axis.signals.load is not None else [unseen_note(finding.evidence, finding.attribution.fit)]
     if axis.servo:
         out.append(f"{axis.name}: force not recorded: forces are given in units of the servo's stiffness")
-    return out
+    return [said for said in out if said]

@@ -87,6 +87,7 @@ class AxisView:
             known,
             self.load_mass,
             axis.motion == "rotary",
+            max(axis.encoder_resolution, self.noise),
         )
 
     @property

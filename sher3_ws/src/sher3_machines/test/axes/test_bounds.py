@@ -9,6 +9,8 @@ from lifts import friction, motion, needed
 from lifts import machine as lift
 from sher3_diagnosis.effect import Effect
 from sher3_effects import pages
+from sher3_effects.compliance.unseen_compliance import ComplianceBehindMotor
+from sher3_effects.lost_motion.unseen_backlash import BacklashBeforeEncoder, BacklashBehindMotor
 from sher3_machines.axes.evidence import gather_axis
 from sher3_machines.axes.machine import kind_of
 from sher3_machines.axes.quantities.bounds import least_of
@@ -35,6 +37,12 @@ def fits(page: Effect, views, site: str) -> Iterator[tuple[dict, np.ndarray]]:
                 yield shape, np.array(c)
 
 
+def pages_of(axis) -> list[Effect]:
+    """Every page of an axis: those of one with two encoders, and those that look behind one."""
+    behind = [BacklashBehindMotor(MASS), ComplianceBehindMotor(MASS), BacklashBeforeEncoder()]
+    return [*pages(kind_of(axis)), *(page for page in behind if kind_of(axis) in page.kinds)]
+
+
 def slide_view(turning: bool, servo: bool):
     rows = driven(seconds=4.0, coulomb=8.0)
     signals = dict(zip(("position", "reference", "command"), rows.T, strict=True))
@@ -50,7 +58,7 @@ def slide_view(turning: bool, servo: bool):
 def test_every_page_of_an_axis(turning, servo):
     axis, views = slide_view(turning, servo)
     seen = 0
-    for page in pages(kind_of(axis)):
+    for page in pages_of(axis):
         for shape, c in fits(page, views, "slide"):
             seen += 1
             for name, value in page.parameters(shape, c).items():

@@ -8,6 +8,9 @@ from sher3_machines.axes.machine import NO_REPEATS, Axes, facts_of
 from sher3_machines.axes.record import AxesRun
 from slides import COUNT, MASS, PERIOD, axis_of, columns, described, driven, effects, machine, run_of, servo, verdict_of
 
+NO_LAW = {"kind": "force", "held": True}
+"""A command that follows no stated law: a test adds to it."""
+
 
 @pytest.fixture(scope="module")
 def rubbed():
@@ -108,7 +111,7 @@ def test_wrong_mass_and_force_scale_stay_rivals():
 def test_a_force_no_effect_makes_is_not_explained():
     rows = driven(seconds=12.0)
     rows[:, 2] += np.sin(2.0 * np.pi * 7.0 * np.arange(len(rows)) * PERIOD)
-    verdict = verdict_of(rows)
+    verdict = verdict_of(rows, command_law=NO_LAW)
     assert verdict.status == "outside_library" and "near 7.0 Hz" in verdict.unexplained.signature
 
 
@@ -136,8 +139,9 @@ def test_notes_say_what_cannot_be_told():
 
 
 def test_facts_are_what_the_description_states():
-    assert facts_of(axis_of()) == {"mass", "drive", "forces"}
-    assert facts_of(axis_of(lead=0.005, mass="unknown", command_law={"kind": "none"})) == {"lead"}
+    assert facts_of(axis_of()) == {"mass", "drive", "forces", "alone"}
+    assert facts_of(axis_of(lead=0.005, mass="unknown", command_law={"kind": "none"})) == {"lead", "alone"}
+    assert facts_of(axis_of(encoder_at="load")) == {"mass", "drive", "forces", "behind"}
 
 
 def test_the_force_of_the_user_s_own_model_takes_the_place_of_mass_and_weight(rubbed):
@@ -158,5 +162,5 @@ def test_a_known_disturbance_is_no_cause(rubbed):
     applied = np.where(np.arange(len(q)) > len(q) // 2, 7.0, 0.0)
     signals = {**columns("position", "reference"), **columns("command", "applied", unit="N")}
     run = AxesRun("run", PERIOD, {"slide": {"position": q, "reference": r, "command": u - applied, "applied": applied}})
-    verdict = diagnose(machine(signals=signals), [run]).verdict
+    verdict = diagnose(machine(signals=signals, command_law=NO_LAW), [run]).verdict
     assert set(effects(verdict)) == {"coulomb_friction", "viscous_friction"}

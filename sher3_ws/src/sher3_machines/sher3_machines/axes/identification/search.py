@@ -1,14 +1,24 @@
-"""How the causes of one axis are looked for: the engine's search, and one that begins with a dry friction."""
+"""How the causes of one axis are looked for: the engine's search, and two that begin with a dry friction.
+
+A load behind a gap or a spring shows in the effort only beside the friction, whose reversal it shapes: step by step a
+friction that builds up slowly would be taken for both. One search therefore looks for it second.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 
-from sher3_diagnosis.attribute.candidates import Candidates
+from sher3_diagnosis.attribute.candidates import Candidates, cost
 from sher3_diagnosis.attribute.rivals import Attribution, with_rivals
 from sher3_diagnosis.attribute.search import Left, Say, attribute
-from sher3_diagnosis.fit.fitting import Fit, fit
-from sher3_diagnosis.thresholds import NEEDED
+from sher3_diagnosis.channel import Channel
+from sher3_diagnosis.effect import Effect
+from sher3_diagnosis.fit.fitting import Fit, Term, fit
+from sher3_diagnosis.thresholds import NEEDED, WORTH
+from sher3_effects.compliance.unseen_compliance import ComplianceBehindMotor
+from sher3_effects.friction.coulomb_friction import CoulombFriction
+from sher3_effects.timing.sensor_delay import SensorDelay
 
 from sher3_machines.axes.evidence import AxisEvidence
 from sher3_machines.axes.identification.rest import Bounded, DryFirst, rest_loss
@@ -24,17 +34,72 @@ def causes_of_axis(evidence: AxisEvidence, candidates: Candidates, left_over: Le
     the one with the smaller loss is taken, in motion and at rest together.
     """
     candidates = Bounded(evidence, candidates.effects, candidates.terms)
-    found = attribute(candidates, left_over, say)
+    seen = [e for e in candidates.effects if not isinstance(e, Bounded.UNSEEN)]
+    found = attribute(Bounded(evidence, seen, candidates.terms), left_over, say)
     if rest_loss(evidence, found.fit) > 0.0:
-        dry = DryFirst(evidence, candidates.effects, candidates.terms)
+        dry = DryFirst(evidence, seen, candidates.terms)
         other = attribute(dry, left_over, say)
         found = min((found, other), key=lambda a: a.fit.total + rest_loss(evidence, a.fit))
+    behind = Behind(evidence, candidates.effects, candidates.terms)
+    if behind.looks:
+        other = attribute(behind, left_over, say)
+        if _excess(evidence, other.fit) < (1.0 - WORTH) * _excess(evidence, found.fit):
+            found = other
     best = polished(candidates, found)
     if [t.effect.id for t in best.terms] == [t.effect.id for t in found.fit.terms]:
         found = replace(found, fit=best)
     else:
         found = with_rivals(candidates, best)
     return replace(found, rivals=_at_rest_too(evidence, found))
+
+
+class Behind(Bounded):
+    """Candidates of which the first two causes are plain dry friction and what hides behind one encoder."""
+
+    ORDER: tuple[tuple[type[Effect], ...], ...] = (
+        (CoulombFriction, ComplianceBehindMotor),
+        (CoulombFriction, *Bounded.UNSEEN, SensorDelay),
+    )
+    """Friction, or a spring that rings; then what else hides, or a late effort: a load that gives way is late too."""
+
+    @property
+    def looks(self) -> bool:
+        """Whether there is anything that hides behind one encoder."""
+        views, unseen = self.evidence.views, [e for e in self.effects if isinstance(e, self.UNSEEN)]
+        return any(e.shapes(views, site) for e in unseen for site in self.sites(e)) if views else False
+
+    def search(self, channels: Collection[Channel], given: Sequence[Term] = ()) -> list[Fit]:
+        """Search as the engine does, but for the first two causes in this order."""
+        found, chosen = super().search(channels, given), len(given) - len(self.evidence.nuisance)
+        if chosen >= len(self.ORDER):
+            return found
+        of_order = [trial for trial in found if isinstance(trial.terms[-1].effect, self.ORDER[chosen])]
+        if not chosen:
+            return of_order
+        sharp = [self._beside(trial, self._sharp(given)) for trial in of_order]
+        return sorted((self._beside(trial, given) for trial in [*of_order, *sharp]), key=cost)
+
+    def _sharp(self, given: Sequence[Term]) -> Sequence[Term]:
+        """Return terms with a friction that reverses at once: alone it builds up as slowly as the load comes in."""
+        *before, friction = given
+        shapes = friction.effect.shapes(self.evidence.views, friction.site)
+        return [*before, self.term(friction.effect, friction.site, shapes[0])]
+
+    def _beside(self, trial: Fit, given: Sequence[Term]) -> Fit:
+        """Return a fit whose last two causes are searched again beside each other, from the given friction on."""
+        (*before, friction), load, best = given, trial.terms[-1], trial
+        for _ in range(POLISHES):
+            again = self.best(load.effect, load.site, [*before, friction])
+            rubs = again and self.best(friction.effect, friction.site, [*before, again.terms[-1]])
+            if again is None or rubs is None:
+                break
+            best, friction = min(best, again, key=lambda f: f.total), rubs.terms[-1]
+        return best
+
+
+def _excess(evidence: AxisEvidence, found: Fit) -> float:
+    """Return the loss of a fit above the floor, in motion and at rest."""
+    return found.total - sum(evidence.data.samples.values()) + rest_loss(evidence, found)
 
 
 def _at_rest_too(evidence: AxisEvidence, found: Attribution) -> tuple[tuple[Fit, ...], ...]:

@@ -10,7 +10,7 @@ from sher3_diagnosis.verdict import Cause, Parameter
 NEVER_BELOW_ZERO = frozenset(
     {
         *("displacement", "static", "stribeck_velocity", "width", "stiffness", "compliance", "time_constant"),
-        *("frequency", "inertia", "mass", "load_friction", "limit"),
+        *("frequency", "inertia", "mass", "load_mass", "load_friction", "limit"),
     }
 )
 """Parameters of any effect that have no sign; a mass beside a stated one may be less, see `SIGNED`."""

@@ -1,0 +1,215 @@
+"""The recorded command against the law that its description states: an exact stage, judged by itself.
+
+The law needs no model of the machine: reference and reading in, command out. Nobody states how a controller takes its
+speed from its encoder, nor at which sample within a period it reads; of the usual ways that one is taken which leaves
+least, whatever the gains are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from sher3_diagnosis.attribute.candidates import Candidates
+from sher3_diagnosis.attribute.rivals import Attribution
+from sher3_diagnosis.attribute.search import Left, Say, attribute
+from sher3_diagnosis.channel import Array, Channel, Residual
+from sher3_diagnosis.effect import Effect, Shape, Signature, column
+from sher3_diagnosis.evidence import Evidence
+from sher3_diagnosis.fit.fitting import make_term
+from sher3_diagnosis.fit.whitened import Whitened
+from sher3_diagnosis.quantify.polish import polished
+from sher3_diagnosis.tolerance import NUISANCE
+from sher3_effects.operators import held_lag
+from sher3_effects.view import StatedLaw
+
+from sher3_machines.axes.description import Axis
+from sher3_machines.axes.evidence import AxisEvidence, blocks_of
+from sher3_machines.axes.floors import UNIFORM, foresight, innovation
+from sher3_machines.axes.record import AxesRun
+from sher3_machines.axes.signals import AxisSignals, signals_of
+from sher3_machines.axes.view import AxisView
+from sher3_machines.thresholds import BLOCKS, LAW_ROUNDED
+
+STAGE = "controller"
+"""Stage of the law."""
+LAST, TWO, CENTRAL = 0.0, -1.0, -2.0
+"""Ways to take a speed from an encoder: over the last period, over the last two, about the sample; above zero it is
+that over the last period through a low-pass of first order, of so many periods."""
+LAGS = (0.7, 1.0, 1.5, 2.0, 3.0, 5.0, 8.0, 12.0)
+"""Such low-passes that are tried, in periods."""
+PLAIN = 0.3
+"""Share of the noise of a plain way that a low-pass must leave at most: it has a number that is fitted, and smooths."""
+FINER = 9
+"""Halvings of the step between two of them."""
+SHIFTS = (0, 1, 2, 3, 4, 6, 8, 12, 16, 24)
+"""Samples by which a command may answer an earlier reading: within one period nobody states it, more is a delay."""
+
+
+class LawView(AxisView):
+    """A run of one axis with the law that its command was stated to follow.
+
+    Attributes:
+        stated: the law on what was recorded.
+    """
+
+    def __init__(self, run: AxisSignals, axis: Axis, stated: StatedLaw) -> None:
+        super().__init__(run, axis, 0.0)
+        self.stated = stated
+
+
+@dataclass(frozen=True, kw_only=True)
+class LawEvidence(AxisEvidence):
+    """The engine's evidence for the command of one axis."""
+
+
+class Way(NamedTuple):
+    """How a controller reads its encoder: the way it takes a speed, and by how many samples it is behind."""
+
+    speed: float
+    shift: int
+
+    @property
+    def words(self) -> str:
+        """How the speed is taken, in words."""
+        known = {LAST: "over one period", TWO: "over two periods", CENTRAL: "about the sample"}
+        return known.get(self.speed, f"through a low-pass of {self.speed:.2g} periods")
+
+
+class StartOfIntegral(Effect):
+    """What an integral held when the record began: a column that every fit carries."""
+
+    id, family, stage = "start_of_the_integral", NUISANCE, STAGE
+    explanation = "Nobody says what the integral of a controller held when the record began."
+
+    def signature(self, view: LawView, site: str, shape: Shape) -> Signature:
+        """Return one column: one."""
+        return Signature({Channel(self.stage, site): column(np.ones(len(view.run.grid)))})
+
+
+def law_of_axis(runs: Sequence[AxesRun], axis: Axis) -> LawEvidence | None:
+    """Return the evidence for the command of an axis; None where no law is stated or nothing was recorded."""
+    if not compared(axis) or not all({"reference", "command"} <= run.signals[axis.name].keys() for run in runs):
+        return None
+    signals = [signals_of(run, axis, run.name) for run in runs]
+    way = best_way(signals, axis)
+    views = [LawView(s, axis, stated_law(s, axis, way)) for s in signals]
+    channel = Channel(STAGE, axis.name)
+    found = [{channel: residual_of(view)} for view in views]
+    floors = [{channel: floor_of(view, x[channel])} for view, x in zip(views, found, strict=True)]
+    per_record = -(-BLOCKS // len(views))
+    blocks = [(r, block) for r, x in enumerate(found) for block in blocks_of(x, per_record)]
+    data = Whitened([views[r] for r, _ in blocks], [b for _, b in blocks], [floors[r] for r, _ in blocks])
+    return LawEvidence(
+        excitations=[views[r].excitation for r, _ in blocks],
+        data=data,
+        nuisance=(make_term(data, StartOfIntegral(), axis.name, {}),) if axis.command_law.integral_gain else (),
+        units={channel: unit_of_command(axis)},
+        places={"axis": (axis.name,)},
+        rotary=frozenset({axis.name} if axis.motion == "rotary" else ()),
+        axis=axis,
+        runs=list(runs),
+        records=views,
+        mass=0.0,
+        notes=[f"{axis.name}: the speed in its law is taken {way.words}"] if axis.command_law.velocity_gain else [],
+    )
+
+
+def compared(axis: Axis) -> bool:
+    """Return whether the description states a law of a command that was recorded."""
+    law, signals = axis.command_law, axis.signals
+    known = law.kind == "force" and law.position_gain is not None
+    return known and signals.command is not None and signals.reference is not None
+
+
+def best_way(signals: Sequence[AxisSignals], axis: Axis) -> Way:
+    """Return the way to read the encoder that leaves least."""
+
+    def noise(way: Way) -> float:
+        return sum(noise_left(s, stated_law(s, axis, way)) for s in signals)
+
+    if not axis.command_law.velocity_gain:
+        return _within(min((Way(LAST, shift) for shift in SHIFTS), key=noise))
+    plain = min((Way(speed, shift) for speed in (LAST, TWO, CENTRAL) for shift in SHIFTS), key=noise)
+    best = min((Way(speed, shift) for speed in LAGS for shift in SHIFTS), key=noise)
+    step = LAGS[1] / LAGS[0]
+    for _ in range(FINER):
+        step = float(np.sqrt(step))
+        best = min((Way(best.speed * f, shift) for f in (1.0, step, 1.0 / step) for shift in SHIFTS), key=noise)
+    return _within(best if noise(best) < PLAIN * noise(plain) else plain)
+
+
+def _within(way: Way) -> Way:
+    """Return a way within the period that nobody states: what is more is a delay."""
+    return way if way.shift <= 1 else way._replace(shift=0)
+
+
+def noise_left(run: AxisSignals, law: StatedLaw) -> float:
+    """Return what the parts of a law, each with a gain of its own, leave after the filter of the residuals; median."""
+    assert run.command is not None
+    free = run.inner & (np.abs(run.command[run.grid, 0]) < np.abs(run.command).max())
+    x = run.to_grid(np.column_stack([law.parts, np.ones(run.ticks)]))[free]
+    y = run.to_grid(run.command)[free, 0]
+    return float(np.median(np.abs(y - x @ np.linalg.lstsq(x, y, rcond=None)[0])))
+
+
+def stated_law(run: AxisSignals, axis: Axis, way: Way) -> StatedLaw:
+    """Return the stated law on the readings of a run, read in one of the ways."""
+    law, q = axis.command_law, run.motor[:, 0]
+    assert run.reference is not None and law.position_gain is not None
+    error = run.reference[:, 0] - q
+    parts = [law.position_gain * error, -law.velocity_gain * speed_of(q, run.period, way.speed)]
+    parts.append(law.integral_gain * np.cumsum(error) * run.period)
+    behind = np.column_stack([np.concatenate([x[:1].repeat(way.shift), x])[: len(x)] for x in (*parts, error)])
+    return StatedLaw(behind[:, 3], behind[:, :3], law.limit or np.inf, law.position_gain)
+
+
+def speed_of(q: Array, period: float, way: float) -> Array:
+    """Return the speed of a path (n,) taken in one of the ways."""
+    if way == TWO:
+        return (q - np.concatenate([q[:1].repeat(2), q[:-2]])) / (2.0 * period)
+    if way == CENTRAL:
+        return np.asarray(np.gradient(q, period))
+    pace = np.diff(q, prepend=q[0])[:, None] / period
+    return np.append(held_lag(pace, way, 1.0)[1:, 0], pace[-1, 0]) if way > 0.0 else pace[:, 0]
+
+
+def residual_of(view: LawView) -> Residual:
+    """Return command less law."""
+    run = view.run
+    assert run.command is not None
+    left = run.to_grid(run.command - view.stated.command[:, None])
+    return Residual(left, run.inner)
+
+
+def floor_of(view: LawView, left: Residual) -> Array:
+    """Return the floor of a command, (1,): what could not be foreseen, and never below counts and rounded gains."""
+    run, law = view.run, view.described.command_law
+    assert run.command is not None and law.position_gain is not None
+    noise = np.random.default_rng(0).normal(size=(max(run.ticks, 4 * BLOCKS), 1))
+    count = view.described.encoder_resolution / UNIFORM
+    shaken = law.position_gain * noise - law.velocity_gain * np.diff(noise, axis=0, prepend=0.0) / run.period
+    steps = np.diff(np.unique(run.command))
+    rounded = (float(steps.min()) if len(steps) else 0.0) / UNIFORM
+    counted = float(np.hypot(count * run.filtered(shaken).std(), rounded))
+    least = max(counted, LAW_ROUNDED * float(np.sqrt(np.mean(run.command**2))), np.finfo(float).tiny)
+    return np.maximum(innovation(left) / foresight(run), least)
+
+
+def unit_of_command(axis: Axis) -> str:
+    """Return the unit of the recorded command."""
+    column = axis.signals.command
+    return (column.unit if column is not None else None) or "1"
+
+
+def causes_of_law(candidates: Candidates, left_over: Left, say: Say) -> Attribution:
+    """Choose the causes of a command; one alone is polished before a second is looked for, since a law is exact."""
+    one = polished(candidates.evidence, attribute(candidates, left_over, say, causes=1))
+    return attribute(candidates, left_over, say) if left_over(one.fit) else one
+
+
+def is_law(evidence: Evidence) -> bool:
+    """Return whether a piece of evidence is that for a command."""
+    return isinstance(evidence, LawEvidence)
