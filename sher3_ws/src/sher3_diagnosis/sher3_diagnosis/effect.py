@@ -96,6 +96,7 @@ class Effect:
         inputs: quantities the law may depend on, of `INPUTS`; none for an error that is constant.
         units: parameter -> SI unit on a linear axis.
         discrete: parameters that are a choice (a source, a member, a number of periods) and have no interval.
+        choices: parameter of `discrete` -> value -> what it means, in a word.
         bounds: parameter -> smallest and largest value that is physically possible.
         siblings: effect id -> what tells it from this one.
         extends: ids of simpler effects that this one contains; it must explain markedly more than they do.
@@ -120,6 +121,7 @@ class Effect:
     inputs: ClassVar[tuple[str, ...]] = ()
     units: ClassVar[Mapping[str, str]] = {}
     discrete: ClassVar[frozenset[str]] = frozenset()
+    choices: ClassVar[Mapping[str, Mapping[float, str]]] = {}
     bounds: ClassVar[Mapping[str, tuple[float, float]]] = {}
     siblings: ClassVar[Mapping[str, str]] = {}
     extends: ClassVar[tuple[str, ...]] = ()

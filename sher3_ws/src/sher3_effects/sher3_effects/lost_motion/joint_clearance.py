@@ -22,7 +22,7 @@ REST_FORCE = 0.2
 
 
 class JointClearance(Page):
-    """What a slider moves is ahead of it or behind by clearance / 2, by its direction, or by the sign of the load on it.
+    """What a slider moves is ahead of it or behind by clearance / 2, by its direction or by the sign of its load.
 
     Where the load decides, a leg is that much longer or shorter; where the direction does, it follows its slider late.
     """
