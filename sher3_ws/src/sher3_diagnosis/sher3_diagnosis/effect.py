@@ -142,6 +142,10 @@ class Effect:
         """Return the shapes to search over; empty when the runs cannot show the effect. Default: one without values."""
         return [{}]
 
+    def bends(self, shape: Shape) -> list[Shape]:
+        """Return shapes of the law with a bend that some machines have, near the best one without; default none."""
+        return []
+
     def refine(self, shape: Shape) -> list[Shape]:
         """Return neighbours of the best shape for a finer search: one value at a time times its factors."""
         return [

@@ -30,10 +30,9 @@ class ForceSaturation(Page):
     on_axis = {"limit": "limit"}
     explanation = "The reported force stops rising at a level below the drive's limit; below it the drive behaves."
     siblings = {"drive_lag": "late at every level"}
-    finer = {"limit": (0.9, 0.94, 0.97, 0.985, 0.993, 1.007, 1.015, 1.03, 1.06, 1.1)}
-    polished = ("knee",)
+    finer = {"limit": (0.9, 0.94, 0.97, 0.985, 0.993, 1.007, 1.015, 1.03, 1.06, 1.1), "knee": (0.5, 0.75, 1.3, 1.8)}
     KNEE = 0.25
-    """Width of the bend that is tried first beside none, over the limit."""
+    """Width of the bend that is tried first, over the limit."""
     LEVELS = 12
     """Limits tried between the largest force that was reported and the largest that was asked for."""
     HELD = 50
@@ -51,13 +50,11 @@ class ForceSaturation(Page):
         asked = max(float(np.max(np.abs(r.effort[:, axis] + self._step(views[0], r, axis)))) for r in runs)
         if reported <= 0.0:
             return []
-        levels = [float(x) for x in np.geomspace(0.98 * reported, max(asked, reported), self.LEVELS)]
-        return [*({"limit": x} for x in levels), *({"limit": x, "knee": self.KNEE} for x in levels)]
+        return [{"limit": float(x)} for x in np.geomspace(0.98 * reported, max(asked, reported), self.LEVELS)]
 
-    def refine(self, shape: Shape) -> list[Shape]:
-        """Around the limit and the width of its bend."""
-        wider = [{**shape, "knee": shape["knee"] * f} for f in (0.5, 0.75, 1.3, 1.8)] if "knee" in shape else []
-        return [*super().refine(shape), *wider]
+    def bends(self, shape: Shape) -> list[Shape]:
+        """Limits near a hard one, with a bend: it begins below."""
+        return [{"limit": shape["limit"] * f, "knee": self.KNEE} for f in (0.85, 0.92, 1.0, 1.08)]
 
     def _step(self, view: RobotView, run: RecordedRun, axis: int) -> Array:
         """By how much the force steps with the demand at each tick, (n,)."""
