@@ -98,6 +98,7 @@ class Effect:
         inputs: quantities the law may depend on, of `INPUTS`; none for an error that is constant.
         units: parameter -> SI unit on a linear axis.
         discrete: parameters that are a choice (a source, a member, a number of periods) and have no interval.
+        choices: parameter of `discrete` -> value -> what it means, in a word.
         bounds: parameter -> smallest and largest value that is physically possible.
         siblings: effect id -> what tells it from this one.
         extends: ids of simpler effects that this one contains; it must explain markedly more than they do.
@@ -122,6 +123,7 @@ class Effect:
     inputs: ClassVar[tuple[str, ...]] = ()
     units: ClassVar[Mapping[str, str]] = {}
     discrete: ClassVar[frozenset[str]] = frozenset()
+    choices: ClassVar[Mapping[str, Mapping[float, str]]] = {}
     bounds: ClassVar[Mapping[str, tuple[float, float]]] = {}
     siblings: ClassVar[Mapping[str, str]] = {}
     extends: ClassVar[tuple[str, ...]] = ()
@@ -141,6 +143,10 @@ class Effect:
     def shapes(self, views: Sequence[Any], site: str) -> list[Shape]:
         """Return the shapes to search over; empty when the runs cannot show the effect. Default: one without values."""
         return [{}]
+
+    def bends(self, shape: Shape) -> list[Shape]:
+        """Return shapes of the law with a bend that some machines have, near the best one without; default none."""
+        return []
 
     def refine(self, shape: Shape) -> list[Shape]:
         """Return neighbours of the best shape for a finer search: one value at a time times its factors."""

@@ -27,9 +27,10 @@ class Interval(_Model):
 
 
 class Parameter(Interval):
-    """A fitted parameter with its unit."""
+    """A fitted parameter with its unit; of a choice that has words for its values, the word."""
 
     unit: str
+    means: str | None = None
 
 
 class Where(_Model):

@@ -93,6 +93,14 @@ def test_a_parameter_that_may_be_zero_is_not_told():
     assert headline(verdict("attributed", causes=[cause])) == "Tool offset on delta 2, -9.9 mm: 98 % of the gap."
 
 
+def test_a_choice_is_told_by_its_word():
+    """A scale that is of the whole sensor is not on "axis -1"."""
+    axis = Parameter(value=-1.0, unit="1", means="all")
+    relative = Parameter(value=0.05, low=0.04, high=0.06, unit="1")
+    text = cause_text(FRICTION.model_copy(update={"parameters": {"relative": relative, "axis": axis}}))
+    assert text.endswith(", axis all")
+
+
 def test_what_one_number_tells_is_told_once_and_a_share_has_its_size():
     """A backlash whose flanks do not give loses just its width; a torque constant 14.6 % too large is so by 0.146."""
     wide = Parameter(value=1e-5, low=0.9e-5, high=1.1e-5, unit="m")

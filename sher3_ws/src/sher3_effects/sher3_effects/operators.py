@@ -154,7 +154,13 @@ def first_order(start: Array, end: Array, time_constant: float, period: float) -
 
 @compiled
 def frozen_integral(
-    force: Array, law: Array, step: Array, load: Array, travel: Array, axis: tuple[float, float, float, float, float]
+    force: Array,
+    law: Array,
+    step: Array,
+    load: Array,
+    travel: Array,
+    axis: tuple[float, float, float, float, float],
+    knee: float,
 ) -> Array:
     """Velocity error (n,) [m or rad] that the integrator of a clamped PI law has not summed up until each tick.
 
@@ -169,18 +175,21 @@ def frozen_integral(
         load: (n,) force that holds the velocity.
         travel: (n,) integral of the velocity error over the period ahead of each tick.
         axis: gain and integral gain of the drive, mass, limit of the force, period [s].
+        knee: of a limit that bends: the force falls behind the law from 1 - knee of the limit on, and the integrator
+            stops where the law asks for 1 + knee of it.
     """
     gain, integral, mass, limit, period = axis
+    straight, stop = (1.0 - knee) * limit, (1.0 + knee) * limit
     out = np.zeros(len(force))
     total = 0.0
     for k in range(len(force) - 1):
         now = force[k]
         free = law[k] - integral * total
-        if abs(now) > NEAR_LIMIT * limit and abs(free) > limit and now * free > 0.0:
+        if abs(now) > NEAR_LIMIT * straight and abs(free) > straight and now * free > 0.0:
             now = free
         wanted = now + step[k]
         side = 1.0 if wanted > 0.0 else -1.0
-        over, room = side * wanted - limit, limit - side * load[k]
+        over, room = side * wanted - stop, limit - side * load[k]
         if over > 0.0 and room > 0.0:
             time = mass * over / (gain * room)
             if time >= period:

@@ -41,7 +41,8 @@ def parameters(evidence: Evidence, fit: Fit, index: int) -> dict[str, Parameter]
             x, half = told[name].value, max(half, JACKKNIFE * told[name].error)
         unit = term.effect.unit(name, term.site, term.site in evidence.rotary)
         low, high = (None, None) if half is None else (x - half, x + half)
-        out[name] = Parameter(value=x, low=low, high=high, unit=unit)
+        means = term.effect.choices.get(name, {}).get(x)
+        out[name] = Parameter(value=x, low=low, high=high, unit=unit, means=means)
     return out
 
 

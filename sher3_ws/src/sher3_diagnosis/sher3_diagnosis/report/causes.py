@@ -102,7 +102,7 @@ def _card(
 def _parameters(cause: Cause, choices: frozenset[str]) -> list[tuple[str, str, str]]:
     """Return (name, value, interval) in words, those that differ from zero first."""
     ranked = sorted(told(cause).items(), key=lambda x: not significant(x[1]))
-    return [(n.replace("_", " "), quantity(p.value, p.unit), _interval(p, n in choices)) for n, p in ranked]
+    return [(n.replace("_", " "), p.means or quantity(p.value, p.unit), _interval(p, n in choices)) for n, p in ranked]
 
 
 def _interval(p: Parameter, choice: bool) -> str:

@@ -56,7 +56,7 @@ def cause_text(cause: Cause) -> str:
     text = f"{words(cause.effect)} on {place(cause.actuator)}"
     for name, p in told(cause).items():
         if significant(p):
-            text += f", {name.replace('_', ' ')} {quantity(p.value, p.unit)}"
+            text += f", {name.replace('_', ' ')} {p.means or quantity(p.value, p.unit)}"
             text += "" if p.low is None else f" ({range_text(p.low, p.high, p.unit)})"
     return text + (f" [or {', '.join(words(r).lower() for r in cause.rivals)}]" if cause.rivals else "")
 

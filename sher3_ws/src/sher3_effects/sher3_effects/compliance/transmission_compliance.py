@@ -23,6 +23,7 @@ class TransmissionCompliance(Page):
     inputs = ("force", "weight", "load", "acceleration")
     needs = ("load",)
     best = Best("loads", "known loads in several postures separate springs")
+    leaves_out = "how it hardens, and that it grows with the free length of a screw"
     companion = "friction"
     explanation = (
         "Between motor and load lies a spring: their difference follows weight, external load and acceleration."

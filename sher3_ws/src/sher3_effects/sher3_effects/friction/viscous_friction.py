@@ -21,6 +21,7 @@ class ViscousFriction(Page):
     id, family, stage = "viscous_friction", "friction", "motor_mechanics"
     inputs = ("velocity",)
     best = Best("reversals", "reversals of several amplitudes and speeds separate friction laws")
+    leaves_out = "that a lubricant thins with speed and warmth"
     explanation = (
         "The axis needs more force the faster it moves, in proportion: lubricant or seals are stiffer than "
         "the model says."

@@ -22,8 +22,9 @@ REST_FORCE = 0.2
 
 
 class JointClearance(Page):
-    """A leg's length, or the travel of the tilt slider behind its encoder, jumps by +-clearance / 2 with the direction
-    of the slider, or with the sign of the load on it.
+    """What a slider moves is ahead of it or behind by clearance / 2, by its direction or by the sign of its load.
+
+    Where the load decides, a leg is that much longer or shorter; where the direction does, it follows its slider late.
     """
 
     id, family, stage = "joint_clearance", "lost_motion", "mechanism"
@@ -40,8 +41,12 @@ class JointClearance(Page):
         "backlash": "the load encoder lags behind the motor's",
         "structural_compliance": "in proportion to the load",
     }
-    REACHES = (2.5e-3, 5e-3, 1e-2)
-    """Stroke over which the side changes with the direction, in motor revolutions."""
+    REACHES = (2.5e-3, 5e-3, 1e-2, 2e-2, 4e-2, 8e-2, 0.16)
+    """Stroke over which the side changes with the direction, in motor revolutions: a rigid gap is crossed by as much
+    travel as it is wide."""
+    finer = {"reach": (0.84, 1.19)}
+    WIDEST = 2.0
+    """Jump over the travel that crosses the gap beyond which it is no gap: a rigid one has 1, a soft one less."""
 
     def channels(self, site: str) -> tuple[Channel, ...]:
         """Return the tip, free and loaded."""
@@ -52,7 +57,8 @@ class JointClearance(Page):
 
         A side that never changes is none.
         """
-        shapes: list[Shape] = [*({"by_load": 0.0, "reach": r} for r in self.REACHES)]
+        lead = views[0].lead(site)
+        shapes: list[Shape] = [*({"by_load": 0.0, "reach": r * lead} for r in self.REACHES)]
         shapes += [{"by_load": 1.0, "reach": 0.0}]
         shapes += [{"by_load": 2.0, "reach": 0.0}] if site != "tilt" else []
         return [
@@ -67,13 +73,13 @@ class JointClearance(Page):
         if shape["by_load"]:
             force = view.path.contact_force[:, axis] - view.path.gravity[:, axis]
             return np.repeat(np.tanh(force / CONTACT_FORCE)[:, None], 2, axis=1)
-        x, width = view.run.smooth[:, axis], shape["reach"] * view.lead(site)
+        x, width = view.run.smooth[:, axis], shape["reach"]
         side = -2.0 / width * play(x, np.zeros(len(x)), width, np.inf, view.run.period, 0.0)[view.run.grid]
         return np.repeat(side[:, None], 2, axis=1)
 
     def signature(self, view: RobotView, site: str, shape: Shape) -> Signature:
-        """Half the change of the pose per metre of either link, or of the tilt slider, with the sign of the side."""
-        if site == "tilt":
+        """Half the change of the pose per metre of either link, or of the slider, with the sign of the side."""
+        if site == "tilt" or not shape["by_load"]:
             change = view.path.jacobian[:, :, [view.row(site)]] * self._side(view, site, shape)[:, None, :1]
             return Signature(view.at_tip(0.5 * change))
         first = 2 * view.row(site)
@@ -81,8 +87,16 @@ class JointClearance(Page):
         return Signature(view.at_tip(0.5 * change))
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Clearance along the leg or the slider."""
-        return {"clearance": float(np.abs(coefficients).mean())}
+        """Clearance: where the direction decides, the travel that crosses it; else the change of length."""
+        if shape["by_load"]:
+            return {"clearance": float(np.abs(coefficients).mean())}
+        return {"clearance": shape["reach"]}
+
+    def admissible(self, shape: Shape, coefficients: Array) -> bool:
+        """Return whether what has play lags its slider, by no more than a gap of that width lets it."""
+        if shape["by_load"]:
+            return True
+        return bool(-self.WIDEST * shape["reach"] <= coefficients[0] <= 0.0)
 
 
 def link_forces(view: RobotView) -> Array:

@@ -20,6 +20,7 @@ class EncoderScale(Page):
     inputs = ("position",)
     breaks = "load_encoder"
     best = Best("sweep", "long constant-speed strokes separate ratios from offsets")
+    leaves_out = "how the error of the scale varies along it"
     explanation = (
         "The load encoder reads a little too much or too little, in proportion to the travel; the tip shows "
         "that the load is where the motor says."

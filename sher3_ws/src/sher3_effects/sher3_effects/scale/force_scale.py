@@ -30,6 +30,7 @@ class ForceScale(Page):
     best = Best("sweep", "long constant-speed strokes separate ratios from offsets")
     places = ("force_sensor",)
     discrete = frozenset({"axis"})
+    choices = {"axis": {-1.0: "all", -2.0: "forces", **{float(i): name for i, name in enumerate(COMPONENTS)}}}
     explanation = (
         "The force sensor's reading is off by a constant ratio: nothing without load, more the larger the load."
     )

@@ -24,6 +24,7 @@ class LeadError(Page):
     kinds = ("robot", "axis", "servo")
     needs = ("load",)
     best = Best("sweep", "long constant-speed strokes separate ratios from offsets")
+    leaves_out = "how the ratio varies along the stroke"
     on_axis = {"relative": "ratio"}
     explanation = (
         "The load moves a little more or less than the motor, in proportion to the travel; the load encoder "

@@ -27,6 +27,8 @@ class ForceCrosstalk(Page):
     best = Best("loads", "known loads in several orientations separate bias, weight and cross-talk")
     places = ("force_sensor",)
     discrete = frozenset({"source", "target"})
+    NAMES = {-1.0: "every force", -2.0: "every component", 0.0: "x", 1.0: "y", 2.0: "z"}
+    choices = {"source": NAMES, "target": NAMES}
     explanation = "A force along one axis of the sensor shows up on another axis, in proportion."
     siblings = {"force_scale": "on the same axis", "tool_gravity": "there without a load on the tip"}
     FORCES = tuple((j, i) for j in range(3) for i in range(3) if i != j)
