@@ -21,7 +21,7 @@ class TransmissionHysteresis(Page):
     """load = motor - amplitude * z, z a Dahl state over `displacement`."""
 
     id, family, stage = "transmission_hysteresis", "lost_motion", "transmission"
-    inputs = ("direction",)
+    inputs: ClassVar[tuple[str, ...]] = ("direction",)
     kinds: ClassVar[tuple[str, ...]] = ("robot",)
     needs = ("load",)
     best = Best("loads", "known loads at rest separate a fixed gap from a spring")

@@ -8,7 +8,7 @@ least, whatever the gains are.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -95,6 +95,9 @@ def law_of_axis(runs: Sequence[AxesRun], axis: Axis) -> LawEvidence | None:
         return None
     signals = [signals_of(run, axis, run.name) for run in runs]
     way = best_way(signals, axis)
+    turned = backwards(signals, axis, way)
+    if turned:
+        signals = [replace(s, command=-s.command) for s in signals if s.command is not None]
     views = [LawView(s, axis, stated_law(s, axis, way)) for s in signals]
     channel = Channel(STAGE, axis.name)
     found = [{channel: residual_of(view)} for view in views]
@@ -113,8 +116,15 @@ def law_of_axis(runs: Sequence[AxesRun], axis: Axis) -> LawEvidence | None:
         runs=list(runs),
         records=views,
         mass=0.0,
-        notes=[f"{axis.name}: the speed in its law is taken {way.words}"] if axis.command_law.velocity_gain else [],
+        notes=notes_of(axis, way, turned),
     )
+
+
+def notes_of(axis: Axis, way: Way, turned: bool) -> list[str]:
+    """Return how a command was read."""
+    notes = [f"{axis.name}: the speed in its law is taken {way.words}"] if axis.command_law.velocity_gain else []
+    sign = f"{axis.name}: the command has the opposite sign of the law that was stated; it was turned"
+    return [*notes, sign] if turned else notes
 
 
 def compared(axis: Axis) -> bool:
@@ -141,17 +151,28 @@ def best_way(signals: Sequence[AxisSignals], axis: Axis) -> Way:
     return _within(best if noise(best) < PLAIN * noise(plain) else plain)
 
 
+def backwards(signals: Sequence[AxisSignals], axis: Axis, way: Way) -> bool:
+    """Return whether the commands' steps go against those of their law: a slow term beside it has no say here."""
+    steps = [(np.diff(s.command[:, 0], 2), s) for s in signals if s.command is not None]
+    return sum(float(y @ np.diff(stated_law(s, axis, way).command, 2)) for y, s in steps) < 0.0
+
+
 def _within(way: Way) -> Way:
     """Return a way within the period that nobody states: what is more is a delay."""
     return way if way.shift <= 1 else way._replace(shift=0)
 
 
 def noise_left(run: AxisSignals, law: StatedLaw) -> float:
-    """Return what the parts of a law, each with a gain of its own, leave after the filter of the residuals; median."""
+    """Return what the parts of a law, each with a gain of its own, leave of the command's steps; median.
+
+    Second differences: the counts of the encoder stand out in them, which the right way brings as they are. What else a
+    controller may do, as a dead zone, is slow beside them and has no say in how it reads.
+    """
     assert run.command is not None
-    free = run.inner & (np.abs(run.command[run.grid, 0]) < np.abs(run.command).max())
-    x = run.to_grid(np.column_stack([law.parts, np.ones(run.ticks)]))[free]
-    y = run.to_grid(run.command)[free, 0]
+    command = run.command[:, 0]
+    steps = np.diff(law.parts, 2, axis=0)
+    free = (np.abs(command) < np.abs(command).max())[2:]
+    x, y = steps[free], np.diff(command, 2)[free]
     return float(np.median(np.abs(y - x @ np.linalg.lstsq(x, y, rcond=None)[0])))
 
 

@@ -22,6 +22,7 @@ from sher3_effects.timing.sensor_delay import SensorDelay
 
 from sher3_machines.axes.evidence import AxisEvidence
 from sher3_machines.axes.identification.rest import Bounded, DryFirst, rest_loss
+from sher3_machines.axes.view import AxisView
 
 POLISHES = 4
 """Rounds over the causes at most: the second lets the first cause see the polished last one."""
@@ -65,7 +66,8 @@ class Behind(Bounded):
     @property
     def looks(self) -> bool:
         """Whether there is anything that hides behind one encoder."""
-        views, unseen = self.evidence.views, [e for e in self.effects if isinstance(e, self.UNSEEN)]
+        views = [v for v in self.evidence.views if isinstance(v, AxisView)]
+        unseen = [e for e in self.effects if isinstance(e, self.UNSEEN)]
         return any(e.shapes(views, site) for e in unseen for site in self.sites(e)) if views else False
 
     def search(self, channels: Collection[Channel], given: Sequence[Term] = ()) -> list[Fit]:

@@ -59,14 +59,14 @@ def _least_before(evidence: AxisEvidence, after: Fit) -> float:
 
 def _play(evidence: AxisEvidence, after: Fit) -> str:
     page, axis = BacklashBehindMotor(evidence.mass), evidence.axis
-    shapes = [s for s in page.shapes(evidence.views, axis.name) if "braking" not in s]
+    shapes = [s for s in page.shapes(evidence.records, axis.name) if "braking" not in s]
     widths = [s["width"] for s in shapes if shows(evidence, after, page, s)]
     return f"play above {min(widths):.2g} {axis.unit_of_position} would show" if widths else "no play would show"
 
 
 def _spring(evidence: AxisEvidence, after: Fit) -> str:
     page, axis = ComplianceBehindMotor(evidence.mass), evidence.axis
-    shapes = [s for s in page.shapes(evidence.views, axis.name) if s["damping"] == page.DAMPINGS[1]]
+    shapes = [s for s in page.shapes(evidence.records, axis.name) if s["damping"] == page.DAMPINGS[1]]
     paces = [s["frequency"] for s in shapes if shows(evidence, after, page, s)]
     if not paces:
         return "no spring would show"
