@@ -10,6 +10,7 @@ from xml.etree.ElementTree import Element, SubElement, tostring
 from sher3_common import FileError, read_text
 from sher3_description.contract import GRAVITY
 from sher3_machines.axes.evidence import AxisEvidence
+from sher3_machines.axes.law import is_law
 
 from sher3_export.check.engine import mujoco
 from sher3_export.errors import ExportError
@@ -56,6 +57,8 @@ def model_of(parts: Sequence[AxisEvidence]) -> Element:
     SubElement(root, "option", {"timestep": "0.001", "gravity": f"0 0 -{GRAVITY:g}"})
     world, actuators = SubElement(root, "worldbody"), SubElement(root, "actuator")
     for part in parts:
+        if is_law(part):
+            continue
         axis = part.axis
         if axis.servo or part.mass <= 0.0:
             remedy = "give a model with its mass and servo gains by --model FILE.mjcf"
