@@ -23,6 +23,8 @@ KINDS = {
     "table": "an axis in a positioning test",
     "circle": "two axes on a circle",
     "sensor": "a force sensor by itself",
+    "cell": "a force sensor of one axis",
+    "law": "the command of an axis against its stated law",
 }
 """Kind of machine -> plain words."""
 NEEDS = {

@@ -24,6 +24,7 @@ class UnstatedTerm(Page):
     best = Best("sweep", "several speeds tell a feed-forward from an integral and both from a gain")
     explanation = "The command holds a term that the stated law does not have."
     siblings = {"controller_gain": "in proportion to a part of the stated law"}
+    units = {"constant": "1", "integral_gain": "1/(m s)", "speed_gain": "s/m", "acceleration_gain": "s2/m"}
     discrete = frozenset({"term"})
     TERMS = ("constant", "integral_gain", "speed_gain", "acceleration_gain")
     """Names of the terms, in the order of the shape `term`."""
