@@ -14,6 +14,8 @@ from sher3_diagnosis.channel import Array
 
 DOWN = np.array([0.0, 0.0, -g])
 """Acceleration of gravity in a frame whose z points up, m/s^2."""
+HALF_TURN = 179.0
+"""Angle, degrees, from which a turn is half a turn."""
 
 
 class Frame(NamedTuple):
@@ -38,7 +40,7 @@ class Frame(NamedTuple):
         parts = []
         turn = Rotation.from_matrix(self.turn).as_rotvec(degrees=True)
         size = float(np.linalg.norm(turn))
-        if size > 179.0:  # a half turn has two axes: the one that points along its largest component is given
+        if size > HALF_TURN:  # two axes: the one that points along its largest component is given
             turn = turn * np.sign(turn[np.argmax(np.abs(turn))])
         if size > 1.0:
             axis = ", ".join(f"{round(x, 2) + 0.0:g}" for x in turn / size)

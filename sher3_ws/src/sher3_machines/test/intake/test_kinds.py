@@ -5,7 +5,7 @@ from sher3_machines import MachineError, kinds, load_description
 
 
 def test_every_folder_with_a_kind_is_one():
-    assert set(kinds()) == {"arm", "axes", "force_sensor", "manipulator", "positioning"}
+    assert set(kinds()) == {"arm", "axes", "force_sensor", "load_cell", "manipulator", "positioning"}
     assert all(kind.name == name for name, kind in kinds().items())
 
 
@@ -13,7 +13,7 @@ def test_an_unknown_kind_is_named(tmp_path):
     (tmp_path / "machine.yaml").write_text("kind: delta\nname: x\n")
     with pytest.raises(MachineError, match="no such kind") as caught:
         load_description(tmp_path / "machine.yaml")
-    assert caught.value.value == "'delta'" and caught.value.limit == "arm, axes, manipulator, positioning, force_sensor"
+    assert caught.value.value == "'delta'" and caught.value.limit == "arm, axes, load_cell, manipulator, positioning, force_sensor"
 
 
 @pytest.mark.parametrize("text", ["name: x\n", "kind: [axes]\n"])
