@@ -119,7 +119,7 @@ class BacklashOnAxis(Backlash):
         usual = float(np.sqrt(np.mean(square)))
         widths = [w * span for w in (*self.SMALLER[2:], *self.WIDTHS) if span]
         found = [*found, *small, *({"width": w, "braking": b * usual} for w in widths for b in self.BRAKING if usual)]
-        seen = np.inf if loaded else max(v.axis(site).travel for v in views)
+        seen = np.inf if loaded else max(np.ptp(v.run.motor[:, v.row(site)]) for v in views)
         return [shape for shape in found if shape.get("width", 0.0) < seen]  # no motion shows a gap wider than itself
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
