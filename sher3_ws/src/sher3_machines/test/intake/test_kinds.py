@@ -13,7 +13,8 @@ def test_an_unknown_kind_is_named(tmp_path):
     (tmp_path / "machine.yaml").write_text("kind: delta\nname: x\n")
     with pytest.raises(MachineError, match="no such kind") as caught:
         load_description(tmp_path / "machine.yaml")
-    assert caught.value.value == "'delta'" and caught.value.limit == "arm, axes, load_cell, manipulator, positioning, force_sensor"
+    assert caught.value.value == "'delta'"
+    assert caught.value.limit == "arm, axes, load_cell, manipulator, positioning, force_sensor"
 
 
 @pytest.mark.parametrize("text", ["name: x\n", "kind: [axes]\n"])
