@@ -198,6 +198,7 @@ def test_analyze_fails_in_one_sentence(arguments, said, tmp_path, monkeypatch):
     assert result.exit_code == 1 and said in result.output
 
 
+@pytest.mark.flaky(reruns=2)  # a browser on two cores that others use too may not draw in its time
 @pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed: the page was not opened in a browser")
 def test_a_browser_draws_the_page(tmp_path):
     """The browser runs the script to its end without an error, and the arrow's orange and the rails' blue are seen."""
