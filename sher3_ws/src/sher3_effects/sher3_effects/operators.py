@@ -200,10 +200,10 @@ def frozen_integral(
     return out
 
 
-def bent(lag: Array, period: float) -> Array:
-    """Return the second difference of a path (n,), per s^2: the blow of a flank is in it."""
-    out = np.zeros_like(lag)
-    out[1:-1] = np.diff(lag, 2) / period**2
+def second_difference(path: Array, period: float) -> Array:
+    """Return the second difference of a path (n, ...), per s^2: the blow of a flank is in it."""
+    out = np.zeros_like(path)
+    out[1:-1] = np.diff(path, 2, axis=0) / period**2
     return out
 
 

@@ -21,6 +21,7 @@ from sher3_common.vectors import Vector
 
 from sher3_drivers.settings import MotorDriverSettings
 from sher3_drivers.units import AxisScale
+from sher3_drivers.watches.row import Row
 from sher3_drivers.watches.trips import Trip
 
 _ROUNDING = 1e-9
@@ -182,7 +183,7 @@ def _say(axis: Any, far: bool) -> int:
     return ASTRAY if axis["stray_ticks"] >= axis["astray_ticks"] else AGREES
 
 
-class AxisCheck:
+class AxisCheck(Row):
     """One axis in words; positions in m or rad.
 
     Args:
@@ -192,16 +193,10 @@ class AxisCheck:
         number: of its row.
     """
 
-    __slots__ = ("_axes", "_name", "_number", "_unit")
+    __slots__ = ()
 
     def __init__(self, scale: AxisScale, settings: MotorDriverSettings, axes: NDArray[Any], number: int) -> None:
-        self._name, self._unit, self._axes, self._number = scale.name, scale.unit, axes, number
-        for name, value in AxisLimits.of(scale, settings)._asdict().items():
-            axes[name][number] = value
-
-    def __getitem__(self, name: str) -> float:
-        """Return a field of its row."""
-        return self._axes[name][self._number].item()
+        super().__init__(scale, axes, number, AxisLimits.of(scale, settings)._asdict())
 
     @property
     def limit(self) -> float:

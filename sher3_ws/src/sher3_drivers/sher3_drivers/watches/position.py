@@ -22,6 +22,7 @@ from sher3_common.vectors import Vector
 from sher3_drivers.canopen.tpdo import DriveFeedback
 from sher3_drivers.settings import MotorDriverSettings
 from sher3_drivers.units import AxisScale
+from sher3_drivers.watches.row import Row
 from sher3_drivers.watches.trips import Trip
 
 _LIMITS = ("plain", "elastic", "lag", "share", "time", "keep", "hold")
@@ -74,7 +75,7 @@ def _follow(count: int) -> Callable[..., bool]:
     return direct(follow_places, np.ones(count, PLACE), zeros, zeros, zeros, zeros, 0.0)
 
 
-class AxisPosition:
+class AxisPosition(Row):
     """The sum of one axis in words.
 
     Args:
@@ -84,10 +85,9 @@ class AxisPosition:
         number: of its row.
     """
 
-    __slots__ = ("_name", "_number", "_places", "_unit")
+    __slots__ = ()
 
     def __init__(self, scale: AxisScale, settings: MotorDriverSettings, places: NDArray[Any], number: int) -> None:
-        self._name, self._unit, self._places, self._number = scale.name, scale.unit, places, number
         limits = {
             "plain": settings.position_angle if scale.revolute else settings.position_distance,
             "elastic": settings.elastic_angle if scale.revolute else settings.elastic_distance,
@@ -97,12 +97,7 @@ class AxisPosition:
             "keep": 1.0 - min(1.0, settings.period / settings.following_memory),
             "hold": scale.hold,
         }
-        for name, value in limits.items():
-            places[name][number] = value
-
-    def __getitem__(self, name: str) -> float:
-        """Return a field of its row."""
-        return self._places[name][self._number].item()
+        super().__init__(scale, places, number, limits)
 
     @property
     def departure(self) -> float:

@@ -9,26 +9,22 @@ import numpy as np
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Best, Shape, Signature, column
 
+from sher3_effects.behind_motor import BehindMotor
 from sher3_effects.friction.coulomb_friction import ServoStiction
 from sher3_effects.lost_motion.backlash import Backlash
-from sher3_effects.operators import bent, flight, play
+from sher3_effects.operators import flight, play, second_difference
 from sher3_effects.page import Page
 from sher3_effects.view import AxisView
 
 
-class BacklashBehindMotor(Page):
+class BacklashBehindMotor(BehindMotor):
     """effort = mass a + load_mass (a_load - a) + friction of the load where it moves; the load behind a gap of `width`.
 
     Where the motor crosses the gap it carries neither the load's mass nor its friction; where the far flank takes the
     load along, it carries the blow. The load rests in the gap, or flies on and is braked by its own friction.
-
-    Attributes:
-        mass: all that moves, kg or kg m^2; that of the load is a part of it.
     """
 
     id, family, stage = Backlash.id, Backlash.family, Backlash.stage
-    kinds = ("axis",)
-    needs = ("alone", "drive")
     inputs = ("acceleration", "direction")
     best = Best("reversals", "quick reversals of a heavy load show the travel without it")
     on_axis = Backlash.on_axis
@@ -46,28 +42,15 @@ class BacklashBehindMotor(Page):
     """Counts, or deviations of the encoder's noise, that a gap must have to be one."""
     BRAKING = (0.05, 0.2, 0.6, 1.5)
     """What brakes a load that flies across the gap, over the rms acceleration of the motor."""
-    LEAST_SHARE = 0.05
-    """Share of the mass that must be behind the gap, at least: less is an error of the mass."""
     finer: ClassVar[Mapping[str, tuple[float, ...]]] = {
         "width": (0.7, 0.8, 0.87, 0.93, 0.97, 1.03, 1.07, 1.15, 1.25, 1.4),
         "braking": (0.5, 0.7, 1.4, 2.0),
     }
 
-    def __init__(self, mass: float = np.inf) -> None:
-        self.mass = mass
-
-    def channels(self, site: str) -> tuple[Channel, ...]:
-        """Return the force balance."""
-        return (Channel("motor_mechanics", site),)
-
-    def stage_at(self, channel: Channel) -> str:
-        """Return the transmission: the gap is there, though the effort shows it."""
-        return self.stage
-
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
         """Return widths, m or rad, of a load that rests in the gap and of one that flies across it."""
         known = views[0].axis(site)
-        if known.mass <= 0.0 or any(v.run.effort is None for v in views):
+        if not self.weighs(views, site):
             return []
         square = [np.mean(np.gradient(v.run.velocity[:, v.row(site)], v.run.period) ** 2) for v in views]
         usual, travel = float(np.sqrt(np.mean(square))), max(v.axis(site).travel for v in views)
@@ -84,7 +67,8 @@ class BacklashBehindMotor(Page):
             lag = play(path, np.zeros_like(path), shape["width"], np.inf, run.period, 0.0)
         crossing = np.abs(lag) < 0.5 * shape["width"] * (1.0 - 1e-9)
         pace = np.gradient(path, run.period)
-        mass, rubs = bent(lag, run.period), (np.sign(pace + np.gradient(lag, run.period)) - np.sign(pace)) * crossing
+        mass = second_difference(lag, run.period)
+        rubs = (np.sign(pace + np.gradient(lag, run.period)) - np.sign(pace)) * crossing
         parts = [mass + shape["braking"] * rubs] if "braking" in shape else [mass, -np.sign(pace) * crossing]
         return Signature({self.channels(site)[0]: column(*(run.to_grid(x[:, None])[:, 0] for x in parts))})
 
@@ -95,9 +79,8 @@ class BacklashBehindMotor(Page):
         return {"width": shape["width"], "load_mass": mass, "load_friction": friction}
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether the load has a mass worth the name, no more than all, and resists."""
-        least = self.LEAST_SHARE * self.mass if np.isfinite(self.mass) else 0.0
-        return bool(least < coefficients[0] < self.mass and (coefficients[1:] >= 0.0).all())
+        """Return whether the load has such a mass, and resists."""
+        return super().admissible(shape, coefficients) and bool((coefficients[1:] >= 0.0).all())
 
 
 class BacklashBeforeEncoder(Page):

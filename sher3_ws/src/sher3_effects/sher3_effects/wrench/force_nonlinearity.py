@@ -33,13 +33,15 @@ class ForceNonlinearity(Page):
 
     def signature(self, view: CellView, site: str, shape: Shape) -> Signature:
         """Return the curves up to an order, one at their largest."""
-        u = view.share
-        curves = [4.0 * u * (1.0 - u), 12.0 * np.sqrt(3.0) * u * (1.0 - u) * (0.5 - u)]
-        return Signature({Channel(self.stage, site): column(*curves[: round(shape["order"]) - 1])})
+        return Signature({Channel(self.stage, site): column(*curves(view.share)[: round(shape["order"]) - 1])})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Return the largest deviation from the line through both ends, with its sign, and the order."""
-        u = np.linspace(0.0, 1.0, 101)
-        curves = [4.0 * u * (1.0 - u), 12.0 * np.sqrt(3.0) * u * (1.0 - u) * (0.5 - u)]
-        whole = sum(c * x for c, x in zip(coefficients, curves, strict=False))
+        whole = sum(c * x for c, x in zip(coefficients, curves(np.linspace(0.0, 1.0, 101)), strict=False))
         return {"largest": float(whole[np.argmax(np.abs(whole))]), "order": shape["order"]}
+
+
+def curves(share: Array) -> list[Array]:
+    """Return the curves of second and third order, (g,) each, one at their largest, over the place in the range."""
+    bow = share * (1.0 - share)
+    return [4.0 * bow, 12.0 * np.sqrt(3.0) * bow * (0.5 - share)]

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cache, lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -137,8 +138,14 @@ def compared(axis: Axis) -> bool:
 def best_way(signals: Sequence[AxisSignals], axis: Axis) -> Way:
     """Return the way to read the encoder that leaves least."""
 
+    @lru_cache(maxsize=1)  # all shifts of one speed are tried in turn
+    def read(speed: float) -> list[StatedLaw]:
+        return [stated_law(s, axis, Way(speed, 0)) for s in signals]
+
+    @cache
     def noise(way: Way) -> float:
-        return sum(noise_left(s, stated_law(s, axis, way)) for s in signals)
+        laws = read(way.speed)
+        return sum(noise_left(s, behind(law.parts, way.shift)) for s, law in zip(signals, laws, strict=True))
 
     if not axis.command_law.velocity_gain:
         return _within(min((Way(LAST, shift) for shift in SHIFTS), key=noise))
@@ -162,18 +169,20 @@ def _within(way: Way) -> Way:
     return way if way.shift <= 1 else way._replace(shift=0)
 
 
-def noise_left(run: AxisSignals, law: StatedLaw) -> float:
-    """Return what the parts of a law, each with a gain of its own, leave of the command's steps; median.
+def noise_left(run: AxisSignals, parts: Array) -> float:
+    """Return what the parts (n, 3) of a law, each with a gain of its own, leave of the command's steps; median.
 
     Second differences: the counts of the encoder stand out in them, which the right way brings as they are. What else a
     controller may do, as a dead zone, is slow beside them and has no say in how it reads.
     """
     assert run.command is not None
     command = run.command[:, 0]
-    steps = np.diff(law.parts, 2, axis=0)
+    steps = np.diff(parts, 2, axis=0)
     free = (np.abs(command) < np.abs(command).max())[2:]
     x, y = steps[free], np.diff(command, 2)[free]
-    return float(np.median(np.abs(y - x @ np.linalg.lstsq(x, y, rcond=None)[0])))
+    size = np.linalg.norm(x, axis=0)
+    x = x / np.where(size > 0.0, size, 1.0)  # of one size, the normal equations are exact enough
+    return float(np.median(np.abs(y - x @ np.linalg.lstsq(x.T @ x, x.T @ y, rcond=None)[0])))
 
 
 def stated_law(run: AxisSignals, axis: Axis, way: Way) -> StatedLaw:
@@ -183,8 +192,13 @@ def stated_law(run: AxisSignals, axis: Axis, way: Way) -> StatedLaw:
     error = run.reference[:, 0] - q
     parts = [law.position_gain * error, -law.velocity_gain * speed_of(q, run.period, way.speed)]
     parts.append(law.integral_gain * np.cumsum(error) * run.period)
-    behind = np.column_stack([np.concatenate([x[:1].repeat(way.shift), x])[: len(x)] for x in (*parts, error)])
-    return StatedLaw(behind[:, 3], behind[:, :3], law.limit or np.inf, law.position_gain)
+    late = behind(np.column_stack([*parts, error]), way.shift)
+    return StatedLaw(late[:, 3], late[:, :3], law.limit or np.inf, law.position_gain)
+
+
+def behind(x: Array, shift: int) -> Array:
+    """Return columns (n, k) by so many samples late, the first held before."""
+    return np.concatenate([x[:1].repeat(shift, axis=0), x])[: len(x)]
 
 
 def speed_of(q: Array, period: float, way: float) -> Array:

@@ -17,9 +17,8 @@ from sher3_diagnosis.judge.left_over import down_to_floor
 from sher3_diagnosis.machine import Machine, Policy
 from sher3_diagnosis.verdict import Cause, Interval
 from sher3_effects import library, pages
-from sher3_effects.compliance.unseen_compliance import ComplianceBehindMotor
+from sher3_effects.behind_motor import BehindMotor
 from sher3_effects.friction.viscous_friction import ViscousOnAxis
-from sher3_effects.lost_motion.unseen_backlash import BacklashBehindMotor
 
 from sher3_machines.axes.description import AxesDescription, Axis, Gravity
 from sher3_machines.axes.evidence import AxisEvidence, gather_axis, levels_of
@@ -176,7 +175,7 @@ def _of_axis(page: Effect, evidence: AxisEvidence) -> Effect:
     """Return a page with what it must know of the axis to say what is possible."""
     if isinstance(page, ViscousOnAxis):
         return ViscousOnAxis(evidence.axis.viscous)
-    if isinstance(page, BacklashBehindMotor | ComplianceBehindMotor):
+    if isinstance(page, BehindMotor):
         return type(page)(evidence.mass)
     return page
 

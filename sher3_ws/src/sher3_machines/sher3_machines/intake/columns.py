@@ -86,11 +86,22 @@ def pick(column: Column, tables: Tables, run: str, finite: bool = True) -> Array
 def _with_others(x: Array, column: Column, tables: Tables, run: str, finite: bool) -> Array:
     """Return samples with those of the columns that the description adds to them."""
     for other in column.plus:
-        more = pick(other, tables, run, finite)
-        if more.shape != x.shape:
-            remedy = "add columns of one table"
-            raise MachineError(f"{run}: {other.column} has other rows", value=more.shape, limit=x.shape, remedy=remedy)
-        x = x + more
+        x = x + pick_beside(x.shape, other, tables, run, finite, "add columns of one table")
+    return x
+
+
+def pick_beside(
+    shape: tuple[int, ...],
+    column: Column,
+    tables: Tables,
+    run: str,
+    finite: bool = True,
+    remedy: str = "name columns of one table, one number in each row",
+) -> Array:
+    """Return the samples of a column as `pick` does; raises MachineError where they have another shape than this."""
+    x = pick(column, tables, run, finite)
+    if x.shape != shape:
+        raise MachineError(f"{run}: {column.column} has other rows", value=x.shape, limit=shape, remedy=remedy)
     return x
 
 

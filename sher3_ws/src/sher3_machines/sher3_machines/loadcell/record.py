@@ -9,7 +9,7 @@ import numpy as np
 from sher3_diagnosis.channel import Array
 
 from sher3_machines.errors import MachineError
-from sher3_machines.intake.columns import pick
+from sher3_machines.intake.columns import pick, pick_beside
 from sher3_machines.intake.tables import Tables
 from sher3_machines.loadcell.description import CellDescription
 
@@ -49,16 +49,11 @@ def cell_run(name: str, tables: Tables, description: CellDescription) -> CellRun
     Raises:
         MachineError: a column is missing, too few readings or forces, a dead channel, or a factor that is far off.
     """
-    applied, reading = pick(description.applied, tables, name), pick(description.reading, tables, name)
+    applied = pick(description.applied, tables, name)
+    reading = pick_beside((len(applied),), description.reading, tables, name)
     warm = np.full(len(applied), np.nan)
     if description.temperature is not None:
-        warm = pick(description.temperature, tables, name)
-    for column, x in ((description.reading, reading), (description.temperature, warm)):
-        if column is not None and x.shape != (len(applied),):
-            remedy = "name columns of one table, one number in each row"
-            raise MachineError(
-                f"{name}: {column.column} has other rows", value=x.shape, limit=(len(applied),), remedy=remedy
-            )
+        warm = pick_beside((len(applied),), description.temperature, tables, name)
     if len(applied) < LEAST_ROWS:
         remedy = "record more readings: six forces with growing and with falling load are enough"
         raise MachineError(f"{name}: too few readings", value=len(applied), limit=LEAST_ROWS, remedy=remedy)

@@ -9,7 +9,7 @@ import numpy as np
 from sher3_diagnosis.channel import Array
 
 from sher3_machines.errors import MachineError
-from sher3_machines.intake.columns import pick
+from sher3_machines.intake.columns import pick, pick_beside
 from sher3_machines.intake.fields import Column
 from sher3_machines.intake.tables import Tables
 from sher3_machines.positioning.description import AxisTest, CircleTest, PositioningDescription
@@ -61,12 +61,12 @@ def axis_rows(run: str, tables: Tables, test: AxisTest, notes: list[str]) -> dic
     _enough_targets(run, test.name, target)
     column = test.reading or test.deviation
     assert column is not None
-    value = _like(target, column, tables, run)
+    value = pick_beside(target.shape, column, tables, run)
     deviation = value - target if test.reading is not None else value
     _likely(run, test, column, target, deviation)
     rows = {"target": target, "deviation": deviation}
     if test.direction is not None:
-        rows["direction"] = np.sign(_like(target, test.direction, tables, run))
+        rows["direction"] = np.sign(pick_beside(target.shape, test.direction, tables, run))
         if not rows["direction"].all():
             remedy = "give numbers above and below zero, or leave `direction` out"
             at = int(np.argmin(np.abs(rows["direction"]))) + 1
@@ -75,12 +75,14 @@ def axis_rows(run: str, tables: Tables, test: AxisTest, notes: list[str]) -> dic
         rows["direction"] = directions(target)
         notes.append(f"{run}: {test.name}: directions of approach are taken from the order of the rows")
     if test.cycle is not None:
-        rows["cycle"] = np.unique(_like(target, test.cycle, tables, run), return_inverse=True)[1].astype(float)
+        rows["cycle"] = np.unique(pick_beside(target.shape, test.cycle, tables, run), return_inverse=True)[1].astype(
+            float
+        )
     else:
         rows["cycle"] = cycles(target, rows["direction"])
         notes.append(f"{run}: {test.name}: {int(rows['cycle'].max()) + 1} cycles counted from repeated targets")
     if test.temperature is not None:
-        rows["temperature"] = _like(target, test.temperature, tables, run)
+        rows["temperature"] = pick_beside(target.shape, test.temperature, tables, run)
     return rows
 
 
@@ -90,10 +92,10 @@ def pass_rows(run: str, tables: Tables, test: AxisTest, passes: Sequence[Column]
     _one_column(run, test.target, target)
     _enough(run, test.name, len(target) * len(passes))
     _enough_targets(run, test.name, target)
-    found = [_like(target, column, tables, run) for column in passes]
+    found = [pick_beside(target.shape, column, tables, run) for column in passes]
     for column, deviation in zip(passes, found, strict=True):
         _likely(run, test, column, target, deviation)
-    warm = None if test.temperature is None else _like(target, test.temperature, tables, run)
+    warm = None if test.temperature is None else pick_beside(target.shape, test.temperature, tables, run)
     parts = []
     for k, deviation in enumerate(found):  # each in the order in which it was measured
         there = np.argsort(target) if k % 2 == 0 else np.argsort(-target)
@@ -140,7 +142,7 @@ def circle_rows(run: str, tables: Tables, test: CircleTest) -> dict[str, Array]:
     assert first is not None and second is not None
     x = pick(first, tables, run)
     _one_column(run, first, x)
-    y = _like(x, second, tables, run)
+    y = pick_beside(x.shape, second, tables, run)
     if test.angle is not None:
         x, y = (test.radius + y) * np.cos(x), (test.radius + y) * np.sin(x)
     _enough(run, test.name, len(x))
@@ -153,17 +155,6 @@ def circle_rows(run: str, tables: Tables, test: CircleTest) -> dict[str, Array]:
             remedy="correct `radius` or the units of x and y",
         )
     return {"x": x, "y": y}
-
-
-def _like(first: Array, column: Column, tables: Tables, run: str) -> Array:
-    """Return a column as long as the first one; raises MachineError otherwise."""
-    found = pick(column, tables, run)
-    if found.shape != first.shape:
-        remedy = "name columns of one table"
-        raise MachineError(
-            f"{run}: {column.column} has other rows", value=found.shape, limit=first.shape, remedy=remedy
-        )
-    return found
 
 
 def _one_column(run: str, column: Column, x: Array) -> None:

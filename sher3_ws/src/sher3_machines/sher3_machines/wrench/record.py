@@ -9,7 +9,7 @@ import numpy as np
 from sher3_diagnosis.channel import Array
 
 from sher3_machines.errors import MachineError
-from sher3_machines.intake.columns import pick
+from sher3_machines.intake.columns import pick_beside
 from sher3_machines.intake.poses import together, turns_of
 from sher3_machines.intake.tables import Tables
 from sher3_machines.wrench.description import SensorDescription
@@ -69,11 +69,9 @@ def sensor_run(name: str, tables: Tables, machine: SensorDescription) -> SensorR
             limit=f"{SPREAD} of the widest direction",
             remedy="turn the sensor about two horizontal axes, also upside down",
         )
-    known = machine.temperature is not None
-    warm = pick(machine.temperature, tables, name) if machine.temperature else np.full(len(force), np.nan)
-    if known and len(warm) != len(force):
-        remedy = "name columns of one table"
-        raise MachineError(f"{name}: temperature has other rows", value=len(warm), limit=len(force), remedy=remedy)
+    warm = np.full(len(force), np.nan)
+    if machine.temperature is not None:
+        warm = pick_beside((len(force),), machine.temperature, tables, name)
     step = -(-len(force) // MOST_ROWS)
     notes = [f"{name}: every {step}th of {len(force)} readings is used"] if step > 1 else []
     return SensorRun(name, wrench[::step], turn[::step], warm[::step], notes)

@@ -12,8 +12,7 @@ import numpy as np
 from sher3_diagnosis.attribute.candidates import Candidates
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.fit.fitting import Fit, Term
-from sher3_effects.compliance.unseen_compliance import ComplianceBehindMotor
-from sher3_effects.lost_motion.unseen_backlash import BacklashBehindMotor
+from sher3_effects.behind_motor import BehindMotor
 
 from sher3_machines.axes.evidence import AxisEvidence
 from sher3_machines.axes.view import AxisView
@@ -55,11 +54,9 @@ class Bounded(Candidates):
     Of what hides behind one encoder one cause is named: a load that rings looks like one that is thrown across a gap.
     """
 
-    UNSEEN = (BacklashBehindMotor, ComplianceBehindMotor)
-
     def possible(self, trial: Fit) -> bool:
         """Return whether the new cause is possible, and all others still are."""
-        unseen = sum(isinstance(t.effect, self.UNSEEN) for t in trial.terms)
+        unseen = sum(isinstance(t.effect, BehindMotor) for t in trial.terms)
         return unseen <= 1 and super().possible(trial) and trial.admissible
 
 

@@ -16,6 +16,7 @@ from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.fit.fitting import Fit, Term, fit
 from sher3_diagnosis.thresholds import NEEDED, WORTH
+from sher3_effects.behind_motor import BehindMotor
 from sher3_effects.compliance.unseen_compliance import ComplianceBehindMotor
 from sher3_effects.friction.coulomb_friction import CoulombFriction
 from sher3_effects.timing.sensor_delay import SensorDelay
@@ -35,7 +36,7 @@ def causes_of_axis(evidence: AxisEvidence, candidates: Candidates, left_over: Le
     the one with the smaller loss is taken, in motion and at rest together.
     """
     candidates = Bounded(evidence, candidates.effects, candidates.terms)
-    seen = [e for e in candidates.effects if not isinstance(e, Bounded.UNSEEN)]
+    seen = [e for e in candidates.effects if not isinstance(e, BehindMotor)]
     found = attribute(Bounded(evidence, seen, candidates.terms), left_over, say)
     if rest_loss(evidence, found.fit) > 0.0:
         dry = DryFirst(evidence, seen, candidates.terms)
@@ -59,7 +60,7 @@ class Behind(Bounded):
 
     ORDER: tuple[tuple[type[Effect], ...], ...] = (
         (CoulombFriction, ComplianceBehindMotor),
-        (CoulombFriction, *Bounded.UNSEEN, SensorDelay),
+        (CoulombFriction, BehindMotor, SensorDelay),
     )
     """Friction, or a spring that rings; then what else hides, or a late effort: a load that gives way is late too."""
 
@@ -67,7 +68,7 @@ class Behind(Bounded):
     def looks(self) -> bool:
         """Whether there is anything that hides behind one encoder."""
         views = [v for v in self.evidence.views if isinstance(v, AxisView)]
-        unseen = [e for e in self.effects if isinstance(e, self.UNSEEN)]
+        unseen = [e for e in self.effects if isinstance(e, BehindMotor)]
         return any(e.shapes(views, site) for e in unseen for site in self.sites(e)) if views else False
 
     def search(self, channels: Collection[Channel], given: Sequence[Term] = ()) -> list[Fit]:
