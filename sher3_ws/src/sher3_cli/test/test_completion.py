@@ -39,15 +39,27 @@ def folder(tmp_path) -> Path:
     return tmp_path
 
 
+@pytest.fixture
+def commands(tmp_path_factory) -> str:
+    """Return a PATH with `sher3`: colcon puts it where `ros2 run` looks, which is on nobody's."""
+    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    if shutil.which("sher3", path=path):
+        return path
+    command = tmp_path_factory.mktemp("bin") / "sher3"
+    command.write_text(f'#!/bin/sh\nexec {sys.executable} -m sher3_cli "$@"\n')
+    command.chmod(0o755)
+    return f"{command.parent}{os.pathsep}{path}"
+
+
 @pytest.mark.parametrize("case", CASES)
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
-def test_the_tab_key_offers(shell, case, folder):
+def test_the_tab_key_offers(shell, case, folder, commands):
     if shutil.which(shell) is None:
         pytest.skip(f"{shell} is not on this machine")
     words, last, offered = CASES[case]
     script = {"bash": BASH, "zsh": ZSH, "fish": FISH}[shell].format(words=words, last=last, count=len(words.split()))
-    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-    environment = {"PATH": path, "HOME": str(folder), "TERM": "dumb"}
+    kept = {name: value for name, value in os.environ.items() if name == "PYTHONPATH"}
+    environment = {**kept, "PATH": commands, "HOME": str(folder), "TERM": "dumb"}
     done = subprocess.run(
         [shell, "-c", script], cwd=folder, env=environment, capture_output=True, text=True, timeout=60, check=False
     )

@@ -1,7 +1,11 @@
-"""A parametrised fixture runs a test on every CAN back-end; socketcan is skipped, visibly, without kernel support."""
+"""A parametrised fixture runs a test on every CAN back-end; socketcan is skipped, visibly, without kernel support.
+
+Helpers beside the tests are importable.
+"""
 
 import itertools
 import os
+import sys
 from pathlib import Path
 
 import pytest
@@ -11,6 +15,7 @@ from sher3_drivers.errors import LinkError
 from sher3_drivers.mock.rig import LockstepRig
 from sher3_drivers.settings import default_settings
 
+sys.path.insert(0, str(Path(__file__).parent))
 ROBOT = load_robot()
 _numbers = itertools.count()
 INTERFACES = os.environ.get("SHER3_TEST_CAN", "vcan0,vcan1").split(",")
