@@ -2,6 +2,7 @@
 
     nice python bench/gap_discover.py --seeds 20000:20100 --plant lumped
     nice python bench/gap_discover.py --seeds 21000:21040 --kinds healthy
+    nice python bench/gap_discover.py --seeds 101000:101006 --plant lumped --faults demand_slew,stale_feedback
     nice python bench/gap_discover.py --cases labelled_cases
 
 A case is built from a truth plant, diagnosed without its effect, and a formula is looked for where the verdict leaves
@@ -20,7 +21,7 @@ from pathlib import Path
 from typing import Any
 
 from sher3_challenge.cases.builder import Request, build_case, withhold
-from sher3_challenge.plants.registry import plant_names
+from sher3_challenge.plants.registry import plant_names, truth_plant
 from sher3_common import read_yaml
 from sher3_common.shares import wilson
 from sher3_diagnosis.channel import Channel
@@ -91,15 +92,18 @@ def main() -> None:
     parser.add_argument("--plant", default="lumped", choices=plant_names())
     parser.add_argument("--gap", default="3:30", help="gap over floor")
     parser.add_argument("--cases", type=Path, help="folder of labelled cases in place of seeds")
-    parser.add_argument("--only", default="", help="names of faults, parted by commas")
+    parser.add_argument("--only", default="", help="names of faults, parted by commas: the others are left out")
+    parser.add_argument("--faults", default="", help="names of faults, parted by commas, dealt in turn")
     asked = parser.parse_args()
     first, last = map(int, asked.seeds.split(":"))
     low, high = map(float, asked.gap.split(":"))
     kinds = asked.kinds.split(",")
+    faults, outside = [f or None for f in asked.faults.split(",")], set(truth_plant(asked.plant).outside)
     requests = (
-        Request(seed, {"withheld": "single"}.get(kind, kind), None, kind == "withheld", (low, high), plant=asked.plant)
+        Request(seed, {"withheld": "single"}.get(kind, kind), fault, kind == "withheld", (low, high), plant=asked.plant)
         for n, seed in enumerate(range(first, last))
-        for kind in (kinds[n % len(kinds)],)
+        for fault in (faults[n % len(faults)],)
+        for kind in (kinds[n % len(kinds)] if fault is None else "outside" if fault in outside else "withheld",)
     )
     rows = []
     for truth, case in labelled(asked.cases) if asked.cases else built(requests):

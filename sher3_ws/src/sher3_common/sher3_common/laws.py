@@ -55,9 +55,12 @@ LAWS: dict[str, Law] = {
     "play": Law(15, ("width",), 1, (1,), "the lag of {x} behind a gap of {0}"),
     "late": Law(16, ("time_constant",), 1, (None,), "the lag of {x} by a time constant of {0}"),
     "rate": Law(17, ("time_constant",), 1, (None,), "the rate of change of {x}, smoothed over {0}"),
+    "slow": Law(18, ("step",), 1, (1,), "the lag of {x} behind what follows it by {0} a second at most"),
 }
-"""Every law by name. `late` is the lagged quantity less the quantity, `play` the follower less what it follows, and
-`rate` its smoothed derivative."""
+"""Every law by name. `late` is the lagged quantity less the quantity, `play` and `slow` the follower less what it
+follows, and `rate` its smoothed derivative."""
+EARLIER = (1, 2, 3, 4, 6, 8, 12, 16)
+"""Ticks by which commands and readings are compared with themselves: the usual laws there are of time."""
 MOST_FACTORS = 3
 """Factors of one term that the simulator can hold."""
 
@@ -109,6 +112,10 @@ def law_value(code: int, a: float, b: float, x: float, moved: float, z: float, p
         return z, z
     if code == 15:
         z = min(max(z - moved, -0.5 * a), 0.5 * a)
+        return z, z
+    if code == 18:
+        z -= moved
+        z -= min(max(z, -a * period), a * period)
         return z, z
     keep = math.exp(-period / a)
     z = keep * (z - moved) if code == 16 else keep * z + (1.0 - keep) * moved / period

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Generic, TypeVar
 
@@ -28,6 +28,7 @@ class ExactFinding:
         closure: of all of them together.
         residual: what they leave.
         note: why nothing reproduces it.
+        evidence: gathers the errors of its axes with whatever a law of them might depend on, for discovery.
     """
 
     where: Where
@@ -35,6 +36,7 @@ class ExactFinding:
     closure: Interval
     residual: Residual
     note: str = ""
+    evidence: Callable[[], Evidence] | None = None
 
 
 @dataclass(frozen=True)

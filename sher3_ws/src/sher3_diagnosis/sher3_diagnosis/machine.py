@@ -38,6 +38,7 @@ class Policy:
         spill_over: a slight gap beside an explained one needs no cause of its own.
         calibrated: causes and gaps are weighed by the calibration, which was set on machines of this kind; the two
             rules before it then have nothing to say.
+        free_laws: what causes leave must not follow quantities that none of them depends on.
     """
 
     down_to_floor: bool = False

@@ -95,9 +95,10 @@ class FoundPage(Page):
         main = Channel(self.stage, site)
         quantities = view.recorded(main)
         width = 1 if site in ACTUATORS else 6
-        columns = np.zeros((len(view.run.grid), width, len(self.terms)))
+        samples = len(view.at_residuals(np.zeros(view.run.ticks)))
+        columns = np.zeros((samples, width, len(self.terms)))
         for k, term in enumerate(self.terms):
-            out = np.ones(len(columns))
+            out = np.ones(samples)
             for factor in self.reshaped(term.feature, shape).factors:
                 out = out * view.at_residuals(factor.along(quantities, view.step))
             columns[:, term.component, k] = out

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import time
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -23,6 +24,8 @@ from sher3_gap.evidence import SherEvidence, gather
 from sher3_gap.signals import RunSignals
 from sher3_gap.simulate.tip import tip_closure
 from sher3_gap.stages.controller_causes import controller_finding
+from sher3_gap.stages.exact_evidence import exact_evidence
+from sher3_gap.stages.exact_pages import with_pages
 from sher3_gap.stages.transport_causes import transport_finding
 
 if TYPE_CHECKING:
@@ -58,7 +61,11 @@ class Sher(Machine[RunSignals, SherEvidence]):
         """Judge transport and controller, whose nominal output is computed to rounding."""
         timing = evidence[0].timing
         found = (transport_finding(timing, runs, self.robot, without), controller_finding(runs, self.robot, without))
-        return [f for f in found if f is not None]
+        out = []
+        for finding in (f for f in found if f is not None):
+            gathered = partial(exact_evidence, runs, self.robot, finding.where.stage)
+            out.append(replace(with_pages(finding, gathered, without), evidence=gathered))
+        return out
 
     def end_to_end(self, findings: Sequence[Finding[SherEvidence]], causes: Sequence[Cause]) -> Interval | None:
         """Return the closure of the tip in free runs of the simulator."""

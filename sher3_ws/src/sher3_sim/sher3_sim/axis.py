@@ -15,9 +15,21 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from sher3_common.compiled import compiled
-from sher3_common.laws import MOST_FACTORS
+from sher3_common.laws import EARLIER, MOST_FACTORS
 
-from sher3_sim.found import AXIS_QUANTITIES, AXIS_TERMS, DEMAND, DRIVE, EFFORT, LAW, MOTOR, POSITION, VELOCITY, total
+from sher3_sim.found import (
+    AXIS_QUANTITIES,
+    AXIS_TERMS,
+    DEMAND,
+    DRIVE,
+    EFFORT,
+    LAW,
+    MOTOR,
+    PASSED_ON,
+    POSITION,
+    VELOCITY,
+    total,
+)
 from sher3_sim.parameters import Records
 
 PENDING = 64
@@ -33,6 +45,7 @@ AXIS_STATE = np.dtype(
         ("found_inputs", "f8", len(AXIS_QUANTITIES)),
         ("found_last", "f8", (AXIS_TERMS, MOST_FACTORS)),
         ("found_memory", "f8", (AXIS_TERMS, MOST_FACTORS)),
+        ("found_past", "f8", (len(PASSED_ON), max(EARLIER))),
         *((name, "f8") for name in ("found_effort", "found_velocity")),
         ("pending", "i8"),
         ("pending_time", "f8", PENDING),

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from sher3_common.compiled import compiled
-from sher3_common.laws import LAWS, MOST_FACTORS, law_value
+from sher3_common.laws import EARLIER, LAWS, MOST_FACTORS, law_value
 from sher3_description import ACTUATORS
 
 from sher3_sim.errors import EffectError
@@ -22,8 +22,10 @@ AXIS_TERMS, BODY_TERMS = 8, 36
 HEAD = 4
 """Numbers of a row before its factors: 1 and up where it acts (0: unused), component, coefficient, factors."""
 ROW = HEAD + 4 * MOST_FACTORS
-DRIVE, MOTOR, TRANSMISSION, TIP, SENSOR = 1, 2, 3, 4, 5
+DRIVE, MOTOR, TRANSMISSION, TIP, SENSOR, SENT, ASKED = 1, 2, 3, 4, 5, 6, 7
 ACTS = {
+    "controller": ASKED,
+    "transport": SENT,
     "drive": DRIVE,
     "motor_mechanics": MOTOR,
     "transmission": TRANSMISSION,
@@ -34,9 +36,23 @@ ACTS = {
 """Stage -> where its formula acts in the plant."""
 OWN = ("position", "velocity", "acceleration", "demand", "effort", "force", "load", "warmth", "time", "work", "law")
 POSITION, VELOCITY, ACCELERATION, DEMAND, EFFORT, FORCE, LOAD, WARMTH, TIME, WORK, LAW = range(11)
-AXIS_QUANTITIES = (*OWN, *(f"{a}.{q}" for a in ACTUATORS for q in OWN[:3]))
-OTHERS = len(OWN)
+PASSED_ON = ("command", "wanted", "reading")
+"""What is compared with itself some ticks earlier: the command as it is sent, what the host's law asks for, and the
+reading of the load encoder that it works with."""
+COMMAND, WANTED, READING = range(3)
+ERROR = len(OWN)
+GIVEN = ERROR + 1
+"""First of what is passed on, each with its changes behind it; the error of position is before them."""
+CHANGES = 1 + len(EARLIER)
+"""Quantities of each."""
+OTHERS = GIVEN + len(PASSED_ON) * CHANGES
 """First of the other axes' quantities."""
+AXIS_QUANTITIES = (
+    *OWN,
+    "error",
+    *(name for x in PASSED_ON for name in (x, *(f"{x}.change_{n}" for n in EARLIER))),
+    *(f"{a}.{q}" for a in ACTUATORS for q in OWN[:3]),
+)
 BODY_QUANTITIES = (
     *(f"{q}.{k}" for q in ("tip", "contact", "touch", "speed", "push") for k in "xyz"),
     *(f"tool.{row}{column}" for row in "xyz" for column in "xyz"),

@@ -14,7 +14,7 @@ from sher3_kinematics.kernel import KernelParameters, gravity_load_into, tip_jac
 
 from sher3_sim.axis import advance, drive_force, send
 from sher3_sim.found import BODY_QUANTITIES, BODY_TERMS, SENSOR, add_body
-from sher3_sim.looking import look_at_axes
+from sher3_sim.looking import asked, begin_at_rest, look_at_axes, sent
 from sher3_sim.noise import DISTURBANCE, DROP, EFFORT, FORCE, JITTER, TRACKER, normal, uniform
 from sher3_sim.tip import cross, quaternion, true_tip
 from sher3_sim.transmission import encode_load, place, to_count, transmit
@@ -179,6 +179,8 @@ def start(axis: Any, b: Any, p: KernelParameters, state: Any, s: Any, r: Any, q_
         x.force = x.integral
     look_at_axes(axis, b, state, s)
     read_sensors(axis, b, p, state, s, r)
+    for i in range(5):
+        begin_at_rest(state[i], r.load[i])
 
 
 @compiled
@@ -219,7 +221,7 @@ def step(
         a, x = axis[i], state[i]
         late = a.jitter * abs(normal(s.seed, JITTER, s.tick)) if a.jitter > 0.0 else 0.0
         if a.drop == 0.0 or uniform(s.seed, DROP, s.tick) >= a.drop:
-            send(x, command[i], a.delay + late)
+            send(x, sent(a, x, command[i], b.period), a.delay + late)
         if a.disturbance > 0.0:
             kept = math.exp(-b.period / a.disturbance_time)
             fresh = math.sqrt(1.0 - kept * kept) * a.disturbance * normal(s.seed, DISTURBANCE + i, s.tick)
@@ -275,12 +277,15 @@ def step_flat(
 
 
 @compiled
-def host_command(axis: Any, setpoint: Array, setpoint_rate: Array, load_reading: Array, out: Array) -> None:
+def host_command(
+    axis: Any, state: Any, setpoint: Array, setpoint_rate: Array, load_reading: Array, period: float, out: Array
+) -> None:
     """Write the velocities the host commands in position modes, clamped: contract, section 3."""
     for i in range(5):
-        a = axis[i]
+        a, top = axis[i], axis[i].velocity_limit
         wanted = setpoint_rate[i] + a.position_gain * (setpoint[i] - load_reading[i])
-        out[i] = min(max(wanted, -a.velocity_limit), a.velocity_limit)
+        wanted = min(max(wanted, -top), top)
+        out[i] = min(max(asked(a, state[i], wanted, setpoint[i], load_reading[i], period), -top), top)
 
 
 @compiled
@@ -322,7 +327,7 @@ def run(
     start(axis, b, p, state, s, out[0], setpoint[0], wrench[0])
     for k in range(len(out)):
         if closed:
-            host_command(axis, setpoint[k], rate[k], out[k].load, command[k])
+            host_command(axis, state, setpoint[k], rate[k], out[k].load, b.period, command[k])
         if k + 1 < len(out):
             for i in range(5):
                 out[k + 1].motor[i] = out[k].motor[i]

@@ -6,22 +6,32 @@ from typing import Any
 
 import numpy as np
 from sher3_common.compiled import compiled
+from sher3_common.laws import EARLIER
 from sher3_description.contract import REFERENCE_TEMPERATURE
 
 from sher3_sim.found import (
     ACCELERATION,
+    ASKED,
+    CHANGES,
+    COMMAND,
     DEMAND,
     EFFORT,
+    ERROR,
     FORCE,
+    GIVEN,
     LAW,
     LOAD,
     OTHERS,
     POSITION,
+    READING,
+    SENT,
     TIME,
     VELOCITY,
+    WANTED,
     WARMTH,
     WORK,
     forget,
+    total,
 )
 
 Array = np.ndarray
@@ -73,3 +83,42 @@ def look_at_tip(b: Any, s: Any, state: Any, wrench: Array, tip_rate: Array, rota
         x[26 + i], x[31 + i] = state[i].load, state[i].velocity
     if s.tick == 0:
         forget(b.found, x, s.found_last, s.found_memory)
+
+
+@compiled
+def sent(a: Any, x: Any, command: float, period: float) -> float:
+    """Return the command of a tick as the formulas of the transport leave it."""
+    if not a.found_any:
+        return command
+    _pass_on(x, COMMAND, command)
+    return command + total(a.found, SENT, x.found_inputs, x.found_last, x.found_memory, period)
+
+
+@compiled
+def asked(a: Any, x: Any, wanted: float, setpoint: float, reading: float, period: float) -> float:
+    """Return the command that the host's law asks for as the formulas of the controller leave it."""
+    if not a.found_any:
+        return wanted
+    x.found_inputs[ERROR] = setpoint - reading
+    _pass_on(x, WANTED, wanted)
+    _pass_on(x, READING, reading)
+    return wanted + total(a.found, ASKED, x.found_inputs, x.found_last, x.found_memory, period)
+
+
+@compiled
+def _pass_on(x: Any, which: int, value: float) -> None:
+    """Write what is passed on at a tick, and how much of it is new since some ticks earlier."""
+    past, first = x.found_past[which], GIVEN + which * CHANGES
+    x.found_inputs[first] = value
+    for k in range(len(EARLIER)):
+        x.found_inputs[first + 1 + k] = value - past[EARLIER[k] - 1]
+    for k in range(len(past) - 1, 0, -1):
+        past[k] = past[k - 1]
+    past[0] = value
+
+
+@compiled
+def begin_at_rest(x: Any, reading: float) -> None:
+    """Let a run begin with the reading as it was long before, and with commands of zero."""
+    for k in range(x.found_past.shape[1]):
+        x.found_past[READING, k] = reading

@@ -71,10 +71,42 @@ def test_direction_is_told_from_the_path_as_in_the_diagnosis():
     assert (found["load"] - found["motor"])[:, AXIS] == pytest.approx(1e-5 * z, abs=1e-7)
 
 
+def test_a_demand_that_comes_a_tick_late():
+    """The command of the tick before, in the words of a formula."""
+    found = with_formula("transport", FoundTerm(0, -1.0, [("itself", "command.change_1", ())]))
+    p = plant()
+    p.axis["delay"][AXIS] += ROBOT.control_period
+    late = simulate_arrays(p, DRIVE)[1]
+    assert found["motor"][:, AXIS] == pytest.approx(late["motor"][:, AXIS], abs=1e-9)
+    assert np.abs((late["motor"] - simulate_arrays(plant(), DRIVE)[1]["motor"])[:, AXIS]).max() > 1e-6
+
+
+def test_a_host_with_another_gain():
+    found = with_formula("controller", FoundTerm(0, 5.0, [("itself", "error", ())]))
+    p = plant()
+    p.axis["position_gain"][AXIS] += 5.0
+    assert found["motor"][:, AXIS] == pytest.approx(simulate_arrays(p, DRIVE)[1]["motor"][:, AXIS], abs=1e-9)
+
+
+def test_a_host_that_works_with_an_earlier_reading():
+    """Its law of the reading two ticks ago, told from the commands and readings of the run itself."""
+    p = plant()
+    add_terms(p.axis["found"][AXIS], "controller", [FoundTerm(0, 20.0, [("itself", "reading.change_2", ())])])
+    p.axis["found_any"][AXIS] = True
+    commands, found = simulate_arrays(p, DRIVE)
+    reading, gain = found["load"][:, AXIS], ROBOT.position_gain
+    stale = np.concatenate([reading[:1].repeat(2), reading[:-2]])
+    law = DRIVE.velocity[:, AXIS] + gain * (PATH[:, AXIS] - reading)
+    top = ROBOT.actuators[AXIS].limits.velocity
+    free = (np.abs(law) < top) & (np.abs(commands[:, AXIS]) < top)  # the others are clamped
+    assert free.mean() > 0.7
+    assert (commands[:, AXIS] - law)[free] == pytest.approx(20.0 * (reading - stale)[free], abs=1e-9)
+
+
 @pytest.mark.parametrize(
     ("stage", "term", "what"),
     [
-        ("transport", FoundTerm(0, 1.0, []), "at this stage"),
+        ("thinking", FoundTerm(0, 1.0, []), "at this stage"),
         ("motor_mechanics", FoundTerm(0, 1.0, [("itself", "mood", ())]), "no such quantity"),
         ("sensing", FoundTerm(0, 1.0, [("itself", "velocity", ())]), "no such quantity"),
     ],

@@ -30,7 +30,7 @@ def inputs(columns: Columns) -> list[Feature]:
             span = max(float(np.ptp(run[name].values)) for run in columns.quantities)
             reaches = REACHES if q.own else REACHES[:1]
             out += [Feature((Factor("sliding", name, (s * span,)),)) for s in reaches if span > 0.0]
-        if q.own and q.kind in ("force", "speed", "place", "state"):
+        if q.own and q.kind in ("force", "speed", "place", "state", "command"):
             out += [Feature((Factor("late", name, (t,)),)) for t in PAST]
     return out
 

@@ -25,18 +25,27 @@ CENTRES, WIDTHS = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9), (0.04, 0.12)
 """Places (quantiles) and widths (shares of the range) of humps."""
 TIMES = (0.003, 0.01, 0.03, 0.1, 0.3)
 """Time constants of lags, s."""
+PACES = (0.003, 0.01, 0.03, 0.1, 0.3)
+"""Steepest changes of what follows a command slowly, shares of the command's own steepest one."""
 DECAYS = (0.2, 0.6)
 """Time constants of what decays in a run, shares of its length."""
 DIRECTION = 1e-3
 """Displacement after which a direction is told, share of the range of the position."""
 
 
-def dictionary(runs: Sequence[Quantities], unit: str) -> list[Group]:
-    """Return the candidate groups for the quantities of all runs; `unit` is that of the gap."""
+def dictionary(runs: Sequence[Quantities], unit: str, step: float) -> list[Group]:
+    """Return the candidate groups for the quantities of all runs.
+
+    Args:
+        runs: quantities of each.
+        unit: of the gap.
+        step: time between two samples of a record, s.
+    """
     spans = {name: _span([r[name].values for r in runs]) for name in runs[0]}
     alive = {name: q for name, q in runs[0].items() if spans[name][1] > spans[name][0]}
     found: dict[Group, None] = {(Feature(),): None}
-    for group in (*_alone(alive, spans, unit), *_products(alive, spans)):
+    commands = {name: [r[name].values for r in runs] for name, q in alive.items() if q.kind == "command"}
+    for group in (*_alone(alive, spans, unit), *_slow(commands, step), *_products(alive, spans)):
         found.setdefault(group)
     return list(found)
 
@@ -63,14 +72,21 @@ def _alone(quantities: Quantities, spans: Spans, unit: str) -> Iterator[Group]:
                 yield from ((Feature((Factor("play", name, (s * width,)),)),) for s in REACHES)
             if q.own:
                 yield from (_one(f) for f in _humps(name, spans))
-        if q.kind in ("speed", "force") and q.own:
+        if q.kind in ("speed", "force", "command") and q.own:
             yield from (_one(Factor("beyond", name, (s * most,))) for s in SPEEDS)
-        if q.own and q.kind in ("force", "speed", "place", "state"):
+        if q.own and q.kind in ("force", "speed", "place", "state", "command"):
             yield from (_one(Factor("late", name, (t,))) for t in TIMES)
-        if q.own and q.kind in ("force", "place"):
+        if q.own and q.kind in ("force", "place", "command"):
             yield _one(Factor("rate", name, (TIMES[0],)))
         if q.kind == "clock":
             yield from (_one(Factor("decaying", name, (s * most,))) for s in DECAYS)
+
+
+def _slow(commands: Mapping[str, Sequence[Array]], step: float) -> Iterator[Group]:
+    """Yield what follows a command no faster than a share of its steepest change."""
+    for name, parts in commands.items():
+        steepest = max(float(np.abs(np.diff(x)).max()) for x in parts) / step
+        yield from (_one(Factor("slow", name, (s * steepest,))) for s in PACES)
 
 
 def _products(quantities: Quantities, spans: Spans) -> Iterator[Group]:

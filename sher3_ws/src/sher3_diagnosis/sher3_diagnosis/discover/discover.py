@@ -45,17 +45,36 @@ def discover(diagnosis: Findings, channel: Channel | None = None, say: Say = lam
     if channel is None:
         why = "there is no gap" if diagnosis.verdict.status == "no_gap" else "every gap has a cause in the library"
         return Discovery([], note=f"nothing to discover: {why}")
+    exact = next((e.evidence for e in diagnosis.exact if e.where.stage == channel.stage and e.evidence), None)
+    if exact is not None:
+        return _discover_exactly(exact(), channel, say)
     channel = _shown_at(diagnosis, channel)
     known = sorted({str(c) for f in diagnosis.findings for c in f.evidence.channels})
     finding = next((f for f in diagnosis.findings if channel in f.evidence.channels), None)
     if finding is None:
-        remedy = "an exact stage has no formula; name one with a measured residual"
+        remedy = "name a place with a gap"
         raise FormulaError("no formula can be found there", value=str(channel), limit=", ".join(known), remedy=remedy)
     if channel not in finding.significant:
         return Discovery([channel], note=f"nothing to discover: {channel} is at its floor")
     if not all(isinstance(v, Recorded) for v in finding.evidence.views):
         raise FormulaError("this kind of machine does not tell what a law could depend on", value=str(channel))
     return discover_at(finding.evidence, channel, say)
+
+
+def _discover_exactly(evidence: Evidence, place: Channel, say: Say) -> Discovery:
+    """Find a formula for the error of an exact stage: of one axis, or where all have it of the one that shows it most.
+
+    How much one shows is told by the share of its ticks that are off: sizes of axes that turn and slide cannot be
+    compared.
+    """
+    if place in evidence.channels:
+        return discover_at(evidence, place, say)
+    if place.actuator != "all":
+        return Discovery([place], note=f"nothing to discover: {place} does what it is asked to")
+    off = {
+        c: np.mean([np.mean(r[c].values[r[c].ok] != 0.0) for r in evidence.data.residuals]) for c in evidence.channels
+    }
+    return discover_at(evidence, max(off, key=lambda c: off[c]), say)
 
 
 def _shown_at(diagnosis: Findings, place: Channel) -> Channel:
@@ -124,7 +143,7 @@ def _with_gap(found: Columns) -> list[int]:
 
 
 def _dictionary(found: Columns) -> tuple[list[Group], list[Array], list[Array]]:
-    groups = dictionary(found.quantities, found.evidence.unit(found.channels[0]))
+    groups = dictionary(found.quantities, found.evidence.unit(found.channels[0]), found.views[0].step)
     features = [f for g in groups for f in g]
     designs = [found.design(r, features) for r in range(len(found.target))]
     return groups, designs, [x.T @ x for x in designs]

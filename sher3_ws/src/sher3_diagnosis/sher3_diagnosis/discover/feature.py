@@ -28,7 +28,8 @@ class Quantity(NamedTuple):
         values: (n,) at the samples of the record.
         unit: SI.
         words: its name in a sentence.
-        kind: what it is to a law: "place" a position, "speed", "force", "clock" a time, or "state" anything else.
+        kind: what it is to a law: "place" a position, "speed", "force", "command" what is asked for, "change" how much
+            of it is new, "clock" a time, or "state" anything else.
         own: whether it belongs to the place that is looked at.
     """
 
@@ -101,6 +102,8 @@ class Feature:
                 power["1/s"] = power.get("1/s", 0) + 1
         if tuple(power) in ((f"{of}/s",), (of,)) and 1 in power.values():
             return "s" if f"{of}/s" in power else "1"
+        if list(power.values()) == [1] and f"{next(iter(power))}/s" == of:
+            return "1/s"
         below = [f"({u})" if "/" in u or "*" in u else u for u in power]
         parts = [b if p == 1 else f"{b}^{p}" for b, p in zip(below, power.values(), strict=True)]
         return of if not parts else f"{of}/{parts[0]}" if len(parts) == 1 else f"{of}/({' '.join(parts)})"

@@ -10,6 +10,8 @@ from sher3_diagnosis.discover.formula import FoundTerm
 from sher3_diagnosis.words import place, quantity
 
 NAMES = {
+    "controller": "an extra command to",
+    "transport": "an extra demand of",
     "drive": "an extra effort of the drive on",
     "motor_mechanics": "an extra force on",
     "transmission": "the load ahead of the motor on",

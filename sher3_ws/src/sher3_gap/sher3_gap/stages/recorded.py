@@ -10,6 +10,7 @@ from sher3_description.contract import REFERENCE_TEMPERATURE
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.discover.feature import Quantities, Quantity
 
+from sher3_gap.signals import RunSignals
 from sher3_gap.stages.units import ROTARY_AXES
 
 if TYPE_CHECKING:
@@ -29,32 +30,33 @@ def recorded_at(view: SherView, channel: Channel) -> Quantities:
 
 def _of_axis(view: SherView, channel: Channel) -> dict[str, Quantity]:
     place = channel.actuator
-    out = _motion(view, place, "", True)
+    out = motion_of(view.run, place, "", True)
     i, run = ACTUATORS.index(place), view.run
     force, unit = _ticks(view, view.inertial), "N*m" if place in ROTARY_AXES else "N"
     load = _ticks(view, view.path.gravity - view.path.contact_force)
     out["force"] = Quantity(force[:, i], unit, "the force that the motion needs", "force")
     out["load"] = Quantity(load[:, i], unit, "the load on the axis", "force")
     if run.echo is not None:
-        out["demand"] = Quantity(run.echo[:, i], _speed(place), "the demanded velocity", "speed")
+        out["demand"] = Quantity(run.echo[:, i], speed_unit(place), "the demanded velocity", "speed")
     if run.effort is not None and run.echo is not None and channel.stage == "drive":
         law = view.law[:, i]  # but for the integrator's start, which the run's mean effort tells
         asked = law + float(np.mean(run.effort[:, i] - law))
         out["law"] = Quantity(asked, unit, "the force that the drive's law asks for", "force")
     if run.effort is not None and channel.stage == "transmission":
         out["effort"] = Quantity(run.effort[:, i], unit, "the effort of the drive", "force")
-    out |= _shared(view)
+    out |= shared_by_all(view.run)
     limit = np.array([a.drive.limit for a in view.robot.actuators])
     work = np.abs(force / limit).sum(axis=1)
     out["work"] = Quantity(work, "1", "the work of all drives together", "state", False)
     for j, name in enumerate(ACTUATORS):
         if j != i:
-            out |= _motion(view, name, f"{name}.", False)
+            out |= motion_of(run, name, f"{name}.", False)
     return out
 
 
-def _motion(view: SherView, name: str, prefix: str, own: bool) -> dict[str, Quantity]:
-    i, run = ACTUATORS.index(name), view.run
+def motion_of(run: RunSignals, name: str, prefix: str, own: bool) -> dict[str, Quantity]:
+    """Return position, velocity and acceleration of an axis, their names behind a prefix."""
+    i = ACTUATORS.index(name)
     unit, of = "rad" if name in ROTARY_AXES else "m", "" if own else f" of {name}"
     position, velocity = run.smooth[:, i], run.velocity[:, i]
     acceleration = np.gradient(velocity, run.period)
@@ -65,12 +67,13 @@ def _motion(view: SherView, name: str, prefix: str, own: bool) -> dict[str, Quan
     }
 
 
-def _speed(name: str) -> str:
+def speed_unit(name: str) -> str:
+    """Return the unit of an axis' velocity."""
     return "rad/s" if name in ROTARY_AXES else "m/s"
 
 
-def _shared(view: SherView) -> dict[str, Quantity]:
-    run = view.run
+def shared_by_all(run: RunSignals) -> dict[str, Quantity]:
+    """Return time and temperature."""
     out = {"time": Quantity(run.stage_clock, "s", "the time since the run began", "clock")}
     if run.temperature is not None:
         warmth = run.temperature - REFERENCE_TEMPERATURE
@@ -81,7 +84,7 @@ def _shared(view: SherView) -> dict[str, Quantity]:
 def _of_tip(view: SherView) -> dict[str, Quantity]:
     """Return postures, loads and motion of the tip; directions of the tool are those of its axes in the base frame."""
     run, path = view.run, view.path
-    out = _shared(view)
+    out = shared_by_all(run)
     rotation, touch = _ticks(view, path.rotation.reshape(-1, 9)), _ticks(view, path.contact)
     position = _ticks(view, path.position)
     inside = np.einsum("nji,nj->ni", rotation.reshape(-1, 3, 3), touch)
