@@ -7,6 +7,7 @@ from sher3_effects import add_library, library, load_effects, plants, save_effec
 from sher3_effects.found_page import read_found
 from sher3_effects.registry import VARIABLE
 from sher3_sim import EffectError, with_effects
+from sher3_sim.found import ACTS
 
 PAGE = """
 schema: sher3.found/1
@@ -73,9 +74,17 @@ def test_a_file_that_is_no_page_is_refused(tmp_path, old, new):
         read_found(tmp_path / "wrong.yaml")
 
 
-def test_a_stage_without_a_place_in_the_plant_is_refused_there(tmp_path, monkeypatch):
+@pytest.mark.parametrize("stage", ["controller", "transport"])
+def test_a_formula_of_what_passes_commands_on_has_its_place_in_the_plant(stage, tmp_path, monkeypatch):
     monkeypatch.setenv(VARIABLE, "")
-    (tmp_path / "late.yaml").write_text(PAGE.replace("motor_mechanics", "transport"))
+    (tmp_path / "late.yaml").write_text(PAGE.replace("motor_mechanics", stage))
+    rows = with_effects(load_robot(), [read_found(tmp_path / "late.yaml").plant("delta_1")]).axis["found"][0]
+    assert set(rows[rows[:, 0] != 0, 0]) == {ACTS[stage]}
+
+
+def test_a_quantity_that_the_plant_does_not_have_is_refused(tmp_path, monkeypatch):
+    monkeypatch.setenv(VARIABLE, "")
+    (tmp_path / "late.yaml").write_text(PAGE.replace("signed_square(velocity)", "itself(mood)"))
     effect = read_found(tmp_path / "late.yaml").plant("delta_1")
-    with pytest.raises(EffectError, match="cannot express"):
+    with pytest.raises(EffectError, match="no such quantity"):
         with_effects(load_robot(), [effect])
