@@ -17,6 +17,7 @@ from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import Fit
 from sher3_diagnosis.fit.term import Term
 from sher3_diagnosis.quantify.local import Local, local
+from sher3_diagnosis.quantify.remains import excess_of, remains
 from sher3_diagnosis.thresholds import BEYOND, JACKKNIFE, MIN_RUNS, MISFIT, NORMAL
 from sher3_diagnosis.verdict import Parameter
 
@@ -49,7 +50,9 @@ def parameters(evidence: Evidence, fit: Fit, index: int) -> dict[str, Parameter]
 def left_share(evidence: Evidence, fit: Fit, index: int) -> float:
     """Return the share of its gap, above the floor and on held-out runs, that a cause leaves: 0 to 1."""
     without = without_term(evidence, fit, index)
-    gap, left = (sum(max(evidence.excess(c, f), 0.0) for c in fit.terms[index].channels) for f in (without, fit))
+    channels = fit.terms[index].channels
+    gap = sum(max(evidence.excess(c, without), 0.0) for c in channels)
+    left = sum(max(excess_of(evidence, c, remains(evidence, fit, index, c)), 0.0) for c in channels)
     return min(1.0, left / gap) if gap > 0.0 else 1.0
 
 
