@@ -77,6 +77,12 @@ def truth_of(case: Path) -> dict[str, Any]:
     return {**truth, "status": "attributed", "kind": "single", "effects": effects, "without": []}
 
 
+def plant_of(case: Path) -> str | None:
+    """Return the truth plant that the label of a case names; None where it names none."""
+    named: str | None = read_yaml(label_of(case)).get("plant")
+    return named
+
+
 def observations(plant: str, case: Path, kept: Path | None = None) -> list[Observation]:
     """Return the observations of a case: with the whole library, and without the effect of a single fault.
 
