@@ -173,6 +173,13 @@ class Effect:
         """Return whether a fit is physically possible; default always."""
         return True
 
+    def held(self, view: Any, site: str, shape: Shape, coefficients: Array) -> Array | None:
+        """Return the force (g,) up to which the law holds anything, 0 where the record tells its state; default None.
+
+        A dry friction holds an axis at rest with whatever is needed, up to its level: no motion tells that force.
+        """
+        return None
+
     def unlikely(self, shape: Shape, coefficients: Array) -> bool:
         """Return whether a fit, though possible, would rather be called another effect; default never."""
         return False

@@ -9,7 +9,7 @@ from sher3_diagnosis.effect import Signature
 from sher3_diagnosis.fit.fitting import fit, make_term
 from sher3_diagnosis.quantify.parameters import parameters
 from sher3_diagnosis.quantify.polish import polished
-from sher3_diagnosis.thresholds import BEYOND, MIN_RUNS, MISFIT, NORMAL
+from sher3_diagnosis.thresholds import BEYOND, HIDDEN, MIN_RUNS, MISFIT, NORMAL
 from toy import AXIS, OFFSET, Column, ToyRun, evidence_of
 
 LEFT = 21.25 / 100.0
@@ -28,7 +28,8 @@ def test_the_interval_is_that_of_runs_that_differ():
     """
     size = found([1.0, 2.0, 3.0, 4.0, 5.0])
     noise, scatter = np.sqrt(1.0 / 10.0), np.sqrt(40.0 * 5.0 / 4.0 / 10.0**2)
-    half = np.hypot(NORMAL * noise, BEYOND * np.hypot(scatter, MISFIT * np.sqrt(LEFT) * 3.0))
+    misfit = np.hypot(MISFIT * np.sqrt(LEFT), HIDDEN / np.sqrt(11.0))  # squares of 1 to 5: 11 on average
+    half = np.hypot(NORMAL * noise, BEYOND * np.hypot(scatter, misfit * 3.0))
     assert size.value == pytest.approx(3.0, rel=1e-5)
     assert (size.low, size.high) == (pytest.approx(3.0 - half, rel=1e-3), pytest.approx(3.0 + half, rel=1e-3))
     assert size.unit == "N"
@@ -54,9 +55,10 @@ def test_a_law_that_leaves_a_share_of_its_gap_is_less_sure_than_one_that_leaves_
         assert size.value == pytest.approx(3.0, rel=1e-5)
         halves.append(size.high - size.value)
     noise = NORMAL / np.sqrt(64.0 * MIN_RUNS)
-    assert halves[0] == pytest.approx(noise, rel=1e-3)
+    assert halves[0] == pytest.approx(np.hypot(noise, BEYOND * HIDDEN / 3.0 * 3.0), rel=1e-3)  # 3 floors
     left = 3.0 / 12.0  # squares of 4 and a floor of 1, of squares of 9 + 4 and a floor of 1
-    assert halves[1] == pytest.approx(np.hypot(noise, BEYOND * MISFIT * np.sqrt(left) * 3.0), rel=1e-3)
+    misfit = np.hypot(MISFIT * np.sqrt(left), HIDDEN / np.sqrt(9.0 + 4.0))
+    assert halves[1] == pytest.approx(np.hypot(noise, BEYOND * misfit * 3.0), rel=1e-3)
 
 
 class Power(Column):

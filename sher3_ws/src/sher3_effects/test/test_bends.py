@@ -4,9 +4,12 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from sher3_effects.compliance.stiffening import softness
+from sher3_effects.compliance.tool_bending import ToolBending
 from sher3_effects.limit.force_saturation import bent
 from sher3_effects.lost_motion.joint_clearance import JointClearance
 from sher3_effects.operators import frozen_integral
+from sher3_effects.periodic.cogging import Cogging, CoggingOnAxis
 
 PAGE = JointClearance()
 GAP = {"by_load": 0.0, "reach": 40e-6}
@@ -43,3 +46,33 @@ def test_a_gap_is_crossed_by_as_much_travel_as_it_is_wide():
 @pytest.mark.parametrize(("jump", "possible"), [(-40e-6, True), (40e-6, False), (-90e-6, False)])
 def test_what_has_play_lags_its_slider_by_no_more_than_the_gap(jump, possible):
     assert PAGE.admissible(GAP, np.array([jump])) == possible
+
+
+def test_a_compliance_that_stiffens_is_stated_at_one_newton():
+    """Halved at 2 N: at 1 N it is that stated, at rest 1.5 times it, at 2 N three quarters of it."""
+    soft = softness(np.array([[0.0, 0.0, 0.0], [0.0, 0.6, 0.8], [0.0, 2.0, 0.0]]), {"stiffens": 2.0})
+    assert soft[:, 0, 0] == pytest.approx([1.5, 1.0, 0.75])
+    assert softness(np.ones((2, 3)), {}) == pytest.approx(1.0)
+
+
+def test_a_tool_that_stiffens_bends_less_than_twice_as_far_under_twice_the_load():
+    """The tool points along z: 1 N across it bends it by c, 2 N by 3/2 c where it is halved at 2 N."""
+    force = np.array([[1.0, 0.0, 5.0], [2.0, 0.0, 5.0]])
+    path = SimpleNamespace(rotation=np.broadcast_to(np.eye(3), (2, 3, 3)), contact=force)
+    view = SimpleNamespace(path=path, run=SimpleNamespace(tracker_position=force))
+    (columns,) = ToolBending().signature(view, "tip", {"stiffens": 2.0}).columns.values()
+    assert columns[:, 0, 0] == pytest.approx([1.0, 1.5])
+    assert ToolBending().parameters({"stiffens": 2.0}, np.array([3e-5, 1e-3]))["stiffens"] == 2.0
+
+
+def test_teeth_that_are_unlike_have_neighbouring_orders_and_harmonics():
+    """Four teeth: orders 4, 3, 5, 8 and 12; one tooth has no neighbour below. The amplitude is that of the teeth."""
+    run = SimpleNamespace(smooth=np.array([[0.0], [1.0 / 16.0]]), to_grid=lambda x: x)
+    view = SimpleNamespace(run=run, row=lambda site: 0, lead=lambda site: 1.0)
+    (columns,) = Cogging().signature(view, "tilt", {"periods_per_rev": 4.0, "unlike": 1.0}).columns.values()
+    turned = 2.0 * np.pi * np.array([4.0, 3.0, 5.0, 8.0, 12.0]) / 16.0
+    assert columns[1, 0, ::2] == pytest.approx(np.sin(turned), abs=1e-12)
+    (columns,) = Cogging().signature(view, "tilt", {"periods_per_rev": 1.0, "unlike": 1.0}).columns.values()
+    assert columns.shape == (2, 1, 8)
+    assert Cogging().parameters({"periods_per_rev": 4.0}, np.array([3.0, 4.0, 1.0, 1.0]))["amplitude"] == 5.0
+    assert Cogging().bends({"periods_per_rev": 4.0}) and not CoggingOnAxis().bends({"periods_per_rev": 4.0})

@@ -76,8 +76,11 @@ def challenge(
 
 
 def plants_of(arguments: list[str]) -> dict[str, list[Path]]:
-    """Return plant -> its labelled cases, of arguments NAME=FOLDER or FOLDER; raises ChallengeError."""
-    from sher3_challenge.calibration.observe import labelled
+    """Return plant -> its labelled cases, of arguments NAME=FOLDER or FOLDER; raises ChallengeError.
+
+    Without a name each case is of the plant its label names; where it names none, the folder does.
+    """
+    from sher3_challenge.calibration.observe import labelled, plant_of
     from sher3_challenge.errors import ChallengeError
 
     out: dict[str, list[Path]] = {}
@@ -86,12 +89,16 @@ def plants_of(arguments: list[str]) -> dict[str, list[Path]]:
         found = list(labelled(Path(folder)))
         if not found:
             raise ChallengeError("no labelled case", value=folder, remedy="a folder of cases with truth.yaml")
-        out.setdefault(name or Path(folder).name, []).extend(found)
+        for case in found:
+            out.setdefault(name or plant_of(case) or Path(folder).name, []).append(case)
     return out
 
 
 def calibrate(
-    folders: Annotated[list[str], typer.Argument(metavar="PLANT=FOLDER...", help="Labelled cases of each plant.")],
+    folders: Annotated[
+        list[str],
+        typer.Argument(metavar="[PLANT=]FOLDER...", help="Labelled cases of each plant, or as labels name it."),
+    ],
     out: Annotated[Path | None, typer.Option("--out", "-o", help="File for the calibration.")] = None,
     kept: Annotated[
         Path | None, typer.Option(help="Folder that keeps the evidence of every case from one call to the next.")

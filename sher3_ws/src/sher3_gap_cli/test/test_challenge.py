@@ -61,6 +61,19 @@ def test_calibrate_takes_several_folders_of_one_plant(tmp_path):
         case = tmp_path / name / "case_1"
         case.mkdir(parents=True)
         (case / "case.yaml").write_text("")
-        (case / "truth.yaml").write_text("")
+        (case / "truth.yaml").write_text("case: case_1\n")
     found = plants_of([f"lumped={tmp_path / 'one'}", f"lumped={tmp_path / 'two'}", str(tmp_path / "one")])
     assert {name: len(cases) for name, cases in found.items()} == {"lumped": 2, "one": 1}
+
+
+def test_calibrate_takes_the_plants_that_labels_name(tmp_path):
+    for plant in ("tables", "mujoco"):
+        case = tmp_path / f"case_{plant}"
+        case.mkdir()
+        (case / "case.yaml").write_text("")
+        (case / "truth.yaml").write_text(f"plant: {plant}\n")
+    found = plants_of([str(tmp_path)])
+    assert {name: [c.name for c in cases] for name, cases in found.items()} == {
+        "mujoco": ["case_mujoco"],
+        "tables": ["case_tables"],
+    }

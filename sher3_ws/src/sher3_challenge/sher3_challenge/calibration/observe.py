@@ -17,7 +17,7 @@ from sher3_gap.evidence import SherEvidence
 from sher3_challenge.cases.seal import CASES, LABELS
 
 LABEL = "truth.yaml"
-VERSION = 4
+VERSION = 5
 """Of the evidence: rows of another version are computed again."""
 
 
@@ -75,6 +75,12 @@ def truth_of(case: Path) -> dict[str, Any]:
         return truth
     effects = [{**e, "family": e.get("withheld", e["family"])} for e in truth["effects"]]
     return {**truth, "status": "attributed", "kind": "single", "effects": effects, "without": []}
+
+
+def plant_of(case: Path) -> str | None:
+    """Return the truth plant that the label of a case names; None where it names none."""
+    named: str | None = read_yaml(label_of(case)).get("plant")
+    return named
 
 
 def observations(plant: str, case: Path, kept: Path | None = None) -> list[Observation]:

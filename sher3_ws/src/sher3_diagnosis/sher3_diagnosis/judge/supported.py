@@ -103,5 +103,5 @@ def kept(evidence: Evidence, attribution: Attribution, causes: Sequence[int]) ->
         fit=fit(evidence.data, [attribution.fit.terms[i] for i in indices]),
         rivals=tuple(attribution.rivals[i] for i in indices),
         explained=tuple(attribution.explained[i] for i in indices),
-        ranking=tuple(attribution.ranking[i] for i in indices),
+        ranking=tuple(attribution.ranking[i] for i in indices if attribution.ranking),  # a search by steps ranks none
     )

@@ -16,8 +16,11 @@ from sher3_diagnosis.channel import Array
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import Fit
 from sher3_diagnosis.fit.term import Term
+from sher3_diagnosis.localise.gaps import gap_of
+from sher3_diagnosis.quantify.closure import residual_after
 from sher3_diagnosis.quantify.local import Local, local
-from sher3_diagnosis.thresholds import BEYOND, JACKKNIFE, MIN_RUNS, MISFIT, NORMAL
+from sher3_diagnosis.quantify.remains import excess_of, remains
+from sher3_diagnosis.thresholds import BEYOND, HIDDEN, JACKKNIFE, MIN_RUNS, MISFIT, NORMAL
 from sher3_diagnosis.verdict import Parameter
 
 STEP = 1e-4
@@ -32,7 +35,7 @@ def parameters(evidence: Evidence, fit: Fit, index: int) -> dict[str, Parameter]
     term, best = fit.terms[index], fit.of(index)
     bounded = len(fit.loro_coefficients) >= MIN_RUNS
     around = local(evidence, fit, index) if bounded else None
-    misfit = MISFIT * left_share(evidence, fit, index) ** 0.5
+    misfit = hidden_share(evidence, fit, index)
     told = term.effect.measured(evidence.views, term.site, term.shape)
     out: dict[str, Parameter] = {}
     for name, x in term.effect.parameters(term.shape, best).items():
@@ -46,10 +49,31 @@ def parameters(evidence: Evidence, fit: Fit, index: int) -> dict[str, Parameter]
     return out
 
 
+def least_widths(evidence: Evidence, fit: Fit, index: int) -> dict[str, float]:
+    """Return the half widths that noise and deviations within tolerance alone leave the parameters of one cause.
+
+    The bound of Cramer and Rao for a machine whose law is the page's: what the data tell, were the law exact.
+    """
+    term, best = fit.terms[index], fit.of(index)
+    around = local(evidence, fit, index)
+    gradients = {n: _gradient(term, best, around.names, n) for n in term.effect.parameters(term.shape, best)}
+    return {name: NORMAL * around.noise(g) for name, g in gradients.items() if g.any()}
+
+
+def hidden_share(evidence: Evidence, fit: Fit, index: int) -> float:
+    """Return the relative error of a cause's parameters that what its law leaves may hide."""
+    without = without_term(evidence, fit, index)  # what it leaves below the floor shows nowhere
+    gaps = (gap_of(evidence, c, residual_after(evidence, without, c)) for c in fit.terms[index].channels)
+    ratio = max((g.ratio for g in gaps if g is not None), default=1.0)
+    return float(np.hypot(MISFIT * left_share(evidence, fit, index) ** 0.5, HIDDEN / max(ratio, 1.0)))
+
+
 def left_share(evidence: Evidence, fit: Fit, index: int) -> float:
     """Return the share of its gap, above the floor and on held-out runs, that a cause leaves: 0 to 1."""
     without = without_term(evidence, fit, index)
-    gap, left = (sum(max(evidence.excess(c, f), 0.0) for c in fit.terms[index].channels) for f in (without, fit))
+    channels = fit.terms[index].channels
+    gap = sum(max(evidence.excess(c, without), 0.0) for c in channels)
+    left = sum(max(excess_of(evidence, c, remains(evidence, fit, index, c)), 0.0) for c in channels)
     return min(1.0, left / gap) if gap > 0.0 else 1.0
 
 

@@ -13,6 +13,7 @@ from sher3_kinematics.tip_deflection import ArmCompliance
 from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
+from sher3_effects.compliance.stiffening import FINER, softness, stiffened
 from sher3_effects.page import Page, Tolerated
 from sher3_effects.view import RobotView
 
@@ -35,7 +36,8 @@ class StructuralCompliance(Page):
         "link_compliance": "softer at small forces",
         "transmission_compliance": "the load encoders see it",
     }
-    units = {"x": "m/N", "y": "rad/(N*m)", "z": "rad/(N*m)"}
+    units = {"x": "m/N", "y": "rad/(N*m)", "z": "rad/(N*m)", "stiffens": "N"}
+    finer = FINER
     LUMPED = (_ARM.along_x, 1.0 / _ARM.pitch, 1.0 / _ARM.yaw)
     """Along x, about y, about z, of the deflection table less the delta's own share [m/N, rad/(N m), rad/(N m)]."""
 
@@ -46,6 +48,10 @@ class StructuralCompliance(Page):
     def shapes(self, views: Sequence[RobotView], site: str) -> list[Shape]:
         """The paper's ratios, or three free springs."""
         return [{"free": 0.0}, {"free": 1.0}]
+
+    def bends(self, shape: Shape) -> list[Shape]:
+        """Return the same of an arm that stiffens."""
+        return stiffened(shape)
 
     def signature(self, view: RobotView, site: str, shape: Shape) -> Signature:
         """One column, or three."""
@@ -58,7 +64,7 @@ class StructuralCompliance(Page):
             turn[:, j] = moment[:, j]
             parts[:, :3, j], parts[:, 3:, j] = np.cross(turn, lever), turn
         lumped = parts @ np.array(self.LUMPED)
-        columns = parts if shape["free"] else lumped[:, :, None]
+        columns = (parts if shape["free"] else lumped[:, :, None]) * softness(force, shape)
         return Signature({Channel("structure", "tip"): columns} if view.run.tracker_position is not None else {})
 
     def tolerated(self, robot: Robot, site: str) -> Sequence[Tolerated]:
@@ -66,11 +72,12 @@ class StructuralCompliance(Page):
         return (Tolerated({"free": 0.0}, {"structural compliance": (robot.tolerances.compliance, "1")}),)
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Share of the paper's compliance; the three springs where they were free."""
+        """Share of the paper's compliance; the springs where they were free, and what halves them if they stiffen."""
+        bend = {n: x for n, x in shape.items() if n == "stiffens"}
         if len(coefficients) == 1:
-            return {"fraction": float(coefficients[0])}
+            return {"fraction": float(coefficients[0]), **bend}
         share = float(np.mean(coefficients / np.array(self.LUMPED)))
-        return {"fraction": share, **{n: float(c) for n, c in zip("xyz", coefficients, strict=True)}}
+        return {"fraction": share, **{n: float(c) for n, c in zip("xyz", coefficients, strict=True)}, **bend}
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
         """Springs give way."""

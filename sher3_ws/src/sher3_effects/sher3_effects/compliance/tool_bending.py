@@ -10,12 +10,13 @@ from sher3_diagnosis.effect import Best, Shape, Signature
 from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
+from sher3_effects.compliance.stiffening import FINER, softness, stiffened
 from sher3_effects.page import Page
 from sher3_effects.view import AxisView
 
 
 class ToolBending(Page):
-    """Displacement compliance * F across the tool axis, with the slope of a cantilever."""
+    """Displacement compliance * F across the tool axis, with the slope of a cantilever; it may stiffen."""
 
     id, family, stage = "tool_bending", "compliance", "structure"
     inputs = ("load", "posture")
@@ -26,11 +27,16 @@ class ToolBending(Page):
         "pose; a force along the tool does nothing."
     )
     siblings = {"structural_compliance": "a force along the tool moves the tip too"}
-    units = {"slope": "rad/N"}
+    units = {"slope": "rad/N", "stiffens": "N"}
+    finer = FINER
 
     def channels(self, site: str) -> tuple[Channel, ...]:
         """Return the loaded tip."""
         return (Channel("structure", "tip"),)
+
+    def bends(self, shape: Shape) -> list[Shape]:
+        """Return the same of a tool that stiffens."""
+        return stiffened(shape)
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
         """Two columns: displacement and slope."""
@@ -41,11 +47,11 @@ class ToolBending(Page):
         across = force - axis * np.einsum("gi,gi->g", axis, force)[:, None]
         columns = np.zeros((len(force), 6, 2))
         columns[:, :3, 0], columns[:, 3:, 1] = across, np.cross(-axis, across)
-        return Signature({Channel("structure", "tip"): columns})
+        return Signature({Channel("structure", "tip"): columns * softness(across, shape)})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Compliance across the tool and slope per force."""
-        return {"compliance": float(coefficients[0]), "slope": float(coefficients[1])}
+        """Compliance across the tool and slope per force; the force that halves them where the tool stiffens."""
+        return {"compliance": float(coefficients[0]), "slope": float(coefficients[1]), **shape}
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
         """The tool gives way."""

@@ -13,12 +13,13 @@ from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.friction.bristle import deflection, soften
+from sher3_effects.friction.dry import DryFriction
 from sher3_effects.operators import held_lag, play
-from sher3_effects.page import Page, Tolerated
+from sher3_effects.page import Tolerated
 from sher3_effects.view import AxisView
 
 
-class CoulombFriction(Page):
+class CoulombFriction(DryFriction):
     """F = force * z, z the Dahl state over a displacement of a few micrometres."""
 
     id, family, stage = "coulomb_friction", "friction", "motor_mechanics"
@@ -37,7 +38,7 @@ class CoulombFriction(Page):
         "viscous_friction": "the force grows with speed",
     }
     on_axis = {"force": "coulomb"}
-    polished = ("displacement",)
+    finer = {"displacement": (0.4,)}
     DISPLACEMENTS: tuple[float, ...] = (1.0e-3, 2.5e-3, 5.0e-3)
     """In motor revolutions: 2, 5 and 10 um on a 2 mm lead."""
 
@@ -69,6 +70,8 @@ class CoulombOnAxis(CoulombFriction):
     """The same on one axis of any machine, whose encoder may be finer than any that was foreseen."""
 
     kinds = ("axis",)
+    finer = {}
+    polished = ("displacement",)
     DISPLACEMENTS = (1.0e-4, 3.0e-4, 1.0e-3, 2.5e-3, 5.0e-3)
     """In motor revolutions, or shares of what stands for one: too long a one reverses the force too late."""
 
@@ -95,6 +98,7 @@ class ServoStiction(CoulombFriction):
     MOVES = 0.45
     """Share of the reference's stroke that stiction may hold: an axis that never breaks loose tells nothing of it."""
     finer = {"force": (0.7, 0.85, 0.93, 1.07, 1.15, 1.3), "late": (0.6, 0.8, 1.25, 1.6)}
+    polished = ("displacement",)
 
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
         """Return half widths of the play, m or rad, and lags, s."""

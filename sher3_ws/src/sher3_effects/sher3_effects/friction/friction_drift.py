@@ -15,11 +15,12 @@ from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.friction.bristle import deflection, soften
 from sher3_effects.friction.coulomb_friction import CoulombFriction
-from sher3_effects.page import Page, Part, Values
+from sher3_effects.friction.dry import DryFriction
+from sher3_effects.page import Part, Values
 from sher3_effects.view import AxisView
 
 
-class FrictionDrift(Page):
+class FrictionDrift(DryFriction):
     """F = z (force + drift * s), s the warmth or the run-in 1 - exp(-t / tau); it never pushes, cold or warm."""
 
     id, family, stage = "friction_drift", "friction", "motor_mechanics"
@@ -34,7 +35,7 @@ class FrictionDrift(Page):
     siblings = {"coulomb_friction": "the same step in every run"}
     units = {"drift": "N"}
     TIMES = (0.5, 1.0, 2.0, 4.0, 10.0, 60.0, 300.0)
-    finer = {"time_constant": (0.7, 0.85, 1.2, 1.4)}
+    finer = {"time_constant": (0.7, 0.85, 1.2, 1.4), "displacement": (0.4,)}
     SLACK = 0.1
     """Share of the larger level by which the smaller may come out below zero: one that runs in to nothing scatters."""
 

@@ -13,11 +13,12 @@ from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.friction.bristle import deflection, soften
-from sher3_effects.page import Page, Part, Values
+from sher3_effects.friction.dry import DryFriction
+from sher3_effects.page import Part, Values
 from sher3_effects.view import AxisView
 
 
-class PositionFriction(Page):
+class PositionFriction(DryFriction):
     """F = z (force + a cos kx + b sin kx + second harmonic): odd in the direction of motion, periodic along the stroke.
 
     Crests and hollows are seldom alike: the second harmonic lets crests be narrower than hollows, or wider. Friction

@@ -13,11 +13,11 @@ from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.friction.bristle import deflection, soften
-from sher3_effects.page import Page
+from sher3_effects.friction.dry import DryFriction
 from sher3_effects.view import AxisView
 
 
-class PreslidingFriction(Page):
+class PreslidingFriction(DryFriction):
     """F = force * z, z the Dahl state over a displacement that is long against the encoder."""
 
     id, family, stage = "presliding_friction", "friction", "motor_mechanics"

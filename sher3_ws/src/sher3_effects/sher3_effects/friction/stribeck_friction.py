@@ -13,11 +13,11 @@ from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.friction.bristle import deflection, soften
-from sher3_effects.page import Page
+from sher3_effects.friction.dry import DryFriction
 from sher3_effects.view import AxisView
 
 
-class StribeckFriction(Page):
+class StribeckFriction(DryFriction):
     """F = z (force + (static - force) exp(-(v / stribeck_velocity)^2))."""
 
     id, family, stage = "stribeck_friction", "friction", "motor_mechanics"

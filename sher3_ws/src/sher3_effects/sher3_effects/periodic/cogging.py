@@ -17,11 +17,14 @@ from sher3_effects.view import AxisView
 
 
 class Cogging(Page):
-    """F = A sin(2 pi n q / lead + phase)."""
+    """F = A sin(2 pi n q / lead + phase); teeth may be unlike each other, and no sines.
+
+    Teeth that differ over a revolution are a sine whose amplitude goes round: its neighbours n - 1 and n + 1 show. The
+    shape of one tooth shows as second and third harmonic.
+    """
 
     id, family, stage = "cogging", "periodic", "motor_mechanics"
     inputs = ("position",)
-    kinds = ("robot", "axis")
     needs = ("lead",)
     discrete = frozenset({"periods_per_rev"})
     best = Best("sweep", "constant speeds over several revolutions separate periods")
@@ -39,21 +42,35 @@ class Cogging(Page):
         """Periods per motor revolution."""
         return [{"periods_per_rev": float(n)} for n in self.ORDERS]
 
+    def bends(self, shape: Shape) -> list[Shape]:
+        """Return the same number of teeth, unlike each other."""
+        return [{**shape, "unlike": 1.0}]
+
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
-        """Two columns: the quadratures, low-passed as the residual is."""
-        axis = view.row(site)
-        phase = 2.0 * np.pi * shape["periods_per_rev"] * view.run.smooth[:, axis] / view.lead(site)
-        return Signature(
-            {Channel(self.stage, site): column(view.run.to_grid(np.sin(phase)), view.run.to_grid(np.cos(phase)))}
-        )
+        """Two columns, the quadratures, low-passed as the residual is; with unlike teeth those of other orders too."""
+        turn = 2.0 * np.pi * view.run.smooth[:, view.row(site)] / view.lead(site)
+        n = shape["periods_per_rev"]
+        orders = (n, n - 1.0, n + 1.0, 2.0 * n, 3.0 * n) if shape.get("unlike") else (n,)
+        waves = [wave(k * turn) for k in orders if k > 0.0 for wave in (np.sin, np.cos)]
+        return Signature({Channel(self.stage, site): column(*(view.run.to_grid(w) for w in waves))})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Amplitude, order and phase."""
         return {
-            "amplitude": float(np.hypot(*coefficients)),
+            "amplitude": float(np.hypot(coefficients[0], coefficients[1])),
             "periods_per_rev": shape["periods_per_rev"],
             "phase": float(np.arctan2(coefficients[1], coefficients[0])),
         }
+
+
+class CoggingOnAxis(Cogging):
+    """The same on one axis of any machine: one sine."""
+
+    kinds = ("axis",)
+
+    def bends(self, shape: Shape) -> list[Shape]:
+        """Return none."""
+        return []
 
 
 @dataclass(frozen=True)

@@ -151,7 +151,7 @@ class SherView:
     def axis(self, site: str) -> NominalAxis:
         """Return the nominal constants of an actuator."""
         a = self.robot.actuators[self.row(site)]
-        return NominalAxis(a.mass, a.viscous, a.lead, a.limits.velocity)
+        return NominalAxis(a.mass, a.viscous, a.lead, a.limits.velocity, seen=a.motor_encoder)
 
     def lead(self, site: str) -> float:
         """Return the travel of an actuator per motor revolution, m or rad."""

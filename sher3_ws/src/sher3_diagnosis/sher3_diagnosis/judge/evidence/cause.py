@@ -18,6 +18,7 @@ from sher3_diagnosis.judge.evidence.free_law import ROWS, loss_left
 from sher3_diagnosis.localise.gaps import gap_of
 from sher3_diagnosis.localise.pattern import pattern_of
 from sher3_diagnosis.quantify.closure import residual_after
+from sher3_diagnosis.quantify.remains import excess_of, remains
 from sher3_diagnosis.thresholds import AT_FLOOR
 
 
@@ -83,8 +84,9 @@ def cause_evidence(evidence: Evidence, attribution: Attribution, index: int) -> 
     channel = shown_at(evidence, term, without, found)
     samples = evidence.samples(channel)
     gap = max(evidence.excess(channel, without), 1.0)
-    left = evidence.excess(channel, found)
-    laws = free_laws(evidence, channel, term, found)
+    remainder = remains(evidence, found, index, channel)
+    left = excess_of(evidence, channel, remainder)
+    laws = free_laws(evidence, channel, term, remainder)
     steady = steadiness_of(evidence, found, index)
     whole = gap_of(evidence, channel, residual_after(evidence, without, channel))
     assert whole is not None
@@ -104,12 +106,13 @@ def cause_evidence(evidence: Evidence, attribution: Attribution, index: int) -> 
     )
 
 
-def free_laws(evidence: Evidence, channel: Channel, term: Term, fit: Fit) -> tuple[float, float, float]:
-    """Return the mean square over the floor, per sample and component, that free laws take off what a fit leaves.
+def free_laws(
+    evidence: Evidence, channel: Channel, term: Term, left: Mapping[int, Array]
+) -> tuple[float, float, float]:
+    """Return the mean square over the floor, per sample and component, that free laws take off what a cause leaves.
 
     Of the inputs that the term's effect states; of all quantities of the place; of everything recorded.
     """
-    left = residual_after(evidence, fit, channel)
     white = {r: x / evidence.floors[r][channel] for r, x in left.items()}
     signal = np.concatenate(list(white.values()))
     width = signal.shape[1]

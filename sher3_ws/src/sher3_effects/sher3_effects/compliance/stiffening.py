@@ -1,0 +1,25 @@
+"""Springs that stiffen: contacts close and beams stretch, so that a compliance falls as the force grows."""
+
+from __future__ import annotations
+
+import numpy as np
+from sher3_diagnosis.channel import Array
+from sher3_diagnosis.effect import Shape
+
+TOLD_AT = 1.0
+"""Force on the tip at which a compliance that changes with it is stated, N."""
+HALVED = (2.0, 6.0, 20.0)
+"""Forces tried first at which a compliance has fallen to half, N: tips are loaded by one or two."""
+FINER = {"stiffens": (0.5, 0.7, 0.85, 1.2, 1.4, 2.0)}
+"""Factors of the finer search for that force."""
+
+
+def stiffened(shape: Shape) -> list[Shape]:
+    """Return a shape of a spring with the forces at which its compliance may have fallen to half."""
+    return [{**shape, "stiffens": force} for force in HALVED]
+
+
+def softness(force: Array, shape: Shape) -> Array:
+    """Return the compliance over that at `TOLD_AT`, (g, 1, 1), under forces (g, 3): c / (1 + |F| / stiffens)."""
+    knee = shape.get("stiffens", np.inf)
+    return ((1.0 + TOLD_AT / knee) / (1.0 + np.linalg.norm(force, axis=1) / knee))[:, None, None]

@@ -1,0 +1,46 @@
+"""Dry friction at rest: it holds whatever is needed up to its level, which no history of the motion tells."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.effect import Shape
+
+from sher3_effects.page import Page
+from sher3_effects.view import AxisView
+
+STILL = 0.1
+"""Time in which an axis at rest moves by less than one count of its encoder, s."""
+
+
+class DryFriction(Page):
+    """A friction with a level. In sliding it has that level; at rest it is any force up to it.
+
+    Coulomb's inequality: how a bristle bends below the resolution of the encoders is not recorded. On other machines
+    the balance at rest is a rule of its own (`sher3_machines.axes.identification.rest`).
+    """
+
+    def held(self, view: AxisView, site: str, shape: Shape, coefficients: Array) -> Array | None:
+        """Return the level (g,) where the axis of a robot rests, 0 where it moves; None where nobody states a count."""
+        count = view.axis(site).seen
+        if "robot" not in self.kinds or count == 0.0:
+            return None
+        rests = np.abs(view.velocity[:, view.row(site)]) < count / STILL
+        columns = self.signature(_Slid(view), site, shape).columns[Channel(self.stage, site)]
+        return np.where(rests, np.abs(columns[:, 0] @ coefficients), 0.0)
+
+
+class _Slid:
+    """A view of which every axis has slid forward: what a friction adds there is its level."""
+
+    def __init__(self, view: AxisView) -> None:
+        self._view = view
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._view, name)
+
+    def sliding(self, axis: int, displacement: float) -> Array:
+        """Return the state of a friction that has slid forward, (n,)."""
+        return np.ones(self._view.run.ticks)
