@@ -29,8 +29,11 @@ CURRENT = vocabulary("current curr cur i")
 COMMAND = vocabulary("u voltage volt spannung pwm duty vir valve ventil")
 ASKED = vocabulary("ref reference setpoint sp desired des target goal soll demand commanded cmd command qg d")
 MEASURED = vocabulary("actual act measured meas present est estimate estimated ist feedback fb")
-SECOND = vocabulary("load output link second secondary scale abtrieb maßstab massstab glasmaßstab glasmassstab")
-IGNORED = vocabulary("acceleration acc accel qdd ddq error err bus supply battery versorgung")
+SECOND = vocabulary(
+    "load output link second secondary scale abtrieb maßstab massstab glasmaßstab glasmassstab tracker laser "
+    "interferometer vicon mocap optitrack qualisys gt truth groundtruth"
+)
+IGNORED = vocabulary("acceleration acc accel qdd ddq error err bus supply battery versorgung power leistung energy")
 TEMPERATURE = vocabulary("temperature temp temperatur")
 APPLIED = vocabulary("hung applied external disturbance weight brake bremsmoment last")
 """A force from outside that is known, where the column has the unit of one."""
@@ -45,6 +48,10 @@ PLACES = ("m", "cm", "mm", "um", "rad", "mrad", "deg", "arcmin", "arcsec", "rev"
 DRIVING = vocabulary("motor antrieb drive schrittzähler steps schritte")
 """The one of two places of an axis that the drive moves; the other one is that of the load."""
 WORDS = POSITION | VELOCITY | EFFORT | CURRENT | COMMAND | ASKED | MEASURED | IGNORED
+SLIDING = vocabulary("position pos posn x y z dist distance displacement displ stroke gap hub weg verschiebung")
+"""Words beside which an `m` at the end is a metre: `cart_position_m`; `q_m` is an angle of a motor."""
+ENTRY = re.compile(r"[A-Za-z]{0,5}[ _]?\d{1,2}|[xyz]")
+"""What brackets hold that is no unit but an entry: `POSITIONS (J1)`, `FORCE (x)`."""
 SHORT = vocabulary("x i u n d q t")
 """Words of one letter: beside a longer word for the quantity they are the name of the axis."""
 FORCEFUL = EFFORT | CURRENT | COMMAND | APPLIED
@@ -77,7 +84,7 @@ def named(column: str) -> Named:
     long = [w for w in words if w not in SHORT and w in WORDS - MEASURED - ASKED]
     used = [w for w in words if w in WORDS and not (long and w in SHORT and w != "d")]
     rest = [w for w in words if w not in used and w not in SECOND and w not in PLAIN]
-    rest = rest or (["x"] if "x" in used and len(used) > 1 else [])
+    rest = rest or (["x"] if "x" in used and (len(used) > 1 or set(words) & SECOND) else [])
     if unit in FORCES and set(words) & APPLIED:
         return Named("applied", "_".join(w for w in rest if w not in APPLIED), unit)
     if unit in FORCES and set(words) & SECOND and not set(words) & POSITION:
@@ -87,7 +94,7 @@ def named(column: str) -> Named:
     signal = _signal(set(used) | (set(words) & SECOND), {w for w in table if w in ASKED})
     rest = rest or [w for w in table if w not in WORDS and w not in PLAIN and w not in SECOND] or table
     if signal is None and not set(words) & IGNORED:
-        plain = unit in PLACES and set(words) <= PLAIN
+        plain = unit == "count" or (unit in PLACES and set(words) <= PLAIN)
         signal = "position" if plain else "effort" if unit in FORCES and not set(words) & WORDS else None
     return Named(signal, "_".join(rest), unit)
 
@@ -129,12 +136,15 @@ def _joined(word: str) -> list[str]:
 def bare_and_unit(name: str) -> tuple[str, str | None]:
     """Return a column's name without its unit, and the unit: in brackets, or the last word of the name."""
     match = IN_HEADER.fullmatch(name)
-    if match and not match["unit"].strip().isdigit():
-        said = spelled(match["unit"])
-        return match["name"], said if said in UNITS else None
+    if match:
+        inside = match["unit"].strip()
+        if spelled(inside) in UNITS and not inside.isdigit():
+            return match["name"], spelled(inside)
+        return (f"{match['name']} {inside}" if ENTRY.fullmatch(inside) else match["name"]), None
     head, _, last = name.rpartition("_")
-    said = spelled(last)
-    letter = len(last) == 1 and last.isupper() and bool(set(words_of(head)) & FORCEFUL)
+    said, words = spelled(last), set(words_of(head))
+    letter = len(last) == 1 and last.isupper() and bool(words & FORCEFUL)
+    letter = letter or (last == "m" and bool(words & SLIDING))
     stated = head.endswith("_in") or letter or (len(last) > 1 and not last.isdigit())
     known = head and said in UNITS and stated
     return (head.removesuffix("_in"), said) if known else (name, None)
