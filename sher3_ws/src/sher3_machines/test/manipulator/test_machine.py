@@ -37,6 +37,18 @@ def test_friction_of_both_joints_under_weight_and_coupling(path):
     assert value["viscous_friction", "swing", "extra"] == pytest.approx(0.4, rel=0.06)
 
 
+def test_a_slow_log_reverses_between_its_samples(path):
+    """Ten samples a second: a friction that turned at the next sample was told with an effort 54 ms late."""
+    q, v, a = motion(60.0, period=0.1)
+    run = run_of(q, needed(q, v, a) + friction(v, (30.0, 3.0)), period=0.1)
+    found = diagnose(machine(path, time={"rate": 10.0}), [run]).verdict
+    assert {(c.effect, c.actuator) for c in found.causes} == {
+        ("coulomb_friction", "lift"),
+        ("coulomb_friction", "swing"),
+    }
+    assert values(found)["coulomb_friction", "swing", "force"] == pytest.approx(3.0, rel=0.02)
+
+
 def test_a_payload_on_the_pendulum_is_one_cause_of_both_joints(path):
     """0.5 kg at the height of the pendulum's own centre, 5 cm in front of it."""
     found = verdict(path, needed(Q, V, A, 0.5, 0.05, -L) + friction(V, (8.0, 0.5)))
