@@ -59,6 +59,14 @@ def test_a_payload_on_the_pendulum_is_one_cause_of_both_joints(path):
     assert value["payload_mass", "pendulum", "z"] == pytest.approx(-L, abs=0.02)
 
 
+def test_a_payload_many_times_its_link_is_no_other_unit(path):
+    """The model's pendulum has 0.2 kg, the robot carries 1.8 kg more: ten times the torque, and the lift feels it."""
+    text = described(path).model and path.read_text().replace('mass value="2.0"', 'mass value="0.2"')
+    found = verdict(path, needed(Q, V, A) + friction(V, (8.0, 0.5)), text=text)
+    assert not any("times what the model needs" in note for note in found.notes)
+    assert values(found)["payload_mass", "pendulum", "mass"] == pytest.approx(1.8, rel=0.05)
+
+
 def test_a_spring_and_a_gear_loss(path):
     """10 N/m on the lift; a tenth of the torque lost in the gear of the swing."""
     nominal = needed(Q, V, A)
