@@ -68,8 +68,25 @@ def draft(path: Path, rate: float | None = None) -> Draft:
     Raises:
         MachineError: the file cannot be read, or no column looks like a time or a position.
     """
-    tables = read_tables(path)
     guesses: list[str] = []
+    data = drafted(path, rate, guesses)
+    if sum(axis["command_law"]["kind"] == "force" for axis in data["axes"]) > 1:
+        guesses.append(
+            "each axis by itself; joints of one arm carry each other: give its URDF or MJCF, --model FILE "
+            "(`kind: manipulator`)"
+        )
+    return written(data, guesses)
+
+
+def written(data: Mapping[str, Any], guesses: list[str]) -> Draft:
+    """Return a description as YAML under its guesses."""
+    head = "".join(f"# guessed: {guess}\n" for guess in guesses)
+    return Draft(head + dump_yaml(data), guesses)
+
+
+def drafted(path: Path, rate: float | None, guesses: list[str]) -> dict[str, Any]:
+    """Return a description of a chain of axes as plain data; raises MachineError."""
+    tables = read_tables(path)
     clock = None if rate else clock_of(tables, guesses)
     if clock is None:
         time: dict[str, Any] = {"rate": rate}
@@ -92,16 +109,10 @@ def draft(path: Path, rate: float | None = None) -> Draft:
             remedy="write the description by hand; a force sensor by itself is `kind: "
             "force_sensor`, postures with measured poses are `kind: arm`; levels and temperatures are no machine",
         )
-    if sum(axis["command_law"]["kind"] == "force" for axis in axes) > 1:
-        guesses.append(
-            "each axis by itself; joints of one arm carry each other: `kind: manipulator` with its URDF or MJCF"
-        )
     if left:
         more = f" and {len(left) - LISTED} more" if len(left) > LISTED else ""
         guesses.append(f"not used: {', '.join(left[:LISTED])}{more}")
-    data = {"kind": "axes", "name": re.sub(r"\W+", "_", path.stem), "time": time, "axes": axes}
-    head = "".join(f"# guessed: {guess}\n" for guess in guesses)
-    return Draft(head + dump_yaml(data), guesses)
+    return {"kind": "axes", "name": re.sub(r"\W+", "_", path.stem), "time": time, "axes": axes}
 
 
 def _placed(tables: Tables, clock: str | None) -> dict[Place, tuple[str, str]]:
