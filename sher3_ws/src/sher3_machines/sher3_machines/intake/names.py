@@ -22,12 +22,12 @@ POSITION = vocabulary(
     "position positions pos posn q theta angle angles encoder enc lage weg winkel qm x dist displacement displ stroke "
     "gap hub verschiebung schrittzähler steps schritte"
 )
-VELOCITY = vocabulary("velocity velocities vel speed qd dq omega qdot qvel drehzahl geschwindigkeit rate")
+VELOCITY = vocabulary("velocity velocities vel speed qd dq omega qdot qvel gyro drehzahl geschwindigkeit rate")
 EFFORT = vocabulary("effort torque tau force iq trq moment drehmoment strom kraft amps qfrc")
 CURRENT = vocabulary("current curr cur i")
 """A current is an effort, but the current position is the measured one."""
 COMMAND = vocabulary("u voltage volt spannung pwm duty vir valve ventil")
-ASKED = vocabulary("ref reference setpoint sp desired des target goal soll demand commanded cmd command qg d")
+ASKED = vocabulary("ref reference set setpoint sp desired des target goal soll demand commanded cmd command qg d")
 MEASURED = vocabulary("actual act measured meas present est estimate estimated ist feedback fb")
 SECOND = vocabulary(
     "load output link second secondary scale abtrieb maßstab massstab glasmaßstab glasmassstab tracker laser "
@@ -50,6 +50,8 @@ DRIVING = vocabulary("motor antrieb drive schrittzähler steps schritte")
 WORDS = POSITION | VELOCITY | EFFORT | CURRENT | COMMAND | ASKED | MEASURED | IGNORED
 SLIDING = vocabulary("position pos posn x y z dist distance displacement displ stroke gap hub weg verschiebung")
 """Words beside which an `m` at the end is a metre: `cart_position_m`; `q_m` is an angle of a motor."""
+PER_SECOND = re.compile(r"(?P<name>.+)_(?P<unit>deg|rad|m|mm)(_|p|_per_)s")
+"""A velocity whose name ends in its unit: `gyro_deg_s`, `omega_rad_per_s`."""
 ENTRY = re.compile(r"[A-Za-z]{0,5}[ _]?\d{1,2}|[xyz]")
 """What brackets hold that is no unit but an entry: `POSITIONS (J1)`, `FORCE (x)`."""
 SHORT = vocabulary("x i u n d q t")
@@ -141,10 +143,12 @@ def bare_and_unit(name: str) -> tuple[str, str | None]:
         if spelled(inside) in UNITS and not inside.isdigit():
             return match["name"], spelled(inside)
         return (f"{match['name']} {inside}" if ENTRY.fullmatch(inside) else match["name"]), None
+    if match := PER_SECOND.fullmatch(name):
+        return match["name"], f"{match['unit']}/s"
     head, _, last = name.rpartition("_")
     said, words = spelled(last), set(words_of(head))
     letter = len(last) == 1 and last.isupper() and bool(words & FORCEFUL)
-    letter = letter or (last == "m" and bool(words & SLIDING))
+    letter = letter or (last == "m" and bool(words & SLIDING)) or (last == "s" and bool(words & TIME))
     stated = head.endswith("_in") or letter or (len(last) > 1 and not last.isdigit())
     known = head and said in UNITS and stated
     return (head.removesuffix("_in"), said) if known else (name, None)

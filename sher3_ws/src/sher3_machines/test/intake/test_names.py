@@ -46,6 +46,8 @@ from sher3_machines.intake.names import bare_and_unit, named, tells_time
         ("Z1_OutputPower", None, ""),
         ("cart_position_m", "position", "cart"),
         ("q_m", "position", "m"),
+        ("PosSet_mm", "reference", ""),
+        ("gyro_deg_s", "velocity", ""),
         ("left_ticks", "position", "left"),
         ("tracker_x_m", "load", "x"),
         ("gt_x", "load", "x"),
@@ -69,6 +71,9 @@ def test_a_name_says_signal_and_axis(column, signal, axis):
         ("force_N", "N"),
         ("q_A", None),
         ("dist_m", "m"),
+        ("gyro_deg_s", "deg/s"),
+        ("time_s", "s"),
+        ("joint_s", None),
         ("FORCE (x)", None),
     ],
 )
