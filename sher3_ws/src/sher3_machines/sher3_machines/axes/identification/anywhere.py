@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from sher3_diagnosis.attribute.rivals import Attribution
 from sher3_diagnosis.evidence import Evidence
-from sher3_diagnosis.fit.fitting import Fit, fit, make_term
+from sher3_diagnosis.fit.fitting import Fit, Term, fit, make_term
 from sher3_diagnosis.judge.supported import kept
 from sher3_diagnosis.thresholds import NEEDED
 
@@ -37,6 +37,6 @@ def of_reversals(evidence: Evidence, found: Fit) -> set[int]:
     return {i for i, gain in worth.items() if gain < NEEDED}
 
 
-def _force(term: object) -> bool:
-    channels = getattr(term, "channels", ())
-    return bool(channels) and all(c.stage == "motor_mechanics" for c in channels)
+def _force(term: Term) -> bool:
+    """Return whether a cause shows in the force balance alone."""
+    return bool(term.channels) and all(c.stage == "motor_mechanics" for c in term.channels)
