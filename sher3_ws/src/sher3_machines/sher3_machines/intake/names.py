@@ -26,15 +26,19 @@ VELOCITY = vocabulary("velocity velocities vel speed qd dq omega qdot qvel gyro 
 EFFORT = vocabulary("effort torque tau force iq trq moment drehmoment strom kraft amps qfrc")
 CURRENT = vocabulary("current curr cur i")
 """A current is an effort, but the current position is the measured one."""
-COMMAND = vocabulary("u voltage volt spannung pwm duty vir valve ventil")
+COMMAND = vocabulary("control u voltage volt spannung pwm duty vir valve ventil")
 ASKED = vocabulary("ref reference set setpoint sp desired des target goal soll demand commanded cmd command qg d")
 MEASURED = vocabulary("actual act measured meas present est estimate estimated ist feedback fb")
 SECOND = vocabulary(
     "load output link second secondary scale abtrieb maßstab massstab glasmaßstab glasmassstab tracker laser "
     "interferometer vicon mocap optitrack qualisys gt truth groundtruth"
 )
-IGNORED = vocabulary("acceleration acc accel qdd ddq error err bus supply battery versorgung power leistung energy")
-TEMPERATURE = vocabulary("temperature temp temperatur")
+IGNORED = vocabulary(
+    "acceleration acc accel qdd ddq error err bus supply battery versorgung power leistung energy tcp pose cartesian "
+    "ee eef execution main"
+)
+"""What is no signal of an axis: derivatives, supplies, and what the hand of an arm does."""
+TEMPERATURE = vocabulary("temperature temperatures temp temps temperatur")
 APPLIED = vocabulary("hung applied external disturbance weight brake bremsmoment last")
 """A force from outside that is known, where the column has the unit of one."""
 PLAIN = vocabulary("motor state states joint value wert data real raw message msg sensor")
