@@ -13,6 +13,7 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 
 from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.thresholds import RIVAL
 
 Shape = Mapping[str, float]
 """Values of the parameters in which a law is not linear."""
@@ -97,6 +98,7 @@ class Effect:
             user's, "alone" that its only encoder is at the motor, "behind" that it is at the load.
         inputs: quantities the law may depend on, of `INPUTS`; none for an error that is constant.
         units: parameter -> SI unit on a linear axis.
+        bent_from: share of what a law with a bend explains that the one without must leave for the bend to be named.
         discrete: parameters that are a choice (a source, a member, a number of periods) and have no interval.
         choices: parameter of `discrete` -> value -> what it means, in a word.
         bounds: parameter -> smallest and largest value that is physically possible.
@@ -122,6 +124,7 @@ class Effect:
     needs: ClassVar[tuple[str, ...]] = ()
     inputs: ClassVar[tuple[str, ...]] = ()
     units: ClassVar[Mapping[str, str]] = {}
+    bent_from: ClassVar[float] = RIVAL
     discrete: ClassVar[frozenset[str]] = frozenset()
     choices: ClassVar[Mapping[str, Mapping[float, str]]] = {}
     bounds: ClassVar[Mapping[str, tuple[float, float]]] = {}
@@ -144,7 +147,7 @@ class Effect:
         """Return the shapes to search over; empty when the runs cannot show the effect. Default: one without values."""
         return [{}]
 
-    def bends(self, shape: Shape) -> list[Shape]:
+    def bends(self, views: Sequence[Any], site: str, shape: Shape) -> list[Shape]:
         """Return shapes of the law with a bend that some machines have, near the best one without; default none."""
         return []
 

@@ -128,4 +128,6 @@ def test_the_command_goes_on_from_the_verdict():
 
 def test_rivals_stand_behind_the_cause():
     assert cause_text(BACKLASH) == "Backlash on tilt [or transmission compliance]"
+    vague = FRICTION.model_copy(update={"parameters": {"force": Parameter(value=0.3, low=-0.1, high=0.7, unit="N")}})
+    assert cause_text(vague) == "Coulomb friction on delta 2, force 300 mN (-100 mN … 700 mN)"
     assert closure_text(Interval(value=0.997)) == "> 99 %"

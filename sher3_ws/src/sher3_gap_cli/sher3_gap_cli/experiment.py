@@ -15,8 +15,10 @@ if TYPE_CHECKING:
     from sher3_gap.experiments.design import Experiment
     from sher3_gap.experiments.separation import Separation
 
-RECORD = "record the motion that the verdict's `next_experiment` names, and diagnose the new case"
-"""What takes the place of a designed experiment for another machine."""
+RECORD = "give its case too: sher3 gap experiment VERDICT CASE -o motion.csv (.yaml: ROS 2, .xml: MJCF)"
+"""What designs a motion for another machine."""
+DIAGNOSE = "diagnose the new case: what a motion of another machine came to stands in its verdict"
+"""What takes the place of predicted against realised for another machine."""
 
 
 def experiment(
@@ -25,21 +27,62 @@ def experiment(
         Path | None,
         case_argument("Its case: actual floors and loads, excitations not again."),
     ] = None,
-    output: Annotated[Path, typer.Option("--output", "-o", help="Excitation file to write.")] = Path("experiment.yaml"),
+    output: Annotated[
+        Path,
+        typer.Option("--output", "-o", help="Excitation file; of another machine .csv, .yaml (ROS 2) or .xml (MJCF)."),
+    ] = Path("experiment.yaml"),
     ran: Annotated[
         Path | None, typer.Option(help="Case the written file was run to: predicted against realised.")
     ] = None,
     robot: RobotFile = None,
     as_json: Json = False,
 ) -> None:
-    """Design the excitation that best tells a verdict's rivals apart; `sher3 gap excite FILE` runs it."""
+    """Design the excitation that best tells a verdict's rivals apart; `sher3 gap excite FILE` runs it.
+
+    With the case of another machine: a Fourier series for its axes or joints, within what its records reached.
+    """
+    from sher3_machines import is_machine_case
+
     with reported(as_json):
-        text = (
-            design_command(verdict, case, output, robot, as_json)
-            if ran is None
-            else realised_command(verdict, output, ran, robot, as_json)
-        )
+        if ran is not None:
+            text = realised_command(verdict, output, ran, robot, as_json)
+        elif case is not None and is_machine_case(case):
+            text = motion_command(verdict, case, output, as_json)
+        else:
+            text = design_command(verdict, case, output, robot, as_json)
         typer.echo(text)
+
+
+def motion_command(verdict: Path, case: Path, output: Path, as_json: bool) -> str:
+    """Design a motion for another machine, write its file and return what to print."""
+    from sher3_export.excitation.design import designed
+    from sher3_export.excitation.forms import save
+    from sher3_export.verdicts import read_verdict
+    from sher3_machines import open_case
+
+    open_ones = [
+        f"{' / '.join([c.effect, *c.rivals])} on {c.actuator}" for c in read_verdict(verdict).causes if c.rivals
+    ]
+    made = designed(*open_case(case))
+    save(output, made)
+    data = {
+        "rivals": open_ones,
+        "joints": list(made.joints),
+        "seconds": made.motion.seconds,
+        "told": made.told,
+        "median": made.median,
+    }
+    if as_json:
+        return json.dumps({"file": str(output), **data})
+    lines = [
+        f"rivals     {'; '.join(open_ones) or 'none'}",
+        f"motion     {', '.join(made.joints)}: {made.motion.seconds:g} s from rest to rest, to be repeated",
+        "within     range, speed and acceleration of the case's records; collisions are not checked: begin slowly",
+        f"tells      the least told constant {made.told:.3g} times as well as the best; median of those tried: "
+        f"{made.median:.3g}",
+        f"file       {output}; record it, `sher3 gap import` and `diagnose` it",
+    ]
+    return "\n".join(lines)
 
 
 def design_command(verdict: Path, case: Path | None, output: Path, robot: Path | None, as_json: bool) -> str:
@@ -68,9 +111,9 @@ def realised_command(verdict: Path, experiment: Path, ran: Path, robot: Path | N
     from sher3_gap.experiments.design import realised
     from sher3_gap.simulate.apply import read_verdict
 
+    asked = read_verdict(verdict, DIAGNOSE)
     about = about_excitation(experiment)
-    asked = read_verdict(verdict, RECORD)
-    runs, model = load_case(of_the_robot(ran, RECORD), robot)
+    runs, model = load_case(of_the_robot(ran, DIAGNOSE), robot)
     found = realised(asked, model, runs)
     data = {
         "predicted_separation": about.get("predicted_separation"),

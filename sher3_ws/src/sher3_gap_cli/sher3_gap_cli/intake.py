@@ -44,6 +44,7 @@ def describe(
     file: Annotated[Path, typer.Argument(help="Data file, folder of files, or bag.")],
     out: Annotated[Path | None, typer.Option(help="YAML file to write; default: print it.")] = None,
     rate: Annotated[float | None, typer.Option(min=1e-3, help="Samples per second, without a time.")] = None,
+    model: Annotated[Path | None, typer.Option(help="URDF or MJCF of the arm whose joints were recorded.")] = None,
     as_json: Json = False,
 ) -> None:
     """Draft a machine description from a file and say what was guessed; check it before you import with it.
@@ -53,7 +54,12 @@ def describe(
     from sher3_machines.intake.draft import draft
 
     with reported(as_json):
-        found = draft(file, rate)
+        if model is None:
+            found = draft(file, rate)
+        else:
+            from sher3_machines.manipulator.draft import draft_arm
+
+            found = draft_arm(file, model, rate)
         if out is not None:
             _write(out, found.text)
         if as_json:

@@ -115,8 +115,8 @@ def test_bad_requests_end_with_one_sentence_and_code_2(arguments, words, tmp_pat
         (["apply", "arm.json"], "sher3 gap export"),
         (["apply", "arm.json", "--case", "arm"], "sher3 gap export"),
         (["compare", "arm", "arm"], "conditions"),
-        (["experiment", "arm.json"], "next_experiment"),
-        (["experiment", "arm.json", "arm"], "next_experiment"),
+        (["experiment", "arm.json"], "give its case too"),
+        (["experiment", "arm.json", "--ran", "arm"], "diagnose the new case"),
     ],
 )
 def test_another_machine_is_refused_with_what_to_do_instead(arguments, remedy, tmp_path, monkeypatch):

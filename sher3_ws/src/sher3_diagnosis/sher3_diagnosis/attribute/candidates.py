@@ -10,7 +10,7 @@ from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.effect import Effect, Shape
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import Fit, Term, fit, make_term
-from sher3_diagnosis.thresholds import NEEDED, PARSIMONY, PRICE, RIVAL, UNLIKELY
+from sher3_diagnosis.thresholds import NEEDED, PARSIMONY, PRICE, UNLIKELY
 
 ROUNDS = 3
 """Rounds of the search over shapes: the effect's own, then twice around the best so far."""
@@ -43,7 +43,7 @@ class Candidates:
     def best(self, effect: Effect, site: str, given: Sequence[Term] = ()) -> Fit | None:
         """Fit the best shape of an effect together with the terms given; the effect is the last term.
 
-        A shape with a bend is another answer only where the best one without is no rival to it.
+        A shape with a bend is another answer only where the best one without leaves a share that the page names.
 
         Returns:
             None when no shape is physically possible, or the effect does not show in the evidence.
@@ -52,10 +52,10 @@ class Candidates:
         base = fit(self.evidence.data, given).total
         if plain is None or base - plain.total < NEEDED:
             return plain
-        bent = self._searched(effect, site, given, effect.bends(plain.terms[-1].shape))
-        if bent is None or base - plain.total > (1.0 - RIVAL) * (base - bent.total):
+        bent = self._searched(effect, site, given, effect.bends(self.evidence.views, site, plain.terms[-1].shape))
+        if bent is None or plain.total - bent.total < effect.bent_from * (base - bent.total):
             return plain
-        return bent
+        return min(plain, bent, key=cost)
 
     def _searched(self, effect: Effect, site: str, given: Sequence[Term], shapes: list[Shape]) -> Fit | None:
         """Fit the best of some shapes and of those near it."""

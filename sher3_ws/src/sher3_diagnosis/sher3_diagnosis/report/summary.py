@@ -52,12 +52,12 @@ def five_lines(
 
 
 def cause_text(cause: Cause) -> str:
-    """Return a cause with every parameter that differs from zero, and its rivals."""
+    """Return a cause with every parameter that differs from zero, its first one where none does, and its rivals."""
     text = f"{words(cause.effect)} on {place(cause.actuator)}"
-    for name, p in told(cause).items():
-        if significant(p):
-            text += f", {name.replace('_', ' ')} {p.means or quantity(p.value, p.unit)}"
-            text += "" if p.low is None else f" ({range_text(p.low, p.high, p.unit)})"
+    known = list(told(cause).items())
+    for name, p in [(n, p) for n, p in known if significant(p)] or known[:1]:
+        text += f", {name.replace('_', ' ')} {p.means or quantity(p.value, p.unit)}"
+        text += "" if p.low is None else f" ({range_text(p.low, p.high, p.unit)})"
     return text + (f" [or {', '.join(words(r).lower() for r in cause.rivals)}]" if cause.rivals else "")
 
 

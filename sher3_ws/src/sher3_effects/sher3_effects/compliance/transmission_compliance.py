@@ -11,9 +11,13 @@ from sher3_diagnosis.effect import Best, Shape, Signature, column
 from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
+from sher3_effects.compliance.two_slopes import BENT_FROM, finer, is_told, knees, parts, slopes
 from sher3_effects.operators import oscillator
 from sher3_effects.page import Page
 from sher3_effects.view import AxisView
+
+SLOPES = {"stiffness": "N/m", "compliance": "m/N", "knee": "N", "stiffness_beyond": "N/m"}
+"""Units of a spring of two slopes."""
 
 
 class TransmissionCompliance(Page):
@@ -55,11 +59,8 @@ class TransmissionCompliance(Page):
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
         """One column: minus the force on the spring, ringing; the motor feels the load's mass move against it."""
-        axis, run = view.row(site), view.run
-        clock = run.stage_clock
+        run, force = view.run, needed(view, site, shape["load_mass"])[:, None]
         mass = shape["load_mass"] * view.axis(site).mass
-        pull = np.interp(clock, clock[run.grid], view.path.gravity[:, axis] - view.path.contact_force[:, axis])
-        force = (pull + mass * np.gradient(run.velocity[:, axis], run.period))[:, None]
         if not shape["frequency"]:
             return Signature({Channel(self.stage, site): column(-run.to_grid(force[:, 0]))})
         bend = oscillator(force, shape["frequency"], shape["damping"], run.period)[:, 0]
@@ -77,15 +78,27 @@ class TransmissionCompliance(Page):
         return bool(coefficients[0] > 0.0)
 
 
+def needed(view: AxisView, site: str, share: float) -> Array:
+    """Return the force (n,) that a load needs: weight, known loads, and a share of the axis' mass that it moves."""
+    axis, run = view.row(site), view.run
+    clock = run.stage_clock
+    pull = np.interp(clock, clock[run.grid], view.path.gravity[:, axis] - view.path.contact_force[:, axis])
+    mass = share * view.axis(site).mass
+    return np.asarray(pull + mass * np.gradient(run.velocity[:, axis], run.period))
+
+
 class ComplianceOnAxis(TransmissionCompliance):
     """load = motor - force / stiffness on one axis of any machine; the force as modelled or as the drive recorded it.
 
     Without a recorded force a ringing load tells its frequency, and its stiffness only with its share of the mass.
     Where the mass of the load is known its friction bends the spring too; half a gap times the stiffness adds to it.
+    Beyond a `knee` the spring may have another slope: load = motor - knee / stiffness - (force - knee) /
+    stiffness_beyond.
     """
 
     kinds = ("axis", "servo")
-    units = {"stiffness": "N/m", "compliance": "m/N", "frequency": "Hz", "load_friction": "N"}
+    units = {**SLOPES, "frequency": "Hz", "load_friction": "N"}
+    bent_from = BENT_FROM
     DAMPINGS = (0.03, 0.1, 0.3)
     """Of a load that rings behind the motor, whose mass and spring nobody knows."""
     MOST_DAMPED = 0.95
@@ -108,8 +121,22 @@ class ComplianceOnAxis(TransmissionCompliance):
             ]
         return [*modelled, held] if recorded else modelled
 
+    def bends(self, views: Sequence[AxisView], site: str, shape: Shape) -> list[Shape]:
+        """Return knees of a spring that does not ring; of one whose load rubs, by the recorded force."""
+        if "ringing" in shape or shape["frequency"]:
+            return []
+        rigid = {
+            **{k: x for k, x in shape.items() if k != "rubbed"},
+            **({"recorded": 1.0} if "rubbed" in shape else {}),
+        }
+        if rigid.get("recorded") == 1.0 and any(v.run.effort is None for v in views):
+            return []
+        return knees((self._force(v, site, rigid) for v in views), rigid)
+
     def refine(self, shape: Shape) -> list[Shape]:
-        """Return neighbours of a modelled force; a recorded one has none."""
+        """Return neighbours of a modelled force, or of a knee; a recorded one has none."""
+        if "knee" in shape:
+            return finer(shape)
         if "ringing" in shape:
             near = [{**shape, "frequency": shape["frequency"] * f} for f in (0.9, 0.95, 0.98, 1.02, 1.05, 1.1)]
             return [*near, *({**shape, "damping": shape["damping"] * z} for z in (0.5, 0.8, 1.25, 2.0))]
@@ -122,12 +149,14 @@ class ComplianceOnAxis(TransmissionCompliance):
         more = {"frequency": shape["frequency"]} if shape["frequency"] else {}
         if "rubbed" in shape and coefficients[0]:
             more = {"load_friction": float(coefficients[1] / coefficients[0])}
-        return {**super().parameters(shape, coefficients), **more}
+        return {**super().parameters(shape, coefficients), **slopes(shape, coefficients), **more}
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
         """Return whether it is a spring whose load resists."""
         if "ringing" in shape:
             return shape["damping"] < self.MOST_DAMPED
+        if "knee" in shape:
+            return bool((coefficients[:2] > 0.0).all() and is_told(shape))
         return bool(coefficients[0] > 0.0 and (coefficients[1:] >= 0.0).all())
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
@@ -138,13 +167,19 @@ class ComplianceOnAxis(TransmissionCompliance):
             shaken = np.gradient(run.velocity[:, [row]], run.period, axis=0) / pace**2
             swing = oscillator(-shaken, shape["frequency"], min(shape["damping"], self.MOST_DAMPED), run.period)
             return Signature({}, {Channel(self.stage, site): run.to_grid(swing)})
-        if not shape.get("recorded"):
+        if not shape.get("recorded") and "knee" not in shape:
             return super().signature(view, site, shape)
-        parts = [carried(view, site, shape["recorded"])]
+        pulls = parts(self._force(view, site, shape), shape)
         if "rubbed" in shape:
             pace = np.gradient(run.filtered(run.load)[:, row], run.period)
-            parts += [run.to_grid(x[:, None])[:, 0] for x in (np.sign(pace), pace)]
-        return Signature({Channel(self.stage, site): column(*(-x for x in parts))})
+            pulls += [run.to_grid(x[:, None])[:, 0] for x in (np.sign(pace), pace)]
+        return Signature({Channel(self.stage, site): column(*(-x for x in pulls))})
+
+    def _force(self, view: AxisView, site: str, shape: Shape) -> Array:
+        """Return the force (g,) on a spring that does not ring."""
+        if shape.get("recorded"):
+            return carried(view, site, shape["recorded"])
+        return np.asarray(view.run.to_grid(needed(view, site, shape["load_mass"])))
 
 
 def carried(view: AxisView, site: str, recorded: float) -> Array:
@@ -164,18 +199,33 @@ class ComplianceOfJoint(TransmissionCompliance):
     """The same on a joint of a serial arm with a second encoder at its link: the force is what the link needs."""
 
     kinds = ("joint",)
+    units = SLOPES
+    bent_from = BENT_FROM
 
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
         """Return one shape: the rigid bodies tell the force."""
         return [{}]
 
+    def bends(self, views: Sequence[AxisView], site: str, shape: Shape) -> list[Shape]:
+        """Return knees."""
+        return knees((v.inertial[:, v.row(site)] for v in views), shape)
+
     def refine(self, shape: Shape) -> list[Shape]:
-        """Return none."""
-        return []
+        """Return knees near this one; a straight spring has no neighbours."""
+        return finer(shape) if "knee" in shape else []
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
-        """Return minus the force that the link needs."""
-        return Signature({Channel(self.stage, site): column(-view.inertial[:, view.row(site)])})
+        """Return minus the force that the link needs, or its parts up to the knee and beyond."""
+        pulls = parts(view.inertial[:, view.row(site)], shape)
+        return Signature({Channel(self.stage, site): column(*(-x for x in pulls))})
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Return stiffness and compliance, and those beyond a knee."""
+        return {**super().parameters(shape, coefficients), **slopes(shape, coefficients)}
+
+    def admissible(self, shape: Shape, coefficients: Array) -> bool:
+        """Return whether it is a spring on either side of the knee."""
+        return bool((coefficients > 0.0).all() and is_told(shape))
 
 
 @dataclass(frozen=True)

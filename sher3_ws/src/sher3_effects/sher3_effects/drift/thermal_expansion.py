@@ -74,27 +74,38 @@ class ThermalExpansion(Page):
 
 
 class TableExpansion(Page):
-    """A positioning table that grows with its own temperature: deviation = coefficient * (T - reference) * target."""
+    """A positioning table that grows with its own temperature: deviation = coefficient * (T - reference) * target.
+
+    Targets count from the middle of the travel. Of a table that warms up on the way the place that stays where it is
+    may be any of the travel, such as the fixed bearing of a screw: then (target - rest) stands for the target.
+    """
 
     id, family, best = ThermalExpansion.id, ThermalExpansion.family, ThermalExpansion.best
     stage, places = "transmission", ("axis",)
     kinds: ClassVar[tuple[str, ...]] = ("table",)
     inputs = ("temperature", "position")
-    units = {"coefficient": "1/K"}
+    units = {"coefficient": "1/K", "rest": "m"}
     explanation = "The table moves too far by a share of its travel that follows its temperature."
     siblings = {"lead_error": "the same share at every temperature"}
 
     def shapes(self, views: Sequence[Any], site: str) -> list[Shape]:
-        """Return one shape, where a temperature was recorded and is not the reference throughout."""
-        return [{}] if warm(views) else []
+        """Return a shape about the middle, where it was not as warm as the reference, and one about any place."""
+        middle: list[Shape] = [{}] if warm(views) else []
+        return [*middle, {"half": 0.5 * float(np.ptp(views[0].nodes))}] if warming(views) else middle
 
     def signature(self, view: TableView, site: str, shape: Shape) -> Signature:
-        """Return one column: the target times what the table is warmer than the reference."""
-        return Signature({Channel(self.stage, site): column(view.target * view.warmth)})
+        """Return the target times what the table is warmer than the reference; about any place that warmth too."""
+        parts = [view.target * view.warmth, *([view.warmth] if shape else [])]
+        return Signature({Channel(self.stage, site): column(*parts)})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the coefficient of expansion beyond that of the reading."""
-        return {"coefficient": float(coefficients[0])}
+        """Return the coefficient of expansion beyond that of the reading, and the place that stays where it is."""
+        a = float(coefficients[0])
+        return {"coefficient": a, **({"rest": -float(coefficients[1]) / a if a else 0.0} if shape else {})}
+
+    def admissible(self, shape: Shape, coefficients: Array) -> bool:
+        """Return whether the place that stays lies in the travel, or half of it beyond: a bearing is near it."""
+        return not shape or abs(float(coefficients[1])) <= 2.0 * shape["half"] * abs(float(coefficients[0]))
 
 
 class ExpansionOnAxis(TableExpansion):
@@ -117,6 +128,10 @@ class ExpansionOnAxis(TableExpansion):
         """Return the coefficient of expansion, and the position that does not move with the warmth."""
         a, b = map(float, coefficients)
         return {"coefficient": a, "rest": -b / a if a else 0.0}
+
+    def admissible(self, shape: Shape, coefficients: Array) -> bool:
+        """Return True: an axis may be clamped far outside of its travel."""
+        return True
 
 
 @dataclass(frozen=True)

@@ -52,7 +52,7 @@ class ForceSaturation(Page):
             return []
         return [{"limit": float(x)} for x in np.geomspace(0.98 * reported, max(asked, reported), self.LEVELS)]
 
-    def bends(self, shape: Shape) -> list[Shape]:
+    def bends(self, views: Sequence[RobotView], site: str, shape: Shape) -> list[Shape]:
         """Limits near a hard one, with a bend: it begins below."""
         return [{"limit": shape["limit"] * f, "knee": self.KNEE} for f in (0.85, 0.92, 1.0, 1.08)]
 

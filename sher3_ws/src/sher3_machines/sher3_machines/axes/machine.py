@@ -149,6 +149,7 @@ class Axes(Machine[AxesRun, AxisEvidence]):
             *changes,
             *mass_notes(finding.evidence),
             *blind_spots(finding),
+            *carried_by_others(finding, self.description.axes),
             *([] if finding.significant else unseen(finding.evidence)),
             *([again.note] if again else []),
         ]
@@ -258,6 +259,18 @@ def unseen(evidence: AxisEvidence) -> list[str]:
                 float(floor[0])
             )
     return [f"{evidence.axis.name}: nothing above the floor of {np.median(x):.3g} {of}" for of, x in floors.items()]
+
+
+def carried_by_others(finding: Finding[AxisEvidence], axes: Sequence[Axis]) -> list[str]:
+    """Return that joints of one arm carry each other, where a driven axis of several that turn has a gap left."""
+    turning = [axis.name for axis in axes if axis.motion == "rotary" and axis.driven]
+    name = finding.evidence.axis.name
+    if not finding.left or name not in turning or len(turning) < 2:
+        return []
+    return [
+        f"{name}: axes are judged one by one; joints of an arm carry each other: describe it as `kind: manipulator` "
+        "with its URDF or MJCF"
+    ]
 
 
 def blind_spots(finding: Finding[AxisEvidence]) -> list[str]:

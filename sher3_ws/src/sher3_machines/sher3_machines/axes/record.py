@@ -11,6 +11,7 @@ from sher3_diagnosis.channel import Array, Mask
 
 from sher3_machines.axes.description import Axis
 from sher3_machines.axes.quantities.units import check_units
+from sher3_machines.axes.readings.speed import integrated, is_speed
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.cleaning import even_stamps, glitches, known_readings
 from sher3_machines.intake.columns import find, pick, stamps_of
@@ -107,7 +108,11 @@ def _mended(column: Column, tables: Tables, clock: Clock, run: str, of: tuple[st
         notes += [note] if note else []
     known, note = known_readings(x, stamps is not None, what)
     notes += [note] if note else []
-    return _only(stamps, x, known)
+    stamps, x = _only(stamps, x, known)
+    if of[1] in POSITIONS and is_speed(column, tables, run):
+        x = integrated(stamps, x, clock)
+        notes.append(f"{what} is a velocity; integrated, so that places count from the first sample")
+    return stamps, x
 
 
 def _only(stamps: Array | None, x: Array, kept: Mask) -> Stamped:

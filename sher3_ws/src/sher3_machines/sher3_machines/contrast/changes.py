@@ -125,7 +125,8 @@ def contrasted(
         rivals.append(tuple(t for t in trials if t.total < best.total + margin and _other(t.terms[-1], best.terms[-1])))
         current = best
     explained = tuple(without_term(evidence, current, i).total - current.total for i in range(len(current.terms)))
-    return Attribution(current, tuple(rivals), explained, nuisance=common.nuisance)
+    ranking = (*common.ranking, *((),) * (len(current.terms) - len(common.ranking)))
+    return Attribution(current, tuple(rivals), explained, ranking, common.nuisance)
 
 
 def _explained(evidence: Evidence, found: Fit) -> float:

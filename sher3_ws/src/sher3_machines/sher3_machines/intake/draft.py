@@ -13,8 +13,17 @@ from sher3_common import dump_yaml
 from sher3_diagnosis.channel import Array
 
 from sher3_machines.errors import MachineError
-from sher3_machines.intake.fields import UNITS
-from sher3_machines.intake.guesses import clock_of, count_of, period_of, position_unit, scatter, time_unit, travel
+from sher3_machines.intake.fields import UNITS, VELOCITIES
+from sher3_machines.intake.guesses import (
+    TIME_UNITS,
+    clock_of,
+    count_of,
+    period_of,
+    position_unit,
+    scatter,
+    time_unit,
+    travel,
+)
 from sher3_machines.intake.names import DRIVING, counts_samples, named, words_of
 from sher3_machines.intake.tables import Tables, read_tables
 
@@ -23,6 +32,9 @@ SIGNALS = ("position", "reference", "command", "effort", "load", "applied", "tem
 PLACES = ("reference", "load")
 """Signals that are in the unit of the position where their name says no other."""
 ROTARY_UNITS = ("rad", "mrad", "deg", "arcmin", "arcsec", "rev", "count")
+ROTARY = (*ROTARY_UNITS, "rad/s", "deg/s", "rpm")
+CARTESIAN = {"x", "y", "z"}
+"""Names of axes that slide."""
 WIDEST = 12
 """Entries of an array column that may be axes: a humanoid's arms; wider ones are matrices."""
 GEARED = 1.5
@@ -56,8 +68,25 @@ def draft(path: Path, rate: float | None = None) -> Draft:
     Raises:
         MachineError: the file cannot be read, or no column looks like a time or a position.
     """
-    tables = read_tables(path)
     guesses: list[str] = []
+    data = drafted(path, rate, guesses)
+    if sum(axis["command_law"]["kind"] == "force" for axis in data["axes"]) > 1:
+        guesses.append(
+            "each axis by itself; joints of one arm carry each other: give its URDF or MJCF, --model FILE "
+            "(`kind: manipulator`)"
+        )
+    return written(data, guesses)
+
+
+def written(data: Mapping[str, Any], guesses: list[str]) -> Draft:
+    """Return a description as YAML under its guesses."""
+    head = "".join(f"# guessed: {guess}\n" for guess in guesses)
+    return Draft(head + dump_yaml(data), guesses)
+
+
+def drafted(path: Path, rate: float | None, guesses: list[str]) -> dict[str, Any]:
+    """Return a description of a chain of axes as plain data; raises MachineError."""
+    tables = read_tables(path)
     clock = None if rate else clock_of(tables, guesses)
     if clock is None:
         time: dict[str, Any] = {"rate": rate}
@@ -66,29 +95,24 @@ def draft(path: Path, rate: float | None = None) -> Draft:
         alone = table and sum(n.startswith(table + "/") for n in tables) == 1  # a name with a slash, and no table
         time = {"column": clock if alone else bare(clock)}
         time["unit"] = time_unit(clock, period_of(tables[clock]), guesses, float(tables[clock][-1]))
-    placed = with_loads(_placed(tables, clock))
+    period = 1.0 / rate if rate else period_of(tables[str(clock)]) * TIME_UNITS[time["unit"]]
+    placed = with_loads(with_speeds(_placed(tables, clock)))
     groups, left = together(placed)
     known = {name for name, _ in placed}
     left += [n for n, x in tables.items() if n not in known and n != clock and x.ndim == 1 and np.ptp(x) > 0.0]
-    axes = [_axis(axis, signals, tables, guesses) for axis, signals in groups.items()]
+    axes = [_axis(axis, signals, tables, period, guesses) for axis, signals in groups.items()]
     if not axes:
         raise MachineError(
             f"{path}: no column looks like a position",
             value=", ".join(sorted(tables)[:LISTED]),
             limit="names with position, pos, q, angle, encoder",
-            remedy="write the description by hand: integrate a velocity first; a force sensor by itself is `kind: "
+            remedy="write the description by hand; a force sensor by itself is `kind: "
             "force_sensor`, postures with measured poses are `kind: arm`; levels and temperatures are no machine",
-        )
-    if sum(axis["command_law"]["kind"] == "force" for axis in axes) > 1:
-        guesses.append(
-            "each axis by itself; joints of one arm carry each other: `kind: manipulator` with its URDF or MJCF"
         )
     if left:
         more = f" and {len(left) - LISTED} more" if len(left) > LISTED else ""
         guesses.append(f"not used: {', '.join(left[:LISTED])}{more}")
-    data = {"kind": "axes", "name": re.sub(r"\W+", "_", path.stem), "time": time, "axes": axes}
-    head = "".join(f"# guessed: {guess}\n" for guess in guesses)
-    return Draft(head + dump_yaml(data), guesses)
+    return {"kind": "axes", "name": re.sub(r"\W+", "_", path.stem), "time": time, "axes": axes}
 
 
 def _placed(tables: Tables, clock: str | None) -> dict[Place, tuple[str, str]]:
@@ -108,9 +132,22 @@ def _placed(tables: Tables, clock: str | None) -> dict[Place, tuple[str, str]]:
     return found
 
 
+def with_speeds(placed: Mapping[Place, tuple[str, str]]) -> dict[Place, tuple[str, str]]:
+    """Return the signals with velocities as places, where no place was recorded at all: they are integrated."""
+    if any(signal in ("position", "load") for signal, _ in placed.values()):
+        return dict(placed)
+    speeds = {p: axis for p, (signal, axis) in placed.items() if signal == "velocity"}
+    return {**placed, **{p: ("position", axis) for p, axis in speeds.items()}}
+
+
 def with_loads(placed: Mapping[Place, tuple[str, str]]) -> dict[Place, tuple[str, str]]:
-    """Return the signals with the second of two places of one axis as that of its load: the drive moves the other."""
+    """Return the signals with the second of two places of one axis as that of its load: the drive moves the other.
+
+    Where only trackers and scales were recorded, theirs are the places.
+    """
     out = dict(placed)
+    if all(signal != "position" for signal, _ in placed.values()):
+        return {p: ("position" if signal == "load" else signal, axis) for p, (signal, axis) in placed.items()}
     for axis in {axis for _, axis in placed.values()}:
         places = [p for p, found in placed.items() if found == ("position", axis)]
         driven = [p for p in places if set(words_of(bare(p[0]))) & DRIVING]
@@ -148,11 +185,19 @@ def _home(axis: str, groups: Mapping[str, Any]) -> str | None:
     return fits[0] if len(fits) == 1 else None
 
 
-def _axis(axis: str, signals: Mapping[str, Place], tables: Tables, guesses: list[str]) -> dict[str, Any]:
+def _unit_of(place: Place, x: Array) -> tuple[str, float, str]:
+    """Return the unit of a place, its factor, and why; of a velocity that stands for one, the unit of it."""
+    what = named(place[0])
+    if what.signal == "velocity":
+        return (what.unit, 1.0, "its name says so") if what.unit in VELOCITIES else ("rad/s", 1.0, "it is a velocity")
+    return position_unit(what.unit, x, bool(set(what.axis.split("_")) & CARTESIAN))
+
+
+def _axis(axis: str, signals: Mapping[str, Place], tables: Tables, period: float, guesses: list[str]) -> dict[str, Any]:
     label = re.sub(r"\W+", "_", axis) or "axis"
     label = f"joint{label}" if label[0].isdigit() else label
     x = values_of(signals["position"], tables)
-    unit, factor, why = position_unit(named(signals["position"][0]).unit, x)
+    unit, factor, why = _unit_of(signals["position"], x)
     guesses.append(f"{label}: position in {unit}, because {why}")
     columns: dict[str, Any] = {}
     for signal in SIGNALS:
@@ -173,9 +218,11 @@ def _axis(axis: str, signals: Mapping[str, Place], tables: Tables, guesses: list
     count = 1.0 if own == "count" and bool((x == np.round(x)).all()) else count_of(x)
     resolution = (count or scatter(x) or 1e-6) * factor * UNITS[own]
     said = "its smallest step" if count else "its scatter: no step is seen"
+    if own in VELOCITIES:
+        resolution, said = resolution * period, f"{said}, over a period"
     guesses.append(f"{label}: encoder_resolution {resolution:.3g}, {said}")
     law = _law(label, columns, guesses)
-    out = {"name": label, "motion": "rotary" if unit in ROTARY_UNITS else "linear", "signals": columns}
+    out = {"name": label, "motion": "rotary" if unit in ROTARY else "linear", "signals": columns}
     out["command_law"] = law
     if law["kind"] == "force":
         guesses.append(f"{label}: mass is not known and will be identified from the record; state it where you can")
@@ -234,7 +281,8 @@ def _beside(signals: Mapping[str, Place], columns: Mapping[str, Any], tables: Ta
 def _law(axis: str, columns: Mapping[str, Any], guesses: list[str]) -> dict[str, Any]:
     if "effort" in columns or "command" in columns:
         unit = columns["effort" if "effort" in columns else "command"]["unit"]
-        counts = "" if unit in ("N", "N*m") else f"; forces are in {unit} until `factor` or `gain` makes them N or N m"
+        own = "the unit recorded, which nobody states," if unit == "1" else unit
+        counts = "" if unit in ("N", "N*m") else f"; forces are in {own} until `factor` or `gain` makes them N or N m"
         guesses.append(f"{axis}: driven by a force{counts}")
         return {"kind": "force"}
     if "reference" in columns:

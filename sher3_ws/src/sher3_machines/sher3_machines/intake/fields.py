@@ -51,7 +51,8 @@ UNITS: Mapping[str, float] = {
 }
 """Unit -> factor to SI; a percentage stays one, of a rated value that nobody stated."""
 
-
+VELOCITIES = ("m/s", "mm/s", "rad/s", "deg/s", "rpm")
+"""Units of a velocity: a place that was recorded as one is its integral."""
 PRESSURES = ("Pa", "kPa", "bar", "MPa")
 """Units that become a force by the area they act on."""
 

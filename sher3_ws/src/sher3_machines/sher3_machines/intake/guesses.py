@@ -12,6 +12,8 @@ from sher3_machines.intake.tables import Tables
 
 TOO_FAR = 40.0
 """Position beyond which the unit is hardly rad or m: more than six turns."""
+WIDEST_ROOM = 15.0
+"""Position beyond which the unit of a sliding axis is hardly m, but mm."""
 COARSE = 400.0
 """Position beyond which the unit is hardly degrees either, but counts."""
 COARSEST_BITS = 12
@@ -95,8 +97,8 @@ def time_unit(clock: str, period: float, guesses: list[str], latest: float | Non
     return "s"
 
 
-def position_unit(unit: str | None, x: Array) -> tuple[str, float, str]:
-    """Return the unit of a position, its factor, and why."""
+def position_unit(unit: str | None, x: Array, slides: bool = False) -> tuple[str, float, str]:
+    """Return the unit of a position, its factor, and why; `slides`: the name of the axis says so."""
     if unit is not None and unit in UNITS and unit not in ("count", "%", "1"):
         return unit, 1.0, "its name says so"
     largest = reach(x)
@@ -104,6 +106,9 @@ def position_unit(unit: str | None, x: Array) -> tuple[str, float, str]:
         bits = max(COARSEST_BITS, int(np.ceil(np.log2(max(float(np.ptp(x)), 2.0)))))
         factor = float(f"{2.0 * np.pi / 2**bits:.6g}")
         return "count", factor, f"its values are whole; `factor` is a placeholder: 2^{bits} counts a turn"
+    if slides:
+        unit = "mm" if largest > WIDEST_ROOM else "m"
+        return unit, 1.0, f"its axis is named as one that slides, and values reach {largest:.4g}"
     if largest > TOO_FAR:
         return "deg", 1.0, f"values reach {largest:.4g}"
     return "rad", 1.0, f"values reach {largest:.4g}; write m for an axis that slides"

@@ -22,16 +22,23 @@ POSITION = vocabulary(
     "position positions pos posn q theta angle angles encoder enc lage weg winkel qm x dist displacement displ stroke "
     "gap hub verschiebung schrittzähler steps schritte"
 )
-VELOCITY = vocabulary("velocity velocities vel speed qd dq omega qdot qvel drehzahl geschwindigkeit rate")
+VELOCITY = vocabulary("velocity velocities vel speed qd dq omega qdot qvel gyro drehzahl geschwindigkeit rate")
 EFFORT = vocabulary("effort torque tau force iq trq moment drehmoment strom kraft amps qfrc")
 CURRENT = vocabulary("current curr cur i")
 """A current is an effort, but the current position is the measured one."""
-COMMAND = vocabulary("u voltage volt spannung pwm duty vir valve ventil")
-ASKED = vocabulary("ref reference setpoint sp desired des target goal soll demand commanded cmd command qg d")
+COMMAND = vocabulary("control u voltage volt spannung pwm duty vir valve ventil")
+ASKED = vocabulary("ref reference set setpoint sp desired des target goal soll demand commanded cmd command qg d")
 MEASURED = vocabulary("actual act measured meas present est estimate estimated ist feedback fb")
-SECOND = vocabulary("load output link second secondary scale abtrieb maßstab massstab glasmaßstab glasmassstab")
-IGNORED = vocabulary("acceleration acc accel qdd ddq error err bus supply battery versorgung")
-TEMPERATURE = vocabulary("temperature temp temperatur")
+SECOND = vocabulary(
+    "load output link second secondary scale abtrieb maßstab massstab glasmaßstab glasmassstab tracker laser "
+    "interferometer vicon mocap optitrack qualisys gt truth groundtruth"
+)
+IGNORED = vocabulary(
+    "acceleration acc accel qdd ddq error err bus supply battery versorgung power leistung energy tcp pose cartesian "
+    "ee eef execution main"
+)
+"""What is no signal of an axis: derivatives, supplies, and what the hand of an arm does."""
+TEMPERATURE = vocabulary("temperature temperatures temp temps temperatur")
 APPLIED = vocabulary("hung applied external disturbance weight brake bremsmoment last")
 """A force from outside that is known, where the column has the unit of one."""
 PLAIN = vocabulary("motor state states joint value wert data real raw message msg sensor")
@@ -45,6 +52,12 @@ PLACES = ("m", "cm", "mm", "um", "rad", "mrad", "deg", "arcmin", "arcsec", "rev"
 DRIVING = vocabulary("motor antrieb drive schrittzähler steps schritte")
 """The one of two places of an axis that the drive moves; the other one is that of the load."""
 WORDS = POSITION | VELOCITY | EFFORT | CURRENT | COMMAND | ASKED | MEASURED | IGNORED
+SLIDING = vocabulary("position pos posn x y z dist distance displacement displ stroke gap hub weg verschiebung")
+"""Words beside which an `m` at the end is a metre: `cart_position_m`; `q_m` is an angle of a motor."""
+PER_SECOND = re.compile(r"(?P<name>.+)_(?P<unit>deg|rad|m|mm)(_|p|_per_)s")
+"""A velocity whose name ends in its unit: `gyro_deg_s`, `omega_rad_per_s`."""
+ENTRY = re.compile(r"[A-Za-z]{0,5}[ _]?\d{1,2}|[xyz]")
+"""What brackets hold that is no unit but an entry: `POSITIONS (J1)`, `FORCE (x)`."""
 SHORT = vocabulary("x i u n d q t")
 """Words of one letter: beside a longer word for the quantity they are the name of the axis."""
 FORCEFUL = EFFORT | CURRENT | COMMAND | APPLIED
@@ -77,7 +90,7 @@ def named(column: str) -> Named:
     long = [w for w in words if w not in SHORT and w in WORDS - MEASURED - ASKED]
     used = [w for w in words if w in WORDS and not (long and w in SHORT and w != "d")]
     rest = [w for w in words if w not in used and w not in SECOND and w not in PLAIN]
-    rest = rest or (["x"] if "x" in used and len(used) > 1 else [])
+    rest = rest or (["x"] if "x" in used and (len(used) > 1 or set(words) & SECOND) else [])
     if unit in FORCES and set(words) & APPLIED:
         return Named("applied", "_".join(w for w in rest if w not in APPLIED), unit)
     if unit in FORCES and set(words) & SECOND and not set(words) & POSITION:
@@ -87,7 +100,7 @@ def named(column: str) -> Named:
     signal = _signal(set(used) | (set(words) & SECOND), {w for w in table if w in ASKED})
     rest = rest or [w for w in table if w not in WORDS and w not in PLAIN and w not in SECOND] or table
     if signal is None and not set(words) & IGNORED:
-        plain = unit in PLACES and set(words) <= PLAIN
+        plain = unit == "count" or (unit in PLACES and set(words) <= PLAIN)
         signal = "position" if plain else "effort" if unit in FORCES and not set(words) & WORDS else None
     return Named(signal, "_".join(rest), unit)
 
@@ -129,12 +142,17 @@ def _joined(word: str) -> list[str]:
 def bare_and_unit(name: str) -> tuple[str, str | None]:
     """Return a column's name without its unit, and the unit: in brackets, or the last word of the name."""
     match = IN_HEADER.fullmatch(name)
-    if match and not match["unit"].strip().isdigit():
-        said = spelled(match["unit"])
-        return match["name"], said if said in UNITS else None
+    if match:
+        inside = match["unit"].strip()
+        if spelled(inside) in UNITS and not inside.isdigit():
+            return match["name"], spelled(inside)
+        return (f"{match['name']} {inside}" if ENTRY.fullmatch(inside) else match["name"]), None
+    if match := PER_SECOND.fullmatch(name):
+        return match["name"], f"{match['unit']}/s"
     head, _, last = name.rpartition("_")
-    said = spelled(last)
-    letter = len(last) == 1 and last.isupper() and bool(set(words_of(head)) & FORCEFUL)
+    said, words = spelled(last), set(words_of(head))
+    letter = len(last) == 1 and last.isupper() and bool(words & FORCEFUL)
+    letter = letter or (last == "m" and bool(words & SLIDING)) or (last == "s" and bool(words & TIME))
     stated = head.endswith("_in") or letter or (len(last) > 1 and not last.isdigit())
     known = head and said in UNITS and stated
     return (head.removesuffix("_in"), said) if known else (name, None)

@@ -6,6 +6,7 @@ import csv
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 from sher3_common import FileError
 from sher3_diagnosis.channel import Array
 
@@ -75,6 +76,16 @@ def read_tables(path: Path) -> Tables:
     return _read(path, reader)
 
 
+def upright(tables: Tables) -> Tables:
+    """Return the arrays of a file with matrices (k, n) as (n, k), where the file has lists of n samples and none of k.
+
+    MATLAB users write a row for each joint as often as one for each sample.
+    """
+    lengths = {len(x) for x in tables.values() if x.ndim == 1}
+    lying = {n for n, x in tables.items() if x.ndim == 2 and x.shape[1] in lengths and x.shape[0] not in lengths}
+    return {n: np.ascontiguousarray(x.T) if n in lying else x for n, x in tables.items()}
+
+
 def is_rosbag2(path: Path) -> bool:
     """Whether a folder is a bag of ROS 2."""
     return path.is_dir() and (path / "metadata.yaml").is_file()
@@ -82,7 +93,7 @@ def is_rosbag2(path: Path) -> bool:
 
 def _read(path: Path, reader: Callable[[Path], Tables]) -> Tables:
     try:
-        return reader(path)
+        return upright(reader(path))
     except FileError as error:
         raise MachineError(
             f"{path}: {error.reason}", value=error.value, limit=error.limit, remedy=error.remedy or "check the file"

@@ -22,6 +22,7 @@ from sher3_effects.friction.coulomb_friction import CoulombFriction
 from sher3_effects.friction.viscous_friction import ViscousFriction
 from sher3_effects.inertia.payload_mass import PayloadOnLink
 
+from sher3_machines.axes.identification.anywhere import borne_out
 from sher3_machines.axes.identification.rest import Bounded
 from sher3_machines.manipulator.evidence import ArmMotionEvidence, channels_of, of_channel
 from sher3_machines.thresholds import CAUSES_OF_JOINT, LEAST_CLOSURE
@@ -74,7 +75,8 @@ def _explained(evidence: ArmMotionEvidence, candidates: Candidates, payload: Fit
         left = partial(down_to_floor, own.channels, own)
         if left(own.null()):
             say(f"{channel}{' beside a payload' if payload is not None else ''}")
-            alone.append(attribute(Bounded(own, effects), left, say, CAUSES_OF_JOINT))
+            found = attribute(Bounded(own, effects), left, say, CAUSES_OF_JOINT)
+            alone.append(borne_out(own, found))
     terms = [payload.terms[-1]] if payload is not None else []
     for found in alone:
         terms += [candidates.term(t.effect, t.site, t.shape) for t in found.fit.terms]

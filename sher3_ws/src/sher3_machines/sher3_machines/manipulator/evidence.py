@@ -21,6 +21,7 @@ from sher3_machines.manipulator.identify import with_identified_inertias
 from sher3_machines.manipulator.model import ArmModel
 from sher3_machines.manipulator.readings.encoders import links_of
 from sher3_machines.manipulator.readings.floors import floors_of
+from sher3_machines.manipulator.readings.slipped import slipped
 from sher3_machines.manipulator.readings.wrong import without_wrong_loads
 from sher3_machines.manipulator.signals import JointSignals, joint_signals
 from sher3_machines.manipulator.view import MotionView
@@ -98,7 +99,7 @@ def gather_arm_motion(
     own = [j.name for j in described.joints if j.gain == PER_RUN and j.name in judged]
     scales = {name: [share_of([view], name) for view in plain] for name in own}
     judged = [name for name in judged if all(share.told for share in scales.get(name, ()))]
-    slips = {name: found[name] for name in judged if name in stated and found[name].slipped}
+    slips = slipped(plain, {name: found[name] for name in judged if name in stated})
     judged = [name for name in judged if name not in slips]
     turned = tuple(name for name in judged if name not in own and found[name].opposite(name in stated))
     if turned or own:

@@ -26,11 +26,11 @@ def share_of(views: Sequence[MotionView], joint: str) -> Share:
         views: of all records, with the forces of the model in newton metres.
         joint: whose effort is looked at.
     """
-    return share_in(*_equations(views, joint))
+    return share_in(*equations(views, joint))
 
 
-def _equations(views: Sequence[MotionView], joint: str) -> tuple[Array, Array]:
-    """Columns (n, 4): needed force, velocity, direction, one; and the recorded effort (n,)."""
+def equations(views: Sequence[MotionView], joint: str) -> tuple[Array, Array]:
+    """Return columns (n, 4): needed force, velocity, direction, one; and the recorded effort (n,)."""
     rows, target = [], []
     for view in views:
         run, row = view.run, view.row(joint)

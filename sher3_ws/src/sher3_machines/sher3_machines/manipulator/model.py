@@ -146,6 +146,13 @@ def load_model(path: Path, names: Sequence[str], gravity: tuple[float, float, fl
     return ArmModel(reduced, tuple(names))
 
 
+def joints_of(path: Path) -> dict[str, bool]:
+    """Return joint -> whether it slides, of every joint of a model that turns or slides; raises MachineError."""
+    model = _read(path)
+    moving = [j for j in range(1, model.njoints) if model.joints[j].nv == 1]
+    return {model.names[j]: _slides(model.joints[j]) for j in moving}
+
+
 def _read(path: Path) -> pin.Model:
     try:
         text = read_text(path, MAX_BYTES)

@@ -9,7 +9,7 @@ import numpy as np
 from sher3_diagnosis.channel import Array, Mask
 from sher3_diagnosis.evidence import Motion
 from sher3_diagnosis.filter import settled
-from sher3_effects.operators import dahl
+from sher3_effects.operators import dahl_turned
 from sher3_effects.view import NominalAxis
 
 from sher3_machines.axes.readings.level import at_a_level
@@ -80,7 +80,8 @@ class MotionView:
     def sliding(self, axis: int, displacement: float) -> Array:
         """Return the Dahl state of a joint, -1..1, (n,): +1 after moving forward by a few `displacement`, m or rad."""
         if (axis, displacement) not in self._sliding:
-            self._sliding[axis, displacement] = dahl(self.run.smooth[:, axis], displacement)
+            x, v = (np.ascontiguousarray(y[:, axis]) for y in (self.run.smooth, self.run.velocity))
+            self._sliding[axis, displacement] = dahl_turned(x, v, displacement, self.run.period)
         return self._sliding[axis, displacement]
 
     def payload(self, link: str, centre: tuple[float, float, float]) -> dict[str, Array]:

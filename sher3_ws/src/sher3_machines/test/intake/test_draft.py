@@ -83,3 +83,30 @@ def test_without_a_clock_or_a_position_it_says_what_is_missing(tmp_path):
         written(tmp_path, "a,b", np.sin(TIME), np.sin(TIME))
     with pytest.raises(MachineError, match=r"looks like a position.*by hand"):
         written(tmp_path, "t,temperature", TIME, np.sin(TIME))
+
+
+def test_a_speed_alone_is_a_place_that_is_integrated(tmp_path):
+    """A motor at 60 and 120 rpm for two seconds each goes six turns; a turn a second is 2 pi rad/s."""
+    rpm = np.where(TIME < 2.0, 60.0, 120.0)
+    found = written(tmp_path, "Time [s],Speed [rpm],Current [A]", TIME, rpm, np.cos(TIME))
+    (tmp_path / "a.yaml").write_text(found.text, encoding="utf-8")
+    notes = import_case([tmp_path / "a.csv"], tmp_path / "a.yaml", tmp_path / "case")
+    position = open_case(tmp_path / "case")[1][0].signals["axis"]["position"]
+    assert position[-1] == pytest.approx(12.0 * np.pi, rel=2e-3) and position[0] == 0.0
+    assert any("is a velocity; integrated" in note for note in notes)
+
+
+def test_axes_named_x_y_z_slide_in_metres_or_millimetres(tmp_path):
+    far = written(tmp_path, "t,X1_ActualPosition,X1_CommandPosition", TIME, 40.0 * np.sin(TIME), 40.0 * np.sin(TIME))
+    near = written(tmp_path, "t,pos_x,ref_x", TIME, 2.0 * np.sin(TIME), 2.0 * np.sin(TIME))
+    assert "motion: linear" in far.text and "unit: mm" in far.text
+    assert "motion: linear" in near.text and "unit: mm" not in near.text
+
+
+def test_a_tracker_is_the_load_of_a_wheel_and_the_place_of_what_has_no_other(tmp_path):
+    wheel = written(tmp_path, "t,wheel_ticks,tracker_x_m", TIME, np.round(5000.0 * np.sin(TIME)), np.sin(TIME))
+    assert set(signals_of(wheel, tmp_path)) == {"position", "load"}
+    assert set(signals_of(written(tmp_path, "t,vicon_x,ref_x", TIME, np.sin(TIME), np.sin(TIME)), tmp_path)) == {
+        "position",
+        "reference",
+    }

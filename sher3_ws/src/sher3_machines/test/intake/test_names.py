@@ -42,6 +42,19 @@ from sher3_machines.intake.names import bare_and_unit, named, tells_time
         ("Sollposition [Schritte]", "reference", ""),
         ("Istwert [mm]", "position", ""),
         ("Glasmaßstab [Ink]", "load", ""),
+        ("ROBOT_ACTUAL_JOINT_POSITIONS (J3)", "position", "robot_j_3"),
+        ("Z1_OutputPower", None, ""),
+        ("actual_TCP_pose_0", None, ""),
+        ("actual_execution_time", None, ""),
+        ("joint_control_output_0", "command", "0"),
+        ("joint_temperatures_0", "temperature", "0"),
+        ("cart_position_m", "position", "cart"),
+        ("q_m", "position", "m"),
+        ("PosSet_mm", "reference", ""),
+        ("gyro_deg_s", "velocity", ""),
+        ("left_ticks", "position", "left"),
+        ("tracker_x_m", "load", "x"),
+        ("gt_x", "load", "x"),
     ],
 )
 def test_a_name_says_signal_and_axis(column, signal, axis):
@@ -61,6 +74,11 @@ def test_a_name_says_signal_and_axis(column, signal, axis):
         ("M_Nmm", "mN*m"),
         ("force_N", "N"),
         ("q_A", None),
+        ("dist_m", "m"),
+        ("gyro_deg_s", "deg/s"),
+        ("time_s", "s"),
+        ("joint_s", None),
+        ("FORCE (x)", None),
     ],
 )
 def test_a_unit_stands_in_brackets_or_at_the_end(column, unit):

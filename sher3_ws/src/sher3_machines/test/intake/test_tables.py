@@ -42,3 +42,11 @@ def test_what_is_not_there_is_named(tmp_path, name):
     (tmp_path / "empty").mkdir()
     with pytest.raises(MachineError, match=r"no such file|no data files"):
         read_tables(tmp_path / name)
+
+
+def test_a_row_for_each_joint_is_turned_to_a_row_for_each_sample(tmp_path):
+    time, q = np.linspace(0.0, 1.0, 50), np.arange(150.0).reshape(3, 50)
+    scipy.io.savemat(tmp_path / "a.mat", {"t": time, "q": q, "frames": np.ones((50, 4)), "gains": np.eye(2)})
+    found = read_tables(tmp_path / "a.mat")
+    assert found["q"].shape == (50, 3) and found["q"][1].tolist() == [1.0, 51.0, 101.0]
+    assert found["frames"].shape == (50, 4) and found["gains"].shape == (2, 2)

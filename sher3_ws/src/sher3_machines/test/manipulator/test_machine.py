@@ -37,6 +37,18 @@ def test_friction_of_both_joints_under_weight_and_coupling(path):
     assert value["viscous_friction", "swing", "extra"] == pytest.approx(0.4, rel=0.06)
 
 
+def test_a_slow_log_reverses_between_its_samples(path):
+    """Ten samples a second: a friction that turned at the next sample was told with an effort 54 ms late."""
+    q, v, a = motion(60.0, period=0.1)
+    run = run_of(q, needed(q, v, a) + friction(v, (30.0, 3.0)), period=0.1)
+    found = diagnose(machine(path, time={"rate": 10.0}), [run]).verdict
+    assert {(c.effect, c.actuator) for c in found.causes} == {
+        ("coulomb_friction", "lift"),
+        ("coulomb_friction", "swing"),
+    }
+    assert values(found)["coulomb_friction", "swing", "force"] == pytest.approx(3.0, rel=0.02)
+
+
 def test_a_payload_on_the_pendulum_is_one_cause_of_both_joints(path):
     """0.5 kg at the height of the pendulum's own centre, 5 cm in front of it."""
     found = verdict(path, needed(Q, V, A, 0.5, 0.05, -L) + friction(V, (8.0, 0.5)))
@@ -45,6 +57,14 @@ def test_a_payload_on_the_pendulum_is_one_cause_of_both_joints(path):
     assert value["payload_mass", "pendulum", "mass"] == pytest.approx(0.5, rel=0.03)
     assert value["payload_mass", "pendulum", "x"] == pytest.approx(0.05, abs=0.01)
     assert value["payload_mass", "pendulum", "z"] == pytest.approx(-L, abs=0.02)
+
+
+def test_a_payload_many_times_its_link_is_no_other_unit(path):
+    """The model's pendulum has 0.2 kg, the robot carries 1.8 kg more: ten times the torque, and the lift feels it."""
+    text = described(path).model and path.read_text().replace('mass value="2.0"', 'mass value="0.2"')
+    found = verdict(path, needed(Q, V, A) + friction(V, (8.0, 0.5)), text=text)
+    assert not any("times what the model needs" in note for note in found.notes)
+    assert values(found)["payload_mass", "pendulum", "mass"] == pytest.approx(1.8, rel=0.05)
 
 
 def test_a_spring_and_a_gear_loss(path):

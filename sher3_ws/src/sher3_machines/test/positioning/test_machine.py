@@ -73,6 +73,16 @@ def test_each_error_is_found_with_its_size(errors, effect, parameter, value):
     assert found(verdict)[effect][parameter] == pytest.approx(value, rel=0.15)
 
 
+def test_a_screw_grows_from_its_fixed_bearing():
+    """Held at 0: the middle of the travel wanders too, which is no drift of its own. Targets count from the middle."""
+    data = table(growth=11e-6)
+    data["reading"] = data["reading"] + 11e-6 * (data["temperature"] - 20.0) * 0.25
+    (cause,) = verdict_of(data).causes
+    assert cause.effect == "thermal_expansion"
+    assert cause.parameters["coefficient"].value == pytest.approx(11e-6, rel=0.05)
+    assert cause.parameters["rest"].value == pytest.approx(-0.25, abs=0.02)
+
+
 def test_several_errors_are_ranked_in_the_standards_figures():
     verdict = verdict_of(table(scale=40e-6, reversal=6e-6))
     assert set(found(verdict)) == {"lead_error", "backlash"}

@@ -7,6 +7,7 @@ from sher3_diagnosis.channel import Array
 
 from sher3_machines.axes.description import Axis
 from sher3_machines.errors import MachineError
+from sher3_machines.intake.fields import VELOCITIES
 
 SLIPS = {"linear": (1e3, "mm recorded as m"), "rotary": (180.0 / np.pi, "deg recorded as rad")}
 """Motion -> factor of its usual wrong unit, and that slip in words."""
@@ -14,7 +15,7 @@ SLIP_TOLERANCE = 1.25
 """Factor within which a ratio of two signals counts as that of a wrong unit."""
 FURTHEST = {"linear": 10.0, "rotary": 40.0}
 """Travel, m or rad, beyond which an axis without a stated range is taken for a unit slip."""
-TURNS = ("count", "rev")
+TURNS = ("count", "rev", *VELOCITIES)
 """Units of a position in which nobody slips to degrees: a motor may well make a hundred turns."""
 BEYOND = 0.1
 """Share of the range by which a position may leave it: stated ranges are rounded."""
