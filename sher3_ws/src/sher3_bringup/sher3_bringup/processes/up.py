@@ -12,7 +12,7 @@ from functools import partial
 from sher3_runtime import environment
 from sher3_runtime.composed.ring import Ring, share
 from sher3_runtime.ports import PERIOD_VARIABLE
-from sher3_runtime.process import realtime_permitted
+from sher3_runtime.process import make_logging_prompt, realtime_permitted
 
 from sher3_bringup.processes.fleet import Fleet
 from sher3_bringup.processes.nodes import make_nodes, preload
@@ -45,16 +45,14 @@ def run_graph(
     begin = time.monotonic()
     with only_robot(settings.domain), _signals() as caught, Fleet() as fleet:
         realtime = prepare(settings)
-        imported = time.monotonic()
         launch_nodes(fleet, settings, realtime)
         for name, make in (extra or {}).items():
             fleet.launch(name, make, beside(realtime))
         fleet.start()
         started = time.monotonic()
-        count, seconds = len(fleet.members), started - imported
         say(
-            f"ready: {count} processes at {settings.rate:g} Hz on {'mocks' if settings.mock else 'hardware'} "
-            f"in {seconds:.2f} s after {imported - begin:.2f} s of imports; Ctrl-C stops"
+            f"ready: {len(fleet.members)} processes at {settings.rate:g} Hz on "
+            f"{'mocks' if settings.mock else 'hardware'} in {started - begin:.2f} s; Ctrl-C stops"
         )
 
         def finished() -> bool:
@@ -70,17 +68,24 @@ def run_graph(
 def launch_nodes(fleet: Fleet, settings: RunSettings, realtime: int, patience: float = 60.0) -> None:
     """Launch the processes of a run, the chain at priority `realtime`; wait at most `patience` s for the plant's nodes.
 
+    Devices are there before their drivers look for them. While the plant's process starts, this one imports what the
+    others share.
+
     Raises:
         StartError: the plant's process failed, or did not answer in time.
     """
     processes = launch_order(settings.processes)
     rings = {process: Ring() for process in processes if len(process) > 1}
     share(rings.values())
-    for process in processes:
-        make, together = partial(make_nodes, settings, process), len(process) > 1
-        fleet.launch("+".join(process), make, priority(process, realtime), together, rings.get(process))
-        if "plant" in process:
+    for devices in (True, False):
+        group = [process for process in processes if ("plant" in process) is devices]
+        preload(settings, [name for process in group for name in process])
+        if not devices:
+            make_logging_prompt()  # for all processes but the plant's, which does it meanwhile
             fleet.gather("publishes", patience)
+        for process in group:
+            make, together = partial(make_nodes, settings, process), len(process) > 1
+            fleet.launch("+".join(process), make, priority(process, realtime), together, rings.get(process))
     share(())
 
 
@@ -106,10 +111,9 @@ def launch_order(processes: Sequence[tuple[str, ...]]) -> list[tuple[str, ...]]:
 
 
 def prepare(settings: RunSettings) -> int:
-    """Set the environment of the run and import what its processes share; return the priority it may use."""
+    """Set the environment of the run; return the priority it may use."""
     environment.apply(settings.domain, settings.other_hosts)
     os.environ[PERIOD_VARIABLE] = repr(1.0 / settings.rate)
-    preload(settings)
     if settings.realtime >= 0:
         return settings.realtime
     return DEFAULT_REALTIME if realtime_permitted() else 0
