@@ -20,6 +20,7 @@ from sher3_bringup.processes.only_robot import only_robot
 from sher3_bringup.settings.run_settings import UNHURRIED, RunSettings
 
 DEFAULT_REALTIME = 40
+CHAIN = frozenset({"force_sensor", "admittance", "kinematics", "motor_driver"})
 BESIDE = frozenset({"pedal", "supervisor"})
 BESIDE_BY = 10
 """By how much the priority of a process beside the chain from force sample to CAN frame is lower than the chain's."""
@@ -84,8 +85,9 @@ def launch_nodes(fleet: Fleet, settings: RunSettings, realtime: int, patience: f
             make_logging_prompt()  # for all processes but the plant's, which does it meanwhile
             fleet.gather("publishes", patience)
         for process in group:
-            make, together = partial(make_nodes, settings, process), len(process) > 1
-            fleet.launch("+".join(process), make, priority(process, realtime), together, rings.get(process))
+            make, first = partial(make_nodes, settings, process), priority(process, realtime)
+            ring, core = rings.get(process), shared_core(process, processes)
+            fleet.launch("+".join(process), make, first, len(process) > 1, ring, core)
     share(())
 
 
@@ -103,6 +105,17 @@ def priority(process: Sequence[str], realtime: int) -> int:
 def beside(realtime: int) -> int:
     """Return the priority of a process beside a chain of priority `realtime`; 0 stays 0."""
     return min(realtime, max(1, realtime - BESIDE_BY))
+
+
+def shared_core(process: Sequence[str], processes: Sequence[tuple[str, ...]]) -> int | None:
+    """Return the core that a process keeps to, the last one; None where it may run on all.
+
+    The plant and a loop in one process take turns: each sends and waits for the other. On one core neither wakes an
+    idle one, which costs more than what it has to do, and the other cores are left to everybody else.
+    """
+    cores: set[int] = getattr(os, "sched_getaffinity", lambda _: set())(0)
+    joined = [other for other in processes if set(other) >= CHAIN or other == ("plant",)]
+    return max(cores) if len(cores) > 1 and len(joined) > 1 and process in joined else None
 
 
 def launch_order(processes: Sequence[tuple[str, ...]]) -> list[tuple[str, ...]]:
