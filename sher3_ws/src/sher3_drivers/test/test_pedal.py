@@ -85,6 +85,19 @@ def test_the_local_pedal_follows_its_sender_and_notices_its_silence(tmp_path, mo
     assert not sender.send(PedalState(0.0, False))
 
 
+def test_the_sender_finds_a_pedal_that_comes_later_and_one_that_comes_anew(tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
+    sender = PedalSender()
+    assert not sender.send(PedalState(0.5, False))
+    for travel in (0.25, 0.75):
+        pedal = LocalPedal()
+        assert sender.send(PedalState(travel, True))
+        assert pedal.read()[:2] == (travel, True)
+        pedal.close()
+        assert not sender.send(PedalState(travel, True))
+    sender.close()
+
+
 def test_the_in_process_pedal_can_be_lost():
     pedal = InProcessPedal()
     assert pedal.read() is None

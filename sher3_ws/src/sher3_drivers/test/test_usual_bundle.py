@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import random
-import struct
 
 from sher3_description import ACTUATORS, load_robot
 from sher3_drivers.bus.frame import BUNDLED, FRAME_SIZE
@@ -71,5 +70,19 @@ def test_the_short_way_through_a_bundle_is_the_long_one():
     assert 2000 < whole < 4500
 
 
-def test_no_number_of_a_frame_is_read_where_it_does_not_stand():
-    assert struct.calcsize("<8xiHh8xii8xH6x") == 3 * FRAME_SIZE
+def test_every_number_is_read_where_it_stands():
+    collector = TpdoCollector(SCALES, NODES, 1e-3, CHANNELS, protected=True)
+    collector.begin(9)
+    frames = bundle_of(random.Random(1), 9)
+    assert collector.take(b"".join(frames)) == [] and collector.has(collector.all_mask)
+    said, feedback = {}, collector.feedback(9)
+    for can_id, _, _, data in map(BUNDLED.unpack, frames):
+        said[can_id] = data
+    for axis, (node, scale) in enumerate(zip(NODES, SCALES, strict=True)):
+        load, word, torque = TPDO1_DATA.unpack(said[TPDO_BASES[0] + node])
+        motor, demand = TPDO2_DATA.unpack(said[TPDO_BASES[1] + node])
+        assert collector.statuswords[axis] == word
+        assert feedback.load_position[axis] == load * scale.load_encoder
+        assert feedback.effort[axis] == torque * scale.effort
+        assert feedback.motor_position[axis] == motor * scale.motor_encoder
+        assert feedback.velocity_demand[axis] == demand * scale.velocity

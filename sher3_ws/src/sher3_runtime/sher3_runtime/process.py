@@ -29,6 +29,7 @@ from sher3_runtime.ports import clock_of, ports
 from sher3_runtime.spinning import spin
 
 REALTIME_VARIABLE = "SHER3_REALTIME"
+CORE_VARIABLE = "SHER3_CORE"
 CONTROL_VARIABLE = "SHER3_CONTROL_FD"
 NEVER_NS = 1 << 62
 LEAVE_LIMIT = 1.0
@@ -68,7 +69,8 @@ def run(make_nodes: Callable[[], Sequence[Node]], together: bool = False, ring: 
             if barrier is not None:
                 barrier(executor)
             # Not earlier: what start-up costs would use up the share of the processor that the kernel leaves to FIFO.
-            use_realtime(int(os.environ.get(REALTIME_VARIABLE) or 0))
+            if use_realtime(int(os.environ.get(REALTIME_VARIABLE) or 0)) and (core := os.environ.get(CORE_VARIABLE)):
+                keep_to(int(core))
 
         spin(nodes, stop=stop, meet=meet, leave=leave_in_time)
     except Exception as error:
@@ -150,6 +152,13 @@ def use_realtime(priority: int) -> bool:
     except (OSError, AttributeError):
         return False
     return True
+
+
+def keep_to(core: int) -> None:
+    """Keep the threads of this process to one core, where the kernel permits it (Linux only)."""
+    with suppress(OSError, AttributeError):
+        for thread in map(int, os.listdir("/proc/self/task")):
+            os.sched_setaffinity(thread, {core})
 
 
 def realtime_permitted() -> bool:

@@ -3,35 +3,38 @@
 from __future__ import annotations
 
 import json
-from array import array
-from collections.abc import Iterator
+import struct
+from collections import deque
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
 
 _SUB_BITS = 4
-_PENDING = 4096
+_BUCKETS = 61 << _SUB_BITS + 1
+"""Enough for the longest duration of 63 bits."""
+PENDING = 1 << 15
+"""Durations that wait to be sorted: those of half a minute at 1 kHz, and reports look every second."""
+_PAIR = struct.Struct("=qq")
 
 
 class Histogram:
     """Counts of durations in buckets of 1/16 octave: a percentile is at most 6 % too high, the maximum is exact.
 
-    Adding a duration appends to a list, which is all that a control loop can afford. The buckets are filled when
-    somebody looks or when the list is long.
+    Adding a duration appends to a queue, which is all that a control loop can afford. The buckets are filled when
+    somebody looks; of more than `PENDING` durations between two looks the newest count.
+
+    Attributes:
+        add: Counts one duration [ns]; a negative one counts as zero.
     """
 
-    __slots__ = ("_buckets", "_count", "_maximum", "_pending", "_total")
+    __slots__ = ("_buckets", "_count", "_maximum", "_pending", "_total", "add")
 
     def __init__(self) -> None:
-        self._pending: list[int] = []
-        self._buckets: dict[int, int] = {}
+        self._pending: deque[int] = deque(maxlen=PENDING)
+        self.add: Callable[[int], None] = self._pending.append
+        self._buckets = np.zeros(_BUCKETS, dtype=np.int64)
         self._count = self._total = self._maximum = 0
-
-    def add(self, ns: int) -> None:
-        """Count one duration; a negative one counts as zero."""
-        self._pending.append(ns)
-        if len(self._pending) > _PENDING:
-            self._sort()
 
     def _sort(self) -> None:
         if not self._pending:
@@ -39,9 +42,7 @@ class Histogram:
         values = np.maximum(np.array(self._pending, dtype=np.int64), 0)
         self._pending.clear()
         shift = np.maximum(np.frexp(values.astype(float))[1] - _SUB_BITS - 1, 0)
-        keys = (shift << (_SUB_BITS + 1)) + (values >> shift)
-        for key, count in zip(*np.unique(keys, return_counts=True), strict=True):
-            self._buckets[int(key)] = self._buckets.get(int(key), 0) + int(count)
+        self._buckets += np.bincount((shift << (_SUB_BITS + 1)) + (values >> shift), minlength=_BUCKETS)
         self._count += values.size
         self._total += int(values.sum())
         self._maximum = max(self._maximum, int(values.max()))
@@ -60,12 +61,11 @@ class Histogram:
 
     def percentile(self, percent: float) -> int:
         """Return an upper bound [ns] of the given percentile, 0 while empty."""
-        wanted, seen = percent / 100.0 * self.count, 0
-        for key in sorted(self._buckets):
-            seen += self._buckets[key]
-            if seen >= wanted:
-                return min(_upper(key), self._maximum)
-        return 0
+        count = self.count
+        if not count:
+            return 0
+        key = int(np.searchsorted(self._buckets.cumsum(), percent / 100.0 * count))
+        return min(_upper(key), self._maximum)
 
     def summary(self) -> dict[str, int]:
         """Return count, mean, p50, p99 and maximum in ns."""
@@ -89,16 +89,19 @@ def _upper(key: int) -> int:
 class Trace:
     """Pairs (stamp, time) at one point of the chain, for exact percentiles between two processes."""
 
-    __slots__ = ("stamps", "times")
+    __slots__ = ("_pairs",)
 
     def __init__(self) -> None:
-        self.stamps = array("q")
-        self.times = array("q")
+        self._pairs = bytearray()
 
     def mark(self, stamp: int, time_ns: int) -> None:
         """Note that the sample with this stamp passed at `time_ns`."""
-        self.stamps.append(stamp)
-        self.times.append(time_ns)
+        self._pairs += _PAIR.pack(stamp, time_ns)
+
+    def to_dict(self) -> dict[str, list[int]]:
+        """Return stamps and times in the order of the marks."""
+        pairs = np.frombuffer(self._pairs, dtype=np.int64).reshape(-1, 2)
+        return {"stamps": pairs[:, 0].tolist(), "times": pairs[:, 1].tolist()}
 
 
 class Statistics:
@@ -168,5 +171,5 @@ class Statistics:
     def write(self, folder: Path, name: str) -> None:
         """Write statistics and traces as JSON to `folder/name.json`."""
         folder.mkdir(parents=True, exist_ok=True)
-        traces = {p: {"stamps": t.stamps.tolist(), "times": t.times.tolist()} for p, t in (self.traces or {}).items()}
+        traces = {point: trace.to_dict() for point, trace in (self.traces or {}).items()}
         (folder / f"{name}.json").write_text(json.dumps({"statistics": self.to_dict(), "traces": traces}))

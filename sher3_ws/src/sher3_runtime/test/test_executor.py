@@ -7,8 +7,11 @@ from rclpy.context import Context
 from rclpy.node import Node
 from sher3_common.samples import JoySample, TextSample, TwistSample, WrenchSample
 from sher3_runtime import NODE_OPTIONS, advertise, subscribe
+from sher3_runtime.composed import newest
+from sher3_runtime.composed.ring import Ring, share
 from sher3_runtime.domains import own_domain
 from sher3_runtime.executor import QUIET_NS, RawExecutor
+from sher3_runtime.ports import by_ring
 from std_srvs.srv import Trigger
 
 pytestmark = [pytest.mark.graph, pytest.mark.flaky(reruns=2)]
@@ -85,3 +88,24 @@ def test_rare_topics_and_services_are_served_beside_a_stream(node, spin):
     future = client.call_async(Trigger.Request())
     assert spin(lambda: stream() or future.done())
     assert calls == [1] and len(streamed) > 10
+
+
+@pytest.mark.parametrize("rings", [0, 1])
+def test_an_emergency_stop_beside_a_ring_wakes_who_has_heard_nothing_for_long(node, spin, monkeypatch, rings):
+    """A silent topic waits for the next look at everything, which never comes here; what must be heard does not."""
+    monkeypatch.setattr("sher3_runtime.executor.QUIET_NS", 0)
+    monkeypatch.setattr("sher3_runtime.executor.LOOK_NS", 1 << 60)
+    share([Ring(1 << 18) for _ in range(rings)])
+    newest.newest_of_rings.cache_clear()
+    try:
+        heard = []
+        pedal = subscribe(node, "pedal/measured", heard.append)
+        by_ring(node, "pedal/measured", 32)
+    finally:
+        share(())
+        newest.newest_of_rings.cache_clear()
+    assert pedal.urgent is bool(rings)
+    press = advertise(node, "pedal/measured")
+    spin(lambda: False, 0.1)
+    press(JoySample(1, (0.0,), (1,)))
+    assert spin(lambda: bool(heard), 5.0 if rings else 0.2) is bool(rings)

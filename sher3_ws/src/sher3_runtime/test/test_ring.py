@@ -26,7 +26,7 @@ def test_records_come_in_order_whatever_their_length_over_many_turns():
     reader, written, got = ring.join(), [], []
     for number in range(20_000):
         written.append((number % 64, number, dice.randbytes(dice.randrange(90))))
-        ring.put(*written[-1])
+        ring.put(written[-1:])
         if number % 100 == 0:
             got += reader.read()
     assert got + reader.read() == written and reader.lost == 0
@@ -36,9 +36,9 @@ def test_a_reader_that_is_late_counts_what_it_missed_and_goes_on():
     ring = Ring(1 << 18)
     reader = ring.join()
     for number in range(3000):
-        ring.put(1, number, bytes(84))
+        ring.put([(1, number, bytes(84))])
     assert reader.read() == [] and reader.lost == 3000 * (16 + 88)
-    ring.put(2, 7, b"next")
+    ring.put([(2, 7, b"next")])
     assert reader.read() == [(2, 7, b"next")]
 
 
@@ -58,7 +58,7 @@ def test_a_reader_of_some_topics_needs_no_message_of_these():
     reader.take_too(3)
     assert [ring.readers(rank) for rank in (0, 1, 2, 3)] == [(0, 0), (1, 0), (1, 0), (1, 1)]
     for rank in range(4):
-        ring.put(rank, 10 + rank, b"x")
+        ring.put([(rank, 10 + rank, b"x")])
     assert reader.read({1, 3}) == [(1, 11, b"x"), (3, 13, b"x")]
 
 
@@ -78,7 +78,7 @@ def test_another_process_never_sees_a_record_half_written():
     reader, pid = ring.join(), os.fork()
     if pid == 0:
         for number in range(300_000):
-            ring.put(number % 40, number, struct.pack("<q", number) * (1 + number % 12))
+            ring.put([(number % 40, number, struct.pack("<q", number) * (1 + number % 12))])
             if number % 2000 == 0:
                 time.sleep(0.002)
         os.kill(os.getpid(), signal.SIGKILL)  # it shares the test's own buffers and must not write them
@@ -148,9 +148,9 @@ def test_a_node_that_looks_finds_the_newest_samples_of_each_topic_once():
     force, joints = newest.look_at("force/measured_cf", 2), newest.look_at("measured_js", 1)
     ring.offer([force, joints])
     for number in range(3):
-        ring.put(force, number, b"force %d" % number)
-        ring.put(RANKS["servo_cv"], number, b"not looked at")
-    ring.put(joints, 3, b"joints")
+        ring.put([(force, number, b"force %d" % number)])
+        ring.put([(RANKS["servo_cv"], number, b"not looked at")])
+    ring.put([(joints, 3, b"joints")])
     assert newest.take(force) == [b"force 1", b"force 2"] and newest.take(force) == []
     assert newest.take(joints) == [b"joints"] and newest.take(joints) == []
 
@@ -161,7 +161,7 @@ def test_a_topic_that_does_not_come_by_ring_is_left_to_the_subscription():
     newest = Newest()
     share(())
     beat = newest.look_at("supervisor/heartbeat", 1)
-    ring.put(beat, 1, b"of somebody else")
+    ring.put([(beat, 1, b"of somebody else")])
     assert newest.take(beat) == [] and not newest.offers(beat)
 
 

@@ -23,7 +23,7 @@ from typing import Any
 from sher3_common import Sher3Error
 from sher3_runtime.clock import OFFSET_VARIABLE, system_offset
 from sher3_runtime.composed.ring import Ring
-from sher3_runtime.process import CONTROL_VARIABLE, REALTIME_VARIABLE, die_with_parent, run
+from sher3_runtime.process import CONTROL_VARIABLE, CORE_VARIABLE, REALTIME_VARIABLE, die_with_parent, run
 
 from sher3_bringup.errors import NotStopped, ProcessDied, StartError
 
@@ -89,11 +89,12 @@ class Fleet:
         realtime: int = 0,
         together: bool = False,
         ring: Ring | None = None,
+        core: int | None = None,
     ) -> Member:
         """Fork a process that makes and runs nodes, under SCHED_FIFO from its first tick on (see `use_realtime`).
 
         With `together` its nodes hear each other within the process, and `ring` is for those beside it that look at
-        their own pace.
+        their own pace. Under SCHED_FIFO it keeps to `core`, where one is given.
         """
         ours, theirs = socket.socketpair()
         sys.stdout.flush()
@@ -103,6 +104,7 @@ class Fleet:
         if pid == 0:
             die_with_parent(parent)
             os.environ[REALTIME_VARIABLE] = str(realtime)
+            os.environ[CORE_VARIABLE] = "" if core is None else str(core)
             others = [ours, *(member.control for member in self.members)]
             _child(partial(run, make_nodes, together, ring), theirs, others)
         theirs.close()

@@ -22,19 +22,17 @@ def make_nodes(settings: RunSettings, names: Sequence[str]) -> list[Any]:
     return [_FACTORIES[name](settings) for name in names]
 
 
-def preload(settings: RunSettings) -> None:
-    """Import and compile what the nodes of the run need, once, before the processes are forked."""
+def preload(settings: RunSettings, names: Sequence[str]) -> None:
+    """Import and compile what these nodes of the run need, once, before their processes are forked."""
     from sher3_description import TOPICS
     from sher3_runtime.codec.messages import message_class
-    from sher3_runtime.process import make_logging_prompt
 
     gc.disable()
     for kind in {PARAMETER_EVENT, *(topic.type for topic in TOPICS.values())}:
         type(message_class(kind)).__import_type_support__()  # rclpy would do it in each process, with all of its parser
-    for name in settings.names:
+    for name in names:
         import_module(_MODULES[name])
-    warm_up(settings.robot(), settings.names)
-    make_logging_prompt()
+    warm_up(settings.robot(), names)
     # The processes share these pages until somebody writes into them, and a collection writes into every object.
     gc.freeze()
     gc.enable()

@@ -59,7 +59,7 @@ def run_one(name: str, words: Sequence[str]) -> None:
         regime=wanted.regime,
         domain=wanted.domain,
     )
-    preload(settings)
+    preload(settings, [name])
     # Remap rules are arguments of the process; the nodes of `sher3 up` have none.
     NODE_OPTIONS["use_global_arguments"] = True
     sys.argv = [name, *theirs]

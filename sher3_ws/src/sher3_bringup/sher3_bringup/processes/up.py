@@ -12,7 +12,7 @@ from functools import partial
 from sher3_runtime import environment
 from sher3_runtime.composed.ring import Ring, share
 from sher3_runtime.ports import PERIOD_VARIABLE
-from sher3_runtime.process import realtime_permitted
+from sher3_runtime.process import make_logging_prompt, realtime_permitted
 
 from sher3_bringup.processes.fleet import Fleet
 from sher3_bringup.processes.nodes import make_nodes, preload
@@ -20,6 +20,7 @@ from sher3_bringup.processes.only_robot import only_robot
 from sher3_bringup.settings.run_settings import UNHURRIED, RunSettings
 
 DEFAULT_REALTIME = 40
+CHAIN = frozenset({"force_sensor", "admittance", "kinematics", "motor_driver"})
 BESIDE = frozenset({"pedal", "supervisor"})
 BESIDE_BY = 10
 """By how much the priority of a process beside the chain from force sample to CAN frame is lower than the chain's."""
@@ -45,16 +46,14 @@ def run_graph(
     begin = time.monotonic()
     with only_robot(settings.domain), _signals() as caught, Fleet() as fleet:
         realtime = prepare(settings)
-        imported = time.monotonic()
         launch_nodes(fleet, settings, realtime)
         for name, make in (extra or {}).items():
             fleet.launch(name, make, beside(realtime))
         fleet.start()
         started = time.monotonic()
-        count, seconds = len(fleet.members), started - imported
         say(
-            f"ready: {count} processes at {settings.rate:g} Hz on {'mocks' if settings.mock else 'hardware'} "
-            f"in {seconds:.2f} s after {imported - begin:.2f} s of imports; Ctrl-C stops"
+            f"ready: {len(fleet.members)} processes at {settings.rate:g} Hz on "
+            f"{'mocks' if settings.mock else 'hardware'} in {started - begin:.2f} s; Ctrl-C stops"
         )
 
         def finished() -> bool:
@@ -70,17 +69,25 @@ def run_graph(
 def launch_nodes(fleet: Fleet, settings: RunSettings, realtime: int, patience: float = 60.0) -> None:
     """Launch the processes of a run, the chain at priority `realtime`; wait at most `patience` s for the plant's nodes.
 
+    Devices are there before their drivers look for them. While the plant's process starts, this one imports what the
+    others share.
+
     Raises:
         StartError: the plant's process failed, or did not answer in time.
     """
     processes = launch_order(settings.processes)
     rings = {process: Ring() for process in processes if len(process) > 1}
     share(rings.values())
-    for process in processes:
-        make, together = partial(make_nodes, settings, process), len(process) > 1
-        fleet.launch("+".join(process), make, priority(process, realtime), together, rings.get(process))
-        if "plant" in process:
+    for devices in (True, False):
+        group = [process for process in processes if ("plant" in process) is devices]
+        preload(settings, [name for process in group for name in process])
+        if not devices:
+            make_logging_prompt()  # for all processes but the plant's, which does it meanwhile
             fleet.gather("publishes", patience)
+        for process in group:
+            make, first = partial(make_nodes, settings, process), priority(process, realtime)
+            ring, core = rings.get(process), shared_core(process, processes)
+            fleet.launch("+".join(process), make, first, len(process) > 1, ring, core)
     share(())
 
 
@@ -100,16 +107,26 @@ def beside(realtime: int) -> int:
     return min(realtime, max(1, realtime - BESIDE_BY))
 
 
+def shared_core(process: Sequence[str], processes: Sequence[tuple[str, ...]]) -> int | None:
+    """Return the core that a process keeps to, the last one; None where it may run on all.
+
+    The plant and a loop in one process take turns: each sends and waits for the other. On one core neither wakes an
+    idle one, which costs more than what it has to do, and the other cores are left to everybody else.
+    """
+    cores: set[int] = getattr(os, "sched_getaffinity", lambda _: set())(0)
+    joined = [other for other in processes if set(other) >= CHAIN or other == ("plant",)]
+    return max(cores) if len(cores) > 1 and len(joined) > 1 and process in joined else None
+
+
 def launch_order(processes: Sequence[tuple[str, ...]]) -> list[tuple[str, ...]]:
     """Return the processes with the plant's first: devices are there before their drivers look for them."""
     return sorted(processes, key=lambda process: "plant" not in process)
 
 
 def prepare(settings: RunSettings) -> int:
-    """Set the environment of the run and import what its processes share; return the priority it may use."""
+    """Set the environment of the run; return the priority it may use."""
     environment.apply(settings.domain, settings.other_hosts)
     os.environ[PERIOD_VARIABLE] = repr(1.0 / settings.rate)
-    preload(settings)
     if settings.realtime >= 0:
         return settings.realtime
     return DEFAULT_REALTIME if realtime_permitted() else 0

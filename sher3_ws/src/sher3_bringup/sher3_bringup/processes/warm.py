@@ -5,7 +5,7 @@ This is done once in the supervising process; the processes of the graph are its
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from sher3_description import Robot
 
@@ -13,7 +13,7 @@ STAMP = 1_000_000_000_000
 PUSH = (1.0, 1.0, 1.0, 0.02, 0.02, 0.02)
 
 
-def warm_up(robot: Robot, names: tuple[str, ...]) -> None:
+def warm_up(robot: Robot, names: Sequence[str]) -> None:
     """Run each node's computations a few times with inputs that move the robot."""
     for name in names:
         if name in _WARM:
@@ -53,6 +53,7 @@ def _kinematics(robot: Robot) -> None:
 
     motion = MotionController(robot, ControlSettings.from_robot(robot).motion)
     period, q = round(robot.control_period * 1e9), (0.001, 0.0, -0.001, 0.02, 0.001)
+    motion.warm_up()
     motion.cooperative_wants(True, STAMP)
     for k in range(5):
         stamp = STAMP + k * period

@@ -22,6 +22,8 @@ TPDO1_DATA = struct.Struct("<iHh")
 """Load encoder, statusword, torque: the mapping of `objects.TPDO1`."""
 TPDO2_DATA = struct.Struct("<ii")
 """Motor encoder, velocity demand: the mapping of `objects.TPDO2`."""
+_REPORT = struct.Struct("<iHhii")
+"""The data of both."""
 CHECK_DATA = struct.Struct("<H")
 """Check of both: the mapping of `objects.TPDO3`."""
 
@@ -59,29 +61,6 @@ class Invalid(NamedTuple):
     reason: Reason
     text: str
     times: int
-
-
-class _UsualBundle:
-    """The bundle of nearly every tick where all channels come together: the three frames of each drive in order.
-
-    Attributes:
-        axes: drives by channel.
-        headers: what stands before the data of every frame.
-        fields: headers and data in turns.
-        numbers: of every drive load encoder, statusword, torque, motor encoder, demand and check.
-    """
-
-    def __init__(self, node_ids: Sequence[int], channels: Sequence[int]) -> None:
-        self.axes = sorted(range(len(node_ids)), key=channels.__getitem__)
-        pack, pdos = (
-            struct.Struct(f"<{HEADER_FORMAT}").pack,
-            tuple(zip((*TPDO_BASES, CHECK_BASE), _LENGTHS, strict=True)),
-        )
-        self.headers = tuple(
-            [pack(base + node_ids[axis], length, channels[axis]) for axis in self.axes for base, length in pdos]
-        )
-        self.fields = struct.Struct("8s8s" * len(self.headers))
-        self.numbers = struct.Struct("<" + "8xiHh8xii8xH6x" * len(self.axes))
 
 
 class TpdoCollector:
@@ -138,7 +117,19 @@ class TpdoCollector:
         self._motor, self._demand = [0] * count, [0] * count
         self._previous: tuple[int, Vector] | None = None
         self._tick = 0
-        self._usual = _UsualBundle(node_ids, channels) if protected and channels is not None else None
+        self._usual_order: list[int] = []
+        self._usual_headers: tuple[bytes, ...] = ()
+        if protected and channels is not None:
+            self._expect(channels)
+        self._usual = struct.Struct("8s8s" * len(self._usual_headers))
+
+    def _expect(self, channels: Sequence[int]) -> None:
+        """Note the bundle of nearly every tick: all channels in order, and the three frames of each drive in order."""
+        pack, pdos = struct.Struct(f"<{HEADER_FORMAT}").pack, (*zip((*TPDO_BASES, CHECK_BASE), _LENGTHS, strict=True),)
+        self._usual_order = sorted(range(self._count), key=channels.__getitem__)
+        self._usual_headers = tuple(
+            [pack(base + self._node_ids[i], size, channels[i]) for i in self._usual_order for base, size in pdos]
+        )
 
     def forget(self) -> None:
         """Forget the statuswords: the drives restarted."""
@@ -168,7 +159,7 @@ class TpdoCollector:
         """
         if len(frames) % FRAME_SIZE:
             check_frames(frames)
-        if self._usual is not None and not self._mask and not self._doubt and self._take_usual(frames):
+        if len(frames) == self._usual.size and not self._mask and self._take_usual(frames):
             return []
         others = []
         slots = self._slots
@@ -195,22 +186,14 @@ class TpdoCollector:
 
     def _take_usual(self, frames: bytes) -> bool:
         """Take the bundle of nearly every tick; False where it is another one, of which nothing is taken."""
-        usual = self._usual
-        if usual is None or len(frames) != usual.fields.size:
+        fields = self._usual.unpack(frames)
+        if fields[0::2] != self._usual_headers:
             return False
-        fields = usual.fields.unpack(frames)
-        if fields[0::2] != usual.headers:
-            return False
-        said, numbers = fields[1::2], usual.numbers.unpack(frames)
-        for place, axis in enumerate(usual.axes):
-            data = said[3 * place] + said[3 * place + 1]
-            if numbers[6 * place + 5] != check_of(data, self._node_ids[axis], self.counter):
-                return False
-        for place, axis in enumerate(usual.axes):
-            self._said[axis] = [*said[3 * place : 3 * place + 3]]
-            self._load[axis], self.statuswords[axis], self._torque[axis] = numbers[6 * place : 6 * place + 3]
-            self._motor[axis], self._demand[axis] = numbers[6 * place + 3 : 6 * place + 5]
+        said = fields[1::2]
         self._mask = self.all_mask
+        for place, axis in enumerate(self._usual_order):
+            self._said[axis][:] = said[3 * place : 3 * place + 3]
+            self._judge(axis)
         return True
 
     def _read(self, axis: int, pdo: int) -> None:
@@ -225,8 +208,9 @@ class TpdoCollector:
         first, second, last = self._said[axis]
         data, (check,) = first + second, CHECK_DATA.unpack_from(last)
         if check == check_of(data, self._node_ids[axis], self.counter):
-            self._read(axis, 0)
-            self._read(axis, 1)
+            load, word, torque, motor, demand = _REPORT.unpack(data)
+            self._load[axis], self.statuswords[axis], self._torque[axis] = load, word, torque
+            self._motor[axis], self._demand[axis] = motor, demand
             if axis in self._doubt and self._doubt[axis][0] is not Reason.DRIVE_TWICE:
                 del self._doubt[axis]
             return

@@ -78,10 +78,18 @@ class PedalSender:
         """Send the state; return False when nobody takes it, which does no harm."""
         try:
             for sent in [wired(state)] if self.tamper is None else self.tamper(wired(state)):
-                self._socket.sendto(_DATAGRAM.pack(*sent), self._path)
+                self._put(_DATAGRAM.pack(*sent))
         except OSError:
             return False
         return True
+
+    def _put(self, datagram: bytes) -> None:
+        """Put one datagram on the line, which is sought anew when nobody is at its end, or somebody else."""
+        try:
+            self._socket.send(datagram)
+        except OSError:
+            self._socket.connect(self._path)
+            self._socket.send(datagram)
 
     def close(self) -> None:
         """Close the socket."""

@@ -11,6 +11,11 @@ MAX_STRING = 65_536
 MAX_TRAILER = 24
 """Undefined bytes accepted behind the last field: rclpy reserves, and sends, a few for each empty sequence."""
 
+_LENGTH = {order: struct.Struct(f"{order}I") for order in "<>"}
+"""What stands before a string. Strings have a way of their own here: a report has sixty of them."""
+_PADS = (b"", b"\0\0\0", b"\0\0", b"\0")
+"""What aligns the next field to four bytes, by the length so far modulo four."""
+
 
 class Reader:
     """Reads one message; raises ValueError or struct.error at the first violation."""
@@ -20,6 +25,7 @@ class Reader:
         if len(data) < 4 or data[0] != 0 or data[1] not in (0, 1):
             raise ValueError(f"encapsulation header {data[:4].hex()} is not plain CDR")
         self._order = "<" if data[1] else ">"
+        self._length = _LENGTH[self._order]
         self._data = data[4:]
         self._at = 0
 
@@ -63,14 +69,15 @@ class Reader:
 
     def string(self) -> str:
         """Read a UTF-8 string."""
-        length = self.uint32()
-        if not 1 <= length <= MAX_STRING or self._at + length > len(self._data):
-            raise ValueError(f"string of {length} bytes at {self._at}")
-        raw = self._data[self._at : self._at + length]
-        self._at += length
-        if raw[-1] != 0:
+        data, begin = self._data, self._at + (-self._at & 3) + 4
+        (length,) = self._length.unpack_from(data, begin - 4)
+        end = begin + length
+        if not 1 <= length <= MAX_STRING or end > len(data):
+            raise ValueError(f"string of {length} bytes at {begin}")
+        self._at = end
+        if data[end - 1] != 0:
             raise ValueError("string without its NUL")
-        return raw[:-1].decode("utf-8")
+        return data[begin : end - 1].decode("utf-8")
 
     def finish(self) -> None:
         """Check that nothing follows but a trailer of at most `MAX_TRAILER` bytes."""
@@ -120,8 +127,8 @@ class Writer:
 
     def string(self, text: str) -> None:
         """Append a UTF-8 string."""
-        raw = text.encode("utf-8") + b"\0"
-        if len(raw) > MAX_STRING or b"\0" in raw[:-1]:
-            raise ValueError(f"text of {len(raw)} bytes")
-        self.uint32(len(raw))
-        self.data.extend(raw)
+        raw, data = text.encode("utf-8"), self.data
+        length = len(raw) + 1
+        if length > MAX_STRING or b"\0" in raw:
+            raise ValueError(f"text of {length} bytes")
+        data += _PADS[len(data) & 3] + _LENGTH["<"].pack(length) + raw + b"\0"

@@ -28,6 +28,7 @@ STRIDE = 3
 _RANKS = {name: rank for rank, name in enumerate(TOPICS)}
 
 Offer = Callable[[Any], object]
+Send = Callable[[bytes], None]
 
 
 class Composition:
@@ -45,7 +46,8 @@ class Composition:
         self._leave: dict[str, list[Callable[[], None]]] = {}
         self._turns: list[Turn] = []
         self._slow_ticks = 0
-        self._outbox: deque[tuple[Callable[[Any, bool, bool], None], Any, bool, bool]] = deque()
+        self._outbox: list[tuple[Callable[[Any], bytes], Any, Send | None, int | None]] = []
+        self._now: Callable[[], int] = monotonic_ns
 
     def offset(self, every: int) -> int:
         """Return by how many periods a callback of every so many periods is late: no two of ten by the same number."""
@@ -101,7 +103,7 @@ class Composition:
         topic: Topic,
         as_sent: Callable[[Any], Any] | None,
         encode: Callable[[Any], bytes],
-        send: Callable[[bytes], None],
+        send: Send,
         listens: Callable[[], int],
         now: Callable[[], int],
     ) -> Callable[[Any], None]:
@@ -116,6 +118,7 @@ class Composition:
             now: time of the graph [ns].
         """
         self._published.add(topic.name)
+        self._now = now
         offers, outbox, name, rank = self.offers(topic.name), self._outbox, topic.name, _RANKS[topic.name]
         latched = topic.qos.durability == "transient_local"
         ring = self._ring if _goes_by_ring(topic) else None
@@ -138,14 +141,7 @@ class Composition:
                 if (value := of_note(sample)) != noted:
                     noted, left = value, REPEATS
             if outside or beside:
-                outbox.append((leave, sample, outside or left > 0, beside))
-
-        def leave(sample: Any, outside: bool, beside: bool) -> None:
-            data = encode(sample)
-            if beside and ring is not None:
-                ring.put(rank, now(), data)
-            if outside:
-                send(data)
+                outbox.append((encode, sample, send if outside or left > 0 else None, rank if beside else None))
 
         return publish
 
@@ -165,10 +161,18 @@ class Composition:
 
     def flush(self) -> None:
         """Let out what was published since the last call; called when the work of a moment is done."""
-        outbox = self._outbox
-        while outbox:
-            leave, sample, outside, beside = outbox.popleft()
-            leave(sample, outside, beside)
+        if not self._outbox:
+            return
+        leaving, records, now = self._outbox.copy(), [], self._now()
+        self._outbox.clear()
+        for encode, sample, send, rank in leaving:
+            data = encode(sample)
+            if rank is not None:
+                records.append((rank, now, data))
+            if send is not None:
+                send(data)
+        if records and self._ring is not None:
+            self._ring.put(records)
 
     def __enter__(self) -> Composition:
         _composing.append(self)

@@ -22,6 +22,8 @@ _MARGIN = 1 << 16
 """Bytes before a full turn that a reader counts as lost already: the writer may be at work on them."""
 _HEAD = struct.Struct("=IIq")
 """Length of the data, rank of the topic, time of sending [ns]."""
+_PADS = tuple([bytes(-length & 7) for length in range(8)])
+"""What fills a record up to a multiple of eight bytes, by the length of its data modulo eight."""
 _WRITTEN, _OFFERED, _SLOTS = 0, 1, range(2, 14, 3)
 """Words before the ring: bytes ever written, and the ranks of the topics, a bit each. For each reader its process id,
 the ranks it takes, and those of them that it subscribes to as well."""
@@ -57,10 +59,13 @@ class Ring:
                     words[slot] = 0
         return takes, subscribed
 
-    def put(self, rank: int, time: int, data: bytes) -> None:
-        """Write a record; nobody is woken."""
-        memory, base, size, written = self._memory, self._base, self._size, self._words[_WRITTEN]
-        record = _HEAD.pack(len(data), rank, time) + data
+    def put(self, records: Iterable[Record]) -> None:
+        """Write records; nobody is woken, and a reader sees all of them or none."""
+        parts: list[bytes] = []
+        for rank, time, data in records:
+            parts += (_HEAD.pack(len(data), rank, time), data, _PADS[len(data) & 7])
+        record, memory, base, size = b"".join(parts), self._memory, self._base, self._size
+        written = self._words[_WRITTEN]
         at = written % size
         end = at + len(record)
         if end <= size:
@@ -69,7 +74,7 @@ class Ring:
             cut = size - at
             memory[base + at : base + size] = record[:cut]
             memory[base : base + end - size] = record[cut:]
-        self._words[_WRITTEN] = written + len(record) + (-len(record) & 7)
+        self._words[_WRITTEN] = written + len(record)
 
     # Readers.
 
