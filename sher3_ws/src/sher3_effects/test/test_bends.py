@@ -75,4 +75,5 @@ def test_teeth_that_are_unlike_have_neighbouring_orders_and_harmonics():
     (columns,) = Cogging().signature(view, "tilt", {"periods_per_rev": 1.0, "unlike": 1.0}).columns.values()
     assert columns.shape == (2, 1, 8)
     assert Cogging().parameters({"periods_per_rev": 4.0}, np.array([3.0, 4.0, 1.0, 1.0]))["amplitude"] == 5.0
-    assert Cogging().bends({"periods_per_rev": 4.0}) and not CoggingOnAxis().bends({"periods_per_rev": 4.0})
+    assert Cogging().bends([], "roll", {"periods_per_rev": 4.0})
+    assert not CoggingOnAxis().bends([], "roll", {"periods_per_rev": 4.0})

@@ -49,7 +49,7 @@ class StructuralCompliance(Page):
         """The paper's ratios, or three free springs."""
         return [{"free": 0.0}, {"free": 1.0}]
 
-    def bends(self, shape: Shape) -> list[Shape]:
+    def bends(self, views: Sequence[RobotView], site: str, shape: Shape) -> list[Shape]:
         """Return the same of an arm that stiffens."""
         return stiffened(shape)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -34,7 +35,7 @@ class ToolBending(Page):
         """Return the loaded tip."""
         return (Channel("structure", "tip"),)
 
-    def bends(self, shape: Shape) -> list[Shape]:
+    def bends(self, views: Sequence[AxisView], site: str, shape: Shape) -> list[Shape]:
         """Return the same of a tool that stiffens."""
         return stiffened(shape)
 

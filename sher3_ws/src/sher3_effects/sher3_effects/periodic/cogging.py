@@ -42,7 +42,7 @@ class Cogging(Page):
         """Periods per motor revolution."""
         return [{"periods_per_rev": float(n)} for n in self.ORDERS]
 
-    def bends(self, shape: Shape) -> list[Shape]:
+    def bends(self, views: Sequence[AxisView], site: str, shape: Shape) -> list[Shape]:
         """Return the same number of teeth, unlike each other."""
         return [{**shape, "unlike": 1.0}]
 
@@ -68,7 +68,7 @@ class CoggingOnAxis(Cogging):
 
     kinds = ("axis",)
 
-    def bends(self, shape: Shape) -> list[Shape]:
+    def bends(self, views: Sequence[AxisView], site: str, shape: Shape) -> list[Shape]:
         """Return none."""
         return []
 
