@@ -30,7 +30,7 @@ def colcon(tmp_path_factory):
     see_libraries(python)
     ignore = shutil.ignore_patterns("__pycache__", "build", "install", "log", "*.egg-info")
     shutil.copytree(ROOT / "sher3_ws", folder / "project" / "sher3_ws", ignore=ignore)
-    for name in ("pyproject.toml", "docs", "bench"):
+    for name in ("pyproject.toml", "docs", "bench", "tests"):
         source = ROOT / name
         (shutil.copytree if source.is_dir() else shutil.copy)(source, folder / "project" / name)
 

@@ -48,7 +48,7 @@ class Terminal:
         if command.interrupts:
             self.interrupt()
             return
-        if command.bare.startswith("sher3 up") and command.forever:
+        if command.bare.startswith("sher3 up") and command.exit_code == 0:  # a domain has one robot
             self.interrupt()
         elif command.needs_robot and not self.running:
             self.start("sher3 up --patient")
