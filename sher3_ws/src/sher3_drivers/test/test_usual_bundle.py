@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 
+import pytest
 from sher3_description import ACTUATORS, load_robot
 from sher3_drivers.bus.frame import BUNDLED, FRAME_SIZE
 from sher3_drivers.canopen.objects import CHECK_BASE, NODE_IDS, TPDO_BASES
@@ -86,3 +87,11 @@ def test_every_number_is_read_where_it_stands():
         assert feedback.effort[axis] == torque * scale.effort
         assert feedback.motor_position[axis] == motor * scale.motor_encoder
         assert feedback.velocity_demand[axis] == demand * scale.velocity
+
+
+@pytest.mark.parametrize("protected", [False, True])
+@pytest.mark.parametrize("channels", [None, CHANNELS])
+def test_no_frames_at_all_bring_nothing(protected, channels):
+    collector = TpdoCollector(SCALES, NODES, 0.002, channels, protected)
+    assert collector.take(b"") == []
+    assert not collector.has(collector.positions_mask) and not collector.has(collector.all_mask)

@@ -125,10 +125,14 @@ class TpdoCollector:
 
     def _expect(self, channels: Sequence[int]) -> None:
         """Note the bundle of nearly every tick: all channels in order, and the three frames of each drive in order."""
-        pack, pdos = struct.Struct(f"<{HEADER_FORMAT}").pack, (*zip((*TPDO_BASES, CHECK_BASE), _LENGTHS, strict=True),)
+        pack, bases = struct.Struct(f"<{HEADER_FORMAT}").pack, (*TPDO_BASES, CHECK_BASE)
         self._usual_order = sorted(range(self._count), key=channels.__getitem__)
         self._usual_headers = tuple(
-            [pack(base + self._node_ids[i], size, channels[i]) for i in self._usual_order for base, size in pdos]
+            [
+                pack(base + self._node_ids[i], size, channels[i])
+                for i in self._usual_order
+                for base, size in zip(bases, _LENGTHS, strict=True)
+            ]
         )
 
     def forget(self) -> None:
@@ -159,7 +163,7 @@ class TpdoCollector:
         """
         if len(frames) % FRAME_SIZE:
             check_frames(frames)
-        if len(frames) == self._usual.size and not self._mask and self._take_usual(frames):
+        if frames and len(frames) == self._usual.size and not self._mask and self._take_usual(frames):
             return []
         others = []
         slots = self._slots
