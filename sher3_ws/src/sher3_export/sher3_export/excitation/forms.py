@@ -24,10 +24,7 @@ def as_csv(made: Excitation) -> str:
     header, columns = ["time [s]"], [made.time]
     for i, (joint, slides) in enumerate(zip(made.joints, made.slides, strict=True)):
         unit = "m" if slides else "rad"
-        each = zip(
-            ("position", "velocity", "acceleration"), ("", "/s", "/s^2"), made.motion.motion(made.time), strict=True
-        )
-        for name, per, x in each:
+        for (name, per), x in zip(COLUMNS, made.motion.motion(made.time), strict=True):
             header.append(f"{joint}_{name} [{unit}{per}]")
             columns.append(x[:, i])
     rows = [",".join(f"{x:.9g}" for x in row) for row in np.column_stack(columns)]

@@ -17,7 +17,7 @@ TORQUES = EFFORT - frozenset(("iq", "strom", "amps"))
 FORCES = ("N", "kN", "N*m", "mN*m")
 OF_JOINT = ("position", "effort", "command", "load")
 """Signals of a joint that a draft keeps: an arm is judged by its forces."""
-OF_AXIS = re.compile(r": (driven by|mass is not|a position servo|undriven|reference is|temperature is)")
+OF_AXIS = re.compile(r": (driven by|mass is not|a position servo|undriven)")
 """Guesses on single axes that an arm has no use for."""
 
 
@@ -48,7 +48,7 @@ def of_arm(data: Mapping[str, Any], model: Path, guesses: list[str]) -> dict[str
     slides = joints_of(model)
     axes = {axis["name"]: axis for axis in data["axes"]}
     found = fitted(list(axes), list(slides), model)
-    guesses[:] = [g for g in guesses if not re.search(r": (driven by|mass is not|a position servo|undriven)", g)]
+    guesses[:] = [g for g in guesses if not OF_AXIS.search(g)]
     guesses += [
         f"{axis} is joint {joint}, because of its {why}" for axis, (joint, why) in found.items() if axis != joint
     ]
