@@ -20,6 +20,7 @@ from sher3_diagnosis.discover.spectrum import suggestions
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.finding import Findings
 from sher3_diagnosis.quantify.closure import interval_of
+from sher3_diagnosis.quantify.jackknife import standard_error
 from sher3_diagnosis.thresholds import JACKKNIFE, LEAST_COMPONENT, MIN_RUNS
 from sher3_diagnosis.verdict import Interval, Parameter
 
@@ -196,8 +197,7 @@ def _terms(found: Columns, formula: Formula, again: Sequence[Formula]) -> list[F
         every = range(len(features))
         best = moments.coefficients(every)
         draws = np.array([moments.without(r).coefficients(every) for r in range(len(found.target))])
-        n = len(draws)
-        half = JACKKNIFE * np.sqrt((n - 1) / n * np.sum((draws - draws.mean(axis=0)) ** 2, axis=0))
+        half = JACKKNIFE * standard_error(draws)
         energy = np.einsum("rii->i", moments.normal) * best**2
         for i, f in enumerate(features):
             unit = f.unit(found.units, found.evidence.unit(found.channels[0], component // 3))

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from sher3_diagnosis.channel import Array
+from sher3_diagnosis.quantify.jackknife import standard_error
 
 from sher3_effects.view import AxisView
 
@@ -58,14 +59,13 @@ def plateau(views: Sequence[AxisView], site: str, width: float, friction: float)
         return None
     every = [_solved(found[:k] + found[k + 1 :]) for k in range(len(found))]
     lost, give = _solved(found)
-    n = len(found)
     widths = np.array([a - 2.0 * friction * b for a, b in every])
     gives = np.array([b for _, b in every])
-    scatter = np.sqrt((n - 1) / n * np.sum((gives - gives.mean()) ** 2))
+    scatter = standard_error(gives)
     gap = lost - 2.0 * friction * give
     if give < CERTAIN * scatter or not 0.0 < gap < lost:
         return None
-    return Plateau(gap, float(np.sqrt((n - 1) / n * np.sum((widths - widths.mean()) ** 2))), lost)
+    return Plateau(gap, float(standard_error(widths)), lost)
 
 
 def _seated(view: AxisView, site: str, width: float, friction: float) -> Array:

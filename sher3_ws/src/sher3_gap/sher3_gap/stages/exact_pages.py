@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection
 
-import numpy as np
 from sher3_diagnosis.attribute.candidates import Candidates
-from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.finding import ExactFinding
 from sher3_diagnosis.fit.fitting import Fit
+from sher3_diagnosis.quantify.jackknife import standard_error
 from sher3_diagnosis.thresholds import JACKKNIFE, REPRODUCED
 from sher3_diagnosis.verdict import Cause, Parameter
 from sher3_effects import library
@@ -25,7 +24,8 @@ def with_pages(finding: ExactFinding, gathered: Callable[[], Evidence], without:
     if not pages or finding.closure.value >= REPRODUCED:
         return finding
     evidence = gathered()
-    fits = [(page, site, best_of(evidence, pages, page, site)) for page in pages for site in page.sites]
+    candidates, shown = Candidates(evidence, pages), {c.actuator for c in evidence.channels}
+    fits = [(page, site, candidates.best(page, site)) for page in pages for site in page.sites if site in shown]
     known = [(page, site, found) for page, site, found in fits if found is not None]
     if not known:
         return finding
@@ -37,22 +37,13 @@ def with_pages(finding: ExactFinding, gathered: Callable[[], Evidence], without:
     return exact_finding(finding.where, [_cause(page, site, best, closure)], closure)
 
 
-def best_of(evidence: Evidence, pages: Sequence[Effect], page: FoundPage, site: str) -> Fit | None:
-    """Return the best fit of a page at a site; None where that shows no error."""
-    shown = {c.actuator for c in evidence.channels}
-    return Candidates(evidence, pages).best(page, site) if site in shown else None
-
-
 def _cause(page: FoundPage, site: str, best: Fit, closure: float) -> Cause:
     """Return the page as a cause; the intervals of its coefficients are a jackknife over runs."""
-    term = best.terms[-1]
-    draws = best.loro_of(len(best.terms) - 1)
-    n = len(draws)
-    half = JACKKNIFE * np.sqrt((n - 1) / n * np.sum((draws - draws.mean(axis=0)) ** 2, axis=0))
-    values = page.parameters(term.shape, best.of(len(best.terms) - 1))
+    term, last = best.terms[-1], len(best.terms) - 1
+    half = JACKKNIFE * standard_error(best.loro_of(last))
+    wide = {f"coefficient_{k + 1}": float(x) for k, x in enumerate(half)}
     found = {}
-    for name, value in values.items():
-        wide = float(half[int(name.rsplit("_", 1)[1]) - 1]) if name.startswith("coefficient_") else None
-        ends = (None, None) if wide is None else (value - wide, value + wide)
-        found[name] = Parameter(value=value, low=ends[0], high=ends[1], unit=page.unit(name, site, False))
+    for name, value in page.parameters(term.shape, best.of(last)).items():
+        low, high = (value - wide[name], value + wide[name]) if name in wide else (None, None)
+        found[name] = Parameter(value=value, low=low, high=high, unit=page.unit(name, site, False))
     return exact_cause(page.id, site, closure, **found)

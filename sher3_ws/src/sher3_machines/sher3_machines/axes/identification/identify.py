@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from sher3_diagnosis.channel import Array
 from sher3_diagnosis.fit.fitting import solve
+from sher3_diagnosis.quantify.jackknife import standard_error
 from sher3_diagnosis.thresholds import JACKKNIFE
 
 from sher3_machines.axes.view import AxisView
@@ -57,7 +58,7 @@ def identify_mass(views: Sequence[AxisView]) -> tuple[float, tuple[float, float]
     noise = noise_share(views, used[:, 0])
     _, draws = _held_out(used, y, block, noise)
     mass = float(solve(_relieved(used, noise), used.T @ y)[0])
-    error = float(np.sqrt((BLOCKS - 1) / BLOCKS * np.sum((draws - draws.mean()) ** 2)))
+    error = float(standard_error(draws))
     if not mass > LEAST_EXCITED * error:
         wrong = mass < -LEAST_EXCITED * error
         what = "its mass comes out below zero: the model is wrong" if wrong else "the record does not tell its mass"
@@ -104,7 +105,7 @@ def share_of_inertia(views: Sequence[AxisView]) -> float:
         return np.inf
     columns = _best(x, y, block)[1]
     _, draws = _held_out(x[:, columns], y, block)
-    error = float(np.sqrt((BLOCKS - 1) / BLOCKS * np.sum((draws - draws.mean()) ** 2)))
+    error = float(standard_error(draws))
     most = abs(float(draws.mean())) + LEAST_EXCITED * error
     return most * float(np.sqrt(np.mean(x[:, 0] ** 2) / np.mean(y**2)))
 

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from sher3_diagnosis.channel import Array
 from sher3_diagnosis.fit.fitting import solve
+from sher3_diagnosis.quantify.jackknife import standard_error
 from sher3_diagnosis.thresholds import JACKKNIFE
 
 from sher3_machines.thresholds import BLOCKS, LEAST_EXCITED, SLIPPED, SURELY
@@ -70,17 +71,12 @@ def share_in(x: Array, y: Array) -> Share:
     if len(y) < BLOCKS * x.shape[1]:
         return Share(0.0, np.inf, False)
     draws, found = _left_out(x, y), solve(x.T @ x, x.T @ y)
-    error = _jackknife(draws[:, 0])
+    error = float(standard_error(draws[:, 0]))
     told = abs(float(found[0])) > LEAST_EXCITED * error
     speed = x[:, 1]
     lost = draws[:, 1] * (speed @ speed) + draws[:, 2] * (speed @ x[:, 2])
-    gives = bool(lost.mean() < -LEAST_EXCITED * _jackknife(lost))
+    gives = bool(lost.mean() < -LEAST_EXCITED * standard_error(lost))
     return Share(float(found[0]) if told else 0.0, error, bool(found[0] < 0.0) if told else gives)
-
-
-def _jackknife(draws: Array) -> float:
-    """Standard error of a value from its values without each block, (BLOCKS,)."""
-    return float(np.sqrt((BLOCKS - 1) / BLOCKS * np.sum((draws - draws.mean()) ** 2)))
 
 
 def _left_out(x: Array, y: Array) -> Array:

@@ -15,6 +15,7 @@ from sher3_diagnosis.filter import low_pass
 from sher3_diagnosis.finding import ExactFinding
 from sher3_diagnosis.localise.gaps import localise
 from sher3_diagnosis.quantify.closure import interval_of
+from sher3_diagnosis.quantify.jackknife import standard_error
 from sher3_diagnosis.thresholds import JACKKNIFE
 from sher3_diagnosis.verdict import Cause, Parameter, Residual, Where
 from sher3_effects.timing.sensor_delay import SensorDelay
@@ -75,7 +76,7 @@ def lateness(evidence: ArmMotionEvidence, joint: str) -> Late | None:
     found = _fitted(x, y)
     left = y - x[:, 1:] @ found[1:]
     each = np.array([(x[block == k, 0] @ left[block == k]) / np.sum(x[block == k, 0] ** 2) for k in range(BLOCKS)])
-    error = float(np.sqrt((BLOCKS - 1) / BLOCKS * np.sum((without - without.mean()) ** 2)))
+    error = float(standard_error(without))
     return Late(-float(found[0]), JACKKNIFE * error, float(np.sqrt(np.mean(x[:, 0] ** 2))), -each)
 
 
