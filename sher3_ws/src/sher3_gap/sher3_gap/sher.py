@@ -23,10 +23,10 @@ from sher3_gap.case.loading import load_case
 from sher3_gap.evidence import SherEvidence, gather
 from sher3_gap.signals import RunSignals
 from sher3_gap.simulate.tip import tip_closure
-from sher3_gap.stages.controller_causes import controller_finding
-from sher3_gap.stages.exact_evidence import exact_evidence
-from sher3_gap.stages.exact_pages import with_pages
-from sher3_gap.stages.transport_causes import transport_finding
+from sher3_gap.stages.exact.controller import controller_finding
+from sher3_gap.stages.exact.evidence import exact_evidence
+from sher3_gap.stages.exact.pages import with_pages
+from sher3_gap.stages.exact.transport import transport_finding
 
 if TYPE_CHECKING:
     from sher3_gap.report.reporter import SherReporter

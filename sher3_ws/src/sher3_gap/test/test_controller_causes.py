@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 from recorded import ROBOT, run, stroke
-from sher3_gap.stages.controller_causes import controller_finding, gain_error
-from sher3_gap.stages.exact import host_law
+from sher3_gap.stages.exact.controller import controller_finding, gain_error
+from sher3_gap.stages.exact.law import host_law
 
 
 def commanded(scale, ticks=300, spoil=0.0):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from recorded import ROBOT, run, stroke
-from sher3_gap.stages.exact import (
+from sher3_gap.stages.exact.law import (
     controller_error,
     delayed,
     host_law,

@@ -11,12 +11,12 @@ from sher3_diagnosis.finding import Findings
 from sher3_effects import add_library
 from sher3_effects.found_page import save_found
 from sher3_effects.registry import VARIABLE
-from sher3_gap.stages.controller_causes import controller_finding
-from sher3_gap.stages.exact import delayed, host_law
-from sher3_gap.stages.exact_evidence import exact_evidence
-from sher3_gap.stages.exact_pages import with_pages
-from sher3_gap.stages.timing import timing_of
-from sher3_gap.stages.transport_causes import transport_finding
+from sher3_gap.stages.exact.controller import controller_finding
+from sher3_gap.stages.exact.evidence import exact_evidence
+from sher3_gap.stages.exact.law import delayed, host_law
+from sher3_gap.stages.exact.pages import with_pages
+from sher3_gap.stages.exact.timing import timing_of
+from sher3_gap.stages.exact.transport import transport_finding
 
 TICKS, RUNS = 400, 5
 

@@ -5,7 +5,7 @@ import pytest
 from sher3_diagnosis.fit.fitting import fit, make_term, solve
 from sher3_effects import library, plants
 from sher3_gap.evidence import gather
-from sher3_gap.stages.timing import timing_of
+from sher3_gap.stages.exact.timing import timing_of
 from simulated import ROBOT, runs_of, signals
 
 

@@ -6,9 +6,9 @@ from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.localise.gaps import gap_of
 from sher3_effects import plants
 from sher3_gap.evidence import gather
+from sher3_gap.stages.exact.timing import demand_in_force, timing_of
 from sher3_gap.stages.geometry import Geometry
 from sher3_gap.stages.residuals import motor_residual, step_share
-from sher3_gap.stages.timing import demand_in_force, timing_of
 from simulated import ROBOT, runs_of, signals
 
 

@@ -8,7 +8,7 @@ from sher3_effects import plants
 from sher3_gap.case.loading import signals_of
 from sher3_gap.case.ticks import in_order, on_grid, tick_grid
 from sher3_gap.errors import CaseError
-from sher3_gap.stages.exact import controller_error, transport_error, with_lateness
+from sher3_gap.stages.exact.law import controller_error, transport_error, with_lateness
 from simulated import ROBOT, runs_of
 
 T = 2_000_000

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 from recorded import PERIOD, ROBOT, run, stroke
-from sher3_gap.stages.exact import delayed, shifted
-from sher3_gap.stages.timing import constant_latency, demand_in_force, scaled, tick_latency, timing_of
+from sher3_gap.stages.exact.law import delayed, shifted
+from sher3_gap.stages.exact.timing import constant_latency, demand_in_force, scaled, tick_latency, timing_of
 
 COMMAND = stroke(400, hertz=5.0) + stroke(400, hertz=13.0)
 

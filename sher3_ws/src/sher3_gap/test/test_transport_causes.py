@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from recorded import PERIOD, ROBOT, run
 from sher3_diagnosis.thresholds import DROPS_SEEN
-from sher3_gap.stages.timing import Timing
-from sher3_gap.stages.transport_causes import transport_finding
+from sher3_gap.stages.exact.timing import Timing
+from sher3_gap.stages.exact.transport import transport_finding
 
 RUNS = [run(1000, command=0.0, echo=0.0)]
 

@@ -18,7 +18,7 @@ from sher3_gap.case.audit import check_parameters
 from sher3_gap.case.ticks import Gap, check_finite, in_order, is_live, on_grid, tick_grid
 from sher3_gap.errors import CaseError
 from sher3_gap.signals import RAMP_LIMIT, RunSignals
-from sher3_gap.stages.exact import with_lateness
+from sher3_gap.stages.exact.law import with_lateness
 
 LOADED = 0.15
 """Force beside the tool's weight [N] from which a tip is not free."""

@@ -23,7 +23,7 @@ from sher3_gap.case.loading import free, signals_of
 from sher3_gap.case.ticks import LONGEST_HOLE
 from sher3_gap.errors import CaseError
 from sher3_gap.signals import RunSignals
-from sher3_gap.stages.exact import EXACT, controller_error, transport_error
+from sher3_gap.stages.exact.law import EXACT, controller_error, transport_error
 from sher3_gap.stages.floors import Floors, chatter_floors, resolution_floors
 from sher3_gap.stages.geometry import Geometry
 from sher3_gap.stages.residuals import (

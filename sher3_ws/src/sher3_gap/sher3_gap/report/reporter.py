@@ -13,8 +13,8 @@ from sher3_gap.evidence import SherEvidence
 from sher3_gap.excitation import catalogue
 from sher3_gap.report.drawing import robot_drawing
 from sher3_gap.report.topics import data_text, exact_stages, isolability_of
+from sher3_gap.stages.exact.timing import demand_in_force
 from sher3_gap.stages.residuals import mean_force
-from sher3_gap.stages.timing import demand_in_force
 
 AT_TIP = "tip − nominal tip"
 DEVIATIONS = {"transmission": "load − motor", "mechanism": AT_TIP, "structure": AT_TIP, "sensing": "reading − nominal"}

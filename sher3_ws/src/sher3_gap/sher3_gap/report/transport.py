@@ -13,7 +13,7 @@ from sher3_diagnosis.words import place
 
 from sher3_gap.evidence import SherEvidence
 from sher3_gap.signals import RunSignals
-from sher3_gap.stages.exact import delayed
+from sher3_gap.stages.exact.law import delayed
 from sher3_gap.stages.units import ROTARY_AXES
 
 BEFORE, BEHIND = 12, 22

@@ -22,7 +22,7 @@ from sher3_sim import PlantEffect
 
 from sher3_gap.signals import RunSignals
 from sher3_gap.simulate.tip import tip_error
-from sher3_gap.stages.exact import EXACT, controller_error, transport_error
+from sher3_gap.stages.exact.law import EXACT, controller_error, transport_error
 from sher3_gap.stages.floors import resolution_floors
 from sher3_gap.stages.geometry import Geometry
 from sher3_gap.stages.residuals import Residuals, all_residuals

@@ -20,7 +20,7 @@ from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.whitened import Whitened
 
 from sher3_gap.signals import RunSignals
-from sher3_gap.stages.exact import controller_error, delayed, host_law, transport_error
+from sher3_gap.stages.exact.law import controller_error, delayed, host_law, transport_error
 from sher3_gap.stages.recorded import motion_of, shared_by_all, speed_unit
 
 CONTROLLER, TRANSPORT = "controller", "transport"

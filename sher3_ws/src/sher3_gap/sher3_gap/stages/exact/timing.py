@@ -15,7 +15,7 @@ from sher3_description import Robot
 from sher3_diagnosis.channel import Array
 
 from sher3_gap.signals import RunSignals
-from sher3_gap.stages.exact import delayed, shifted
+from sher3_gap.stages.exact.law import delayed, shifted
 from sher3_gap.stages.residuals import Demand
 
 MAX_TICKS = 30

@@ -13,8 +13,8 @@ from sher3_diagnosis.verdict import Cause, Parameter
 from sher3_effects.scale.controller_gain import ControllerGain
 
 from sher3_gap.signals import RunSignals
-from sher3_gap.stages.exact import EXACT, controller_error, host_law
-from sher3_gap.stages.exact_findings import exact_cause, exact_finding, exact_place
+from sher3_gap.stages.exact.findings import exact_cause, exact_finding, exact_place
+from sher3_gap.stages.exact.law import EXACT, controller_error, host_law
 
 NOT_CLAMPED = 0.999
 """Share of the velocity limit below which a command was not clamped by it."""

@@ -14,7 +14,7 @@ from sher3_diagnosis.verdict import Cause, Parameter
 from sher3_effects import library
 from sher3_effects.found_page import FoundPage
 
-from sher3_gap.stages.exact_findings import exact_cause, exact_finding
+from sher3_gap.stages.exact.findings import exact_cause, exact_finding
 
 
 def with_pages(finding: ExactFinding, gathered: Callable[[], Evidence], without: Collection[str] = ()) -> ExactFinding:

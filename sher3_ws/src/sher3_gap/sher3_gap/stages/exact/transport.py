@@ -26,9 +26,9 @@ from sher3_effects.timing.command_jitter import CommandJitter
 from sher3_effects.timing.dropped_commands import DroppedCommands
 
 from sher3_gap.signals import RunSignals
-from sher3_gap.stages.exact import EXACT, ROUNDING
-from sher3_gap.stages.exact_findings import exact_cause, exact_finding, exact_place
-from sher3_gap.stages.timing import Timing
+from sher3_gap.stages.exact.findings import exact_cause, exact_finding, exact_place
+from sher3_gap.stages.exact.law import EXACT, ROUNDING
+from sher3_gap.stages.exact.timing import Timing
 
 LEAST_SPREAD = 0.01
 """Least half width of a latency's interval, periods: the resolution of the echo's mean."""
