@@ -93,6 +93,27 @@ def play(x: Array, drive: Array, width: float, damping: float, period: float, st
 
 
 @compiled
+def released_play(
+    x: Array, drive: Array, rest: Array, release: float, width: float, damping: float, period: float, start: float
+) -> Array:
+    """As `play`, of a follower whose friction gives way by up to `release` before it slides, minus x, (n,).
+
+    After a reversal it goes back with its flank to where its friction and the load on it are in balance, and only there
+    the flank leaves it: `rest` (n,) in -release..release, from where the friction holds nothing (Dahl's bristle, linear
+    up to the level: Prandtl 1928).
+    """
+    out = np.empty(len(x))
+    half = 0.5 * width
+    held = x[0] + start * half
+    for k in range(len(x)):
+        held += period * drive[k] / damping
+        y = min(max(held + rest[k], x[k] - half), x[k] + half)
+        held = min(max(held, y - release), y + release)
+        out[k] = y - x[k]
+    return out
+
+
+@compiled
 def flight(x: Array, width: float, braking: float, period: float, start: float) -> Array:
     """Follower of some mass behind a gap of `width`, minus x, (n,): it flies on in the gap, and a flank takes it along.
 

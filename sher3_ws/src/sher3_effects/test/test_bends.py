@@ -8,7 +8,7 @@ from sher3_effects.compliance.stiffening import softness
 from sher3_effects.compliance.tool_bending import ToolBending
 from sher3_effects.limit.force_saturation import bent
 from sher3_effects.lost_motion.joint_clearance import JointClearance
-from sher3_effects.operators import frozen_integral
+from sher3_effects.operators import frozen_integral, play, released_play
 from sher3_effects.periodic.cogging import Cogging, CoggingOnAxis
 
 PAGE = JointClearance()
@@ -46,6 +46,30 @@ def test_a_gap_is_crossed_by_as_much_travel_as_it_is_wide():
 @pytest.mark.parametrize(("jump", "possible"), [(-40e-6, True), (40e-6, False), (-90e-6, False)])
 def test_what_has_play_lags_its_slider_by_no_more_than_the_gap(jump, possible):
     assert PAGE.admissible(GAP, np.array([jump])) == possible
+
+
+PATH = 1e-6 * np.concatenate([np.arange(0.0, 51.0), np.arange(49.0, -1.0, -1.0)])
+"""50 um forward and back, a micrometre a sample."""
+
+
+def test_a_load_whose_friction_gives_way_goes_back_with_its_flank_first():
+    """Gap 10 um, friction that gives way over 4 um: the load follows for 4 um, stays for 10, and is then pulled back."""
+    still = np.zeros(len(PATH))
+    lag = released_play(PATH, still, still, 4e-6, 10e-6, np.inf, 1e-3, -1.0)
+    assert lag[[50, 54, 59, 64, 80]] == pytest.approx([-5e-6, -5e-6, 0.0, 5e-6, 5e-6], abs=1e-12)
+
+
+def test_a_load_that_something_pulls_on_leaves_its_flank_where_both_are_in_balance():
+    """Half the friction pulls it forward, against the flank that comes back: 2 um of the 4 are left to follow for."""
+    still = np.zeros(len(PATH))
+    lag = released_play(PATH, still, still + 2e-6, 4e-6, 10e-6, np.inf, 1e-3, -1.0)
+    assert lag[[52, 57, 62]] == pytest.approx([-5e-6, 0.0, 5e-6], abs=1e-12)
+
+
+def test_a_load_whose_friction_does_not_give_way_is_behind_a_plain_gap():
+    still = np.zeros(len(PATH))
+    plain = play(PATH, still, 10e-6, np.inf, 1e-3, 0.3)
+    assert released_play(PATH, still, still, 0.0, 10e-6, np.inf, 1e-3, 0.3) == pytest.approx(plain, abs=1e-15)
 
 
 def test_a_compliance_that_stiffens_is_stated_at_one_newton():

@@ -27,7 +27,9 @@ ALIKE = ("joint_clearance",)
 """Effects that look like another one in these runs: what counts is that the gap closes."""
 CLOSES = {"backlash": 0.3}
 """Least closure where it is not 0.8: on which side of its gap a load starts is not known, and it travels to and fro."""
-QUICK = ("thermal_expansion", "force_scale", "structural_vibration", "backlash", "controller_gain")
+QUICK = (
+    "thermal_expansion", "force_scale", "structural_vibration", "backlash", "controller_gain", "transmission_compliance",
+)  # fmt: skip
 
 
 def made(name):

@@ -15,7 +15,7 @@ from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.compliance.transmission_compliance import carried
 from sher3_effects.lost_motion.plateau import plateau
-from sher3_effects.operators import flight, play
+from sher3_effects.operators import flight, play, released_play
 from sher3_effects.page import Page, Part, Values
 from sher3_effects.view import AxisView
 
@@ -30,7 +30,7 @@ class Backlash(Page):
     best = Best("loads", "known loads at rest separate a fixed gap from a spring")
     companion = "friction"
     on_axis = {"width": "backlash"}
-    units: ClassVar[Mapping[str, str]] = {"lost": "m"}
+    units: ClassVar[Mapping[str, str]] = {"lost": "m", "release": "m"}
     leaves_out = "the elasticity of its contact"
     explanation = (
         "After a reversal the motor moves by a fixed amount before the load follows; a load that pushes the "
@@ -46,10 +46,13 @@ class Backlash(Page):
     DRIFTS = ((np.inf, 0.0), (1000.0, 0.0), (200.0, 0.0), (1000.0, 1.0), (200.0, 1.0))
     """How the load moves in the gap: viscous drag in units of the nominal coefficient over 60, and whether the friction
     of the axis holds it until the pull on it is larger."""
+    RELEASES = (0.15, 0.4, 1.0)
+    """Travel over which the friction of the load gives way before it slides, in widths."""
     finer: ClassVar[Mapping[str, tuple[float, ...]]] = {
         "width": (0.94, 0.97, 1.03, 1.06),
         "damping": (0.5, 2.0),
         "stick": (0.8, 1.2),
+        "release": (0.5, 0.7, 1.4, 2.0),
     }
 
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
@@ -62,21 +65,34 @@ class Backlash(Page):
         stick = resting_force(views, site)
         return [{"width": w * span, "damping": d, "stick": s * stick} for w in self.WIDTHS for d, s in self.DRIFTS]
 
+    def bends(self, views: Sequence[AxisView], site: str, shape: Shape) -> list[Shape]:
+        """Return the same of a load that goes back with its flank before the gap opens: its friction gives way."""
+        stick = max(shape.get("stick", 0.0), resting_force(views, site))
+        if "damping" not in shape or stick == 0.0:
+            return []
+        return [{**shape, "stick": stick, "release": r * shape["width"]} for r in self.RELEASES]
+
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
         """No coefficient: the width is the shape. The side at the start is the one that fits the first samples."""
         axis, run = view.row(site), view.run
-        clock = run.stage_clock
+        clock, stick, release = run.stage_clock, shape["stick"], shape.get("release", 0.0)
         pull = np.interp(clock, clock[run.grid], view.path.contact_force[:, axis] - view.path.gravity[:, axis])
-        pull -= np.clip(pull, -shape["stick"], shape["stick"])
+        held = np.clip(pull, -stick, stick)
         damping = shape["damping"] * view.axis(site).viscous / 60.0
         first = (run.load[:25, axis] - run.motor[:25, axis]).mean() if run.load is not None else 0.0
         start = float(np.clip(2.0 * first / shape["width"], -1.0, 1.0))
-        lag = play(run.smooth[:, axis], pull, shape["width"], damping, run.period, start)
+        gap = (shape["width"], damping, run.period, start)
+        path, drive = run.smooth[:, axis], pull - held
+        if release:
+            lag = released_play(path, drive, held * (release / stick), release, *gap)
+        else:
+            lag = play(path, drive, *gap)
         return Signature({}, {Channel(self.stage, site): run.to_grid(lag)[:, None]})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Width of the gap, and the travel lost between the two directions."""
-        return {"width": shape["width"], "lost": shape["width"]}
+        """Width of the gap, and the travel lost between the two directions; over which its load lets go, if told."""
+        more = {"release": shape["release"]} if "release" in shape else {}
+        return {"width": shape["width"], "lost": shape["width"], **more}
 
     def measured(self, views: Sequence[AxisView], site: str, shape: Shape) -> Mapping[str, Measured]:
         """Return the width of the gap without the give of its flanks, where the plateaus tell it."""
