@@ -17,7 +17,7 @@ from sher3_diagnosis.verdict import Interval, Residual, Where
 TWO = {"classes": ("library", "outside_library"), "inputs": ("x",), "middle": (1.0,), "spread": (2.0,)}
 NUMBERS = {
     "left": 0.01, "law": 0.01, "place": 0.01, "anything": 0.01, "spread": 0.001, "scatter": 1.0, "lost": 0.001,
-    "mismatch": 0.02, "sibling": 0.5, "ratio": 6.0, "samples": 4000.0, "idealised": 1.0,
+    "mismatch": 0.02, "sibling": 0.5, "ratio": 6.0, "power": 36.0, "samples": 4000.0, "idealised": 1.0,
 }  # fmt: skip
 CALIBRATION = in_force()
 

@@ -89,7 +89,7 @@ def _remainders(seen: Observation) -> dict[str, tuple[float, float]]:
     """Return per channel with a cause the largest power over its floor that its causes leave, and that they explain."""
     out: dict[str, tuple[float, float]] = {}
     for item in (x for x in seen.items if x["index"] is not None):
-        gap = item["numbers"]["ratio"] ** 2
+        gap = max(item["numbers"]["power"], 0.0)
         rest, most = out.get(item["channel"], (0.0, 0.0))
         out[item["channel"]] = max(rest, gap * max(0.0, item["numbers"]["left"])), max(most, gap)
     return out

@@ -48,7 +48,8 @@ class CauseEvidence:
         lost: share lost in excitations left out of the fit.
         mismatch: between the regimes where the cause says the gap is and where it is: 0 to 1.
         sibling: share by which the next effect in its place explains less; 1 without one.
-        ratio: gap over floor.
+        ratio: gap over floor, with the mean of every run.
+        power: of the gap over the floor, less one, of the component with most: without what a free mean takes.
         samples: that tell of it.
         idealised: 1 where a real machine adds to the law (`Effect.leaves_out`), 0 where the law is complete.
     """
@@ -63,6 +64,7 @@ class CauseEvidence:
     mismatch: float
     sibling: float
     ratio: float
+    power: float
     samples: float
     idealised: float
 
@@ -88,7 +90,8 @@ def cause_evidence(evidence: Evidence, attribution: Attribution, index: int) -> 
     left = excess_of(evidence, channel, remainder)
     laws = free_laws(evidence, channel, term, remainder)
     steady = steadiness_of(evidence, found, index)
-    whole = gap_of(evidence, channel, residual_after(evidence, without, channel))
+    before = residual_after(evidence, without, channel)
+    whole = gap_of(evidence, channel, before)
     assert whole is not None
     return CauseEvidence(
         left=left / gap,
@@ -101,9 +104,16 @@ def cause_evidence(evidence: Evidence, attribution: Attribution, index: int) -> 
         mismatch=1.0 - pattern_of(evidence, found, index).agreement,
         sibling=_sibling(attribution, index),
         ratio=whole.ratio,
+        power=power_of(evidence, channel, before),
         samples=float(samples),
         idealised=float(bool(term.effect.leaves_out)),
     )
+
+
+def power_of(evidence: Evidence, channel: Channel, left: Mapping[int, Array]) -> float:
+    """Return the power over the floor of residuals {run: (N, d)} in SI units, less one, of the component with most."""
+    white = np.concatenate([x / evidence.floors[r][channel] for r, x in left.items()])
+    return float(np.mean(white**2, axis=0).max()) - 1.0
 
 
 def free_laws(

@@ -40,7 +40,7 @@ def scaled_cause(numbers: Mapping[str, float]) -> dict[str, float]:
     What nothing tells is not there, so that it speaks neither for the cause nor against it.
     """
     left, law, anything = (min(max(numbers[name], 0.0), 1.0) for name in ("left", "law", "anything"))
-    floors = numbers["ratio"] ** 2  # power of the gap
+    floors = max(numbers["power"], 0.0)
     steady = {"spread": log_above(numbers["spread"], 0.001)} if "spread" in numbers else {}
     return steady | {
         "left": log_above(left, LEAST_SHARE),
