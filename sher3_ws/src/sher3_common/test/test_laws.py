@@ -4,11 +4,11 @@ import math
 
 import numpy as np
 import pytest
-from sher3_common.laws import LAWS, law_value, walk
+from sher3_common.laws import LAWS, MEMORY, law_value, walk
 
 
-def value(law, x, a=0.0, b=0.0, moved=0.0, z=0.0, period=0.01):
-    return law_value(LAWS[law].code, a, b, x, moved, z, period)[0]
+def value(law, x, a=0.0, b=0.0, moved=0.0, period=0.01):
+    return law_value(LAWS[law].code, a, b, x, moved, np.zeros(MEMORY), period)
 
 
 @pytest.mark.parametrize(
@@ -53,6 +53,16 @@ def test_late_trails_a_ramp_by_its_time_constant_and_rate_is_its_slope():
     assert walk(LAWS["rate"].code, 0.1, 0.0, x, 0.001)[-1] == pytest.approx(2.0)
 
 
+def test_ringing_swings_at_its_frequency_about_x_and_dies_away():
+    """A step of 1 to 2 at 10 Hz, damping 0.1: 3 - e, the first overshoot, half a damped period later, then 2 for good."""
+    t = 0.001 * np.arange(3000)
+    z = walk(LAWS["ringing"].code, 10.0, 0.1, np.where(t > 0.0, 2.0, 1.0), 0.001)
+    half = 0.5 / (10.0 * math.sqrt(1.0 - 0.1**2))
+    assert z[0] == 1.0 and z[-1] == pytest.approx(2.0)
+    assert t[np.argmax(z)] == pytest.approx(half, abs=0.002)
+    assert z.max() == pytest.approx(2.0 + math.exp(-math.pi * 0.1 / math.sqrt(1.0 - 0.1**2)), rel=1e-3)
+
+
 def test_every_law_says_its_shapes_once():
     assert sorted(law.code for law in LAWS.values()) == list(range(len(LAWS)))
-    assert all(len(law.shapes) == len(law.shape_power) <= 2 for law in LAWS.values())
+    assert all(len(law.shapes) == len(law.shape_units) <= 2 for law in LAWS.values())

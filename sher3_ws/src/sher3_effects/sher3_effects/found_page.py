@@ -180,7 +180,8 @@ def _shape_units(page: FoundPage) -> dict[str, str]:
     out = {}
     for name, value in page.shape.items():
         factor = next(f for t in page.terms for f in t.feature.factors if value in f.shape)
-        out[name] = "s" if name.startswith("time_constant") else base.get(factor.quantity.split(".")[-1], "1")
+        unit = LAWS[factor.law].shape_units[factor.shape.index(value)]
+        out[name] = base.get(factor.quantity.split(".")[-1], "1") if unit == "x" else unit
     return out
 
 

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from sher3_common.compiled import compiled
-from sher3_common.laws import EARLIER, MOST_FACTORS
+from sher3_common.laws import EARLIER, MEMORY, MOST_FACTORS
 
 from sher3_sim.found import (
     AXIS_QUANTITIES,
@@ -44,7 +44,7 @@ AXIS_STATE = np.dtype(
         ("disturbance", "f8"),
         ("found_inputs", "f8", len(AXIS_QUANTITIES)),
         ("found_last", "f8", (AXIS_TERMS, MOST_FACTORS)),
-        ("found_memory", "f8", (AXIS_TERMS, MOST_FACTORS)),
+        ("found_memory", "f8", (AXIS_TERMS, MOST_FACTORS, MEMORY)),
         ("found_past", "f8", (len(PASSED_ON), max(EARLIER))),
         *((name, "f8") for name in ("found_effort", "found_velocity")),
         ("pending", "i8"),

@@ -95,12 +95,12 @@ def add_terms(rows: Array, stage: str, terms: Sequence[FoundTerm]) -> None:
 
 @compiled
 def term_value(row: Array, inputs: Array, last: Array, memory: Array, period: float) -> float:
-    """Return a term's value; `last` (factors,) and `memory` (factors,) are its own and change."""
+    """Return a term's value; `last` (factors,) and `memory` (factors, 2) are its own and change."""
     value = row[2]
     for k in range(int(row[3])):
         j = HEAD + 4 * k
         x = inputs[int(row[j + 1])]
-        factor, memory[k] = law_value(int(row[j]), row[j + 2], row[j + 3], x, x - last[k], memory[k], period)
+        factor = law_value(int(row[j]), row[j + 2], row[j + 3], x, x - last[k], memory[k], period)
         last[k] = x
         value *= factor
     return value
@@ -112,7 +112,7 @@ def forget(rows: Array, inputs: Array, last: Array, memory: Array) -> None:
     for i in range(len(rows)):
         for k in range(int(rows[i, 3])):
             last[i, k] = inputs[int(rows[i, HEAD + 4 * k + 1])]
-            memory[i, k] = 0.0
+            memory[i, k, :] = 0.0
 
 
 @compiled

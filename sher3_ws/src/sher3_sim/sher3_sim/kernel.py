@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 from sher3_common.compiled import compiled
-from sher3_common.laws import MOST_FACTORS
+from sher3_common.laws import MEMORY, MOST_FACTORS
 from sher3_description.contract import GRAVITY, REFERENCE_TEMPERATURE
 from sher3_kinematics.arrays import unpack
 from sher3_kinematics.kernel import KernelParameters, gravity_load_into, tip_jacobian_into
@@ -36,7 +36,7 @@ BODY_STATE = np.dtype(
         ("cable_last", "f8", 3),
         ("found_inputs", "f8", len(BODY_QUANTITIES)),
         ("found_last", "f8", (BODY_TERMS, MOST_FACTORS)),
-        ("found_memory", "f8", (BODY_TERMS, MOST_FACTORS)),
+        ("found_memory", "f8", (BODY_TERMS, MOST_FACTORS, MEMORY)),
     ]
 )
 

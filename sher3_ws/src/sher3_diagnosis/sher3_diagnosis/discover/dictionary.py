@@ -25,6 +25,8 @@ CENTRES, WIDTHS = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9), (0.04, 0.12)
 """Places (quantiles) and widths (shares of the range) of humps."""
 TIMES = (0.003, 0.01, 0.03, 0.1, 0.3)
 """Time constants of lags, s."""
+FREQUENCIES, DAMPING = (4.0, 5.4, 7.3, 9.8, 13.0, 18.0, 24.0, 33.0, 44.0), 0.15
+"""Of what swings, Hz; damped well, so that frequencies a third apart leave no gap. The search sharpens both."""
 PACES = (0.003, 0.01, 0.03, 0.1, 0.3)
 """Steepest changes of what follows a command slowly, shares of the command's own steepest one."""
 DECAYS = (0.2, 0.6)
@@ -78,6 +80,8 @@ def _alone(quantities: Quantities, spans: Spans, unit: str) -> Iterator[Group]:
             yield from (_one(Factor("late", name, (t,))) for t in TIMES)
         if q.own and q.kind in ("force", "place", "command"):
             yield _one(Factor("rate", name, (TIMES[0],)))
+        if q.own and (q.kind == "force" or q.unit.endswith("/s^2")):
+            yield from (_one(Factor("ringing", name, (f, DAMPING))) for f in FREQUENCIES)
         if q.kind == "clock":
             yield from (_one(Factor("decaying", name, (s * most,))) for s in DECAYS)
 

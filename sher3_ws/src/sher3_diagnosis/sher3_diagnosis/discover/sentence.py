@@ -50,6 +50,6 @@ def _clause(factor: Factor, quantities: Quantities) -> str:
     found = quantities[factor.quantity]
     law = LAWS[factor.law]
     shapes = []
-    for value, power in zip(factor.shape, law.shape_power, strict=True):
-        shapes.append(quantity(value, "s" if power is None else found.unit))
+    for value, unit in zip(factor.shape, law.shape_units, strict=True):
+        shapes.append(quantity(value, found.unit if unit == "x" else unit))
     return law.words.format(*shapes, x=found.words)
