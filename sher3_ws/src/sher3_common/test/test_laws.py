@@ -54,7 +54,7 @@ def test_late_trails_a_ramp_by_its_time_constant_and_rate_is_its_slope():
 
 
 def test_ringing_swings_at_its_frequency_about_x_and_dies_away():
-    """A step of 1 to 2 at 10 Hz, damping 0.1: 3 - e, the first overshoot, half a damped period later, then 2 for good."""
+    """A step of 1 to 2 at 10 Hz, damping 0.1: beyond 2 half a damped period later, by exp(-pi 0.1), then 2 for good."""
     t = 0.001 * np.arange(3000)
     z = walk(LAWS["ringing"].code, 10.0, 0.1, np.where(t > 0.0, 2.0, 1.0), 0.001)
     half = 0.5 / (10.0 * math.sqrt(1.0 - 0.1**2))

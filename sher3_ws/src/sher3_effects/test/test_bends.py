@@ -53,7 +53,7 @@ PATH = 1e-6 * np.concatenate([np.arange(0.0, 51.0), np.arange(49.0, -1.0, -1.0)]
 
 
 def test_a_load_whose_friction_gives_way_goes_back_with_its_flank_first():
-    """Gap 10 um, friction that gives way over 4 um: the load follows for 4 um, stays for 10, and is then pulled back."""
+    """Gap 10 um, friction that gives way over 4: the load follows for 4 um, stays for 10, and is then pulled back."""
     still = np.zeros(len(PATH))
     lag = released_play(PATH, still, still, 4e-6, 10e-6, np.inf, 1e-3, -1.0)
     assert lag[[50, 54, 59, 64, 80]] == pytest.approx([-5e-6, -5e-6, 0.0, 5e-6, 5e-6], abs=1e-12)

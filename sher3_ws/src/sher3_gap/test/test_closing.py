@@ -28,8 +28,13 @@ ALIKE = ("joint_clearance",)
 CLOSES = {"backlash": 0.3}
 """Least closure where it is not 0.8: on which side of its gap a load starts is not known, and it travels to and fro."""
 QUICK = (
-    "thermal_expansion", "force_scale", "structural_vibration", "backlash", "controller_gain", "transmission_compliance",
-)  # fmt: skip
+    "backlash",
+    "controller_gain",
+    "force_scale",
+    "structural_vibration",
+    "thermal_expansion",
+    "transmission_compliance",
+)
 
 
 def made(name):
