@@ -158,17 +158,25 @@ def oscillator(force: Array, frequency: float, damping: float, period: float) ->
 
 
 @compiled
-def first_order(start: Array, end: Array, time_constant: float, period: float) -> Array:
+def first_order(start: Array, middle: Array, end: Array, time_constant: float, period: float) -> Array:
     """First-order lag (n,) of an input that runs from start[k] to end[k] over the interval that ends at tick k.
+
+    Args:
+        start: (n,) the input behind the tick before; `end` (n,) at the tick.
+        middle: (n,) its mean over the interval. It bends as a parabola does where that is not the mean of both ends.
+        time_constant: of the lag, s; `period` of the ticks.
 
     It starts at rest at end[0] and is exact for such an input: a force law steps at a tick and moves on until the next.
     """
     out = np.empty(len(end))
-    keep = math.exp(-period / time_constant)
-    share = time_constant / period * (1.0 - keep)
+    h = period / time_constant
+    keep = math.exp(-h)
+    share = (1.0 - keep) / h
+    bulge = 6.0 * (h - 2.0 + (h + 2.0) * keep) / (h * h) if h > 0.01 else h
     y = end[0]
     for k in range(len(end)):
-        y = keep * y + (share - keep) * start[k] + (1.0 - share) * end[k]
+        bent = middle[k] - 0.5 * (start[k] + end[k])
+        y = keep * y + (share - keep) * start[k] + (1.0 - share) * end[k] + bulge * bent
         out[k] = y
     return out
 

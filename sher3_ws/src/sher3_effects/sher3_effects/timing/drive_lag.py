@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 from sher3_diagnosis.channel import Array, Channel
@@ -17,23 +18,33 @@ from sher3_effects.view import AxisView, RobotView
 
 
 class DriveLag(Page):
-    """effort = first-order lag of the PI law."""
+    """effort = lag of the PI law, of first order or with a second pole that takes a share of its time."""
 
     id, family, stage = "drive_lag", "timing", "drive"
     inputs = ("command", "force")
     best = Best("steps", "steps of several amplitudes show a dead time as an onset and a lag as a slope")
-    leaves_out = "a second pole"
+    leaves_out = "how its current loop rings"
     explanation = (
         "The force follows the velocity loop's demand with a lag: too small at the start of each step, too "
         "large at its end."
     )
     siblings = {"command_delay": "the echo itself is late", "torque_constant": "a ratio, no lag"}
     TIMES = (0.0002, 0.0005, 0.001, 0.0015, 0.002, 0.003, 0.004, 0.006, 0.009, 0.013, 0.02)
-    finer = {"time_constant": (0.7, 0.8, 0.9, 1.1, 1.2, 1.35)}
+    bent_from = 0.005
+    SECOND = (0.2, 0.5)
+    """Share of the time that a second pole takes; half is the most."""
+    finer: ClassVar[Mapping[str, tuple[float, ...]]] = {
+        "time_constant": (0.7, 0.8, 0.9, 1.1, 1.2, 1.35),
+        "second": (0.6, 0.8, 1.25),
+    }
 
     def shapes(self, views: Sequence[RobotView], site: str) -> list[Shape]:
         """Time constant, of the force (0) or of the velocity demand (1)."""
         return [{"time_constant": t, "of_demand": d} for t in self.TIMES for d in (0.0, 1.0)]
+
+    def bends(self, views: Sequence[RobotView], site: str, shape: Shape) -> list[Shape]:
+        """Return the same of a force that follows through two poles."""
+        return [] if shape.get("of_demand") != 0.0 else [{**shape, "second": share} for share in self.SECOND]
 
     def signature(self, view: RobotView, site: str, shape: Shape) -> Signature:
         """No coefficient: lagged law minus law."""
@@ -41,19 +52,36 @@ class DriveLag(Page):
         assert run.echo is not None
         drive, demand = view.robot.actuators[axis].drive, run.echo[:, axis]
         if shape["of_demand"]:
-            change = first_order(demand, demand, time, run.period) - demand
+            change = first_order(demand, demand, demand, time, run.period) - demand
             behind = np.diff(demand, prepend=demand[0]) - np.concatenate([[0.0], change[:-1]])
             missed = np.cumsum(behind) * time * -np.expm1(-run.period / time)
             lagged = drive.kp * change - drive.ki * missed
         else:
-            law = view.law[:, axis]
-            after_step = law.copy()
-            after_step[1:] = law[:-1] + drive.kp * np.diff(demand)
-            lagged = first_order(after_step, law, time, run.period) - law
+            law, (start, middle) = view.law[:, axis], self._between(view, axis, drive.kp)
+            second = min(shape.get("second", 0.0), 0.5) * time
+            force = first_order(start, middle, law, time - second, run.period)
+            if second:
+                before = np.concatenate([force[:1], force[:-1]])
+                force = first_order(before, 0.5 * (before + force), force, second, run.period)
+            lagged = force - law
         return Signature({}, {Channel(self.stage, site): run.to_grid(lagged)[:, None]})
 
+    def _between(self, view: RobotView, axis: int, kp: float) -> tuple[Array, Array]:
+        """Return the law (n,) behind the step of the tick before, and its mean over the interval.
+
+        The travel in the interval says the mean speed in it; a line between the speeds at its ends would not.
+        """
+        run, law = view.run, view.law[:, axis]
+        assert run.echo is not None
+        demand, motor = run.echo[:, axis], run.motor[:, axis]
+        start, middle = law.copy(), law.copy()
+        start[1:] = law[:-1] + kp * np.diff(demand)
+        speed = np.gradient(motor, run.period)
+        middle[1:] = 0.5 * (start[1:] + law[1:]) + kp * (0.5 * (speed[:-1] + speed[1:]) - np.diff(motor) / run.period)
+        return start, middle
+
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Time constant."""
+        """Time constant, of both poles together."""
         return {"time_constant": shape["time_constant"]}
 
 

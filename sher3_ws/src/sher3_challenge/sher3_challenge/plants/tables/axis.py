@@ -178,7 +178,7 @@ def kick(
     v = y[V]
     force, falls, y[CLAMP] = drive_force(d, o, m, y, demand)
     if d.lag > 0.0:
-        keep = math.exp(-2.0 * h / d.lag)
+        keep = d.lag / (d.lag + 2.0 * h)  # so that slow changes are late by `lag`, whatever the step
         y[POLE] = force + keep * (y[POLE] - force)
         y[FORCE] = y[POLE] + keep * (y[FORCE] - y[POLE])
         force, falls = y[FORCE], 0.0

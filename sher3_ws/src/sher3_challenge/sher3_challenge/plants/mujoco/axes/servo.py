@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from sher3_challenge.plants.mujoco.axes.mjcf import SUBSTEPS
@@ -131,7 +129,7 @@ class LawDrive:
         if force == raw or error * raw < 0.0:
             self.xi += error * step
         if self.law.lag > 0.0:
-            slow, fast = (1 - math.exp(-step / (share * self.law.lag)) for share in LAG_POLES)
+            slow, fast = (step / (step + share * self.law.lag) for share in LAG_POLES)
             self.first += slow * (force - self.first)
             self.second += fast * (self.first - self.second)
             force = self.second
