@@ -162,9 +162,11 @@ def first_order(start: Array, middle: Array, end: Array, time_constant: float, p
     """First-order lag (n,) of an input that runs from start[k] to end[k] over the interval that ends at tick k.
 
     Args:
-        start: (n,) the input behind the tick before; `end` (n,) at the tick.
-        middle: (n,) its mean over the interval. It bends as a parabola does where that is not the mean of both ends.
-        time_constant: of the lag, s; `period` of the ticks.
+        start: (n,) the input behind the tick before.
+        middle: (n,) its mean over the interval; it bends as a parabola does where that is not the mean of both ends.
+        end: (n,) the input at the tick.
+        time_constant: of the lag, s.
+        period: of the ticks, s.
 
     It starts at rest at end[0] and is exact for such an input: a force law steps at a tick and moves on until the next.
     """
