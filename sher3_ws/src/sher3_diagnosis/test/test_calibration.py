@@ -93,6 +93,13 @@ def test_a_cause_whose_closure_may_be_nothing_is_not_named():
     assert answer_to(j, None) == "library"
 
 
+def test_a_small_gap_whose_closure_may_be_nothing_is_likely_none():
+    """A cause of 1.2 floors that leaves nothing: named, if it closes something; else there is no gap to explain."""
+    small = judged(cause(left=-0.3, law=-0.3, anything=-0.3, ratio=1.2, power=0.3, spread=0.7), CALIBRATION)
+    assert small.no_gap > small.outside
+    assert answer_to(small, Interval(value=0.9, low=-0.1)) == "no_gap"
+
+
 def test_the_status_follows_from_the_answers():
     assert status_of([], False) == "no_gap"
     assert status_of(["no_gap"], True) == "no_gap"

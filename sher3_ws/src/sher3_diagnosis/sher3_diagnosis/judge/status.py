@@ -13,6 +13,8 @@ from sher3_diagnosis.verdict import Interval, Status
 def answer_to(j: Judged, closure: Interval | None) -> str:
     """Return the answer to an item; a cause is not named that leaves most of its gap, or whose closure may be nothing.
 
+    Then the more probable of the other answers holds: a small gap that the cause may not close is likely none.
+
     Args:
         j: the item with its probabilities.
         closure: of a cause; exactly 0 where over all runs there is nothing above the floor that could be closed.
@@ -22,7 +24,7 @@ def answer_to(j: Judged, closure: Interval | None) -> str:
     if closure.value == 0.0:
         return NO_GAP
     if j.answer == LIBRARY and (closure.value < COVERED or (closure.low is not None and closure.low <= 0.0)):
-        return OUTSIDE
+        return OUTSIDE if j.outside >= j.no_gap else NO_GAP
     return j.answer
 
 
