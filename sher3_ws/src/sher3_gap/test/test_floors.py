@@ -1,10 +1,12 @@
 """What the readings alone resolve, by hand from robot.yaml."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from recorded import PERIOD, ROBOT, run, stroke
 from sher3_diagnosis.channel import Channel, Residual
-from sher3_gap.stages.floors import averaged, chatter_floors, floors, resolution_floors
+from sher3_gap.stages.floors import astray, averaged, chatter_floors, floors, resolution_floors
 
 TRANSMISSION = Channel("transmission", "delta_1")
 AXIS = ROBOT.actuators[0]
@@ -38,3 +40,15 @@ def test_the_largest_of_repeats_resolution_and_twin_counts():
     alone = floors(runs, residuals, [[], []], ROBOT)
     assert alone[0][TRANSMISSION] == pytest.approx([np.sqrt(2.0)])
     assert floors(runs, residuals, [[twin], []], ROBOT)[0][TRANSMISSION] == pytest.approx([5.0])
+
+
+def test_a_tip_that_turns_under_a_load_leaves_open_how_the_load_reads():
+    """0.01 rad under 2 N: 0.02 N; 50 um under 2 N: 0.1 mN m; without a tracker nothing is known."""
+    n = 10
+    wrench, error = np.zeros((n, 6)), np.zeros((n, 6))
+    wrench[:, 2], error[:, 0], error[:, 3] = 2.0, 50e-6, 0.01
+    geometry = SimpleNamespace(path=lambda run: SimpleNamespace(contact_wrench=wrench), tip_error=lambda run: error)
+    seen = SimpleNamespace(tracker_position=error, tracker_index=np.arange(n))
+    loaded = np.arange(n) > 4
+    assert astray(seen, geometry, loaded) == pytest.approx([0.02] * 3 + [1e-4] * 3)
+    assert not astray(SimpleNamespace(tracker_position=None, tracker_index=None), geometry, loaded).any()

@@ -104,12 +104,31 @@ def floors(
 
 
 def with_load(floor: Floors, run: RunSignals, robot: Robot, geometry: Geometry) -> Floors:
-    """Add the scatter of the stated tip load, known to a tolerance of three standard deviations from run to run."""
+    """Add the scatter of the stated tip load, known to a tolerance of three standard deviations from run to run.
+
+    At the force sensor also what the load's direction and place leave open, where the tracker sees the tip elsewhere.
+    """
     path, share = geometry.path(run), robot.tolerances.known_load / 3.0
     ok = run.inner & run.loaded_ok
     if not (path.loaded & ok).any():
         return floor
     wrench, force = (share * np.sqrt(np.mean(x[ok] ** 2, axis=0)) for x in (path.contact_wrench, path.contact_force))
-    load = {Channel("sensing", "force_sensor"): wrench}
+    load = {Channel("sensing", "force_sensor"): np.hypot(wrench, astray(run, geometry, path.loaded & ok))}
     load |= {Channel("motor_mechanics", a): force[[i]] for i, a in enumerate(ACTUATORS)}
     return {c: np.hypot(x, load.get(c, 0.0)) for c, x in floor.items()}
+
+
+def astray(run: RunSignals, geometry: Geometry, loaded: np.ndarray) -> np.ndarray:
+    """Return by how much a known load reads otherwise at a tip that is off as the tracker says, N and N m, (6,).
+
+    A tip that turns by an angle turns the load by as much at the sensor, if the sensor turns with it; one that moves
+    changes the lever. Nobody states which side of what bends the sensor is on.
+    """
+    if run.tracker_position is None or run.tracker_index is None:
+        return np.zeros(6)
+    force, torque, shift, turn = (
+        float(np.sqrt(np.mean(np.sum(x[loaded] ** 2, axis=1))))
+        for whole in (geometry.path(run).contact_wrench, geometry.tip_error(run))
+        for x in (whole[:, :3], whole[:, 3:])
+    )
+    return np.repeat([turn * force, turn * torque + shift * force], 3)
