@@ -10,7 +10,7 @@ from sher3_diagnosis.judge.calibration.calibration import in_force
 from sher3_diagnosis.judge.calibration.logistic import Logistic
 from sher3_diagnosis.judge.evidence.scales import scaled_cause, scaled_exact, scaled_gap
 from sher3_diagnosis.judge.items import Candidate, Item
-from sher3_diagnosis.judge.probabilities import judged, probabilities_of
+from sher3_diagnosis.judge.probabilities import Judged, judged, probabilities_of
 from sher3_diagnosis.judge.status import answer_to, crosses, status_of
 from sher3_diagnosis.verdict import Interval, Residual, Where
 
@@ -95,10 +95,9 @@ def test_a_cause_whose_closure_may_be_nothing_is_not_named():
     assert answer_to(j, None) == "library"
 
 
-def test_a_small_gap_whose_closure_may_be_nothing_is_likely_none():
-    """A cause of 1.2 floors that leaves nothing: named, if it closes something; else there is no gap to explain."""
-    small = judged(cause(left=-0.3, law=-0.3, anything=-0.3, ratio=1.2, power=0.3, spread=0.7), CALIBRATION)
-    assert small.no_gap > small.outside
+def test_of_a_cause_that_is_not_named_the_more_probable_of_the_other_answers_holds():
+    small = Judged(cause(), effects=(0.6,), outside=0.1, no_gap=0.3)
+    assert answer_to(small, Interval(value=0.9, low=0.5)) == "library"
     assert answer_to(small, Interval(value=0.9, low=-0.1)) == "no_gap"
 
 
