@@ -7,10 +7,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from sher3_diagnosis.attribute.rivals import Attribution, unlikeness, without_term
-from sher3_diagnosis.channel import Channel
+from sher3_diagnosis.channel import AT_TIP, Channel
 from sher3_diagnosis.finding import Finding
 from sher3_diagnosis.fit.fitting import Term
 from sher3_diagnosis.judge.evidence.cause import cause_evidence, shown_at
+from sher3_diagnosis.judge.evidence.scales import LEAST_SHARE
 from sher3_diagnosis.thresholds import COVERED
 
 
@@ -64,7 +65,8 @@ def gaps_of(finding: Finding, taken: set[Channel]) -> list[Item]:
     """Return the significant gaps that no cause explains but for less than half.
 
     Only a larger gap of the same place may echo in one: every residual is predicted from its stage's measured input,
-    and the tip's from the encoders at the loads.
+    and the tip's from the encoders at the loads. The tip's residual is one, split in free and loaded samples: what is
+    less than `LEAST_SHARE` of the other part is what that one's cause leaves.
     """
     evidence, gaps = finding.evidence, finding.significant
     out = []
@@ -74,6 +76,8 @@ def gaps_of(finding: Finding, taken: set[Channel]) -> list[Item]:
             continue
         others = [g.power for c, g in gaps.items() if c != channel and c.actuator == channel.actuator]
         beside = math.log(max(others) / gap.power) if others else 0.0
+        if channel.stage in AT_TIP and beside > -math.log(LEAST_SHARE):
+            continue
         numbers = {"power": gap.power, "ratio": gap.ratio, "beside": beside, "others": float(len(others))}
         out.append(Item(channel, None, numbers))
     return out

@@ -43,16 +43,19 @@ class TransmissionRipple(Page):
         return [{"periods_per_rev": float(n), "side": 0.0} for n in self.ORDERS]
 
     def refine(self, shape: Shape) -> list[Shape]:
-        """Add a second order: the first, a neighbour (side-band), or a harmonic."""
-        n = shape["periods_per_rev"]
-        sides = {1.0, n - 1.0, n + 1.0, 2.0 * n, 3.0 * n} - {0.0, n}
-        return [{**shape, "side": s} for s in sorted(sides)]
+        """Add a second order: the first, a neighbour (side-band), or a harmonic; and then a third."""
+        n, side = shape["periods_per_rev"], shape["side"]
+        sides = sorted({1.0, n - 1.0, n + 1.0, 2.0 * n, 3.0 * n} - {0.0, n})
+        second = [{**shape, "side": s} for s in sides]
+        return (
+            second if not side or "third" in shape else [*second, *({**shape, "third": s} for s in sides if s != side)]
+        )
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
         """Two columns per order: the quadratures."""
         axis = view.row(site)
         turn = 2.0 * np.pi * view.run.smooth[:, axis] / view.lead(site)
-        orders = [shape["periods_per_rev"], *([shape["side"]] if shape["side"] else [])]
+        orders = [shape["periods_per_rev"], *(n for n in (shape["side"], shape.get("third", 0.0)) if n)]
         waves = [view.run.to_grid(f(n * turn)) for n in orders for f in (np.sin, np.cos)]
         return Signature({Channel(self.stage, site): column(*waves)})
 

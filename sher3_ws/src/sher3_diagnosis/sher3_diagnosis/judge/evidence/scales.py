@@ -22,13 +22,9 @@ def log_above(x: float, least: float) -> float:
 
 
 def scaled_gap(numbers: Mapping[str, float]) -> dict[str, float]:
-    """Return what a model reads of a gap without a cause: the larger, the less it comes from elsewhere.
-
-    One that is less than `LEAST_SHARE` of a gap beside it is what that one's cause leaves: no remainder there either.
-    """
-    echo = numbers["beside"] > -math.log(LEAST_SHARE)
+    """Return what a model reads of a gap without a cause: the larger, the less it comes from elsewhere."""
     return {
-        "power": 0.0 if echo else log_above(min(numbers["power"], MOST_POWER), 1.0),
+        "power": log_above(min(numbers["power"], MOST_POWER), 1.0),
         "alone": -max(0.0, numbers["beside"]),
     }
 
