@@ -22,6 +22,7 @@ from sher3_effects.friction.viscous_friction import ViscousOnAxis
 
 from sher3_machines.axes.description import AxesDescription, Axis, Gravity
 from sher3_machines.axes.evidence import AxisEvidence, gather_axis, levels_of
+from sher3_machines.axes.identification.alike import dead_band_note, with_dead_band
 from sher3_machines.axes.identification.fast import requantified, with_unseen
 from sher3_machines.axes.identification.refine import refine_free
 from sher3_machines.axes.identification.search import causes_of_axis
@@ -132,6 +133,7 @@ class Axes(Machine[AxesRun, AxisEvidence]):
         causes, own = requantified(evidence, attribution, causes), evidence.axis.own_unit
         causes = causes if evidence.axis.servo else with_unseen(evidence, attribution, causes)
         causes = within_bounds(causes, self.effects(evidence))
+        causes = with_dead_band(causes) if evidence.axis.servo else causes
         return evidence, [in_own_unit(cause, own) for cause in causes] if own else causes
 
     def remarks(self, finding: Finding[AxisEvidence]) -> list[str]:
@@ -279,4 +281,5 @@ def blind_spots(finding: Finding[AxisEvidence]) -> list[str]:
     out = [] if axis.signals.load is not None else [unseen_note(finding.evidence, finding.attribution.fit)]
     if axis.servo:
         out.append(f"{axis.name}: force not recorded: forces are given in units of the servo's stiffness")
+        out.append(dead_band_note(axis.name, finding.causes, axis.unit_of_position))
     return [said for said in out if said]
