@@ -33,7 +33,7 @@ class SpringTorque(Page):
         "gravity_load": "follows the sine of the posture, or is constant",
         "cogging": "repeats with every turn of the motor",
     }
-    units = {"stiffness": "N/m", "rest": "m"}
+    units: ClassVar[Mapping[str, str]] = {"stiffness": "N/m", "rest": "m"}
     on_axis = {"stiffness": "spring", "rest": "rest"}
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
@@ -59,7 +59,7 @@ class SpringOnAxis(SpringTorque):
     """
 
     kinds = ("axis",)
-    units: ClassVar[Mapping[str, str]] = {"stiffness": "N/m", "rest": "m", "stiffness_at_end": "N/m"}
+    units = {"stiffness": "N/m", "rest": "m", "stiffness_at_end": "N/m"}
     bent_from = BENT_FROM
 
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
