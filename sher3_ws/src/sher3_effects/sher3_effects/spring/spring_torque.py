@@ -24,7 +24,7 @@ class SpringTorque(Page):
     inputs = ("position",)
     kinds: ClassVar[tuple[str, ...]] = ("joint",)
     best = Best("sweep", "long constant-speed strokes separate ratios from offsets")
-    extends = ("gravity_load",)
+    extends: ClassVar[tuple[str, ...]] = ("gravity_load",)
     explanation = (
         "A spring pulls the axis to one place: a force that grows in proportion to the distance from it, the same "
         "going and coming."
