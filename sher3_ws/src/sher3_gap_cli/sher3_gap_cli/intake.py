@@ -51,15 +51,10 @@ def describe(
 
     Exit codes: 0 drafted, 2 the file cannot be read or nothing in it looks like a position.
     """
-    from sher3_machines.intake.draft import draft
+    from sher3_machines.drafts import draft_of
 
     with reported(as_json):
-        if model is None:
-            found = draft(file, rate)
-        else:
-            from sher3_machines.manipulator.draft import draft_arm
-
-            found = draft_arm(file, model, rate)
+        found = draft_of(file, rate, model)
         if out is not None:
             _write(out, found.text)
         if as_json:

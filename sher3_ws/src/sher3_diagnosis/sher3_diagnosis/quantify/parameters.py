@@ -40,8 +40,8 @@ def parameters(evidence: Evidence, fit: Fit, index: int) -> dict[str, Parameter]
     out: dict[str, Parameter] = {}
     for name, x in term.effect.parameters(term.shape, best).items():
         half = None if around is None or name in term.effect.discrete else _half_width(term, best, around, name, misfit)
-        if name in told and half is not None:
-            x, half = told[name].value, max(half, JACKKNIFE * told[name].error)
+        if name in told and bounded:
+            x, half = told[name].value, max(half or 0.0, JACKKNIFE * told[name].error)
         unit = term.effect.unit(name, term.site, term.site in evidence.rotary)
         low, high = (None, None) if half is None else (x - half, x + half)
         means = term.effect.choices.get(name, {}).get(x)

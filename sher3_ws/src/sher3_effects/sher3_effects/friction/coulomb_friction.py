@@ -87,7 +87,10 @@ class ServoStiction(CoulombFriction):
         "The axis does not answer small changes of its reference: it stays until the error is large enough to break it "
         "loose."
     )
-    siblings = {"drive_lag": "late at every amplitude"}
+    siblings = {
+        "drive_lag": "late at every amplitude",
+        "command_deadband": "the same readings under one load; a band stays where friction grows with the load",
+    }
     units = {"force": "m", "late": "s", "displacement": "m"}
     SHARES = (0.02, 0.04, 0.07, 0.1, 0.15, 0.2, 0.3, 0.45)
     """Half widths of the play that are tried, as shares of the span of the tracking error."""

@@ -20,7 +20,10 @@ class CommandDeadband(Page):
     inputs = ("position", "command")
     best = Best("steps", "large and small steps separate a dead zone from a gain")
     explanation = "The controller does not answer errors within a width that nobody stated."
-    siblings = {"controller_gain": "small and large errors are answered less in proportion"}
+    siblings = {
+        "controller_gain": "small and large errors are answered less in proportion",
+        "coulomb_friction": "the command answers, and the axis does not; without a recorded command the same readings",
+    }
     units = {"width": "m"}
     discrete = frozenset({"soft"})
     QUANTILES = (0.05, 0.15, 0.3, 0.45, 0.6, 0.75, 0.88)

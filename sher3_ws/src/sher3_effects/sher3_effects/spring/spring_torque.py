@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import ClassVar
 
 import numpy as np
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Best, Shape, Signature, column
 
+from sher3_effects.compliance.two_slopes import BENT_FROM
 from sher3_effects.page import Page
 from sher3_effects.view import AxisView
+
+ROUNDS = 8
+"""Steps of Newton's method, each of which doubles the digits of a place."""
 
 
 class SpringTorque(Page):
@@ -20,7 +24,7 @@ class SpringTorque(Page):
     inputs = ("position",)
     kinds: ClassVar[tuple[str, ...]] = ("joint",)
     best = Best("sweep", "long constant-speed strokes separate ratios from offsets")
-    extends = ("gravity_load",)
+    extends: ClassVar[tuple[str, ...]] = ("gravity_load",)
     explanation = (
         "A spring pulls the axis to one place: a force that grows in proportion to the distance from it, the same "
         "going and coming."
@@ -29,7 +33,7 @@ class SpringTorque(Page):
         "gravity_load": "follows the sine of the posture, or is constant",
         "cogging": "repeats with every turn of the motor",
     }
-    units = {"stiffness": "N/m", "rest": "m"}
+    units: ClassVar[Mapping[str, str]] = {"stiffness": "N/m", "rest": "m"}
     on_axis = {"stiffness": "spring", "rest": "rest"}
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
@@ -48,9 +52,15 @@ class SpringTorque(Page):
 
 
 class SpringOnAxis(SpringTorque):
-    """The same on one axis of any machine: a spring is told from a constant force only where it rests in the travel."""
+    """The same on one axis of any machine: a spring is told from a constant force only where it rests in the travel.
+
+    A spring that hardens towards the ends of the travel has a cube of the position beside it; one that softens is a
+    weight at an arm.
+    """
 
     kinds = ("axis",)
+    units = {"stiffness": "N/m", "rest": "m", "stiffness_at_end": "N/m"}
+    bent_from = BENT_FROM
 
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
         """Return the middle and half of the travel over all runs."""
@@ -58,19 +68,32 @@ class SpringOnAxis(SpringTorque):
         low, high = min(ends), max(ends)
         return [{"middle": 0.5 * (low + high), "half": 0.5 * (high - low)}] if high > low else []
 
+    def bends(self, views: Sequence[AxisView], site: str, shape: Shape) -> list[Shape]:
+        """Return the spring that hardens."""
+        return [{**shape, "hardens": 1.0}]
+
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
-        """Return two columns: the position over its travel, and one."""
+        """Return two columns, the position over its travel and one; of a spring that hardens its cube too."""
         x = (view.position[:, view.row(site)] - shape["middle"]) / shape["half"]
-        return Signature({Channel(self.stage, site): column(x, np.ones_like(x))})
+        cube = [x**3] if "hardens" in shape else []
+        return Signature({Channel(self.stage, site): column(x, np.ones_like(x), *cube)})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the stiffness, and the position at which the spring is relaxed."""
-        end, middle = map(float, coefficients)
-        return {
-            "stiffness": end / shape["half"],
-            "rest": shape["middle"] - shape["half"] * middle / end if end else 0.0,
-        }
+        """Return the stiffness, the position at which the spring is relaxed, and the stiffness at the ends."""
+        linear, middle, *cube = map(float, coefficients)
+        place = _relaxed(linear, middle, *cube) if linear else 0.0
+        out = {"stiffness": linear / shape["half"], "rest": shape["middle"] + shape["half"] * place}
+        return {**out, **({"stiffness_at_end": (linear + 3.0 * cube[0]) / shape["half"]} if cube else {})}
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether the spring pulls back, to a place within the travel."""
-        return bool(coefficients[0] > abs(coefficients[1]))
+        """Return whether the spring pulls back, to a place within the travel, and does not soften."""
+        linear, middle, cube = (*map(float, coefficients), 0.0)[:3]
+        return linear > 0.0 and cube >= 0.0 and linear + cube > abs(middle)
+
+
+def _relaxed(linear: float, middle: float, cube: float = 0.0) -> float:
+    """Return the place over the travel, -1..1, at which linear x + cube x^3 + middle is zero, by Newton's method."""
+    x = -middle / linear
+    for _ in range(ROUNDS):
+        x -= (linear * x + cube * x**3 + middle) / (linear + 3.0 * cube * x * x)
+    return x

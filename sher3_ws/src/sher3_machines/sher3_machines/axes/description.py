@@ -121,6 +121,11 @@ class Axis(Strict):
         return self.command_law.kind == "position"
 
     @property
+    def swings(self) -> bool:
+        """Whether the axis turns and nothing is said of a weight at an arm."""
+        return self.motion == "rotary" and self.gravity.arm == 0.0 and self.signals.nominal_effort is None
+
+    @property
     def free(self) -> bool:
         """Whether nothing drives the axis."""
         return self.command_law.kind == "none"

@@ -19,9 +19,11 @@ from sher3_diagnosis.verdict import Cause, Interval
 from sher3_effects import library, pages
 from sher3_effects.behind_motor import BehindMotor
 from sher3_effects.friction.viscous_friction import ViscousOnAxis
+from sher3_effects.spring.spring_torque import SpringOnAxis
 
 from sher3_machines.axes.description import AxesDescription, Axis, Gravity
 from sher3_machines.axes.evidence import AxisEvidence, gather_axis, levels_of
+from sher3_machines.axes.identification.alike import SpringBesideWeight, dead_band_note, with_dead_band
 from sher3_machines.axes.identification.fast import requantified, with_unseen
 from sher3_machines.axes.identification.refine import refine_free
 from sher3_machines.axes.identification.search import causes_of_axis
@@ -65,7 +67,9 @@ class Axes(Machine[AxesRun, AxisEvidence]):
     def library(self) -> Sequence[Effect]:
         """Return the pages for these kinds of axes, and that of the limit, which is read off without a fit."""
         kinds = sorted({kind_of(axis) for axis in self.description.axes}, reverse=True)
-        return [*(page for kind in kinds for page in pages(kind)), *pages("law"), library()[LIMIT]]
+        swings = any(axis.swings for axis in self.description.axes)
+        known = [_beside_weight(page) if swings else page for kind in kinds for page in pages(kind)]
+        return [*known, *pages("law"), library()[LIMIT]]
 
     def effects(self, evidence: AxisEvidence) -> Sequence[Effect]:
         """Return the pages that can show in what was recorded of an axis."""
@@ -132,6 +136,7 @@ class Axes(Machine[AxesRun, AxisEvidence]):
         causes, own = requantified(evidence, attribution, causes), evidence.axis.own_unit
         causes = causes if evidence.axis.servo else with_unseen(evidence, attribution, causes)
         causes = within_bounds(causes, self.effects(evidence))
+        causes = with_dead_band(causes) if evidence.axis.servo else causes
         return evidence, [in_own_unit(cause, own) for cause in causes] if own else causes
 
     def remarks(self, finding: Finding[AxisEvidence]) -> list[str]:
@@ -178,7 +183,12 @@ def _of_axis(page: Effect, evidence: AxisEvidence) -> Effect:
         return ViscousOnAxis(evidence.axis.viscous)
     if isinstance(page, BehindMotor):
         return type(page)(evidence.mass)
-    return page
+    return _beside_weight(page) if evidence.axis.swings else page
+
+
+def _beside_weight(page: Effect) -> Effect:
+    """Return a page with what it must know of an axis that may carry a weight at an arm."""
+    return SpringBesideWeight() if isinstance(page, SpringOnAxis) else page
 
 
 def nothing_judged(parts: Sequence[AxisEvidence], runs: Sequence[AxesRun]) -> MachineError:
@@ -279,4 +289,5 @@ def blind_spots(finding: Finding[AxisEvidence]) -> list[str]:
     out = [] if axis.signals.load is not None else [unseen_note(finding.evidence, finding.attribution.fit)]
     if axis.servo:
         out.append(f"{axis.name}: force not recorded: forces are given in units of the servo's stiffness")
+        out.append(dead_band_note(axis.name, finding.causes, axis.unit_of_position))
     return [said for said in out if said]

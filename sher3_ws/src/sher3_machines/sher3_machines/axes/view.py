@@ -93,8 +93,7 @@ class AxisView:
     @property
     def hangs(self) -> bool:
         """Whether the axis turns and its description says nothing of a weight at an arm."""
-        axis = self.described
-        return axis.motion == "rotary" and axis.gravity.arm == 0.0 and axis.signals.nominal_effort is None
+        return self.described.swings
 
     def lead(self, site: str) -> float:
         """Return the travel per motor revolution, m or rad; what stands for it where it is not known."""

@@ -43,6 +43,8 @@ APPLIED = vocabulary("hung applied external disturbance weight brake bremsmoment
 """A force from outside that is known, where the column has the unit of one."""
 PLAIN = vocabulary("motor state states joint value wert data real raw message msg sensor")
 """Words that tell one axis from another only where nothing else does."""
+TURNING = vocabulary("az azimuth el elevation pan tilt yaw pitch roll")
+"""Names of axes that, with a unit of an angle, are a position."""
 TIME = vocabulary("t time stamp timestamp timestamps zeit date datetime utc received elapsed clock")
 COUNTERS = vocabulary("sample samples index idx frame step n nr row")
 FORCES = ("%", "A", "mA", "N", "kN", "N*m", "mN*m")
@@ -100,7 +102,7 @@ def named(column: str) -> Named:
     signal = _signal(set(used) | (set(words) & SECOND), {w for w in table if w in ASKED})
     rest = rest or [w for w in table if w not in WORDS and w not in PLAIN and w not in SECOND] or table
     if signal is None and not set(words) & IGNORED:
-        plain = unit == "count" or (unit in PLACES and set(words) <= PLAIN)
+        plain = unit == "count" or (unit in PLACES and set(words) <= PLAIN | TURNING)
         signal = "position" if plain else "effort" if unit in FORCES and not set(words) & WORDS else None
     return Named(signal, "_".join(rest), unit)
 
@@ -149,7 +151,9 @@ def bare_and_unit(name: str) -> tuple[str, str | None]:
         return (f"{match['name']} {inside}" if ENTRY.fullmatch(inside) else match["name"]), None
     if match := PER_SECOND.fullmatch(name):
         return match["name"], f"{match['unit']}/s"
-    head, _, last = name.rpartition("_")
+    head, mark, last = name.rpartition("_" if "_" in name else " ")
+    if mark == " " and (last not in UNITS or len(last) == 1):
+        return name, None
     said, words = spelled(last), set(words_of(head))
     letter = len(last) == 1 and last.isupper() and bool(words & FORCEFUL)
     letter = letter or (last == "m" and bool(words & SLIDING)) or (last == "s" and bool(words & TIME))

@@ -11,6 +11,8 @@ from sher3_common import FileError
 from sher3_diagnosis.channel import Array
 
 from sher3_machines.errors import MachineError
+from sher3_machines.intake.readers.hdf5 import ENDINGS as OF_HDF5
+from sher3_machines.intake.readers.hdf5 import refuse_hdf5
 from sher3_machines.intake.readers.mat import read_mat
 from sher3_machines.intake.readers.structured import read_lists, read_npz, read_parquet
 from sher3_machines.intake.readers.text import read_table
@@ -41,6 +43,8 @@ READERS: dict[str, Callable[[Path], Tables]] = {
     ".mcap": read_bag,
     ".bag": read_bag,
 }
+REFUSED = dict.fromkeys(OF_HDF5, refuse_hdf5)
+"""Endings of files that are known and not read: the refusal says how to convert them."""
 
 
 NOT_IN_FOLDERS = (".txt", ".dat", ".log", ".asc")
@@ -62,11 +66,14 @@ def read_tables(path: Path) -> Tables:
             if (f.suffix.lower() in READERS and f.suffix not in NOT_IN_FOLDERS) or is_rosbag2(f)
         ]
         if not found:
+            known = [f for f in sorted(path.iterdir()) if f.suffix.lower() in REFUSED]
+            if known:
+                return read_tables(known[0])
             raise MachineError(f"{path}: no data files", limit=", ".join(READERS), remedy="give a file or its folder")
         return {f"{f.stem}/{name}": x for f in found for name, x in read_tables(f).items()}
     if not path.is_file():
         raise MachineError(f"{path}: no such file", remedy="check the path")
-    reader = READERS.get(path.suffix.lower())
+    reader = {**READERS, **REFUSED}.get(path.suffix.lower())
     if reader is None:
         raise MachineError(
             f"{path}: format is not read", value=path.suffix, limit=", ".join(READERS), remedy="convert it to csv"

@@ -7,7 +7,7 @@ where it and what the joints then still need are cheaper than what the joints ne
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 from sher3_diagnosis.attribute.candidates import Candidates, cost, possible, price
@@ -15,16 +15,20 @@ from sher3_diagnosis.attribute.rivals import Attribution, without_term
 from sher3_diagnosis.attribute.search import Say, attribute
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Effect
-from sher3_diagnosis.fit.fitting import Fit, Term, fit
+from sher3_diagnosis.evidence import Evidence
+from sher3_diagnosis.fit.fitting import Fit, Term, fit, make_term
 from sher3_diagnosis.judge.left_over import down_to_floor
 from sher3_diagnosis.thresholds import NEEDED, PARSIMONY, RIVAL
 from sher3_effects.friction.coulomb_friction import CoulombFriction
 from sher3_effects.friction.viscous_friction import ViscousFriction
 from sher3_effects.inertia.payload_mass import PayloadOnLink
+from sher3_effects.timing.sensor_delay import SensorDelay
 
 from sher3_machines.axes.identification.anywhere import borne_out
+from sher3_machines.axes.identification.fast import without_slow
 from sher3_machines.axes.identification.rest import Bounded
-from sher3_machines.manipulator.evidence import ArmMotionEvidence, channels_of, of_channel
+from sher3_machines.manipulator.evidence import ArmMotionEvidence, channel_of, channels_of, of_channel
+from sher3_machines.manipulator.readings.lateness import Late, TimedEffort, lateness
 from sher3_machines.thresholds import CAUSES_OF_JOINT, LEAST_CLOSURE
 
 HEAVIEST = 2.0
@@ -48,11 +52,13 @@ class Explained:
     @property
     def cost(self) -> float:
         """Held-out loss and the price of every number."""
-        return self.fit.total + sum(price(t) for t in self.fit.terms)
+        return spent(self.fit)
 
 
 def causes_of_arm(evidence: ArmMotionEvidence, candidates: Candidates, say: Say) -> Attribution:
-    """Choose the causes of an arm in motion, with their rivals."""
+    """Choose the causes of an arm in motion, with their rivals; none where no joint has a gap."""
+    if not down_to_floor(evidence.channels, evidence, evidence.null()):
+        return Attribution(evidence.null(), (), ())
     found = _explained(evidence, candidates, None, say)
     loaded = _payload(evidence, candidates)
     if loaded is None:
@@ -72,15 +78,56 @@ def _explained(evidence: ArmMotionEvidence, candidates: Candidates, payload: Fit
     alone: list[Attribution] = []
     for channel in (c for joint in evidence.judged for c in channels_of(joint)):
         own = of_channel(evidence, channel, beside)
-        left = partial(down_to_floor, own.channels, own)
-        if left(own.null()):
-            say(f"{channel}{' beside a payload' if payload is not None else ''}")
-            found = attribute(Bounded(own, effects), left, say, CAUSES_OF_JOINT)
-            alone.append(borne_out(own, found))
+        say(f"{channel}{' beside a payload' if payload is not None else ''}")
+        balance = channel == channel_of(channel.actuator)
+        late = lateness(evidence, channel.actuator, beside) if balance else None
+        alone.append(_beside_delay(own, late, effects, say) if balance else _searched(own, effects, say))
     terms = [payload.terms[-1]] if payload is not None else []
     for found in alone:
         terms += [candidates.term(t.effect, t.site, t.shape) for t in found.fit.terms]
     return Explained(fit(evidence.data, terms), alone)
+
+
+def _searched(own: Evidence, effects: Sequence[Effect], say: Say) -> Attribution:
+    """Search one channel for causes."""
+    left = partial(down_to_floor, own.channels, own)
+    return borne_out(own, attribute(Bounded(own, effects), left, say, CAUSES_OF_JOINT))
+
+
+def _beside_delay(own: Evidence, late: Late | None, effects: Sequence[Effect], say: Say) -> Attribution:
+    """Search the force balance of a joint without and beside a late effort; return what is cheaper.
+
+    The delay is told by its shape: causes may be at the floor without it, and a fit would take up a viscous friction or
+    how a dry one turns. Where the shape tells none, none is looked for. They are compared away from reversals, where a
+    dry friction is no matter of a moment.
+    """
+    others = [e for e in effects if not isinstance(e, SensorDelay)]
+    if late is not None and late.told and not late.sure:
+        others = list(effects)
+    found = _searched(own, others, say)
+    if late is None or not late.sure or len(others) == len(effects):
+        return found
+    site = own.places["axis"][0]
+    trials = [make_term(own.data, TimedEffort(), site, shape) for shape in late.shapes]
+    best = min(trials, key=lambda term: fit(own.data, [*found.fit.terms, term]).total)
+    beside = _searched(replace(own, nuisance=(best,)), others, say)
+    return beside if beside.fit.admissible and _worth(own, site, found.fit, beside.fit) > NEEDED else found
+
+
+def _worth(own: Evidence, site: str, without: Fit, beside: Fit) -> float:
+    """Return by how much a fit lowers the loss away from reversals, in units of what it leaves there.
+
+    The floor of an arm counts the noise of all encoders at their worst; a delay shows in what is really left.
+    """
+    away = without_slow(own, {site}).data
+    again = ([make_term(away, t.effect, t.site, t.shape) for t in found.terms] for found in (without, beside))
+    first, second = (fit(away, terms).total for terms in again)
+    return (first - second) * sum(away.samples.values()) / max(second, 1.0)
+
+
+def spent(found: Fit) -> float:
+    """Return the held-out loss of a fit and the price of every number."""
+    return found.total + sum(price(t) for t in found.terms)
 
 
 def _payload(evidence: ArmMotionEvidence, candidates: Candidates) -> Fit | None:

@@ -31,7 +31,7 @@ from sher3_machines.manipulator.confounding import SAME, confounding_notes
 from sher3_machines.manipulator.description import ManipulatorDescription
 from sher3_machines.manipulator.evidence import ArmMotionEvidence, gather_arm_motion
 from sher3_machines.manipulator.model import ArmModel
-from sher3_machines.manipulator.readings.lateness import late_efforts
+from sher3_machines.manipulator.readings.lateness import late_efforts, with_closure
 from sher3_machines.manipulator.readings.wrong import level_notes
 
 if TYPE_CHECKING:
@@ -115,6 +115,8 @@ class Manipulator(Machine[AxesRun, ArmMotionEvidence]):
     ) -> tuple[ArmMotionEvidence, list[Cause]]:
         """Fit friction again away from reversals; give forces of a joint with unknown gain in the recorded unit."""
         causes = within_bounds(requantified(evidence, attribution, causes), self.effects(evidence))
+        terms = [attribution.fit.terms[i] for i in attribution.causes]
+        causes = [with_closure(cause, term.shape) for cause, term in zip(causes, terms, strict=True)]
         return evidence, [with_hidden(in_own_unit(c, RECORDED)) if c.actuator in evidence.shares else c for c in causes]
 
     def remarks(self, finding: Finding[ArmMotionEvidence]) -> list[str]:

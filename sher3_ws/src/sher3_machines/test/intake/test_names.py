@@ -101,3 +101,13 @@ def test_signals_of_several_axes_find_theirs_by_number():
     placed[("tau", None)] = ("effort", "")
     groups, left = together(placed)
     assert groups["2"]["effort"] == ("tau_J2", None) and "effort" not in groups["1"] and left == ["tau"]
+
+
+def test_a_unit_may_stand_behind_a_blank():
+    assert (named("Target um").signal, named("Target um").unit) == ("reference", "um")
+    assert named("T Nut").unit is None and named("Motor A").unit is None
+
+
+def test_what_points_somewhere_is_a_position():
+    assert (named("az_rad").signal, named("az_cmd_rad").signal) == ("position", "reference")
+    assert named("az_rad").axis == named("az_cmd_rad").axis == "az"

@@ -22,6 +22,7 @@ from sher3_effects.friction.coulomb_friction import CoulombFriction
 from sher3_effects.timing.sensor_delay import SensorDelay
 
 from sher3_machines.axes.evidence import AxisEvidence
+from sher3_machines.axes.identification.alike import told_by_travel
 from sher3_machines.axes.identification.anywhere import borne_out
 from sher3_machines.axes.identification.rest import Bounded, DryFirst, rest_loss
 from sher3_machines.axes.view import AxisView
@@ -32,7 +33,7 @@ POLISHES = 4
 
 def causes_of_axis(evidence: AxisEvidence, candidates: Candidates, left_over: Left, say: Say) -> Attribution:
     """Choose the causes of an axis, without those that only its reversals show."""
-    return borne_out(evidence, _chosen(evidence, candidates, left_over, say))
+    return borne_out(evidence, told_by_travel(_chosen(evidence, candidates, left_over, say)))
 
 
 def _chosen(evidence: AxisEvidence, candidates: Candidates, left_over: Left, say: Say) -> Attribution:

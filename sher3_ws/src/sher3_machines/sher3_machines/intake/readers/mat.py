@@ -16,6 +16,8 @@ from sher3_common import read_bytes
 from sher3_common.array_files import read_arrays
 from sher3_diagnosis.channel import Array
 
+from sher3_machines.intake.readers.hdf5 import MAGIC, refused
+
 MAX_MEMORY = 4_000_000_000
 """Address space of the child, bytes: twice the largest file that is read."""
 MAX_SECONDS = 120.0
@@ -32,11 +34,12 @@ def read_mat(path: Path) -> dict[str, Array]:
     """Return the numeric arrays of a file; fields of structs are `struct/field`, rows of struct arrays stacked.
 
     Raises:
-        ValueError: the file is of version 7.3, or its reader ended without an answer.
+        MachineError: the file is of version 7.3.
+        ValueError: its reader ended without an answer.
     """
     raw = read_bytes(path, MAX_BYTES)
-    if raw.startswith(HDF5):
-        raise ValueError("it is of version 7.3; save it in MATLAB with the option -v7")
+    if raw.startswith((HDF5, MAGIC)):
+        raise refused(path, "MATLAB's version 7.3, which is HDF5,", "save it in MATLAB with the option -v7, or ")
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / "arrays.npz"
         command = [sys.executable, "-m", __name__, str(MAX_BYTES), str(out)]

@@ -1,0 +1,69 @@
+"""What a record of one axis may not tell apart: stiction and a dead band, a spring and a weight at an arm.
+
+A servo whose force c v is stiffness times error less a friction F, and a valve whose flow v is K times the error less a
+band b, obey one equation: v = (error less b) / T beyond the band, none within it, b = F over stiffness. Their readings
+are the same at any speed. The force, the command against its law, or a run under another load tells them.
+
+A spring and the sine of a weight at an arm are the same over a small travel, and each has numbers of its own: neither
+contains the other, as both contain a constant force.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from sher3_diagnosis.attribute.rivals import Attribution
+from sher3_diagnosis.thresholds import NEEDED
+from sher3_diagnosis.verdict import Cause
+from sher3_effects.compliance.two_slopes import BENT_FROM
+from sher3_effects.friction.coulomb_friction import ServoStiction
+from sher3_effects.inertia.gravity_load import GravityOnAxis
+from sher3_effects.limit.command_deadband import CommandDeadband
+from sher3_effects.spring.spring_torque import SpringOnAxis
+
+FOLLOWS_PLACE = (SpringOnAxis.id, GravityOnAxis.id)
+"""Effects whose force follows the position."""
+
+
+class SpringBesideWeight(SpringOnAxis):
+    """A spring on an axis that turns, whose description says nothing of a weight at an arm."""
+
+    extends = ()
+
+
+def told_by_travel(found: Attribution) -> Attribution:
+    """Return the causes without the spring, or the weight at an arm, that leaves markedly more than the other one.
+
+    Both laws are exact, and over a travel of 2 rad they part by 0.4 % of the gap: what a further cause must be worth.
+    """
+    rivals = list(found.rivals)
+    for i in found.causes:
+        if found.fit.terms[i].effect.id in FOLLOWS_PLACE:
+            worth = max(NEEDED, BENT_FROM * found.explained[i])
+            rivals[i] = tuple(
+                f for f in rivals[i] if f.terms[-1].effect.id not in FOLLOWS_PLACE or f.total - found.fit.total < worth
+            )
+    return replace(found, rivals=tuple(rivals))
+
+
+def with_dead_band(causes: Sequence[Cause]) -> list[Cause]:
+    """Return the causes of a position servo with a dead band among the rivals of its stiction."""
+    return [_beside(cause) if cause.effect == ServoStiction.id else cause for cause in causes]
+
+
+def _beside(cause: Cause) -> Cause:
+    return cause.model_copy(update={"rivals": list(dict.fromkeys([*cause.rivals, CommandDeadband.id]))})
+
+
+def dead_band_note(name: str, causes: Sequence[Cause], unit: str) -> str:
+    """Return what would tell a stiction from a dead band; empty where no stiction was found."""
+    stuck = next((c.parameters["force"] for c in causes if c.effect == ServoStiction.id), None)
+    if stuck is None:
+        return ""
+    return (
+        f"{name}: friction, and a dead band of {stuck.value:.3g} {unit} either way (overlap of a valve, a zone of the "
+        "controller), give a servo the same readings at any speed; the recorded force or pressure tells them apart, "
+        "the command with its stated law does, and so do runs tagged with two loads: friction grows with the load, a "
+        "band does not"
+    )
