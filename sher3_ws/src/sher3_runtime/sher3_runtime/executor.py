@@ -31,8 +31,11 @@ from sher3_runtime.tick import Tick
 
 IDLE_NS = 100_000_000
 """Longest wait [ns]: a shutdown that wakes nobody is noticed after this time."""
-LOOK_NS = 5_000_000
-"""Period [ns] at which a process that wakes up at the control rate looks at everything that is no stream."""
+LOOK_NS = 8_000_000
+"""Period [ns] at which a process that wakes up at the control rate looks at everything that is no stream.
+
+A stream that begins at 1 kHz has eight samples in its queue of ten by then.
+"""
 NEVER_NS = 1 << 62
 QUIET_NS = 100_000_000
 """A topic that was silent for this long [ns] counts as no stream, until its next sample."""

@@ -8,7 +8,6 @@ executor.
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Callable
 from functools import partial
 from typing import Any
@@ -224,6 +223,22 @@ def gathered(node: Node, name: str, depth: int) -> Callable[[], list[Any]]:
         UnknownTopic: The name is not in the table.
     """
     topic, port = find_topic(name), ports(node)
+    if (composition := port.composition) is not None:
+        # Half a period: nodes that look in the same tick ask once. In stepped time whoever looks asks.
+        pause = 0 if port.clock.stepped else port.clock.period_ns // 2
+        return composition.keep(topic, depth, lambda: _asks(node, topic, depth), pause)
+    ask, _ = _asks(node, topic, depth)
+    rings = newest_of_rings()
+    if rings is None:
+        return ask
+    rank, decode = rings.look_at(name, depth), codec(topic.type, topic.frame_id, ACTUATORS).decode
+    # A stream that comes by a ring may come by the middleware as well, later, where somebody else listens there.
+    return lambda: _decoded(port, name, decode, rings.take(rank)) if rings.offers(rank) else ask()
+
+
+def _asks(node: Node, topic: Topic, depth: int) -> tuple[Callable[[], list[Any]], Callable[[], None]]:
+    """Subscribe for a node that nobody wakes; return what asks for the samples, and what ends the subscription."""
+    port, name = ports(node), topic.name
     kind, profile = message_class(topic.type), qos_profile(topic.subscriber_qos)
     profile.depth = depth
     events = SubscriptionEventCallbacks(use_default_callbacks=False)
@@ -234,29 +249,13 @@ def gathered(node: Node, name: str, depth: int) -> Callable[[], list[Any]]:
     port.polled.add(subscription.handle.pointer)
     decode, take = codec(topic.type, topic.frame_id, ACTUATORS).decode, subscription.handle.take_message
 
-    composition = port.composition
-    leave = partial(port.leave, node, name, subscription)
-    inside = deque[Any]() if composition is None else composition.keep(topic, depth, leave)
-    rings = newest_of_rings() if composition is None else None
-    rank = -1 if rings is None else rings.look_at(name, depth)
-
-    def sent() -> list[bytes]:
-        # A stream that comes by a ring may come by the middleware as well, later, where somebody else listens there.
-        if rings is not None and rings.offers(rank):
-            return rings.take(rank)
+    def ask() -> list[Any]:
         found: list[bytes] = []
         while len(found) < depth and (taken := take(kind, True)) is not None:
             found.append(taken[0])
-        return found
+        return _decoded(port, name, decode, found) if found else []
 
-    def take_all() -> list[Any]:
-        if composition is not None and composition.inner(name):
-            samples = list(inside)
-            inside.clear()
-            return samples
-        return _decoded(port, name, decode, sent())
-
-    return take_all
+    return ask, partial(port.leave, node, name, subscription)
 
 
 def by_ring(node: Node, name: str, depth: int) -> Callable[[], list[Any]]:
