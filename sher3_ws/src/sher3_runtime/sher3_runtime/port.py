@@ -40,6 +40,8 @@ GAPLESS = frozenset(
     {"servo_jv", "drives/setpoint_jv", "drives/measured_js", "measured_js", "force/measured_cf", "pedal/measured"}
 )
 """Streams with a sample at every tick: a stamp that skips a tick means a lost sample."""
+ONCE_A_TICK = GAPLESS | {"servo_cv"}
+"""Streams with at most one sample for each tick, whose stamp it bears."""
 
 
 class Subscribed:
@@ -102,7 +104,7 @@ class Ports:
         self.statistics = Statistics()
         self.statistics.traces = {} if os.environ.get(TRACE_VARIABLE) else None
         self.polled: set[int] = set()
-        self.deliveries: dict[int, Callable[[bytes], None]] = {}
+        self.deliveries: dict[int, Callable[[bytes], object]] = {}
         self.subscribed: dict[int, Subscribed] = {}
         self.ticks: list[Tick] = []
         self.readables: list[tuple[Any, Callable[[], None]]] = []

@@ -22,7 +22,7 @@ from sher3_runtime.codec.messages import from_message, message_class, to_message
 from sher3_runtime.composed.composition import Composition
 from sher3_runtime.composed.newest import newest_of_rings
 from sher3_runtime.port import EXECUTOR_VARIABLE as EXECUTOR_VARIABLE
-from sher3_runtime.port import GAPLESS
+from sher3_runtime.port import GAPLESS, ONCE_A_TICK
 from sher3_runtime.port import NODE_OPTIONS as NODE_OPTIONS
 from sher3_runtime.port import PERIOD_VARIABLE as PERIOD_VARIABLE
 from sher3_runtime.port import STATISTICS_VARIABLE as STATISTICS_VARIABLE
@@ -73,7 +73,7 @@ def subscribe(node: Node, name: str, callback: Callable[[Any], None], depth: int
     if raw:
         decode, garbage = codec(topic.type, topic.frame_id, ACTUATORS).decode, port.statistics.garbage
 
-        def deliver(data: Any) -> None:
+        def deliver(data: Any) -> object:
             port.received[name] += 1
             try:
                 sample = decode(data)
@@ -81,8 +81,8 @@ def subscribe(node: Node, name: str, callback: Callable[[Any], None], depth: int
                 if name not in garbage:
                     node.get_logger().warning(f"{name}: {error}; further ones are only counted")
                 garbage[name] = garbage.get(name, 0) + 1
-                return
-            receive(sample)
+                return None
+            return receive(sample)
     else:
 
         def deliver(data: Any) -> None:
@@ -103,8 +103,11 @@ def subscribe(node: Node, name: str, callback: Callable[[Any], None], depth: int
     return port.subscribed.setdefault(subscription.handle.pointer, Subscribed())
 
 
-def _receiver(port: Ports, topic: Topic, callback: Callable[[Any], None]) -> Callable[[Any], None]:
-    """Wrap a callback with the counting of age, gaps and duration."""
+def _receiver(port: Ports, topic: Topic, callback: Callable[[Any], None]) -> Callable[[Any], object]:
+    """Wrap a callback with the counting of age, gaps and duration.
+
+    What is returned returns True when the sample was that of the present tick, and the next one has still to come.
+    """
     name, clock, stats = topic.name, port.clock, port.statistics
     duration = stats.callback.setdefault(name, Histogram())
     if "String" in topic.type:
@@ -112,9 +115,10 @@ def _receiver(port: Ports, topic: Topic, callback: Callable[[Any], None]) -> Cal
 
     age, period = stats.age.setdefault(name, Histogram()), clock.period_ns
     gapless, last = name in GAPLESS, 0
+    only = period if name in ONCE_A_TICK and not clock.stepped else 0
     arrived, handled = stats.trace(f"receive {name}"), stats.trace(f"handled {name}")
 
-    def receive(sample: Any) -> None:
+    def receive(sample: Any) -> bool:
         nonlocal last
         start, stamp = clock.now(), sample.stamp
         age.add(start - stamp)
@@ -128,6 +132,7 @@ def _receiver(port: Ports, topic: Topic, callback: Callable[[Any], None]) -> Cal
         if arrived is not None and handled is not None:
             arrived.mark(stamp, start)
             handled.mark(stamp, end)
+        return end - stamp < only
 
     return receive
 
