@@ -116,7 +116,7 @@ def _receiver(port: Ports, topic: Topic, callback: Callable[[Any], None]) -> Cal
     age, period = stats.age.setdefault(name, Histogram()), clock.period_ns
     gapless, last = name in GAPLESS, 0
     only = period if name in ONCE_A_TICK and not clock.stepped else 0
-    arrived, handled = stats.trace(f"receive {name}"), stats.trace(f"handled {name}")
+    handled = stats.trace(f"handled {name}")
 
     def receive(sample: Any) -> bool:
         nonlocal last
@@ -129,8 +129,7 @@ def _receiver(port: Ports, topic: Topic, callback: Callable[[Any], None]) -> Cal
         callback(sample)
         end = clock.now()
         duration.add(end - start)
-        if arrived is not None and handled is not None:
-            arrived.mark(stamp, start)
+        if handled is not None:
             handled.mark(stamp, end)
         return end - stamp < only
 
