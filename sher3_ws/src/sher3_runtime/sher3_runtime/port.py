@@ -52,12 +52,13 @@ class Subscribed:
             this to False, and gets the sample, in the order of its subscriptions, once something else has woken the
             process.
         urgent: Whether a sample wakes the process though the topic was silent, see `topics.AT_ONCE`.
+        served: Whether the newest sample was that of the present tick, so that the next one has still to come.
     """
 
-    __slots__ = ("urgent", "wakes")
+    __slots__ = ("served", "urgent", "wakes")
 
     def __init__(self) -> None:
-        self.wakes, self.urgent = True, False
+        self.wakes, self.urgent, self.served = True, False, False
 
 
 _clocks: WeakKeyDictionary[Context, Clock] = WeakKeyDictionary()
@@ -104,7 +105,7 @@ class Ports:
         self.statistics = Statistics()
         self.statistics.traces = {} if os.environ.get(TRACE_VARIABLE) else None
         self.polled: set[int] = set()
-        self.deliveries: dict[int, Callable[[bytes], object]] = {}
+        self.deliveries: dict[int, Callable[[bytes], None]] = {}
         self.subscribed: dict[int, Subscribed] = {}
         self.ticks: list[Tick] = []
         self.readables: list[tuple[Any, Callable[[], None]]] = []

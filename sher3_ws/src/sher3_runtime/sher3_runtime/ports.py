@@ -60,7 +60,8 @@ def subscribe(node: Node, name: str, callback: Callable[[Any], None], depth: int
         UnknownTopic: The name is not in the table.
     """
     topic, port = find_topic(name), ports(node)
-    receive = _receiver(port, topic, callback)
+    subscribed = Subscribed()
+    receive = _receiver(port, topic, callback, subscribed)
     profile = qos_profile(topic.subscriber_qos)
     if depth is not None:
         profile.depth = depth
@@ -73,7 +74,7 @@ def subscribe(node: Node, name: str, callback: Callable[[Any], None], depth: int
     if raw:
         decode, garbage = codec(topic.type, topic.frame_id, ACTUATORS).decode, port.statistics.garbage
 
-        def deliver(data: Any) -> object:
+        def deliver(data: Any) -> None:
             port.received[name] += 1
             try:
                 sample = decode(data)
@@ -81,8 +82,8 @@ def subscribe(node: Node, name: str, callback: Callable[[Any], None], depth: int
                 if name not in garbage:
                     node.get_logger().warning(f"{name}: {error}; further ones are only counted")
                 garbage[name] = garbage.get(name, 0) + 1
-                return None
-            return receive(sample)
+                return
+            receive(sample)
     else:
 
         def deliver(data: Any) -> None:
@@ -100,14 +101,13 @@ def subscribe(node: Node, name: str, callback: Callable[[Any], None], depth: int
     )
     port.subscriptions[name] = subscription
     port.deliveries[subscription.handle.pointer] = deliver
-    return port.subscribed.setdefault(subscription.handle.pointer, Subscribed())
+    return port.subscribed.setdefault(subscription.handle.pointer, subscribed)
 
 
-def _receiver(port: Ports, topic: Topic, callback: Callable[[Any], None]) -> Callable[[Any], object]:
-    """Wrap a callback with the counting of age, gaps and duration.
-
-    What is returned returns True when the sample was that of the present tick, and the next one has still to come.
-    """
+def _receiver(
+    port: Ports, topic: Topic, callback: Callable[[Any], None], subscribed: Subscribed
+) -> Callable[[Any], None]:
+    """Wrap a callback with the counting of age, gaps and duration."""
     name, clock, stats = topic.name, port.clock, port.statistics
     duration = stats.callback.setdefault(name, Histogram())
     if "String" in topic.type:
@@ -118,7 +118,7 @@ def _receiver(port: Ports, topic: Topic, callback: Callable[[Any], None]) -> Cal
     only = period if name in ONCE_A_TICK and not clock.stepped else 0
     handled = stats.trace(f"handled {name}")
 
-    def receive(sample: Any) -> bool:
+    def receive(sample: Any) -> None:
         nonlocal last
         start, stamp = clock.now(), sample.stamp
         age.add(start - stamp)
@@ -131,7 +131,7 @@ def _receiver(port: Ports, topic: Topic, callback: Callable[[Any], None]) -> Cal
         duration.add(end - start)
         if handled is not None:
             handled.mark(stamp, end)
-        return end - stamp < only
+        subscribed.served = 0 <= end - stamp < only
 
     return receive
 
@@ -228,8 +228,9 @@ def gathered(node: Node, name: str, depth: int) -> Callable[[], list[Any]]:
     """
     topic, port = find_topic(name), ports(node)
     if (composition := port.composition) is not None:
-        # Half a period: nodes that look in the same tick ask once. In stepped time whoever looks asks.
-        pause = 0 if port.clock.stepped else port.clock.period_ns // 2
+        # Half a period: nodes that look in the same tick ask once. A late tick and the next one may be nearer than
+        # that, so for the sample of a tick, and in stepped time, whoever looks asks.
+        pause = 0 if port.clock.stepped or name in ONCE_A_TICK else port.clock.period_ns // 2
         return composition.keep(topic, depth, lambda: _asks(node, topic, depth), pause)
     ask, _ = _asks(node, topic, depth)
     rings = newest_of_rings()
