@@ -11,6 +11,7 @@ import ctypes
 import os
 import time
 from contextlib import suppress
+from time import monotonic_ns
 
 OFFSET_VARIABLE = "SHER3_CLOCK_OFFSET"
 _PR_SET_TIMERSLACK = 29
@@ -35,7 +36,7 @@ class Clock:
 
     def now(self) -> int:
         """Return the time in ns of the system clock's epoch."""
-        return time.monotonic_ns() + self.offset_ns
+        return monotonic_ns() + self.offset_ns
 
     def next_tick(self, after_ns: int) -> int:
         """Return the first grid stamp later than `after_ns` and not before `start_ns`."""

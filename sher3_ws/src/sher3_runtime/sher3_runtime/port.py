@@ -40,6 +40,8 @@ GAPLESS = frozenset(
     {"servo_jv", "drives/setpoint_jv", "drives/measured_js", "measured_js", "force/measured_cf", "pedal/measured"}
 )
 """Streams with a sample at every tick: a stamp that skips a tick means a lost sample."""
+ONCE_A_TICK = GAPLESS | {"servo_cv"}
+"""Streams with at most one sample for each tick, whose stamp it bears."""
 
 
 class Subscribed:
@@ -50,12 +52,13 @@ class Subscribed:
             this to False, and gets the sample, in the order of its subscriptions, once something else has woken the
             process.
         urgent: Whether a sample wakes the process though the topic was silent, see `topics.AT_ONCE`.
+        served: Whether the newest sample was that of the present tick, so that the next one has still to come.
     """
 
-    __slots__ = ("urgent", "wakes")
+    __slots__ = ("served", "urgent", "wakes")
 
     def __init__(self) -> None:
-        self.wakes, self.urgent = True, False
+        self.wakes, self.urgent, self.served = True, False, False
 
 
 _clocks: WeakKeyDictionary[Context, Clock] = WeakKeyDictionary()

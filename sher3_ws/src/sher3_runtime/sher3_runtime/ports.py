@@ -8,7 +8,6 @@ executor.
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Callable
 from functools import partial
 from typing import Any
@@ -23,7 +22,7 @@ from sher3_runtime.codec.messages import from_message, message_class, to_message
 from sher3_runtime.composed.composition import Composition
 from sher3_runtime.composed.newest import newest_of_rings
 from sher3_runtime.port import EXECUTOR_VARIABLE as EXECUTOR_VARIABLE
-from sher3_runtime.port import GAPLESS
+from sher3_runtime.port import GAPLESS, ONCE_A_TICK
 from sher3_runtime.port import NODE_OPTIONS as NODE_OPTIONS
 from sher3_runtime.port import PERIOD_VARIABLE as PERIOD_VARIABLE
 from sher3_runtime.port import STATISTICS_VARIABLE as STATISTICS_VARIABLE
@@ -61,7 +60,8 @@ def subscribe(node: Node, name: str, callback: Callable[[Any], None], depth: int
         UnknownTopic: The name is not in the table.
     """
     topic, port = find_topic(name), ports(node)
-    receive = _receiver(port, topic, callback)
+    subscribed = Subscribed()
+    receive = _receiver(port, topic, callback, subscribed)
     profile = qos_profile(topic.subscriber_qos)
     if depth is not None:
         profile.depth = depth
@@ -101,10 +101,12 @@ def subscribe(node: Node, name: str, callback: Callable[[Any], None], depth: int
     )
     port.subscriptions[name] = subscription
     port.deliveries[subscription.handle.pointer] = deliver
-    return port.subscribed.setdefault(subscription.handle.pointer, Subscribed())
+    return port.subscribed.setdefault(subscription.handle.pointer, subscribed)
 
 
-def _receiver(port: Ports, topic: Topic, callback: Callable[[Any], None]) -> Callable[[Any], None]:
+def _receiver(
+    port: Ports, topic: Topic, callback: Callable[[Any], None], subscribed: Subscribed
+) -> Callable[[Any], None]:
     """Wrap a callback with the counting of age, gaps and duration."""
     name, clock, stats = topic.name, port.clock, port.statistics
     duration = stats.callback.setdefault(name, Histogram())
@@ -113,7 +115,8 @@ def _receiver(port: Ports, topic: Topic, callback: Callable[[Any], None]) -> Cal
 
     age, period = stats.age.setdefault(name, Histogram()), clock.period_ns
     gapless, last = name in GAPLESS, 0
-    arrived, handled = stats.trace(f"receive {name}"), stats.trace(f"handled {name}")
+    only = period if name in ONCE_A_TICK and not clock.stepped else 0
+    handled = stats.trace(f"handled {name}")
 
     def receive(sample: Any) -> None:
         nonlocal last
@@ -126,9 +129,9 @@ def _receiver(port: Ports, topic: Topic, callback: Callable[[Any], None]) -> Cal
         callback(sample)
         end = clock.now()
         duration.add(end - start)
-        if arrived is not None and handled is not None:
-            arrived.mark(stamp, start)
+        if handled is not None:
             handled.mark(stamp, end)
+        subscribed.served = 0 <= end - stamp < only
 
     return receive
 
@@ -224,6 +227,23 @@ def gathered(node: Node, name: str, depth: int) -> Callable[[], list[Any]]:
         UnknownTopic: The name is not in the table.
     """
     topic, port = find_topic(name), ports(node)
+    if (composition := port.composition) is not None:
+        # Half a period: nodes that look in the same tick ask once. A late tick and the next one may be nearer than
+        # that, so for the sample of a tick, and in stepped time, whoever looks asks.
+        pause = 0 if port.clock.stepped or name in ONCE_A_TICK else port.clock.period_ns // 2
+        return composition.keep(topic, depth, lambda: _asks(node, topic, depth), pause)
+    ask, _ = _asks(node, topic, depth)
+    rings = newest_of_rings()
+    if rings is None:
+        return ask
+    rank, decode = rings.look_at(name, depth), codec(topic.type, topic.frame_id, ACTUATORS).decode
+    # A stream that comes by a ring may come by the middleware as well, later, where somebody else listens there.
+    return lambda: _decoded(port, name, decode, rings.take(rank)) if rings.offers(rank) else ask()
+
+
+def _asks(node: Node, topic: Topic, depth: int) -> tuple[Callable[[], list[Any]], Callable[[], None]]:
+    """Subscribe for a node that nobody wakes; return what asks for the samples, and what ends the subscription."""
+    port, name = ports(node), topic.name
     kind, profile = message_class(topic.type), qos_profile(topic.subscriber_qos)
     profile.depth = depth
     events = SubscriptionEventCallbacks(use_default_callbacks=False)
@@ -234,29 +254,13 @@ def gathered(node: Node, name: str, depth: int) -> Callable[[], list[Any]]:
     port.polled.add(subscription.handle.pointer)
     decode, take = codec(topic.type, topic.frame_id, ACTUATORS).decode, subscription.handle.take_message
 
-    composition = port.composition
-    leave = partial(port.leave, node, name, subscription)
-    inside = deque[Any]() if composition is None else composition.keep(topic, depth, leave)
-    rings = newest_of_rings() if composition is None else None
-    rank = -1 if rings is None else rings.look_at(name, depth)
-
-    def sent() -> list[bytes]:
-        # A stream that comes by a ring may come by the middleware as well, later, where somebody else listens there.
-        if rings is not None and rings.offers(rank):
-            return rings.take(rank)
+    def ask() -> list[Any]:
         found: list[bytes] = []
         while len(found) < depth and (taken := take(kind, True)) is not None:
             found.append(taken[0])
-        return found
+        return _decoded(port, name, decode, found) if found else []
 
-    def take_all() -> list[Any]:
-        if composition is not None and composition.inner(name):
-            samples = list(inside)
-            inside.clear()
-            return samples
-        return _decoded(port, name, decode, sent())
-
-    return take_all
+    return ask, partial(port.leave, node, name, subscription)
 
 
 def by_ring(node: Node, name: str, depth: int) -> Callable[[], list[Any]]:

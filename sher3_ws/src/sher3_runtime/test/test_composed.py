@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import os
 import time
+from collections import deque
 from contextlib import contextmanager
 from itertools import pairwise
 
@@ -29,6 +30,7 @@ from sher3_runtime import (
 from sher3_runtime.clock import SteppedClock
 from sher3_runtime.codec.cdr import as_sent, codec
 from sher3_runtime.composed.composition import Composition
+from sher3_runtime.composed.outside import Outside
 from sher3_runtime.composed.turn import Turn
 from sher3_runtime.domains import own_domain
 from sher3_runtime.ports import ports
@@ -145,6 +147,32 @@ class Looker(Node):
     def __init__(self, **options):
         super().__init__("looker", **{**NODE_OPTIONS, **options})
         self.take = latest(self, "measured_js")
+
+
+def test_nodes_that_look_at_the_same_topic_from_outside_share_one_subscription():
+    """Each gets every sample, whichever of them asks the middleware."""
+    with Graph() as graph:
+        outside, together = graph.probe(sends=("measured_js",)), Composition()
+        lookers = [graph.add_to(together, Looker) for _ in range(3)]
+        assert sum("measured_js" in ports(looker).subscriptions for looker in lookers) == 1
+        graph.step()
+        for stamp in (1, 2):
+            outside.send("measured_js", JointSample(stamp, (0.0,) * 5))
+            graph.settle()
+            assert [looker.take().stamp for looker in lookers] == [stamp] * 3
+            assert [looker.take() for looker in lookers] == [None] * 3
+
+
+def test_a_sample_from_outside_is_asked_for_once_a_moment():
+    asked = []
+    outside = Outside(lambda: asked.append(1) or [len(asked)], 20_000_000)
+    outside.queues += (deque(), deque())
+    for _ in range(3):
+        outside.look()
+    assert outside.queues == [deque([1]), deque([1])]
+    time.sleep(0.021)
+    outside.look()
+    assert outside.queues == [deque([1, 2]), deque([1, 2])]
 
 
 def test_what_waits_for_a_node_at_work_is_handed_over_in_the_order_of_the_table_and_bounded():

@@ -6,7 +6,7 @@ import pytest
 from rclpy.context import Context
 from rclpy.node import Node
 from sher3_common.samples import JoySample, TextSample, TwistSample, WrenchSample
-from sher3_runtime import NODE_OPTIONS, advertise, subscribe
+from sher3_runtime import NODE_OPTIONS, advertise, clock_of, on_tick, subscribe
 from sher3_runtime.composed import newest
 from sher3_runtime.composed.ring import Ring, share
 from sher3_runtime.domains import own_domain
@@ -68,6 +68,37 @@ def test_a_topic_without_others_is_heard_though_it_wakes_nobody(node, spin):
     for stamp in range(1, 20):
         press(JoySample(stamp, (0.0,), (0,)))
         assert spin(lambda wanted=stamp: len(heard) == wanted)
+
+
+def test_samples_of_one_tick_are_all_heard_though_only_one_is_expected(node, spin):
+    """The second one waits for the next spin."""
+    heard, push = [], advertise(node, "force/measured_cf")
+    subscribe(node, "force/measured_cf", heard.append)
+    for _ in range(20):
+        stamp = clock_of(node).now()
+        heard.clear()
+        push(WrenchSample(stamp, ZERO))
+        push(WrenchSample(stamp, ZERO))
+        assert spin(lambda: len(heard) == 2)
+
+
+def test_a_look_at_everything_costs_no_wake_up_of_its_own(node):
+    """A process with a tick each period wakes up for its ticks alone, and hears the rare all the same."""
+    ticks, spins, states = [], 0, []
+    subscribe(node, "operating_state", lambda sample: states.append(sample.text))
+    state = advertise(node, "operating_state")
+    on_tick(node, ticks.append)
+    executor = RawExecutor(context=node.context)
+    executor.add_node(node)
+    end = time.monotonic() + 0.4
+    while time.monotonic() < end:
+        executor.spin_once(0.01)
+        spins += 1
+        if len(ticks) == 50 and not states:
+            state(TextSample("ENABLED"))
+    executor.shutdown()
+    assert states == ["ENABLED"] and len(ticks) > 50
+    assert spins <= len(ticks) + 10
 
 
 def test_rare_topics_and_services_are_served_beside_a_stream(node, spin):

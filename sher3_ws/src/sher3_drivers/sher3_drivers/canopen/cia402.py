@@ -28,7 +28,7 @@ class DriveState(Enum):
     FAULT = (0x4F, 0x08)
 
 
-class Controlword(Enum):
+class Controlword(IntEnum):
     """Commands of the host; the value is the controlword without mode-specific bits."""
 
     DISABLE_VOLTAGE = 0x00

@@ -42,8 +42,7 @@ class RpdoPacker:
             velocity_counts: target velocity of every drive (5,), in counts.
             counter: of the newest SYNC.
         """
-        words = [command.value for command in self._in_order(commands)]
-        velocities = self._in_order(velocity_counts)
+        words, velocities = self._in_order(commands), self._in_order(velocity_counts)
         fields: list[bytes | int] = [b""] * (4 * len(self._headers))
         fields[0::4] = self._headers
         fields[1::4] = words

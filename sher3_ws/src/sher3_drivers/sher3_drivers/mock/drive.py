@@ -93,7 +93,11 @@ _READINGS = (od.LOAD_POSITION, od.STATUSWORD, od.TORQUE, od.MOTOR_POSITION, od.V
 
 
 class _Tpdos:
-    """The synchronous TPDOs of a drive as frames end to end, packed in one call."""
+    """The synchronous TPDOs of a drive as frames end to end, packed in one call.
+
+    Attributes:
+        data: where their data are in the frames.
+    """
 
     def __init__(self, pdos: Sequence[_Pdo], channel: int) -> None:
         headers = [struct.pack(f"<{HEADER_FORMAT}", pdo.can_id, pdo.length, channel) for pdo in pdos]
@@ -109,6 +113,7 @@ class _Tpdos:
                 else:
                     keys.append(len(_READINGS) + len(headers) + self._others.index(address))
         self._headers = tuple(headers)
+        self.data = [slice(FRAME_SIZE * number + 8, FRAME_SIZE * (number + 1)) for number in range(len(headers))]
         self._pick = _picker(keys) if keys else lambda _: ()
 
     def frames(self, readings: tuple[int, ...], values: dict[Address, int]) -> bytes:
@@ -341,7 +346,7 @@ class MockDrive:
         frames = self._tpdos.frames(readings, self.node.values)
         if self._check_header is None:
             return frames
-        said = b"".join([frames[start + 8 : start + FRAME_SIZE] for start in range(0, len(frames), FRAME_SIZE)])
+        said = b"".join([frames[part] for part in self._tpdos.data])
         return frames + self._check_header + _CHECK.pack(check_of(said, self.node_id, self.counter))
 
     @property

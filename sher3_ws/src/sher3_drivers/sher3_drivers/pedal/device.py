@@ -38,7 +38,7 @@ def wired(state: PedalState) -> PedalState:
     if state.made is not None:
         return state
     pressed = not state.travel <= TOUCHED
-    return state._replace(made=pressed, rest=not pressed)
+    return PedalState(state.travel, state.emergency_stop, pressed, not pressed)
 
 
 PedalTamper = Callable[[PedalState], list[PedalState]]

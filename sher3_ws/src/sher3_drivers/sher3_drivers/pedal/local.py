@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import socket
 import struct
 import time
@@ -44,12 +43,14 @@ class LocalPedal:
 
     def read(self) -> PedalState | None:
         """Return the present state; see `PedalDevice`."""
-        with contextlib.suppress(BlockingIOError):
+        try:
             while True:
                 data = self._socket.recv(_MOST_BYTES)
                 if len(data) == _DATAGRAM.size:
                     self._state = PedalState(*_DATAGRAM.unpack(data))
                     self._heard_at = self._clock()
+        except BlockingIOError:
+            pass
         silence = self._clock() - self._heard_at
         if self._state is not None and silence > self._limit_ns:
             limit = f"{self._limit_ns * 1e-9:g} s"

@@ -32,6 +32,8 @@ STOP, STREAM, SET_BIAS = 0x0000, 0x0002, 0x0042
 """Commands of a request."""
 _RETRY, _PAUSE = 0.1, 0.02
 """Longest wait for the answer to one request of the start, and the pause before the next, s."""
+_LEAST, _MOST = -(2**31), 2**31 - 1
+"""What 32 bits hold."""
 _MOST_BYTES = 64
 """Bytes taken of a datagram: more than a record, so that a longer one shows as a misfit."""
 _SO_TIMESTAMPNS = getattr(socket, "SO_TIMESTAMPNS", 35)
@@ -59,7 +61,7 @@ class NetFtScale(NamedTuple):
         """Return the six counts nearest to a wrench, limited to 32 bits; a NaN becomes the most negative count."""
         f, t = self.counts_per_newton, self.counts_per_newton_metre
         values = [w * s for w, s in zip(wrench, (f, f, f, t, t, t), strict=True)]
-        return tuple([-(2**31) if v != v else round(max(-(2.0**31), min(2.0**31 - 1, v))) for v in values])
+        return tuple([round(v) if _LEAST <= v <= _MOST else _MOST if v > _MOST else _LEAST for v in values])
 
 
 class NetFtSensor:

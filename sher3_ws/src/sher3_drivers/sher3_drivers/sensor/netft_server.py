@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import socket
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from sher3_common.vectors import Wrench
 
@@ -86,7 +86,9 @@ class NetFtServer:
     def _send(self) -> None:
         if self.client is None:
             return
-        counts = [max(-(2**31), min(2**31 - 1, c - b)) for c, b in zip(self._counts, self._bias, strict=True)]
+        counts: Sequence[int] = self._counts
+        if any(self._bias):
+            counts = [max(-(2**31), min(2**31 - 1, c - b)) for c, b in zip(counts, self._bias, strict=True)]
         if self.tamper is None:
             self._put(RECORD.pack(self._sequence, self._sequence, self.status, *counts))
             return

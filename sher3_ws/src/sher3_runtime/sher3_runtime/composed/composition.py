@@ -16,6 +16,7 @@ from typing import Any
 
 from sher3_description.topics import AT_ONCE, MANY_SENDERS, TOPICS, Topic
 
+from sher3_runtime.composed.outside import Outside, Take
 from sher3_runtime.composed.ring import Ring
 from sher3_runtime.composed.turn import Turn
 
@@ -44,6 +45,7 @@ class Composition:
         self._published: set[str] = set()
         self._latched: dict[str, Any] = {}
         self._leave: dict[str, list[Callable[[], None]]] = {}
+        self._outside: dict[tuple[str, int], Outside] = {}
         self._turns: list[Turn] = []
         self._slow_ticks = 0
         self._outbox: list[tuple[Callable[[Any], bytes], Any, Send | None, int | None]] = []
@@ -82,15 +84,36 @@ class Composition:
             offer(self._latched[topic.name])
         return offer
 
-    def keep(self, topic: Topic, depth: int, leave: Callable[[], None]) -> deque[Any]:
-        """Return a queue of the newest samples, at most `depth`; who looks at its own pace empties it."""
-        queue: deque[Any] = deque(maxlen=depth)
+    def keep(self, topic: Topic, depth: int, listen: Callable[[], tuple[Take, Callable[[], None]]], pause: int) -> Take:
+        """Return `take()`: the newest samples since the last call, at most `depth`, for who looks at its own pace.
+
+        Args:
+            topic: of the table.
+            depth: samples kept.
+            listen: subscribes, and returns what asks the middleware and what takes the subscription off it; called once
+                for all nodes that want this topic in this depth.
+            pause: time [ns] for which the middleware is not asked again, by whichever node.
+        """
+        name, queue = topic.name, deque[Any](maxlen=depth)
         # First of all: the sample is there when another node's callback asks for it.
-        self.offers(topic.name).insert(0, queue.append)
-        self._leave.setdefault(topic.name, []).append(leave)
-        if topic.name in self._latched:
-            queue.append(self._latched[topic.name])
-        return queue
+        self.offers(name).insert(0, queue.append)
+        if name in self._latched:
+            queue.append(self._latched[name])
+        if (name, depth) not in self._outside:
+            ask, leave = listen()
+            self._outside[name, depth] = Outside(ask, pause)
+            self._leave.setdefault(name, []).append(leave)
+        outside = self._outside[name, depth]
+        outside.queues.append(queue)
+
+        def take() -> list[Any]:
+            if name not in self._published:
+                outside.look()
+            samples = list(queue)
+            queue.clear()
+            return samples
+
+        return take
 
     def beside(self, name: str) -> Callable[[], bool]:
         """Return what tells whether somebody reads the topic from the ring."""
