@@ -46,10 +46,10 @@ class TransmissionRipple(Page):
         """Add a second order: the first, a neighbour (side-band), or a harmonic; and then a third."""
         n, side = shape["periods_per_rev"], shape["side"]
         sides = sorted({1.0, n - 1.0, n + 1.0, 2.0 * n, 3.0 * n} - {0.0, n})
-        second = [{**shape, "side": s} for s in sides]
-        return (
-            second if not side or "third" in shape else [*second, *({**shape, "third": s} for s in sides if s != side)]
-        )
+        found: list[Shape] = [{**shape, "side": s} for s in sides]
+        if side and "third" not in shape:
+            found += [{**shape, "third": s} for s in sides if s != side]
+        return found
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
         """Two columns per order: the quadratures."""
