@@ -13,8 +13,8 @@ from collections.abc import Sequence
 
 from sher3_common import Sher3Error
 
-IN_PROCESS = range(1, 101)
-"""Domains of graphs within a process."""
+IN_PROCESS = range(1, 71)
+"""Domains of graphs within a process; demo and benches have fixed ones, from 73 on."""
 PROCESSES = range(101, 201)
 """Domains of graphs of several processes."""
 
