@@ -131,15 +131,22 @@ def _remembered(code: int, a: float, moved: float, z: float, period: float) -> f
 
 
 @compiled
-def _swing(frequency: float, damping: float, moved: float, memory: Array, period: float) -> float:
-    """Return how far a mass on a spring is off x, which moved at the last sample; exact for an x held in between."""
+def swing_map(frequency: float, damping: float, period: float) -> tuple[float, float, float, float]:
+    """Return what a period makes of offset and speed of x'' + 2 z w x' + w^2 x = 0, w = 2 pi frequency, by rows."""
     w = 2.0 * math.pi * frequency
-    damping = min(damping, 0.99)
     wd = w * math.sqrt(1.0 - damping * damping)
     e, c, s = math.exp(-damping * w * period), math.cos(wd * period), math.sin(wd * period)
+    a12 = e * s / wd
+    return e * (c + damping * w / wd * s), a12, -w * w * a12, e * (c - damping * w / wd * s)
+
+
+@compiled
+def _swing(frequency: float, damping: float, moved: float, memory: Array, period: float) -> float:
+    """Return how far a mass on a spring is off x, which moved at the last sample; exact for an x held in between."""
+    a11, a12, a21, a22 = swing_map(frequency, min(damping, 0.99), period)
     off, speed = memory[0], memory[1]
-    memory[0] = e * (c + damping * w / wd * s) * off + e * s / wd * speed - moved
-    memory[1] = e * (c - damping * w / wd * s) * speed - w * w * e * s / wd * off
+    memory[0] = a11 * off + a12 * speed - moved
+    memory[1] = a21 * off + a22 * speed
     return float(memory[0])
 
 

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 from sher3_common.compiled import compiled
+from sher3_common.laws import swing_map
 from sher3_diagnosis.channel import Array
 
 NEAR_LIMIT = 0.95
@@ -72,27 +73,6 @@ def sheath(tension: Array, wrap: float, pieces: int = 16) -> Array:
 
 
 @compiled
-def play(x: Array, drive: Array, width: float, damping: float, period: float, start: float) -> Array:
-    """Follower behind a gap of `width`, minus x, (n,): -width/2..width/2.
-
-    Between the flanks the follower moves under the load `drive` (n,) against a viscous `damping` (inf: it stays put).
-    A load that reverses thus takes the follower across the gap without the motor moving. `start` in -1..1 is where in
-    the gap the follower begins.
-    """
-    out = np.empty(len(x))
-    half = 0.5 * width
-    y = x[0] + start * half
-    for k in range(len(x)):
-        y += period * drive[k] / damping
-        if y > x[k] + half:
-            y = x[k] + half
-        elif y < x[k] - half:
-            y = x[k] - half
-        out[k] = y - x[k]
-    return out
-
-
-@compiled
 def released_play(
     x: Array, drive: Array, rest: Array, release: float, width: float, damping: float, period: float, start: float
 ) -> Array:
@@ -111,6 +91,17 @@ def released_play(
         held = min(max(held, y - release), y + release)
         out[k] = y - x[k]
     return out
+
+
+@compiled
+def play(x: Array, drive: Array, width: float, damping: float, period: float, start: float) -> Array:
+    """Follower behind a gap of `width`, minus x, (n,): -width/2..width/2.
+
+    Between the flanks the follower moves under the load `drive` (n,) against a viscous `damping` (inf: it stays put).
+    A load that reverses thus takes the follower across the gap without the motor moving. `start` in -1..1 is where in
+    the gap the follower begins.
+    """
+    return released_play(x, drive, np.zeros(len(x)), 0.0, width, damping, period, start)
 
 
 @compiled
@@ -141,11 +132,7 @@ def oscillator(force: Array, frequency: float, damping: float, period: float) ->
 
     It is exact for an input that is held from one sample to the next.
     """
-    w = 2.0 * math.pi * frequency
-    wd = w * math.sqrt(1.0 - damping * damping)
-    e, c, s = math.exp(-damping * w * period), math.cos(wd * period), math.sin(wd * period)
-    a11, a12 = e * (c + damping * w / wd * s), e * s / wd
-    a21, a22 = -w * w * a12, e * (c - damping * w / wd * s)
+    a11, a12, a21, a22 = swing_map(frequency, damping, period)
     out = np.zeros_like(force)
     for i in range(force.shape[1]):
         x, v = force[0, i], 0.0

@@ -15,7 +15,7 @@ from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.compliance.transmission_compliance import carried
 from sher3_effects.lost_motion.plateau import plateau
-from sher3_effects.operators import flight, play, released_play
+from sher3_effects.operators import flight, released_play
 from sher3_effects.page import Page, Part, Values
 from sher3_effects.view import AxisView
 
@@ -81,12 +81,8 @@ class Backlash(Page):
         damping = shape["damping"] * view.axis(site).viscous / 60.0
         first = (run.load[:25, axis] - run.motor[:25, axis]).mean() if run.load is not None else 0.0
         start = float(np.clip(2.0 * first / shape["width"], -1.0, 1.0))
-        gap = (shape["width"], damping, run.period, start)
-        path, drive = run.smooth[:, axis], pull - held
-        if release:
-            lag = released_play(path, drive, held * (release / stick), release, *gap)
-        else:
-            lag = play(path, drive, *gap)
+        rest = held * (release / stick) if release else np.zeros_like(held)
+        lag = released_play(run.smooth[:, axis], pull - held, rest, release, shape["width"], damping, run.period, start)
         return Signature({}, {Channel(self.stage, site): run.to_grid(lag)[:, None]})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
