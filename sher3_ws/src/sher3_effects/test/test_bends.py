@@ -10,6 +10,7 @@ from sher3_effects.limit.force_saturation import bent
 from sher3_effects.lost_motion.joint_clearance import JointClearance
 from sher3_effects.operators import frozen_integral, play, released_play
 from sher3_effects.periodic.cogging import Cogging, CoggingOnAxis
+from sher3_effects.spring.spring_torque import SpringOnAxis
 
 PAGE = JointClearance()
 GAP = {"by_load": 0.0, "reach": 40e-6}
@@ -101,3 +102,9 @@ def test_teeth_that_are_unlike_have_neighbouring_orders_and_harmonics():
     assert Cogging().parameters({"periods_per_rev": 4.0}, np.array([3.0, 4.0, 1.0, 1.0]))["amplitude"] == 5.0
     assert Cogging().bends([], "roll", {"periods_per_rev": 4.0})
     assert not CoggingOnAxis().bends([], "roll", {"periods_per_rev": 4.0})
+
+
+def test_a_spring_that_is_nearly_all_cube_is_relaxed_where_its_force_is_zero():
+    """0.01 x + x^3 + 0.5 = 0 at x = -0.7895: a step of Newton's method from -50 goes astray there."""
+    spring = SpringOnAxis().parameters({"middle": 0.0, "half": 1.0, "hardens": 1.0}, np.array([0.01, 0.5, 1.0]))
+    assert 0.01 * spring["rest"] + spring["rest"] ** 3 == pytest.approx(-0.5)

@@ -13,9 +13,6 @@ from sher3_effects.compliance.two_slopes import BENT_FROM
 from sher3_effects.page import Page
 from sher3_effects.view import AxisView
 
-ROUNDS = 8
-"""Steps of Newton's method, each of which doubles the digits of a place."""
-
 
 class SpringTorque(Page):
     """F = stiffness * (q - rest)."""
@@ -92,8 +89,6 @@ class SpringOnAxis(SpringTorque):
 
 
 def _relaxed(linear: float, middle: float, cube: float = 0.0) -> float:
-    """Return the place over the travel, -1..1, at which linear x + cube x^3 + middle is zero, by Newton's method."""
-    x = -middle / linear
-    for _ in range(ROUNDS):
-        x -= (linear * x + cube * x**3 + middle) / (linear + 3.0 * cube * x * x)
-    return x
+    """Return the place nearest to the middle, over half the travel, at which linear x + cube x^3 + middle is zero."""
+    roots = np.roots([cube, 0.0, linear, middle])
+    return float(min(roots[np.abs(roots.imag) <= 1e-9 * (1.0 + np.abs(roots))].real, key=abs))
