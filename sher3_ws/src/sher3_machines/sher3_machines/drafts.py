@@ -25,4 +25,4 @@ def draft_of(path: Path, rate: float | None = None, model: Path | None = None) -
 
         return draft_arm(path, model, rate)
     tables = read_tables(path)
-    return draft_test(path, tables) if rate is None and is_test(tables) else draft(path, rate)
+    return draft_test(path, tables) if rate is None and is_test(tables) else draft(path, rate, tables)

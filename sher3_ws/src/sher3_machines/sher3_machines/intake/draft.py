@@ -58,18 +58,19 @@ class Draft:
     guesses: list[str] = field(default_factory=list)
 
 
-def draft(path: Path, rate: float | None = None) -> Draft:
+def draft(path: Path, rate: float | None = None, tables: Tables | None = None) -> Draft:
     """Draft a description of a chain of axes from a data file, folder or bag.
 
     Args:
         path: of the data.
         rate: samples per second, Hz, where no time was recorded.
+        tables: what the path holds, where it has been read.
 
     Raises:
         MachineError: the file cannot be read, or no column looks like a time or a position.
     """
     guesses: list[str] = []
-    data = drafted(path, rate, guesses)
+    data = drafted(path, read_tables(path) if tables is None else tables, rate, guesses)
     if sum(axis["command_law"]["kind"] == "force" for axis in data["axes"]) > 1:
         guesses.append(
             "each axis by itself; joints of one arm carry each other: give its URDF or MJCF, --model FILE "
@@ -84,9 +85,8 @@ def written(data: Mapping[str, Any], guesses: list[str]) -> Draft:
     return Draft(head + dump_yaml(data), guesses)
 
 
-def drafted(path: Path, rate: float | None, guesses: list[str]) -> dict[str, Any]:
+def drafted(path: Path, tables: Tables, rate: float | None, guesses: list[str]) -> dict[str, Any]:
     """Return a description of a chain of axes as plain data; raises MachineError."""
-    tables = read_tables(path)
     clock = None if rate else clock_of(tables, guesses)
     if clock is None:
         time: dict[str, Any] = {"rate": rate}

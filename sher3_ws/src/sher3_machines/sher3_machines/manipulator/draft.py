@@ -10,6 +10,7 @@ from typing import Any
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.draft import Draft, drafted, written
 from sher3_machines.intake.names import EFFORT, words_of
+from sher3_machines.intake.tables import read_tables
 from sher3_machines.manipulator.model import joints_of
 
 TORQUES = EFFORT - frozenset(("iq", "strom", "amps"))
@@ -34,7 +35,7 @@ def draft_arm(path: Path, model: Path, rate: float | None = None) -> Draft:
             the joints.
     """
     guesses: list[str] = []
-    return written(of_arm(drafted(path, rate, guesses), model, guesses), guesses)
+    return written(of_arm(drafted(path, read_tables(path), rate, guesses), model, guesses), guesses)
 
 
 def of_arm(data: Mapping[str, Any], model: Path, guesses: list[str]) -> dict[str, Any]:

@@ -81,14 +81,14 @@ def draft_test(path: Path, tables: Tables) -> Draft:
     used = {target, *read}
     if "passes" not in axis:
         for key, words in (("direction", SIDE), ("cycle", CYCLE)):
-            name = one({n: x for n, x in flat.items() if n not in used}, words)
+            name = one(flat, words, used)
             if name is not None:
                 axis[key] = {"column": name, "unit": "1"}
                 used.add(name)
                 guesses.append(f"{key} is {name!r}, because of its name")
             else:
                 guesses.append(f"{key} from the order of the rows: no column of numbers is named so")
-    warm = one({n: x for n, x in flat.items() if n not in used}, TEMPERATURE)
+    warm = one(flat, TEMPERATURE, used)
     if warm is not None:
         axis["temperature"] = {"column": warm, "unit": "degC"}
         used.add(warm)
@@ -99,9 +99,9 @@ def draft_test(path: Path, tables: Tables) -> Draft:
     return written({"kind": "positioning", "name": name, "axes": [axis]}, guesses)
 
 
-def one(flat: Tables, words: Collection[str]) -> str | None:
-    """Return the first column with one of some words in its name."""
-    return next((n for n in flat if said(n) & set(words)), None)
+def one(flat: Tables, words: Collection[str], used: Collection[str] = ()) -> str | None:
+    """Return the first column with one of some words in its name that is not used."""
+    return next((n for n in flat if n not in used and said(n) & set(words)), None)
 
 
 def said(column: str) -> set[str]:
@@ -133,7 +133,7 @@ def in_turn(passes: list[str]) -> list[str]:
     """Return passes in the order of a protocol, from below and from above in turn, where their names say both."""
     sides = [int(bool(said(n) & DOWN)) for n in passes]
     numbers = [re.findall(r"\d+", bare_and_unit(n)[0]) for n in passes]
-    if len(set(sides)) < len((0, 1)) or not all(numbers):
+    if len(set(sides)) == 1 or not all(numbers):
         return passes
     order = sorted(range(len(passes)), key=lambda i: (int(numbers[i][-1]), sides[i]))
     return [passes[i] for i in order]
