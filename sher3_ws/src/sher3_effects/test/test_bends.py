@@ -10,7 +10,11 @@ from sher3_effects.limit.force_saturation import bent
 from sher3_effects.lost_motion.joint_clearance import JointClearance
 from sher3_effects.operators import frozen_integral, play, released_play
 from sher3_effects.periodic.cogging import Cogging, CoggingOnAxis
+from sher3_effects.periodic.transmission_ripple import RippleOnAxis, TransmissionRipple
+from sher3_effects.scale.encoder_scale import EncoderScale
+from sher3_effects.scale.lead_error import LeadError, LeadErrorOnAxis
 from sher3_effects.spring.spring_torque import SpringOnAxis
+from sher3_effects.wrench.cable_drag import CableDrag
 
 PAGE = JointClearance()
 GAP = {"by_load": 0.0, "reach": 40e-6}
@@ -91,20 +95,70 @@ def test_a_tool_that_stiffens_bends_less_than_twice_as_far_under_twice_the_load(
 
 
 def test_teeth_that_are_unlike_have_neighbouring_orders_and_harmonics():
-    """Four teeth: orders 4, 3, 5, 8 and 12; one tooth has no neighbour below. The amplitude is that of the teeth."""
+    """Four teeth: orders 4, 3, 5, 2, 6, 8, 12; one tooth: 1, 2 and 3, each once. The amplitude is that of the teeth."""
     run = SimpleNamespace(smooth=np.array([[0.0], [1.0 / 16.0]]), to_grid=lambda x: x)
     view = SimpleNamespace(run=run, row=lambda site: 0, lead=lambda site: 1.0)
     (columns,) = Cogging().signature(view, "tilt", {"periods_per_rev": 4.0, "unlike": 1.0}).columns.values()
-    turned = 2.0 * np.pi * np.array([4.0, 3.0, 5.0, 8.0, 12.0]) / 16.0
+    turned = 2.0 * np.pi * np.array([4.0, 3.0, 5.0, 2.0, 6.0, 8.0, 12.0]) / 16.0
     assert columns[1, 0, ::2] == pytest.approx(np.sin(turned), abs=1e-12)
     (columns,) = Cogging().signature(view, "tilt", {"periods_per_rev": 1.0, "unlike": 1.0}).columns.values()
-    assert columns.shape == (2, 1, 8)
+    assert columns.shape == (2, 1, 6)
     assert Cogging().parameters({"periods_per_rev": 4.0}, np.array([3.0, 4.0, 1.0, 1.0]))["amplitude"] == 5.0
     assert Cogging().bends([], "roll", {"periods_per_rev": 4.0})
     assert not CoggingOnAxis().bends([], "roll", {"periods_per_rev": 4.0})
+    assert TransmissionRipple().bends([], "roll", {"periods_per_rev": 4.0, "side": 3.0, "third": 5.0})
+    assert not RippleOnAxis().bends([], "roll", {"periods_per_rev": 4.0})
 
 
 def test_a_spring_that_is_nearly_all_cube_is_relaxed_where_its_force_is_zero():
     """0.01 x + x^3 + 0.5 = 0 at x = -0.7895: a step of Newton's method from -50 goes astray there."""
     spring = SpringOnAxis().parameters({"middle": 0.0, "half": 1.0, "hardens": 1.0}, np.array([0.01, 0.5, 1.0]))
     assert 0.01 * spring["rest"] + spring["rest"] ** 3 == pytest.approx(-0.5)
+
+
+def along(position: np.ndarray) -> SimpleNamespace:
+    """Return a view of a run along one axis."""
+    path = SimpleNamespace(jacobian=np.ones((len(position), 6, 1)))
+    return SimpleNamespace(position=position[:, None], row=lambda site: 0, path=path, at_tip=lambda columns: {})
+
+
+@pytest.mark.parametrize("page", [LeadError(), EncoderScale()])
+def test_a_ratio_that_varies_is_stated_by_its_mean(page):
+    """1e-3 over 10 mm, beside it 2 um a quarter of the way and as much back at three: still 1e-3 less the lean."""
+    position = np.linspace(0.0, 0.01, 81)
+    (shape,) = page.bends([along(position)], "delta_1", {})
+    assert shape == {"middle": pytest.approx(0.005), "half": pytest.approx(0.005)}
+    bump = 2e-6 * (np.interp(position, [0.00125, 0.0025, 0.00375], [0.0, 1.0, 0.0]))
+    bump -= 2e-6 * np.interp(position, [0.00625, 0.0075, 0.00875], [0.0, 1.0, 0.0])
+    columns = page.signature(along(position), "delta_1", shape).columns
+    found = np.linalg.lstsq(next(iter(columns.values()))[:, 0], 1e-3 * position + bump, rcond=None)[0]
+    assert found[[1, 2, 3, 5, 6]] == pytest.approx([0.0, 4e-4, 0.0, 0.0, -4e-4][:5], abs=1e-9)
+    lean = -(4e-4 * 0.5 + 4e-4 * 0.5) / (2.0 * (0.25**2 + 0.5**2 + 0.75**2 + 1.0))
+    assert page.parameters(shape, found)["relative"] == pytest.approx(1e-3 + lean)
+    assert page.parameters({}, np.array([1e-3]))["relative"] == 1e-3
+
+
+@pytest.mark.parametrize(("bend", "possible"), [(0.4e-3, True), (0.6e-3, False)])
+def test_a_ratio_varies_by_less_than_it_is_off(bend, possible):
+    assert LeadError().admissible({}, np.array([1e-3, 0.0, bend])) == possible
+    assert EncoderScale().admissible({}, np.array([1e-3, 0.0, bend])) == possible
+
+
+def test_the_ratio_of_any_other_machine_is_one_number():
+    assert not LeadErrorOnAxis().bends([along(np.linspace(0.0, 1.0, 5))], "slide", {})
+
+
+def test_a_cable_on_an_axis_pulls_the_harder_the_more_it_is_bent():
+    """Pull 10 x + 5 x^3 N over +-1: mean stiffness 10 + 5 * 0.6 = 13 N per half travel. It may not soften anywhere."""
+    x = np.linspace(-1.0, 1.0, 41)
+    (shape,) = CableDrag().bends([along(2e-3 * x)], "delta_1", {"stroke": 0.0})
+    (columns,) = CableDrag().signature(along(2e-3 * x), "delta_1", shape).columns.values()
+    found = np.linalg.lstsq(columns[:, 0], 10.0 * x + 5.0 * x**3, rcond=None)[0]
+    assert CableDrag().parameters(shape, found) == {
+        "preload": pytest.approx(0.0, abs=1e-9),
+        "stiffness": pytest.approx(13.0 / 2e-3),
+    }
+    assert CableDrag().admissible(shape, found)
+    assert not CableDrag().admissible(shape, np.array([0.0, 6500.0, 0.0, -5.0]))
+    assert not CableDrag().admissible(shape, np.array([0.0, 6500.0, -9.0, 1.0]))
+    assert not CableDrag().bends([along(x)], "force_sensor", {"stroke": 0.0})

@@ -13,15 +13,12 @@ from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.page import Page
 from sher3_effects.periodic.phase import phase_at_zero
+from sher3_effects.periodic.teeth import orders_of
 from sher3_effects.view import AxisView
 
 
 class Cogging(Page):
-    """F = A sin(2 pi n q / lead + phase); teeth may be unlike each other, and no sines.
-
-    Teeth that differ over a revolution are a sine whose amplitude goes round: its neighbours n - 1 and n + 1 show. The
-    shape of one tooth shows as second and third harmonic.
-    """
+    """F = A sin(2 pi n q / lead + phase); teeth may be unlike each other, and no sines."""
 
     id, family, stage = "cogging", "periodic", "motor_mechanics"
     inputs = ("position",)
@@ -49,9 +46,7 @@ class Cogging(Page):
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
         """Two columns, the quadratures, low-passed as the residual is; with unlike teeth those of other orders too."""
         turn = 2.0 * np.pi * view.run.smooth[:, view.row(site)] / view.lead(site)
-        n = shape["periods_per_rev"]
-        orders = (n, n - 1.0, n + 1.0, 2.0 * n, 3.0 * n) if shape.get("unlike") else (n,)
-        waves = [wave(k * turn) for k in orders if k > 0.0 for wave in (np.sin, np.cos)]
+        waves = [wave(k * turn) for k in orders_of(shape) for wave in (np.sin, np.cos)]
         return Signature({Channel(self.stage, site): column(*(view.run.to_grid(w) for w in waves))})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:

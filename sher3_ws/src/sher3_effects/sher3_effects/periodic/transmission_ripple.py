@@ -15,20 +15,22 @@ from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.page import Page, Tolerated
 from sher3_effects.periodic.phase import phase_at_zero
+from sher3_effects.periodic.teeth import orders_of
 from sher3_effects.table_view import TableView
 from sher3_effects.view import AxisView
 
 
 class TransmissionRipple(Page):
-    """load = motor + A sin(2 pi n q / lead + phase)."""
+    """load = motor + A sin(2 pi n q / lead + phase), with a second and a third order, or teeth unlike each other."""
 
     id, family, stage = "transmission_ripple", "periodic", "transmission"
     inputs = ("position",)
-    kinds = ("robot", "axis", "servo")
     needs = ("load", "lead")
     discrete = frozenset({"periods_per_rev"})
     best = Best("sweep", "constant speeds over several revolutions separate periods")
     leaves_out = "further harmonics"
+    bent_from = 0.01
+    """Half of what is asked of other laws: a third order has taken most of what they leave."""
     explanation = (
         "The load moves ahead and behind the motor, n times per lead; the load encoder sees it and the tip follows."
     )
@@ -44,6 +46,8 @@ class TransmissionRipple(Page):
 
     def refine(self, shape: Shape) -> list[Shape]:
         """Add a second order: the first, a neighbour (side-band), or a harmonic; and then a third."""
+        if "unlike" in shape:
+            return []
         n, side = shape["periods_per_rev"], shape["side"]
         sides = sorted({1.0, n - 1.0, n + 1.0, 2.0 * n, 3.0 * n} - {0.0, n})
         found: list[Shape] = [{**shape, "side": s} for s in sides]
@@ -51,11 +55,15 @@ class TransmissionRipple(Page):
             found += [{**shape, "third": s} for s in sides if s != side]
         return found
 
+    def bends(self, views: Sequence[AxisView], site: str, shape: Shape) -> list[Shape]:
+        """Return the same number of teeth, unlike each other."""
+        return [{"periods_per_rev": shape["periods_per_rev"], "side": 0.0, "unlike": 1.0}]
+
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
         """Two columns per order: the quadratures."""
         axis = view.row(site)
         turn = 2.0 * np.pi * view.run.smooth[:, axis] / view.lead(site)
-        orders = [shape["periods_per_rev"], *(n for n in (shape["side"], shape.get("third", 0.0)) if n)]
+        orders = [*orders_of(shape), *(n for n in (shape["side"], shape.get("third", 0.0)) if n)]
         waves = [view.run.to_grid(f(n * turn)) for n in orders for f in (np.sin, np.cos)]
         return Signature({Channel(self.stage, site): column(*waves)})
 
@@ -73,6 +81,16 @@ class TransmissionRipple(Page):
             "periods_per_rev": shape["periods_per_rev"],
             "phase": float(np.arctan2(coefficients[1], coefficients[0])),
         }
+
+
+class RippleOnAxis(TransmissionRipple):
+    """The same on one axis of any machine: three orders at most."""
+
+    kinds = ("axis", "servo")
+
+    def bends(self, views: Sequence[AxisView], site: str, shape: Shape) -> list[Shape]:
+        """Return none."""
+        return []
 
 
 class TableRipple(Page):

@@ -2,25 +2,29 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
 from sher3_diagnosis.channel import Array, Channel
-from sher3_diagnosis.effect import Best, Shape, Signature, column
+from sher3_diagnosis.effect import Best, Shape, Signature
 from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.page import Page
+from sher3_effects.scale.uneven import BENT_FROM, gentle, lines, mean_ratio, uneven
 from sher3_effects.view import RobotView
 
 
 class EncoderScale(Page):
-    """reading = (1 + relative) * load."""
+    """reading = (1 + relative) * load; the scale may vary along it, and `relative` is its mean."""
 
     id, family, stage = "encoder_scale", "scale", "sensing"
     inputs = ("position",)
     breaks = "load_encoder"
     best = Best("sweep", "long constant-speed strokes separate ratios from offsets")
-    leaves_out = "how the error of the scale varies along it"
+    leaves_out = "how the error of the scale varies from one millimetre to the next"
+    bent_from = BENT_FROM
     explanation = (
         "The load encoder reads a little too much or too little, in proportion to the travel; the tip shows "
         "that the load is where the motor says."
@@ -31,16 +35,24 @@ class EncoderScale(Page):
         """Return the difference of the two encoders."""
         return (Channel("transmission", site),)
 
+    def bends(self, views: Sequence[RobotView], site: str, shape: Shape) -> list[Shape]:
+        """Return the scale that varies along the travel."""
+        return uneven(views, site, shape)
+
     def signature(self, view: RobotView, site: str, shape: Shape) -> Signature:
-        """The position, and at the tip the motion that did not happen."""
+        """The position, with its bends where the scale varies, and at the tip the motion that did not happen."""
         axis = view.row(site)
-        q = view.position[:, axis]
-        tip = -view.path.jacobian[:, :, [axis]] * q[:, None, None]
-        return Signature({Channel("transmission", site): column(q), **view.at_tip(tip)})
+        read = np.stack(lines(view.position[:, axis], shape), axis=-1)
+        tip = -view.path.jacobian[:, :, [axis]] * read[:, None, :]
+        return Signature({Channel("transmission", site): read[:, None, :], **view.at_tip(tip)})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Ratio error."""
-        return {"relative": float(coefficients[0])}
+        return {"relative": mean_ratio(coefficients)}
+
+    def admissible(self, shape: Shape, coefficients: Array) -> bool:
+        """Return whether the scale varies by less than it is off."""
+        return gentle(coefficients)
 
 
 @dataclass(frozen=True)

@@ -12,19 +12,20 @@ from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.page import Page, Tolerated
+from sher3_effects.scale.uneven import BENT_FROM, gentle, lines, mean_ratio, uneven
 from sher3_effects.table_view import TableView
 from sher3_effects.view import AxisView
 
 
 class LeadError(Page):
-    """load = (1 + relative) * motor."""
+    """load = (1 + relative) * motor; the ratio may vary along the travel, and `relative` is its mean."""
 
     id, family, stage = "lead_error", "scale", "transmission"
     inputs = ("position",)
-    kinds = ("robot", "axis", "servo")
     needs = ("load",)
     best = Best("sweep", "long constant-speed strokes separate ratios from offsets")
-    leaves_out = "how the ratio varies along the stroke"
+    leaves_out = "how the ratio varies from one turn to the next"
+    bent_from = BENT_FROM
     on_axis = {"relative": "ratio"}
     explanation = (
         "The load moves a little more or less than the motor, in proportion to the travel; the load encoder "
@@ -38,9 +39,13 @@ class LeadError(Page):
     LARGEST = 0.2
     """Ratio error from which it is no lead error: four times the largest that the plant takes."""
 
+    def bends(self, views: Sequence[AxisView], site: str, shape: Shape) -> list[Shape]:
+        """Return the ratio that varies along the travel."""
+        return uneven(views, site, shape)
+
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
-        """One column: the motor position."""
-        return Signature({Channel(self.stage, site): column(view.position[:, view.row(site)])})
+        """One column, the motor position; of a ratio that varies a hat over each of its nodes too."""
+        return Signature({Channel(self.stage, site): column(*lines(view.position[:, view.row(site)], shape))})
 
     def tolerated(self, robot: Robot, site: str) -> Sequence[Tolerated]:
         """Return the ratio of motor to load."""
@@ -48,11 +53,21 @@ class LeadError(Page):
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Ratio error."""
-        return {"relative": float(coefficients[0])}
+        return {"relative": mean_ratio(coefficients)}
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
         """Return whether it is an error of a lead; more is a wrong scale, or an encoder that does not follow."""
-        return bool(abs(coefficients[0]) < self.LARGEST)
+        return bool(abs(coefficients[0]) < self.LARGEST) and gentle(coefficients)
+
+
+class LeadErrorOnAxis(LeadError):
+    """The same on one axis of any machine: the ratio is one."""
+
+    kinds = ("axis", "servo")
+
+    def bends(self, views: Sequence[AxisView], site: str, shape: Shape) -> list[Shape]:
+        """Return none."""
+        return []
 
 
 class TableScale(Page):

@@ -9,6 +9,7 @@ from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Best, Shape, Signature, column
 
 from sher3_effects.page import Page
+from sher3_effects.travel import Travel, travel_of
 from sher3_effects.view import AxisView
 
 
@@ -32,13 +33,12 @@ class CableTorque(Page):
 
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
         """Return the middle and half of the travel over all runs."""
-        ends = [f(v.position[:, v.row(site)]) for v in views for f in (np.min, np.max)]
-        low, high = min(ends), max(ends)
-        return [{"middle": 0.5 * (low + high), "half_travel": 0.5 * (high - low)}] if high > low else []
+        travel = travel_of(views, site)
+        return [{"middle": travel.middle, "half_travel": travel.half}] if travel else []
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
         """Return four columns: the powers of the position over its travel."""
-        x = (view.position[:, view.row(site)] - shape["middle"]) / shape["half_travel"]
+        x = Travel(shape["middle"], shape["half_travel"]).share(view.position[:, view.row(site)])
         return Signature({Channel(self.stage, site): column(np.ones_like(x), x, x**2, x**3)})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:

@@ -12,13 +12,18 @@ from sher3_diagnosis.effect import Best, Shape, Signature, column
 from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
+from sher3_effects.compliance.two_slopes import BENT_FROM
 from sher3_effects.page import Page, Part, Values
+from sher3_effects.travel import Travel, travel_of
 from sher3_effects.view import RobotView
+
+AT_SENSOR = 6
+"""Coefficients from which a cable is one at the sensor, three components by roll and by tilt; an axis has five."""
 
 
 class CableDrag(Page):
     """On an axis: k q + k0 + hysteresis over a long stroke; on the force sensor: the same of roll and tilt (as
-    angles), per component.
+    angles), per component. A cable on an axis may pull the harder the more it is bent: `stiffness` is then the mean.
 
     On an axis a cable pulls back and drags: k and the hysteresis have no sign. Its pull at rest k0 may have either, and
     so has each component at the force sensor: it depends on which way the cable hangs.
@@ -28,6 +33,7 @@ class CableDrag(Page):
     inputs = ("position", "direction", "posture")
     best = Best("loads", "known loads in several orientations separate bias, weight and cross-talk")
     leaves_out = "how it stiffens"
+    bent_from = BENT_FROM
     places = ("axis", "force_sensor")
     extends = ("gravity_load", "presliding_friction")
     explanation = (
@@ -54,8 +60,13 @@ class CableDrag(Page):
         """Stroke over which the hysteresis turns, in motor revolutions (0: none)."""
         return [{"stroke": 0.0}, {"stroke": 0.25}, {"stroke": 1.0}]
 
+    def bends(self, views: Sequence[RobotView], site: str, shape: Shape) -> list[Shape]:
+        """Return the cable on an axis that hardens."""
+        travel = travel_of(views, site) if site != "force_sensor" else None
+        return [{**shape, **travel._asdict()}] if travel else []
+
     def signature(self, view: RobotView, site: str, shape: Shape) -> Signature:
-        """Offset, stiffness and, with a stroke, hysteresis."""
+        """Offset, stiffness and, with a stroke, hysteresis; of a cable that hardens square and cube of the place."""
         if site == "force_sensor":
             return self._sensor(view, shape)
         axis = view.row(site)
@@ -63,6 +74,9 @@ class CableDrag(Page):
         parts = [np.ones_like(q), q]
         if shape["stroke"]:
             parts.append(view.run.to_grid(view.sliding(axis, shape["stroke"] * view.lead(site))))
+        if "half" in shape:
+            x = Travel(shape["middle"], shape["half"]).share(q)
+            parts += [x**2, x**3 - 0.6 * x]
         return Signature({Channel(self.stage, site): column(*parts)})
 
     def _sensor(self, view: RobotView, shape: Shape) -> Signature:
@@ -80,15 +94,24 @@ class CableDrag(Page):
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Stiffness and force of the hysteresis; the largest component, in N per rad, on the force sensor."""
-        if len(coefficients) > 3:
+        if len(coefficients) >= AT_SENSOR:
             out = {"stiffness": float(np.abs(coefficients[:6]).max())}
             return out if len(coefficients) == 6 else {**out, "force": float(np.abs(coefficients[6:]).max())}
-        out = {"preload": float(coefficients[0]), "stiffness": float(coefficients[1])}
-        return out if len(coefficients) == 2 else {**out, "force": float(coefficients[2])}
+        preload, stiffness, *rest = map(float, coefficients)
+        out = {"preload": preload, "stiffness": stiffness}
+        return {**out, "force": rest[0]} if shape["stroke"] else out
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether a cable on an axis pulls back and drags; on the force sensor its pull may have any sign."""
-        return len(coefficients) > 3 or bool((coefficients[1:] >= 0.0).all())
+        """Return whether a cable on an axis pulls back everywhere, never softens, and drags.
+
+        On the force sensor its pull may have any sign.
+        """
+        if len(coefficients) >= AT_SENSOR:
+            return True
+        bare, bend = (coefficients[1:-2], coefficients[-2:]) if "half" in shape else (coefficients[1:], np.zeros(2))
+        x = np.linspace(-1.0, 1.0, 21)
+        slope = bare[0] * shape.get("half", 1.0) + 2.0 * bend[0] * x + bend[1] * (3.0 * x**2 - 0.6)
+        return bool((bare >= 0.0).all() and bend[1] >= 0.0 and (slope >= 0.0).all())
 
     def unit(self, name: str, site: str, rotary: bool) -> str:
         """A stiffness is per angle on the force sensor."""
