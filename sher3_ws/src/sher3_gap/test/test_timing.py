@@ -45,6 +45,26 @@ def test_held_commands_are_counted_as_drops():
     assert timing.scatter == pytest.approx(0.0, abs=1e-9)
 
 
+def test_held_commands_leave_the_latency_of_an_axis_as_it_is():
+    echo = delayed(COMMAND, 1)
+    echo[:, 3] = shifted(COMMAND, 0.4)[:, 3]
+    held = np.arange(20, 400, 40)
+    echo[held] = delayed(COMMAND, 2)[held]
+    timing = timing_of(case(echo), ROBOT)
+    assert timing.latency == pytest.approx([0.0, 0.0, 0.0, 0.4, 0.0], abs=1e-5)
+    assert timing.apart > 0.5
+    assert timing.drops == pytest.approx(len(held) / 398, rel=0.2)
+    assert timing.clockwork == 0.0
+
+
+@pytest.mark.parametrize("ticks", [2, 3, 4])
+def test_a_drive_that_looks_at_every_second_to_fourth_tick_is_a_clock(ticks):
+    echo = delayed(COMMAND, 1)
+    looked = np.arange(400) // ticks * ticks
+    timing = timing_of(case(echo[looked]), ROBOT)
+    assert timing.clockwork > 0.9
+
+
 def test_every_tick_tells_its_own_latency_where_the_command_changes():
     command, echo, _ = scaled(case(shifted(COMMAND, 0.3))[0], ROBOT)
     ticks, left = tick_latency(command, echo, np.zeros(5))

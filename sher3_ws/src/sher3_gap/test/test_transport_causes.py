@@ -13,11 +13,9 @@ RUNS = [run(1000, command=0.0, echo=0.0)]
 def timing(**facts):
     given = {
         "energy": 1.0,
-        "shared": 1.0,
         "constant": 1.0,
         "per_tick": 1.0,
         "latency": np.zeros(5),
-        "common": 0.0,
         "samples": np.zeros(500),
         "drops": 0.0,
         "scatter": 0.0,
@@ -36,7 +34,7 @@ def test_nothing_is_found_where_commands_arrive_on_time():
 
 
 def test_a_common_latency_is_a_delay_in_seconds():
-    late = {"latency": np.full(5, 1.5), "samples": np.full(500, 1.5), "shared": 0.0, "constant": 0.0, "per_tick": 0.0}
+    late = {"latency": np.full(5, 1.5), "samples": np.full(500, 1.5), "constant": 0.0, "per_tick": 0.0}
     (cause,) = found(**late).causes
     assert (cause.effect, cause.actuator) == ("command_delay", "all")
     assert cause.parameters["delay"].value == pytest.approx(1.5 * PERIOD)
@@ -47,7 +45,7 @@ def test_a_common_latency_is_a_delay_in_seconds():
 
 def test_one_axis_later_than_the_others_is_a_skew_on_that_axis():
     latency = np.array([0.0, 0.8, 0.0, 0.0, 0.0])
-    result = found(latency=latency, constant=0.0, per_tick=0.0)
+    result = found(latency=latency, constant=0.0, per_tick=0.0, apart=1.0)
     (cause,) = result.causes
     assert (cause.effect, cause.actuator) == ("axis_skew", "delta_2")
     assert cause.parameters["skew"].value == pytest.approx(0.8 * PERIOD)
@@ -102,8 +100,39 @@ def test_drops_on_one_axis_are_no_skew_of_it():
     """The best constant latency of an axis whose commands are dropped now and then is the mean of its holds."""
     samples = np.concatenate([np.zeros(480), np.ones(20)])
     facts = {"latency": np.array([0.0, 0.0, 0.0, 0.04, 0.0]), "samples": samples, "drops": 0.04}
-    causes = found(shared=1.0, constant=0.9, per_tick=0.0, **facts).causes
+    causes = found(constant=0.9, per_tick=0.0, **facts).causes
     assert [c.effect for c in causes] == ["dropped_commands"]
+
+
+def test_drops_that_come_like_clockwork_are_a_drive_that_samples_its_demand():
+    samples = np.tile([0.0, 1.0, 2.0], 200)
+    late = {"samples": samples, "drops": 0.33, "scatter": 0.5, "constant": 0.6, "per_tick": 0.0}
+    assert [c.effect for c in found(**late).causes] == ["dropped_commands"]
+    result = found(clockwork=0.97, **late)
+    assert result.causes == []
+    assert result.closure.value == 0.0
+
+
+def test_drops_and_jitter_together_are_both():
+    """A jitter of 0.03 periods on all ticks, each twentieth held for a period: 0.05 of it, and 0.03 ms of 1 ms."""
+    samples = np.abs(np.random.default_rng(2).normal(0.0, 0.03, 2000))
+    samples[::20] += 1.0
+    late = {"samples": samples, "drops": 0.05, "scatter": 0.03, "constant": 0.9, "per_tick": 0.0}
+    drops, jitter = found(**late).causes
+    assert (drops.effect, jitter.effect) == ("dropped_commands", "command_jitter")
+    assert jitter.parameters["sigma"].value == pytest.approx(0.03 * PERIOD, rel=0.05)
+    assert drops.closure.value + jitter.closure.value == pytest.approx(1.0)
+    assert found(**late).closure.value == 1.0
+    result = found(("command_jitter",), **late)
+    assert [c.effect for c in result.causes] == ["dropped_commands"]
+    assert result.closure.value == 0.0
+
+
+def test_an_axis_is_late_beside_drops():
+    samples = np.concatenate([np.zeros(490), np.ones(10)])
+    facts = {"latency": np.array([0.0, 0.3, 0.0, 0.0, 0.0]), "samples": samples, "drops": 0.02, "apart": 0.9}
+    causes = found(constant=0.95, per_tick=0.0, **facts).causes
+    assert [(c.effect, c.actuator) for c in causes] == [("dropped_commands", "all"), ("axis_skew", "delta_2")]
 
 
 def test_a_single_late_axis_is_where_its_lateness_sits():

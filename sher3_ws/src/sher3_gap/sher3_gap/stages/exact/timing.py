@@ -22,6 +22,8 @@ MAX_TICKS = 30
 """Longest latency that is looked for, in periods."""
 TELLING_STEP = 1e-3
 """Change of the command, as a share of the velocity limit, from which a tick tells its latency."""
+CYCLES = range(2, 11)
+"""Ticks after which a drive may look for a demand again."""
 QUIET = 1e-12
 """Energy of the scaled echo error below which commands arrive on time."""
 HELD = 20
@@ -37,26 +39,27 @@ class Timing:
     """How commands reach the drives in one case.
 
     Attributes:
-        energy: of the nominal echo error; `shared`: with one latency for all axes; `constant`: with each axis' own;
-        `per_tick`: with every tick's own.
-        latency: (axes,) constant latency in periods.
-        common: latency shared by all axes, periods.
+        energy: of the nominal echo error; `constant`: with a constant latency of each axis; `per_tick`: with one of
+            every tick.
+        latency: (axes,) constant latency in periods, of the ticks that were not held.
         samples: per-tick latencies shared by the axes, periods (telling ticks only).
         drops: share of telling ticks whose command was held one period or more too long.
         scatter: standard deviation of the latencies that are not drops, periods.
         alone: index of the axis whose commands alone come late, of which the ticks then tell; None where several do.
+        apart: share of the error of ticks not held that a latency of each axis explains beyond one for all.
+        clockwork: share of the late ticks that are as late as another one a few ticks before, always as many.
     """
 
     energy: float
-    shared: float
     constant: float
     per_tick: float
     latency: Array
-    common: float
     samples: Array
     drops: float
     scatter: float
     alone: int | None = None
+    apart: float = 0.0
+    clockwork: float = 0.0
 
 
 Pair = tuple[Array, Array, NDArray[np.bool_]]
@@ -99,6 +102,9 @@ def tick_latency(command: Array, echo: Array, around: Array) -> tuple[Array, Arr
     error = echo - np.column_stack([shifted(command[:, [i]], a)[:, 0] for i, a in enumerate(around)])
     left = np.sum(error**2, axis=1)
     base = int(np.floor(np.median(around) + 1e-6))
+    moves = np.sum((delayed(command, 1 + base) - delayed(command, 2 + base)) ** 2, axis=1) > TELLING_STEP**2
+    usual = left < UNEXPLAINED
+    ticks[moves & usual] = np.median(around)
     for whole in sorted(range(max(0, base - 3), base + HELD), key=lambda n: abs(n - base)):
         new, old = delayed(command, 1 + whole), delayed(command, 2 + whole)
         step = new - old
@@ -108,8 +114,9 @@ def tick_latency(command: Array, echo: Array, around: Array) -> tuple[Array, Arr
         square = np.sum(trial**2, axis=1)
         tells = energy > TELLING_STEP**2
         better = square <= left if whole == base else tells & (square < 0.01 * left) & (left > UNEXPLAINED)
-        ticks[better & tells], left[better] = (whole + part)[better & tells], square[better]
-        error[better] = trial[better]
+        told = better & tells & ~usual
+        ticks[told] = (whole + part)[told]
+        left[better], error[better] = square[better], trial[better]
     return ticks, error
 
 
@@ -119,34 +126,67 @@ def timing_of(runs: Sequence[RunSignals], robot: Robot) -> Timing | None:
     if not pairs:
         return None
     each = np.sum([np.sum((e - delayed(c, 1))[ok] ** 2, axis=0) for c, e, ok in pairs], axis=0)
-    axes = [constant_latency(pairs, i) for i in range(pairs[0][0].shape[1])]
-    latency = np.array([a[0] for a in axes])
-    common, together = constant_latency(pairs)
     odd = np.flatnonzero(each > QUIET)
     alone = int(odd[0]) if len(odd) == 1 else None
-    judged = slice(None) if alone is None else slice(alone, alone + 1)
-    told, left = [], 0.0
-    for command, echo, ok in pairs:
-        ticks, error = tick_latency(command[:, judged], echo[:, judged], latency[judged])
-        told.append(ticks[np.isfinite(ticks) & ok])
-        left += float(np.sum(error[ok] ** 2))
-    samples = np.concatenate(told)
-    middle = float(np.median(samples)) if len(samples) else common
-    late = samples > middle + WHOLE
-    rest = samples[~late]
-    scatter = float(np.std(rest)) if len(rest) else 0.0
+    axes, ticks, left = read_off(pairs, pairs, alone)
+    held = [late_by(t, ticks) > WHOLE for t in ticks]
+    kept = [(c, e, ok & ~h) for (c, e, ok), h in zip(pairs, held, strict=True)]
+    if any(h.any() for h in held):  # what is held now and then belongs to no axis' latency
+        axes, ticks, left = read_off(pairs, kept, alone)
+    rest = sum(float(np.sum((e - delayed(c, 1))[ok] ** 2)) for c, e, ok in kept)
+    samples = np.concatenate([t[ok & np.isfinite(t)] for t, (_, _, ok) in zip(ticks, pairs, strict=True)])
+    late = late_by(samples, ticks) > WHOLE
     return Timing(
-        float(each.sum()),
-        together,
-        sum(a[1] for a in axes),
-        left,
-        latency,
-        common,
-        samples,
-        float(late.mean()) if len(samples) else 0.0,
-        scatter,
-        alone,
+        energy=float(each.sum()),
+        constant=sum(constant_latency(pairs, i)[1] for i in range(len(axes))),
+        per_tick=left,
+        latency=np.array([a[0] for a in axes]),
+        samples=samples,
+        drops=float(late.mean()) if len(samples) else 0.0,
+        scatter=float(np.std(samples[~late])) if not late.all() else 0.0,
+        alone=alone,
+        apart=(constant_latency(kept)[1] - sum(a[1] for a in axes)) / rest if rest > QUIET else 0.0,
+        clockwork=clockwork(ticks),
     )
+
+
+def read_off(
+    pairs: Sequence[Pair], kept: Sequence[Pair], alone: int | None
+) -> tuple[list[tuple[float, float]], list[Array], float]:
+    """Return latency and energy left of every axis over the ticks kept, latencies of all ticks, and energy these leave.
+
+    The latencies of ticks are arrays (n,), in periods, NaN where none is told; of one axis where it alone is late.
+    """
+    axes = [constant_latency(kept, i) for i in range(pairs[0][0].shape[1])]
+    latency = np.array([a[0] for a in axes])
+    judged = slice(None) if alone is None else slice(alone, alone + 1)
+    ticks, left = [], 0.0
+    for command, echo, ok in pairs:
+        told, error = tick_latency(command[:, judged], echo[:, judged], latency[judged])
+        ticks.append(np.where(ok, told, np.nan))
+        left += float(np.sum(error[ok] ** 2))
+    return axes, ticks, left
+
+
+def late_by(some: Array, ticks: Sequence[Array]) -> Array:
+    """Return by how much some latencies exceed the median of all that are told; NaN stays."""
+    told = np.concatenate([t[np.isfinite(t)] for t in ticks])
+    return some - (float(np.median(told)) if len(told) else 0.0)
+
+
+def clockwork(ticks: Sequence[Array]) -> float:
+    """Return the largest share of late ticks, by a period or more, that are as late as the one some ticks before.
+
+    One of 1 is a drive that looks for a demand at every second, third... tick; commands that are lost by chance, each
+    with p, have p at most.
+    """
+    best = 0.0
+    whole = [np.rint(t - np.nanmin(t)) if np.isfinite(t).any() else t for t in ticks]
+    for cycle in CYCLES:
+        late = [(t[cycle:] >= 1.0) & np.isfinite(t[:-cycle]) for t in whole]
+        same = sum(int(np.sum(o & (t[cycle:] == t[:-cycle]))) for t, o in zip(whole, late, strict=True))
+        best = max(best, same / max(1, sum(int(o.sum()) for o in late)))
+    return best
 
 
 def demand_in_force(run: RunSignals, robot: Robot, timing: Timing | None) -> Demand | None:
