@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from sher3_effects.compliance.stiffening import softness
 from sher3_effects.compliance.tool_bending import ToolBending
+from sher3_effects.friction.stribeck_friction import StribeckFriction, StribeckOnAxis
 from sher3_effects.limit.force_saturation import bent
 from sher3_effects.lost_motion.joint_clearance import JointClearance
 from sher3_effects.operators import frozen_integral, play, released_play
@@ -95,14 +96,14 @@ def test_a_tool_that_stiffens_bends_less_than_twice_as_far_under_twice_the_load(
 
 
 def test_teeth_that_are_unlike_have_neighbouring_orders_and_harmonics():
-    """Four teeth: orders 4, 3, 5, 2, 6, 8, 12; one tooth: 1, 2 and 3, each once. The amplitude is that of the teeth."""
+    """Four teeth: orders 4, 3, 5, 2, 6, 1, 7, 8, 12; one tooth: 1, 2, 3, 4, once each. The amplitude is that of 4."""
     run = SimpleNamespace(smooth=np.array([[0.0], [1.0 / 16.0]]), to_grid=lambda x: x)
     view = SimpleNamespace(run=run, row=lambda site: 0, lead=lambda site: 1.0)
     (columns,) = Cogging().signature(view, "tilt", {"periods_per_rev": 4.0, "unlike": 1.0}).columns.values()
-    turned = 2.0 * np.pi * np.array([4.0, 3.0, 5.0, 2.0, 6.0, 8.0, 12.0]) / 16.0
+    turned = 2.0 * np.pi * np.array([4.0, 3.0, 5.0, 2.0, 6.0, 1.0, 7.0, 8.0, 12.0]) / 16.0
     assert columns[1, 0, ::2] == pytest.approx(np.sin(turned), abs=1e-12)
     (columns,) = Cogging().signature(view, "tilt", {"periods_per_rev": 1.0, "unlike": 1.0}).columns.values()
-    assert columns.shape == (2, 1, 6)
+    assert columns.shape == (2, 1, 8)
     assert Cogging().parameters({"periods_per_rev": 4.0}, np.array([3.0, 4.0, 1.0, 1.0]))["amplitude"] == 5.0
     assert Cogging().bends([], "roll", {"periods_per_rev": 4.0})
     assert not CoggingOnAxis().bends([], "roll", {"periods_per_rev": 4.0})
@@ -114,6 +115,18 @@ def test_a_spring_that_is_nearly_all_cube_is_relaxed_where_its_force_is_zero():
     """0.01 x + x^3 + 0.5 = 0 at x = -0.7895: a step of Newton's method from -50 goes astray there."""
     spring = SpringOnAxis().parameters({"middle": 0.0, "half": 1.0, "hardens": 1.0}, np.array([0.01, 0.5, 1.0]))
     assert 0.01 * spring["rest"] + spring["rest"] ** 3 == pytest.approx(-0.5)
+
+
+@pytest.mark.parametrize(("falls", "hump"), [(0, np.exp(-4.0)), (1, np.exp(-2.0)), (2, 1.0 / (4.0 * np.e - 3.0))])
+def test_every_hump_of_friction_is_one_at_rest_and_1_over_e_at_its_velocity(falls, hump):
+    speed = np.array([0.0, 1e-3, -2e-3])
+    run = SimpleNamespace(velocity=speed[:, None], to_grid=lambda x: x)
+    view = SimpleNamespace(run=run, row=lambda site: 0, sliding=lambda axis, displacement: np.ones(3))
+    shape = {"stribeck_velocity": 1e-3, "displacement": 1e-6, "falls": float(falls)}
+    (columns,) = StribeckFriction().signature(view, "delta_1", shape).columns.values()
+    assert columns[:, 0, 1] == pytest.approx([1.0, 1.0 / np.e, hump])
+    assert {s["falls"] for s in StribeckFriction().bends([], "delta_1", shape)} == {1.0, 2.0}
+    assert not StribeckOnAxis().bends([], "delta_1", shape)
 
 
 def along(position: np.ndarray) -> SimpleNamespace:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -16,9 +16,21 @@ from sher3_effects.friction.bristle import deflection, soften
 from sher3_effects.friction.dry import DryFriction
 from sher3_effects.view import AxisView
 
+GAUSS, TUSTIN, HESS_SOOM = range(3)
+HUMPS: Mapping[int, Callable[[Array], Array]] = {
+    GAUSS: lambda x: np.exp(-(x**2)),
+    TUSTIN: lambda x: np.exp(-x),
+    HESS_SOOM: lambda x: 1.0 / (1.0 + (np.e - 1.0) * x**2),
+}
+"""Ways to fall with the speed over the Stribeck velocity."""
+
 
 class StribeckFriction(DryFriction):
-    """F = z (force + (static - force) exp(-(v / stribeck_velocity)^2))."""
+    """F = z (force + (static - force) hump(v / stribeck_velocity)): a hump of 1 at rest and 1/e at that velocity.
+
+    It is exp(-x^2) (Bo and Pavelescu 1982), and as a bend exp(-x) (Tustin 1947) or 1 / (1 + (e - 1) x^2) (Hess and Soom
+    1990): oils and surfaces differ in how slowly friction falls (Armstrong-Hélouvry, Dupont and Canudas de Wit 1994).
+    """
 
     id, family, stage = "stribeck_friction", "friction", "motor_mechanics"
     inputs = ("direction", "velocity")
@@ -42,11 +54,17 @@ class StribeckFriction(DryFriction):
         scale = views[0].lead(site)
         return [{"stribeck_velocity": v * scale, "displacement": 2.5e-3 * scale} for v in self.VELOCITIES]
 
+    def bends(self, views: Sequence[AxisView], site: str, shape: Shape) -> list[Shape]:
+        """Return humps that fall as Tustin's and as Hess and Soom's."""
+        speeds = [shape["stribeck_velocity"] * factor for factor in (0.5, 1.0, 2.0)]
+        return [{**shape, "stribeck_velocity": v, "falls": float(law)} for v in speeds for law in (TUSTIN, HESS_SOOM)]
+
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
         """Two columns: the sliding force and the extra one at low speed."""
         axis = view.row(site)
         z = view.sliding(axis, shape["displacement"])
-        hump = z * np.exp(-((view.run.velocity[:, axis] / shape["stribeck_velocity"]) ** 2))
+        x = np.abs(view.run.velocity[:, axis]) / shape["stribeck_velocity"]
+        hump = z * HUMPS[int(shape.get("falls", GAUSS))](x)
         return Signature({Channel(self.stage, site): column(view.run.to_grid(z), view.run.to_grid(hump))})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
@@ -84,6 +102,10 @@ class StribeckOnAxis(StribeckFriction):
         most = self.MOST * top / max(self.finer["stribeck_velocity"]) ** 2
         found = [v for v in tried or [s * top for s in self.SHARES] if 0.0 < v <= most]
         return [{"stribeck_velocity": v, "displacement": reach} for v in found] if reach > 0.0 else []
+
+    def bends(self, views: Sequence[AxisView], site: str, shape: Shape) -> list[Shape]:
+        """Return none."""
+        return []
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
         """Return whether friction resists, falls with speed, and is no multiple of itself at rest."""
