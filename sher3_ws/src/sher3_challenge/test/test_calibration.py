@@ -117,6 +117,14 @@ def test_every_plant_counts_the_same_once_it_has_ten_examples():
     assert weights([Example("a", {}, "x"), Example("a", {}, "y"), Example("b", {}, "x")]) == pytest.approx(np.ones(3))
 
 
+def test_examples_of_an_answer_count_for_their_share():
+    found = weights([Example("a", {}, "x"), Example("a", {}, "y"), Example("a", {}, "x")], {"y": 0.5})
+    assert found == pytest.approx([1.2, 0.6, 1.2])
+    rows = [("r", 0.0), ("o", 0.0), ("r", 1.0), ("o", 1.0)] * 100
+    model = logistic([Example("a", {"x": x}, y) for y, x in rows], ("r", "o"), ("x",), {"o": 0.25})
+    assert model.probabilities({"x": 0.5})["r"] == pytest.approx(0.8, abs=0.01)
+
+
 def test_a_fit_by_hand():
     """Two cases in three right at x = 0, one in three at x = 1, hardly held down: odds of 2 and of 1 / 2."""
     rows = [(0, "r"), (0, "r"), (0, "o"), (1, "r"), (1, "o"), (1, "o")] * 50
