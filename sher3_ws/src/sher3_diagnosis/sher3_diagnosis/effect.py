@@ -109,6 +109,7 @@ class Effect:
         companion: family of another effect on the same axis without which this one does not show.
         shown_by: families of effects on the same axis that bring this one to light; it comes after them.
         dry: whether it is a friction that holds an axis at rest.
+        settles: whether its parameters are of sliding alone, so that samples at which it rests tell nothing of them.
         best: the excitation that shows it best.
         leaves_out: what a real machine adds to the idealised law, in words. Empty for a law of geometry, mechanics or
             arithmetic that a machine follows to a few percent: there much left over speaks against the effect.
@@ -135,6 +136,7 @@ class Effect:
     companion: ClassVar[str] = ""
     shown_by: ClassVar[tuple[str, ...]] = ()
     dry: ClassVar[bool] = False
+    settles: ClassVar[bool] = False
     best: ClassVar[Best]
     leaves_out: ClassVar[str] = ""
     condition: str | None = None

@@ -24,6 +24,7 @@ from sher3_diagnosis.judge.weigh import weighed
 from sher3_diagnosis.localise.gaps import localise
 from sher3_diagnosis.machine import Machine
 from sher3_diagnosis.quantify.closure import residual_after
+from sher3_diagnosis.quantify.motion import in_motion
 from sher3_diagnosis.quantify.polish import polished
 
 R = TypeVar("R")
@@ -76,6 +77,7 @@ def find(machine: Machine[R, E], evidence: E, without: Collection[str], say: Say
     attribution = machine.attribute(evidence, candidates, partial(rule, significant, evidence), say)
     say("quantifying")
     attribution = polished(evidence, attribution)
+    attribution = replace(attribution, moving=in_motion(evidence, attribution.fit))
     refined, causes = machine.refine(evidence, causes_of(evidence, attribution), attribution)
     remains = partial(left_over, significant, evidence)
     if not machine.policy.calibrated:

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from sher3_diagnosis.attribute.candidates import Candidates
 from sher3_diagnosis.channel import AT_TIP
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import Fit, fit
 from sher3_diagnosis.thresholds import NEEDED, RIVAL
+
+if TYPE_CHECKING:
+    from sher3_diagnosis.quantify.motion import InMotion
 
 RANKED = 6
 """Effects kept in the ranking of a cause, and tried in pairs."""
@@ -28,6 +32,8 @@ class Attribution:
     """Number of leading terms that are no causes."""
     steps: tuple[Fit, ...] = ()
     """Fits on the way to this one, where the effects were looked for in layers."""
+    moving: InMotion | None = None
+    """The fit where no friction rests, where a cause is one that does."""
 
     @property
     def causes(self) -> range:

@@ -66,6 +66,7 @@ def _kept(finding: Finding, named: Sequence[Judged], reach: float) -> tuple[Attr
     attribution = replace(
         found,
         fit=again,
+        moving=None,
         rivals=tuple(rivals.get(i, ()) for i in indices),
         explained=tuple(found.explained[i] for i in indices),
         ranking=tuple(found.ranking[i] for i in indices),

@@ -24,11 +24,12 @@ def polished(evidence: Evidence, attribution: Attribution) -> Attribution:
     """Return an attribution whose causes have the best shapes near those found."""
     current = attribution.fit
     for i in attribution.causes:
-        current = _polish(evidence, current, i)
+        current = polish(evidence, current, i)
     return replace(attribution, fit=current)
 
 
-def _polish(evidence: Evidence, current: Fit, index: int) -> Fit:
+def polish(evidence: Evidence, current: Fit, index: int) -> Fit:
+    """Return a fit with the best shape of one term near that found."""
     for _ in range(STEPS):
         change = local(evidence, current, index).step
         trials = (_stepped(evidence, current, index, change, share) for share in SHORTER)

@@ -25,6 +25,7 @@ class CoulombFriction(DryFriction):
     id, family, stage = "coulomb_friction", "friction", "motor_mechanics"
     inputs = ("direction",)
     dry = True
+    settles = True
     best = Best("reversals", "reversals of several amplitudes and speeds separate friction laws")
     leaves_out = "how its level varies over the stroke"
     explanation = (

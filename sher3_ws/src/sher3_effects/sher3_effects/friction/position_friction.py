@@ -29,6 +29,7 @@ class PositionFriction(DryFriction):
     id, family, stage = "position_friction", "friction", "motor_mechanics"
     inputs = ("direction", "position")
     needs = ("lead",)
+    settles = True
     best = Best("reversals", "reversals of several amplitudes and speeds separate friction laws")
     extends = ("coulomb_friction",)
     leaves_out = "the shape of its peaks, and that no two are alike"

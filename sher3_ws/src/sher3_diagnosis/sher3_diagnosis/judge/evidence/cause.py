@@ -86,7 +86,8 @@ def cause_evidence(evidence: Evidence, attribution: Attribution, index: int) -> 
     channel = shown_at(evidence, term, without, found)
     samples = evidence.samples(channel)
     gap = max(evidence.excess(channel, without), 1.0)
-    remainder = remains(evidence, found, index, channel)
+    moving = attribution.moving
+    remainder = remains(evidence, found if moving is None else moving.whole, index, channel)
     left = excess_of(evidence, channel, remainder)
     laws = free_laws(evidence, channel, term, remainder)
     steady = steadiness_of(evidence, found, index)
