@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
@@ -20,7 +21,7 @@ GAUSS, TUSTIN, HESS_SOOM = range(3)
 HUMPS: Mapping[int, Callable[[Array], Array]] = {
     GAUSS: lambda x: np.exp(-(x**2)),
     TUSTIN: lambda x: np.exp(-x),
-    HESS_SOOM: lambda x: 1.0 / (1.0 + (np.e - 1.0) * x**2),
+    HESS_SOOM: lambda x: 1.0 / (1.0 + (math.e - 1.0) * x**2),
 }
 """Ways to fall with the speed over the Stribeck velocity."""
 
