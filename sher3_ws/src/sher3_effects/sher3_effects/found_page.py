@@ -63,6 +63,7 @@ class FoundPage(Page):
     kinds = ("robot",)
     family = "found"
     best = Best("sweep", "constant speeds over the whole stroke show most laws")
+    leaves_out = "what a formula of few terms does not say"
     sites: ClassVar[tuple[str, ...]]
     terms: ClassVar[tuple[SavedTerm, ...]]
 

@@ -36,6 +36,7 @@ def test_a_file_is_a_page_with_units_and_shapes(page):
     assert found.unit("coefficient_1", "delta_1", False) == "N/(m/s)^2"
     assert found.channels("delta_2") == () and len(found.channels("delta_1")) == 1
     assert found.inputs == ("velocity", "position")
+    assert found.leaves_out  # a formula of few terms is no complete law
     moved = found.reshaped(found.terms[1].feature, {"period_1": 0.002})
     assert str(moved) == "sine(position, 0.002)"
 
