@@ -91,13 +91,17 @@ class FoundPage(Page):
         return feature.reshaped(tuple(values[s] for s in feature.shape))
 
     def signature(self, view: Any, site: str, shape: Shape) -> Signature:
-        """Return one column for each term, from the quantities of the run."""
+        """Return one column for each term, from the quantities of the run; of two encoders one for their zeros too.
+
+        A formula is found on what runs change, and says nothing of where a lost motion rests at the start.
+        """
         stages = AT_TIP if self.stage in AT_TIP else (self.stage,)
         main = Channel(self.stage, site)
         quantities = view.recorded(main)
         width = 1 if site in ACTUATORS else 6
         samples = len(view.at_residuals(np.zeros(view.run.ticks)))
-        columns = np.zeros((samples, width, len(self.terms)))
+        columns = np.zeros((samples, width, len(self.terms) + (self.stage == "transmission")))
+        columns[:, :, len(self.terms) :] = 1.0
         for k, term in enumerate(self.terms):
             out = np.ones(samples)
             for factor in self.reshaped(term.feature, shape).factors:
@@ -107,7 +111,8 @@ class FoundPage(Page):
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Return the coefficients in the order of the terms, and the shapes."""
-        return {f"coefficient_{k + 1}": float(c) for k, c in enumerate(coefficients)} | dict(shape)
+        stated = coefficients[: len(self.terms)]
+        return {f"coefficient_{k + 1}": float(c) for k, c in enumerate(stated)} | dict(shape)
 
 
 def read_found(path: Path) -> FoundPage:

@@ -1,5 +1,8 @@
 """Discovered effects as pages: read, refused, fitted again, and in the plant."""
 
+from types import SimpleNamespace
+
+import numpy as np
 import pytest
 from sher3_common import FileError
 from sher3_description import load_robot
@@ -39,6 +42,21 @@ def test_a_file_is_a_page_with_units_and_shapes(page):
     assert found.leaves_out  # a formula of few terms is no complete law
     moved = found.reshaped(found.terms[1].feature, {"period_1": 0.002})
     assert str(moved) == "sine(position, 0.002)"
+
+
+def test_of_two_encoders_it_has_their_zeros_beside_its_terms(page):
+    """What runs change tells no zero: one column of ones more, and no parameter for it."""
+    found = library()["found_drag"]
+    between = type("Between", (type(found),), {"stage": "transmission"})()
+    run = SimpleNamespace(ticks=3)
+    quantities = dict.fromkeys(("velocity", "position"), SimpleNamespace(values=np.array([1.0, 2.0, 3.0])))
+    view = SimpleNamespace(run=run, step=1, recorded=lambda main: quantities, at_residuals=lambda x: x)
+    for law, more in ((found, 0), (between, 1)):
+        (columns,) = law.signature(view, "delta_1", found.shape).columns.values()
+        assert columns.shape == (3, 1, len(found.terms) + more)
+        stated = law.parameters({}, np.arange(1.0, 1.0 + columns.shape[2]))
+        assert stated == {f"coefficient_{k + 1}": k + 1.0 for k in range(len(found.terms))}
+    assert (columns[:, 0, -1] == 1.0).all()
 
 
 def test_its_form_in_the_plant_goes_through_an_effects_file(page, monkeypatch):
