@@ -76,9 +76,11 @@ def sheath(tension: Array, wrap: float, pieces: int = 16) -> Array:
 def released_play(
     x: Array, drive: Array, rest: Array, release: float, width: float, damping: float, period: float, start: float
 ) -> Array:
-    """As `play`, of a follower whose friction gives way by up to `release` before it slides, minus x, (n,).
+    """Follower behind a gap of `width` whose friction gives way by up to `release` before it slides, minus x, (n,).
 
-    After a reversal it goes back with its flank to where its friction and the load on it are in balance, and only there
+    Between the flanks it moves under the load `drive` (n,) against a viscous `damping` (inf: it stays put): a load that
+    reverses takes it across the gap without the motor moving. `start` in -1..1 is where in the gap it begins. After a
+    reversal it goes back with its flank to where its friction and the load on it are in balance, and only there
     the flank leaves it: `rest` (n,) in -release..release, from where the friction holds nothing (Dahl's bristle, linear
     up to the level: Prandtl 1928).
     """
@@ -94,14 +96,13 @@ def released_play(
 
 
 @compiled
-def play(x: Array, drive: Array, width: float, damping: float, period: float, start: float) -> Array:
-    """Follower behind a gap of `width`, minus x, (n,): -width/2..width/2.
+def play(x: Array, width: float, start: float = 0.0) -> Array:
+    """Follower behind a gap of `width` that stays where no flank takes it, minus x, (n,): -width/2..width/2.
 
-    Between the flanks the follower moves under the load `drive` (n,) against a viscous `damping` (inf: it stays put).
-    A load that reverses thus takes the follower across the gap without the motor moving. `start` in -1..1 is where in
-    the gap the follower begins.
+    `start` is as for `released_play`.
     """
-    return released_play(x, drive, np.zeros(len(x)), 0.0, width, damping, period, start)
+    still = np.zeros(len(x))
+    return released_play(x, still, still, 0.0, width, np.inf, 1.0, start)
 
 
 @compiled

@@ -73,8 +73,12 @@ def test_a_load_that_something_pulls_on_leaves_its_flank_where_both_are_in_balan
 
 
 def test_a_load_whose_friction_does_not_give_way_is_behind_a_plain_gap():
+    """It begins 1.5 um ahead, is taken along from -5 um on, and behind by 5 um again ten micrometres after the turn."""
     still = np.zeros(len(PATH))
-    plain = play(PATH, still, 10e-6, np.inf, 1e-3, 0.3)
+    plain = play(PATH, 10e-6, 0.3)
+    assert plain[[0, 3, 6, 7, 50, 55, 60, 80]] == pytest.approx(
+        1e-6 * np.array([1.5, -1.5, -4.5, -5.0, -5.0, 0.0, 5.0, 5.0]), abs=1e-12
+    )
     assert released_play(PATH, still, still, 0.0, 10e-6, np.inf, 1e-3, 0.3) == pytest.approx(plain, abs=1e-15)
 
 

@@ -123,7 +123,7 @@ class ServoStiction(CoulombFriction):
             return super().signature(view, site, shape)
         x = view.run.reference[:, [view.row(site)]]
         x = (held_lag(x, shape["late"], view.run.period) if shape["late"] else x)[:, 0]
-        behind = play(x, np.zeros_like(x), 2.0 * shape["force"], np.inf, view.run.period, 0.0)
+        behind = play(x, 2.0 * shape["force"])
         return Signature({}, {Channel(self.stage, site): view.run.to_grid(-behind)[:, None]})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:

@@ -74,7 +74,7 @@ class JointClearance(Page):
             force = view.path.contact_force[:, axis] - view.path.gravity[:, axis]
             return np.repeat(np.tanh(force / CONTACT_FORCE)[:, None], 2, axis=1)
         x, width = view.run.smooth[:, axis], shape["reach"]
-        side = -2.0 / width * play(x, np.zeros(len(x)), width, np.inf, view.run.period, 0.0)[view.run.grid]
+        side = -2.0 / width * play(x, width)[view.run.grid]
         return np.repeat(side[:, None], 2, axis=1)
 
     def signature(self, view: RobotView, site: str, shape: Shape) -> Signature:

@@ -64,7 +64,7 @@ class BacklashBehindMotor(BehindMotor):
         if "braking" in shape:
             lag = flight(path, shape["width"], shape["braking"], run.period, 0.0)
         else:
-            lag = play(path, np.zeros_like(path), shape["width"], np.inf, run.period, 0.0)
+            lag = play(path, shape["width"])
         crossing = np.abs(lag) < 0.5 * shape["width"] * (1.0 - 1e-9)
         pace = np.gradient(path, run.period)
         mass = second_difference(lag, run.period)
