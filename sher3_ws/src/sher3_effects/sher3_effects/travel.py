@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 from sher3_diagnosis.channel import Array
+from sher3_diagnosis.effect import Shape
 
 from sher3_effects.view import AxisView
 
@@ -27,3 +28,14 @@ def travel_of(views: Sequence[AxisView], site: str) -> Travel | None:
     ends = [f(v.position[:, v.row(site)]) for v in views for f in (np.min, np.max)]
     low, high = float(min(ends)), float(max(ends))
     return Travel(0.5 * (low + high), 0.5 * (high - low)) if high > low else None
+
+
+def over_travel(views: Sequence[AxisView], site: str, shape: Shape) -> list[Shape]:
+    """Return a shape with the travel of an axis beside its values; none where the axis stood."""
+    travel = travel_of(views, site)
+    return [{**shape, **travel._asdict()}] if travel else []
+
+
+def share_of(position: Array, shape: Shape) -> Array:
+    """Return positions over half the travel that a shape holds, -1..1."""
+    return Travel(shape["middle"], shape["half"]).share(position)

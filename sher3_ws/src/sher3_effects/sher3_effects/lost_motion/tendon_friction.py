@@ -10,7 +10,7 @@ from sher3_diagnosis.effect import Best, Shape, Signature, column
 
 from sher3_effects.operators import sheath
 from sher3_effects.page import Page
-from sher3_effects.travel import Travel, travel_of
+from sher3_effects.travel import over_travel, share_of
 from sher3_effects.view import AxisView
 
 
@@ -51,10 +51,10 @@ class TendonFriction(Page):
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
         """Return wraps where a tension was recorded, and displacements of a loop that grows along the travel."""
         row = views[0].row(site)
-        longest, travel = max(v.axis(site).travel for v in views), travel_of(views, site)
+        travel = max(v.axis(site).travel for v in views)
         tight = all(v.run.effort is not None and self._tension(v, row).min() > 0.0 for v in views)
-        over = [s * longest for s in self.SHARES if longest]
-        loops: list[Shape] = [{"displacement": x, **travel._asdict()} for x in over] if travel else []
+        tried: list[Shape] = [{"displacement": s * travel} for s in self.SHARES if travel]
+        loops = [found for shape in tried for found in over_travel(views, site, shape)]
         return [*loops, *({"wrap": w} for w in self.WRAPS if tight)]
 
     def _tension(self, view: AxisView, row: int) -> Array:
@@ -69,7 +69,7 @@ class TendonFriction(Page):
             mean = np.exp(sheath(np.log(self._tension(view, row)), shape["wrap"])).mean(axis=1)
             return Signature({Channel(self.stage, site): column(-run.to_grid(mean[:, None])[:, 0])})
         z = view.sliding(row, shape["displacement"])
-        x = Travel(shape["middle"], shape["half"]).share(run.smooth[:, row])
+        x = share_of(run.smooth[:, row], shape)
         return Signature({Channel(self.stage, site): column(-run.to_grid(z), -run.to_grid(z * x))})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:

@@ -12,7 +12,8 @@ from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.page import Page
-from sher3_effects.scale.uneven import BENT_FROM, gentle, lines, mean_ratio, uneven
+from sher3_effects.scale.uneven import gentle, lines, mean_ratio
+from sher3_effects.travel import over_travel
 from sher3_effects.view import RobotView
 
 
@@ -24,7 +25,6 @@ class EncoderScale(Page):
     breaks = "load_encoder"
     best = Best("sweep", "long constant-speed strokes separate ratios from offsets")
     leaves_out = "how the error of the scale varies from one millimetre to the next"
-    bent_from = BENT_FROM
     explanation = (
         "The load encoder reads a little too much or too little, in proportion to the travel; the tip shows "
         "that the load is where the motor says."
@@ -37,7 +37,7 @@ class EncoderScale(Page):
 
     def bends(self, views: Sequence[RobotView], site: str, shape: Shape) -> list[Shape]:
         """Return the scale that varies along the travel."""
-        return uneven(views, site, shape)
+        return over_travel(views, site, shape)
 
     def signature(self, view: RobotView, site: str, shape: Shape) -> Signature:
         """The position, with its bends where the scale varies, and at the tip the motion that did not happen."""

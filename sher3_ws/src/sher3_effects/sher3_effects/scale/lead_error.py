@@ -12,8 +12,9 @@ from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.page import Page, Tolerated
-from sher3_effects.scale.uneven import BENT_FROM, gentle, lines, mean_ratio, uneven
+from sher3_effects.scale.uneven import gentle, lines, mean_ratio
 from sher3_effects.table_view import TableView
+from sher3_effects.travel import over_travel
 from sher3_effects.view import AxisView
 
 
@@ -25,7 +26,6 @@ class LeadError(Page):
     needs = ("load",)
     best = Best("sweep", "long constant-speed strokes separate ratios from offsets")
     leaves_out = "how the ratio varies from one turn to the next"
-    bent_from = BENT_FROM
     on_axis = {"relative": "ratio"}
     explanation = (
         "The load moves a little more or less than the motor, in proportion to the travel; the load encoder "
@@ -41,7 +41,7 @@ class LeadError(Page):
 
     def bends(self, views: Sequence[AxisView], site: str, shape: Shape) -> list[Shape]:
         """Return the ratio that varies along the travel."""
-        return uneven(views, site, shape)
+        return over_travel(views, site, shape)
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
         """One column, the motor position; of a ratio that varies a hat over each of its nodes too."""

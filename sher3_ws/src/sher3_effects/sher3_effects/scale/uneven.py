@@ -2,39 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 from sher3_diagnosis.channel import Array
 from sher3_diagnosis.effect import Shape
 
-from sher3_effects.travel import Travel, travel_of
-from sher3_effects.view import AxisView
+from sher3_effects.travel import share_of
 
-BENT_FROM = 0.02
-"""Share of a gap that a straight line must leave for the ratio to vary."""
 PARTS = 8
 """Of the travel. A broken line tells nothing of parts that a run does not reach, and so does not go astray there, as a
 polynomial does: of orders 3 to 5 it lost 40 times the gap on runs left out that went farther than the others."""
 MOST = 0.5
 """Largest distance from the straight line over its own at the end of the travel: beyond it the ratio is hardly off on
 the whole."""
-
-
 NODES = np.linspace(-1.0, 1.0, PARTS + 1)
-
-
-def uneven(views: Sequence[AxisView], site: str, shape: Shape) -> list[Shape]:
-    """Return the shape of a ratio that varies along the travel; none where an axis stood."""
-    travel = travel_of(views, site)
-    return [{**shape, **travel._asdict()}] if travel else []
 
 
 def lines(position: Array, shape: Shape) -> list[Array]:
     """Return columns (n,): the position; of a ratio that varies a hat over each node beside it, m at its top."""
     if "half" not in shape:
         return [position]
-    x = Travel(shape["middle"], shape["half"]).share(position)
+    x = share_of(position, shape)
     return [position, *(shape["half"] * np.interp(x, NODES, hat) for hat in np.eye(PARTS + 1)[1:-1])]
 
 

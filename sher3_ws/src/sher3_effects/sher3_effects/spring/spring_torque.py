@@ -11,7 +11,7 @@ from sher3_diagnosis.effect import Best, Shape, Signature, column
 
 from sher3_effects.compliance.two_slopes import BENT_FROM
 from sher3_effects.page import Page
-from sher3_effects.travel import Travel, travel_of
+from sher3_effects.travel import over_travel, share_of
 from sher3_effects.view import AxisView
 
 
@@ -62,8 +62,7 @@ class SpringOnAxis(SpringTorque):
 
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
         """Return the middle and half of the travel over all runs."""
-        travel = travel_of(views, site)
-        return [travel._asdict()] if travel else []
+        return over_travel(views, site, {})
 
     def bends(self, views: Sequence[AxisView], site: str, shape: Shape) -> list[Shape]:
         """Return the spring that hardens."""
@@ -71,7 +70,7 @@ class SpringOnAxis(SpringTorque):
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
         """Return two columns, the position over its travel and one; of a spring that hardens its cube too."""
-        x = Travel(shape["middle"], shape["half"]).share(view.position[:, view.row(site)])
+        x = share_of(view.position[:, view.row(site)], shape)
         cube = [x**3] if "hardens" in shape else []
         return Signature({Channel(self.stage, site): column(x, np.ones_like(x), *cube)})
 

@@ -14,7 +14,7 @@ from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.compliance.two_slopes import BENT_FROM
 from sher3_effects.page import Page, Part, Values
-from sher3_effects.travel import Travel, travel_of
+from sher3_effects.travel import over_travel, share_of
 from sher3_effects.view import RobotView
 
 AT_SENSOR = 6
@@ -62,8 +62,7 @@ class CableDrag(Page):
 
     def bends(self, views: Sequence[RobotView], site: str, shape: Shape) -> list[Shape]:
         """Return the cable on an axis that hardens."""
-        travel = travel_of(views, site) if site != "force_sensor" else None
-        return [{**shape, **travel._asdict()}] if travel else []
+        return [] if site == "force_sensor" else over_travel(views, site, shape)
 
     def signature(self, view: RobotView, site: str, shape: Shape) -> Signature:
         """Offset, stiffness and, with a stroke, hysteresis; of a cable that hardens square and cube of the place."""
@@ -75,7 +74,7 @@ class CableDrag(Page):
         if shape["stroke"]:
             parts.append(view.run.to_grid(view.sliding(axis, shape["stroke"] * view.lead(site))))
         if "half" in shape:
-            x = Travel(shape["middle"], shape["half"]).share(q)
+            x = share_of(q, shape)
             parts += [x**2, x**3 - 0.6 * x]
         return Signature({Channel(self.stage, site): column(*parts)})
 
@@ -108,10 +107,12 @@ class CableDrag(Page):
         """
         if len(coefficients) >= AT_SENSOR:
             return True
-        bare, bend = (coefficients[1:-2], coefficients[-2:]) if "half" in shape else (coefficients[1:], np.zeros(2))
+        if "half" not in shape:
+            return bool((coefficients[1:] >= 0.0).all())
+        *bare, square, cube = coefficients[1:]
         x = np.linspace(-1.0, 1.0, 21)
-        slope = bare[0] * shape.get("half", 1.0) + 2.0 * bend[0] * x + bend[1] * (3.0 * x**2 - 0.6)
-        return bool((bare >= 0.0).all() and bend[1] >= 0.0 and (slope >= 0.0).all())
+        slope = bare[0] * shape["half"] + 2.0 * square * x + cube * (3.0 * x**2 - 0.6)
+        return bool(min(*bare, cube) >= 0.0 and (slope >= 0.0).all())
 
     def unit(self, name: str, site: str, rotary: bool) -> str:
         """A stiffness is per angle on the force sensor."""
