@@ -15,6 +15,7 @@ from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.friction.bristle import deflection, soften
 from sher3_effects.friction.dry import DryFriction
+from sher3_effects.page import Page
 from sher3_effects.view import AxisView
 
 GAUSS, TUSTIN, HESS_SOOM = range(3)
@@ -87,6 +88,7 @@ class StribeckOnAxis(StribeckFriction):
     """The same on one axis of any machine: the hump is below its top speed, and not many times the friction."""
 
     kinds = ("axis",)
+    bends = Page.bends
     bounds = {"force": (0.0, np.inf), "static": (0.0, np.inf), "stribeck_velocity": (0.0, np.inf)}
     SHARES = (0.02, 0.05, 0.1, 0.2)
     """Of the top speed, where the lead is not known."""
@@ -104,10 +106,6 @@ class StribeckOnAxis(StribeckFriction):
         most = self.MOST * top / max(self.finer["stribeck_velocity"]) ** 2
         found = [v for v in tried or [s * top for s in self.SHARES] if 0.0 < v <= most]
         return [{"stribeck_velocity": v, "displacement": reach} for v in found] if reach > 0.0 else []
-
-    def bends(self, views: Sequence[AxisView], site: str, shape: Shape) -> list[Shape]:
-        """Return none."""
-        return []
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
         """Return whether friction resists, falls with speed, and is no multiple of itself at rest."""

@@ -62,10 +62,7 @@ class CoggingOnAxis(Cogging):
     """The same on one axis of any machine: one sine."""
 
     kinds = ("axis",)
-
-    def bends(self, views: Sequence[AxisView], site: str, shape: Shape) -> list[Shape]:
-        """Return none."""
-        return []
+    bends = Page.bends
 
 
 @dataclass(frozen=True)

@@ -87,10 +87,7 @@ class RippleOnAxis(TransmissionRipple):
     """The same on one axis of any machine: three orders at most."""
 
     kinds = ("axis", "servo")
-
-    def bends(self, views: Sequence[AxisView], site: str, shape: Shape) -> list[Shape]:
-        """Return none."""
-        return []
+    bends = Page.bends
 
 
 class TableRipple(Page):

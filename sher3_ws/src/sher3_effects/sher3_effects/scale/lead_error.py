@@ -64,10 +64,7 @@ class LeadErrorOnAxis(LeadError):
     """The same on one axis of any machine: the ratio is one."""
 
     kinds = ("axis", "servo")
-
-    def bends(self, views: Sequence[AxisView], site: str, shape: Shape) -> list[Shape]:
-        """Return none."""
-        return []
+    bends = Page.bends
 
 
 class TableScale(Page):
