@@ -109,7 +109,7 @@ def dropping(late: Lateness) -> bool:
     t = late.timing
     if t.drops <= DROPS_SEEN or late.random_share <= RANDOM_SHARE:
         return False
-    deviation = t.samples - float(np.median(t.samples))
+    deviation = t.samples - late.held
     odd = deviation[np.abs(deviation) > SKEW]
     on_lattice = np.abs(odd - np.rint(odd)) < SKEW
     return len(odd) > 0 and float(np.mean(on_lattice)) > MOSTLY_DROPS

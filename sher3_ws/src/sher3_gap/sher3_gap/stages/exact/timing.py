@@ -10,9 +10,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from sher3_description import Robot
-from sher3_diagnosis.channel import Array
+from sher3_diagnosis.channel import Array, Mask
 
 from sher3_gap.signals import RunSignals
 from sher3_gap.stages.exact.law import delayed, shifted
@@ -62,7 +61,7 @@ class Timing:
     clockwork: float = 0.0
 
 
-Pair = tuple[Array, Array, NDArray[np.bool_]]
+Pair = tuple[Array, Array, Mask]
 """Command and echo over the velocity limits, (n, axes) each, and the ticks whose echo tells, (n,)."""
 
 
@@ -129,21 +128,23 @@ def timing_of(runs: Sequence[RunSignals], robot: Robot) -> Timing | None:
     odd = np.flatnonzero(each > QUIET)
     alone = int(odd[0]) if len(odd) == 1 else None
     axes, ticks, left = read_off(pairs, pairs, alone)
-    held = [late_by(t, ticks) > WHOLE for t in ticks]
-    kept = [(c, e, ok & ~h) for (c, e, ok), h in zip(pairs, held, strict=True)]
+    constant, kept = sum(a[1] for a in axes), pairs
+    usual = usual_of(ticks)
+    held = [t > usual + WHOLE for t in ticks]
     if any(h.any() for h in held):  # what is held now and then belongs to no axis' latency
+        kept = [(c, e, ok & ~h) for (c, e, ok), h in zip(pairs, held, strict=True)]
         axes, ticks, left = read_off(pairs, kept, alone)
     rest = sum(float(np.sum((e - delayed(c, 1))[ok] ** 2)) for c, e, ok in kept)
-    samples = np.concatenate([t[ok & np.isfinite(t)] for t, (_, _, ok) in zip(ticks, pairs, strict=True)])
-    late = late_by(samples, ticks) > WHOLE
+    samples = telling(ticks)
+    dropped = samples > usual_of(ticks) + WHOLE
     return Timing(
         energy=float(each.sum()),
-        constant=sum(constant_latency(pairs, i)[1] for i in range(len(axes))),
+        constant=constant,
         per_tick=left,
         latency=np.array([a[0] for a in axes]),
         samples=samples,
-        drops=float(late.mean()) if len(samples) else 0.0,
-        scatter=float(np.std(samples[~late])) if not late.all() else 0.0,
+        drops=float(dropped.mean()) if len(samples) else 0.0,
+        scatter=float(np.std(samples[~dropped])) if not dropped.all() else 0.0,
         alone=alone,
         apart=(constant_latency(kept)[1] - sum(a[1] for a in axes)) / rest if rest > QUIET else 0.0,
         clockwork=clockwork(ticks),
@@ -162,16 +163,21 @@ def read_off(
     judged = slice(None) if alone is None else slice(alone, alone + 1)
     ticks, left = [], 0.0
     for command, echo, ok in pairs:
-        told, error = tick_latency(command[:, judged], echo[:, judged], latency[judged])
-        ticks.append(np.where(ok, told, np.nan))
+        found, error = tick_latency(command[:, judged], echo[:, judged], latency[judged])
+        ticks.append(np.where(ok, found, np.nan))
         left += float(np.sum(error[ok] ** 2))
     return axes, ticks, left
 
 
-def late_by(some: Array, ticks: Sequence[Array]) -> Array:
-    """Return by how much some latencies exceed the median of all that are told; NaN stays."""
-    told = np.concatenate([t[np.isfinite(t)] for t in ticks])
-    return some - (float(np.median(told)) if len(told) else 0.0)
+def telling(ticks: Sequence[Array]) -> Array:
+    """Return the latencies of the ticks that tell one, (N,), periods."""
+    return np.concatenate([t[np.isfinite(t)] for t in ticks])
+
+
+def usual_of(ticks: Sequence[Array]) -> float:
+    """Return the median latency of the ticks that tell one, periods; 0 where none does."""
+    every = telling(ticks)
+    return float(np.median(every)) if len(every) else 0.0
 
 
 def clockwork(ticks: Sequence[Array]) -> float:
@@ -183,9 +189,9 @@ def clockwork(ticks: Sequence[Array]) -> float:
     best = 0.0
     whole = [np.rint(t - np.nanmin(t)) if np.isfinite(t).any() else t for t in ticks]
     for cycle in CYCLES:
-        late = [(t[cycle:] >= 1.0) & np.isfinite(t[:-cycle]) for t in whole]
-        same = sum(int(np.sum(o & (t[cycle:] == t[:-cycle]))) for t, o in zip(whole, late, strict=True))
-        best = max(best, same / max(1, sum(int(o.sum()) for o in late)))
+        odd = [(t[cycle:] >= 1.0) & np.isfinite(t[:-cycle]) for t in whole]
+        same = sum(int(np.sum(o & (t[cycle:] == t[:-cycle]))) for t, o in zip(whole, odd, strict=True))
+        best = max(best, same / max(1, sum(int(o.sum()) for o in odd)))
     return best
 
 
