@@ -45,7 +45,7 @@ def in_motion(evidence: Evidence, found: Fit) -> InMotion | None:
     rests: Rests = {}
     for i in resting:
         rests |= rests_of(evidence, found, i)
-    if not rests or any(_moving(rests, c) < LEAST for _, c in rests):
+    if not rests or min(_moving(rests, c) for c in {c for _, c in rests}) < LEAST:
         return None
     moving = without(evidence, rests)
     terms = [_sliced(t, rests) for t in found.terms]
