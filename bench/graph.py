@@ -109,12 +109,14 @@ def evaluate(folder: Path, rate: float, seconds: float) -> dict[str, Any]:
     starts = np.array([sent[stamp] for stamp in sorted(window)])
     period = np.abs(np.diff(starts) / 1e3 - 1e6 / rate)
     grid = round(seconds * rate)
+    due = (first + round(number * 1e9 / rate) for number in range(grid))
     return {
         "latency": spread(latency),
         "jitter": spread(period),
         "cycles": grid,
         "lost_samples": grid - len(window),
         "lost_frames": grid - len(latency),
+        "lost_at": [stamp for stamp in due if stamp not in sent or stamp not in done],
         "enabled": enabled,
         "published": published(nodes),
         "nodes": {name: node["statistics"] for name, node in sorted(nodes.items())},

@@ -14,6 +14,8 @@ from contextlib import suppress
 from time import monotonic_ns
 
 OFFSET_VARIABLE = "SHER3_CLOCK_OFFSET"
+NEVER_NS = 1 << 62
+"""A time [ns] that does not come."""
 _PR_SET_TIMERSLACK = 29
 
 

@@ -22,12 +22,12 @@ from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.node import Node
 from rclpy.task import Task
 
-from sher3_runtime.clock import Clock
+from sher3_runtime.clock import NEVER_NS, Clock
 from sher3_runtime.composed.composition import Composition
 from sher3_runtime.composed.relief import Relief
 from sher3_runtime.composed.turn import Turn
 from sher3_runtime.ports import Subscribed, clock_of, ports
-from sher3_runtime.tick import Tick
+from sher3_runtime.tick import Tick, run_due
 
 IDLE_NS = 100_000_000
 """Longest wait [ns]: a shutdown that wakes nobody is noticed after this time."""
@@ -36,7 +36,6 @@ LOOK_NS = 8_000_000
 
 A stream that begins at 1 kHz has eight samples in its queue of ten by then.
 """
-NEVER_NS = 1 << 62
 _NEAR = 2
 """Periods within which a tick is near: of a tick that its samples have spared (`Tick.done`) the next one is."""
 QUIET_NS = 100_000_000
@@ -116,7 +115,7 @@ class RawExecutor(Executor):
             self._topics_due_ns = now + self._period_ns
             self._wait_and_run(timeout, now)
         if clock is not None:
-            self._run_ticks(clock)
+            run_due(self._ticks, clock)
         for composition in self._compositions:
             composition.flush()
 
@@ -131,7 +130,7 @@ class RawExecutor(Executor):
         clock = self._clock_of_ticks
         if clock is None:
             return IDLE_NS * 1e-9
-        self._run_ticks(clock)
+        run_due(self._ticks, clock)
         for composition in self._compositions:
             composition.flush()
         return (self._next_due() - clock.now()) * 1e-9
@@ -323,13 +322,6 @@ class RawExecutor(Executor):
         for pointer in ready:
             topics[pointer].drain()
         return bool(ready)
-
-    def _run_ticks(self, clock: Clock) -> None:
-        now = clock.now()
-        for tick in self._ticks:
-            if now >= tick.due_ns:
-                tick.run(now)
-                now = clock.now()
 
     def _run_others(self) -> bool:
         """Run services, timers, clients, guard conditions and event handlers through rclpy's own takers."""

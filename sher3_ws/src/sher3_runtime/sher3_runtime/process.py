@@ -23,6 +23,7 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 from sher3_common import Sher3Error
 
+from sher3_runtime.clock import NEVER_NS
 from sher3_runtime.composed.composition import Composition
 from sher3_runtime.composed.ring import Ring
 from sher3_runtime.ports import clock_of, ports
@@ -31,7 +32,6 @@ from sher3_runtime.spinning import spin
 REALTIME_VARIABLE = "SHER3_REALTIME"
 CORE_VARIABLE = "SHER3_CORE"
 CONTROL_VARIABLE = "SHER3_CONTROL_FD"
-NEVER_NS = 1 << 62
 LEAVE_LIMIT = 1.0
 """Time [s] that the middleware has to leave the graph; it needs milliseconds if it succeeds at all."""
 ORPHAN_LIMIT = 0.1

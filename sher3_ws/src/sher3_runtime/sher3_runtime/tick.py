@@ -1,8 +1,8 @@
-"""One periodic callback on the clock grid."""
+"""Periodic callbacks on the clock grid, and a round of them."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 from sher3_runtime.clock import Clock
 from sher3_runtime.composed.turn import Turn
@@ -57,17 +57,18 @@ class Tick:
                 self._statistics.ticks += 1
                 self._count_period(self._clock.now())
 
-    def run(self, now: int) -> None:
-        """Call the callback for the latest stamp that is due."""
+    def run(self, now: int, begin: int | None = None) -> None:
+        """Call the callback for the latest stamp that was due when its round began, which was now by default [ns]."""
+        begin = now if begin is None else begin
         if self.turn is None:
-            self._run(now)
+            self._run(now, begin)
         elif not self.turn.taken:
             with self.turn:
-                self._run(now)
+                self._run(now, begin)
 
-    def _run(self, now: int) -> None:
+    def _run(self, now: int, begin: int) -> None:
         late = now - self.due_ns
-        missed = max(late, 0) // self.period_ns
+        missed = max(begin - self.due_ns, 0) // self.period_ns
         stamp = self.due_ns - self.phase_ns + missed * self.period_ns
         self.due_ns += (missed + 1) * self.period_ns
         if not self._counts:
@@ -88,3 +89,16 @@ class Tick:
         if self._last_start:
             self._statistics.period.add(now - self._last_start)
         self._last_start = now
+
+
+def run_due(ticks: Iterable[Tick], clock: Clock) -> None:
+    """Run the ticks that are due, in the order given, which is that of their phases: one round.
+
+    A round belongs to one period. Where the drives' answer to a SYNC is late, the force sensor's tick behind it still
+    is that of the SYNC: its record is there, and the one of the next period will be asked for by the next SYNC.
+    """
+    begin = now = clock.now()
+    for tick in ticks:
+        if now >= tick.due_ns:
+            tick.run(now, begin)
+            now = clock.now()

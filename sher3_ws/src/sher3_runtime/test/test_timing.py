@@ -8,7 +8,7 @@ from sher3_runtime import ports
 from sher3_runtime.clock import Clock, SteppedClock
 from sher3_runtime.process import make_logging_prompt
 from sher3_runtime.statistics.report import reports as reports_of
-from sher3_runtime.tick import Tick
+from sher3_runtime.tick import Tick, run_due
 from sher3_runtime.timing import Histogram, Statistics
 
 
@@ -53,6 +53,31 @@ def test_a_late_tick_runs_once_for_the_latest_stamp():
     tick.run(14_100_000)
     assert stamps == [13_000_000, 14_000_000] and statistics.lost_cycles == 3
     assert statistics.losses() == 3 and dict(statistics.counters())["lost_cycles"] == "3"
+
+
+def test_a_round_belongs_to_one_period_however_long_it_takes():
+    """The first tick takes 1.05 ms in its first round: no cycle is lost, and the order stays."""
+    clock, calls, counts = SteppedClock(1_000_000, 10_000_000), [], Statistics()
+    clock.time_ns += 500_000
+
+    def driver(stamp):
+        calls.append(("driver", stamp))
+        clock.time_ns += 200_000 if len(calls) > 1 else 1_050_000
+
+    ticks = [
+        Tick(driver, 0, 1, clock, counts),
+        Tick(lambda stamp: calls.append(("sensor", stamp)), 10_000, 1, clock, counts),
+    ]
+    for tick in ticks:
+        tick.schedule()
+    first = clock.time_ns = ticks[0].due_ns
+    clock.time_ns += 20_000
+    for late in (70_000, 270_000):
+        run_due(ticks, clock)
+        assert clock.time_ns == first + 1_000_000 + late
+    second = first + 1_000_000
+    assert calls == [("driver", first), ("sensor", first), ("driver", second), ("sensor", second)]
+    assert counts.lost_cycles == 0
 
 
 def test_a_report_tells_the_cycles_lost_until_it_is_sent():
