@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
 
+from sher3_bringup.settings.run_settings import LOOP
 from sher3_description import ACTUATORS
 
 from sher3_safety.rows.row import IDLE, STILL, Row
@@ -199,3 +201,9 @@ CLOCK = (
 )
 ROWS = (*FORCE, *PEDAL, *LINES, *ENCODERS, *DRIVE, *SLOW, *SEVERAL, *PROCESSES, *CLOCK)
 """All rows, by component."""
+
+
+def in_one_process(rows: Iterable[Row]) -> tuple[Row, ...]:
+    """Return the rows of a loop whose nodes share a process: one is gone, all are, and the wrench is missed first."""
+    gone = {f"process.{name}": LOST[name] for name in LOOP}
+    return tuple(replace(row, reasons=STALE) if row.reasons == gone.get(row.component) else row for row in rows)

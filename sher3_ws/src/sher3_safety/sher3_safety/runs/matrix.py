@@ -19,7 +19,7 @@ from sher3_safety.measurement.report import as_markdown, as_text, misses, neares
 from sher3_safety.measurement.verdict import Verdict, judge
 from sher3_safety.rows.processes import WALL, WALL_STATES
 from sher3_safety.rows.row import Row, select
-from sher3_safety.rows.stepped import ROWS
+from sher3_safety.rows.stepped import ROWS, in_one_process
 from sher3_safety.runs.stepped import Cell, run_cells
 
 COMMAND, WALL_OPTION = "sher3 safety", " --wall"
@@ -108,13 +108,13 @@ def run_matrix(
         jobs: processes at a time.
         say: prints progress.
         robot: nominal by default.
-        composed: the nodes of the loop share a process.
+        composed: the nodes of the loop share a process, and stop together.
 
     Raises:
         ConfigurationError: no component's name begins so.
     """
     robot = robot or load_robot()
-    rows = list(select(ROWS, only, quick))
+    rows = list(select(in_one_process(ROWS) if composed else ROWS, only, quick))
     if not rows:
         known = ", ".join(dict.fromkeys(row.component for row in ROWS))
         raise ConfigurationError("no such component in the matrix", value=only, limit=known, remedy="choose one")
