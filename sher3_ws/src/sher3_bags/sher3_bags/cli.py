@@ -47,7 +47,7 @@ def record(
         if not any(entry["messages"] for name, entry in counts.items() if name != "diagnostics"):
             remedy = f"start the robot in ROS domain {domain}, or name its domain"
             raise NothingRecorded("no message of the robot came", path=target, remedy=remedy)
-        lines = [f"{name}: {entry['messages']} messages, {entry['dropped']} dropped" for name, entry in counts.items()]
+        lines = [f"{name}: {entry['messages']} messages, {entry['dropped']} missing" for name, entry in counts.items()]
         printed(as_json, {"bag": str(target), "topics": counts}, "\n".join([*lines, f"recorded to {target}"]))
 
 

@@ -56,7 +56,7 @@ class Film:
         motion: why the cooperative mode moved or did not.
         limits: rows (name, unit, lower, upper) of the actuators [m, rad].
         edge: (n,) distance [m] of the platform to the edge of its workspace.
-        dropped: samples that the recorder missed.
+        dropped: samples missing in the recording: cycles that a node lost, or lost on the way to the bag.
     """
 
     name: str

@@ -109,7 +109,7 @@ def overview_text(data: dict[str, Any]) -> str:
     ]
     total = sum(t["messages"] for t in data["topics"].values())
     parts = [f"{data['bag']}: {data['duration']:.3f} s, {total} messages"]
-    parts.append(table(("topic", "type", "frame", "messages", "Hz", "dropped"), rows))
+    parts.append(table(("topic", "type", "frame", "messages", "Hz", "missing"), rows))
     parts.append("run: " + ", ".join(f"{key} {value}" for key, value in data["run"].items() if value))
     origin = [f"{k}: {v if k not in _LONG else f'{len(v)} entries'}" for k, v in data["provenance"].items()]
     if origin:

@@ -40,7 +40,7 @@ def _figure(run: Run, analysis: Analysis) -> Figure:
     figure = Figure(figsize=(15, 11), layout="constrained")
     FigureCanvasAgg(figure)
     name = run.path.name if run.path else "run"
-    figure.suptitle(f"{name}: {analysis.duration:.2f} s, {analysis.dropped} samples dropped", fontsize=13)
+    figure.suptitle(f"{name}: {analysis.duration:.2f} s, {analysis.dropped} samples missing", fontsize=13)
     grid = figure.add_gridspec(3, 3, height_ratios=(1.2, 0.8, 1.0))
     with mpl.rc_context({"font.size": 9}):
         _tip_path(figure.add_subplot(grid[0, 0], projection="3d"), run)
@@ -127,9 +127,9 @@ def _times(axis: Any, analysis: Analysis) -> None:
 
 
 def _drops(axis: Any, analysis: Analysis) -> None:
-    """Draw the time between samples, by topic, with the number of dropped ones."""
+    """Draw the time between samples, by topic, with the number of missing ones."""
     timed = {
-        f"{t}, {x.dropped} dropped": x.period
+        f"{t}, {x.dropped} missing": x.period
         for t, x in analysis.topics.items()
         if x.off_grid is not None and x.period is not None and x.period.p50 > 0
     }

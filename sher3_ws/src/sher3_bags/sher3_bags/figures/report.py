@@ -12,6 +12,7 @@ from sher3_bags.figures.tracking import AxisError
 
 SMALLEST = 1e-15
 """Magnitude below which a difference is rounding and shown as 0: a thousandth of a picometre."""
+TIMES = "times are median/99 %/max; missing: ticks without a sample, which the node lost (below) or the way to the bag"
 _PREFIXES = ((1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
 
 
@@ -67,7 +68,8 @@ def analysis_text(analysis: Analysis) -> str:
 def analysis_blocks(analysis: Analysis) -> list[Block]:
     """Return the figures of a run as sentences and tables."""
     count = sum(timing.messages for timing in analysis.topics.values())
-    blocks = [Block(f"{analysis.source}: {analysis.duration:.3f} s, {count} messages, {analysis.dropped} dropped")]
+    extent = f"{analysis.duration:.3f} s, {count} messages, {analysis.dropped} samples missing"
+    blocks = [Block(f"{analysis.source}: {extent}")]
     blocks += _timing(analysis)
     blocks += _tracking("position tracking (setpoint_js - measured_js)", analysis.position_tracking)
     blocks += _tracking("drive tracking (integral of drives/setpoint_jv - motor position)", analysis.drive_tracking)
@@ -94,7 +96,7 @@ def analysis_blocks(analysis: Analysis) -> list[Block]:
 
 
 def _timing(analysis: Analysis) -> list[Block]:
-    header = ("topic", "node", "messages", "Hz", "period [ms]", "latency [ms]", "from force [ms]", "dropped", "pauses")
+    header = ("topic", "node", "messages", "Hz", "period [ms]", "latency [ms]", "from force [ms]", "missing", "pauses")
     rows = tuple(
         (
             topic,
@@ -111,7 +113,7 @@ def _timing(analysis: Analysis) -> list[Block]:
     )
     bad = [f"{t}: {x.disordered} stamps out of order" for t, x in analysis.topics.items() if x.disordered]
     bad += [f"{t}: {x.not_finite} values not finite" for t, x in analysis.topics.items() if x.not_finite]
-    return [Block("times are median/99 %/max", header, rows), *map(Block, bad)]
+    return [Block(TIMES, header, rows), *map(Block, bad)]
 
 
 def _tracking(title: str, errors: tuple[AxisError, ...]) -> list[Block]:

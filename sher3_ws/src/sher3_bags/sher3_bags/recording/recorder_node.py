@@ -214,7 +214,7 @@ class RecorderNode(Node):
         for topic, entry in self.counts.items():
             if entry["dropped"] or entry["disordered"]:
                 self.get_logger().warning(
-                    f"{topic}: {entry['dropped']} samples dropped, {entry['disordered']} out of order"
+                    f"{topic}: {entry['dropped']} samples missing, {entry['disordered']} out of order"
                 )
 
 

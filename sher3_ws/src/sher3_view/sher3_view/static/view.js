@@ -166,7 +166,7 @@ function tick(now) {
   requestAnimationFrame(tick);
 }
 byId("tracked").innerHTML = data.tracked === "position" ? "Wanted minus measured position <i>µm</i>" : "Demanded minus measured velocity <i>µm/s</i>";
-byId("facts").textContent = `${(seconds[LAST] - seconds[0]).toFixed(1)} s · ${data.dropped ? `${data.dropped} samples dropped by the recorder` : "no samples dropped"} · force arrow ${data.metresPerNewton * 1e3} mm per N`;
+byId("facts").textContent = `${(seconds[LAST] - seconds[0]).toFixed(1)} s · ${data.dropped ? `${data.dropped} samples missing` : "no samples missing"} · force arrow ${data.metresPerNewton * 1e3} mm per N`;
 data.ghosts.forEach((ghost, k) => {
   const line = document.createElement("span");
   line.style.color = GHOST_INKS[k % GHOST_INKS.length];
