@@ -14,7 +14,6 @@ from __future__ import annotations
 
 import argparse
 import contextlib
-import ctypes
 import gc
 import json
 import multiprocessing
@@ -38,6 +37,7 @@ from sher3_drivers.drive.motor_driver import MotorDriver
 from sher3_drivers.mock.bus import MockDriveBus
 from sher3_drivers.mock.plant import IntegratorPlant
 from sher3_drivers.settings import MotorDriverSettings, default_settings
+from sher3_runtime.clock import set_timer_slack
 
 ROBOT = load_robot()
 _FRAME = struct.Struct("<IB3x8s")
@@ -308,7 +308,7 @@ def main() -> None:
         show(rows)
         rows = alternatives
     else:
-        ctypes.CDLL(None).prctl(29, ctypes.c_ulong(1), 0, 0, 0)  # PR_SET_TIMERSLACK: wake when asked for
+        set_timer_slack()
         gc.freeze()
         rows = []
         for rate in arguments.rate:

@@ -11,7 +11,6 @@ own; what it cannot get below is the machine's and the middleware's.
 from __future__ import annotations
 
 import argparse
-import ctypes
 import gc
 import json
 import multiprocessing
@@ -27,6 +26,7 @@ from typing import Any
 
 from sher3_drivers.bus.frame import FRAME_SIZE, pack_frame
 from sher3_runtime import environment
+from sher3_runtime.clock import set_timer_slack
 
 PAYLOAD = 200
 """Bytes of a message, about those of a JointState of five axes; the first eight are the time of the force sample."""
@@ -141,7 +141,7 @@ def run(name: str, arguments: argparse.Namespace, can: socket.socket, barrier: B
     while raw is not None and not raw.matched(readers, 1):
         time.sleep(0.01)
     can.settimeout(0.05)
-    ctypes.CDLL(None).prctl(29, ctypes.c_ulong(1), 0, 0, 0)  # PR_SET_TIMERSLACK: wake when asked for
+    set_timer_slack()
     gc.collect()
     gc.freeze()
     barrier.wait(30.0)

@@ -55,11 +55,6 @@ class CpuTimes:
         return [100.0 * (self._last[pid] - self._first[pid]) / span for pid in sorted(self._last)]
 
 
-def _any(_settings: MotorDriverSettings) -> list:
-    """Take any load of the bus."""
-    return []
-
-
 def main() -> None:
     """Run the graph with a surgeon who pushes all the time."""
     rate, seconds, settle = map(float, sys.argv[1:4])
@@ -88,7 +83,7 @@ def main() -> None:
 
     cpu = CpuTimes(settle)
     begin = time.monotonic()
-    with patch.object(MotorDriverSettings, "budgets", _any) if rate > RATES[1] else nullcontext():
+    with patch.object(MotorDriverSettings, "budgets", lambda _: []) if rate > RATES[1] else nullcontext():
         run_graph(settings, lambda text: print(text, file=sys.stderr), {"surgeon": surgeon}, cpu)
     names = ["+".join(process) for process in launch_order(settings.processes)] + ["surgeon"]
     share = dict(zip(names, cpu.percent(), strict=True))

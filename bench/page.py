@@ -25,9 +25,11 @@ from typing import Any
 import graph
 import pauses
 from sher3_drivers.bus.load import LOAD_LIMIT, channel_budget
+from sher3_drivers.settings import default_settings
 from sher3_runtime.environment import child_environment
 
 HERE = Path(__file__).parent
+Figures = dict[str, float]
 DOMAIN = 75
 ROUNDS = 3
 BEGIN, END = "<!-- begin: bench -->", "<!-- end: bench -->"
@@ -75,29 +77,39 @@ def run_json(script: str, *arguments: str, **changes: str) -> dict[str, Any]:
     return json.loads(out[out.index("{") :])
 
 
-def medians(runs: list[dict[str, float]]) -> dict[str, float]:
+def medians(runs: list[Figures]) -> Figures:
     """Return the median of each figure."""
     return {key: median(run[key] for run in runs) for key in runs[0]}
 
 
-def of_graph(rate: float, seconds: float, nodes: str, executor: str = "ours") -> dict[str, float]:
+def in_turns(cases: dict[str, Callable[[], Figures]], rounds: int) -> list[Figures]:
+    """Return the median figures of each case; in every round each is measured once."""
+    found: dict[str, list[Figures]] = {name: [] for name in cases}
+    for number in range(rounds):
+        for name, measure in cases.items():
+            note(f"{name}, round {number + 1} of {rounds}")
+            found[name].append(measure())
+    return [medians(runs) for runs in found.values()]
+
+
+def of_graph(rate: float, seconds: float, nodes: str, executor: str = "ours") -> Figures:
     """Return the figures of one run of the graph."""
     return figures_of(graph.measure(rate, seconds, executor, -1, nodes, DOMAIN))
 
 
-def of_watched_graph(seconds: float) -> dict[str, float]:
+def of_watched_graph(seconds: float) -> Figures:
     """Return the figures of the composed graph at 1 kHz, and how many of its lost cycles no pause explains."""
     with pauses.beside(seconds + 60.0) as found:
         run = graph.measure(1000.0, seconds, "ours", -1, "composed", DOMAIN)
     return {**figures_of(run), "own": pauses.unexplained(run["lost_at"], 1_000_000, found)}
 
 
-def figures_of(run: dict[str, Any]) -> dict[str, float]:
+def figures_of(run: dict[str, Any]) -> Figures:
     figures = {key: run["latency"][key] for key in ("p50", "p99", "max")}
     return {**figures, "lost": run["lost_frames"], "cpu": run["cpu_loop"]}
 
 
-def of_floor(rate: float, seconds: float) -> dict[str, float]:
+def of_floor(rate: float, seconds: float) -> Figures:
     """Return the figures of one run of the bare processes."""
     found = run_json("floor.py", "--rate", f"{rate:g}", "--seconds", f"{seconds:g}", "--domain", str(DOMAIN + 1))
     return {"p50": found["p50_us"], "p99": found["p99_us"], "max": found["max_us"], "lost": found["lost"],
@@ -107,18 +119,13 @@ def of_floor(rate: float, seconds: float) -> dict[str, float]:
 def graph_rows(seconds: float, rounds: int) -> Iterator[Row]:
     """Yield the graph at 1 kHz: composed, separate, floor and rclpy's default executor, in turns."""
     short = min(seconds, 10.0)
-    cases: dict[str, Callable[[], dict[str, float]]] = {
-        "composed": lambda: of_watched_graph(seconds),
-        "floor": lambda: of_floor(1000.0, seconds),
-        "separate": lambda: of_graph(1000.0, short, "separate"),
-        "rclpy": lambda: of_graph(1000.0, min(short, 6.0), "separate", "default"),
+    cases: dict[str, Callable[[], Figures]] = {
+        "composed at 1 kHz": lambda: of_watched_graph(seconds),
+        "floor at 1 kHz": lambda: of_floor(1000.0, seconds),
+        "separate at 1 kHz": lambda: of_graph(1000.0, short, "separate"),
+        "rclpy at 1 kHz": lambda: of_graph(1000.0, min(short, 6.0), "separate", "default"),
     }
-    found: dict[str, list[dict[str, float]]] = {name: [] for name in cases}
-    for number in range(rounds):
-        for name, measure in cases.items():
-            note(f"graph at 1 kHz, {name}, round {number + 1} of {rounds}")
-            found[name].append(measure())
-    composed, floor, separate, rclpy = (medians(found[name]) for name in cases)
+    composed, floor, separate, rclpy = in_turns(cases, rounds)
     targets = {"composed": (150.0, 350.0, 6.0 * seconds / 60.0, 55.0), "separate": (None, None, None, 100.0)}
     for name, case, length in (("composed", composed, seconds), ("separate", separate, short)):
         p50, p99, lost, cpu = targets[name]
@@ -140,13 +147,13 @@ def graph_rows(seconds: float, rounds: int) -> Iterator[Row]:
 def other_rates(seconds: float, rounds: int) -> Iterator[Row]:
     """Yield the graph at 500 Hz and 2 kHz beside the floor, in turns, and what a real bus would carry."""
     short, floor_short = min(seconds, 15.0), min(seconds, 8.0)
-    found: dict[float, tuple[list[dict[str, float]], list[dict[str, float]]]] = {500.0: ([], []), 2000.0: ([], [])}
-    for number in range(rounds):
-        for rate, (graphs, floors) in found.items():
-            note(f"composed and floor at {rate:g} Hz, round {number + 1} of {rounds}")
-            graphs.append(of_graph(rate, short, "composed"))
-            floors.append(of_floor(rate, floor_short))
-    (slow, floor), (fast, fast_floor) = ((medians(graphs), medians(floors)) for graphs, floors in found.values())
+    cases: dict[str, Callable[[], Figures]] = {
+        "composed at 500 Hz": lambda: of_graph(500.0, short, "composed"),
+        "floor at 500 Hz": lambda: of_floor(500.0, floor_short),
+        "composed at 2 kHz": lambda: of_graph(2000.0, short, "composed"),
+        "floor at 2 kHz": lambda: of_floor(2000.0, floor_short),
+    }
+    slow, floor, fast, fast_floor = in_turns(cases, rounds)
     yield Row("500 Hz, composed: p50 [us]", slow["p50"], None, floor["p50"], "floor")
     yield Row("500 Hz, composed: p99 [us]", slow["p99"], None, floor["p99"], "floor")
     yield Row("500 Hz, composed: processor, the loop [% of a core]", slow["cpu"], 30.0, floor["cpu"], "floor")
@@ -155,7 +162,7 @@ def other_rates(seconds: float, rounds: int) -> Iterator[Row]:
     floor_lost = fast_floor["lost"] * short / floor_short
     yield Row(f"2 kHz, composed: lost of {2000 * short:.0f} cycles", fast["lost"], None, floor_lost, "floor")
     yield Row("2 kHz, composed: processor, the loop [% of a core]", fast["cpu"], None, fast_floor["cpu"], "floor")
-    bus = channel_budget(1, 2000.0, 220.0, protected=True)
+    bus = channel_budget(1, 2000.0, default_settings(1e-3).heartbeats, protected=True)
     what = f"2 kHz, load of a CAN bus with one protected drive [%]; `sher3 up` refuses more than {100 * LOAD_LIMIT:.0f}"
     yield Row(what, 100.0 * bus.load)
 

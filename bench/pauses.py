@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import argparse
 import contextlib
-import ctypes
 import json
 import os
 import subprocess
@@ -19,6 +18,8 @@ import sys
 import time
 from collections.abc import Iterator
 from itertools import chain
+
+from sher3_runtime.clock import set_timer_slack
 
 PERIOD = 500_000
 """Of a timer [ns]: a pause of 1 ms makes it late by half of that at least."""
@@ -36,7 +37,7 @@ def watch(core: int, seconds: float) -> Iterator[Pause]:
     with contextlib.suppress(PermissionError):
         os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(PRIORITY))
     os.sched_setaffinity(0, {core})
-    ctypes.CDLL(None).prctl(29, ctypes.c_ulong(1), 0, 0, 0)  # PR_SET_TIMERSLACK: wake when asked for
+    set_timer_slack()
     due = time.time_ns()
     end = due + round(seconds * 1e9)
     while due < end:

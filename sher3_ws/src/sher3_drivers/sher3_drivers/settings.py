@@ -204,11 +204,15 @@ class MotorDriverSettings(_Part):
             where = "; ".join(f"{'.'.join(map(str, e['loc'])) or 'settings'}: {e['msg']}" for e in error.errors())
             raise DriverSettingsError(f"motor driver settings: {where}", remedy="correct the settings") from error
 
+    @property
+    def heartbeats(self) -> float:
+        """Heartbeats of host and drives on the fullest channel, 1/s."""
+        return 1.0 / self.host_heartbeat + max(len(c.drives) for c in self.channels) / self.drive_heartbeat
+
     def budgets(self) -> list[ChannelBudget]:
         """Return the bus-load budget of every channel; raise BusLoadError when one is overloaded."""
-        heartbeats = 1.0 / self.host_heartbeat + max(len(c.drives) for c in self.channels) / self.drive_heartbeat
         drives = [len(channel.drives) for channel in self.channels]
-        return check_budget(drives, 1.0 / self.period, heartbeats, self.protected)
+        return check_budget(drives, 1.0 / self.period, self.heartbeats, self.protected)
 
 
 _MOCKS = ("local:", "virtual:")

@@ -10,6 +10,7 @@ import numpy as np
 from sher3_common import parse_json
 from sher3_common.operating_state import OperatingState, StateCommand
 from sher3_common.reasons import TEXT, Reason
+from sher3_runtime.clock import NEVER_NS
 
 from sher3_bringup.errors import SessionFailed
 from sher3_bringup.surgeon.script import Script
@@ -67,7 +68,7 @@ def _look_for_stops(run: Any, states: list[dict[str, Any]], begin: int) -> None:
 
 
 def _enabled_spans(states: list[dict[str, Any]]) -> Iterator[tuple[int, int]]:
-    for status, following in pairwise([*states, {"since": 1 << 62}]):
+    for status, following in pairwise([*states, {"since": NEVER_NS}]):
         if status["state"] == OperatingState.ENABLED:
             yield int(status["since"]), int(following["since"])
 
