@@ -1,7 +1,8 @@
 """What changed between conditions: terms that act in some runs alone, beside causes that are common to all.
 
 The common causes are chosen on the runs of the reference, so that no change can pass for one of them. Then changes are
-added one by one while each is worth its price; common causes are fitted again with them, on all runs.
+added one by one while each is worth its price; common causes are fitted again with them, on all runs. An effect that
+explains as much when it acts in all runs alike is no change: the reference left it out.
 """
 
 from __future__ import annotations
@@ -92,7 +93,8 @@ def of_runs(evidence: E, views: frozenset[int]) -> E:
     data = evidence.data
     kept = [r for r, view in enumerate(data.views) if id(view) in views]
     part = Whitened([data.views[r] for r in kept], [data.residuals[r] for r in kept], [data.floors[r] for r in kept])
-    return replace(evidence, excitations=[evidence.excitations[r] for r in kept], data=part)
+    nuisance = tuple(replace(make_term(part, t.effect, t.site, t.shape), limit=t.limit) for t in evidence.nuisance)
+    return replace(evidence, excitations=[evidence.excitations[r] for r in kept], data=part, nuisance=nuisance)
 
 
 def contrasted(
@@ -117,7 +119,7 @@ def contrasted(
         trials = [t for c, views in conditions for t in _trials(evidence, current, effects, c, views, finish)]
         if not trials:
             break
-        best = min(trials, key=cost)
+        best = _unless_common(evidence, current, min(trials, key=cost))
         worth = current.total - best.total
         if worth < NEEDED * complexity(best.terms[-1]) + PARSIMONY * _explained(evidence, best):
             break
@@ -127,6 +129,19 @@ def contrasted(
     explained = tuple(without_term(evidence, current, i).total - current.total for i in range(len(current.terms)))
     ranking = (*common.ranking, *((),) * (len(current.terms) - len(common.ranking)))
     return Attribution(current, tuple(rivals), explained, ranking, common.nuisance)
+
+
+def _unless_common(evidence: Evidence, current: Fit, change: Fit) -> Fit:
+    """Return the effect of a change in all runs alike, where the change is not worth its numbers more than that.
+
+    What the reference is too short or too quiet to tell is no change: the other runs may show it for all.
+    """
+    last = change.terms[-1]
+    if not isinstance(last.effect, Changed) or last.effect.common is not None:
+        return change
+    effect = last.effect.of
+    shared = Candidates(evidence, [effect]).best(effect, last.site, current.terms)
+    return shared if shared is not None and shared.total <= change.total + NEEDED else change
 
 
 def _explained(evidence: Evidence, found: Fit) -> float:

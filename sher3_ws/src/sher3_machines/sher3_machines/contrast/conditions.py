@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Literal, NamedTuple
+from typing import Annotated, NamedTuple
 
 from pydantic import Field
 
@@ -11,8 +11,8 @@ from sher3_machines.errors import MachineError
 from sher3_machines.intake.fields import Description
 from sher3_machines.intake.parts import whole
 
-Tag = Literal["payload", "posture", "temperature", "day", "simulator"]
-"""What may differ between runs."""
+Tag = Annotated[str, Field(min_length=1, max_length=40)]
+"""What may differ between runs: payload, posture, temperature, day, controller, gain, or any other word."""
 Conditions = Mapping[str, Mapping[Tag, str | float]]
 """Run -> tag -> its value."""
 
@@ -21,8 +21,8 @@ class Tagged(Description):
     """A description whose runs may differ in a condition.
 
     Attributes:
-        conditions: file name of a run, without its ending -> tag -> value. Those of the first run are the reference
-            that the others are compared with.
+        conditions: file name of a run, without its ending -> tag -> value. Those of the first file given to the import
+            are the reference that the others are compared with.
     """
 
     conditions: Conditions = Field(default_factory=dict)
@@ -69,7 +69,7 @@ def conditions_of(stated: Conditions, runs: Sequence[str]) -> list[Condition]:
             )
     out = []
     for tag in tags:
-        of = {run: str(stated[run][tag]) for run in runs}  # type: ignore[index]
+        of = {run: str(stated[run][tag]) for run in runs}
         for value in dict.fromkeys(of.values()):
             if value != of[runs[0]]:
                 there = frozenset(run for run, x in of.items() if x == value)

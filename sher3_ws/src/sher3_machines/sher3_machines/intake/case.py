@@ -62,23 +62,25 @@ def import_case(data: Sequence[Path], description: Path, out: Path) -> list[str]
     for run in runs:
         np.savez_compressed(out / RUNS / f"{run.name}.npz", **kind.pack(run))  # type: ignore[arg-type]
     (out / MACHINE).write_text(_resolved(description, machine, data), encoding="utf-8")
-    record = {"data": [str(path) for path in data], "notes": notes}
+    record = {"data": [str(path) for path in data], "runs": [run.name for run in runs], "notes": notes}
     (out / IMPORT).write_text(json.dumps(record, indent=1), encoding="utf-8")
     return notes
 
 
 def open_case(path: Path) -> tuple[Machine[Any, Any], list[Any]]:
-    """Read a case folder: the machine it describes and its runs, ready for `sher3_diagnosis.diagnose`.
+    """Read a case folder: the machine it describes and its runs in the order in which they were given to the import.
 
     Raises:
         MachineError: the description is wrong, or no run can be read.
     """
     description = load_description(path / MACHINE)
     kind = kinds()[description.kind]
-    files = sorted((path / RUNS).glob("*.npz"))
+    given = _listed(path / IMPORT, "runs")
+    order = {name: place for place, name in enumerate(given)}
+    files = sorted((path / RUNS).glob("*.npz"), key=lambda file: (order.get(file.stem, len(order)), file.stem))
     if not files:
         raise MachineError(f"{path}: no runs", remedy="import the data again")
-    notes = _notes(path / IMPORT)
+    notes = _listed(path / IMPORT, "notes")
     runs = []
     for file in files:
         own = [note for note in notes if note.startswith(f"{file.stem}:")]
@@ -95,10 +97,10 @@ def _names(data: Sequence[Path]) -> list[str]:
     return names if len(set(names)) == len(names) else [f"{n}_{i}" for i, n in enumerate(names)]
 
 
-def _notes(path: Path) -> list[str]:
-    """Notes of the import; none where its record is missing or not readable, since no answer rests on them."""
+def _listed(path: Path, key: str) -> list[str]:
+    """Return a list of the record of the import; empty where it is missing or not readable: no answer rests on it."""
     try:
-        return list(map(str, read_json(path)["notes"]))
+        return list(map(str, read_json(path)[key]))
     except (FileError, KeyError, TypeError):
         return []
 

@@ -39,6 +39,16 @@ def test_round_trip(tmp_path):
     assert runs[0].period == pytest.approx(0.01)
 
 
+def test_runs_keep_the_order_in_which_they_were_given(tmp_path):
+    """The first one is the reference of a contrast, whatever its name."""
+    later, description = written(tmp_path, record(), "z.npz")
+    earlier, _ = written(tmp_path, record(), "a.npz")
+    import_case([later, earlier], description, tmp_path / "case")
+    assert [run.name for run in open_case(tmp_path / "case")[1]] == ["z", "a"]
+    (tmp_path / "case" / "import.json").unlink()
+    assert [run.name for run in open_case(tmp_path / "case")[1]] == ["a", "z"]
+
+
 def test_formats_agree(tmp_path):
     columns = record()
     data, description = written(tmp_path, columns)

@@ -1,7 +1,11 @@
 """Kinds of machine: found by their folder, and each with all an importer needs."""
 
+import sys
+from importlib.metadata import EntryPoint
+
 import pytest
 from sher3_machines import MachineError, kinds, load_description
+from sher3_machines.intake.kinds import GROUP, kinds_of_others
 
 
 def test_every_folder_with_a_kind_is_one():
@@ -41,3 +45,34 @@ def test_a_new_folder_is_a_new_kind(tmp_path):
         assert set(kinds_in(tmp_path)) == {"table"}
     finally:
         sher3_machines.__path__.remove(str(tmp_path))
+
+
+def given(monkeypatch, tmp_path, text):
+    """A package of somebody else's with one entry point."""
+    (tmp_path / "scales_of_ours.py").write_text(text)
+    monkeypatch.syspath_prepend(str(tmp_path))
+    points = [EntryPoint("scale", "scales_of_ours:KIND", GROUP)]
+    monkeypatch.setattr("sher3_machines.intake.kinds.entry_points", lambda group: points if group == GROUP else [])
+    monkeypatch.delitem(sys.modules, "scales_of_ours", raising=False)
+
+
+SCALE = "from sher3_machines.loadcell.kind import CellKind\n\n\nclass Scale(CellKind):\n    name = {name!r}\n\n\n"
+
+
+def test_another_package_gives_a_kind_by_its_entry_point(monkeypatch, tmp_path):
+    given(monkeypatch, tmp_path, SCALE.format(name="scale") + "KIND = Scale()\n")
+    assert set(kinds_of_others()) == {"scale"}
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (SCALE.format(name="axes") + "KIND = Scale()\n", "name is taken; value axes"),
+        (SCALE.format(name="scale") + "KIND = Scale\n", "is no kind"),
+        ("import nothing_of_that_name\n", "cannot be loaded"),
+    ],
+)
+def test_an_entry_point_that_gives_no_kind_is_refused(monkeypatch, tmp_path, text, words):
+    given(monkeypatch, tmp_path, text)
+    with pytest.raises(MachineError, match=words):
+        kinds_of_others()

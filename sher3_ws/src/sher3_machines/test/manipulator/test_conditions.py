@@ -5,6 +5,7 @@ import pytest
 from lifts import L, friction, machine, motion, needed, run_of
 from sher3_diagnosis import diagnose
 from sher3_machines import MachineError
+from sher3_machines.axes.record import AxesRun
 
 FRICTION = {"coulomb": (8.0, 0.5), "viscous": (20.0, 0.4)}
 
@@ -73,8 +74,23 @@ def test_nothing_changed_is_said(tmp_path):
     assert any("day Friday against Monday, all else held common: nothing changed" in n for n in verdict.notes)
 
 
+def test_what_the_short_reference_left_out_is_no_change(tmp_path):
+    """Viscous friction of the swing is in both runs; the reference of 3 s is too short to tell it."""
+    arm = machine(tmp_path / "lift.urdf", conditions={"a": {"day": "Monday"}, "b": {"day": "Friday"}})
+    rows = []
+    for name, seed, seconds in (("a", 0.0, 3.0), ("b", 0.7, 24.0)):
+        q, v, a = motion(seconds, seed=seed)
+        force = needed(q, v, a, 0.0, 0.05, -L) + friction(v, coulomb=(8.0, 0.5), viscous=(4.0, 0.1))
+        rows.append(run_of(q, force, name=name))
+    verdict = diagnose(arm, rows).verdict
+    assert not changes(verdict)
+    common = {(c.effect, c.actuator): c.parameters for c in verdict.causes}
+    assert common["viscous_friction", "swing"]["extra"].value == pytest.approx(0.1, rel=0.05)
+    assert common["coulomb_friction", "swing"]["force"].value == pytest.approx(0.5, rel=0.05)
+
+
 def test_conditions_that_come_together_are_said(tmp_path):
-    tags = {"a": {"day": "1", "payload": "none"}, "b": {"day": "2", "payload": "cup"}}
+    tags = {"a": {"controller": "old", "payload": "none"}, "b": {"controller": "new", "payload": "cup"}}
     arm = machine(tmp_path / "lift.urdf", conditions=tags)
     notes = arm.audit([recorded("a", 0.0), recorded("b", 0.7)])
     assert any("nothing tells them apart" in n for n in notes)
@@ -104,3 +120,21 @@ def test_the_change_of_an_axis_beside_its_common_friction():
     assert set(found) == {("gravity_load", "slide")}
     assert found["gravity_load", "slide"].parameters["force"].value == pytest.approx(3.0, rel=0.06)
     assert np.isclose(next(c for c in verdict.causes if not c.condition).parameters["force"].value, 5.0, rtol=0.06)
+
+
+def test_two_encoders_with_a_zero_of_their_own_are_contrasted():
+    """The zero between two encoders is a term of every fit, on the runs of the reference too."""
+    from slides import columns
+    from slides import machine as slide
+
+    t, noise = np.arange(8000) * 0.002, np.random.default_rng(0)
+    position = 0.04 * np.sin(1.3 * t) + 0.015 * np.sin(4.1 * t)
+    axes = slide(signals=columns("position", "reference", "load"), command_law={"kind": "position"}, mass=None)
+    tagged = axes.description.model_copy(update={"conditions": {"a": {"belt": "old"}, "b": {"belt": "new"}}})
+    runs = []
+    for name, scale in (("a", 1.0), ("b", 1.002)):
+        load = scale * position + 3e-4 + noise.normal(0.0, 2e-6, len(t))
+        runs.append(AxesRun(name, 0.002, {"slide": {"position": position, "reference": position, "load": load}}))
+    found = changes(diagnose(type(axes)(tagged), runs).verdict)
+    assert found["lead_error", "slide"].parameters["relative"].value == pytest.approx(0.002, rel=0.05)
+    assert found["lead_error", "slide"].condition == "belt new"
