@@ -22,6 +22,7 @@ from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import make_term
 from sher3_diagnosis.fit.whitened import Whitened
 from sher3_diagnosis.quantify.polish import polished
+from sher3_diagnosis.thresholds import POOLED
 from sher3_diagnosis.tolerance import NUISANCE
 from sher3_effects.operators import held_lag
 from sher3_effects.view import StatedLaw
@@ -43,6 +44,8 @@ LAGS = (0.7, 1.0, 1.5, 2.0, 3.0, 5.0, 8.0, 12.0)
 """Such low-passes that are tried, in periods."""
 PLAIN = 0.3
 """Share of the noise of a plain way that a low-pass must leave at most: it has a number that is fitted, and smooths."""
+ALIKE = 1.2
+"""Noise over the least up to which two ways are alike: a median over thousands of samples is known to some per cent."""
 FINER = 9
 """Halvings of the step between two of them."""
 SHIFTS = (0, 1, 2, 3, 4, 6, 8, 12, 16, 24)
@@ -136,32 +139,75 @@ def compared(axis: Axis) -> bool:
 
 
 def best_way(signals: Sequence[AxisSignals], axis: Axis) -> Way:
-    """Return the way to read the encoder that leaves least."""
+    """Return the way to read the encoder: one that needs no cause, else the one that leaves least of the steps.
+
+    Of those alike in their steps it is the one that leaves least of the command.
+    """
 
     @lru_cache(maxsize=1)  # all shifts of one speed are tried in turn
     def read(speed: float) -> list[StatedLaw]:
         return [stated_law(s, axis, Way(speed, 0)) for s in signals]
 
     @cache
-    def noise(way: Way) -> float:
+    def left(way: Way) -> Array:
         laws = read(way.speed)
-        return sum(noise_left(s, behind(law.parts, way.shift)) for s, law in zip(signals, laws, strict=True))
+        return sum(left_by(s, behind(law.parts, way.shift)) for s, law in zip(signals, laws, strict=True))
 
+    def noise(way: Way) -> float:
+        return float(left(way)[1])
+
+    def least(ways: Sequence[Way]) -> Way:
+        quietest = min(noise(way) for way in ways)
+        return min((way for way in ways if noise(way) <= ALIKE * quietest), key=lambda way: float(left(way)[0]))
+
+    as_stated = min((Way(speed, 0) for speed in (LAST, TWO, CENTRAL)), key=lambda way: excess(signals, axis, way))
+    if excess(signals, axis, as_stated) < 1.0:
+        return as_stated
     if not axis.command_law.velocity_gain:
-        return _within(min((Way(LAST, shift) for shift in SHIFTS), key=noise))
-    plain = min((Way(speed, shift) for speed in (LAST, TWO, CENTRAL) for shift in SHIFTS), key=noise)
-    best = min((Way(speed, shift) for speed in LAGS for shift in SHIFTS), key=noise)
+        return _within(least([Way(LAST, shift) for shift in SHIFTS]))
+    plain = least([Way(speed, shift) for speed in (LAST, TWO, CENTRAL) for shift in SHIFTS])
+    best = least([Way(speed, shift) for speed in LAGS for shift in SHIFTS])
     step = LAGS[1] / LAGS[0]
     for _ in range(FINER):
         step = float(np.sqrt(step))
-        best = min((Way(best.speed * f, shift) for f in (1.0, step, 1.0 / step) for shift in SHIFTS), key=noise)
+        best = least([Way(best.speed * f, shift) for f in (1.0, step, 1.0 / step) for shift in SHIFTS])
     return _within(best if noise(best) < PLAIN * noise(plain) else plain)
 
 
 def backwards(signals: Sequence[AxisSignals], axis: Axis, way: Way) -> bool:
-    """Return whether the commands' steps go against those of their law: a slow term beside it has no say here."""
-    steps = [(np.diff(s.command[:, 0], 2), s) for s in signals if s.command is not None]
-    return sum(float(y @ np.diff(stated_law(s, axis, way).command, 2)) for y, s in steps) < 0.0
+    """Return whether the commands go against their law over the whole records, an integral beside it left free.
+
+    A sign is a matter of the fit: at the rate of the samples the counts of an encoder, which come back at the next
+    sample, outweigh what a law answers to them a period late.
+    """
+    shares = []
+    for run in signals:
+        if run.command is not None:
+            law = stated_law(run, axis, way)
+            shares.append(_solved(np.column_stack([law.command, *_slow(law.error)]), run.command[:, 0])[0])
+    return sum(shares) < 0.0
+
+
+def _slow(error: Array) -> tuple[Array, Array]:
+    """Return what a controller may add slowly: a constant, and an integral of its error, (n,) each."""
+    return np.ones_like(error), np.cumsum(error)
+
+
+def _solved(x: Array, y: Array) -> Array:
+    """Return the coefficients of y (n,) in columns (n, p), which are brought to one size first."""
+    size = np.linalg.norm(x, axis=0)
+    x = x / np.where(size > 0.0, size, 1.0)  # of one size, the normal equations are exact enough
+    return np.asarray(np.linalg.lstsq(x.T @ x, x.T @ y, rcond=None)[0])
+
+
+def excess(signals: Sequence[AxisSignals], axis: Axis, way: Way) -> float:
+    """Return the power of command less stated law over its floor and the engine's threshold; below one is no gap."""
+    powers = []
+    for run in signals:
+        view = LawView(run, axis, stated_law(run, axis, way))
+        left = residual_of(view)
+        powers.append(float(np.mean((left.values[left.ok] / floor_of(view, left)) ** 2)))
+    return float(np.mean(powers)) / POOLED[STAGE]
 
 
 def _within(way: Way) -> Way:
@@ -169,20 +215,20 @@ def _within(way: Way) -> Way:
     return way if way.shift <= 1 else way._replace(shift=0)
 
 
-def noise_left(run: AxisSignals, parts: Array) -> float:
-    """Return what the parts (n, 3) of a law, each with a gain of its own, leave of the command's steps; median.
+def left_by(run: AxisSignals, parts: Array) -> Array:
+    """Return what the parts (n, 3) of a law, each with a gain of its own, leave of the command and its steps; medians.
 
-    Second differences: the counts of the encoder stand out in them, which the right way brings as they are. What else a
-    controller may do, as a dead zone, is slow beside them and has no say in how it reads.
+    Steps are second differences: the counts of the encoder stand out in them, which the right way brings as they are,
+    and what else a controller may do, as a dead zone, is slow beside them. The gains are fitted to the command itself:
+    in steps a way that reads the counts a period late is bettered by a gain of nothing.
     """
     assert run.command is not None
     command = run.command[:, 0]
-    steps = np.diff(parts, 2, axis=0)
-    free = (np.abs(command) < np.abs(command).max())[2:]
-    x, y = steps[free], np.diff(command, 2)[free]
-    size = np.linalg.norm(x, axis=0)
-    x = x / np.where(size > 0.0, size, 1.0)  # of one size, the normal equations are exact enough
-    return float(np.median(np.abs(y - x @ np.linalg.lstsq(x.T @ x, x.T @ y, rcond=None)[0])))
+    free = np.abs(command) < np.abs(command).max()
+    x = np.column_stack([parts, np.ones_like(command)])
+    size = np.linalg.norm(x[free], axis=0)
+    left = command - x / np.where(size > 0.0, size, 1.0) @ _solved(x[free], command[free])
+    return np.array([np.median(np.abs(left[free])), np.median(np.abs(np.diff(left, 2)[free[2:]]))])
 
 
 def stated_law(run: AxisSignals, axis: Axis, way: Way) -> StatedLaw:
