@@ -22,7 +22,6 @@ from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import make_term
 from sher3_diagnosis.fit.whitened import Whitened
 from sher3_diagnosis.quantify.polish import polished
-from sher3_diagnosis.thresholds import POOLED
 from sher3_diagnosis.tolerance import NUISANCE
 from sher3_effects.operators import held_lag
 from sher3_effects.view import StatedLaw
@@ -139,9 +138,10 @@ def compared(axis: Axis) -> bool:
 
 
 def best_way(signals: Sequence[AxisSignals], axis: Axis) -> Way:
-    """Return the way to read the encoder: one that needs no cause, else the one that leaves least of the steps.
+    """Return the way to read the encoder: the one that leaves least of the steps, and of those alike of the command.
 
-    Of those alike in their steps it is the one that leaves least of the command.
+    A plain way that leaves hardly anything of the command as stated goes before it: a controller that knows its speed
+    from elsewhere brings no counts, and the way with the fewest of them is then only the smoothest.
     """
 
     @lru_cache(maxsize=1)  # all shifts of one speed are tried in turn
@@ -160,9 +160,6 @@ def best_way(signals: Sequence[AxisSignals], axis: Axis) -> Way:
         quietest = min(noise(way) for way in ways)
         return min((way for way in ways if noise(way) <= ALIKE * quietest), key=lambda way: float(left(way)[0]))
 
-    as_stated = min((Way(speed, 0) for speed in (LAST, TWO, CENTRAL)), key=lambda way: excess(signals, axis, way))
-    if excess(signals, axis, as_stated) < 1.0:
-        return as_stated
     if not axis.command_law.velocity_gain:
         return _within(least([Way(LAST, shift) for shift in SHIFTS]))
     plain = least([Way(speed, shift) for speed in (LAST, TWO, CENTRAL) for shift in SHIFTS])
@@ -171,7 +168,9 @@ def best_way(signals: Sequence[AxisSignals], axis: Axis) -> Way:
     for _ in range(FINER):
         step = float(np.sqrt(step))
         best = least([Way(best.speed * f, shift) for f in (1.0, step, 1.0 / step) for shift in SHIFTS])
-    return _within(best if noise(best) < PLAIN * noise(plain) else plain)
+    quiet = _within(best if noise(best) < PLAIN * noise(plain) else plain)
+    stated = min((Way(speed, 0) for speed in (LAST, TWO, CENTRAL)), key=lambda way: excess(signals, axis, way))
+    return stated if excess(signals, axis, stated) < PLAIN * excess(signals, axis, quiet) else quiet
 
 
 def backwards(signals: Sequence[AxisSignals], axis: Axis, way: Way) -> bool:
@@ -201,13 +200,13 @@ def _solved(x: Array, y: Array) -> Array:
 
 
 def excess(signals: Sequence[AxisSignals], axis: Axis, way: Way) -> float:
-    """Return the power of command less stated law over its floor and the engine's threshold; below one is no gap."""
+    """Return the power of command less stated law over its floor, a mean over the records."""
     powers = []
     for run in signals:
         view = LawView(run, axis, stated_law(run, axis, way))
         left = residual_of(view)
         powers.append(float(np.mean((left.values[left.ok] / floor_of(view, left)) ** 2)))
-    return float(np.mean(powers)) / POOLED[STAGE]
+    return float(np.mean(powers))
 
 
 def _within(way: Way) -> Way:
