@@ -51,23 +51,6 @@ SHIFTS = (0, 1, 2, 3, 4, 6, 8, 12, 16, 24)
 """Samples by which a command may answer an earlier reading: within one period nobody states it, more is a delay."""
 
 
-class LawView(AxisView):
-    """A run of one axis with the law that its command was stated to follow.
-
-    Attributes:
-        stated: the law on what was recorded.
-    """
-
-    def __init__(self, run: AxisSignals, axis: Axis, stated: StatedLaw) -> None:
-        super().__init__(run, axis, 0.0)
-        self.stated = stated
-
-
-@dataclass(frozen=True, kw_only=True)
-class LawEvidence(AxisEvidence):
-    """The engine's evidence for the command of one axis."""
-
-
 class Way(NamedTuple):
     """How a controller reads its encoder: the way it takes a speed, and by how many samples it is behind."""
 
@@ -79,6 +62,25 @@ class Way(NamedTuple):
         """How the speed is taken, in words."""
         known = {LAST: "over one period", TWO: "over two periods", CENTRAL: "about the sample"}
         return known.get(self.speed, f"through a low-pass of {self.speed:.2g} periods")
+
+
+class LawView(AxisView):
+    """A run of one axis with the law that its command was stated to follow.
+
+    Attributes:
+        stated: the law on what was recorded.
+        way: in which it is read.
+    """
+
+    def __init__(self, run: AxisSignals, axis: Axis, way: Way) -> None:
+        super().__init__(run, axis, 0.0)
+        self.stated = stated_law(run, axis, way)
+        self.way = way
+
+
+@dataclass(frozen=True, kw_only=True)
+class LawEvidence(AxisEvidence):
+    """The engine's evidence for the command of one axis."""
 
 
 class StartOfIntegral(Effect):
@@ -101,7 +103,7 @@ def law_of_axis(runs: Sequence[AxesRun], axis: Axis) -> LawEvidence | None:
     turned = backwards(signals, axis, way)
     if turned:
         signals = [replace(s, command=-s.command) for s in signals if s.command is not None]
-    views = [LawView(s, axis, stated_law(s, axis, way)) for s in signals]
+    views = [LawView(s, axis, way) for s in signals]
     channel = Channel(STAGE, axis.name)
     found = [{channel: residual_of(view)} for view in views]
     floors = [{channel: floor_of(view, x[channel])} for view, x in zip(views, found, strict=True)]
@@ -203,7 +205,7 @@ def excess(signals: Sequence[AxisSignals], axis: Axis, way: Way) -> float:
     """Return the power of command less stated law over its floor, a mean over the records."""
     powers = []
     for run in signals:
-        view = LawView(run, axis, stated_law(run, axis, way))
+        view = LawView(run, axis, way)
         left = residual_of(view)
         powers.append(float(np.mean((left.values[left.ok] / floor_of(view, left)) ** 2)))
     return float(np.mean(powers))
@@ -265,7 +267,7 @@ def residual_of(view: LawView) -> Residual:
 
 
 def floor_of(view: LawView, left: Residual) -> Array:
-    """Return the floor of a command, (1,): what could not be foreseen, and never below counts and rounded gains."""
+    """Return the floor of a command, (1,): what no one foresees, never below counts, rounded gains and speeds."""
     run, law = view.run, view.described.command_law
     assert run.command is not None and law.position_gain is not None
     noise = np.random.default_rng(0).normal(size=(max(run.ticks, 4 * BLOCKS), 1))
@@ -273,9 +275,23 @@ def floor_of(view: LawView, left: Residual) -> Array:
     shaken = law.position_gain * noise - law.velocity_gain * np.diff(noise, axis=0, prepend=0.0) / run.period
     steps = np.diff(np.unique(run.command))
     rounded = (float(steps.min()) if len(steps) else 0.0) / UNIFORM
-    counted = float(np.hypot(count * run.filtered(shaken).std(), rounded))
-    least = max(counted, LAW_ROUNDED * float(np.sqrt(np.mean(run.command**2))), np.finfo(float).tiny)
-    return np.maximum(innovation(left) / foresight(run), least)
+    written = LAW_ROUNDED * float(np.sqrt(np.mean(run.command**2)))
+    apart = (count * run.filtered(shaken).std(), rounded, law.velocity_gain * unread_speed(view), written)
+    return np.maximum(innovation(left) / foresight(run), max(float(np.linalg.norm(apart)), np.finfo(float).tiny))
+
+
+def unread_speed(view: LawView) -> float:
+    """Return what differences about a sample are off from a speed that a controller knows otherwise, rms, m/s or rad/s.
+
+    Differences over h are off by a term in h^2: those over 2 h, less those over h, are three times it (Richardson).
+    """
+    if view.way.speed != CENTRAL:
+        return 0.0
+    run, q = view.run, view.run.motor[:, 0]
+    wide = np.gradient(q, run.period)
+    wide[2:-2] = (q[4:] - q[:-4]) / (4.0 * run.period)
+    off = run.to_grid((wide - np.gradient(q, run.period))[:, None])[run.inner] / 3.0
+    return float(np.sqrt(np.mean(off**2)))
 
 
 def unit_of_command(axis: Axis) -> str:

@@ -46,7 +46,9 @@ def drawn(seed):
         "mass": 20.0,
         "encoder_resolution": count,
     }
-    described = AxesDescription.model_validate({"kind": "axes", "name": "a slide", "time": {"column": "t"}, "axes": [axis]})
+    described = AxesDescription.model_validate(
+        {"kind": "axes", "name": "a slide", "time": {"column": "t"}, "axes": [axis]}
+    )
     signals = {"position": position, "reference": reference, "command": command, "effort": 10.0 * (command + noise)}
     return diagnose(Axes(described), [AxesRun("run", period, {"slide": signals})]).verdict
 
