@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -68,3 +69,8 @@ def make_term(data: Whitened, effect: Effect, site: str, shape: Shape) -> Term:
         fixed.append({c: data.flat(r, c, x) for c, x in signature.fixed.items() if c in present})
         width = max([width, *(x.shape[1] for x in columns[-1].values())])
     return Term(effect, site, shape, columns, fixed, width)
+
+
+def again(data: Whitened, terms: Sequence[Term]) -> tuple[Term, ...]:
+    """Return terms evaluated on other data of the same machine, each with its limit."""
+    return tuple(replace(make_term(data, t.effect, t.site, t.shape), limit=t.limit) for t in terms)

@@ -7,11 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from sher3_diagnosis.channel import Channel, Residual, Residuals
-from sher3_diagnosis.effect import Effect, Shape, Signature, column
 from sher3_diagnosis.evidence import Evidence
-from sher3_diagnosis.fit.fitting import make_term
 from sher3_diagnosis.fit.whitened import Whitened
-from sher3_diagnosis.tolerance import NUISANCE
 
 from sher3_machines.axes.description import Axis
 from sher3_machines.axes.floors import floors_of
@@ -23,6 +20,7 @@ from sher3_machines.axes.readings.wrong import without_effort
 from sher3_machines.axes.record import AxesRun
 from sher3_machines.axes.signals import AxisSignals, signals_of
 from sher3_machines.axes.view import AxisView
+from sher3_machines.chain.constants import ZERO, constants
 from sher3_machines.errors import MachineError
 from sher3_machines.thresholds import BLOCKS, MIN_BLOCK, NO_INERTIA
 
@@ -50,17 +48,6 @@ class AxisEvidence(Evidence):
     mass_interval: tuple[float, float] | None = None
     untold: str = ""
     notes: Sequence[str] = ()
-
-
-class ZeroOfEncoders(Effect):
-    """The difference of two encoders' zeros: a column that every fit carries."""
-
-    id, family, stage = "zero_of_the_encoders", NUISANCE, "transmission"
-    explanation = "Nobody says where two encoders have their zeros."
-
-    def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
-        """Return one column: one."""
-        return Signature({Channel(self.stage, site): column(np.ones(len(view.run.grid)))})
 
 
 def gather_axis(runs: Sequence[AxesRun], axis: Axis, repeats: bool) -> AxisEvidence:
@@ -94,7 +81,7 @@ def gather_axis(runs: Sequence[AxesRun], axis: Axis, repeats: bool) -> AxisEvide
     return AxisEvidence(
         excitations=[records[r].excitation for r, _ in blocks],
         data=data,
-        nuisance=(make_term(data, ZeroOfEncoders(), axis.name, {}),) if axis.signals.load is not None else (),
+        nuisance=constants(data, ZERO, [Channel("transmission", axis.name)]),
         units=units_of(axis),
         places={"axis": (axis.name,)},
         rotary=frozenset({axis.name} if axis.motion == "rotary" else ()),

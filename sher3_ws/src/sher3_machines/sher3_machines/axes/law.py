@@ -17,12 +17,9 @@ from sher3_diagnosis.attribute.candidates import Candidates
 from sher3_diagnosis.attribute.rivals import Attribution
 from sher3_diagnosis.attribute.search import Left, Say, attribute
 from sher3_diagnosis.channel import Array, Channel, Residual
-from sher3_diagnosis.effect import Effect, Shape, Signature, column
 from sher3_diagnosis.evidence import Evidence
-from sher3_diagnosis.fit.fitting import make_term
 from sher3_diagnosis.fit.whitened import Whitened
 from sher3_diagnosis.quantify.polish import polished
-from sher3_diagnosis.tolerance import NUISANCE
 from sher3_effects.operators import held_lag
 from sher3_effects.view import StatedLaw
 
@@ -32,6 +29,7 @@ from sher3_machines.axes.floors import UNIFORM, foresight, innovation
 from sher3_machines.axes.record import AxesRun
 from sher3_machines.axes.signals import AxisSignals, signals_of
 from sher3_machines.axes.view import AxisView
+from sher3_machines.chain.constants import INTEGRAL, constants
 from sher3_machines.thresholds import BLOCKS, LAW_ROUNDED
 
 STAGE = "controller"
@@ -83,17 +81,6 @@ class LawEvidence(AxisEvidence):
     """The engine's evidence for the command of one axis."""
 
 
-class StartOfIntegral(Effect):
-    """What an integral held when the record began: a column that every fit carries."""
-
-    id, family, stage = "start_of_the_integral", NUISANCE, STAGE
-    explanation = "Nobody says what the integral of a controller held when the record began."
-
-    def signature(self, view: LawView, site: str, shape: Shape) -> Signature:
-        """Return one column: one."""
-        return Signature({Channel(self.stage, site): column(np.ones(len(view.run.grid)))})
-
-
 def law_of_axis(runs: Sequence[AxesRun], axis: Axis) -> LawEvidence | None:
     """Return the evidence for the command of an axis; None where no law is stated or nothing was recorded."""
     if not compared(axis) or not all({"reference", "command"} <= run.signals[axis.name].keys() for run in runs):
@@ -113,7 +100,7 @@ def law_of_axis(runs: Sequence[AxesRun], axis: Axis) -> LawEvidence | None:
     return LawEvidence(
         excitations=[views[r].excitation for r, _ in blocks],
         data=data,
-        nuisance=(make_term(data, StartOfIntegral(), axis.name, {}),) if axis.command_law.integral_gain else (),
+        nuisance=constants(data, INTEGRAL, [channel]) if axis.command_law.integral_gain else (),
         units={channel: unit_of_command(axis)},
         places={"axis": (axis.name,)},
         rotary=frozenset({axis.name} if axis.motion == "rotary" else ()),
@@ -153,7 +140,7 @@ def best_way(signals: Sequence[AxisSignals], axis: Axis) -> Way:
     @cache
     def left(way: Way) -> Array:
         laws = read(way.speed)
-        return sum(left_by(s, behind(law.parts, way.shift)) for s, law in zip(signals, laws, strict=True))
+        return np.sum([left_by(s, behind(x.parts, way.shift)) for s, x in zip(signals, laws, strict=True)], axis=0)
 
     def noise(way: Way) -> float:
         return float(left(way)[1])

@@ -17,6 +17,7 @@ from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Effect, Shape, Signature
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import Fit, Term, fit, make_term
+from sher3_diagnosis.fit.term import again
 from sher3_diagnosis.fit.whitened import Whitened
 from sher3_diagnosis.thresholds import NEEDED, PARSIMONY, RIVAL
 
@@ -93,8 +94,8 @@ def of_runs(evidence: E, views: frozenset[int]) -> E:
     data = evidence.data
     kept = [r for r, view in enumerate(data.views) if id(view) in views]
     part = Whitened([data.views[r] for r in kept], [data.residuals[r] for r in kept], [data.floors[r] for r in kept])
-    nuisance = tuple(replace(make_term(part, t.effect, t.site, t.shape), limit=t.limit) for t in evidence.nuisance)
-    return replace(evidence, excitations=[evidence.excitations[r] for r in kept], data=part, nuisance=nuisance)
+    names, nuisance = [evidence.excitations[r] for r in kept], again(part, evidence.nuisance)
+    return replace(evidence, excitations=names, data=part, nuisance=nuisance)
 
 
 def contrasted(
@@ -113,7 +114,7 @@ def contrasted(
         conditions: each with the identities of the views of its runs.
         finish: improves the fit of a change.
     """
-    kept = [make_term(evidence.data, t.effect, t.site, t.shape) for t in common.fit.terms]
+    kept = list(again(evidence.data, common.fit.terms))
     current, rivals = fit(evidence.data, kept), [_again(evidence, kept, i, common) for i in range(len(kept))]
     for _ in range(CHANGES):
         trials = [t for c, views in conditions for t in _trials(evidence, current, effects, c, views, finish)]

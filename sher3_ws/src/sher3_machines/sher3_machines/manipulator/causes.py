@@ -42,7 +42,7 @@ class Explained:
     """One set of causes of the whole arm.
 
     Attributes:
-        fit: all terms together; the payload first where there is one.
+        fit: all terms together; the payload first of the causes where there is one.
         alone: what the engine's search said of each force balance, and of each pair of encoders, alone.
     """
 
@@ -82,10 +82,14 @@ def _explained(evidence: ArmMotionEvidence, candidates: Candidates, payload: Fit
         balance = channel == channel_of(channel.actuator)
         late = lateness(evidence, channel.actuator, beside) if balance else None
         alone.append(_beside_delay(own, late, effects, say) if balance else _searched(own, effects, say))
-    terms = [payload.terms[-1]] if payload is not None else []
+    terms = [*evidence.nuisance, *([payload.terms[-1]] if payload is not None else [])]
     for found in alone:
-        terms += [candidates.term(t.effect, t.site, t.shape) for t in found.fit.terms]
+        terms += [candidates.term(t.effect, t.site, t.shape) for t in _causes(found)]
     return Explained(fit(evidence.data, terms), alone)
+
+
+def _causes(found: Attribution) -> list[Term]:
+    return [found.fit.terms[i] for i in found.causes]
 
 
 def _searched(own: Evidence, effects: Sequence[Effect], say: Say) -> Attribution:
@@ -135,7 +139,8 @@ def _payload(evidence: ArmMotionEvidence, candidates: Candidates) -> Fit | None:
     page = next((e for e in candidates.effects if isinstance(e, PayloadOnLink)), None)
     if page is None:
         return None
-    plain = [candidates.term(e, j, _middle(e, evidence, j)) for j in evidence.judged for e in _plain(candidates)]
+    rubbing = [(e, j) for j in evidence.judged for e in _plain(candidates)]
+    plain = [*evidence.nuisance, *(candidates.term(e, j, _middle(e, evidence, j)) for e, j in rubbing)]
     base, null = fit(evidence.data, plain), evidence.null().total
     trials = [t for link in evidence.places["link"] if (t := _at(evidence, candidates, page, link, plain)) is not None]
     if not trials:
@@ -161,9 +166,10 @@ def shows_on_enough(base: Fit, best: Fit) -> bool:
 
 def closes(evidence: ArmMotionEvidence, loaded: Explained) -> bool:
     """Return whether a payload, the first term, shrinks the gaps of joints that carry it by a share worth a name."""
-    carrying = loaded.fit.terms[0].channels
+    first = len(evidence.nuisance)
+    carrying = loaded.fit.terms[first].channels
     gap = sum(loss for (_, channel), loss in evidence.null().loss.items() if channel in carrying)
-    return without_term(evidence, loaded.fit, 0).total - loaded.fit.total > LEAST_CLOSURE * gap
+    return without_term(evidence, loaded.fit, first).total - loaded.fit.total > LEAST_CLOSURE * gap
 
 
 def _plain(candidates: Candidates) -> list[Effect]:
@@ -219,7 +225,7 @@ def _with_rivals(
     """Add to every cause what would explain as much: rivals at its joint, and for a payload what takes its place."""
     terms, rivals, ranking = best.fit.terms, [], []
     alike = second is not None and _alike(evidence, best, second)
-    of_joints = {_name(t): (found, i) for found in best.alone for i, t in enumerate(found.fit.terms)}
+    of_joints = {_name(found.fit.terms[i]): (found, i) for found in best.alone for i in found.causes}
     for i, term in enumerate(terms):
         others = [t for j, t in enumerate(terms) if j != i]
         if _name(term) in of_joints:

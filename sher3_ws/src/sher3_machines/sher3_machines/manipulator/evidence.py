@@ -8,12 +8,14 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from sher3_diagnosis.channel import Array, Channel, Residual, Residuals
 from sher3_diagnosis.evidence import Evidence
+from sher3_diagnosis.fit.term import again
 from sher3_diagnosis.fit.whitened import Whitened
 
 from sher3_machines.axes.evidence import blocks_of
 from sher3_machines.axes.quantities.own_unit import RECORDED
 from sher3_machines.axes.readings.share import Share
 from sher3_machines.axes.record import AxesRun
+from sher3_machines.chain.constants import ZERO, constants
 from sher3_machines.errors import MachineError
 from sher3_machines.manipulator.description import PER_RUN, ManipulatorDescription
 from sher3_machines.manipulator.gains import share_of
@@ -118,9 +120,11 @@ def gather_arm_motion(
     per_record = -(-BLOCKS // len(views))
     blocks = [(r, block) for r, x in enumerate(residuals) for block in blocks_of(x, per_record)]
     seen = tuple(j for j in judged if any(channel_of(j) in x for x in residuals))
+    data = Whitened([views[r] for r, _ in blocks], [b for _, b in blocks], [floors[r] for r, _ in blocks])
     return ArmMotionEvidence(
         excitations=[views[r].excitation for r, _ in blocks],
-        data=Whitened([views[r] for r, _ in blocks], [b for _, b in blocks], [floors[r] for r, _ in blocks]),
+        data=data,
+        nuisance=constants(data, ZERO, [between(j) for j in judged]),
         units={
             **{channel_of(j.name): unit_of_force(j.gain == "unknown", j.motion) for j in described.joints},
             **{between(j.name): j.unit_of_position for j in described.joints},
@@ -180,9 +184,11 @@ def of_channel(
             own[channel] = replace(own[channel], values=own[channel].values - known)
         residuals.append(own)
     floors = [{channel: f[channel]} if channel in f else {} for f in data.floors]
+    alone = Whitened(data.views, residuals, floors)
     return Evidence(
         excitations=evidence.excitations,
-        data=Whitened(data.views, residuals, floors),
+        data=alone,
+        nuisance=again(alone, [t for t in evidence.nuisance if channel in t.channels]),
         units=evidence.units,
         places={"axis": (channel.actuator,)},
         rotary=evidence.rotary,

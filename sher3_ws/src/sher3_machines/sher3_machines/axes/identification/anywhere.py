@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from sher3_diagnosis.attribute.rivals import Attribution
 from sher3_diagnosis.evidence import Evidence
-from sher3_diagnosis.fit.fitting import Fit, Term, fit, make_term
+from sher3_diagnosis.fit.fitting import Fit, Term, fit
+from sher3_diagnosis.fit.term import again
 from sher3_diagnosis.judge.supported import kept
 from sher3_diagnosis.thresholds import NEEDED
 
@@ -31,7 +32,7 @@ def of_reversals(evidence: Evidence, found: Fit) -> set[int]:
     if not judged:
         return set()
     data = without_slow(evidence, dry).data
-    terms = [make_term(data, t.effect, t.site, t.shape) for t in found.terms]
+    terms = again(data, found.terms)
     whole = fit(data, terms).total
     worth = {i: fit(data, [*terms[:i], *terms[i + 1 :]]).total - whole for i in judged}
     return {i for i, gain in worth.items() if gain < NEEDED}

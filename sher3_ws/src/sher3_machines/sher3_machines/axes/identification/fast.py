@@ -19,6 +19,7 @@ from sher3_diagnosis.channel import Channel, Mask, Residual
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.filter import BANDWIDTH
 from sher3_diagnosis.fit.fitting import fit, make_term
+from sher3_diagnosis.fit.term import again
 from sher3_diagnosis.fit.whitened import Whitened
 from sher3_diagnosis.quantify.parameters import parameters
 from sher3_diagnosis.verdict import Cause, Parameter
@@ -49,11 +50,11 @@ def requantified(evidence: Evidence, attribution: Attribution, causes: Sequence[
     views: Sequence[Any] = evidence.views
     smeared = any(view.run.bandwidth < BANDWIDTH for view in views)
     away = without_slow(evidence, dry)
-    again = fit(away.data, [make_term(away.data, t.effect, t.site, t.shape) for t in terms])
+    found = fit(away.data, again(away.data, terms))
     out = []
     for i, cause in zip(attribution.causes, causes, strict=True):
-        if terms[i].site in dry and terms[i].effect.admissible(terms[i].shape, again.of(i)):
-            new = parameters(away, again, i)
+        if terms[i].site in dry and terms[i].effect.admissible(terms[i].shape, found.of(i)):
+            new = parameters(away, found, i)
             told = new if smeared else {n: _holding(p, new[n]) for n, p in cause.parameters.items() if n in new}
             cause = cause.model_copy(update={"parameters": told})
         out.append(cause)
@@ -71,10 +72,10 @@ def with_unseen(evidence: Evidence, attribution: Attribution, causes: Sequence[C
     for i, cause in zip(attribution.causes, causes, strict=True):
         term = terms[i]
         if term.effect.dry and term.site not in rubbed and "force" in cause.parameters and cause.condition is None:
-            again = fit(evidence.data, [*terms, make_term(evidence.data, ViscousFriction(), term.site, {})])
-            if again.of(len(terms))[0] > 0.0 and term.effect.admissible(term.shape, again.of(i)):
-                beside = parameters(evidence, again, i)["force"]
-                told = {**cause.parameters, "force": _holding(cause.parameters["force"], beside)}
+            beside = fit(evidence.data, [*terms, make_term(evidence.data, ViscousFriction(), term.site, {})])
+            if beside.of(len(terms))[0] > 0.0 and term.effect.admissible(term.shape, beside.of(i)):
+                other = parameters(evidence, beside, i)["force"]
+                told = {**cause.parameters, "force": _holding(cause.parameters["force"], other)}
                 cause = cause.model_copy(update={"parameters": told})
         out.append(cause)
     return out
