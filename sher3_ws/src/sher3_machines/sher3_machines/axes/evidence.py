@@ -14,7 +14,7 @@ from sher3_machines.axes.description import Axis
 from sher3_machines.axes.floors import floors_of
 from sher3_machines.axes.identification.align import aligned
 from sher3_machines.axes.identification.identify import identify_mass, load_mass_of, share_of_inertia
-from sher3_machines.axes.readings.level import level_note
+from sher3_machines.axes.readings.level import level_note, off, off_note
 from sher3_machines.axes.readings.scale import slip_of
 from sher3_machines.axes.readings.wrong import without_effort
 from sher3_machines.axes.record import AxesRun
@@ -96,8 +96,15 @@ def gather_axis(runs: Sequence[AxesRun], axis: Axis, repeats: bool) -> AxisEvide
 
 
 def levels_of(signals: Sequence[AxisSignals], axis: Axis) -> list[str]:
-    """Return a sentence for each record whose effort lies flat at its largest reading."""
-    return [level_note(f"{s.name}: {axis.name}.effort", s.limited) for s in signals if s.limited is not None]
+    """Return a sentence for each record whose effort lies flat at its largest reading, or whose drive is off."""
+    notes = []
+    for s in signals:
+        if s.limited is not None and s.effort is not None:
+            silent = off(s.effort[:, 0])
+            flat = s.limited & ~silent
+            notes += [level_note(f"{s.name}: {axis.name}.effort", flat)] if flat.any() else []
+            notes += [off_note(f"{s.name}: {axis.name}.effort", silent)] if silent.any() else []
+    return notes
 
 
 def _judged(found: Residuals, untold: str) -> Residuals:

@@ -194,8 +194,9 @@ def excess(signals: Sequence[AxisSignals], axis: Axis, way: Way) -> float:
     for run in signals:
         view = LawView(run, axis, way)
         left = residual_of(view)
-        powers.append(float(np.mean((left.values[left.ok] / floor_of(view, left)) ** 2)))
-    return float(np.mean(powers))
+        if left.ok.any():
+            powers.append(float(np.mean((left.values[left.ok] / floor_of(view, left)) ** 2)))
+    return float(np.mean(powers)) if powers else 0.0
 
 
 def _within(way: Way) -> Way:
@@ -213,6 +214,7 @@ def left_by(run: AxisSignals, parts: Array) -> Array:
     assert run.command is not None
     command = run.command[:, 0]
     free = np.abs(command) < np.abs(command).max()
+    free = free if free[2:].any() else np.ones_like(free)
     x = np.column_stack([parts, np.ones_like(command)])
     size = np.linalg.norm(x[free], axis=0)
     left = command - x / np.where(size > 0.0, size, 1.0) @ _solved(x[free], command[free])

@@ -13,7 +13,7 @@ from sher3_diagnosis.filter import BANDWIDTH, DECIMATED_RATE, EDGE, SHORT, low_p
 
 from sher3_machines.axes.description import Axis
 from sher3_machines.axes.identification.noise import cut_off
-from sher3_machines.axes.readings.level import at_a_level
+from sher3_machines.axes.readings.level import at_a_level, off
 from sher3_machines.axes.record import AxesRun
 
 NYQUIST_SHARE = 0.4
@@ -37,7 +37,8 @@ class AxisSignals:
         applied: known force from outside, positive along the motion.
         temperature: of the axis, deg C.
         bandwidth: cut-off of the low-pass, Hz.
-        limited: (n,) True where the measured force lies flat at its largest reading, which the command does not ask.
+        limited: (n,) True where the measured force says nothing: flat at its largest reading, which the command does
+            not ask, or exactly zero while the drive is off.
         UNSTATED: periods within which nobody states the moment of an effort; it is put right before anything is judged.
     """
 
@@ -172,13 +173,14 @@ def _nominal(found: dict[str, Array]) -> Array | None:
 def limited_by_reading(found: dict[str, Array]) -> Mask | None:
     """Return (n,) True where an effort is at a level; not where its command is, too: it is then what the drive gives.
 
-    None where there is no effort, or none of it is at a level.
+    And where the drive is off. None where there is no effort, or none of it is at a level.
     """
     if "effort" not in found:
         return None
     at = at_a_level(found["effort"])
     if "command" in found:
         at &= ~at_a_level(found["command"])
+    at |= off(found["effort"])
     return at if at.any() else None
 
 

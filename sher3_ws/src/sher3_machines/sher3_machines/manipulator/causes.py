@@ -19,6 +19,7 @@ from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import Fit, Term, fit, make_term
 from sher3_diagnosis.judge.left_over import down_to_floor
 from sher3_diagnosis.thresholds import NEEDED, PARSIMONY, RIVAL
+from sher3_diagnosis.tolerance import NUISANCE
 from sher3_effects.friction.coulomb_friction import CoulombFriction
 from sher3_effects.friction.viscous_friction import ViscousFriction
 from sher3_effects.inertia.payload_mass import PayloadOnLink
@@ -58,7 +59,7 @@ class Explained:
 def causes_of_arm(evidence: ArmMotionEvidence, candidates: Candidates, say: Say) -> Attribution:
     """Choose the causes of an arm in motion, with their rivals; none where no joint has a gap."""
     if not down_to_floor(evidence.channels, evidence, evidence.null()):
-        return Attribution(evidence.null(), (), ())
+        return Attribution(evidence.null(), (), (), nuisance=len(evidence.nuisance))
     found = _explained(evidence, candidates, None, say)
     loaded = _payload(evidence, candidates)
     if loaded is None:
@@ -89,7 +90,7 @@ def _explained(evidence: ArmMotionEvidence, candidates: Candidates, payload: Fit
 
 
 def _causes(found: Attribution) -> list[Term]:
-    return [found.fit.terms[i] for i in found.causes]
+    return [t for t in found.fit.terms if t.effect.family != NUISANCE]
 
 
 def _searched(own: Evidence, effects: Sequence[Effect], say: Say) -> Attribution:
@@ -225,7 +226,7 @@ def _with_rivals(
     """Add to every cause what would explain as much: rivals at its joint, and for a payload what takes its place."""
     terms, rivals, ranking = best.fit.terms, [], []
     alike = second is not None and _alike(evidence, best, second)
-    of_joints = {_name(found.fit.terms[i]): (found, i) for found in best.alone for i in found.causes}
+    of_joints = {_name(t): (found, i) for found in best.alone for i, t in enumerate(found.fit.terms)}
     for i, term in enumerate(terms):
         others = [t for j, t in enumerate(terms) if j != i]
         if _name(term) in of_joints:

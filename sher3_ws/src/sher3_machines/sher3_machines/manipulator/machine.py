@@ -83,8 +83,7 @@ class Manipulator(Machine[AxesRun, ArmMotionEvidence]):
         dead = {
             j.name
             for j in self.described.joints
-            for run in runs
-            if {"effort", "position"} & wrong_readings(run, j).keys()
+            if all({"effort", "position"} & wrong_readings(run, j).keys() for run in runs)
         }
         judged = [j.name for j in self.described.joints if j.name not in dead and j.driven]
         return [gather_arm_motion(runs, self.described, self.model, judged)]

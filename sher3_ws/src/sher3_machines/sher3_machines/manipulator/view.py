@@ -12,7 +12,7 @@ from sher3_diagnosis.filter import settled
 from sher3_effects.operators import dahl_turned
 from sher3_effects.view import NominalAxis
 
-from sher3_machines.axes.readings.level import at_a_level
+from sher3_machines.axes.readings.level import at_a_level, off
 from sher3_machines.axes.signals import AxisSignals
 from sher3_machines.axes.view import LEAD_OF_STROKE, SLIP, STILL, Loads
 from sher3_machines.manipulator.description import Joint
@@ -185,10 +185,10 @@ class MotionView:
 
     @cached_property
     def at_a_level(self) -> Mask:
-        """(g, k) True where an effort lies flat at its largest reading."""
+        """(g, k) True where an effort lies flat at its largest reading, or its drive is off."""
         effort = self.run.effort
         assert effort is not None
-        return np.column_stack([at_a_level(x) for x in effort.T])[self.run.grid]
+        return np.column_stack([at_a_level(x) | off(x) | (not x.any()) for x in effort.T])[self.run.grid]
 
     @cached_property
     def moving(self) -> Mask:

@@ -14,6 +14,7 @@ from sher3_diagnosis.channel import Array, Mask
 
 from sher3_machines.axes.description import Axis
 from sher3_machines.axes.quantities.units import COUNTS_MOVED
+from sher3_machines.axes.readings.level import off
 from sher3_machines.axes.record import AxesRun
 from sher3_machines.thresholds import ALIKE, DEAD, FOLLOWS, LONGEST, SCALED, STAYS
 
@@ -26,6 +27,8 @@ HALF = 0.5
 RELATED = 0.7
 """Correlation of two encoders of one axis below which one of them reads something else: more than half of its power is
 not that of the axis."""
+LEFT = 0.25
+"""Share of the samples in motion that must be left beside those at which a drive is off, for it to be judged there."""
 AT_THE_END = 0.9
 """Share of its largest reading above which a constant reading is a limit and no dead channel."""
 
@@ -49,7 +52,8 @@ def wrong_readings(run: AxesRun, axis: Axis) -> Mapping[str, str]:
     moving = np.abs(np.gradient(position)) > 0.5 * axis.encoder_resolution
     for name in ANSWERS:
         if name in found and moving.any():
-            what: str | None = stuck(found[name], moving)
+            live = moving & ~off(found[name]) if name == "effort" else moving
+            what = stuck(found[name], live if live.sum() > LEFT * moving.sum() else moving)
             if what is None and name == "load" and np.ptp(found[name]) < FOLLOWS * travel:
                 what = f"moves by {np.ptp(found[name]):.3g} while the axis moves by {travel:.3g}: a dead channel"
             what = wrong_scale(found[name], position) if what is None and name == "load" else what

@@ -9,21 +9,20 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from dataclasses import replace
 
-import numpy as np
-
-from sher3_machines.axes.readings.level import at_a_level, level_note
+from sher3_machines.axes.readings.level import at_a_level, level_note, off, off_note
 from sher3_machines.axes.readings.wrong import wrong_readings
 from sher3_machines.axes.record import AxesRun
 from sher3_machines.manipulator.description import Joint, ManipulatorDescription
 
 
 def level_notes(run: AxesRun, joints: Sequence[Joint], judged: Collection[str]) -> list[str]:
-    """Return a sentence for each effort of a judged joint that lies flat at a level."""
+    """Return a sentence for each effort of a judged joint that lies flat at a level, or whose drive is off."""
     out = []
     for joint in joints:
         effort = run.signals[joint.name].get("effort") if joint.name in judged else None
-        at = at_a_level(effort) if effort is not None else np.zeros(1, dtype=bool)
-        out += [level_note(f"{run.name}: {joint.name}.effort", at)] if at.any() else []
+        if effort is not None:
+            for at, note in ((at_a_level(effort), level_note), (off(effort), off_note)):
+                out += [note(f"{run.name}: {joint.name}.effort", at)] if at.any() else []
     return out
 
 
