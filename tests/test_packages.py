@@ -18,6 +18,8 @@ else:
     import tomli as tomllib
 
 PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
+BASE, ROBOT = PYPROJECT["project"]["dependencies"], PYPROJECT["project"]["optional-dependencies"]["robot"]
+"""What the diagnosis needs, and what the graph needs besides."""
 ROS_KEYS = {"rclpy", "std_msgs", "std_srvs", "sensor_msgs", "geometry_msgs", "diagnostic_msgs", "rcl_interfaces"}
 
 
@@ -72,7 +74,7 @@ def test_pyproject_installs_every_package():
 
 
 def test_third_party_imports_are_declared():
-    """A library that is imported is in the project's dependencies."""
+    """A library that is imported is in the project's dependencies or in those of the robot."""
     module_of = {
         "pin": "pinocchio",
         "python-can": "can",
@@ -81,7 +83,7 @@ def test_third_party_imports_are_declared():
         "ros-jazzy-rclpy": "rclpy",
         "typing-extensions": "typing_extensions",
     }
-    declared = {re.split(r"[\[<>=; ]", text)[0] for text in PYPROJECT["project"]["dependencies"]}
+    declared = {re.split(r"[\[<>=; ]", text)[0] for text in [*BASE, *ROBOT]}
     modules = {module_of.get(name, name) for name in declared} | ROS_KEYS | {"pydantic_core"}
     used = set().union(*map(imports, FILES))
     third_party = {n for n in used if n not in sys.stdlib_module_names and not n.startswith("sher3_")}
@@ -93,8 +95,7 @@ def test_requirements_pin_every_dependency_with_hashes():
     """The lock has all of pyproject.toml, each with a version and a hash."""
     text = (ROOT / "requirements.txt").read_text()
     pinned = {m.group(1).lower(): m.end() for m in re.finditer(r"^([\w.-]+)==", text, re.M)}
-    project = PYPROJECT["project"]
-    wanted = project["dependencies"] + project["optional-dependencies"]["dev"]
+    wanted = [*BASE, *ROBOT, *PYPROJECT["project"]["optional-dependencies"]["dev"]]
     names = {re.split(r"[\[<>=; ]", entry)[0].lower().replace("_", "-") for entry in wanted}
     assert names <= {name.replace("_", "-") for name in pinned}
     entries = re.split(r"^(?=[\w.-]+==)", text, flags=re.M)[1:]

@@ -47,6 +47,8 @@ COMMANDS: dict[str, Entry] = {
     "fault": Entry("sher3_safety.cli.fault", "fault", "Break one part of the running robot on mocks."),
     "benchtop": Entry("sher3_benchtop.cli", "benchtop", "The bench-top tests of the paper, on the running graph."),
 }
+OF_ROBOT = ("rclpy", "rcl_interfaces", "can", "canopen")
+"""Libraries of the extra `robot`, beside the message packages."""
 
 
 class UnknownCommand(Sher3Error):
@@ -58,6 +60,16 @@ class UnknownCommand(Sher3Error):
         near = get_close_matches(name, COMMANDS, 1, cutoff=0.5)
         remedy = f"did you mean {near[0]}?" if near else "`sher3 --help` lists them"
         super().__init__("no such command", value=name, remedy=remedy)
+
+
+class NoRobot(Sher3Error):
+    """A command of the graph was called where the diagnosis alone is installed."""
+
+    exit_code = 2
+
+    def __init__(self, library: str) -> None:
+        remedy = "pip install 'sher3[robot]', or source a ROS 2 Jazzy"
+        super().__init__("needs the libraries of the robot", value=f"no {library}", remedy=remedy)
 
 
 def make_app(chosen: str | None = None, completing: bool = False) -> typer.Typer:
@@ -96,6 +108,12 @@ def main(arguments: Sequence[str] | None = None) -> None:
     except Sher3Error as error:
         print(f"sher3: {error}", file=sys.stderr)
         sys.exit(getattr(error, "exit_code", 1))
+    except ModuleNotFoundError as error:
+        library = (error.name or "").partition(".")[0]
+        if library not in OF_ROBOT and not library.endswith("_msgs"):
+            raise
+        print(f"sher3: {NoRobot(library)}", file=sys.stderr)
+        sys.exit(NoRobot.exit_code)
     except BrokenPipeError:
         # The reader of our output has gone; there is nobody to tell.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
