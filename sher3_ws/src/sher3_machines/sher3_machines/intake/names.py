@@ -19,14 +19,14 @@ def vocabulary(text: str) -> frozenset[str]:
 
 
 POSITION = vocabulary(
-    "position positions pos posn q theta angle angles encoder enc lage weg winkel qm x dist displacement displ stroke "
-    "gap hub verschiebung schrittzähler steps schritte"
+    "position positions pos posn q qpos theta angle angles encoder enc lage weg winkel qm x dist displacement displ "
+    "stroke gap hub verschiebung schrittzähler steps schritte"
 )
 VELOCITY = vocabulary("velocity velocities vel speed qd dq omega qdot qvel gyro drehzahl geschwindigkeit rate")
 EFFORT = vocabulary("effort torque tau force iq trq moment drehmoment strom kraft amps qfrc")
 CURRENT = vocabulary("current curr cur i")
 """A current is an effort, but the current position is the measured one."""
-COMMAND = vocabulary("control u voltage volt spannung pwm duty vir valve ventil")
+COMMAND = vocabulary("control ctrl u voltage volt spannung pwm duty vir valve ventil")
 ASKED = vocabulary("ref reference set setpoint sp desired des target goal soll demand commanded cmd command qg d")
 MEASURED = vocabulary("actual act measured meas present est estimate estimated ist feedback fb")
 SECOND = vocabulary(
@@ -41,7 +41,7 @@ IGNORED = vocabulary(
 TEMPERATURE = vocabulary("temperature temperatures temp temps temperatur")
 APPLIED = vocabulary("hung applied external disturbance weight brake bremsmoment last")
 """A force from outside that is known, where the column has the unit of one."""
-PLAIN = vocabulary("motor state states joint value wert data real raw message msg sensor")
+PLAIN = vocabulary("motor actuator state states joint value wert data real raw message msg sensor")
 """Words that tell one axis from another only where nothing else does."""
 TURNING = vocabulary("az azimuth el elevation pan tilt yaw pitch roll")
 """Names of axes that, with a unit of an angle, are a position."""

@@ -22,10 +22,24 @@ class Joint(Axis):
         gain: N, or N m, per unit of the recorded effort or command; `unknown`: the effort is recorded in units of its
             own, such as a motor current, and the model's inertias tell how many of them a newton metre is; `per_run`:
             they tell it run by run, and the efforts are brought to newton metres.
+        viscous: damping of the nominal model; where it is not stated, that of an MJCF file.
+        step_inertia: kg or kg m^2 by which a simulator's own effort is larger than the one that acted: an implicit step
+            takes damping and velocity gain at its end, so it is about the time step times them.
     """
 
     command_law: CommandLaw = CommandLaw(kind="force")
     gain: float | Literal["unknown", "per_run"] = 1.0
+    step_inertia: float = 0.0
+
+    @property
+    def driven(self) -> bool:
+        """Whether its force is known: recorded, or that of a servo whose gains and reference are."""
+        return super().driven or self.follows
+
+    @property
+    def follows(self) -> bool:
+        """Whether its servo's gains and reference are known."""
+        return self.command_law.position_gain is not None and self.signals.reference is not None
 
     @property
     def needs_force(self) -> bool:

@@ -11,12 +11,14 @@ from sher3_machines.errors import MachineError
 from sher3_machines.intake.draft import Draft, drafted, written
 from sher3_machines.intake.names import EFFORT, words_of
 from sher3_machines.intake.tables import read_tables
+from sher3_machines.manipulator.mjcf.drives import driven_in
+from sher3_machines.manipulator.mjcf.joint import OWN_EFFORT, drive_joint
 from sher3_machines.manipulator.model import joints_of
 
 TORQUES = EFFORT - frozenset(("iq", "strom", "amps"))
 """Words of an effort that is a force or a torque where its name has no unit."""
 FORCES = ("N", "kN", "N*m", "mN*m")
-OF_JOINT = ("position", "effort", "command", "load")
+OF_JOINT = ("position", "reference", "effort", "command", "load")
 """Signals of a joint that a draft keeps: an arm is judged by its forces."""
 OF_AXIS = re.compile(r": (driven by|mass is not|a position servo|undriven)")
 """Guesses on single axes that an arm has no use for."""
@@ -54,6 +56,15 @@ def of_arm(data: Mapping[str, Any], model: Path, guesses: list[str]) -> dict[str
         f"{axis} is joint {joint}, because of its {why}" for axis, (joint, why) in found.items() if axis != joint
     ]
     joints = [_joint(axes[axis], joint, slides[joint], guesses) for axis, (joint, _) in found.items()]
+    drives = driven_in(model)
+    for joint in joints:
+        if joint["name"] in drives:
+            effort = joint["signals"].get("effort", {})
+            words = set(words_of(effort.get("column", "")))
+            own = drives[joint["name"]]
+            if "actuator" in words and "qfrc" not in words and own.drive is not None and own.drive.gear != 1.0:
+                effort["factor"] = own.drive.gear
+            drive_joint(joint, own, bool(words & OWN_EFFORT), guesses)
     left = [joint for joint in slides if joint not in {j for j, _ in found.values()}]
     if left:
         guesses.append(f"joints that were not recorded stay at zero: {', '.join(left)}")
@@ -105,6 +116,8 @@ def _joint(axis: Mapping[str, Any], joint: str, slides: bool, guesses: list[str]
         signals["position"]["unit"] = "m"
     out = {"name": joint, "motion": "linear" if slides else "rotary", "signals": signals}
     out["encoder_resolution"] = axis["encoder_resolution"]
+    if "reference" in signals:
+        signals["reference"]["unit"] = signals["position"]["unit"]
     effort = signals.get("effort") or signals.get("command")
     if effort is not None and effort["unit"] not in FORCES:
         if "effort" in signals and effort["unit"] == "1" and set(words_of(effort["column"])) & TORQUES:

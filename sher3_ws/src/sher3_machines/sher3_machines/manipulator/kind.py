@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 from sher3_diagnosis.channel import Array
 
 from sher3_machines.axes.kind import packed, unpacked
@@ -23,8 +26,8 @@ class ManipulatorKind(Kind[ManipulatorDescription, AxesRun]):
     description = ManipulatorDescription
 
     def read(self, name: str, tables: Tables, description: ManipulatorDescription) -> AxesRun:
-        """Bring a data file onto a uniform clock; raises MachineError."""
-        return axes_run(name, tables, description)
+        """Bring a data file onto a uniform clock, with forces of servos that were not recorded; raises MachineError."""
+        return with_servos(axes_run(name, tables, description), description)
 
     def parts(self, name: str, tables: Tables, description: ManipulatorDescription) -> tuple[dict[str, Tables], str]:
         """Return the parts of a record whose clock has holes or jumps back; repeats stay whole."""
@@ -41,7 +44,23 @@ class ManipulatorKind(Kind[ManipulatorDescription, AxesRun]):
     def machine(self, description: ManipulatorDescription) -> Manipulator:
         """Return the arm; raises MachineError for a model that cannot be read or has no such joint."""
         names = [j.name for j in description.joints]
-        return Manipulator(description, load_model(Path(description.model), names, description.gravity))
+        stated = [j.name for j in description.joints if "viscous" in j.model_fields_set]
+        return Manipulator(description, load_model(Path(description.model), names, description.gravity, stated))
+
+
+def with_servos(run: AxesRun, description: ManipulatorDescription) -> AxesRun:
+    """Return a run with the force of every servo whose effort was not recorded, by its stated law."""
+    signals, notes = dict(run.signals), list(run.notes)
+    for joint in description.joints:
+        found, law = signals[joint.name], joint.command_law
+        if not joint.follows or {"effort", "command"} & found.keys():
+            continue
+        speed = np.gradient(found["position"], run.period)
+        force = (law.position_gain or 0.0) * (found["reference"] - found["position"]) - law.velocity_gain * speed
+        limit = math.inf if law.limit is None else law.limit
+        signals[joint.name] = {**found, "effort": np.clip(force, -limit, limit)}
+        notes.append(f"{run.name}: {joint.name}: effort is that of its servo's law; none was recorded")
+    return replace(run, signals=signals, notes=notes)
 
 
 KIND = ManipulatorKind()

@@ -6,10 +6,11 @@ joint torque regressor.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pinocchio as pin
@@ -17,10 +18,10 @@ from sher3_common import FileError, read_text
 from sher3_diagnosis.channel import Array
 
 from sher3_machines.errors import MachineError
-from sher3_machines.manipulator.mjcf import model_from_mjcf
+from sher3_machines.manipulator.mjcf.bodies import model_from_mjcf
+from sher3_machines.manipulator.mjcf.losses import Losses
+from sher3_machines.manipulator.mjcf.reading import MAX_BYTES, is_mjcf, read_mjcf
 
-MAX_BYTES = 20_000_000
-"""Largest model file that is read."""
 PARAMETERS = 10
 """Inertial parameters of a body: mass, mass times centre (3), inertia about its joint (6), as Pinocchio orders them."""
 MOVING = ("revolute", "prismatic")
@@ -34,11 +35,13 @@ class ArmModel:
         pinocchio: the reduced model.
         names: of the k recorded joints, in the order of the description.
         parameters: inertial ones of all links in place of the model's, (10 links,); None: those of the model.
+        losses: what an MJCF model says beside its bodies; None: nothing.
     """
 
     pinocchio: pin.Model
     names: tuple[str, ...]
     parameters: Array | None = None
+    losses: Losses | None = None
 
     @cached_property
     def rows(self) -> list[int]:
@@ -85,7 +88,11 @@ class ArmModel:
         return float(sum(b.mass for b in list(self.pinocchio.inertias)[1:]))
 
     def needed(self, q: Array, v: Array, a: Array) -> Array:
-        """Return the force that each recorded joint needs, (n, k): inverse dynamics, rotor inertia of the model too."""
+        """Return the force that each recorded joint needs, (n, k): inverse dynamics, with rotors and springs."""
+        at_rest = 0.0 if self.losses is None else self.losses.at_rest(q)
+        return self._rigid(q, v, a) + at_rest
+
+    def _rigid(self, q: Array, v: Array, a: Array) -> Array:
         model, data = self.pinocchio, self.pinocchio.createData()
         if self.parameters is not None:
             return self.regressor(q, v, a) @ self.parameters + np.asarray(model.armature)[self.rows] * a
@@ -114,13 +121,29 @@ class ArmModel:
         return np.asarray(pin.neutral(self.pinocchio))
 
 
-def load_model(path: Path, names: Sequence[str], gravity: tuple[float, float, float] | None) -> ArmModel:
+def load_model(
+    path: Path, names: Sequence[str], gravity: tuple[float, float, float] | None, stated: Collection[str] = ()
+) -> ArmModel:
     """Read a URDF or MJCF file and lock the joints that were not recorded.
+
+    Args:
+        path: of the file.
+        names: of the recorded joints.
+        gravity: in place of the model's, m/s^2.
+        stated: joints whose damping is known from elsewhere; that of an MJCF file does not count.
 
     Raises:
         MachineError: the file cannot be read, has no such joint, or a joint of it neither turns nor slides.
     """
-    model = _read(path)
+    model, source = _read(path)
+    reduced = reduced_model(model, names, gravity, path)
+    return ArmModel(reduced, tuple(names), losses=None if source is None else Losses(source, names, stated))
+
+
+def reduced_model(
+    model: pin.Model, names: Sequence[str], gravity: tuple[float, float, float] | None, path: object
+) -> pin.Model:
+    """Return a model whose joints are locked but for the recorded ones; raises MachineError as `load_model` does."""
     missing = [n for n in names if not model.existJointName(n)]
     if missing:
         have = ", ".join(list(model.names)[1:])
@@ -143,22 +166,24 @@ def load_model(path: Path, names: Sequence[str], gravity: tuple[float, float, fl
         reduced.gravity.linear = np.array(gravity)
     if not any(b.mass > 0.0 for b in list(reduced.inertias)[1:]):
         raise MachineError(f"{path}: states no masses", value="0 kg", remedy="give a model with inertias")
-    return ArmModel(reduced, tuple(names))
+    return reduced
 
 
 def joints_of(path: Path) -> dict[str, bool]:
     """Return joint -> whether it slides, of every joint of a model that turns or slides; raises MachineError."""
-    model = _read(path)
+    model, _ = _read(path)
     moving = [j for j in range(1, model.njoints) if model.joints[j].nv == 1]
     return {model.names[j]: _slides(model.joints[j]) for j in moving}
 
 
-def _read(path: Path) -> pin.Model:
+def _read(path: Path) -> tuple[pin.Model, Any]:
+    """Return the bodies of a file, and MuJoCo's model of an MJCF file."""
     try:
         text = read_text(path, MAX_BYTES)
         if "<!DOCTYPE" in text:  # what declares entities can expand without bound or name other files
             raise MachineError(f"{path}: has a document type", value="<!DOCTYPE", remedy="give a plain file")
-        return model_from_mjcf(path) if "<mujoco" in text else pin.buildModelFromXML(text)
+        source = read_mjcf(path) if is_mjcf(text) else None
+        return (pin.buildModelFromXML(text) if source is None else model_from_mjcf(source, path)), source
     except (FileError, ValueError, RuntimeError) as error:
         if isinstance(error, MachineError):
             raise

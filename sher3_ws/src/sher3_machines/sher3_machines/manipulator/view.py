@@ -126,13 +126,27 @@ class MotionView:
     @cached_property
     def rigid(self) -> Array:
         """Force that the rigid bodies of the model need on every motor, (g, k), N or N m."""
-        return self._on_motors(self.model.needed(*self._of_links)[..., None])[..., 0]
+        step = np.array([j.step_inertia for j in self.joints])
+        return self._on_motors(self.model.needed(*self._of_links)[..., None])[..., 0] + step * self.acceleration
 
     @cached_property
     def inertial(self) -> Array:
         """Nominal force that the measured motion needs, (g, k), in the unit of the effort."""
         viscous = np.array([max(j.viscous, SLIP) for j in self.joints])
-        return self.shares * self.rigid + viscous * self.velocity
+        return self.shares * (self.rigid + self.lost) + viscous * self.velocity
+
+    @cached_property
+    def lost(self) -> Array:
+        """Force that the losses of an MJCF model need on every motor, (g, k), N or N m.
+
+        Dry friction turns between two samples of the grid: it is computed for every sample and filtered as efforts are.
+        """
+        losses, run, back = self.model.losses, self.links, np.linalg.inv(self.coupling).T
+        if losses is None:
+            return np.zeros_like(self.velocity)
+        q, v = (x @ back for x in (run.smooth, run.velocity))
+        dry = run.to_grid(losses.dry(q, v, np.gradient(v, run.period, axis=0)))
+        return self._on_motors((dry + losses.in_motion(*self._of_links[:2]))[..., None])[..., 0]
 
     @cached_property
     def _of_links(self) -> tuple[Array, Array, Array]:

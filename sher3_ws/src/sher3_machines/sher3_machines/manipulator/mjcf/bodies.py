@@ -1,8 +1,7 @@
-"""MJCF by MuJoCo's own loader (an extra): defaults, includes and mesh inertias are resolved as MuJoCo does."""
+"""The rigid bodies of an MJCF model as a Pinocchio model."""
 
 from __future__ import annotations
 
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -16,18 +15,16 @@ SLIDE, HINGE = 2, 3
 """MuJoCo's numbers for the kinds of joint that are read (mjtJoint)."""
 
 
-def model_from_mjcf(path: Path) -> pin.Model:
-    """Return the rigid bodies and joints of an MJCF file as a Pinocchio model.
+def model_from_mjcf(source: Any, path: Path) -> pin.Model:
+    """Return the rigid bodies, joints and rotors of an `MjModel` as a Pinocchio model.
+
+    Args:
+        source: as `read_mjcf` returns it.
+        path: that errors name.
 
     Raises:
-        MachineError: MuJoCo is not installed, or a joint neither turns nor slides.
-        ValueError: MuJoCo cannot read the file.
+        MachineError: a joint neither turns nor slides.
     """
-    try:
-        api = import_module("mujoco")
-    except ImportError as error:
-        raise MachineError(f"{path}: MJCF needs MuJoCo", remedy="install the extra `mujoco` of this project") from error
-    source = api.MjModel.from_xml_path(str(path))
     model = pin.Model()
     model.gravity.linear = np.array(source.opt.gravity)
     carrier: list[tuple[int, pin.SE3]] = [(0, pin.SE3.Identity())]

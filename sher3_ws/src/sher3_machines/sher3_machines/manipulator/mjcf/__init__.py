@@ -1,0 +1,1 @@
+"""MJCF as MuJoCo reads it: bodies, losses, drives."""

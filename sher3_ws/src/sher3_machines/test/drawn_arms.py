@@ -1,0 +1,86 @@
+"""Healthy arms of MuJoCo with drawn losses, drives and integrators, and what a log of them holds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+NAMES = ("turn", "shoulder", "elbow", "wrist")
+AXES = ("0 0 1", "0 1 0", "0 1 0", "0 1 0")
+SECONDS, NOISE = 16.0, 1e-5
+"""Length of a log, s, and noise of its encoders, rad."""
+
+
+@dataclass(frozen=True)
+class Logged:
+    """A log, one row for each step: `time` (n,), `ctrl`, `qpos`, `qvel`, `actuator_force` (n, k), and the model."""
+
+    xml: str
+    time: NDArray[np.float64]
+    ctrl: NDArray[np.float64]
+    qpos: NDArray[np.float64]
+    qvel: NDArray[np.float64]
+    actuator_force: NDArray[np.float64]
+
+
+def drawn_xml(rng: np.random.Generator, servo: bool = True, joints: int | None = None) -> str:
+    """Return an arm of two to four joints with drawn masses, losses, rotors, drives and integrator."""
+    k = int(rng.integers(2, 5)) if joints is None else joints
+    method, step = rng.choice(["Euler", "implicit", "implicitfast"]), rng.choice([0.001, 0.002])
+    links = [_link(rng, i) for i in range(k)]
+    bodies = "".join(f'<body pos="0.3 0 0" gravcomp="{rng.choice([0, 0, 0, 1])}">{link}' for link in links)
+    drives = [_drive(rng, i, servo) for i in range(k)]
+    return (
+        f'<mujoco><option timestep="{step}" integrator="{method}"/><worldbody>{bodies}{"</body>" * k}</worldbody>'
+        f"<actuator>{''.join(drives)}</actuator></mujoco>"
+    )
+
+
+def _link(rng: np.random.Generator, i: int) -> str:
+    """Return a joint with its losses, a rotor and sometimes a spring, and the link behind it."""
+    size = 0.5**i
+    losses = {
+        "damping": rng.uniform(0.0, 2.0),
+        "frictionloss": rng.choice([0.0, 1.0]) * rng.uniform(0.2, 1.0),
+        "armature": rng.uniform(0.005, 0.05),
+        "stiffness": rng.choice([0.0, 0.0, 0.0, 3.0]),
+    }
+    words = " ".join(f'{name}="{size * x:.4g}"' for name, x in losses.items())
+    mass = rng.uniform(1.0, 4.0) * size
+    shape = f'fromto="0 0 0 {rng.uniform(0.2, 0.4):.3g} 0 0" size="0.03" mass="{mass:.3g}"'
+    link = (
+        f'<joint name="{NAMES[i]}" axis="{AXES[i]}" {words}/><geom type="capsule" {shape} contype="0" conaffinity="0"/>'
+    )
+    return link
+
+
+def _drive(rng: np.random.Generator, i: int, servo: bool) -> str:
+    gear, stiff = rng.choice([1.0, 1.0, -1.0, 3.0]), rng.uniform(200.0, 600.0) * 0.5**i
+    if not servo:
+        return f'<motor joint="{NAMES[i]}" gear="{gear}"/>'
+    kp = stiff / gear**2
+    return f'<position joint="{NAMES[i]}" kp="{kp:.4g}" kv="{rng.uniform(0.03, 0.06) * kp:.4g}" gear="{gear}"/>'
+
+
+def logged(xml: str, seed: int) -> Logged:
+    """Run a model along drawn sines and return its log; motors are driven by a PD law outside the model."""
+    model = mujoco.MjModel.from_xml_string(xml)
+    data, rng, k = mujoco.MjData(model), np.random.default_rng(seed), model.nu
+    gear = model.actuator_gear[:, 0]
+    servo = model.actuator_biastype[0] == mujoco.mjtBias.mjBIAS_AFFINE
+    pace, phase = rng.uniform(0.15, 0.9, (k, 3)), rng.uniform(0.0, 2.0 * np.pi, (k, 3))
+    stiff = 300.0 * 0.5 ** np.arange(k)
+    rows = []
+    for _ in range(round(SECONDS / model.opt.timestep)):
+        asked = 0.35 * np.sin(2.0 * np.pi * pace * data.time + phase).sum(axis=1) * min(1.0, data.time)
+        data.ctrl[:] = asked * gear if servo else (stiff * (asked - data.qpos) - 0.05 * stiff * data.qvel) / gear
+        mujoco.mj_forward(model, data)
+        rows.append([data.time, *data.ctrl, *data.qpos, *data.qvel, *data.actuator_force])
+        mujoco.mj_step(model, data)
+    all_rows = np.array(rows)
+    parts = [all_rows[:, 1 + i * k : 1 + (i + 1) * k] for i in range(4)]
+    parts[1] = parts[1] + NOISE * rng.standard_normal(parts[1].shape)
+    return Logged(xml, all_rows[:, 0], *parts)
