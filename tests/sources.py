@@ -9,7 +9,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 SOURCES = ROOT / "sher3_ws" / "src"
-FILES = sorted(SOURCES.glob("*/sher3_*/**/*.py"))
+FILES = sorted([*SOURCES.glob("*/sher3_*/**/*.py"), *SOURCES.glob("*/sher3/**/*.py")])
 FILE_OF = {
     ".".join(path.relative_to(SOURCES).with_suffix("").parts[1:]).removesuffix(".__init__"): path for path in FILES
 }

@@ -161,7 +161,7 @@ def test_the_folders_of_a_package_import_in_no_circle(package):
 
 def room_of(path: Path) -> str:
     """Return the folder of a package in which a file lies, or the file's own name when it lies in none."""
-    return path.relative_to(SOURCES / package_of(path) / package_of(path)).with_suffix("").parts[0]
+    return path.relative_to(SOURCES / package_of(path)).with_suffix("").parts[1]
 
 
 def rooms_imported(path: Path) -> set[str]:

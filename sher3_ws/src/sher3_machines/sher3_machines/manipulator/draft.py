@@ -11,9 +11,8 @@ from sher3_machines.errors import MachineError
 from sher3_machines.intake.draft import Draft, drafted, written
 from sher3_machines.intake.names import EFFORT, words_of
 from sher3_machines.intake.tables import read_tables
-from sher3_machines.manipulator.mjcf.drives import driven_in
+from sher3_machines.manipulator.bodies import Bodies, read_bodies
 from sher3_machines.manipulator.mjcf.joint import OWN_EFFORT, drive_joint
-from sher3_machines.manipulator.model import joints_of
 
 TORQUES = EFFORT - frozenset(("iq", "strom", "amps"))
 """Words of an effort that is a force or a torque where its name has no unit."""
@@ -37,42 +36,41 @@ def draft_arm(path: Path, model: Path, rate: float | None = None) -> Draft:
             the joints.
     """
     guesses: list[str] = []
-    return written(of_arm(drafted(path, read_tables(path), rate, guesses), model, guesses), guesses)
+    return written(of_arm(drafted(path, read_tables(path), rate, guesses), read_bodies(model), guesses), guesses)
 
 
-def of_arm(data: Mapping[str, Any], model: Path, guesses: list[str]) -> dict[str, Any]:
+def of_arm(data: Mapping[str, Any], model: Bodies, guesses: list[str]) -> dict[str, Any]:
     """Return a drafted chain of axes as the joints of a model; raises MachineError where they do not fit.
 
     Args:
         data: of the chain.
-        model: URDF or MJCF file.
+        model: of the arm.
         guesses: so far; those on driving and mass of single axes are taken out.
     """
-    slides = joints_of(model)
+    slides = model.joints
     axes = {axis["name"]: axis for axis in data["axes"]}
-    found = fitted(list(axes), list(slides), model)
+    found = fitted(list(axes), list(slides), model.label)
     guesses[:] = [g for g in guesses if not OF_AXIS.search(g)]
     guesses += [
         f"{axis} is joint {joint}, because of its {why}" for axis, (joint, why) in found.items() if axis != joint
     ]
     joints = [_joint(axes[axis], joint, slides[joint], guesses) for axis, (joint, _) in found.items()]
-    drives = driven_in(model)
     for joint in joints:
-        if joint["name"] in drives:
+        if joint["name"] in model.drives:
             effort = joint["signals"].get("effort", {})
             words = set(words_of(effort.get("column", "")))
-            own = drives[joint["name"]]
+            own = model.drives[joint["name"]]
             if "actuator" in words and "qfrc" not in words and own.drive is not None and own.drive.gear != 1.0:
                 effort["factor"] = own.drive.gear
             drive_joint(joint, own, bool(words & OWN_EFFORT), guesses)
     left = [joint for joint in slides if joint not in {j for j, _ in found.values()}]
     if left:
         guesses.append(f"joints that were not recorded stay at zero: {', '.join(left)}")
-    out = {"kind": "manipulator", "name": data["name"], "model": str(model.resolve()), "time": data["time"]}
+    out = {"kind": "manipulator", "name": data["name"], "model": str(Path(model.label).resolve()), "time": data["time"]}
     return {**out, "joints": joints}
 
 
-def fitted(axes: Sequence[str], joints: Sequence[str], model: Path) -> dict[str, tuple[str, str]]:
+def fitted(axes: Sequence[str], joints: Sequence[str], model: object) -> dict[str, tuple[str, str]]:
     """Return axis -> joint and why: by name, by number, or in their order where there are as many.
 
     Raises:

@@ -14,9 +14,10 @@ from sher3_machines.axes.kind import packed, unpacked
 from sher3_machines.axes.record import AxesRun, axes_run, parts_of_record
 from sher3_machines.intake.kind import Kind
 from sher3_machines.intake.tables import Tables
+from sher3_machines.manipulator.bodies import Bodies, read_bodies
 from sher3_machines.manipulator.description import ManipulatorDescription
 from sher3_machines.manipulator.machine import Manipulator
-from sher3_machines.manipulator.model import load_model
+from sher3_machines.manipulator.model import arm_model
 
 
 class ManipulatorKind(Kind[ManipulatorDescription, AxesRun]):
@@ -43,9 +44,15 @@ class ManipulatorKind(Kind[ManipulatorDescription, AxesRun]):
 
     def machine(self, description: ManipulatorDescription) -> Manipulator:
         """Return the arm; raises MachineError for a model that cannot be read or has no such joint."""
-        names = [j.name for j in description.joints]
-        stated = [j.name for j in description.joints if "viscous" in j.model_fields_set]
-        return Manipulator(description, load_model(Path(description.model), names, description.gravity, stated))
+        return arm_of(description, read_bodies(Path(description.model)))
+
+
+def arm_of(description: ManipulatorDescription, bodies: Bodies) -> Manipulator:
+    """Return the arm of a description and a model; raises MachineError for a model that has no such joint."""
+    stated = [j.name for j in description.joints if "viscous" in j.model_fields_set]
+    return Manipulator(
+        description, arm_model(bodies, [j.name for j in description.joints], description.gravity, stated)
+    )
 
 
 def with_servos(run: AxesRun, description: ManipulatorDescription) -> AxesRun:

@@ -10,17 +10,14 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pinocchio as pin
-from sher3_common import FileError, read_text
 from sher3_diagnosis.channel import Array
 
 from sher3_machines.errors import MachineError
-from sher3_machines.manipulator.mjcf.bodies import model_from_mjcf
+from sher3_machines.manipulator.bodies import Bodies, read_bodies, slides
 from sher3_machines.manipulator.mjcf.losses import Losses
-from sher3_machines.manipulator.mjcf.reading import MAX_BYTES, is_mjcf, read_mjcf
 
 PARAMETERS = 10
 """Inertial parameters of a body: mass, mass times centre (3), inertia about its joint (6), as Pinocchio orders them."""
@@ -60,7 +57,7 @@ class ArmModel:
     @cached_property
     def linear(self) -> tuple[bool, ...]:
         """Whether each recorded joint slides."""
-        return tuple(_slides(self.pinocchio.joints[self.pinocchio.getJointId(n)]) for n in self.names)
+        return tuple(slides(self.pinocchio.joints[self.pinocchio.getJointId(n)]) for n in self.names)
 
     def regressor(self, q: Array, v: Array, a: Array) -> Array:
         """Return the force that each inertial parameter asks of each recorded joint, (n, k, 10 links).
@@ -135,15 +132,14 @@ def load_model(
     Raises:
         MachineError: the file cannot be read, has no such joint, or a joint of it neither turns nor slides.
     """
-    model, source = _read(path)
-    reduced = reduced_model(model, names, gravity, path)
-    return ArmModel(reduced, tuple(names), losses=None if source is None else Losses(source, names, stated))
+    return arm_model(read_bodies(path), names, gravity, stated)
 
 
-def reduced_model(
-    model: pin.Model, names: Sequence[str], gravity: tuple[float, float, float] | None, path: object
-) -> pin.Model:
-    """Return a model whose joints are locked but for the recorded ones; raises MachineError as `load_model` does."""
+def arm_model(
+    bodies: Bodies, names: Sequence[str], gravity: tuple[float, float, float] | None, stated: Collection[str] = ()
+) -> ArmModel:
+    """Return a model whose joints are locked but for the recorded ones; arguments and errors as of `load_model`."""
+    path, model, source = bodies.label, bodies.pinocchio, bodies.mujoco
     missing = [n for n in names if not model.existJointName(n)]
     if missing:
         have = ", ".join(list(model.names)[1:])
@@ -166,30 +162,4 @@ def reduced_model(
         reduced.gravity.linear = np.array(gravity)
     if not any(b.mass > 0.0 for b in list(reduced.inertias)[1:]):
         raise MachineError(f"{path}: states no masses", value="0 kg", remedy="give a model with inertias")
-    return reduced
-
-
-def joints_of(path: Path) -> dict[str, bool]:
-    """Return joint -> whether it slides, of every joint of a model that turns or slides; raises MachineError."""
-    model, _ = _read(path)
-    moving = [j for j in range(1, model.njoints) if model.joints[j].nv == 1]
-    return {model.names[j]: _slides(model.joints[j]) for j in moving}
-
-
-def _read(path: Path) -> tuple[pin.Model, Any]:
-    """Return the bodies of a file, and MuJoCo's model of an MJCF file."""
-    try:
-        text = read_text(path, MAX_BYTES)
-        if "<!DOCTYPE" in text:  # what declares entities can expand without bound or name other files
-            raise MachineError(f"{path}: has a document type", value="<!DOCTYPE", remedy="give a plain file")
-        source = read_mjcf(path) if is_mjcf(text) else None
-        return (pin.buildModelFromXML(text) if source is None else model_from_mjcf(source, path)), source
-    except (FileError, ValueError, RuntimeError) as error:
-        if isinstance(error, MachineError):
-            raise
-        remedy = "give a URDF or MJCF file"
-        raise MachineError(f"{path}: cannot be read", value=str(error)[:120], remedy=remedy) from error
-
-
-def _slides(joint: pin.JointModel) -> bool:
-    return joint.shortname().startswith("JointModelP")
+    return ArmModel(reduced, tuple(names), losses=None if source is None else Losses(source, names, stated))

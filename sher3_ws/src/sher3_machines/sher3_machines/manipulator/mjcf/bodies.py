@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,12 +14,12 @@ SLIDE, HINGE = 2, 3
 """MuJoCo's numbers for the kinds of joint that are read (mjtJoint)."""
 
 
-def model_from_mjcf(source: Any, path: Path) -> pin.Model:
+def model_from_mjcf(source: Any, label: str) -> pin.Model:
     """Return the rigid bodies, joints and rotors of an `MjModel` as a Pinocchio model.
 
     Args:
-        source: as `read_mjcf` returns it.
-        path: that errors name.
+        source: of MuJoCo.
+        label: that errors name.
 
     Raises:
         MachineError: a joint neither turns nor slides.
@@ -34,7 +33,7 @@ def model_from_mjcf(source: Any, path: Path) -> pin.Model:
         pose = placed * _pose(source.body_pos[body], source.body_quat[body])
         first, count = source.body_jntadr[body], source.body_jntnum[body]
         for joint in range(first, first + count):
-            parent, pose = _add(model, source, joint, parent, pose, path)
+            parent, pose = _add(model, source, joint, parent, pose, label)
             armature.append(float(source.dof_armature[source.jnt_dofadr[joint]]))
         carrier.append((parent, pose))
         inertia = _inertia(source, body).se3Action(pose)
@@ -45,13 +44,13 @@ def model_from_mjcf(source: Any, path: Path) -> pin.Model:
     return model
 
 
-def _add(model: pin.Model, source: Any, joint: int, parent: int, pose: pin.SE3, path: Path) -> tuple[int, pin.SE3]:
+def _add(model: pin.Model, source: Any, joint: int, parent: int, pose: pin.SE3, label: str) -> tuple[int, pin.SE3]:
     """Add a joint; its frame sits at its anchor. Return it, and the body's pose in that frame."""
     kinds = {SLIDE: pin.JointModelPrismaticUnaligned, HINGE: pin.JointModelRevoluteUnaligned}
     kind, name = int(source.jnt_type[joint]), source.joint(joint).name or f"joint{joint}"
     if kind not in kinds:
         raise MachineError(
-            f"{path}: joint {name} neither turns nor slides", value=f"mjtJoint {kind}", remedy="fix the arm's base"
+            f"{label}: joint {name} neither turns nor slides", value=f"mjtJoint {kind}", remedy="fix the arm's base"
         )
     anchor = pin.SE3(np.eye(3), np.array(source.jnt_pos[joint]))
     made = model.addJoint(parent, kinds[kind](np.array(source.jnt_axis[joint])), pose * anchor, name)

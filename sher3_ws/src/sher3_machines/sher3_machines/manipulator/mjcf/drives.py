@@ -6,15 +6,11 @@ An actuator gives gain * control + bias (chapter Computation of MuJoCo's documen
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
-from sher3_common import FileError, read_text
 
-from sher3_machines.errors import MachineError
 from sher3_machines.manipulator.mjcf.bodies import SLIDE
-from sher3_machines.manipulator.mjcf.reading import MAX_BYTES, is_mjcf, read_mjcf
 
 EULER, IMPLICIT, IMPLICIT_FAST = 0, 2, 3
 """MuJoCo's numbers of integrators (mjtIntegrator)."""
@@ -71,14 +67,6 @@ class Driven:
 def driven(source: Any) -> dict[str, Driven]:
     """Return joint -> how an `MjModel` drives it, of every joint that turns or slides."""
     return {_name(source.joint(j).name, j): _driven(source, j) for j in range(source.njnt) if source.jnt_type[j] > 1}
-
-
-def driven_in(path: Path) -> dict[str, Driven]:
-    """Return the same of a model file; nothing of a URDF, which has no drives. Raises MachineError."""
-    try:
-        return driven(read_mjcf(path)) if is_mjcf(read_text(path, MAX_BYTES)) else {}
-    except FileError as error:
-        raise MachineError(f"{path}: cannot be read", value=str(error), remedy="give a URDF or MJCF file") from error
 
 
 def _name(name: str, joint: int) -> str:

@@ -27,15 +27,15 @@ def mujoco(wanted: object = "MJCF") -> ModuleType:
         raise MachineError(f"{wanted}: MJCF needs MuJoCo", remedy=remedy) from error
 
 
-def read_mjcf(path: Path) -> Any:
-    """Return an MJCF file as MuJoCo's `MjModel`.
+def compiled(text: str, label: str, path: Path | None = None) -> Any:
+    """Return an MJCF text as MuJoCo's `MjModel`, with what lies beside its file where there is one.
 
     Raises:
-        MachineError: MuJoCo is not installed, or cannot read the file.
+        MachineError: MuJoCo is not installed, or refuses the model.
     """
-    api = mujoco(path)
+    api = mujoco(label).MjModel
     try:
-        return api.MjModel.from_xml_path(str(path))
+        return api.from_xml_string(text) if path is None else api.from_xml_path(str(path))
     except ValueError as error:
         remedy = "correct it until MuJoCo loads it"
-        raise MachineError(f"{path}: cannot be read", value=str(error)[:120], remedy=remedy) from error
+        raise MachineError(f"{label}: cannot be read", value=str(error)[:120], remedy=remedy) from error

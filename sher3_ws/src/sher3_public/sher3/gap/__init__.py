@@ -1,0 +1,25 @@
+"""Why a robot does not do what its simulation does: `diagnose(model, time, control, position, effort)`.
+
+    import sher3.gap as gap
+
+    print(gap.diagnose("robot.xml", time, control, position))
+
+Nothing is written unless it is asked for; importing this takes no more than a face.
+"""
+
+from typing import TYPE_CHECKING
+
+from sher3_common.faces import lazy
+
+if TYPE_CHECKING:
+    from sher3_public import Answer as Answer
+    from sher3_public import Corrected as Corrected
+    from sher3_public import InputError as InputError
+    from sher3_public import diagnose as diagnose
+
+__all__ = ["Answer", "Corrected", "InputError", "diagnose"]
+
+__getattr__, __dir__ = lazy(
+    "sher3_public",
+    {"answer": ("Answer",), "correcting": ("Corrected",), "errors": ("InputError",), "one_call": ("diagnose",)},
+)

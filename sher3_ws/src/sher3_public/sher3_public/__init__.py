@@ -1,0 +1,16 @@
+"""The diagnosis of a gap in one call, on arrays in memory; people import it as `sher3.gap`."""
+
+from typing import TYPE_CHECKING
+
+from sher3_common.faces import lazy
+
+if TYPE_CHECKING:
+    from sher3_public.answer import Answer as Answer
+    from sher3_public.correcting import Corrected as Corrected
+    from sher3_public.errors import InputError as InputError
+    from sher3_public.one_call import diagnose as diagnose
+
+__getattr__, __dir__ = lazy(
+    __name__,
+    {"answer": ("Answer",), "correcting": ("Corrected",), "errors": ("InputError",), "one_call": ("diagnose",)},
+)

@@ -1,0 +1,197 @@
+"""The description of an arm from arrays and its model: which column is which joint, what each control stands for."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from scipy.signal import savgol_filter
+from sher3_machines.intake.guesses import count_of, scatter
+from sher3_machines.intake.tables import Tables
+from sher3_machines.manipulator.mjcf.drives import Drive, Driven
+from sher3_machines.manipulator.mjcf.joint import drive_joint
+
+from sher3_public.errors import InputError
+from sher3_public.models import Source
+from sher3_public.records import Array, Arrays
+
+LEAST_RESOLUTION = 1e-9
+"""Resolution of an encoder whose readings neither step nor scatter, rad or m: a simulator's own numbers."""
+LIKE_ITS_LAW = 0.02
+"""Share of an effort's scatter by which it may differ from the law of its drive and be the simulator's own. Recorded
+torques of real drives differ by a tenth and more; rounding and an encoder's noise by less than a hundredth."""
+WINDOW = 21
+"""Samples over which readings are smoothed before they are held against a law; a run has at least 20."""
+
+
+@dataclass(frozen=True)
+class Stated:
+    """What a caller states in place of a guess.
+
+    Attributes:
+        joints: names of the columns of `position`, in their order; empty: guessed.
+        gain: N m (N) per unit of the effort, one number or one for each joint by name, or `unknown`.
+        resolution: one count of the encoders, rad or m; None: told from the readings.
+        simulated: whether the effort is a simulator's own; None: guessed.
+    """
+
+    joints: Sequence[str] = ()
+    gain: float | str | Mapping[str, float | str] = 1.0
+    resolution: float | None = None
+    simulated: bool | None = None
+
+
+@dataclass
+class Described:
+    """A description as plain data, the columns of every run, and what was guessed."""
+
+    data: dict[str, Any]
+    tables: list[Tables]
+    guesses: list[str] = field(default_factory=list)
+
+
+def described(source: Source, runs: Sequence[Arrays], stated: Stated) -> Described:
+    """Describe the joints of an arm.
+
+    Raises:
+        InputError: the arrays do not fit the joints of the model.
+    """
+    guesses: list[str] = []
+    names = joints_of(source, runs[0].position.shape[1], stated.joints, guesses)
+    drives = source.bodies.drives
+    controls = [control_of(name, i, len(names), runs[0].control, drives, source) for i, name in enumerate(names)]
+    joints = [_joint(name, i, source, runs, stated, controls[i] is not None) for i, name in enumerate(names)]
+    own = simulated(joints, names, controls, runs, drives, stated.simulated, guesses)
+    for joint in joints:
+        if joint["name"] in drives:
+            drive_joint(joint, drives[joint["name"]], own, guesses)
+        elif "command" in joint["signals"]:
+            joint["signals"].pop("command")
+            guesses.append(f"{joint['name']}: its control is not used, because the model has no drives")
+    left = [name for name in source.bodies.joints if name not in names]
+    if left:
+        guesses.append(f"joints that were not recorded stay at zero: {', '.join(left)}")
+    data = {"kind": "manipulator", "name": source.name, "model": source.bodies.label, "time": {"column": "time"}}
+    return Described({**data, "joints": joints}, [_table(run, names, controls) for run in runs], guesses)
+
+
+def joints_of(source: Source, columns: int, stated: Sequence[str], guesses: list[str]) -> list[str]:
+    """Return the joint of each column; raises InputError where the columns do not fit."""
+    known, drives = list(source.bodies.joints), source.bodies.drives
+    if stated:
+        wrong = [name for name in stated if name not in known]
+        if wrong or len(stated) != columns:
+            value = f"{len(stated)} names{f', {wrong[0]!r}' if wrong else ''}"
+            limit = f"{columns} columns; joints: {', '.join(known)}"
+            raise InputError("joints do not fit the positions", value=value, limit=limit, remedy="name one for each")
+        return list(stated)
+    driven = [name for name in known if name in drives and drives[name].drive is not None]
+    for which, found in (("joints", known), ("driven joints", driven)):
+        if len(found) == columns:
+            guesses.append(f"positions are those of the model's {which} in its order: {', '.join(found)}")
+            return found
+    remedy = "name the joint of each column: joints=[...]"
+    limit = f"{len(known)} joints: {', '.join(known[:12])}"
+    raise InputError(
+        "positions do not fit the joints of the model", value=f"{columns} columns", limit=limit, remedy=remedy
+    )
+
+
+def control_of(
+    joint: str, place: int, joints: int, control: Array | None, drives: Mapping[str, Driven], source: Source
+) -> int | None:
+    """Return the column of `control` that drives a joint, None where none does; raises InputError on a wrong width."""
+    if control is None:
+        return None
+    own = drives[joint].drive if joint in drives else None
+    actuators = source.bodies.mujoco.nu if source.bodies.mujoco is not None else 0
+    if control.shape[1] == actuators:
+        return None if own is None else own.number
+    if control.shape[1] == joints:
+        return place
+    limit = f"{actuators} actuators or {joints} joints"
+    remedy = "give one column for each actuator of the model, or for each joint"
+    raise InputError("control does not fit", value=f"{control.shape[1]} columns", limit=limit, remedy=remedy)
+
+
+def _joint(
+    name: str, place: int, source: Source, runs: Sequence[Arrays], stated: Stated, controlled: bool
+) -> dict[str, Any]:
+    slides = source.bodies.joints[name]
+    unit, force = ("m", "N") if slides else ("rad", "N*m")
+    signals = {"position": {"column": f"{name}.position", "unit": unit}}
+    for signal, own in (("effort", force), ("load", unit)):
+        x = getattr(runs[0], signal)
+        if x is not None and np.isfinite(x[:, place]).any():
+            signals[signal] = {"column": f"{name}.{signal}", "unit": own}
+    if controlled:
+        signals["command"] = {"column": f"{name}.control", "unit": "1"}
+    out: dict[str, Any] = {"name": name, "motion": "linear" if slides else "rotary", "signals": signals}
+    out["encoder_resolution"] = stated.resolution or resolution(runs[0].position[:, place])
+    gain = stated.gain.get(name, 1.0) if isinstance(stated.gain, Mapping) else stated.gain
+    return out if gain == 1.0 else {**out, "gain": gain}
+
+
+def resolution(x: Array) -> float:
+    """Return the count of an encoder, rad or m: its smallest step, else its scatter."""
+    return float(f"{max(count_of(x) or scatter(x), LEAST_RESOLUTION):.6g}")
+
+
+def simulated(
+    joints: Sequence[Mapping[str, Any]],
+    names: Sequence[str],
+    controls: Sequence[int | None],
+    runs: Sequence[Arrays],
+    drives: Mapping[str, Driven],
+    stated: bool | None,
+    guesses: list[str],
+) -> bool:
+    """Return whether the efforts are a simulator's own: as stated, else where each is that of its drive's law."""
+    if stated is not None:
+        return stated
+    run, off = runs[0], []
+    if run.effort is None or run.control is None or len(run.time) < WINDOW:
+        return False
+    for place, (name, column) in enumerate(zip(names, controls, strict=True)):
+        drive = drives[name].drive if name in drives else None
+        if drive is None or column is None or "effort" not in joints[place]["signals"]:
+            continue
+        limit = np.inf if drive.limit is None else drive.limit
+        off.append(
+            from_law(run.time, run.position[:, place], drive, run.control[:, column], run.effort[:, place], limit)
+        )
+    own = bool(off) and max(off) < LIKE_ITS_LAW
+    if off:
+        kind = "a simulator's own" if own else "measured"
+        why = f"differ by {max(off):.2g} of their scatter at most from the law of their drives"
+        guesses.append(f"efforts are {kind}: they {why}; simulated=True or False")
+    return own
+
+
+def from_law(time: Array, q: Array, drive: Drive, control: Array, effort: Array, limit: float) -> float:
+    """Return by how much an effort (n,) differs from its drive's law, over its own scatter.
+
+    Encoder noise is smoothed away, and what half a step of delay in the law's speed adds, a share of the acceleration,
+    is taken off.
+    """
+    period = float(np.median(np.diff(time)))
+    v, a = (savgol_filter(q, WINDOW, 3, deriv=k, delta=period) for k in (1, 2))
+    asked = drive.factor * control
+    law = drive.position_gain * (asked - q) - drive.velocity_gain * v if drive.servo else asked
+    left = savgol_filter(effort - np.clip(law, -limit, limit), WINDOW, 3)
+    left = left - a * (left @ a) / max(a @ a, np.finfo(float).tiny)
+    return float(np.std(left) / max(np.std(effort), np.finfo(float).tiny))
+
+
+def _table(run: Arrays, names: Sequence[str], controls: Sequence[int | None]) -> Tables:
+    out: dict[str, Array] = {"time": run.time}
+    for place, (name, column) in enumerate(zip(names, controls, strict=True)):
+        for signal in ("position", "effort", "load"):
+            x = getattr(run, signal)
+            if x is not None:
+                out[f"{name}.{signal}"] = x[:, place]
+        if run.control is not None and column is not None:
+            out[f"{name}.control"] = run.control[:, column]
+    return out

@@ -1,0 +1,130 @@
+"""Records as people hold them, arrays or a table with names, brought to columns."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from sher3_public.errors import InputError
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Arrays:
+    """One run of k joints, n samples.
+
+    Attributes:
+        time: (n,), s.
+        position: (n, k), rad or m.
+        control: (n, m), one column for each actuator of the model or each joint; None: not recorded.
+        effort: (n, k), N m or N; None: not recorded.
+        load: (n, k), second encoders behind the gears, rad or m; None: none.
+    """
+
+    time: Array
+    position: Array
+    control: Array | None = None
+    effort: Array | None = None
+    load: Array | None = None
+
+
+def is_table(record: object) -> bool:
+    """Return whether a record is a table with names: a mapping, or a frame of pandas or Polars."""
+    return isinstance(record, Mapping) or (hasattr(record, "columns") and hasattr(record, "__getitem__"))
+
+
+def columns_of(table: Any) -> dict[str, Array]:
+    """Return the columns of a table by name; texts are left out."""
+    names = list(table) if isinstance(table, Mapping) else [str(name) for name in table.columns]
+    found = {str(name): np.asarray(table[name]) for name in names}
+    return {name: x.astype(float) for name, x in found.items() if np.issubdtype(x.dtype, np.number)}
+
+
+def arrays_of(time: Any, control: Any, position: Any, effort: Any, load: Any) -> list[Arrays]:
+    """Return the runs: each argument is an array, or a list of arrays, one for each run.
+
+    Raises:
+        InputError: lists differ in length, or arrays in their number of samples.
+    """
+    given = {"time": time, "control": control, "position": position, "effort": effort, "load": load}
+    several = {name: list(x) for name, x in given.items() if is_several(x)}
+    counts = {name: len(x) for name, x in several.items()}
+    if len(set(counts.values())) > 1 or (several and any(x is not None and n not in several for n, x in given.items())):
+        each = ", ".join(f"{name} {counts.get(name, 'one array')}" for name, x in given.items() if x is not None)
+        raise InputError("arguments differ in their number of runs", value=each, remedy="give each a list of arrays")
+    runs = next(iter(counts.values()), 1)
+    return [_run({name: several[name][i] if name in several else x for name, x in given.items()}) for i in range(runs)]
+
+
+def is_several(x: object) -> bool:
+    """Return whether an argument is a list of runs: a list or tuple whose entries are arrays or tables themselves."""
+    return (
+        isinstance(x, list | tuple) and bool(x) and all(is_table(e) or (hasattr(e, "__len__") and _long(e)) for e in x)
+    )
+
+
+def _long(x: Any) -> bool:
+    """Return whether an entry of a list is a run, not the joints of one sample: a run has more samples than joints."""
+    return len(x) >= LEAST
+
+
+LEAST = 20
+"""Samples of a run at least, as the diagnosis asks for them."""
+
+
+def _run(given: Mapping[str, Any]) -> Arrays:
+    for name in ("time", "position"):
+        if given[name] is None:
+            raise InputError(f"{name} is missing", remedy="give time (n,) and position (n, k)")
+    time = _numbers("time", given["time"])
+    if time.ndim != 1:
+        raise InputError("time is no single column", value=time.shape, limit="(n,)", remedy="give stamps in s")
+    wide = {name: _columns(name, given[name], len(time)) for name in ("position", "control", "effort", "load")}
+    position = wide.pop("position")
+    assert position is not None
+    for name in ("effort", "load"):
+        x = wide[name]
+        if x is not None and x.shape != position.shape:
+            remedy = "give one column for each joint; NaN where a joint has none"
+            raise InputError(f"{name} and position differ in shape", value=x.shape, limit=position.shape, remedy=remedy)
+    return Arrays(time, position, **wide)
+
+
+def _numbers(name: str, x: ArrayLike) -> Array:
+    try:
+        return np.asarray(x, dtype=float)
+    except (TypeError, ValueError) as error:
+        raise InputError(f"{name} is no array of numbers", value=str(error)[:80], remedy="give numbers") from error
+
+
+def _columns(name: str, x: ArrayLike | None, samples: int) -> Array | None:
+    """Return an array (n, k); (n,) is one column."""
+    if x is None:
+        return None
+    found = _numbers(name, x)
+    found = found[:, None] if found.ndim == 1 else found
+    if found.ndim != 2 or len(found) != samples:
+        remedy = "give one row for each stamp"
+        raise InputError(f"{name} and time differ in length", value=found.shape, limit=f"({samples}, k)", remedy=remedy)
+    return found
+
+
+def per_run(
+    tags: Mapping[str, Sequence[object]] | Sequence[Mapping[str, object]] | None, runs: int
+) -> list[dict[str, Any]]:
+    """Return the tags of each run; raises InputError where there are not as many values as runs."""
+    if tags is None:
+        return []
+    if isinstance(tags, Mapping):
+        for tag, values in tags.items():
+            if isinstance(values, str) or len(values) != runs:
+                raise InputError(f"tag {tag} has not one value for each run", value=values, limit=f"{runs} runs")
+        return [{tag: values[i] for tag, values in tags.items()} for i in range(runs)]
+    if len(tags) != runs:
+        raise InputError("tags are not as many as runs", value=len(tags), limit=f"{runs} runs")
+    return [dict(x) for x in tags]

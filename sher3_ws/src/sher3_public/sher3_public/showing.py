@@ -1,0 +1,80 @@
+"""The answer as a person sees it: a figure, and the HTML of a notebook."""
+
+from __future__ import annotations
+
+from html import escape
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.figure import Figure
+from sher3_diagnosis.channel import Channel
+from sher3_diagnosis.diagnosis import Diagnosis
+from sher3_diagnosis.finding import Finding
+from sher3_diagnosis.quantify.closure import residual_after
+from sher3_diagnosis.report.drawing import STYLE
+from sher3_diagnosis.report.summary import cause_text
+from sher3_diagnosis.report.traces import traces
+from sher3_diagnosis.words import place, words
+
+if TYPE_CHECKING:
+    from sher3_public.answer import Answer
+
+MOST = 4
+"""Places that a figure shows at most."""
+WIDE, HIGH = 8.0, 2.0
+"""Width of a figure and height of one picture of it, inch."""
+
+
+def figure_of(diagnosis: Diagnosis[Any]) -> Figure:
+    """Return the unexplained force or motion at the largest gaps, before and after the causes, over the floor."""
+    shown = [(f, g.channel) for f in diagnosis.findings for g in f.gaps if g.significant][:MOST]
+    shown = shown or [(f, f.gaps[0].channel) for f in diagnosis.findings if f.gaps][:1]
+    with rc_context(STYLE):
+        figure = Figure(figsize=(WIDE, HIGH * max(1, len(shown))), layout="constrained")
+        rows = figure.subplots(max(1, len(shown)), 1, squeeze=False)[:, 0]
+        for axes, (finding, channel) in zip(rows, shown, strict=False):
+            _draw(axes, finding, channel)
+        if shown:
+            rows[0].legend(loc="upper right", fontsize="small")
+            rows[-1].set_xlabel("sample of the residual grid")
+    return figure
+
+
+def _draw(axes: Any, finding: Finding[Any], channel: Channel) -> None:
+    evidence = finding.evidence
+    after = residual_after(evidence, finding.attribution.fit, channel)
+    before = residual_after(evidence, evidence.null(), channel)
+    start = 0
+    for run in sorted(after):
+        x = [np.asarray(found[run]).reshape(len(found[run]), -1)[:, 0] for found in (before, after)]
+        place_ = start + np.arange(len(x[0]))
+        for y, colour, label in ((x[0], "0.65", "model alone"), (x[1], "C0", "with the causes")):
+            axes.plot(place_, y, color=colour, lw=0.8, label=label if start == 0 else None)
+        start += len(place_)
+    axes.set_title(f"{words(channel.stage)}, {place(channel.actuator)}", fontsize="small", loc="left")
+    axes.set_ylabel(evidence.units[channel].replace("*", "·") if isinstance(evidence.units, dict) else "")
+
+
+def html_of(answer: Answer) -> str:
+    """Return the answer as HTML: headline, causes, the first picture, and what was guessed."""
+    rows = "".join(f"<li>{escape(cause_text(cause))}</li>" for cause in answer.causes)
+    places = "".join(f"<li>{escape(text)}</li>" for text in answer.where())
+    with rc_context(STYLE):
+        drawn = traces(answer.diagnosis, answer.diagnosis.machine.reporter())[:1]
+    picture = "".join(f"<figure>{trace.svg}</figure>" for trace in drawn)
+    guesses = "".join(f"<li>{escape(text)}</li>" for text in answer.guessed)
+    notes = "".join(f"<li>{escape(text)}</li>" for text in answer.notes)
+    return (
+        f"<div><p><b>{escape(answer.headline)}</b></p>"
+        + (f"<p>causes</p><ul>{rows}</ul>" if rows else "")
+        + (f"<p>places</p><ul>{places}</ul>" if places else "")
+        + picture
+        + (
+            f"<details><summary>guessed ({len(answer.guessed)})</summary><ul>{guesses}</ul></details>"
+            if guesses
+            else ""
+        )
+        + (f"<details><summary>notes ({len(answer.notes)})</summary><ul>{notes}</ul></details>" if notes else "")
+        + "</div>"
+    )

@@ -1,0 +1,63 @@
+"""What can be made of an answer: words, HTML, figure, report, rows, a corrected model."""
+
+import sys
+from types import ModuleType
+from xml.etree import ElementTree
+
+import pytest
+import sher3.gap as gap
+
+
+def test_it_prints_itself(answer):
+    lines = str(answer).splitlines()
+    assert lines[0].startswith("verdict  attributed: Coulomb friction on shoulder")
+    assert repr(answer).startswith("Answer(attributed") and sum(x.startswith("guessed") for x in lines) == len(
+        answer.guessed
+    )
+
+
+def test_a_notebook_shows_headline_cause_and_picture(answer):
+    page = answer._repr_html_()
+    assert "Coulomb friction on shoulder" in page and "<svg" in page and "guessed (" in page
+    ElementTree.fromstring(page[: page.index("<figure>")] + "</div>")
+
+
+def test_the_figure_has_a_picture_for_each_place(answer):
+    assert len(answer.plot().axes) == len(answer.places) == 1
+    assert "shoulder" in answer.plot().axes[0].get_title(loc="left")
+
+
+def test_the_report_is_written_where_asked(answer, tmp_path):
+    assert answer.report(tmp_path / "r.html") == (tmp_path / "r.html").read_text()
+
+
+def test_the_corrected_model_has_the_friction_of_both(answer, log, more, tmp_path):
+    done = answer.corrected(tmp_path / "fixed.xml")
+    before, after = (
+        {j.get("name"): float(j.get("frictionloss")) for j in ElementTree.fromstring(text).iter("joint")}
+        for text in (log.xml, (tmp_path / "fixed.xml").read_text())
+    )
+    assert after["turn"] == before["turn"]
+    assert after["shoulder"] - before["shoulder"] == pytest.approx(more, rel=0.05)
+    assert len(done.written) == 1 and "shoulder" in str(done)
+    again = gap.diagnose(str(tmp_path / "fixed.xml"), log.time, log.ctrl, log.qpos)
+    assert again.places == [] or again.places[0].gap < 0.1 * answer.places[0].gap
+
+
+def test_what_cannot_be_written_is_said(answer, tmp_path):
+    with pytest.raises(gap.InputError, match="cannot be written"):
+        answer.report(tmp_path / "nowhere" / "r.html")
+    with pytest.raises(gap.InputError, match="written into the model that was given"):
+        answer.corrected(to="urdf")
+
+
+def test_rows_and_frame(answer, monkeypatch):
+    row = answer.to_rows()[0]
+    assert (row["cause"], row["place"], row["unit"]) == ("coulomb_friction", "shoulder", "N*m")
+    monkeypatch.setitem(sys.modules, "pandas", None)
+    with pytest.raises(gap.InputError, match="frames need pandas"):
+        answer.to_frame()
+    pandas = ModuleType("pandas")
+    pandas.DataFrame = lambda rows, columns: (rows, columns)
+    monkeypatch.setitem(sys.modules, "pandas", pandas)
+    assert answer.to_frame() == (answer.to_rows(), list(row))
