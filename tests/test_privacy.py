@@ -13,8 +13,8 @@ READERS = sorted(
     for pattern in ("tests/*.py", "bench/*.py", "tools/*.py", f"{SOURCES.relative_to(ROOT)}/*/test/**/*.py")
     for path in ROOT.glob(pattern)
 )
-PUBLIC = {"_replace", "_asdict", "_fields", "_make"}
-"""Names that the standard library's named tuples show with an underscore."""
+PUBLIC = {"_replace", "_asdict", "_fields", "_make", "_repr_html_"}
+"""Public names with an underscore: those of named tuples, and the one that notebooks ask for."""
 OWN = {"self", "cls"}
 
 

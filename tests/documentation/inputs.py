@@ -59,6 +59,8 @@ class Inputs:
             "gap/case_001/verdict.json": self._verdict,
             "gap/case/verdict.json": self._verdict,
             "DATA.mat": _slide,
+            "robot.xml": _two_links,
+            "log.npz": _log_of_two_links,
             "run/a": lambda path: self._shell(path, "sher3 gap challenge --seeds 11200:11201 --jobs 1 --out {}"),
             "run/b": lambda path: self._shell(path, "sher3 gap challenge --seeds 11201:11202 --jobs 1 --out {}"),
         }
@@ -178,3 +180,33 @@ def _slide(path: Path) -> None:
             position += velocity * period / 5
     q, u = np.array(rows).T
     savemat(path, {"t": time[:, None], "qg": reference[:, None], "qm": q[:, None], "vir": u[:, None]})
+
+
+TWO_LINKS = """<mujoco><option timestep="0.002" integrator="implicitfast"/><worldbody><body pos="0 0 0.5">
+<joint name="shoulder" axis="0 1 0" damping="0.5" frictionloss="0.3" armature="0.02"/>
+<geom type="capsule" fromto="0 0 0 0.4 0 0" size="0.03" mass="2"/><body pos="0.4 0 0">
+<joint name="elbow" axis="0 1 0" damping="0.2" frictionloss="0.2" armature="0.01"/>
+<geom type="capsule" fromto="0 0 0 0.3 0 0" size="0.025" mass="1"/></body></body></worldbody>
+<actuator><position joint="shoulder" kp="400" kv="20"/><position joint="elbow" kp="200" kv="8"/></actuator></mujoco>"""
+
+
+def _two_links(path: Path) -> None:
+    """Write the model of an arm with two position actuators."""
+    path.write_text(TWO_LINKS)
+
+
+def _log_of_two_links(path: Path) -> None:
+    """Write ten seconds of that arm, its elbow with 1.2 N m more dry friction than the model says."""
+    import mujoco
+
+    robot = mujoco.MjModel.from_xml_string(TWO_LINKS)
+    robot.dof_frictionloss[1] += 1.2
+    state, rows = mujoco.MjData(robot), []
+    for t in np.arange(5000) * 0.002:
+        state.ctrl[:] = [0.6 * np.sin(1.7 * t) + 0.3 * np.sin(4.1 * t), 0.7 * np.sin(2.3 * t) + 0.2 * np.sin(5.3 * t)]
+        mujoco.mj_forward(robot, state)
+        rows.append([t, *state.ctrl, *state.qpos])
+        mujoco.mj_step(robot, state)
+    log = np.array(rows)
+    position = log[:, 3:] + 1e-5 * np.random.default_rng(1).normal(size=(len(log), 2))
+    np.savez(path, time=log[:, 0], control=log[:, 1:3], position=position)
