@@ -14,7 +14,7 @@ ROOT = Path(__file__).resolve().parents[4]
 SETTINGS = RunSettings.model_validate({"regime": "free"})
 
 
-@pytest.mark.parametrize("row", {row.component for row in (*ROWS, *WALL)})
+@pytest.mark.parametrize("row", sorted({row.component for row in (*ROWS, *WALL)}))
 def test_every_component_of_the_matrix_belongs_to_one_hazard(row):
     owners = [h.name for h in HAZARDS if any(fnmatchcase(row, pattern) for pattern in h.components)]
     assert len(owners) == 1, owners
