@@ -10,6 +10,8 @@ from sources import ROOT
 
 MADE = ("docs/reference/generated/", "docs/reference/api/")
 """Folders of pages that are written from the sources; what they show is tested where it comes from."""
+ARCHIVE = "docs/archive/"
+"""Folder of earlier figures: commands in it are those of their day."""
 LESSONS = ("docs/tutorial/", "docs/how-to/")
 """Folders whose pages are followed from top to bottom: the commands of a page run one after the other."""
 FENCE = re.compile(r"^(?P<marks>```+)(?P<info>[^`\n]*)\n(?P<text>.*?)^(?P=marks)\s*$", re.M | re.S)
@@ -49,7 +51,7 @@ def pages() -> list[str]:
     """Return the paths of all pages that people write."""
     found = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", ROOT / "docker" / "README.md", *ROOT.glob("docs/**/*.md")]
     paths = sorted(str(path.relative_to(ROOT)) for path in found if path.exists())
-    return [path for path in paths if not path.startswith(MADE)]
+    return [path for path in paths if not path.startswith((*MADE, ARCHIVE))]
 
 
 def blocks(page: str) -> list[Block]:

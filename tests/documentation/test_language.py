@@ -42,3 +42,25 @@ def test_links_lead_to_files(page):
         path = (ROOT / page).parent / target.partition("#")[0]
         made = str(Path(ROOT, page).parent.joinpath(target).resolve().relative_to(ROOT)).startswith(MADE)
         assert made or path.exists(), f"{page}: {target}"
+
+
+GENERATED = {"docs/reference/paper-tables.md", "docs/reference/safety-matrix.md"}
+"""Pages that a command writes: tables of all that it computed."""
+LONG = {"docs/reference/safety.md": 9000, "docs/reference/judged.md": 2600}
+"""Pages that are longer yet, and the words beyond which they may not grow."""
+
+
+@pytest.mark.parametrize("page", sorted(set(pages()) - GENERATED))
+def test_a_page_is_read_in_one_go(page):
+    """At most 2000 words of prose: tables and blocks are looked up, not read."""
+    prose = [line for line in FENCE.sub("", (ROOT / page).read_text()).splitlines() if not line.startswith("|")]
+    words = len(" ".join(prose).split())
+    assert words <= LONG.get(page, 2000), f"{page}: {words} words; move what was measured once to docs/archive"
+
+
+@pytest.mark.parametrize("page", sorted(str(path.relative_to(ROOT)) for path in ROOT.glob("docs/archive/*.md")))
+def test_the_archive_is_reached(page):
+    """From the page whose figures it holds, and not from the menu."""
+    text = (ROOT / page).read_text()
+    assert text.startswith("---\norphan: true\n")
+    assert any(f"archive/{Path(page).name}" in (ROOT / other).read_text() for other in pages())
