@@ -4,6 +4,7 @@
 sources before the others are read, so they cannot lag behind; both folders are ignored by git.
 """
 
+import inspect
 import os
 import sys
 from pathlib import Path
@@ -40,6 +41,8 @@ napoleon_numpy_docstring = False
 napoleon_use_ivar = True
 napoleon_custom_sections = [("Class attributes", "params_style")]
 add_module_names = False
+# Objects in every page's menu are copied page by page: half of the build, for entries that the search finds.
+toc_object_entries = False
 python_use_unqualified_type_names = True
 default_role = "code"
 
@@ -67,9 +70,15 @@ class ExactPythonDomain(PythonDomain):
         return super().find_obj(env, modname, classname, name, type, 0)
 
 
+def skip_bound_methods(app, what, name, thing, skip, options) -> bool | None:
+    """Leave out a method that a module names for short (`add = CATALOGUE.add`): it stands on its class's page."""
+    return True if what == "module" and inspect.ismethod(thing) else None
+
+
 def setup(app) -> None:
     """Write the generated pages, and let autodoc read docstrings that are plain text with Markdown's backticks."""
     app.add_domain(ExactPythonDomain, override=True)
     app.connect("builder-inited", lambda app: write_pages(HERE / "reference"))
+    app.connect("autodoc-skip-member", skip_bound_methods)
     # Before napoleon, which listens with priority 500 and expects reStructuredText.
     app.connect("autodoc-process-docstring", to_restructured_text, priority=100)
