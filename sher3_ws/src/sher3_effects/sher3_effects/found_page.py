@@ -34,6 +34,16 @@ from sher3_effects.page import Page
 
 SCHEMA = "sher3.found/1"
 SITES = (*ACTUATORS, "tip", "force_sensor")
+"""Places of the SHER; any other is an axis or a joint of another machine."""
+OTHERS = ("axis", "servo", "joint")
+"""Kinds of machine, beside the SHER, whose views tell what a formula is made of."""
+CONSTANTS = {
+    "1": "offset",
+    "itself(velocity)": "viscous",
+    "itself(position)": "spring",
+    "itself(acceleration)": "inertia",
+}
+"""Feature of a force -> constant of the equation of motion that its coefficient is."""
 WIDEST = 100.0
 """Largest size of a coefficient in the plant, over that of the file."""
 SHAPED = 10.0
@@ -60,7 +70,6 @@ class FoundPage(Page):
         terms: of the formula.
     """
 
-    kinds = ("robot",)
     family = "found"
     best = Best("sweep", "constant speeds over the whole stroke show most laws")
     leaves_out = "what a formula of few terms does not say"
@@ -98,7 +107,7 @@ class FoundPage(Page):
         stages = AT_TIP if self.stage in AT_TIP else (self.stage,)
         main = Channel(self.stage, site)
         quantities = view.recorded(main)
-        width = 1 if site in ACTUATORS else 6
+        width = 6 if site in SITES and site not in ACTUATORS else 1
         samples = len(view.at_residuals(np.zeros(view.run.ticks)))
         columns = np.zeros((samples, width, len(self.terms) + (self.stage == "transmission")))
         columns[:, :, len(self.terms) :] = 1.0
@@ -134,15 +143,16 @@ def read_found(path: Path) -> FoundPage:
 def _page(data: Mapping[str, Any], path: Path) -> FoundPage:
     stage, sites = data["stage"], tuple(data["sites"])
     _known(stage, STAGES, "stage")
-    for site in sites:
-        _known(site, SITES, "site")
     terms = tuple(
         SavedTerm(int(t.get("component", 0)), parse(t["feature"]), float(t["coefficient"]), str(t["unit"]))
         for t in data["terms"]
     )
     if not terms or not all(np.isfinite(t.coefficient) for t in terms):
         raise Sher3Error("a formula has no term, or a coefficient that is not finite", remedy="correct the terms")
-    place = "axis" if sites[0] in ACTUATORS else sites[0]
+    own = [site in SITES for site in sites]
+    if not sites or any(own) != all(own):
+        raise Sher3Error("sites of one machine are needed", value=", ".join(sites), limit=", ".join(SITES))
+    place = sites[0] if own[0] and sites[0] not in ACTUATORS else "axis"
     most = 0 if place == "axis" else 5
     for t in terms:
         if not 0 <= t.component <= most:
@@ -150,6 +160,7 @@ def _page(data: Mapping[str, Any], path: Path) -> FoundPage:
     attributes = {
         "id": str(data["effect"]),
         "stage": stage,
+        "kinds": (*(("robot",) if own[0] else ()), *(OTHERS if place == "axis" else ())),
         "places": (place,),
         "inputs": _inputs(terms),
         "explanation": str(data["explanation"]),
@@ -157,13 +168,25 @@ def _page(data: Mapping[str, Any], path: Path) -> FoundPage:
         "sites": sites,
         "terms": terms,
         "units": {f"coefficient_{k + 1}": t.unit for k, t in enumerate(terms)},
+        "on_axis": _constants(terms) if stage == "motor_mechanics" else {},
     }
     kind: type[FoundPage] = type("Found", (FoundPage,), attributes)
     page: FoundPage = kind()
     kind.units = {**attributes["units"], **_shape_units(page)}
     kind.finer = {name: (0.9, 0.95, 1.05, 1.1) for name in page.shape}
-    _in_plant(kind, page)
+    if own[0]:
+        _in_plant(kind, page)
     return page
+
+
+def _constants(terms: Sequence[SavedTerm]) -> dict[str, str]:
+    """Return which coefficients of a force are constants of the equation of motion."""
+    of = [("coulomb" if _is_dry(t.feature) else CONSTANTS.get(str(t.feature), "")) for t in terms]
+    return {f"coefficient_{k + 1}": constant for k, constant in enumerate(of) if constant}
+
+
+def _is_dry(feature: Feature) -> bool:
+    return [(f.law, f.quantity) for f in feature.factors] == [("sliding", "position")]
 
 
 def _known(value: object, limit: Sequence[str], what: str) -> None:

@@ -80,7 +80,7 @@ def test_it_sits_where_it_was_found(page):
     [
         ("sher3.found/1", "sher3.effects/1"),
         ("motor_mechanics", "moon"),
-        ("delta_1]", "moon]"),
+        ("delta_1]", "delta_1, moon]"),
         ("signed_square", "cube"),
         ("2.0e4", ".nan"),
         ("component: 0, feature: signed", "component: 3, feature: signed"),

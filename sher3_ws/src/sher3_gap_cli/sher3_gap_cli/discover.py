@@ -19,7 +19,7 @@ def discover(
     case: Annotated[Path, typer.Argument(help="Case folder.")],
     robot: RobotFile = None,
     where: Annotated[
-        str, typer.Option("--place", help="STAGE/ACTUATOR to look at; default what the library leaves unexplained.")
+        str, typer.Option("--place", help="STAGE/ACTUATOR to look at; default where the library leaves most.")
     ] = "",
     without: Annotated[list[str] | None, typer.Option(help="Leave this effect out; repeat for more.")] = None,
     save: Annotated[Path | None, typer.Option(help="YAML file that makes the formula a page of the library.")] = None,

@@ -28,9 +28,9 @@ def effects(families: bool = False) -> Completer:
     """Return what the tab key offers for an effect."""
 
     def names() -> set[str]:
-        from sher3_effects import library
+        from sher3_effects import every
 
-        known = library()
+        known = every()
         return set(known) | ({page.family for page in known.values()} if families else set())
 
     return words(names)

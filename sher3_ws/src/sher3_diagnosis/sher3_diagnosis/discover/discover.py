@@ -19,9 +19,10 @@ from sher3_diagnosis.discover.sentence import sentence
 from sher3_diagnosis.discover.spectrum import suggestions
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.finding import Findings
+from sher3_diagnosis.judge.left_over import down_to_floor
 from sher3_diagnosis.quantify.closure import interval_of
 from sher3_diagnosis.quantify.jackknife import standard_error
-from sher3_diagnosis.thresholds import JACKKNIFE, LEAST_COMPONENT, MIN_RUNS
+from sher3_diagnosis.thresholds import JACKKNIFE, LEAST_COMPONENT, MIN_RUNS, SMALL_REMAINDER
 from sher3_diagnosis.verdict import Interval, Parameter
 
 Say = Callable[[str], None]
@@ -34,7 +35,7 @@ def discover(diagnosis: Findings, channel: Channel | None = None, say: Say = lam
 
     Args:
         diagnosis: of any machine whose views tell what was recorded (`Recorded`).
-        channel: where to look; default the place the verdict leaves unexplained.
+        channel: where to look; default the place the verdict leaves unexplained, else where its causes leave most.
         say: takes a line of progress.
 
     Raises:
@@ -43,6 +44,7 @@ def discover(diagnosis: Findings, channel: Channel | None = None, say: Say = lam
     left = diagnosis.verdict.unexplained
     if channel is None and left is not None:
         channel = Channel(left.stage, left.actuator)
+    channel = _left_most(diagnosis) if channel is None else channel
     if channel is None:
         why = "there is no gap" if diagnosis.verdict.status == "no_gap" else "every gap has a cause in the library"
         return Discovery([], note=f"nothing to discover: {why}")
@@ -60,6 +62,19 @@ def discover(diagnosis: Findings, channel: Channel | None = None, say: Say = lam
     if not all(isinstance(v, Recorded) for v in finding.evidence.views):
         raise FormulaError("this kind of machine does not tell what a law could depend on", value=str(channel))
     return discover_at(finding.evidence, channel, say)
+
+
+def _left_most(diagnosis: Findings) -> Channel | None:
+    """Return the channel of which its causes leave most over the floor; None where they leave little everywhere.
+
+    A relative of the right law may close a gap so far that nothing is called unexplained.
+    """
+    over: dict[Channel, float] = {}
+    for f in diagnosis.findings:
+        left = down_to_floor(f.significant, f.evidence, f.attribution.fit)
+        over |= {channel: excess / f.evidence.samples(channel) for channel, excess in left.items()}
+    most = max(over, key=lambda c: over[c], default=None)
+    return most if most is not None and over[most] > SMALL_REMAINDER else None
 
 
 def _discover_exactly(evidence: Evidence, place: Channel, say: Say) -> Discovery:

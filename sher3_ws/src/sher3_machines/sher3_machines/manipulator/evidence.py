@@ -197,8 +197,7 @@ def of_channel(
 
 def _residuals(view: MotionView, judged: Sequence[str]) -> Residuals:
     run, out = view.run, Residuals()
-    assert run.effort is not None
-    left = run.to_grid(run.effort) - view.inertial
+    left = view.effort - view.inertial
     for joint in judged:
         row, told = view.row(joint), run.inner & ~view.impacts
         out[channel_of(joint)] = Residual(left[:, [row]], view.in_motion(row))

@@ -33,11 +33,10 @@ def equations(views: Sequence[MotionView], joint: str) -> tuple[Array, Array]:
     """Return columns (n, 4): needed force, velocity, direction, one; and the recorded effort (n,)."""
     rows, target = [], []
     for view in views:
-        run, row = view.run, view.row(joint)
+        row = view.row(joint)
         ok = view.in_motion(row)
-        assert run.effort is not None
         rows.append(np.column_stack([view.rigid[:, row], friction_columns(view, joint)])[ok])
-        target.append(run.to_grid(run.effort)[ok, row])
+        target.append(view.effort[ok, row])
     return np.concatenate(rows), np.concatenate(target)
 
 

@@ -29,21 +29,27 @@ def with_identified_inertias(views: Sequence[MotionView], model: ArmModel, judge
         judged: joints whose effort was recorded.
     """
     rows, target = [], []
+    scales = [_spread(views, joint) for joint in judged]
     for view in views:
-        assert view.run.effort is not None
-        effort = view.run.to_grid(view.run.effort)
-        for place, joint in enumerate(judged):
-            row = view.row(joint)
-            ok = view.in_motion(row)
+        for place, (joint, scale) in enumerate(zip(judged, scales, strict=True)):
+            row, ok = view.row(joint), view.in_motion(view.row(joint))
             friction = friction_columns(view, joint)[ok, :2]  # a constant force would take the weight
             own = np.zeros((int(ok.sum()), len(judged) * friction.shape[1]))
             own[:, place * friction.shape[1] : (place + 1) * friction.shape[1]] = friction
-            scale = max(float(np.std(effort[ok, row])), np.finfo(float).tiny)
             rows.append(np.hstack([view.regressor[ok, row], own]) / scale)
-            target.append((effort[ok, row] - view.rigid[ok, row]) / scale)
+            target.append((view.effort[ok, row] - view.rigid[ok, row]) / scale)
     x, y = np.concatenate(rows), np.concatenate(target)
     length = np.linalg.norm(x, axis=0)
     alive = length > 0.0
     step = np.zeros(x.shape[1])
     step[alive] = np.linalg.lstsq(x[:, alive] / length[alive], y, rcond=UNSEEN)[0] / length[alive]
     return replace(model, parameters=model.inertial + step[: len(model.inertial)])
+
+
+def _spread(views: Sequence[MotionView], joint: str) -> float:
+    """Return the standard deviation of a joint's effort over all records: what it errs by differs by joint alone.
+
+    Records are not brought to one size: near a resonance inertia and weight cancel, and a small effort is their error.
+    """
+    found = [view.effort[view.in_motion(view.row(joint)), view.row(joint)] for view in views]
+    return max(float(np.std(np.concatenate(found))), np.finfo(float).tiny)

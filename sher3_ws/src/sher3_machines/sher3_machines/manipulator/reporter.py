@@ -35,5 +35,4 @@ class ManipulatorReporter(Reporter[ArmMotionEvidence]):
     def output(self, evidence: ArmMotionEvidence, run: int, channel: Channel) -> Output:
         """Return the effort of a joint."""
         view = evidence.records[evidence.records.index(evidence.data.views[run])]
-        assert view.run.effort is not None
-        return Output("effort", view.run.to_grid(view.run.effort)[:, view.row(channel.actuator)])
+        return Output("effort", view.effort[:, view.row(channel.actuator)])

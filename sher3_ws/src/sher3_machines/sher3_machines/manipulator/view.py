@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from functools import cached_property
 
 import numpy as np
-from sher3_diagnosis.channel import Array, Mask
+from sher3_diagnosis.channel import Array, Channel, Mask
+from sher3_diagnosis.discover.feature import Quantities, Quantity
 from sher3_diagnosis.evidence import Motion
 from sher3_diagnosis.filter import settled
 from sher3_effects.operators import dahl_turned
@@ -122,6 +123,12 @@ class MotionView:
     def acceleration(self) -> Array:
         """Acceleration on the residual grid, (g, k)."""
         return self.run.to_grid(self.run.acceleration)
+
+    @cached_property
+    def effort(self) -> Array:
+        """Recorded effort on the residual grid, (g, k)."""
+        assert self.run.effort is not None
+        return self.run.to_grid(self.run.effort)
 
     @cached_property
     def rigid(self) -> Array:
@@ -261,6 +268,34 @@ class MotionView:
         direction = np.sign(velocity) * self.moving[:, row]
         own = [self.position[:, row], velocity, direction, self.inertial[:, row], self.acceleration[:, row]]
         return np.column_stack(own)
+
+    # what discovery reads
+
+    @property
+    def step(self) -> float:
+        """Time between two samples of the record, s."""
+        return self.run.period
+
+    def recorded(self, channel: Channel) -> Quantities:
+        """Return what was recorded that the law of a gap of a joint might depend on; not the effort, the output."""
+        run, row, joint = self.run, self.row(channel.actuator), self.joints[self.row(channel.actuator)]
+        turns, newton = joint.unit_of_position, "N*m" if joint.motion == "rotary" else "N"
+        need, weight = (
+            np.interp(run.stage_clock, run.stage_clock[run.grid], x[:, row]) for x in (self.inertial, self.path.gravity)
+        )
+        acceleration = np.gradient(run.velocity[:, row], run.period)
+        return {
+            "position": Quantity(run.smooth[:, row], turns, "the position", "place"),
+            "velocity": Quantity(run.velocity[:, row], f"{turns}/s", "the velocity", "speed"),
+            "acceleration": Quantity(acceleration, f"{turns}/s^2", "the acceleration", "state"),
+            "force": Quantity(need, newton, "the force that the motion needs", "force"),
+            "load": Quantity(weight, newton, "the weight on the joint", "force"),
+            "time": Quantity(run.stage_clock, "s", "the time since the run began", "clock"),
+        }
+
+    def at_residuals(self, x: Array) -> Array:
+        """Low-pass values of the record and sample them on the residual grid."""
+        return self.run.to_grid(x)
 
 
 def point_inertia(centre: Array) -> Array:

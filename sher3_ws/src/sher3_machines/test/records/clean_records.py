@@ -34,9 +34,9 @@ def scaled(part: Any, scales: Mapping[str, float]) -> Any:
     return out
 
 
-def slide() -> tuple[dict[str, Any], Record]:
-    """A slide under a force, 8 N of dry and 40 N/(m/s) of viscous friction, 500 Hz, 16 s."""
-    rows = driven(16.0, coulomb=8.0, viscous=40.0)
+def slide(seconds: float = 16.0) -> tuple[dict[str, Any], Record]:
+    """A slide under a force, 8 N of dry and 40 N/(m/s) of viscous friction, 500 Hz."""
+    rows = driven(seconds, coulomb=8.0, viscous=40.0)
     names = ("position", "reference", "command")
     columns = {"t": np.arange(len(rows)) * PERIOD, **dict(zip(names, rows.T, strict=True))}
     axis = {

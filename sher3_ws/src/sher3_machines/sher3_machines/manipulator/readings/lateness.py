@@ -155,8 +155,7 @@ def _equations(view: MotionView, joint: str, carried: Array | None) -> tuple[Arr
     row = view.row(joint)
     ok, need = view.in_motion(row), view.inertial[:, row]
     need = need if carried is None else need + carried[:, 0]
-    assert view.run.effort is not None
-    given = view.run.to_grid(view.run.effort)[:, row]
+    given = view.effort[:, row]
     plain = [np.gradient(need) * view.rate, need, view.acceleration[:, row], view.position[:, row]]
     both = np.column_stack([*plain, friction_columns(view, joint), given - need])
     slow = low_pass(both, 1.0 / view.rate, SLOWER)  # noise in a slope would make the delay too small

@@ -42,11 +42,10 @@ def carries(views: Sequence[MotionView], joint: str, others: Sequence[str]) -> b
     for k, other in enumerate(others):
         for view in views:
             loads = view.payload(link, AT_JOINT).get(other)
-            assert view.run.effort is not None
             if loads is None or not np.any(loads):
                 continue
             row, ok = view.row(other), view.in_motion(view.row(other))
-            left = (view.run.to_grid(view.run.effort)[:, row] - view.rigid[:, row])[ok]
+            left = (view.effort[:, row] - view.rigid[:, row])[ok]
             own = np.zeros((len(left), 3 * len(others)))
             own[:, 3 * k : 3 * k + 3] = friction_columns(view, other)[ok]
             scale = float(np.std(left)) or 1.0
