@@ -50,7 +50,7 @@ class Steadiness:
 
     @property
     def spread(self) -> float:
-        """Share that coefficients of their own add."""
+        """Relative gain from fitting each excitation separately."""
         return self.varying / max(self.explained, 1.0)
 
     @property

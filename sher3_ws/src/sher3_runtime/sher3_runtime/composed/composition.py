@@ -52,7 +52,7 @@ class Composition:
         self._now: Callable[[], int] = monotonic_ns
 
     def offset(self, every: int) -> int:
-        """Return by how many periods a callback of every so many periods is late: no two of ten by the same number."""
+        """Return the phase offset, in periods, of a callback that is due every so many: slow callbacks do not coincide."""
         self._slow_ticks += 1
         return STRIDE * self._slow_ticks % every
 

@@ -101,7 +101,7 @@ class Late(NamedTuple):
 
     @property
     def sure(self) -> bool:
-        """Whether it is late, or early, by more than nobody states."""
+        """Whether the delay exceeds the stated timing uncertainty."""
         return self.unstated + SURE * self.half < abs(self.delay) < SensorDelay.LONGEST
 
 
