@@ -52,7 +52,7 @@ class Composition:
         self._now: Callable[[], int] = monotonic_ns
 
     def offset(self, every: int) -> int:
-        """Return the phase offset, in periods, of a callback that is due every so many: slow callbacks do not coincide."""
+        """Return the phase offset, in periods, of a callback due every so many, so that slow ones do not coincide."""
         self._slow_ticks += 1
         return STRIDE * self._slow_ticks % every
 
