@@ -13,6 +13,7 @@ from sher3_diagnosis.fit.whitened import Whitened
 from sher3_diagnosis.tolerance import Tolerance, as_built, tolerance
 from sher3_effects import library
 
+from sher3_gap.nominal_replay import driven_as, followed
 from sher3_gap.signals import RunSignals
 from sher3_gap.stages.exact.timing import Timing, demand_in_force, timing_of
 from sher3_gap.stages.floors import floors, with_load
@@ -20,7 +21,6 @@ from sher3_gap.stages.geometry import Geometry
 from sher3_gap.stages.residuals import Demand, all_residuals, motor_residual
 from sher3_gap.stages.units import PLACES, ROTARY_AXES, unit_of
 from sher3_gap.stages.view import SherView
-from sher3_gap.twin import driven_as, followed
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -79,7 +79,7 @@ def _left(evidence: SherEvidence, found: Fit, channel: Channel) -> tuple[list[Ar
 
 def _traces(evidence: SherEvidence) -> Traces | None:
     """Return joint positions beside those of the nominal robot driven from the recorded set-points and loads."""
-    from sher3_gap.twin import driven_as
+    from sher3_gap.nominal_replay import driven_as
 
     measured, simulated = [], []
     for run in evidence.runs:

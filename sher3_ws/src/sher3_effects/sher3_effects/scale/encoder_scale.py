@@ -12,7 +12,7 @@ from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.page import Page
-from sher3_effects.scale.uneven import gentle, lines, mean_ratio
+from sher3_effects.scale.varying_ratio import gentle, lines, mean_ratio
 from sher3_effects.travel import over_travel
 from sher3_effects.view import RobotView
 

@@ -22,6 +22,7 @@ from sher3_sim import PlantEffect
 from sher3_gap.case.loading import free, signals_of
 from sher3_gap.case.ticks import LONGEST_HOLE
 from sher3_gap.errors import CaseError
+from sher3_gap.nominal_replay import driven_as
 from sher3_gap.signals import RunSignals
 from sher3_gap.stages.exact.law import EXACT, controller_error, transport_error
 from sher3_gap.stages.floors import Floors, chatter_floors, resolution_floors
@@ -35,7 +36,6 @@ from sher3_gap.stages.residuals import (
     wrench_residual,
 )
 from sher3_gap.stages.units import unit_of
-from sher3_gap.twin import driven_as
 
 TOPICS = ("setpoint_js", "servo_jv", "drives/setpoint_jv", "drives/measured_js", "measured_js", "force/measured_cf")
 NEEDED = ("drives/measured_js", "drives/setpoint_jv", "measured_js")

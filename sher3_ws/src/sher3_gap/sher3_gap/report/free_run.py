@@ -11,8 +11,8 @@ from sher3_diagnosis.verdict import Cause
 from sher3_effects import to_effects
 
 from sher3_gap.evidence import SherEvidence
+from sher3_gap.nominal_replay import driven_as
 from sher3_gap.simulate.tip import tip_error
-from sher3_gap.twin import driven_as
 
 
 def free_run_trace(evidence: SherEvidence, causes: Sequence[Cause]) -> Trace | None:

@@ -20,6 +20,7 @@ from sher3_diagnosis.verdict import Schema, Verdict
 from sher3_effects import save_effects, to_effects
 from sher3_sim import PlantEffect
 
+from sher3_gap.nominal_replay import driven_as
 from sher3_gap.signals import RunSignals
 from sher3_gap.simulate.tip import tip_error
 from sher3_gap.stages.exact.law import EXACT, controller_error, transport_error
@@ -27,7 +28,6 @@ from sher3_gap.stages.floors import resolution_floors
 from sher3_gap.stages.geometry import Geometry
 from sher3_gap.stages.residuals import Residuals, all_residuals
 from sher3_gap.stages.units import unit_of
-from sher3_gap.twin import driven_as
 
 PLACES = (*ACTUATORS, "tip", "force_sensor", "all")
 """Where a cause can sit on the SHER."""

@@ -19,9 +19,9 @@ from sher3_diagnosis.verdict import Cause, Interval
 from sher3_effects import to_effects
 
 from sher3_gap.evidence import SherEvidence
+from sher3_gap.nominal_replay import driven_as
 from sher3_gap.signals import RunSignals
 from sher3_gap.stages.units import LOADED_TIP, TIP
-from sher3_gap.twin import driven_as
 
 
 def tip_closure(evidence: SherEvidence, causes: Sequence[Cause], fit: Fit) -> Interval | None:

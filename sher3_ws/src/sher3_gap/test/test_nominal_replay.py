@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from recorded import ROBOT, run, stroke
-from sher3_gap.twin import bridged, driven_as, followed
+from sher3_gap.nominal_replay import bridged, driven_as, followed
 
 
 def test_a_run_without_set_points_has_no_twin_but_can_be_followed():
