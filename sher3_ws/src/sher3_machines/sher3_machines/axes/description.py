@@ -17,8 +17,9 @@ from sher3_machines.intake.fields import Clock, Column, Strict
 class Signals(Strict):
     """Signals of an axis, recorded or computed by the user; `position` must be there.
 
-    `nominal_effort` takes the place of mass, weight and coupling of the axis' own model, and comes on top of what the
-    description states; `applied` is a disturbance that is known.
+    `velocity` is no signal that is judged: clock and units are checked against it. `nominal_effort` takes the place of
+    mass, weight and coupling of the axis' own model, and comes on top of what the description states; `applied` is a
+    disturbance that is known.
     """
 
     position: Column
@@ -26,6 +27,7 @@ class Signals(Strict):
     command: Column | None = None
     effort: Column | None = None
     load: Column | None = Field(default=None, description="position of a second encoder at the load")
+    velocity: Column | None = Field(default=None, description="recorded speed; clock and units are checked against it")
     nominal_effort: Column | None = Field(default=None, description="force that the user's own model asks for")
     temperature: Column | None = Field(default=None, description="of screw, gear or frame, deg C")
     applied: Column | None = Field(default=None, description="known force on the axis, positive along its motion")

@@ -14,9 +14,11 @@ from sher3_machines.axes.quantities.units import check_units
 from sher3_machines.axes.readings.speed import integrated, is_speed
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.cleaning import even_stamps, glitches, known_readings
-from sher3_machines.intake.columns import find, pick, stamps_of
+from sher3_machines.intake.columns import MOTION, find, pick, stamps_of
 from sher3_machines.intake.fields import Clock, Column
+from sher3_machines.intake.motion import check_speed, is_magnitude, signs_of, speed_ratio
 from sher3_machines.intake.parts import LONGEST_HOLE, cut
+from sher3_machines.intake.spelling import table_of
 from sher3_machines.intake.tables import Tables
 
 MIN_SAMPLES = 20
@@ -85,10 +87,12 @@ def axes_run(name: str, tables: Tables, machine: Chain) -> AxesRun:
         }
         mended += _unwrap(axis, raw[axis.name], name)
         mended += _without_glitches(axis, raw[axis.name], name)
+        _check_velocity(axis, raw[axis.name]["position"], tables, machine.time, name)
     clock, period, notes = _clock([s for a in raw.values() for s in a.values()], machine.time, name)
     signals = {a: {k: _onto(clock, t, x) for k, (t, x) in found.items()} for a, found in raw.items()}
     for axis in machine.axes:
         check_units(axis, signals[axis.name], name)
+        mended += _signed(axis, clock, signals[axis.name], name)
     return AxesRun(name, period, signals, [*dict.fromkeys(mended), *notes])
 
 
@@ -155,6 +159,32 @@ def _unwrap(axis: Axis, raw: dict[str, Stamped], run: str) -> list[str]:
     return notes
 
 
+def _check_velocity(axis: Axis, position: Stamped, tables: Tables, clock: Clock, run: str) -> None:
+    """Refuse a clock or a unit that the recorded velocity of an axis contradicts; raises MachineError."""
+    if (column := axis.signals.velocity) is None:
+        return
+    what = f"{run}: {axis.name}.velocity ({column.column})"
+    stamps, v = _mended(column, tables, clock, run, (axis.name, "velocity"), [])
+    t, x = position
+    if t is None or stamps is None:
+        t = stamps = np.arange(len(x)) / (clock.rate or 1.0)
+    check_speed(speed_ratio(t, x, np.interp(t, stamps, v)), clock.unit if clock.rate is None else None, what)
+
+
+def _signed(axis: Axis, clock: Array, signals: dict[str, Array], run: str) -> list[str]:
+    """Give an effort that is a magnitude the sign of the motion; return a note that says so."""
+    column = axis.signals.effort
+    if column is None:
+        return []
+    x, effort = signals["position"], signals["effort"]
+    told = column.signed_by == MOTION
+    if not told and (column.signed_by is not None or not is_magnitude(clock, x, effort)):
+        return []
+    signals["effort"] = np.abs(effort) * signs_of(clock, x)
+    why = "as the description says" if told else "because it is never below zero and clearer so"
+    return [f"{run}: {axis.name}.effort ({column.column}) has the sign of the motion, {why}"]
+
+
 def _clock(found: list[Stamped], clock: Clock, run: str) -> tuple[Array, float, list[str]]:
     """The uniform clock (n,) of all signals, its period, and a note where stamps are off it."""
     lengths = {len(x) for _, x in found}
@@ -211,11 +241,11 @@ def _onto(clock: Array, t: Array | None, x: Array) -> Array:
 def parts_of_record(name: str, tables: Tables, machine: Chain) -> tuple[dict[str, Tables], str]:
     """Return the parts of a record whose clock has holes or jumps back, and a note; else the record itself."""
     columns = [c for axis in machine.axes for which in SIGNALS if (c := getattr(axis.signals, which)) is not None]
-    one = len({c.column.rpartition("/")[0] for c in columns}) == 1
+    one = len({table_of(c.column) for c in columns}) == 1
     clock = machine.time.column
     if clock is None or not one:
         return {name: tables}, ""
-    table = columns[0].column.rpartition("/")[0]
+    table = table_of(columns[0].column)
     try:
         return cut(name, tables, find(f"{table}/{clock}" if table else clock, tables, name))
     except MachineError:

@@ -10,41 +10,13 @@ from sher3_diagnosis.channel import Array
 
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.fields import UNITS, Clock, Column
+from sher3_machines.intake.spelling import spelled, table_of
 from sher3_machines.intake.tables import Tables
 
 IN_HEADER = re.compile(r"(?P<name>.*?)\s*[\[(](?P<unit>[^\])]+)[\])]")
 """A column's header with its unit: `q [mm]`, `current (A)`."""
-SPELLINGS = {
-    "um": "µm μm micron microns",
-    "mm": "millimeter millimetre",
-    "m": "meter metre meters metres",
-    "rad": "radian radians rads",
-    "deg": "° degree degrees degs grad",
-    "arcmin": "arcminute arcminutes amin",
-    "arcsec": "arcsecond arcseconds asec as",
-    "rev": "turn turns revolution revolutions revs rot",
-    "N": "newton newtons",
-    "N*m": "Nm N·m N⋅m N.m N-m newton-meter",
-    "mN*m": "mNm mN·m mN.m Nmm N·mm N.mm N*mm",
-    "A": "amp amps ampere amperes Arms",
-    "V": "volt volts Volt",
-    "%": "pct percent prozent",
-    "bar": "bars",
-    "kPa": "kpa",
-    "MPa": "Mpa mpa",
-    "kg": "kilogram kilograms",
-    "count": "counts cnt cnts inc incr increments ticks tick pulses steps ink inkremente schritte impulse",
-    "degC": "°C C celsius Celsius",
-    "s": "sec secs second seconds",
-    "ms": "msec msecs millis milliseconds",
-    "us": "µs μs usec micros microseconds",
-    "min": "minute minutes",
-    "h": "hour hours hr hrs",
-    "ns": "nsec nanos nanoseconds nanosec",
-    "1": "-",
-}
-"""Unit as descriptions have it -> how else headers spell it."""
-READ_AS = {other: unit for unit, others in SPELLINGS.items() for other in others.split()}
+MOTION = "motion"
+"""Word of a description for the sign of the motion."""
 NEAR = 5
 """Columns of similar names that a refusal lists."""
 
@@ -80,7 +52,11 @@ def pick(column: Column, tables: Tables, run: str, finite: bool = True) -> Array
             value=f"{int(bad.sum())} of {len(x)} samples",
             remedy="cut the record before or after",
         )
-    return _with_others(x * scale(column, name, run), column, tables, run, finite)
+    x = x * scale(column, name, run) + column.offset
+    if column.signed_by not in (None, MOTION):
+        other = Column(column=str(column.signed_by), unit="1", override=True)
+        x = np.abs(x) * np.sign(pick_beside(x.shape, other, tables, run, finite))
+    return _with_others(x, column, tables, run, finite)
 
 
 def _with_others(x: Array, column: Column, tables: Tables, run: str, finite: bool) -> Array:
@@ -130,24 +106,17 @@ def scale(column: Column, header: str, run: str) -> float:
             limit=", ".join(UNITS),
             remedy="give `unit` in the description",
         )
-    if column.unit is not None and said in UNITS and UNITS[said] != UNITS[column.unit]:
-        remedy = "correct `unit` in the description, or leave it out"
+    if column.unit is not None and not column.override and said in UNITS and UNITS[said] != UNITS[column.unit]:
+        remedy = "correct `unit` in the description, or leave it out; where the header is wrong, add `override: true`"
         raise MachineError(f"{run}: {column.column} is in another unit", value=said, limit=column.unit, remedy=remedy)
     return column.factor * UNITS[column.unit or said]
-
-
-def spelled(words: str) -> str:
-    """Return a unit of a header as descriptions have it; unknown words as they are."""
-    bare = words.strip()
-    unit = bare if bare in UNITS else READ_AS.get(bare, READ_AS.get(bare.lower(), bare))
-    return {"N m": "N*m", "mN m": "mN*m"}.get(unit, unit)
 
 
 def _clock_column(name: str, clock: Clock) -> Column:
     """Return the column of the stamps: a unit in its header is the right one where the description has the default."""
     match = IN_HEADER.fullmatch(name)
     told = match is not None and spelled(match["unit"]) in UNITS and "unit" not in clock.model_fields_set
-    return Column(column=name, unit=None if told else clock.unit)
+    return Column(column=name, unit=None if told else clock.unit, index=clock.index, override=clock.override)
 
 
 def stamps_of(column: Column, tables: Tables, clock: Clock, run: str) -> Array | None:
@@ -157,7 +126,7 @@ def stamps_of(column: Column, tables: Tables, clock: Clock, run: str) -> Array |
     """
     if clock.column is None:
         return None
-    table = column.column.rsplit("/", 1)[0] + "/" if "/" in column.column else ""
+    table = f"{home}/" if (home := table_of(column.column)) else ""
     try:
         name = find(table + clock.column, tables, run)
     except MachineError:

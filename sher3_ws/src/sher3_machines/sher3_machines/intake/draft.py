@@ -13,9 +13,8 @@ from sher3_common import dump_yaml
 from sher3_diagnosis.channel import Array
 
 from sher3_machines.errors import MachineError
-from sher3_machines.intake.fields import UNITS, VELOCITIES
+from sher3_machines.intake.fields import TIME_UNITS, UNITS, VELOCITIES
 from sher3_machines.intake.guesses import (
-    TIME_UNITS,
     clock_of,
     count_of,
     period_of,
@@ -24,10 +23,12 @@ from sher3_machines.intake.guesses import (
     time_unit,
     travel,
 )
-from sher3_machines.intake.names import DRIVING, counts_samples, named, words_of
-from sher3_machines.intake.tables import Tables, read_tables
+from sher3_machines.intake.names import DERIVED, DRIVING, MEASURED, POSITION, counts_samples, named, words_of
+from sher3_machines.intake.speeds import told_by_speed
+from sher3_machines.intake.spelling import bare, table_of
+from sher3_machines.intake.tables import SAMPLES, Tables, read_tables
 
-SIGNALS = ("position", "reference", "command", "effort", "load", "applied", "temperature")
+SIGNALS = ("position", "reference", "command", "effort", "load", "applied", "temperature", "velocity")
 """Signals of an axis that a draft looks for, in the order they are written."""
 PLACES = ("reference", "load")
 """Signals that are in the unit of the position where their name says no other."""
@@ -99,15 +100,17 @@ def drafted(path: Path, tables: Tables, rate: float | None, guesses: list[str]) 
     placed = with_loads(with_speeds(_placed(tables, clock)))
     groups, left = together(placed)
     known = {name for name, _ in placed}
-    left += [n for n, x in tables.items() if n not in known and n != clock and x.ndim == 1 and np.ptp(x) > 0.0]
+    left += [n for n, x in tables.items() if n not in known and n != clock and _moves(x)]
     axes = [_axis(axis, signals, tables, period, guesses) for axis, signals in groups.items()]
+    told_by_speed(time, axes, tables, None if clock is None else tables[clock], guesses)
     if not axes:
         raise MachineError(
             f"{path}: no column looks like a position",
             value=", ".join(sorted(tables)[:LISTED]),
             limit="names with position, pos, q, angle, encoder",
-            remedy="write the description by hand; a force sensor by itself is `kind: "
-            "force_sensor`, postures with measured poses are `kind: arm`; levels and temperatures are no machine",
+            remedy="write names of columns into a first line, or the description by hand (`column: c1`; `column: data, "
+            "index: 1` of a matrix); a force sensor by itself is `kind: force_sensor`, postures with measured poses "
+            "are `kind: arm`; levels and temperatures are no machine",
         )
     if left:
         more = f" and {len(left) - LISTED} more" if len(left) > LISTED else ""
@@ -115,9 +118,14 @@ def drafted(path: Path, tables: Tables, rate: float | None, guesses: list[str]) 
     return {"kind": "axes", "name": re.sub(r"\W+", "_", path.stem), "time": time, "axes": axes}
 
 
+def _moves(x: Array) -> bool:
+    """Return whether a column, or a matrix with a row for each sample, holds more than one value."""
+    return x.ndim in (1, 2) and len(x) >= SAMPLES and float(np.ptp(x)) > 0.0
+
+
 def _placed(tables: Tables, clock: str | None) -> dict[Place, tuple[str, str]]:
     """Return signal and axis of every column whose name says one, of tables that have stamps."""
-    lengths = {table_of(n): len(x) for n, x in tables.items() if clock and n.rsplit("/", 1)[-1] == bare(clock)}
+    lengths = {table_of(n): len(x) for n, x in tables.items() if clock and bare(n) == bare(clock)}
     least = len(tables[clock]) if clock else 0
     found: dict[Place, tuple[str, str]] = {}
     for name, x in tables.items():
@@ -160,18 +168,27 @@ def together(placed: Mapping[Place, tuple[str, str]]) -> tuple[dict[str, dict[st
     """Return axis -> signal -> column, of axes with a position, and the columns that found no axis.
 
     A column whose name has no axis of its own, or another one than every position, belongs to the only axis there is,
-    or to the one axis whose name ends in the same number.
+    or to the one axis whose name ends in the same number. Of two columns for one signal the one that was measured, in
+    the table of the position, comes first.
     """
     groups: dict[str, dict[str, Place]] = {}
-    for place, (signal, axis) in placed.items():
+    for place, (signal, axis) in sorted(placed.items(), key=lambda item: _rank(item[0], "")):
         if signal == "position":
             groups.setdefault(axis, {}).setdefault(signal, place)
+    tables = {table_of(signals["position"][0]) for signals in groups.values()}
+    table = tables.pop() if len(tables) == 1 else ""
     left = []
-    for place, (signal, axis) in placed.items():
+    for place, (signal, axis) in sorted(placed.items(), key=lambda item: _rank(item[0], table)):
         home = axis if axis in groups else _home(axis, groups)
         if signal not in SIGNALS or home is None or groups[home].setdefault(signal, place) != place:
             left.append(place[0])
     return groups, list(dict.fromkeys(left))
+
+
+def _rank(place: Place, table: str) -> tuple[bool, bool, bool]:
+    """Return what orders columns for one signal: in the table, measured, not made of another; the least comes first."""
+    words = set(words_of(bare(place[0])))
+    return bool(table) and table_of(place[0]) != table, not words & MEASURED, bool(words & DERIVED)
 
 
 def _home(axis: str, groups: Mapping[str, Any]) -> str | None:
@@ -193,9 +210,24 @@ def _unit_of(place: Place, x: Array) -> tuple[str, float, str]:
     return position_unit(what.unit, x, bool(set(what.axis.split("_")) & CARTESIAN))
 
 
+def with_duty(label: str, signals: Mapping[str, Place], tables: Tables, guesses: list[str]) -> Mapping[str, Place]:
+    """Return the signals of an axis with a `load` that is no place as its effort: what a servo reports of its drive.
+
+    A load encoder moves with the position; a duty does not, and its name has no unit of a place.
+    """
+    place = signals.get("load")
+    if place is None or "effort" in signals or named(place[0]).unit is not None or ratio_of(signals, tables):
+        return signals
+    if set(words_of(bare(place[0]))) & (POSITION | DRIVING):
+        return signals
+    guesses.append(f"{label}: {place[0]!r} is an effort and no encoder, because it does not move with the position")
+    return {**{k: p for k, p in signals.items() if k != "load"}, "effort": place}
+
+
 def _axis(axis: str, signals: Mapping[str, Place], tables: Tables, period: float, guesses: list[str]) -> dict[str, Any]:
     label = re.sub(r"\W+", "_", axis) or "axis"
     label = f"joint{label}" if label[0].isdigit() else label
+    signals = with_duty(label, signals, tables, guesses)
     x = values_of(signals["position"], tables)
     unit, factor, why = _unit_of(signals["position"], x)
     guesses.append(f"{label}: position in {unit}, because {why}")
@@ -203,8 +235,9 @@ def _axis(axis: str, signals: Mapping[str, Place], tables: Tables, period: float
     for signal in SIGNALS:
         if signal in signals:
             place = signal in PLACES
-            columns[signal] = _column(*signals[signal], unit if place else None, factor if place else 1.0)
-            if signal != "position":
+            usual = unit if place else per_second(unit) if signal == "velocity" else None
+            columns[signal] = _column(*signals[signal], usual, factor if place else 1.0)
+            if signal not in ("position", "velocity"):
                 guesses.append(f"{label}: {signal} is {signals[signal][0]!r}, because of its name")
     own = unit
     columns["position"].update({"unit": unit, **({"factor": factor} if factor != 1.0 else {})})
@@ -228,6 +261,11 @@ def _axis(axis: str, signals: Mapping[str, Place], tables: Tables, period: float
         guesses.append(f"{label}: mass is not known and will be identified from the record; state it where you can")
         out["mass"] = "unknown"
     return {**out, "encoder_resolution": float(f"{resolution:.6g}")}
+
+
+def per_second(unit: str) -> str:
+    """Return the unit of a velocity that belongs to that of a place, rad/s where there is none."""
+    return f"{unit}/s" if f"{unit}/s" in VELOCITIES else "rad/s"
 
 
 def _column(name: str, index: int | None, unit: str | None, factor: float) -> dict[str, Any]:
@@ -296,13 +334,3 @@ def values_of(place: Place, tables: Tables) -> Array:
     """Return the numbers of a column or of an entry of it, without those that are not finite."""
     x = tables[place[0]] if place[1] is None else tables[place[0]][:, place[1]]
     return np.asarray(x[np.isfinite(x)])
-
-
-def table_of(name: str) -> str:
-    """Return the table a column lies in; empty for none."""
-    return name.rpartition("/")[0]
-
-
-def bare(name: str) -> str:
-    """Return a column's name without its table."""
-    return name.rsplit("/", 1)[-1]

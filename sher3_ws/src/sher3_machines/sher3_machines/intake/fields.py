@@ -53,6 +53,8 @@ UNITS: Mapping[str, float] = {
 
 VELOCITIES = ("m/s", "mm/s", "rad/s", "deg/s", "rpm")
 """Units of a velocity: a place that was recorded as one is its integral."""
+TIME_UNITS: Mapping[str, float] = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0, "h": 3600.0}
+"""Units of a clock -> s."""
 PRESSURES = ("Pa", "kPa", "bar", "MPa")
 """Units that become a force by the area they act on."""
 
@@ -88,6 +90,9 @@ class Column(Strict):
         factor: turns the SI value of that unit into what the signal stands for, such as N m per A of a current, or rad
             per count of an encoder.
         index: entry to pick where each sample is a list.
+        offset: added to the scaled values, in SI: what the logger counts from, or a bridge's zero.
+        override: whether `unit` holds although the column's header says another one.
+        signed_by: column whose sign a magnitude takes, or `motion`: the sign of the motion; an effort alone has one.
         plus: columns that are added to it, each with its own factor: the pressure on the other side of a piston, the
             second motor of a portal.
     """
@@ -96,6 +101,9 @@ class Column(Strict):
     unit: str | None = None
     factor: float = 1.0
     index: int | None = None
+    offset: float = 0.0
+    override: bool = False
+    signed_by: str | None = None
     plus: tuple[Column, ...] = ()
 
     @model_validator(mode="after")
@@ -106,6 +114,8 @@ class Column(Strict):
             raise ValueError("a count needs its `factor`: m or rad per count, as 2 pi over the counts of a turn")
         if self.unit in PRESSURES and self.factor == 1.0:
             raise ValueError("a pressure needs its `factor`: the area it acts on, m^2; below zero on the other side")
+        if self.override and self.unit is None:
+            raise ValueError("`override` needs the `unit` that holds in place of the header's")
         return self
 
     @property
@@ -120,12 +130,16 @@ class Clock(Strict):
     Attributes:
         column: of the stamps, of the same name in every table.
         unit: of the stamps.
+        index: entry of the column that is the time, where each sample is a list.
+        override: whether `unit` holds although the column's header says another one.
         rate: samples per second, Hz, where no stamps were recorded.
         offsets: table -> what is added to its stamps, s, where its clock is another one: that of a second bag.
     """
 
     column: str | None = None
     unit: Literal["s", "ms", "us", "ns", "min", "h"] = "s"
+    index: int | None = None
+    override: bool = False
     rate: float | None = Field(default=None, gt=0.0)
     offsets: Mapping[str, float] = {}
 

@@ -6,8 +6,9 @@ import numpy as np
 from sher3_diagnosis.channel import Array
 
 from sher3_machines.errors import MachineError
-from sher3_machines.intake.fields import UNITS
+from sher3_machines.intake.fields import TIME_UNITS, UNITS
 from sher3_machines.intake.names import bare_and_unit, counts_samples, tells_time
+from sher3_machines.intake.spelling import bare
 from sher3_machines.intake.tables import Tables
 
 TOO_FAR = 40.0
@@ -26,7 +27,6 @@ FEWEST_STEPS = 10
 """Steps from which the smallest one tells an encoder's count."""
 WHOLE, WHOLE_SHARE = 0.05, 0.9
 """How near to a whole multiple of the count a step must be, and the share of steps that must be."""
-TIME_UNITS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
 EPOCH = (9e8, 4e9)
 """Seconds since 1970 of the years 1998 to 2096, which dates are read as."""
 USUAL_RATES = (5.0, 20_000.0)
@@ -35,6 +35,8 @@ GROWING = 0.98
 """Share of the steps of a clock that do not run backwards: logs that were cut together have a few that do."""
 EVEN = 0.05
 """Spread of the steps over their mean up to which a column without a telling name is taken for a clock."""
+LATE, FORWARD = 0.5, 0.95
+"""Share of a step by which a clock that pauses may be late, and the share of its steps that are not."""
 
 
 def clock_of(tables: Tables, guesses: list[str]) -> str:
@@ -45,14 +47,14 @@ def clock_of(tables: Tables, guesses: list[str]) -> str:
     """
     growing = {n: x for n, x in tables.items() if x.ndim == 1 and grows(x)}
     told = [n for n in growing if tells_time(n)]
-    received = [n for n in told if n.rsplit("/", 1)[-1] == "received"]
+    received = [n for n in told if bare(n) == "received"]
     told = [n for n in told if n not in received] or told  # the sender's own stamp comes first
     if told:
         best = max(told, key=lambda n: len(growing[n]))
         guesses.append(f"time is the column {best!r}, because of its name and because it grows")
         return best
-    even = [n for n, x in growing.items() if np.std(np.diff(x)) < EVEN * np.mean(np.diff(x)) and not counts_samples(n)]
-    even = [n for n in even if period_of(growing[n]) < 1.0]  # a period of one is a number of the sample
+    even = [n for n, x in growing.items() if evenly(x) and not counts_samples(n)]
+    even = [n for n in even if not (np.diff(growing[n]) == 1.0).all()]  # a step of one is a number of the sample
     if even:
         guesses.append(f"time is the column {even[0]!r}, because it grows evenly")
         return even[0]
@@ -60,9 +62,10 @@ def clock_of(tables: Tables, guesses: list[str]) -> str:
         "no column looks like a time",
         value=", ".join(sorted(tables)[:12]) or "no column of numbers",
         limit="a growing column named t, time or stamp",
-        remedy="name it so, or state the rate of the samples, Hz: --rate 500 (`time: {rate: 500}` in a description); a "
-        "table without a time is of another kind: targets and readings `kind: positioning`, known loads and readings "
-        "`kind: load_cell`, wrenches in orientations `kind: force_sensor`, postures with measured poses `kind: arm`",
+        remedy="name it so, or state the rate of the samples, Hz: --rate 500 (`time: {rate: 500}` in a description; a "
+        "column of a matrix is `time: {column: data, index: 0}`); a table without a time is of another kind: targets "
+        "and readings `kind: positioning`, known loads and readings `kind: load_cell`, wrenches in orientations `kind: "
+        "force_sensor`, postures with measured poses `kind: arm`",
     )
 
 
@@ -71,6 +74,15 @@ def grows(x: Array) -> bool:
     known = x[np.isfinite(x)]
     steps = np.diff(known)
     return len(steps) > 1 and float(np.mean(steps >= 0.0)) > GROWING and bool(np.median(known) > known[0])
+
+
+def evenly(x: Array) -> bool:
+    """Return whether the steps of a column (n,) are even, or are so but for a few pauses and never run back."""
+    steps = np.diff(x[np.isfinite(x)])
+    if np.std(steps) < EVEN * np.mean(steps):
+        return True
+    off = np.abs(steps / max(float(np.median(steps)), np.finfo(float).tiny) - 1.0)
+    return bool((steps > 0.0).all() and np.mean(off < LATE) > FORWARD)
 
 
 def period_of(stamps: Array) -> float:
@@ -83,7 +95,7 @@ def period_of(stamps: Array) -> float:
 
 def time_unit(clock: str, period: float, guesses: list[str], latest: float | None = None) -> str:
     """Return the unit of stamps: of the name, or the one that makes the rate usual; `latest`: the last of them."""
-    unit = bare_and_unit(clock.rsplit("/", 1)[-1])[1]
+    unit = bare_and_unit(bare(clock))[1]
     if unit in TIME_UNITS:
         return str(unit)
     if latest is not None and EPOCH[0] < latest < EPOCH[1]:

@@ -9,8 +9,9 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from sher3_machines.intake.columns import IN_HEADER, spelled
+from sher3_machines.intake.columns import IN_HEADER
 from sher3_machines.intake.fields import UNITS
+from sher3_machines.intake.spelling import PARTING, bare, spelled
 
 
 def vocabulary(text: str) -> frozenset[str]:
@@ -30,7 +31,7 @@ COMMAND = vocabulary("control ctrl u voltage volt spannung pwm duty vir valve ve
 ASKED = vocabulary("ref reference set setpoint sp desired des target goal soll demand commanded cmd command qg d")
 MEASURED = vocabulary("actual act measured meas present est estimate estimated ist feedback fb")
 SECOND = vocabulary(
-    "load output link second secondary scale abtrieb maßstab massstab glasmaßstab glasmassstab tracker laser "
+    "load output link second secondary se scale abtrieb maßstab massstab glasmaßstab glasmassstab tracker laser "
     "interferometer vicon mocap optitrack qualisys gt truth groundtruth"
 )
 IGNORED = vocabulary(
@@ -41,7 +42,11 @@ IGNORED = vocabulary(
 TEMPERATURE = vocabulary("temperature temperatures temp temps temperatur")
 APPLIED = vocabulary("hung applied external disturbance weight brake bremsmoment last")
 """A force from outside that is known, where the column has the unit of one."""
-PLAIN = vocabulary("motor actuator state states joint value wert data real raw message msg sensor")
+DERIVED = vocabulary("filt filtered filter smooth smoothed gefiltert")
+"""What was made of a reading: taken where the reading itself was not recorded."""
+PLAIN = DERIVED | vocabulary(
+    "motor mot actuator state states joint value wert data real raw message msg sensor averaged average mean mittel"
+)
 """Words that tell one axis from another only where nothing else does."""
 TURNING = vocabulary("az azimuth el elevation pan tilt yaw pitch roll")
 """Names of axes that, with a unit of an angle, are a position."""
@@ -49,9 +54,11 @@ TIME = vocabulary("t time stamp timestamp timestamps zeit date datetime utc rece
 COUNTERS = vocabulary("sample samples index idx frame step n nr row")
 FORCES = ("%", "A", "mA", "N", "kN", "N*m", "mN*m")
 """Units of an effort."""
+DRIVES = (*FORCES, "V", "mV", "1")
+"""Units of what a drive is told, where it is no place."""
 PLACES = ("m", "cm", "mm", "um", "rad", "mrad", "deg", "arcmin", "arcsec", "rev", "count")
 """Units of a position."""
-DRIVING = vocabulary("motor antrieb drive schrittzähler steps schritte")
+DRIVING = vocabulary("motor mot antrieb drive schrittzähler steps schritte")
 """The one of two places of an axis that the drive moves; the other one is that of the load."""
 WORDS = POSITION | VELOCITY | EFFORT | CURRENT | COMMAND | ASKED | MEASURED | IGNORED
 SLIDING = vocabulary("position pos posn x y z dist distance displacement displ stroke gap hub weg verschiebung")
@@ -85,9 +92,11 @@ class Named:
 
 def named(column: str) -> Named:
     """Return what the name of a column says, with the tables it lies in."""
-    *tables, last = column.split("/")
-    bare, unit = bare_and_unit(last)
-    words = words_of(bare)
+    *tables, last = PARTING.split(column)
+    known, unit = bare_and_unit(last)
+    words = words_of(known)
+    if unit == "nm" and set(words) & (EFFORT | CURRENT):
+        unit = "N*m"
     table = words_of(tables[-1]) if tables else []
     long = [w for w in words if w not in SHORT and w in WORDS - MEASURED - ASKED]
     used = [w for w in words if w in WORDS and not (long and w in SHORT and w != "d")]
@@ -99,7 +108,9 @@ def named(column: str) -> Named:
         return Named("effort", "_".join(rest), unit)  # a load in percent is a force
     if unit == "degC" or set(words) & TEMPERATURE:
         return Named("temperature", "_".join(w for w in rest if w not in TEMPERATURE), unit or "degC")
-    signal = _signal(set(used) | (set(words) & SECOND), {w for w in table if w in ASKED})
+    signal = _signal(set(used) | (set(words) & SECOND), {w for w in table if w in ASKED | COMMAND})
+    if signal == "reference" and unit in DRIVES and not set(words) & POSITION:
+        signal = "command"
     rest = rest or [w for w in table if w not in WORDS and w not in PLAIN and w not in SECOND] or table
     if signal is None and not set(words) & IGNORED:
         plain = unit == "count" or (unit in PLACES and set(words) <= PLAIN | TURNING)
@@ -164,11 +175,11 @@ def bare_and_unit(name: str) -> tuple[str, str | None]:
 
 def tells_time(column: str) -> bool:
     """Return whether a column's name says that it is a time."""
-    bare, _ = bare_and_unit(column.rsplit("/", 1)[-1])
-    return bool(set(words_of(bare)) & TIME)
+    known, _ = bare_and_unit(bare(column))
+    return bool(set(words_of(known)) & TIME)
 
 
 def counts_samples(column: str) -> bool:
     """Return whether a column's name says that it numbers the samples."""
-    bare, _ = bare_and_unit(column.rsplit("/", 1)[-1])
-    return bool(set(words_of(bare)) & COUNTERS)
+    known, _ = bare_and_unit(bare(column))
+    return bool(set(words_of(known)) & COUNTERS)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -11,15 +12,22 @@ from sher3_common import FileError
 from sher3_diagnosis.channel import Array
 
 from sher3_machines.errors import MachineError
+from sher3_machines.intake.readers.excel import read_workbook
 from sher3_machines.intake.readers.hdf5 import ENDINGS as OF_HDF5
 from sher3_machines.intake.readers.hdf5 import refuse_hdf5
 from sher3_machines.intake.readers.mat import read_mat
-from sher3_machines.intake.readers.structured import read_lists, read_npz, read_parquet
+from sher3_machines.intake.readers.structured import read_lines, read_lists, read_npz, read_parquet
 from sher3_machines.intake.readers.text import read_table
+from sher3_machines.intake.spelling import table_of
 
 Tables = dict[str, Array]
 MAX_BYTES = 2_000_000_000
 """Largest file that is read."""
+SAMPLES = 20
+"""Entries from which a list is one of samples, and no parameter of each joint."""
+SECONDS = re.compile(r"(?P<clock>(.*[/._])?)(secs?|seconds)")
+NANOSECONDS = re.compile(r"(?P<clock>(.*[/._])?)(nanos|nsecs?|nanosecs?|nanoseconds)")
+"""The two columns of a clock, as ROS and EPICS write them."""
 
 
 def read_bag(path: Path) -> Tables:
@@ -39,6 +47,9 @@ READERS: dict[str, Callable[[Path], Tables]] = {
     ".mat": read_mat,
     ".npz": read_npz,
     ".json": read_lists,
+    ".jsonl": read_lines,
+    ".ndjson": read_lines,
+    ".xlsx": read_workbook,
     ".parquet": read_parquet,
     ".mcap": read_bag,
     ".bag": read_bag,
@@ -84,13 +95,33 @@ def read_tables(path: Path) -> Tables:
 
 
 def upright(tables: Tables) -> Tables:
-    """Return the arrays of a file with matrices (k, n) as (n, k), where the file has lists of n samples and none of k.
+    """Return the arrays of a file with matrices (k, n) as (n, k), where lists of n samples stand beside them.
 
-    MATLAB users write a row for each joint as often as one for each sample.
+    MATLAB users write a row for each joint as often as one for each sample. Lists of the matrix' own table count before
+    those of the file, and short lists, such as a gain for each joint, where there are none of samples alone.
     """
-    lengths = {len(x) for x in tables.values() if x.ndim == 1}
-    lying = {n for n, x in tables.items() if x.ndim == 2 and x.shape[1] in lengths and x.shape[0] not in lengths}
-    return {n: np.ascontiguousarray(x.T) if n in lying else x for n, x in tables.items()}
+    return {n: np.ascontiguousarray(x.T) if x.ndim == 2 and _lies(n, x, tables) else x for n, x in tables.items()}
+
+
+def _lies(name: str, x: Array, tables: Tables) -> bool:
+    """Whether the matrix of a name has a column for each sample."""
+    of_table = {len(y) for n, y in tables.items() if y.ndim == 1 and table_of(n) == table_of(name)}
+    of_file = {len(y) for y in tables.values() if y.ndim == 1}
+    for lists in (*({n for n in lists if n >= SAMPLES} for lists in (of_table, of_file)), of_table, of_file):
+        if lists & set(x.shape):
+            return x.shape[1] in lists and x.shape[0] not in lists
+    return False
+
+
+def with_whole_clocks(tables: Tables) -> Tables:
+    """Return the arrays of a file, and a column `stamp` for each clock in two columns: seconds, and nanoseconds."""
+    found = dict(tables)
+    for name, seconds in tables.items():
+        match = SECONDS.fullmatch(name)
+        rest = [n for n in tables if match and (other := NANOSECONDS.fullmatch(n)) and other["clock"] == match["clock"]]
+        if match and len(rest) == 1 and tables[rest[0]].shape == seconds.shape:
+            found.setdefault(f"{match['clock']}stamp", seconds + 1e-9 * tables[rest[0]])
+    return found
 
 
 def is_rosbag2(path: Path) -> bool:
@@ -100,7 +131,7 @@ def is_rosbag2(path: Path) -> bool:
 
 def _read(path: Path, reader: Callable[[Path], Tables]) -> Tables:
     try:
-        return upright(reader(path))
+        return with_whole_clocks(upright(reader(path)))
     except FileError as error:
         raise MachineError(
             f"{path}: {error.reason}", value=error.value, limit=error.limit, remedy=error.remedy or "check the file"

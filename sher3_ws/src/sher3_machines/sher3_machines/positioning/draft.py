@@ -28,6 +28,7 @@ from sher3_machines.intake.names import (
     vocabulary,
     words_of,
 )
+from sher3_machines.intake.spelling import bare
 from sher3_machines.intake.tables import Tables
 
 TARGET = ASKED - vocabulary("ref reference d cmd command") | vocabulary("nominal sollposition zielposition ziel")
@@ -106,7 +107,7 @@ def one(flat: Tables, words: Collection[str], used: Collection[str] = ()) -> str
 
 def said(column: str) -> set[str]:
     """Return the words of a column's name without its unit."""
-    return set(words_of(bare_and_unit(column.rsplit("/", 1)[-1])[0]))
+    return set(words_of(bare_and_unit(bare(column))[0]))
 
 
 def _columns(flat: Tables) -> tuple[str, list[str]] | None:

@@ -26,6 +26,8 @@ MAX_BYTES = 2_000_000_000
 """Largest arrays of a file together, bytes."""
 MAX_DEPTH = 8
 """Structs within structs that are opened."""
+CLASS = "_Class"
+"""Field of what the reader makes of a class object."""
 HDF5 = b"MATLAB 7.3"
 """How files of version 7.3 begin."""
 
@@ -59,7 +61,7 @@ def read_mat(path: Path) -> dict[str, Array]:
 def flatten(name: str, value: Any, depth: int = 0) -> dict[str, Array]:
     """Return the numeric arrays in a value of `scipy.io.loadmat`, by path; class objects and text are left out."""
     x = np.asarray(value)
-    if depth > MAX_DEPTH:
+    if depth > MAX_DEPTH or CLASS in (x.dtype.names or ()):
         return {}
     if x.dtype.names:
         parts = [{n: flatten(n, row[n], depth + 1) for n in x.dtype.names} for row in x.ravel()]
@@ -86,6 +88,19 @@ def stacked(arrays: list[Array]) -> Array:
     return np.concatenate([x.ravel() for x in arrays])
 
 
+def _declared(raw: BytesIO) -> int:
+    """Return the bytes that the arrays of a file take; 0 where it holds a class object, whose size is not told.
+
+    The memory that the child may take is then the only limit.
+    """
+    import scipy.io
+
+    try:
+        return sum(8 * math.prod(shape) for _, shape, _ in scipy.io.whosmat(raw))
+    except TypeError:
+        return 0
+
+
 def main(limit: int, target: str) -> int:
     """Read a file from standard input in this process, with limits, and write its arrays; return the exit code.
 
@@ -101,7 +116,7 @@ def main(limit: int, target: str) -> int:
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     raw = BytesIO(sys.stdin.buffer.read())
     try:
-        declared = sum(8 * math.prod(shape) for _, shape, _ in scipy.io.whosmat(raw))
+        declared = _declared(raw)
         if declared > limit:
             raise ValueError(f"unpacks to too much: {declared} bytes, limit {limit}")
         raw.seek(0)

@@ -1,17 +1,20 @@
-"""NPZ, JSON and Parquet."""
+"""NPZ, JSON, JSON lines and Parquet."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 import numpy as np
-from sher3_common import read_json
+from sher3_common import parse_json, read_json
 from sher3_common.array_files import read_arrays
 from sher3_diagnosis.channel import Array
 
 from sher3_machines.errors import MachineError
+from sher3_machines.intake.readers.epics import is_archive, tables_of_archive
+from sher3_machines.intake.readers.text import decoded
 
 MAX_BYTES = 2_000_000_000
 MAX_TEXT_BYTES = 500_000_000
@@ -25,9 +28,12 @@ def read_npz(path: Path) -> dict[str, Array]:
 def read_lists(path: Path) -> dict[str, Array]:
     """Return named lists of a JSON file; objects nest as `name/key`, a list of objects is a table.
 
-    A list of objects at the top is a table too, whose columns have the keys' names.
+    A list of objects at the top is a table too, whose columns have the keys' names. The answer of an EPICS archiver is
+    a table for each of its channels.
     """
     data = read_json(path, MAX_TEXT_BYTES)
+    if is_archive(data):
+        return tables_of_archive(data)
     found: dict[str, object] = {}
     _collect("", data, found)
     if not isinstance(data, dict | list):
@@ -47,26 +53,50 @@ def _collect(name: str, value: object, found: dict[str, object]) -> None:
         found[name] = value
 
 
-def _as_rows(column: list[object]) -> object:
-    """Return one key of a list of objects as a list; objects in it as one object of lists, missing numbers as nan."""
-    if all(isinstance(x, dict) for x in column):
-        first = column[0]
-        assert isinstance(first, dict)
-        return {key: _as_rows([x.get(key) for x in column if isinstance(x, dict)]) for key in first}
-    return [np.nan if x is None else x for x in column]
+def _as_rows(column: list[Any]) -> object:
+    """Return one key of a list of objects as a list; objects in it as one object of lists, what is missing as nan."""
+    there = [x for x in column if x is not None]
+    if there and all(isinstance(x, dict) for x in there):
+        keys = dict.fromkeys(key for x in there for key in x)
+        return {key: _as_rows([x.get(key) if x is not None else None for x in column]) for key in keys}
+    widths = {len(x) for x in there if isinstance(x, list)}
+    nothing = [np.nan] * widths.pop() if len(widths) == 1 else np.nan
+    return [nothing if x is None else x for x in column]
+
+
+def read_lines(path: Path) -> dict[str, Array]:
+    """Return the table of a file with a JSON object in each line; what a line leaves out is nan."""
+    rows = [parse_json(line) for line in decoded(path).splitlines() if line.strip()]
+    if not rows or not all(isinstance(row, dict) for row in rows):
+        raise ValueError("not every line is an object")
+    keys = dict.fromkeys(key for row in rows for key in row)
+    found: dict[str, object] = {}
+    _collect("", [{key: row.get(key) for key in keys} for row in rows], found)
+    return numeric(found)
 
 
 def read_parquet(path: Path) -> dict[str, Array]:
-    """Return the numeric columns of a Parquet file; raises MachineError where no reader is installed."""
+    """Return the numeric columns of a Parquet file, lists as (n, k); raises MachineError where it has no reader."""
     try:
-        table = import_module("pyarrow.parquet").read_table(path)
+        parquet = import_module("pyarrow.parquet")
     except ImportError as error:
         raise MachineError(
             f"{path}: no reader for Parquet",
             value="pyarrow is not installed",
-            remedy="install pyarrow, or convert to csv",
+            remedy="install sher3[lerobot], or convert to csv",
         ) from error
-    return numeric({name: table[name].to_numpy() for name in table.column_names})
+    table = parquet.read_table(path)
+    return numeric({name: _plain(table[name]) for name in table.column_names})
+
+
+def _plain(column: Any) -> object:
+    """Return a column of Parquet as numbers, rows of lists as a matrix, and times as seconds since 1970."""
+    x = column.to_numpy()
+    if x.dtype.kind == "M":
+        return x.astype("datetime64[ns]").astype(np.int64) * 1e-9
+    if x.dtype == object and len(x) and all(isinstance(row, np.ndarray) for row in x):
+        return np.stack([np.stack(row) if row.dtype == object else row for row in x])
+    return x
 
 
 def numeric(data: Mapping[str, object]) -> dict[str, Array]:

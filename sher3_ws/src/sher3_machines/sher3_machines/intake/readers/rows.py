@@ -1,0 +1,128 @@
+"""From rows of cells, as a spreadsheet or a text file has them, to named arrays of numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from sher3_diagnosis.channel import Array
+
+from sher3_machines.intake.fields import TIME_UNITS, UNITS
+from sher3_machines.intake.readers.cells import value_of
+from sher3_machines.intake.spelling import spelled
+
+MOST_TITLES = 50
+"""Lines of text above a table at most."""
+FILLED = 0.5
+"""Share of the numbers of a usual row beyond which a row belongs to the table and no longer to its titles."""
+LONGEST_UNIT = 10
+"""Letters of a unit at most."""
+FEW = 0.02
+"""Share of the cells of a column that may be text, such as `ERR`, a remark, or a line that ends the file."""
+
+Rows = Sequence[Sequence[str]]
+
+
+def columns_of(rows: Rows, comma: bool, names: Sequence[str] = ()) -> dict[str, Array]:
+    """Return the numeric columns of rows of cells; without a header columns are c0, c1, ...
+
+    Args:
+        rows: cells as text, titles and header among them.
+        comma: whether a comma is the decimal mark.
+        names: of the columns, where they stand outside of the rows and the rows have no header.
+
+    Raises:
+        ValueError: two columns of numbers have one name.
+    """
+    rows = rows[_titles(rows, comma) :]
+    if all(value_of(cell, comma) is not None for cell in rows[0]):
+        header = list(names) if len(names) == len(rows[0]) else [f"c{i}" for i in range(len(rows[0]))]
+    else:
+        header, rows = [cell.strip() for cell in rows[0]], rows[1:]
+    if rows and _are_units(rows[0]):
+        header, rows = _with_units(header, rows[0]), rows[1:]
+    if len(set(header)) < len(header):
+        twice = next(name for name in header if header.count(name) > 1)
+        raise ValueError(f"column {twice!r} is there twice")
+    found = {name: _column([r[i] if i < len(r) else "" for r in rows], comma) for i, name in enumerate(header)}
+    return {name: x for name, x in found.items() if x is not None}
+
+
+def usual_row(rows: int) -> int:
+    """Return the row that is taken for a usual one: in the third quarter, below all titles and above the last line."""
+    return min(3 * rows // 4, max(rows - 2, rows // 2))
+
+
+def _titles(rows: Rows, comma: bool) -> int:
+    """Return how many rows of text stand above the header.
+
+    The header is the fullest row above the numbers, of several the first: units stand below it. A spreadsheet fills
+    the lines above its table up with empty cells, so that they are as wide as the table; a logger of drives writes
+    settings there that are wider than its table, and are no header of it.
+    """
+    usual = rows[usual_row(len(rows))]
+    filled = sum(map(_filled, usual))
+    numeric = [i for i, cell in enumerate(usual) if _is_number(cell, comma)]
+    first = next((i for i, row in enumerate(rows) if _in_table(row, numeric, len(usual), comma)), 0)
+    above = [sum(map(_filled, row)) for row in rows[:first]]
+    if not above or len(above) > MOST_TITLES:
+        return 0
+    if _known_units(rows[first - 1]) and first > 1 and len(rows[first - 2]) == len(rows[first - 1]):
+        return first - 2
+    fits = [n if len(row) <= len(usual) else 0 for n, row in zip(above, rows, strict=False)]
+    header = fits.index(max(fits))
+    return header if 2 * fits[header] > filled else len(above)
+
+
+def _in_table(row: Sequence[str], numeric: Sequence[int], width: int, comma: bool) -> bool:
+    """Return whether a row holds numbers where a usual one does, in more than half of those columns."""
+    told = sum(i < len(row) and _is_number(row[i], comma) for i in numeric)
+    return len(row) <= width and told > FILLED * len(numeric)
+
+
+def _is_number(cell: str, comma: bool) -> bool:
+    return _filled(cell) and value_of(cell, comma) is not None
+
+
+def _filled(cell: str) -> bool:
+    return bool(cell.strip())
+
+
+def _known_units(row: Sequence[str]) -> bool:
+    """Return whether every cell of a row that is filled is a unit."""
+    units = [spelled(cell.strip().strip("[]()")) for cell in row if _filled(cell)]
+    return bool(units) and all(unit in UNITS for unit in units)
+
+
+def _are_units(row: Sequence[str]) -> bool:
+    """Return whether a row below the header holds units: words where numbers should be, none of them long."""
+    cells = [cell.strip() for cell in row]
+    return (
+        any(cells) and all(value_of(c, True) is None or not c for c in cells) and max(map(len, cells)) <= LONGEST_UNIT
+    )
+
+
+def _with_units(header: Sequence[str], units: Sequence[str]) -> list[str]:
+    """Return the names of the columns with the units of the row below, as headers have them.
+
+    A column without a name whose unit is that of a time is the time.
+    """
+    cells = [*(u.strip().strip("[]()") for u in units), *[""] * len(header)]
+    names = [name or ("time" if spelled(unit) in TIME_UNITS else "") for name, unit in zip(header, cells, strict=False)]
+    return [f"{name} [{unit}]" if unit else name for name, unit in zip(names, cells, strict=False)]
+
+
+def _column(cells: Sequence[str], comma: bool) -> Array | None:
+    """Cells as (n,) or, where they hold lists, (n, k); None where more than a few are text, which become nan."""
+    values = [value_of(cell, comma) for cell in cells]
+    text = sum(value is None for value in values)
+    if text > FEW * len(values):
+        return None
+    width = max((len(value) for value in values if isinstance(value, list)), default=0)
+    nothing = [float("nan")] * width if width else float("nan")
+    blank = [value is None or (width and not isinstance(value, list) and value != value) for value in values]
+    values = [nothing if none else value for value, none in zip(values, blank, strict=True)]  # type: ignore[misc]
+    try:
+        return np.array(values, dtype=float)
+    except (TypeError, ValueError):
+        return None
