@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -34,8 +35,16 @@ def _folders(package: Path) -> dict[str, list[str]]:
     for init in sorted(package.rglob("__init__.py")):
         dotted = ".".join(init.parent.relative_to(package.parent).parts)
         names = sorted(path.stem for path in init.parent.glob("*.py") if not path.stem.startswith("_"))
-        folders[dotted] = [f"{dotted}.{name}" for name in names]
+        faces = _faces(init)
+        modules = sorted((f"{dotted}.{name}" for name in names), key=lambda module: (module not in faces, module))
+        folders[dotted] = modules
     return folders
+
+
+def _faces(init: Path) -> set[str]:
+    """Return the modules whose names a folder's face exports, but for errors: what is called stands first."""
+    imports = (node for node in ast.walk(ast.parse(init.read_text())) if isinstance(node, ast.ImportFrom))
+    return {node.module for node in imports if node.module and not node.module.endswith(".errors")}
 
 
 def _page(name: str, modules: list[str]) -> str:
