@@ -19,6 +19,7 @@ CONSTANTS: Mapping[str, str] = {
     "static": "friction at rest",
     "stribeck": "speed over which the one falls to the other",
     "viscous": "viscous coefficient",
+    "load_loss": "friction by the force that the joint carries",
     "offset": "constant force against the drive",
     "weight": "relative change of the weight",
     "arm": "largest weight of an axis that turns",

@@ -1,6 +1,7 @@
 """The exported model on recorded commands, and the motion that ranges cover."""
 
 from pathlib import Path
+from xml.etree.ElementTree import tostring
 
 import numpy as np
 import pytest
@@ -129,3 +130,49 @@ def test_an_arm_in_motion_is_run_from_its_own_model(tmp_path, monkeypatch):
     found = check(verdict(*causes), Path("case"), None)
     assert [gap.joint for gap in found.gaps] == ["lift", "swing"]
     assert all(gap.after < 0.3 * gap.before for gap in found.gaps), found.gaps
+
+
+def test_a_servo_of_the_model_gives_way_to_the_recorded_force(tmp_path, monkeypatch):
+    """Torques are no references: as controls of position actuators they would send the arm anywhere."""
+    import lifts
+
+    servos = "".join(f'<position joint="{j}" kp="500" kv="20"/>' for j in ("lift", "swing"))
+    bare = (
+        '<body name="tip"><joint name="spare" type="hinge"/><inertial pos="0 0 0" mass="0" diaginertia="0 0 0"/></body>'
+    )
+    text = lifts.MJCF.replace("</mujoco>", f"<actuator>{servos}</actuator></mujoco>")
+    text = text.replace("</body></body></worldbody>", f"{bare}</body></body></worldbody>")
+    (tmp_path / "servo.xml").write_text(text)
+    machine = lifts.machine(tmp_path / "lift.urdf")
+    q, v, a = lifts.motion(seconds=8.0)
+    runs = [lifts.run_of(q, lifts.needed(q, v, a) + lifts.friction(v, coulomb=(6.0, 0.5)))]
+    monkeypatch.setattr(checking, "open_case", lambda path: (machine, runs))
+    causes = (
+        cause("coulomb_friction", "lift", force=6.0),
+        cause("coulomb_friction", "swing", force=0.5, unit="N*m"),
+    )
+    found = check(verdict(*causes), Path("case"), tmp_path / "servo.xml")
+    assert all(gap.closure.value > 0.9 for gap in found.gaps), found.gaps
+    assert "<position" in found.exported.text
+
+
+def test_a_link_without_inertia_is_given_dust(tmp_path):
+    """A frame of a URDF that moves and weighs nothing: MuJoCo refuses it as it is."""
+    import lifts
+    from sher3_export.check.model_of import model_of_arm
+
+    spare = (
+        '<joint name="turn" type="continuous"><parent link="pendulum"/><child link="tool"/><axis xyz="0 0 1"/></joint>'
+    )
+    (tmp_path / "arm.urdf").write_text(lifts.URDF.replace("</robot>", f'<link name="tool"/>{spare}</robot>'))
+    root = model_of_arm(tmp_path / "arm.urdf")
+    assert root.find("compiler").get("boundmass")
+    assert engine.compiled(tostring(root, encoding="unicode"), ["lift", "swing"]).model.nv == 3
+
+
+def test_gear_loss_is_written_as_the_friction_of_its_mean_load():
+    from sher3_export.changes import changes_of
+
+    lost = cause("gear_loss", "swing", share=0.06, force=0.15, usual=0.27, unit="N*m")
+    (changes, _) = changes_of([lost])
+    assert {c.constant: c.value for c in changes} == {"load_loss": 0.06, "coulomb": 0.27}

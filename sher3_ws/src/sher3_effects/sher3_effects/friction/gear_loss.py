@@ -13,7 +13,10 @@ from sher3_effects.view import AxisView
 
 
 class GearLoss(Page):
-    """F = z (force + share * |nominal force|), z the direction of motion."""
+    """F = z (force + share * |nominal force|), z the direction of motion.
+
+    A model without a friction that follows the load has the friction of the mean load, `usual`.
+    """
 
     id, family, stage = "gear_loss", "friction", "motor_mechanics"
     inputs = ("direction", "force")
@@ -29,13 +32,16 @@ class GearLoss(Page):
         "coulomb_friction": "the same step in every posture",
         "torque_constant": "all forces are scaled, at rest and in both directions alike",
     }
-    units = {"force": "N", "share": "1"}
+    units = {"force": "N", "share": "1", "usual": "N"}
+    on_axis = {"usual": "coulomb", "share": "load_loss"}
     DISPLACEMENT = 2.5e-3
     """Over which the direction reverses, in motor revolutions: the middle one of Coulomb friction."""
 
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
-        """Return without (0) and with (1) friction that is there without load."""
-        return [{"dry": 0.0}, {"dry": 1.0}]
+        """Return without (0) and with (1) friction that is there without load, and the mean load."""
+        row = views[0].row(site)
+        load = float(np.mean(np.concatenate([np.abs(v.inertial[:, row]) for v in views])))
+        return [{"dry": 0.0, "load": load}, {"dry": 1.0, "load": load}]
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
         """Return the direction times the force that the joint carries, and the direction alone."""
@@ -45,8 +51,9 @@ class GearLoss(Page):
         return Signature({Channel(self.stage, site): column(lost, z) if shape["dry"] else column(lost)})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the share of the load that is lost, and the friction without load."""
-        return {"share": float(coefficients[0]), "force": float(coefficients[1]) if shape["dry"] else 0.0}
+        """Return the share of the load that is lost, the friction without load, and that at the mean load."""
+        share, dry = float(coefficients[0]), float(coefficients[1]) if shape["dry"] else 0.0
+        return {"share": share, **({"force": dry} if shape["dry"] else {}), "usual": dry + share * shape["load"]}
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
         """Return whether less than all of the load is lost, and friction resists."""

@@ -113,7 +113,7 @@ def bench_of(verdict: Verdict, case: Path, model: Path | None, joints: Mapping[s
     late = any(c.constant in LATE for c in export(verdict, "yaml").applied)
     records = recorded(machine, runs, joints, late)
     names = list(records[0].tracks)
-    root = prepared(original, records[0].period, names)
+    root = prepared(original, records[0].period, records[0].tracks)
     return Bench(original, root, compiled(write_xml(root, ["nominal"]), names), records, names)
 
 

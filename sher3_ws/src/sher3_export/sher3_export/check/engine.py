@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from sher3_diagnosis.channel import Array
 
-from sher3_export.check.recorded import Recorded
+from sher3_export.check.recorded import Recorded, Track
 from sher3_export.errors import ExportError, MujocoMissing
 from sher3_export.xml_file import written
 
@@ -36,19 +36,42 @@ def mujoco() -> ModuleType:
         raise MujocoMissing from error
 
 
-def prepared(root: Element, period: float, joints: Sequence[str]) -> Element:
-    """Return a copy with a time step that divides the period, and a motor on every joint that has no actuator."""
+SERVOS = ("position", "velocity", "intvelocity", "pid", "damper")
+"""Elements whose control is no force."""
+DUST = 1e-9
+"""Least mass, kg, and inertia, kg m^2, of a body: MuJoCo refuses one without."""
+
+
+def prepared(root: Element, period: float, tracks: Mapping[str, Track]) -> Element:
+    """Return a copy with a time step that divides the period, and a motor on every joint that a force drives.
+
+    Of a joint whose force was recorded a servo is taken off: its force is in the record.
+    """
     root = copied(root)
+    compiler = root.find("compiler")
+    compiler = SubElement(root, "compiler") if compiler is None else compiler
+    for name in ("boundmass", "boundinertia"):
+        compiler.set(name, compiler.get(name, written(DUST)))
     option = root.find("option")
     option = SubElement(root, "option") if option is None else option
     option.set("timestep", written(period / math.ceil(period / STEP - 1e-9)))
     actuators = root.find("actuator")
     actuators = SubElement(root, "actuator") if actuators is None else actuators
-    driven = {x.get("joint") for block in root.findall("actuator") for x in block}
-    for joint in joints:
+    forced = {joint for joint, track in tracks.items() if track.drive is not None and not track.servo}
+    for block in root.findall("actuator"):
+        for x in [x for x in block if x.get("joint") in forced and is_servo(x)]:
+            block.remove(x)
+    driven = {x.get("joint") for block in root.findall("actuator") for x in block if x.get("gainprm") != "0"}
+    for joint in tracks:
         if joint not in driven:
             SubElement(actuators, "motor", {"joint": joint, "ctrllimited": "false"})
     return root
+
+
+def is_servo(actuator: Element) -> bool:
+    """Return whether the control of an actuator is a place or a speed; of a general one its bias follows them."""
+    bias = [float(x) for x in actuator.get("biasprm", "0").split()[1:]]
+    return actuator.tag in SERVOS or (actuator.tag == "general" and any(bias))
 
 
 def copied(root: Element) -> Element:

@@ -41,6 +41,7 @@ def model_of_arm(path: Path) -> Element:
             link.remove(shape)
     try:
         spec = mujoco().MjSpec.from_string(tostring(root, encoding="unicode"))
+        spec.compiler.boundmass = spec.compiler.boundinertia = DUST  # a link without either is refused
         return parse_xml(spec.to_xml(), "mujoco")
     except ValueError as error:
         raise ExportError(f"{path}: MuJoCo refuses it", value=str(error)[:200], remedy="give --model") from error

@@ -31,6 +31,7 @@ class Track:
         measured: (n,) m or rad, of the load where it has an encoder: what a simulation is held against.
         behind: (n,) load less motor, m or rad; None with one encoder.
         drive: (n,) force, N or N m, or reference of a servo, m or rad; None where nothing drives the joint.
+        servo: whether the drive is the reference of a servo.
     """
 
     position: Array
@@ -38,6 +39,7 @@ class Track:
     measured: Array
     behind: Array | None
     drive: Array | None
+    servo: bool = False
 
 
 @dataclass(frozen=True)
@@ -82,15 +84,15 @@ def track_of(run: AxesRun, axis: Axis, late: bool) -> Track:
     smooth = [savgol_filter(q, 2 * half + 1, 2, deriv=k, delta=run.period) for k in (0, 1)]
     load = signals.get("load")
     behind = None if load is None else load - q
-    return Track(smooth[0], smooth[1], q if load is None else load, behind, drive_of(signals, axis, late))
+    servo = axis.servo or (late and isinstance(axis, Joint) and axis.follows)
+    drive = signals["reference"] if servo else drive_of(signals, axis, late)
+    return Track(smooth[0], smooth[1], q if load is None else load, behind, drive, servo)
 
 
 def drive_of(signals: Mapping[str, Array], axis: Axis, late: bool) -> Array | None:
-    """Return the force, the servo's reference, or None."""
+    """Return the force, or None where nothing drives the joint."""
     if axis.free:
         return None
-    if axis.servo:
-        return signals["reference"]
     if "command" in signals and (late or "effort" not in signals):
         return axis.command_law.gain * signals["command"]
     return signals["effort"] * (axis.gain if isinstance(axis, Joint) and isinstance(axis.gain, float) else 1.0)

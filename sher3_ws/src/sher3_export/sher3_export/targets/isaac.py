@@ -33,6 +33,7 @@ class Isaac(Target):
 
     name = "isaac"
     refuses: ClassVar[Mapping[str, str]] = {
+        "load_loss": "friction does not follow the load here; that of the mean load was written",
         "stribeck": "static and sliding friction are stated, the speed between them is not",
         "offset": "an actuator has no constant force",
         "weight": "a share of the weight without its inertia belongs to the asset, not to an actuator",

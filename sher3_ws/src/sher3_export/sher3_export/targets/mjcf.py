@@ -37,6 +37,7 @@ class Mjcf(XmlTarget):
         **dict.fromkeys(
             ("arm", "hanging"), "a weight at an arm is mass and centre of a link, which the verdict does not give"
         ),
+        "load_loss": "friction does not follow the load here; that of the mean load was written",
         "static": "MuJoCo's frictionloss is the same at rest and in motion; only the sliding level was written",
         "stribeck": "MuJoCo's frictionloss does not depend on speed",
         "ratio": "the load encoder is no part of the joint",

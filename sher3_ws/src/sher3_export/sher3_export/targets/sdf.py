@@ -23,6 +23,7 @@ class Sdf(XmlTarget):
         **dict.fromkeys(
             ("arm", "hanging"), "a weight at an arm is mass and centre of a link, which the verdict does not give"
         ),
+        "load_loss": "friction does not follow the load here; that of the mean load was written",
         "static": "SDF friction is the same at rest and in motion; only the sliding level was written",
         "stribeck": "SDF friction does not depend on speed",
         "offset": "an SDF joint has no constant force",
