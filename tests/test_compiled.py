@@ -4,7 +4,7 @@ import re
 
 from sources import FILES, ROOT
 
-DOORS = {"sher3_common/compiled.py", "sher3_common/compile_cache.py"}
+DOORS = {"sher3_common/compiled.py", "sher3_common/compiling/named_cache.py"}
 WRITES = re.compile(r"config\.\w+ *=[^=]|setattr\([^)]*config|os\.environ\[.NUMBA")
 DECORATES = re.compile(r"\bnjit\b|\bnumba\.jit\b|\bcfunc\b|\bvectorize\b")
 

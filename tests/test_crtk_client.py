@@ -6,6 +6,7 @@ wheels; state commands are `std_msgs/String` here, which is the one thing the cl
 
 from __future__ import annotations
 
+import json
 from functools import partial
 
 import pytest
@@ -40,12 +41,14 @@ class CrtkClient(Node):
             (JointState, "measured_js", 10),
             (PoseStamped, "measured_cp", 10),
             (String, "operating_state", LATCHED),
+            (String, "motion/status", LATCHED),
+            (String, "error", 10),
         ):
             self.create_subscription(kind, name, partial(self.newest.__setitem__, name), quality)
 
-    def joints(self, **values):
-        """Return a command for all joints, stamped with the time of the newest measurement."""
-        command = JointState(name=JOINTS, **values)
+    def joints(self, names=JOINTS, **values):
+        """Return a command for joints, by default for all, stamped with the time of the newest measurement."""
+        command = JointState(name=names, **values)
         command.header.stamp = self.newest["measured_js"].header.stamp
         return command
 
@@ -88,3 +91,32 @@ def test_move_jp_goes_there_and_stops(arm):
     graph.step(500)
     assert list(client.newest["measured_js"].position) == pytest.approx(goal, abs=5e-6)
     assert client.newest["measured_cp"].header.frame_id == "b"
+
+
+def test_a_command_that_is_none_comes_back_as_a_result(arm):
+    """Part of the joints, or no frame: an error as it happens, and the same in the status until one is taken."""
+    graph, client = arm
+    start = enabled(graph, client)
+    wrong = {
+        "move_jp": (client.joints(["roll"], position=[0.1]), "value roll; limit delta_1"),
+        "move_cp": (PoseStamped(), "frame_id; value ''; limit 'b'"),
+    }
+    for name, (command, why) in wrong.items():
+        getattr(client, name).publish(command)
+        graph.step(100)
+        error, refused = client.newest["error"].data, json.loads(client.newest["motion/status"].data)["refused"]
+        assert error.startswith(f"{name} rejected: ") and why in error
+        assert (refused["command"], refused["text"]) == (name, error)
+    client.move_cp.publish(client.newest["measured_cp"])
+    graph.step(20)
+    assert json.loads(client.newest["motion/status"].data)["refused"] is None
+    assert client.newest["measured_js"].position[3] == pytest.approx(start.position[3], abs=1e-5)
+
+
+def test_joints_may_be_named_in_any_order(arm):
+    graph, client = arm
+    start = enabled(graph, client)
+    goal = [start.position[0] + 2e-4, *start.position[1:]]
+    client.move_jp.publish(client.joints(JOINTS[::-1], position=goal[::-1]))
+    graph.step(500)
+    assert list(client.newest["measured_js"].position) == pytest.approx(goal, abs=5e-6)

@@ -304,7 +304,7 @@ READERS = {
 }
 OWN_FILES = {
     "sher3_common/files.py": "the door itself",
-    "sher3_common/source_closure.py": "digest of our own sources",
+    "sher3_common/compiling/source_closure.py": "digest of our own sources",
     "sher3_bags/writing.py": "writes",
     "sher3_bags/recording/recorder.py": "writes",
     "sher3_bags/recovery.py": "writes",

@@ -7,6 +7,7 @@ import re
 import signal
 import socket
 import subprocess
+import sys
 import time
 from pathlib import Path
 
@@ -48,6 +49,23 @@ class Robot:
         return self.process.returncode, out, err
 
 
+STRANGER = """
+import rclpy
+from sensor_msgs.msg import Joy
+from std_msgs.msg import String
+rclpy.init()
+node, heard = rclpy.create_node("stranger"), []
+command = node.create_publisher(String, "/sher3/state_command", 10)
+node.create_subscription(String, "/sher3/operating_state", lambda message: heard.append(message.data), 10)
+while "ENABLED" not in heard:
+    command.publish(String(data="enable"))
+    rclpy.spin_once(node, timeout_sec=0.2)
+node.create_publisher(Joy, "/sher3/pedal/measured", 10)
+rclpy.spin(node)
+"""
+"""Somebody who enables the robot and then publishes its own pedal stream beside it."""
+
+
 @pytest.fixture
 def robot(domain):
     started = []
@@ -68,7 +86,7 @@ def test_ready_line_then_ctrl_c_stops_everything(robot, bag_folder):
     running = robot("--record", bag_folder)
     assert re.match(r"ready: 8 processes at 500 Hz on mocks in \d+\.\d\d s", running.ready())
     children = running.children()
-    assert len(children) == 8
+    assert len(children) == 9, "the eight of the robot, and the terminal's listener"
     time.sleep(1.0)
     running.process.send_signal(signal.SIGINT)
     status, out, _ = running.finish()
@@ -99,6 +117,26 @@ def test_the_loop_in_one_process_ends_as_one_and_stops_the_robot(robot):
     assert not [child for child in children if child.is_running() and child.status() != psutil.STATUS_ZOMBIE]
 
 
+def test_a_fault_is_said_as_it_happens_and_is_the_exit_code_unless_it_was_recovered(robot, domain):
+    """Two nodes may not publish the pedal: the line says what to start instead."""
+    running = robot("--patient")
+    running.ready()
+    with subprocess.Popen(
+        [sys.executable, "-c", STRANGER], env=child_environment(ROS_DOMAIN_ID=str(domain))
+    ) as stranger:
+        said = [running.process.stdout.readline()]
+        while "FAULT" not in said[-1]:
+            said.append(running.process.stdout.readline())
+        stranger.kill()
+    told = [line for line in said if "refused" not in line]
+    assert [line.split(maxsplit=2)[2] for line in told[:2]] == ["DISABLED  by start\n", "ENABLED  by enable\n"]
+    assert "FAULT  PUBLISHED_TWICE pedal/measured: 2 publishers, limit 1 publishers" in told[2]
+    assert "`--without pedal`" in told[2] and told[2].endswith("then send disable, and enable\n")
+    running.process.send_signal(signal.SIGINT)
+    status, _, err = running.finish()
+    assert status == 6 and "sher3: the robot ended in FAULT PUBLISHED_TWICE" in err
+
+
 def test_the_death_of_a_process_stops_the_robot(robot):
     running = robot()
     running.ready()
@@ -115,7 +153,7 @@ def test_the_death_of_the_recorder_stops_the_robot_unless_recording_is_optional(
     """In both cases what it had written can be recovered."""
     running = robot("--record", bag_folder, "--duration", "4", *([] if required else ["--record-optional"]))
     running.ready()
-    recorder = sorted(child.pid for child in running.children())[-1]
+    recorder = sorted(child.pid for child in running.children())[-2]  # the terminal's listener comes after it
     time.sleep(1.5)
     os.kill(recorder, signal.SIGKILL)
     status, _, err = running.finish()

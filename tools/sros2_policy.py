@@ -19,6 +19,7 @@ Tables = dict[str, tuple[set[str], set[str]]]
 def robot_nodes() -> Tables:
     """Return the topics each node of the robot publishes and hears; the recorder hears everything."""
     from sher3_bringup.stepped_robot import SteppedRobot
+    from sher3_bringup.terminal.told import SOURCES
 
     with Graph() as graph:
         SteppedRobot(graph)
@@ -26,7 +27,8 @@ def robot_nodes() -> Tables:
     # `sher3 up` gives every process the diagnostics of its own timing.
     found = {name: (publishes | {"diagnostics"}, hears) for name, (publishes, hears) in found.items()}
     everything = set(TOPICS)
-    return {**found, "recorder": ({"diagnostics"}, everything), "recorder_ears": (set(), everything)}
+    recorder = {"recorder": ({"diagnostics"}, everything), "recorder_ears": (set(), everything)}
+    return {**found, **recorder, "terminal": ({"diagnostics"}, set(SOURCES))}
 
 
 def operator_node() -> Tables:

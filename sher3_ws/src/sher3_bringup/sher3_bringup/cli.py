@@ -7,10 +7,13 @@ import json
 import sys
 from enum import Enum
 from pathlib import Path
-from typing import Annotated, Optional
+from typing import TYPE_CHECKING, Annotated, Optional
 
 import typer
 from sher3_common.commands.options import Domain, Json
+
+if TYPE_CHECKING:
+    from sher3_bringup.terminal.screen import Screen
 
 app = typer.Typer(rich_markup_mode="markdown")
 
@@ -26,7 +29,7 @@ class Layout(str, Enum):
 
 @app.command(
     epilog="Examples: `sher3 up` · `sher3 up --rate 1000 --record bags/run` · "
-    "`sher3 up --rate 1000 --layout composed` · `sher3 up --effects backlash.yaml` · "
+    "`sher3 up --rate 1000 --layout composed` · `sher3 up --effects backlash.yaml` · `sher3 up --without pedal` · "
     "`sher3 up --nodes force_sensor+pedal,admittance+kinematics,motor_driver,plant,supervisor` · "
     "`sher3 up --real --can socketcan:can0 --can socketcan:can1`"
 )
@@ -38,6 +41,10 @@ def up(
     nodes: Annotated[
         str, typer.Option(help="Nodes to run: `,` between processes, `+` within one; all by default.")
     ] = "",
+    without: Annotated[
+        Optional[list[str]],  # noqa: UP045
+        typer.Option(help="Leave this node out: pedal or force_sensor where you publish its topic yourself."),
+    ] = None,
     layout: Annotated[
         Layout, typer.Option(help="Processes: one for each node, or one for the loop (half the processor time).")
     ] = Layout.SEPARATE,
@@ -84,12 +91,14 @@ def up(
     """Start the robot and keep it running until Ctrl-C.
 
     Every node is a process of its own unless `--layout composed` or `--nodes` joins some. A line says when
-    all are ready. If a process ends, everything is stopped, drives first.
+    all are ready, and one more each change of state with its reason and remedy; on a terminal a line below them tells
+    state, mode, force, speed and lost cycles. If a process ends, everything is stopped, drives first.
 
     Exit codes: 0 stopped as asked, 2 wrong option, 1 bad file, 3 not started (a device is missing), 4 a process died,
-    5 a process had to be killed.
+    5 a process had to be killed, 6 the robot was in FAULT at the end.
     """
     gc.disable()  # nothing that is imported until the processes are forked is garbage; `preload` enables it again
+    from sher3_bringup.errors import EndedInFault
     from sher3_bringup.processes.onlooker import onlooker
     from sher3_bringup.processes.up import run_graph
     from sher3_bringup.settings.run_settings import checked, parse_processes
@@ -97,7 +106,7 @@ def up(
     settings = checked(
         mock=mock,
         rate=rate,
-        processes=parse_processes(nodes, mock, record is not None, monitor, layout.value),
+        processes=parse_processes(nodes, mock, record is not None, monitor, layout.value, without or ()),
         robot_path=robot,
         drives_path=drives,
         effects=effects,
@@ -117,8 +126,11 @@ def up(
         domain=domain,
         other_hosts=other_hosts,
     )
+    screen = _screen(as_json)
     with onlooker(view, domain, view_port):
-        run_graph(settings, say=_say(as_json))
+        fault = run_graph(settings, say=screen, status=screen.status)
+    if fault:
+        raise EndedInFault(fault)
 
 
 @app.command(
@@ -137,7 +149,10 @@ def teleop(
 ) -> None:
     """Act the surgeon on a running mock: press the pedal and push the tool.
 
-    At the keyboard the robot answers: state with its reason, tip, speed, force, pedal, and what it refused.
+    At the keyboard the robot answers: state with its reason, tip, speed, force, pedal, and what it refused. A script
+    prints its steps, and each change of state with its reason and remedy.
+
+    Exit codes of a script: 3 no robot was heard, 6 the robot was in FAULT at the end.
     """
     from sher3_bringup.surgeon.script import demo_script, load_script
 
@@ -167,12 +182,15 @@ def demo(
     from sher3_bringup.demo.session import run_demo
     from sher3_bringup.processes.onlooker import onlooker
 
+    screen = _screen(as_json)
     with onlooker(view, domain, view_port):
-        result = run_demo(rate, effects, script, folder, say=_say(as_json), domain=domain)
+        result = run_demo(rate, effects, script, folder, say=screen, domain=domain, status=screen.status)
     if as_json:
         typer.echo(json.dumps(result))
 
 
-def _say(quiet: bool):
+def _screen(quiet: bool) -> Screen:
     """Return what prints progress: to standard error when standard output carries JSON."""
-    return lambda text: print(text, file=sys.stderr if quiet else sys.stdout, flush=True)
+    from sher3_bringup.terminal.screen import Screen
+
+    return Screen(sys.stderr if quiet else sys.stdout)

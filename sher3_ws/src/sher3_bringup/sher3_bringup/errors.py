@@ -8,6 +8,7 @@ USAGE = 2
 NOT_STARTED = 3
 DIED = 4
 KILLED = 5
+FAULTED = 6
 
 
 class ConfigurationError(Sher3Error):
@@ -42,3 +43,12 @@ class SessionFailed(Sher3Error):
     """The robot of a recorded session faulted, was not enabled or did not move as its script asked."""
 
     exit_code = DIED
+
+
+class EndedInFault(SessionFailed):
+    """The robot went to FAULT, and nobody recovered it."""
+
+    exit_code = FAULTED
+
+    def __init__(self, fault: str) -> None:
+        super().__init__(f"the robot ended in {' '.join(fault.split())}")

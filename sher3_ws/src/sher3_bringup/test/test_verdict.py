@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from sher3_bringup.demo.verdict import judge
-from sher3_bringup.errors import SessionFailed
+from sher3_bringup.errors import EndedInFault, SessionFailed
 from sher3_bringup.surgeon.script import Script
 from sher3_bringup.surgeon.teleop_node import ScriptCommands
 
@@ -24,7 +24,7 @@ SCRIPT = Script.model_validate(
 )
 DISABLED = {"state": "DISABLED", "since": 0, "first_fault": None, "refused": None}
 ENABLED = {**DISABLED, "state": "ENABLED", "since": BEGIN + S // 2}
-FAULT_FOUND = {"code": "MEASURED_JS_SILENT", "value": 0.7, "limit": 0.6, "unit": "s", "source": "measured_js"}
+FAULT_FOUND = {"code": "JOINTS_STALE", "value": 0.7, "limit": 0.6, "unit": "s", "source": "measured_js"}
 
 
 def session(states=(DISABLED, ENABLED), reasons=(("PEDAL_RELEASED", 0.6), ("MOVING", 1.2)), way=1e-3):
@@ -50,7 +50,6 @@ REFUSED = {**DISABLED, "refused": {"text": "enable is refused: a stream is silen
 @pytest.mark.parametrize(
     ("recorded", "sentence"),
     [
-        (session((DISABLED, ENABLED, FAULT)), r"FAULT: MEASURED_JS_SILENT of measured_js 2.0 s after the start; value"),
         (session((DISABLED, REFUSED)), "never enabled: enable is refused: a stream is silent"),
         (session((DISABLED,)), "never enabled: no enable command arrived"),
         (session(reasons=(("MOVING", 1.2), ("WRENCH_STALE", 1.7))), r"stopped by itself 1.7 s .* wrench sample is too"),
@@ -61,6 +60,14 @@ def test_a_session_that_failed_is_one_sentence_and_an_exit_code(recorded, senten
     with pytest.raises(SessionFailed, match=sentence) as caught:
         judge(recorded, SCRIPT, BEGIN)
     assert caught.value.exit_code == 4
+
+
+def test_a_fault_is_told_as_the_terminal_tells_it_with_an_exit_code_of_its_own():
+    with pytest.raises(
+        EndedInFault, match=r"FAULT JOINTS_STALE measured_js: 0.7 s, limit 0.6 s; .*; .* and enable \(2.0"
+    ) as caught:
+        judge(session((DISABLED, ENABLED, FAULT)), SCRIPT, BEGIN)
+    assert caught.value.exit_code == 6
 
 
 def test_a_stop_while_not_enabled_is_no_failure():

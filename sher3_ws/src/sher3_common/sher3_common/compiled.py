@@ -17,7 +17,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar, overload
 
-from sher3_common.source_closure import closure_digest
+from sher3_common.compiling.source_closure import closure_digest
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -53,7 +53,7 @@ def compiled(function: Any = None, /, **flags: Any) -> Any:
     dispatcher = numba.njit(**flags)(function)
     folder = cache_folder(function.__module__, Path(function.__code__.co_filename))
     if folder is not None and dispatcher is not function:
-        from sher3_common.compile_cache import SourceNamedCache
+        from sher3_common.compiling.named_cache import SourceNamedCache
 
         dispatcher._cache = SourceNamedCache(function, folder)  # what numba's own enable_caching() sets
     return dispatcher

@@ -30,7 +30,7 @@ FILES = {
 ASK = """
 import sys
 from pathlib import Path
-from sher3_common.source_closure import closure_digest
+from sher3_common.compiling.source_closure import closure_digest
 sys.path.insert(0, sys.argv[1])
 print(closure_digest(Path(sys.argv[1], "sher3_top/law.py"), "sher3_top.law"))
 assert not any(name.startswith(("sher3_top", "sher3_low", "numba")) for name in sys.modules)

@@ -95,6 +95,7 @@ _TABLE = (
     Topic("tracker/measured_cp", _POSE, "b", STREAM, "external tip pose in {b}"),
     Topic("temperature", "sensor_msgs/msg/Temperature", "", STREAM, "structure temperature [deg C]"),
     Topic("operating_state", _TEXT, "", LATCHED, "CRTK operating state; why and since when is in supervisor/status"),
+    Topic("error", _TEXT, "", STREAM, "CRTK error: a command that was refused, and why; it stays in the status topics"),
     # CRTK commands of the user.
     Topic("command/servo_cv", _TWIST, "b", STREAM, "tip twist in {b}", graph="servo_cv"),
     Topic("command/servo_jv", _JOINT, "", STREAM, "actuator velocity", graph="servo_jv"),
@@ -150,8 +151,8 @@ _TABLE = (
 
 AT_ONCE = {"pedal/measured": "buttons"}
 """Field of a stream whose change is heard at once by those, too, that look at the stream at their own pace."""
-MANY_SENDERS = frozenset({"diagnostics"})
-"""Topics on which every node publishes; all others have one sender."""
+MANY_SENDERS = frozenset({"diagnostics", "error"})
+"""Topics on which several nodes publish; all others have one sender."""
 
 TOPICS: dict[str, Topic] = {topic.name: topic for topic in _TABLE}
 """Every topic by its name relative to `NAMESPACE`."""

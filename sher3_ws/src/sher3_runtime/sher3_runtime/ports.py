@@ -44,7 +44,13 @@ from sher3_runtime.timing import Histogram, Trace
 Publish = Callable[[Any], None]
 
 
-def subscribe(node: Node, name: str, callback: Callable[[Any], None], depth: int | None = None) -> Subscribed:
+def subscribe(
+    node: Node,
+    name: str,
+    callback: Callable[[Any], None],
+    depth: int | None = None,
+    refuse: Callable[[CdrError], None] | None = None,
+) -> Subscribed:
     """Subscribe `node` to a topic of the table; `callback` gets one sample at a time, in order of arrival.
 
     Args:
@@ -52,6 +58,8 @@ def subscribe(node: Node, name: str, callback: Callable[[Any], None], depth: int
         name: Topic relative to `/sher3`.
         callback: Called with each sample; an exception in it ends the spinning.
         depth: Queue length instead of the table's; a recorder needs a longer one.
+        refuse: Called with what is wrong with a message that does not fit the topic, as one with other joint names or
+            another frame; by default the first one is logged and further ones are counted.
 
     Returns:
         The subscription; rclpy's own executor ignores its `wakes`.
@@ -79,7 +87,9 @@ def subscribe(node: Node, name: str, callback: Callable[[Any], None], depth: int
             try:
                 sample = decode(data)
             except CdrError as error:
-                if name not in garbage:
+                if refuse is not None:
+                    refuse(error)
+                elif name not in garbage:
                     node.get_logger().warning(f"{name}: {error}; further ones are only counted")
                 garbage[name] = garbage.get(name, 0) + 1
                 return

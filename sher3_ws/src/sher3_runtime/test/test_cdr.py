@@ -93,9 +93,10 @@ def test_wrong_frame_names_and_lengths_are_named():
     with pytest.raises(CdrError, match=r"frame_id.*'t'.*'b'"):
         tip.decode(codec("PoseStamped", "t").encode(SAMPLES["PoseStamped"][0]))
     joints = codec("JointState", "", JOINTS)
-    swapped = codec("JointState", "", (*JOINTS[::-1],))
-    with pytest.raises(CdrError, match="joint names differ"):
-        joints.decode(swapped.encode(JointSample(0, FIVE)))
+    for names in (JOINTS[:4], (*JOINTS[:4], JOINTS[0]), ()):
+        values = FIVE[: len(names)]
+        with pytest.raises(CdrError, match="joint names differ"):
+            joints.decode(codec("JointState", "", names).encode(JointSample(0, values)))
     with pytest.raises(CdrError, match="cannot be sent"):
         joints.encode(JointSample(0, (1.0, 2.0)))
     with pytest.raises(CdrError, match="cannot be sent"):
@@ -105,6 +106,12 @@ def test_wrong_frame_names_and_lengths_are_named():
             codec("String").encode(TextSample(text))
     with pytest.raises(CdrError, match="no codec"):
         codec("sensor_msgs/msg/Image")
+
+
+def test_joints_go_by_their_names_and_not_by_their_place():
+    reversed_names = codec("JointState", "", (*JOINTS[::-1],))
+    data = reversed_names.encode(JointSample(7, FIVE, None, FIVE[::-1]))
+    assert codec("JointState", "", JOINTS).decode(data) == JointSample(7, FIVE[::-1], None, FIVE)
 
 
 def test_big_endian_is_read():

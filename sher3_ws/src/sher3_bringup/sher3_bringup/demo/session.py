@@ -33,11 +33,12 @@ def run_demo(
     say: Callable[[str], None] = print,
     patience: Patience = "patient",
     domain: int = DOMAIN,
+    status: Callable[[str], None] = lambda _: None,
 ) -> dict[str, Any]:
     """Run the demo and return its figures as plain data.
 
     Raises:
-        SessionFailed: the robot faulted, was not enabled or did not move; the recording and its figures are there.
+        SessionFailed: the robot faulted (EndedInFault), was not enabled or did not move; the figures are there.
         Sher3Error: a bad option or file, or a part that failed; see `up`.
     """
     script = load_script(script_path or demo_script())
@@ -60,7 +61,7 @@ def run_demo(
     statistics = bag.parent / f".{bag.name}.statistics"
     os.environ[STATISTICS_VARIABLE] = str(statistics)
     try:
-        run_graph(settings, say, {"teleop": lambda: [_surgeon(script)]}, _Progress(script, say))
+        run_graph(settings, say, {"teleop": lambda: [_surgeon(script)]}, _Progress(script, say), status)
         nodes = {path.stem: read_json(path)["statistics"] for path in sorted(statistics.glob("*.json"))}
     finally:
         shutil.rmtree(statistics, ignore_errors=True)

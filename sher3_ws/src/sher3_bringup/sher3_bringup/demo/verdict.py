@@ -12,8 +12,9 @@ from sher3_common.operating_state import OperatingState, StateCommand
 from sher3_common.reasons import TEXT, Reason
 from sher3_runtime.clock import NEVER_NS
 
-from sher3_bringup.errors import SessionFailed
+from sher3_bringup.errors import EndedInFault, SessionFailed
 from sher3_bringup.surgeon.script import Script
+from sher3_bringup.terminal.told import state_line
 
 PRESSED = 0.5
 """Pedal travel, and force of the hand [N], from which the robot has to follow the hand in a step."""
@@ -31,18 +32,13 @@ def judge(run: Any, script: Script, steps_begin: int) -> None:
         steps_begin: stamp of the script's first tick [ns].
 
     Raises:
-        SessionFailed: the robot faulted, was never enabled, stopped by itself, or did not move under the hand.
+        EndedInFault: the robot went to FAULT.
+        SessionFailed: it was never enabled, stopped by itself, or did not move under the hand.
     """
     states = [parse_json(text) for text in run["supervisor/status"].data]
     for status in states:
-        if fault := status["first_fault"]:
-            text = f"the robot went to FAULT: {fault['code']} of {fault['source']}"
-            raise SessionFailed(
-                f"{text} {_after(status['since'], steps_begin)}",
-                value=f"{fault['value']:.4g} {fault['unit']}",
-                limit=f"{fault['limit']:.4g} {fault['unit']}",
-                remedy="see supervisor/status in the bag; a machine less busy helps where a stream fell silent",
-            )
+        if status["first_fault"]:
+            raise EndedInFault(f"{state_line(status)} ({_after(status['since'], steps_begin)})")
     if not any(step.command == StateCommand.ENABLE for step in script.steps):
         return
     enabled = [status for status in states if status["state"] == OperatingState.ENABLED]

@@ -18,6 +18,7 @@ from sher3_bringup.processes.fleet import Fleet
 from sher3_bringup.processes.nodes import make_nodes, preload
 from sher3_bringup.processes.only_robot import only_robot
 from sher3_bringup.settings.run_settings import UNHURRIED, RunSettings
+from sher3_bringup.terminal.beside import NAME, Beside
 
 DEFAULT_REALTIME = 40
 CHAIN = frozenset({"force_sensor", "admittance", "kinematics", "motor_driver"})
@@ -31,14 +32,19 @@ def run_graph(
     say: Callable[[str], None] = print,
     extra: Mapping[str, Callable[[], object]] | None = None,
     progress: Callable[[float], None] | None = None,
-) -> None:
-    """Run the graph until Ctrl-C, SIGTERM or the end of its duration.
+    status: Callable[[str], None] = lambda _: None,
+) -> str:
+    """Run the graph until Ctrl-C, SIGTERM or the end of its duration; say each change of state and each refusal.
 
     Args:
         settings: of the run, checked.
         say: prints a line.
         extra: further processes by name, each given by what makes its nodes.
         progress: called every 50 ms with the seconds since the first tick.
+        status: takes the status line, as often.
+
+    Returns:
+        The fault that the robot was in at the end, as one line; empty where it was in none.
 
     Raises:
         AlreadyRunning, StartError, ProcessDied, NotStopped: see `errors`; whatever was running has been stopped.
@@ -49,21 +55,29 @@ def run_graph(
         launch_nodes(fleet, settings, realtime)
         for name, make in (extra or {}).items():
             fleet.launch(name, make, beside(realtime))
+        processes, terminal = len(fleet.members), Beside(say, status)
+        fleet.launch(NAME, terminal.make_nodes)
         fleet.start()
+        terminal.begin()
         started = time.monotonic()
         say(
-            f"ready: {len(fleet.members)} processes at {settings.rate:g} Hz on "
+            f"ready: {processes} processes at {settings.rate:g} Hz on "
             f"{'mocks' if settings.mock else 'hardware'} in {started - begin:.2f} s; Ctrl-C stops"
         )
 
         def finished() -> bool:
+            terminal.look()
             elapsed = time.monotonic() - started
             if progress is not None:
                 progress(elapsed)
             return bool(caught) or (settings.duration is not None and elapsed >= settings.duration)
 
-        fleet.watch(finished, spare=("recorder",) if settings.recording == "optional" else ())
+        try:
+            fleet.watch(finished, spare=(NAME, *(("recorder",) if settings.recording == "optional" else ())))
+        finally:
+            terminal.end()
     say("stopped" + (f"; recorded {settings.record}" if settings.record else ""))
+    return terminal.told.fault
 
 
 def launch_nodes(fleet: Fleet, settings: RunSettings, realtime: int, patience: float = 60.0) -> None:

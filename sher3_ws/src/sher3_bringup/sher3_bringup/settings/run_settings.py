@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -211,13 +212,34 @@ class RunSettings(BaseModel):
 
 
 def parse_processes(
-    text: str | None, mock: bool, record: bool, monitor: bool = False, layout: Layout = "separate"
+    text: str | None,
+    mock: bool,
+    record: bool,
+    monitor: bool = False,
+    layout: Layout = "separate",
+    without: Sequence[str] = (),
 ) -> tuple[tuple[str, ...], ...]:
     """Return the nodes of each process from `a+b,c` (a and b in one process); without a text all nodes in a `layout`.
 
     `separate` means one process for each node, `composed` one for the nodes of the loop. `monitor` adds
     the gap monitor in a process of its own, unless the text names it.
+
+    Raises:
+        ConfigurationError: a node that is to be left out is not there.
     """
+    processes = _processes(text, mock, record, monitor, layout)
+    names = [name for process in processes for name in process]
+    if absent := [name for name in without if name not in names]:
+        raise ConfigurationError(
+            "no such node to leave out", value=absent[0], limit=", ".join(names), remedy="name one of these"
+        )
+    kept = (tuple(name for name in process if name not in without) for process in processes)
+    return tuple(process for process in kept if process)
+
+
+def _processes(
+    text: str | None, mock: bool, record: bool, monitor: bool, layout: Layout
+) -> tuple[tuple[str, ...], ...]:
     watch = (("gap_monitor",),) if monitor and "gap_monitor" not in (text or "") else ()
     if text:
         return tuple(tuple(name.strip() for name in process.split("+")) for process in text.split(",")) + watch

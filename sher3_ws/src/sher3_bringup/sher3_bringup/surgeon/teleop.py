@@ -12,25 +12,48 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from sher3_bringup.errors import ConfigurationError
+from sher3_bringup.errors import ConfigurationError, EndedInFault, StartError
 from sher3_bringup.surgeon.keyboard import HELP, Keyboard
 from sher3_bringup.surgeon.script import Script
+from sher3_bringup.terminal.screen import Screen
+from sher3_bringup.terminal.told import UNKNOWN, Told
 
 
 def run_script(script: Script, rate: float, domain: int) -> None:
-    """Run a script to its end, or until Ctrl-C."""
-    from sher3_bringup.surgeon.teleop_node import run_node, script_node
+    """Run a script to its end, or until Ctrl-C; print its steps, and each change of state of the robot.
 
-    shown = [-1]
+    Raises:
+        EndedInFault: the robot was in FAULT at the end; StartError: no robot was heard.
+    """
+    from sher3_bringup.surgeon.teleop_node import run_node, script_node
+    from sher3_bringup.terminal.listener_node import listen
+
+    shown, told, screen = [-1], Told(), Screen()
+    nodes: list[Any] = []
+
+    def hear(topic: str, data: dict[str, Any]) -> None:
+        for line in told.hear(topic, data):
+            screen(f"{nodes[0].elapsed:6.1f} s  {line}")
+
+    def make() -> Any:
+        nodes.append(script_node(script))
+        listen(nodes[0], hear)
+        return nodes[0]
 
     def stop(node: Any) -> bool:
         step, _ = script.step_at(node.elapsed)
         if step != shown[0]:
             shown[0] = step
-            print(f"{node.elapsed:6.1f} s  {script.steps[step].name}", flush=True)
+            screen(f"{node.elapsed:6.1f} s  {script.steps[step].name}")
+        screen.status(told.status())
         return node.elapsed >= script.duration
 
-    run_node(lambda: script_node(script), stop, rate, domain)
+    run_node(make, stop, rate, domain)
+    screen.status("")
+    if told.state == UNKNOWN:
+        raise StartError("no robot is heard", value=f"domain {domain}", remedy="start `sher3 up`, or name its --domain")
+    if told.fault:
+        raise EndedInFault(told.fault)
 
 
 def run_keyboard(rate: float, domain: int, device: Path | None = None) -> None:

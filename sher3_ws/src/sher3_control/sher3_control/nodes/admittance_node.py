@@ -30,7 +30,7 @@ from sher3_control.law.parameters import law_parameters
 from sher3_control.law.tare import DriftMonitor, TareWindow
 from sher3_control.motion.ownership import Mode
 from sher3_control.nodes.heard import HeardState, status_of
-from sher3_control.nodes.input_report import law_readings
+from sher3_control.nodes.input_report import felt, law_readings
 from sher3_control.settings import ControlSettings
 from sher3_control.tick_records import AdmittanceRecord, record_text
 
@@ -197,7 +197,7 @@ class AdmittanceNode(Node):
         """Publish status and the numbers behind it, once a second."""
         self._report()
         reason = Reason.NOT_ENABLED if self._reason is None else self._reason
-        values = tuple(law_readings(self._input(stamp), self._state, self._p))
+        values = (felt(self._wrench[1], self.live.bias), *law_readings(self._input(stamp), self._state, self._p))
         self._publish_diagnostics(DiagnosticSample(stamp, "admittance: inputs", 0, reason.name, values))
 
     def _report(self, **event: Any) -> None:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import math
+
 from sher3_common.reasons import Reason, reading
 from sher3_common.stamps import age, nanoseconds, seconds
+from sher3_common.vectors import Wrench
 
 from sher3_control.law.admittance import LawInput, LawParameters, LawState
 from sher3_control.motion.controller import MotionInput
@@ -24,6 +27,11 @@ def law_readings(i: LawInput, state: LawState, p: LawParameters) -> Readings:
         reading(Reason.WRENCH_SATURATED, "force/measured_cf", share, p.saturation, "of the range"),
         reading(Reason.WRENCH_FROZEN, "force/measured_cf", state.repeats + 1, p.frozen_samples, "samples"),
     ]
+
+
+def felt(wrench: Wrench, bias: Wrench) -> tuple[str, str]:
+    """Return the force that the law acts on, without the bias of the tare, as a pair of key and value [N]."""
+    return "force [N]", f"{math.dist(wrench[:3], bias[:3]):.6g}"
 
 
 def motion_readings(i: MotionInput, settings: MotionSettings, speed: float, cap: float) -> Readings:

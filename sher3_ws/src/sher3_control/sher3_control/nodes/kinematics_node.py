@@ -25,6 +25,7 @@ from sher3_runtime.on_demand import advertise_on_demand
 from sher3_runtime.ports import NODE_OPTIONS, advertise, clock_of, latest, on_tick, subscribe
 from sher3_runtime.publishers import Publishers
 
+from sher3_control.errors import CommandRejected
 from sher3_control.law.live_parameters import from_json
 from sher3_control.motion.controller import MotionController, MotionInput, MotionOutput
 from sher3_control.motion.cooperative import RESTING
@@ -85,6 +86,7 @@ class KinematicsNode(Node):
         self._publish_inputs = advertise_on_demand(self, "motion/inputs")
         self._publish_settings = advertise(self, "motion/settings")
         self._publish_status = advertise(self, "motion/status")
+        self._publish_error = advertise(self, "error")
         self._joints_topic = subscribe(self, "measured_js", self.on_joints)
         subscribe(self, "servo_cv", self.on_twist)
         subscribe(self, "operating_state", self.on_state)
@@ -97,7 +99,7 @@ class KinematicsNode(Node):
             subscribe(self, "force/measured_cf", self._on_wrench)
             subscribe(self, "admittance/settings", self._on_tare)
         for mode in COMMANDS:
-            subscribe(self, f"command/{mode.value}", self._command(mode))
+            subscribe(self, f"command/{mode.value}", self._command(mode), refuse=self._no_command(mode))
         self._now = clock_of(self).now
         period = robot.control_period
         self._late = on_tick(self, self._tick, phase=LATE * period)
@@ -190,6 +192,15 @@ class KinematicsNode(Node):
 
         return on_command
 
+    def _no_command(self, mode: Mode) -> Callable[[Sher3Error], None]:
+        """Return what refuses a message of a mode that is none: other joint names, another frame."""
+
+        def refuse(error: Sher3Error) -> None:
+            details = {"value": error.value, "limit": error.limit, "remedy": error.remedy}
+            self._refuse(CommandRejected(mode.value, error.what, **details), mode.value)
+
+        return refuse
+
     def _on_rcm(self, sample: TextSample) -> None:
         self._change_settings(lambda: apply_rcm_command(self.motion, sample.text, self._joints.position or ()))
 
@@ -232,6 +243,7 @@ class KinematicsNode(Node):
         if self._refused is None or self._refused["text"] != shown["text"]:
             self._refused = shown
             self._shown = ()
+            self._publish_error(TextSample(str(error)))
 
     def _singularity(self, reason: Reason) -> dict[str, Any] | None:
         """Return how near the robot is to which singularity when it has stopped at one, else None."""

@@ -106,6 +106,7 @@ class SupervisorNode(Node):
         self._publish_state = advertise(self, OWN_STATE)
         self._publish_status = advertise(self, "supervisor/status")
         self._publish_heartbeat = advertise(self, "supervisor/heartbeat")
+        self._publish_error = advertise(self, "error")
         self._publish_report = advertise(self, "diagnostics")
         self._ticks = SameTick(*FELT)
         heard = FELT if self._hand is not None else [name for name in FELT if name in STREAMS]
@@ -213,6 +214,7 @@ class SupervisorNode(Node):
             self._refused = None
         except Sher3Error as error:
             self._refused = {"command": sample.text, "error": type(error).__name__, "text": str(error)}
+            self._publish_error(TextSample(str(error)))
         self._publish()
         self._publish_heartbeat(self._beat)
 

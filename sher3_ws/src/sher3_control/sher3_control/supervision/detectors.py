@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from typing import NamedTuple, Protocol
 
 from sher3_common.reasons import ACTION, Action, Reason
+from sher3_common.remedies import remedy
 from sher3_common.stamps import age, nanoseconds
 
 
@@ -41,13 +42,18 @@ class Finding(NamedTuple):
         """How hard the robot is stopped for it."""
         return max(ACTION[self.reason], self.harder)
 
+    @property
+    def remedy(self) -> str:
+        """What the user does about it."""
+        return remedy(self.reason, self.source)
+
     def __str__(self) -> str:
         return f"{self.code}: {self.source} {self.value:.6g} {self.unit}, limit {self.limit:.6g} {self.unit}"
 
     def to_dict(self) -> dict[str, object]:
         """Return the finding as plain data."""
         numbers = {"value": self.value, "limit": self.limit, "unit": self.unit, "source": self.source}
-        return {"code": self.code, **numbers, "action": self.action.name}
+        return {"code": self.code, **numbers, "action": self.action.name, "remedy": self.remedy}
 
 
 class Detector(Protocol):

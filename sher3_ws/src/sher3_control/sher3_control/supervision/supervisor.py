@@ -120,7 +120,8 @@ class Supervisor:
             found = self._objections(command, now)
             if found:
                 listing = "; ".join(map(str, found))
-                raise StateCommandRefused(command.value, self.state.value, listing, remedy="remove these causes first")
+                remedy = "; ".join(dict.fromkeys(finding.remedy for finding in found))
+                raise StateCommandRefused(command.value, self.state.value, listing, remedy=remedy)
         if command is StateCommand.ENABLE and not self.status.homed:
             raise StateCommandRefused(command.value, self.state.value, "not homed", remedy="send home first")
 

@@ -169,14 +169,17 @@ def _joint_codec(frame_id: str, joints: tuple[str, ...]) -> Codec:
     def parse(reader: Reader, frame: str) -> JointSample:
         stamp = _header(reader, frame)
         names = tuple(reader.string() for _ in range(reader.count(5)))
-        if names != joints:
-            raise CdrError("joint names differ", value=names, limit=joints, remedy="send the fixed order")
+        if sorted(names) != sorted(joints):
+            given, wanted = ", ".join(names) or "none", ", ".join(joints)
+            raise CdrError("joint names differ", value=given, limit=wanted, remedy="name all of them, in any order")
+        order = [names.index(joint) for joint in joints]
         fields = []
         for label in ("position", "velocity", "effort"):
             count = reader.count(8)
             if count not in (0, n):
                 raise CdrError(f"length of {label}", value=count, limit=f"0 or {n}", remedy="send all joints or none")
-            fields.append(reader.doubles(count) if count else None)
+            values = reader.doubles(count) if count else None
+            fields.append(None if values is None else tuple(values[k] for k in order))
         return JointSample(stamp, *fields)
 
     slow = _guarded_decode(parse, frame_id)

@@ -1,0 +1,92 @@
+"""What the terminal tells, from the statuses of a run, without ROS and without a terminal."""
+
+import io
+
+import pytest
+from sher3_bringup.terminal.screen import Screen
+from sher3_bringup.terminal.told import Told
+from sher3_common.reasons import Reason
+from sher3_common.remedies import REMEDY, remedy
+
+STOP = {"code": "EMERGENCY_STOP", "value": 1.0, "limit": 0.0, "unit": "1", "source": "pedal/measured"}
+FAULT = {"state": "FAULT", "since": 3, "reason": "EMERGENCY_STOP", "first_fault": STOP, "refused": None}
+ENABLED = {"state": "ENABLED", "since": 2, "reason": "enable", "first_fault": None, "refused": None}
+DISABLED = {**ENABLED, "state": "DISABLED", "since": 4, "reason": "disable"}
+
+
+class Terminal(io.StringIO):
+    def isatty(self):
+        return True
+
+
+def test_a_change_of_state_is_one_line_with_reason_and_remedy_and_is_said_once():
+    told = Told()
+    assert told.hear("supervisor/status", ENABLED) == ["ENABLED  by enable"]
+    assert told.hear("supervisor/status", ENABLED) == []
+    (line,) = told.hear("supervisor/status", FAULT)
+    assert line == (
+        "FAULT  EMERGENCY_STOP pedal/measured: 1 1, limit 0 1; the emergency stop is pressed; "
+        "release the emergency stop, then send disable, and enable"
+    )
+    assert told.fault == line
+    assert told.hear("supervisor/status", {**FAULT, "later_faults": 1}) == []
+
+
+def test_a_recovered_fault_is_none_at_the_end_and_a_second_one_is_said_again():
+    told = Told()
+    for status in (FAULT, DISABLED):
+        told.hear("supervisor/status", status)
+    assert told.fault == ""
+    assert len(told.hear("supervisor/status", {**FAULT, "since": 9})) == 1 and told.fault
+
+
+def test_a_pause_says_how_it_ends():
+    overrun = {"code": "OVERRUN", "value": 0.3, "limit": 0.1, "unit": "of the cycles", "source": "sher3/admittance"}
+    (line,) = Told().hear("supervisor/status", {**FAULT, "state": "PAUSED", "first_fault": overrun})
+    assert line.startswith("PAUSED  OVERRUN") and line.endswith("then send resume")
+
+
+def test_a_refusal_is_said_once_and_again_after_it_was_settled():
+    told, refused = Told(), {"mode": None, "refused": {"text": "move_jp rejected: joint names differ"}}
+    assert told.hear("motion/status", refused) == ["refused  move_jp rejected: joint names differ"]
+    assert told.hear("motion/status", refused) == []
+    assert told.hear("motion/status", {"mode": None, "refused": None}) == []
+    assert len(told.hear("motion/status", refused)) == 1
+
+
+def test_the_status_line_has_state_mode_force_speed_and_lost_cycles():
+    told = Told()
+    told.hear("supervisor/status", ENABLED)
+    told.hear("admittance/status", {"text": "the pedal is released"})
+    assert told.status() == "ENABLED   the pedal is released   lost cycles 0"
+    told.hear("motion/status", {"mode": "cooperative"})
+    told.hear("diagnostics", {"name": "admittance: inputs", "values": (("force [N]", "0.934"),)})
+    told.hear("diagnostics", {"name": "kinematics: inputs", "values": (("TIP_SPEED tip [m/s]", "0.00083 limit 1"),)})
+    for node, lost in (("sher3/admittance", "2"), ("sher3/pedal", "1"), ("sher3/pedal", "3")):
+        told.hear("diagnostics", {"name": node, "values": (("lost_cycles", lost),)})
+    assert told.status() == "ENABLED   cooperative   force 0.93 N   tip 0.83 mm/s   lost cycles 5"
+
+
+def test_every_reason_has_a_remedy_and_a_second_publisher_is_told_what_to_start():
+    assert set(REMEDY) == set(Reason)
+    assert "--without pedal" in remedy(Reason.PUBLISHED_TWICE, "pedal/measured")
+    assert "noise" in remedy(Reason.WRENCH_FROZEN)
+
+
+def test_colour_and_status_line_are_for_terminals_alone(monkeypatch):
+    monkeypatch.delenv("NO_COLOR", raising=False)
+    pipe, terminal = io.StringIO(), Terminal()
+    for screen in (Screen(pipe), Screen(terminal)):
+        screen.status("ENABLED   lost cycles 0")
+        screen("1.0 s  FAULT  why")
+        screen.status("")
+    assert pipe.getvalue() == "1.0 s  FAULT  why\n"
+    assert "\x1b[31mFAULT\x1b[0m  why\n\rENABLED   lost cycles 0" in terminal.getvalue()
+    assert terminal.getvalue().endswith("\r\x1b[K")
+
+
+@pytest.mark.parametrize("value", ["1", ""])
+def test_no_color_is_kept(monkeypatch, value):
+    monkeypatch.setenv("NO_COLOR", value)
+    Screen(terminal := Terminal())("FAULT")
+    assert ("\x1b[31m" in terminal.getvalue()) == (value == "")

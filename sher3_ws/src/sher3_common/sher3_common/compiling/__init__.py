@@ -1,0 +1,1 @@
+"""Where compiled kernels are kept, and under which name: part of `compiled`."""
