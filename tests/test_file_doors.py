@@ -4,6 +4,7 @@ import ast
 import contextlib
 import os
 import socket
+import struct
 import zipfile
 from io import BytesIO
 from pathlib import Path
@@ -228,6 +229,49 @@ def test_an_array_that_declares_more_than_it_holds_is_refused(tmp_path):
         archive.writestr("a.npy", out.getvalue() + bytes(80))
     with pytest.raises(FileError, match="declares what it does not hold"):
         read_arrays(path)
+
+
+def member(header: str) -> bytes:
+    """A member of an npz file with a header of any text, as NumPy's version 1.0 frames it."""
+    text = header.encode("latin1")
+    text += b" " * (-(11 + len(text)) % 64) + b"\n"
+    return b"\x93NUMPY\x01\x00" + struct.pack("<H", len(text)) + text + bytes(64)
+
+
+HEADERS = [
+    "{'descr': '(",
+    "{'descr': " + "(" * 3000 + ")" * 3000 + "}",
+    "{'descr': " + "-" * 9000 + "1}",
+    "\0",
+    "f\n g",
+]
+
+
+@pytest.mark.parametrize("header", HEADERS)
+def test_an_npz_header_that_is_no_header_is_refused(header, tmp_path):
+    """NumPy reads it as Python, whose parser has errors of its own: of tokens, of syntax, of its stack."""
+    path = tmp_path / "header.npz"
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("a.npy", member(header))
+    with pytest.raises(FileError, match="no whole npz file"):
+        read_arrays(path)
+
+
+@pytest.mark.parametrize("method", [zipfile.ZIP_LZMA, zipfile.ZIP_BZIP2])
+def test_an_npz_that_numpy_would_not_pack_so_is_refused(method, tmp_path):
+    path = tmp_path / "packed.npz"
+    with zipfile.ZipFile(path, "w", method) as archive:
+        archive.writestr("a.npy", member("{'descr': '<f8', 'fortran_order': False, 'shape': (8,), }"))
+    with pytest.raises(FileError, match="packed by method"):
+        read_arrays(path)
+
+
+@pytest.mark.parametrize("effect", ["[]", "{a: 1}", "3", "null"])
+def test_an_effect_without_a_name_is_a_typed_error(effect, tmp_path):
+    path = tmp_path / "effects.yaml"
+    path.write_text(f"schema: sher3.effects/1\neffects:\n- {{effect: {effect}, actuator: tilt}}\n")
+    with pytest.raises(Sher3Error, match="no such effect"):
+        load_effects(path)
 
 
 def test_a_mat_file_that_unpacks_to_too_much_is_refused(tmp_path, monkeypatch):

@@ -8,7 +8,12 @@ import sys
 import pytest
 from processes import child_environment
 from sher3_bringup.settings.run_settings import RunSettings
+from sher3_bringup.stepped_robot import SteppedRobot
+from sher3_control.nodes.supervisor_node import OWN
+from sher3_description.topics import MANY_SENDERS
+from sher3_runtime import Graph
 from sher3_runtime.environment import LOOPBACK_PROFILE, graph_environment
+from sher3_runtime.ports import ports
 from sources import ROOT, SOURCES
 
 DOCS = ROOT / "docs" / "reference" / "security.md"
@@ -46,6 +51,22 @@ def test_the_middleware_of_the_wheels_has_no_dds_security_and_the_documentation_
     assert run.returncode == 1 and found["dds_security"] is False
     lacking = tool("dds_security").LACKING
     assert lacking in found["middleware"] and lacking in DOCS.read_text()
+
+
+@pytest.mark.graph
+def test_whatever_the_robot_obeys_has_one_owner():
+    """A stranger on a topic without one would be obeyed beside the owner, and nobody would say so.
+
+    The user's commands have as many senders as the user has windows; diagnostics have as many as there are nodes, and
+    can only stop. What the mocks are told is between them and a scripted surgeon.
+    """
+    with Graph() as graph:
+        robot = SteppedRobot(graph)
+        mocks = set(ports(robot.plant).subscriptions)
+        obeyed = {name for node in graph.nodes if node is not robot.plant for name in ports(node).subscriptions}
+    assert {name.split("/")[0] for name in mocks} == {"mock"}
+    assert {name for name in obeyed - set(OWN) if not name.startswith("command/")} == MANY_SENDERS
+    assert len(obeyed) > 20
 
 
 @pytest.mark.graph

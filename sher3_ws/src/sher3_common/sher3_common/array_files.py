@@ -20,6 +20,8 @@ from sher3_common.files import read_bytes
 MAX_ARRAY_BYTES = 256 << 20
 """Largest size of all arrays of one file together [bytes]; ten minutes of an excitation at 1 kHz take 48 MB."""
 
+_METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
+"""How NumPy packs; readers of the others have errors of their own."""
 _HEADERS = {(1, 0): npy.read_array_header_1_0, (2, 0): npy.read_array_header_2_0}
 
 
@@ -62,11 +64,10 @@ def _check_total(members: list[zipfile.ZipInfo], path: Path | str, max_bytes: in
 
 def _read(archive: zipfile.ZipFile, member: zipfile.ZipInfo, path: Path | str) -> np.ndarray:
     """Return one array; raises FileError when its header declares more than the member holds."""
+    if member.compress_type not in _METHODS:
+        raise ValueError(f"{member.filename}: packed by method {member.compress_type}")
     with archive.open(member) as stream:
-        version = npy.read_magic(stream)
-        if version not in _HEADERS:
-            raise ValueError(f"{member.filename}: version {version}")
-        shape, fortran, dtype = _HEADERS[version](stream)
+        shape, fortran, dtype = _header(stream, member.filename)
         size = math.prod(shape) * dtype.itemsize
         if dtype.hasobject or min(shape, default=0) < 0 or size > member.file_size:
             value = f"{member.filename}: {shape} of {dtype}"
@@ -76,3 +77,15 @@ def _read(archive: zipfile.ZipFile, member: zipfile.ZipInfo, path: Path | str) -
         stream.read(1)  # the end of the member, where its checksum is compared
     flat: Any = np.frombuffer(content, dtype=dtype) if size else np.empty(0, dtype)
     return flat.reshape(shape, order="F" if fortran else "C")
+
+
+def _header(stream: Any, name: str) -> tuple[tuple[int, ...], bool, np.dtype[Any]]:
+    """Return shape, order and type of the array that begins at a stream; ValueError where no header says them."""
+    version = npy.read_magic(stream)
+    if version not in _HEADERS:
+        raise ValueError(f"{name}: version {version}")
+    try:
+        found: tuple[tuple[int, ...], bool, np.dtype[Any]] = _HEADERS[version](stream)
+    except Exception as error:  # it is read as Python: SyntaxError, TokenError, MemoryError of the parser, and more
+        raise ValueError(f"{name}: its header cannot be read ({type(error).__name__})") from error
+    return found

@@ -1,6 +1,7 @@
 """Effects as YAML: `schema: sher3.effects/1`, `effects: [{effect, actuator, parameters: {name: value}}]`.
 
-`library: [path]` names the files of discovered effects among them, from the folder of the effects file.
+`library: [path]` names the files of discovered effects among them, from the folder of the effects file. It names no
+Python: whoever loads an effects file does not mean to run it.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ def effect_from_dict(data: Mapping[str, Any]) -> PlantEffect:
     if unknown or "effect" not in data or "actuator" not in data:
         raise EffectError("an effect has the keys effect, actuator and parameters", value=", ".join(map(str, data)))
     known = plants()
-    if data["effect"] not in known:
+    if not isinstance(data["effect"], str) or data["effect"] not in known:
         near = "; ".join(f"did you mean {name}?" for name in get_close_matches(str(data["effect"]), known, 1))
         raise EffectError("no such effect", value=data["effect"], remedy=near or f"use one of {', '.join(known)}")
     kind, given = known[data["effect"]], data.get("parameters") or {}

@@ -136,7 +136,7 @@ def read_found(path: Path) -> FoundPage:
                         remedy="name a file of `sher3 gap discover --save`")  # fmt: skip
     try:
         return _page(data, path)
-    except (KeyError, TypeError, AttributeError, Sher3Error) as error:
+    except (KeyError, TypeError, AttributeError, ValueError, OverflowError) as error:  # a Sher3Error is a ValueError
         raise FileError("is not a discovered effect", path=path, value=f"{error}", remedy="correct the file") from error
 
 

@@ -2,8 +2,9 @@
 
 Every class that derives from `Page` and has an id is a page. A file of the user's own needs no registration: its path,
 or that of its folder, stands in the environment variable SHER3_LIBRARY (paths parted like those of PATH) or in the
-option `--library`. A discovered effect is a YAML file, named by itself. A page of the user's takes the place of one
-with the same id. Every process that reads the variable knows the same pages, those that `sher3 up` starts too.
+option `--library`, beside `--trust`, since reading Python runs it. A discovered effect is a YAML file, named by itself.
+A page of the user's takes the place of one with the same id. Every process that reads the variable knows the same
+pages, those that `sher3 up` starts too.
 """
 
 from __future__ import annotations
@@ -26,6 +27,9 @@ from sher3_effects.page import Page
 
 VARIABLE = "SHER3_LIBRARY"
 """Environment variable that names files and folders with pages of the user's own."""
+
+DATA = (".yaml", ".yml")
+"""Files of discovered effects, which are data; all others are Python, and reading them runs them."""
 
 ONE_ENCODER = frozenset({"alone", "behind"})
 """Facts that an axis has one encoder, at its motor or at its load; pages ask for them that look for what it hides."""
@@ -70,12 +74,20 @@ def _told(page: Page, facts: Collection[str] | None) -> bool:
     return not ONE_ENCODER & set(page.needs) if facts is None else set(page.needs) <= set(facts)
 
 
-def add_library(paths: Sequence[Path]) -> None:
+def add_library(paths: Sequence[Path], trust: bool = False) -> None:
     """Name files and folders with pages for this process and those it starts.
 
+    Args:
+        paths: of the files and folders.
+        trust: Python files among them may be run; they may do all that the user may.
+
     Raises:
-        FileError: a path is not there, or a file below it cannot be read as pages.
+        FileError: a path is not there, a file below it cannot be read as pages, or it is Python that nobody trusts.
     """
+    python = [] if trust else [file for path in paths for file in _files(path) if file.suffix not in DATA]
+    if python:
+        remedy = "read it, then name it in the option --library with --trust, or in SHER3_LIBRARY"
+        raise FileError("is Python, which would be run", path=python[0], remedy=remedy)
     known = [x for x in os.environ.get(VARIABLE, "").split(os.pathsep) if x]
     named = os.pathsep.join([*known, *(str(p.resolve()) for p in paths if str(p.resolve()) not in known)])
     _pages(named)
@@ -98,7 +110,7 @@ def _files(path: Path) -> Iterator[Path]:
 
 def _pages_of(file: Path) -> list[Page]:
     """Return the pages of a file of the user's: of Python, or one that was discovered."""
-    if file.suffix in (".yaml", ".yml"):
+    if file.suffix in DATA:
         from sher3_effects.found_page import read_found
 
         return [read_found(file)]

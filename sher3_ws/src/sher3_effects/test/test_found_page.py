@@ -33,6 +33,25 @@ def page(tmp_path, monkeypatch):
     return tmp_path / "drag.yaml"
 
 
+@pytest.mark.parametrize(
+    ("before", "after"),
+    [
+        ("component: 0", "component: x"),
+        ("component: 0", "component: .inf"),
+        ("sites: [delta_1]", "sites: []"),
+        ("sites: [delta_1]", "sites: 3"),
+        ("coefficient: 2.0e4", "coefficient: much"),
+        ("coefficient: 2.0e4", "coefficient: [1]"),
+        ("terms:\n- {", "terms:\n- []\n- {"),
+    ],
+)
+def test_what_is_wrong_inside_is_a_typed_error(tmp_path, before, after):
+    path = tmp_path / "wrong.yaml"
+    path.write_text(PAGE.replace(before, after, 1))
+    with pytest.raises(FileError, match="is not a discovered effect"):
+        read_found(path)
+
+
 def test_a_file_is_a_page_with_units_and_shapes(page):
     found = library()["found_drag"]
     assert found.shape == {"period_1": 0.0015} and found.unit("period_1", "delta_1", False) == "m"

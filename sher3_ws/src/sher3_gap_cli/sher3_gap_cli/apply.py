@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from sher3_common.commands.options import Json
 
-from sher3_gap_cli.options import Library, RobotFile, VerdictFile, case_argument, of_the_robot, reported
+from sher3_gap_cli.options import Library, RobotFile, Trust, VerdictFile, case_argument, of_the_robot, reported
 
 if TYPE_CHECKING:
     from sher3_gap.simulate.apply import StageGap
@@ -26,6 +26,7 @@ def apply(
     case: Annotated[Path | None, typer.Option(help="Also run this case again and print the gap that is left.")] = None,
     robot: RobotFile = None,
     own: Library = None,
+    trust: Trust = False,
     as_json: Json = False,
 ) -> None:
     """Write the effects file that puts a verdict's causes into the simulator; `sher3 up --effects` loads it."""
@@ -35,7 +36,7 @@ def apply(
     from sher3_gap.simulate.apply import EXPORT, apply_verdict, compare_case
 
     with reported(as_json):
-        add_library(own or [])
+        add_library(own or [], trust)
         runs, model = load_case(of_the_robot(case, EXPORT), robot) if case else ([], load_robot(robot))
         effects = apply_verdict(verdict, output, model)
         stages = compare_case(runs, model, effects) if runs else []

@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import typer
 from sher3_common.commands.options import Json
 
-from sher3_gap_cli.options import BAD_INPUT, Library, RobotFile, case_argument, effects, reported
+from sher3_gap_cli.options import BAD_INPUT, Library, RobotFile, Trust, case_argument, effects, reported
 
 
 def diagnose(
@@ -20,6 +20,7 @@ def diagnose(
     ] = None,
     out: Annotated[Path | None, typer.Option(help="Folder for verdict.json and report.html; default gap/CASE.")] = None,
     own: Library = None,
+    trust: Trust = False,
     jobs: Annotated[int, typer.Option(min=1, help="Cases at a time on this machine.")] = 1,
     dask: Annotated[str, typer.Option(help="Address of a Dask scheduler that diagnoses the cases.")] = "",
     report: Annotated[bool, typer.Option("--report/--no-report", help="Write the HTML report.")] = True,
@@ -35,7 +36,7 @@ def diagnose(
     from sher3_gap_cli.printing import progress, summary
 
     with reported(as_json):
-        add_library(own or [])
+        add_library(own or [], trust)
         target, left_out = folders(case, out), check_effects(without or [])
         tasks = [Task(c, robot, left_out, report, str(target[c])) for c in case]
         data: list[dict[str, Any]] = []

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from sher3_common.commands.options import Json
 
-from sher3_gap_cli.options import Library, RequestError, RobotFile, reported
+from sher3_gap_cli.options import Library, RequestError, RobotFile, Trust, reported
 
 if TYPE_CHECKING:
     from sher3_diagnosis.channel import Channel
@@ -26,6 +26,7 @@ def discover(
     name: Annotated[str, typer.Option(help="Effect id of the saved page; default from the place.")] = "",
     out: Annotated[Path | None, typer.Option(help="Folder for report.html; default none.")] = None,
     own: Library = None,
+    trust: Trust = False,
     as_json: Json = False,
 ) -> None:
     """Find a sparse formula, with units, for a gap outside the library; it is scored on runs left out.
@@ -42,7 +43,7 @@ def discover(
     from sher3_gap_cli.printing import steps
 
     with reported(as_json), steps() as say:
-        add_library(own or [])
+        add_library(own or [], trust)
         place = _channel(where)
         diagnosis = diagnosed(Task(case, robot, check_effects(without or [])), say)
         found = search(diagnosis, place, say)

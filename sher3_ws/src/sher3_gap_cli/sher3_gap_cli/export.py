@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from sher3_common.commands.options import Json
 
-from sher3_gap_cli.options import Library, RequestError, VerdictFile, reported
+from sher3_gap_cli.options import Library, RequestError, Trust, VerdictFile, reported
 
 if TYPE_CHECKING:
     from sher3_export.check.check import JointGap
@@ -29,6 +29,7 @@ def export(
         list[str] | None, typer.Option(help="AXIS=JOINT where the model has another name; repeat for more.")
     ] = None,
     own: Library = None,
+    trust: Trust = False,
     as_json: Json = False,
 ) -> None:
     """Write the causes of a verdict into a model, and list what its format cannot express.
@@ -39,7 +40,7 @@ def export(
     from sher3_export.verdicts import read_verdict
 
     with reported(as_json):
-        add_library(own or [])
+        add_library(own or [], trust)
         given, names = read_verdict(verdict), _names(joint or [])
         target = out or Path(f"exported.{'yaml' if ranges else _suffix(to)}")
         data = _ranges(given, check, model, names) if ranges else _model(given, to, check, model, names)

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 from sher3_common.commands.options import Json
 
-from sher3_gap_cli.options import Library, effects, reported
+from sher3_gap_cli.options import Library, Trust, effects, reported
 
 
 def library(
@@ -16,6 +16,7 @@ def library(
         str, typer.Argument(help="Effect id or family; all by default.", autocompletion=effects(families=True))
     ] = "",
     own: Library = None,
+    trust: Trust = False,
     as_json: Json = False,
 ) -> None:
     """List the effects the diagnosis knows, or print the whole page of one."""
@@ -24,7 +25,7 @@ def library(
     from sher3_gap_cli.library_page import library_data, list_text, page_text
 
     with reported(as_json):
-        add_library(own or [])
+        add_library(own or [], trust)
         rows = library_data(which)
         if as_json:
             typer.echo(json.dumps({"effects": rows}))

@@ -21,6 +21,9 @@ Library = Annotated[
     list[Path] | None,
     typer.Option("--library", help="File or folder with pages of effects of your own; repeat for more."),
 ]
+Trust = Annotated[
+    bool, typer.Option("--trust", help="Run the Python files that --library names: they may do all that you may.")
+]
 VerdictFile = Annotated[Path, typer.Argument(help="verdict.json of `sher3 gap diagnose`.")]
 
 

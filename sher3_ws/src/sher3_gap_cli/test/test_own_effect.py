@@ -7,8 +7,10 @@ from sher3_diagnosis.report.page import render
 from sher3_effects import add_library, library, load_effects, plants, save_effects, to_effects
 from sher3_effects.registry import VARIABLE
 from sher3_gap.sher import diagnose_runs
+from sher3_gap_cli.app import app
 from sher3_gap_cli.library_page import library_data, page_text
 from simulated import ROBOT, runs_of, signals
+from typer.testing import CliRunner
 
 PAGE = '''
 """Bent screw: once in two thirds of a revolution the screw rubs and pushes the load ahead."""
@@ -64,7 +66,7 @@ class BentScrewInPlant(PlantEffect, page=BentScrew):
 def own(tmp_path, monkeypatch):
     monkeypatch.setenv(VARIABLE, "")
     (tmp_path / "bent_screw.py").write_text(PAGE)
-    add_library([tmp_path])
+    add_library([tmp_path], trust=True)
     return tmp_path
 
 
@@ -99,5 +101,22 @@ def test_a_folder_that_is_not_there_and_a_file_that_is_no_page_are_refused(tmp_p
         add_library([tmp_path / "absent"])
     (tmp_path / "wrong.py").write_text("1 / 0")
     with pytest.raises(FileError, match="not a page"):
-        add_library([tmp_path / "wrong.py"])
+        add_library([tmp_path / "wrong.py"], trust=True)
     assert len(library()) == 44
+
+
+def test_python_that_nobody_trusts_is_not_run(tmp_path, monkeypatch):
+    """Neither by a name in the option nor by a folder that holds it; an effects file cannot ask for it at all."""
+    monkeypatch.setenv(VARIABLE, "")
+    ran = tmp_path / "ran"
+    (tmp_path / "page.py").write_text(f"open({str(ran)!r}, 'w')")
+    (tmp_path / "effects.yaml").write_text("schema: sher3.effects/1\nlibrary: [page.py]\neffects: []\n")
+    for named in (tmp_path / "page.py", tmp_path):
+        with pytest.raises(FileError, match=r"page\.py: is Python.*--trust"):
+            add_library([named])
+        result = CliRunner().invoke(app, ["library", "--library", str(named)])
+        assert result.exit_code == 2 and "--trust" in result.output
+    with pytest.raises(FileError, match=r"page\.py: is Python"):
+        load_effects(tmp_path / "effects.yaml")
+    assert not ran.exists()
+    assert CliRunner().invoke(app, ["library", "--library", str(tmp_path), "--trust"]).exit_code == 0 and ran.exists()

@@ -41,9 +41,8 @@ def draw_comparison(a: Run, b: Run, comparison: Comparison, path: str | Path) ->
     FigureCanvasAgg(figure)
     lag = "" if comparison.lag is None else f", b later by {quantity(comparison.lag, 's')} (median)"
     names = f"b ({Path(comparison.b).name}) less a ({Path(comparison.a).name})"
-    figure.suptitle(
-        f"{names}: aligned by {comparison.alignment}, {comparison.overlap:.2f} s in common{lag}", fontsize=12
-    )
+    title = f"{names}: aligned by {comparison.alignment}, {comparison.overlap:.2f} s in common{lag}"
+    figure.suptitle(title, fontsize=12, parse_math=False)
     with mpl.rc_context({"font.size": 9}):
         for k, (topic, column, axes) in enumerate(shown):
             _panel(figure.add_subplot(rows, 2, k + 1), a, b, comparison.shift, topic, column, axes)

@@ -40,7 +40,8 @@ def _figure(run: Run, analysis: Analysis) -> Figure:
     figure = Figure(figsize=(15, 11), layout="constrained")
     FigureCanvasAgg(figure)
     name = run.path.name if run.path else "run"
-    figure.suptitle(f"{name}: {analysis.duration:.2f} s, {analysis.dropped} samples missing", fontsize=13)
+    title = f"{name}: {analysis.duration:.2f} s, {analysis.dropped} samples missing"
+    figure.suptitle(title, fontsize=13, parse_math=False)
     grid = figure.add_gridspec(3, 3, height_ratios=(1.2, 0.8, 1.0))
     with mpl.rc_context({"font.size": 9}):
         _tip_path(figure.add_subplot(grid[0, 0], projection="3d"), run)

@@ -253,7 +253,8 @@ class KinematicsNode(Node):
         return self.motion.velocity_modes.kinematics.singularity_distance(q)._asdict()
 
     def _tell(self, stamp: int) -> None:
-        """Publish the numbers behind the status."""
+        """Publish the numbers behind the status, and the settings again: nobody else's are in force for longer."""
+        self._report_settings()
         motion, q = self.motion, self._joints.position
         modes, speed = motion.velocity_modes, 0.0
         if q is not None and len(q) == len(ACTUATORS):

@@ -48,10 +48,13 @@ STREAMS = {
 }
 """Watched streams, each with the reason when no sample ever came and when it fell silent."""
 OWN_STATE = "operating_state"
+TIP = "tracker/measured_cp"
+SAID = ("motion/settings", "motion/status", "admittance/settings", "admittance/status")
+"""What the control nodes say and others obey: the regime with its caps, who owns the robot, the bias of the tare."""
 STEERING = ("servo_cv",)
 BESIDE = ("drives/measured_js", "drives/setpoint_jv", "supervisor/heartbeat")
-OWN = (*STREAMS, OWN_STATE, *STEERING, *BESIDE)
-"""Streams that only the robot itself publishes: those that are watched, those that steer it, and the others."""
+OWN = (*STREAMS, OWN_STATE, *SAID, TIP, *STEERING, *BESIDE)
+"""Topics that only the robot itself publishes: those that are watched, those that steer it, and the others."""
 FELT = ("force/measured_cf", "measured_js", "drives/measured_js", "servo_jv")
 """Streams that tell of a hand; all that is watched but the pedal is among them."""
 DEPTH = 32
@@ -112,11 +115,12 @@ class SupervisorNode(Node):
         heard = FELT if self._hand is not None else [name for name in FELT if name in STREAMS]
         self._felt = [(name, gathered(self, name, DEPTH)) for name in heard]
         self._command: Vector = (0.0,) * len(ACTUATORS)
-        self._take_tip = latest(self, "tracker/measured_cp")
+        self._take_tip = latest(self, TIP)
         subscribe(self, PEDAL, self.on_pedal)
         self._take_pedal = by_ring(self, PEDAL, DEPTH)
-        latest(self, OWN_STATE)  # never taken: it is there to know its publishers, and only those of our type
-        watched = (*STREAMS, OWN_STATE)
+        for name in (OWN_STATE, *SAID):
+            latest(self, name)  # never taken: it is there to know its publishers, and only those of our type
+        watched = (*STREAMS, OWN_STATE, *SAID, TIP)
         self._matched = [(name, ports(self).subscriptions[name].handle.get_publisher_count) for name in watched]
         self._living = Publishers(self)
         self._in_turn = cycle(BESIDE)

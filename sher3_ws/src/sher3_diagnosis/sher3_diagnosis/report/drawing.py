@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import re
 from collections.abc import Sequence
+from html import escape
 from typing import Any
 
 from matplotlib.axes import Axes
@@ -29,6 +30,8 @@ STYLE: dict[Any, Any] = {
     "legend.frameon": False,
     "svg.fonttype": "none",
     "svg.hashsalt": "sher3",
+    # A name may hold dollars; no label of ours is a formula.
+    "text.parse_math": False,
 }
 """Matplotlib settings in force while a report is drawn."""
 ABOVE: dict[str, Any] = {
@@ -60,4 +63,4 @@ def to_svg(made: Figure, title: str) -> str:
     text = text[text.index("<svg") :]
     text = re.sub(r'width="[^"]*pt" height="[^"]*pt"', "", text, count=1)
     text = re.sub(r"<metadata>.*?</metadata>", "", text, flags=re.S)
-    return text.replace("<svg", f'<svg role="img" aria-label="{title}"', 1)
+    return text.replace("<svg", f'<svg role="img" aria-label="{escape(title)}"', 1)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection
+from html import escape
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -43,7 +44,7 @@ def robot_drawing(robot: Robot, lit: Collection[str]) -> str:
             bright_ones = offset + scale * (np.vstack([p for p, _ in lines]) - low)
             top = HEIGHT - bright_ones[:, 1].max()
             out.append(_label(NAMES.get(name, name.replace("_", " ")), bright_ones[:, 0].mean(), top))
-    title = f"the robot; lit: {', '.join(sorted(shown)) or 'nothing'}"
+    title = escape(f"the robot; lit: {', '.join(sorted(shown)) or 'nothing'}")
     head = f'<svg viewBox="0 0 {WIDTH} {HEIGHT}" role="img" aria-label="{title}" fill="none" stroke-linecap="round">'
     return head + "".join(out) + "</svg>"
 
@@ -51,7 +52,7 @@ def robot_drawing(robot: Robot, lit: Collection[str]) -> str:
 def _label(text: str, x: float, top: float) -> str:
     """Return a name above what is lit."""
     look = f'fill="{LIT}" font-size="15" font-weight="600" paint-order="stroke" stroke="#fff" stroke-width="4"'
-    return f'<text x="{x:.1f}" y="{max(top - 8.0, 16.0):.1f}" text-anchor="middle" {look}>{text}</text>'
+    return f'<text x="{x:.1f}" y="{max(top - 8.0, 16.0):.1f}" text-anchor="middle" {look}>{escape(text)}</text>'
 
 
 def _parts(robot: Robot) -> dict[str, list[Line]]:

@@ -76,3 +76,16 @@ def test_a_file_that_claims_more_memory_than_allowed_is_refused(tmp_path):
     )
     with pytest.raises(MachineError):
         read_tables(tmp_path / "a.mat")
+
+
+def test_what_hides_in_cells_and_structs_is_counted_before_it_is_unpacked(tmp_path, monkeypatch):
+    """Four megabytes of zeros in a cell of a struct take six kilobytes in the file."""
+    cell = np.empty(2, dtype=object)
+    cell[:] = [np.zeros(250_000), np.zeros(250_000)]
+    scipy.io.savemat(tmp_path / "a.mat", {"run": {"deep": cell}}, do_compression=True)
+    raw = (tmp_path / "a.mat").read_bytes()
+    assert len(raw) < 10_000 and 4_000_000 < mat.unpacked_size(raw, 5_000_000) < 4_001_000
+    assert mat.unpacked_size(raw, 1_000_000) < 3_100_000, "counting ends a step beyond the limit"
+    monkeypatch.setattr(mat, "MAX_BYTES", 1_000_000)
+    with pytest.raises(MachineError, match="unpacks to too much"):
+        read_tables(tmp_path / "a.mat")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from html import escape
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -23,8 +25,8 @@ def plot_svg(seconds: NDArray[np.float64], values: NDArray[np.float64], title: s
     grey = 'fill="#66727f" font-size="11"'
     return (
         f'<svg viewBox="0 0 {WIDTH} {HEIGHT}" width="100%" font-family="system-ui, DejaVu Sans, sans-serif">'
-        f'<text x="{LEFT}" y="14" font-size="12" font-weight="600" fill="#1d2733">{title}</text>'
-        f'<text x="{WIDTH - 4}" y="14" text-anchor="end" {grey}>to {top:g} {unit}</text>'
+        f'<text x="{LEFT}" y="14" font-size="12" font-weight="600" fill="#1d2733">{escape(title)}</text>'
+        f'<text x="{WIDTH - 4}" y="14" text-anchor="end" {grey}>to {top:g} {escape(unit)}</text>'
         f'<path d="M{LEFT} {TOP}H{WIDTH - 4}M{LEFT} {BOTTOM}H{WIDTH - 4}" stroke="#dde2e7"/>'
         f'<polyline points="{points}" fill="none" stroke="{colour}" stroke-width="1.6"/>'
         f'<text x="{LEFT}" y="{HEIGHT - 2}" {grey}>{WINDOW:g} s ago</text>'

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -33,6 +34,8 @@ REFUSING = ("supervisor/status", "motion/status", "admittance/status")
 """Statuses that tell a refused command."""
 STALE = 0.5
 """Age [s] from which the newest joint sample is called old."""
+MARKS = re.compile(r"([^\w\s.,;:/%()=+-])")
+"""What may mean something in Markdown, HTML or MDX."""
 CAPS = {"near_tissue": "near_speed", "free": "free_speed"}
 """The setting that holds the speed cap of a regime; the bench has none."""
 
@@ -150,10 +153,10 @@ class Snapshot:
         why = law.get("text", "") if state == "ENABLED" else f"since {supervisor.get('reason', 'not known')}"
         fault = supervisor.get("first_fault")
         lines = [
-            f"### {state}",
-            f"**{fault_text(fault)}**" if fault else str(why),
+            f"### {plain(state)}",
+            f"**{plain(fault_text(fault))}**" if isinstance(fault, dict) else plain(why),
             *([f"\n**The joints are {age:.1f} s old.**"] if age > STALE else []),
-            *(f"\nRefused: {text}" for text in self.refusals()),
+            *(f"\nRefused: {plain(text)}" for text in self.refusals()),
             "",
             "| | |\n|:--|--:|",
             f"| Tip speed | {self.speed * 1e3:.2f} mm/s, {cap} |",
@@ -180,6 +183,11 @@ class Snapshot:
                 small = "not known"
             rows.append(f"| {actuator.name} | {shown} | {share:.0%} | {small} |")
         return rows
+
+
+def plain(text: Any) -> str:
+    """Return a text that came on a topic so that Markdown shows it as it is: it may be a stranger's."""
+    return MARKS.sub(r"\\\1", " ".join(str(text).split()))
 
 
 def lost_cycles(sample: Any) -> dict[str, int]:

@@ -111,8 +111,9 @@ const plots = [
 byId("gap").hidden = !data.ghosts.length;
 if (data.ghosts.length) plots.push(new Plot(byId("plot_gap"), seconds, data.ghosts.map((ghost, k) =>
   ({ name: ghost.name, colour: GHOST_INKS[k % GHOST_INKS.length], values: ghost.distance.map((v) => v * 1e6) })), seek));
-byId("axes").innerHTML = data.limits.map(([name]) => `<div class="axis"><span>${name.replace("delta_", "delta ")}</span><div class="bar"><i></i></div><span></span></div>`).join("");
+byId("axes").innerHTML = data.limits.map(() => `<div class="axis"><span></span><div class="bar"><i></i></div><span></span></div>`).join("");
 const bars = [...document.querySelectorAll(".axis")];
+data.limits.forEach(([name], k) => { bars[k].firstChild.textContent = name.replace("delta_", "delta "); });
 
 const signed = (v, digits) => `${v < 0 ? "−" : ""}${Math.abs(v).toFixed(digits)}`;
 const spanAt = (spans, t) => spans.filter(([start]) => start <= t).pop();

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import math
 import os
+import struct
 import subprocess
 import sys
 import tempfile
+import zlib
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -23,7 +25,13 @@ MAX_MEMORY = 4_000_000_000
 MAX_SECONDS = 120.0
 """Time the child may take; 2 GB from a slow disk take a minute."""
 MAX_BYTES = 2_000_000_000
-"""Largest arrays of a file together, bytes."""
+"""Largest arrays of a file together, and all that its compressed parts unpack to, bytes."""
+ORDERS = {b"IM": "<", b"MI": ">"}
+"""Order of the bytes in files of versions 5 to 7, by the mark in their header."""
+HEADER, COMPRESSED = 128, 15
+"""Length of that header, bytes, and the type of an element that is packed (MAT-File Format, The MathWorks)."""
+STEP = 1 << 20
+"""Bytes that are unpacked at a time while they are counted."""
 MAX_DEPTH = 8
 """Structs within structs that are opened."""
 CLASS = "_Class"
@@ -79,6 +87,31 @@ def flatten(name: str, value: Any, depth: int = 0) -> dict[str, Array]:
     return {}
 
 
+def unpacked_size(raw: bytes, limit: int) -> int:
+    """Return what the packed elements of a file unpack to, bytes, cells and structs within them too.
+
+    Nothing is kept, and counting ends a step beyond `limit`.
+
+    Args:
+        raw: the file.
+        limit: of interest, bytes.
+    """
+    order, at, total = ORDERS.get(raw[HEADER - 2 : HEADER]), HEADER, 0
+    while order is not None and at + 8 <= len(raw) and total <= limit:
+        kind, size = struct.unpack_from(f"{order}2I", raw, at)
+        at += 8
+        if kind == COMPRESSED:
+            inflate = zlib.decompressobj()
+            rest = raw[at : at + size]
+            while rest and total <= limit:
+                total += len(inflate.decompress(rest, STEP))
+                rest = inflate.unconsumed_tail
+        else:
+            size += -size % 8
+        at += size
+    return total
+
+
 def stacked(arrays: list[Array]) -> Array:
     """Return the one array of a struct, or those of a struct array one after the other."""
     if len(arrays) == 1:
@@ -89,10 +122,7 @@ def stacked(arrays: list[Array]) -> Array:
 
 
 def _declared(raw: BytesIO) -> int:
-    """Return the bytes that the arrays of a file take; 0 where it holds a class object, whose size is not told.
-
-    The memory that the child may take is then the only limit.
-    """
+    """Return the bytes that the arrays of a file take; 0 where it holds a class object, whose size is not told."""
     import scipy.io
 
     try:
@@ -114,14 +144,15 @@ def main(limit: int, target: str) -> int:
 
     resource.setrlimit(resource.RLIMIT_AS, (MAX_MEMORY, MAX_MEMORY))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    raw = BytesIO(sys.stdin.buffer.read())
+    resource.setrlimit(resource.RLIMIT_FSIZE, (MAX_MEMORY, MAX_MEMORY))
+    raw = sys.stdin.buffer.read()
     try:
-        declared = _declared(raw)
-        if declared > limit:
-            raise ValueError(f"unpacks to too much: {declared} bytes, limit {limit}")
-        raw.seek(0)
+        declared = _declared(BytesIO(raw))
+        for size in (declared, unpacked_size(raw, limit)):
+            if size > limit:
+                raise ValueError(f"unpacks to too much: {size} bytes, limit {limit}")
         found: dict[str, Array] = {}
-        for name, value in scipy.io.loadmat(raw, verify_compressed_data_integrity=True).items():
+        for name, value in scipy.io.loadmat(BytesIO(raw), verify_compressed_data_integrity=True).items():
             if not name.startswith("__"):
                 found |= flatten(name, value)
     except Exception as error:  # whatever the reader makes of a bad file: the parent turns it into a typed error
