@@ -65,7 +65,7 @@ def test_whatever_the_robot_obeys_has_one_owner():
         mocks = set(ports(robot.plant).subscriptions)
         obeyed = {name for node in graph.nodes if node is not robot.plant for name in ports(node).subscriptions}
     assert {name.split("/")[0] for name in mocks} == {"mock"}
-    assert {name for name in obeyed - set(OWN) if not name.startswith("command/")} == MANY_SENDERS
+    assert {name for name in obeyed - set(OWN) if not name.startswith("command/")} <= MANY_SENDERS
     assert len(obeyed) > 20
 
 
