@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from sher3_machines.intake.draft import Draft, draft
-from sher3_machines.intake.tables import read_tables
+from sher3_machines.intake.runs import longest
 from sher3_machines.positioning.draft import draft_test, is_test
 
 
@@ -24,5 +24,5 @@ def draft_of(path: Path, rate: float | None = None, model: Path | None = None) -
         from sher3_machines.manipulator.draft import draft_arm  # its rigid bodies take a second to import
 
         return draft_arm(path, model, rate)
-    tables = read_tables(path)
+    tables = longest(path)
     return draft_test(path, tables) if rate is None and is_test(tables) else draft(path, rate, tables)

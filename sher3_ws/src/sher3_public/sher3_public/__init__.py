@@ -8,9 +8,16 @@ if TYPE_CHECKING:
     from sher3_public.answer import Answer as Answer
     from sher3_public.correcting import Corrected as Corrected
     from sher3_public.errors import InputError as InputError
+    from sher3_public.lerobot import from_lerobot as from_lerobot
     from sher3_public.one_call import diagnose as diagnose
 
 __getattr__, __dir__ = lazy(
     __name__,
-    {"answer": ("Answer",), "correcting": ("Corrected",), "errors": ("InputError",), "one_call": ("diagnose",)},
+    {
+        "answer": ("Answer",),
+        "correcting": ("Corrected",),
+        "errors": ("InputError",),
+        "lerobot": ("from_lerobot",),
+        "one_call": ("diagnose",),
+    },
 )

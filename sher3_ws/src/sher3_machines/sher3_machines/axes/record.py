@@ -13,11 +13,12 @@ from sher3_machines.axes.description import Axis
 from sher3_machines.axes.quantities.units import check_units
 from sher3_machines.axes.readings.speed import integrated, is_speed
 from sher3_machines.errors import MachineError
-from sher3_machines.intake.cleaning import even_stamps, glitches, known_readings
 from sher3_machines.intake.columns import MOTION, find, pick, stamps_of
 from sher3_machines.intake.fields import Clock, Column
-from sher3_machines.intake.motion import check_speed, is_magnitude, signs_of, speed_ratio
-from sher3_machines.intake.parts import LONGEST_HOLE, cut
+from sher3_machines.intake.mending.motion import check_speed, is_magnitude, signs_of, speed_ratio
+from sher3_machines.intake.mending.parts import LONGEST_HOLE, cut
+from sher3_machines.intake.mending.readings import glitches, known_readings
+from sher3_machines.intake.mending.stamps import even_stamps, missed_periods, missing_note
 from sher3_machines.intake.spelling import table_of
 from sher3_machines.intake.tables import Tables
 
@@ -205,10 +206,12 @@ def _clock(found: list[Stamped], clock: Clock, run: str) -> tuple[Array, float, 
             value=f"{end - start:.3g} s",
             remedy="check the time unit, or state `offsets` of the clock",
         )
+    missed = max((missed_periods(t) for t in stamps), key=lambda x: int(x.sum()))
+    notes = [missing_note(missed, period, run)] if len(missed) else []
     uneven = max(float(np.max(np.abs(np.diff(t) - period))) for t in stamps) / period
     note = f"{run}: stamps are off the grid by up to {uneven:.2g} periods; resampled every {period:.4g} s"
     samples = int((end - start) / period + 1e-6) + 1  # the last stamp counts though rounding may put it just before
-    return start + period * np.arange(samples), period, [note] if uneven > JITTER else []
+    return start + period * np.arange(samples), period, notes + ([note] if uneven > JITTER else [])
 
 
 def _checked(t: Array, run: str) -> Array:

@@ -9,7 +9,7 @@ from pydantic import Field
 
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.fields import Description
-from sher3_machines.intake.parts import whole
+from sher3_machines.intake.mending.parts import whole
 
 Tag = Annotated[str, Field(min_length=1, max_length=40)]
 """What may differ between runs: payload, posture, temperature, day, controller, gain, or any other word."""

@@ -14,6 +14,7 @@ from sher3_diagnosis.machine import Machine
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.fields import Description
 from sher3_machines.intake.kinds import kinds, load_description
+from sher3_machines.intake.runs import runs_of
 from sher3_machines.intake.tables import read_tables
 
 MACHINE, RUNS, IMPORT = "machine.yaml", "runs", "import.json"
@@ -49,9 +50,8 @@ def import_case(data: Sequence[Path], description: Path, out: Path) -> list[str]
     if out.exists() and any(out.iterdir()) and not is_machine_case(out):
         raise MachineError(f"{out}: is not empty and no case", remedy="choose another --out")
     kind = kinds()[machine.kind]
-    tables = [read_tables(path) for path in data]
     runs, notes = [], []
-    for name, table in zip(_names(data), tables, strict=True):
+    for name, table in runs_of(data).items():
         parts, note = kind.parts(name, table, machine)
         notes += [note] if note else []
         runs += [kind.read(part, x, machine) for part, x in parts.items()]
@@ -89,12 +89,6 @@ def open_case(path: Path) -> tuple[Machine[Any, Any], list[Any]]:
         except KeyError as error:
             raise MachineError(f"{file}: {error} is missing", remedy="import the data again") from error
     return kind.machine(description), runs
-
-
-def _names(data: Sequence[Path]) -> list[str]:
-    """Names of the runs: of their files, numbered where two are alike."""
-    names = [p.resolve().name if p.is_dir() else p.stem for p in data]
-    return names if len(set(names)) == len(names) else [f"{n}_{i}" for i, n in enumerate(names)]
 
 
 def _listed(path: Path, key: str) -> list[str]:

@@ -24,9 +24,10 @@ from sher3_machines.intake.guesses import (
     travel,
 )
 from sher3_machines.intake.names import DERIVED, DRIVING, MEASURED, POSITION, counts_samples, named, words_of
+from sher3_machines.intake.runs import longest
 from sher3_machines.intake.speeds import told_by_speed
 from sher3_machines.intake.spelling import bare, table_of
-from sher3_machines.intake.tables import SAMPLES, Tables, read_tables
+from sher3_machines.intake.tables import SAMPLES, Tables
 
 SIGNALS = ("position", "reference", "command", "effort", "load", "applied", "temperature", "velocity")
 """Signals of an axis that a draft looks for, in the order they are written."""
@@ -71,7 +72,7 @@ def draft(path: Path, rate: float | None = None, tables: Tables | None = None) -
         MachineError: the file cannot be read, or no column looks like a time or a position.
     """
     guesses: list[str] = []
-    data = drafted(path, read_tables(path) if tables is None else tables, rate, guesses)
+    data = drafted(path, longest(path) if tables is None else tables, rate, guesses)
     if sum(axis["command_law"]["kind"] == "force" for axis in data["axes"]) > 1:
         guesses.append(
             "each axis by itself; joints of one arm carry each other: give its URDF or MJCF, --model FILE "

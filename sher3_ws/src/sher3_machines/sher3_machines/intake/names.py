@@ -28,7 +28,9 @@ EFFORT = vocabulary("effort torque tau force iq trq moment drehmoment strom kraf
 CURRENT = vocabulary("current curr cur i")
 """A current is an effort, but the current position is the measured one."""
 COMMAND = vocabulary("control ctrl u voltage volt spannung pwm duty vir valve ventil")
-ASKED = vocabulary("ref reference set setpoint sp desired des target goal soll demand commanded cmd command qg d")
+ASKED = vocabulary(
+    "ref reference set setpoint sp desired des target goal soll demand commanded cmd command action qg d"
+)
 MEASURED = vocabulary("actual act measured meas present est estimate estimated ist feedback fb")
 SECOND = vocabulary(
     "load output link second secondary se scale abtrieb maßstab massstab glasmaßstab glasmassstab tracker laser "

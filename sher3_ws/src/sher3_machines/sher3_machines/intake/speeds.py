@@ -9,7 +9,7 @@ import numpy as np
 from sher3_diagnosis.channel import Array
 
 from sher3_machines.intake.fields import TIME_UNITS, UNITS
-from sher3_machines.intake.motion import AGREES, likely_unit, speed_ratio
+from sher3_machines.intake.mending.motion import AGREES, likely_unit, speed_ratio
 from sher3_machines.intake.tables import SAMPLES, Tables
 
 

@@ -10,7 +10,7 @@ from typing import Any
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.draft import Draft, drafted, written
 from sher3_machines.intake.names import EFFORT, words_of
-from sher3_machines.intake.tables import read_tables
+from sher3_machines.intake.runs import longest
 from sher3_machines.manipulator.bodies import Bodies, read_bodies
 from sher3_machines.manipulator.mjcf.joint import OWN_EFFORT, drive_joint
 
@@ -36,7 +36,7 @@ def draft_arm(path: Path, model: Path, rate: float | None = None) -> Draft:
             the joints.
     """
     guesses: list[str] = []
-    return written(of_arm(drafted(path, read_tables(path), rate, guesses), read_bodies(model), guesses), guesses)
+    return written(of_arm(drafted(path, longest(path), rate, guesses), read_bodies(model), guesses), guesses)
 
 
 def of_arm(data: Mapping[str, Any], model: Bodies, guesses: list[str]) -> dict[str, Any]:

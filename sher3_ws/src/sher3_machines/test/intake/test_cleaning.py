@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 from sher3_machines import MachineError
-from sher3_machines.intake.cleaning import even_stamps, glitches, known_readings
-from sher3_machines.intake.parts import cut
+from sher3_machines.intake.mending.parts import cut
+from sher3_machines.intake.mending.readings import glitches, known_readings
+from sher3_machines.intake.mending.stamps import even_stamps
 
 TIME = 0.01 * np.arange(200)
 

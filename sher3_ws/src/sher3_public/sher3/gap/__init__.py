@@ -16,10 +16,17 @@ if TYPE_CHECKING:
     from sher3_public import Corrected as Corrected
     from sher3_public import InputError as InputError
     from sher3_public import diagnose as diagnose
+    from sher3_public import from_lerobot as from_lerobot
 
-__all__ = ["Answer", "Corrected", "InputError", "diagnose"]
+__all__ = ["Answer", "Corrected", "InputError", "diagnose", "from_lerobot"]
 
 __getattr__, __dir__ = lazy(
     "sher3_public",
-    {"answer": ("Answer",), "correcting": ("Corrected",), "errors": ("InputError",), "one_call": ("diagnose",)},
+    {
+        "answer": ("Answer",),
+        "correcting": ("Corrected",),
+        "errors": ("InputError",),
+        "lerobot": ("from_lerobot",),
+        "one_call": ("diagnose",),
+    },
 )

@@ -1,0 +1,84 @@
+"""LeRobot data sets in one call: what the joints were told against what they did."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from sher3_machines.intake.fields import UNITS
+from sher3_machines.intake.guesses import reach
+from sher3_machines.intake.readers.lerobot import DataSet, read_data_set
+
+from sher3_public.answer import Answer
+from sher3_public.cases import case_of_arrays, case_of_tables
+from sher3_public.describing import Stated
+from sher3_public.errors import InputError
+from sher3_public.records import Array, Arrays
+
+STATE, ACTION = "observation.state/", "action/"
+CLOCK = "timestamp"
+ANGLES = ("rad", "deg")
+MOST_TURNS = 2.0
+"""Turns beyond which states are no radians."""
+
+
+def from_lerobot(
+    path: str | Path,
+    model: object = None,
+    *,
+    unit: str | None = None,
+    episodes: Collection[int] = (),
+    joints: Sequence[str] = (),
+    tags: Mapping[str, Sequence[object]] | Sequence[Mapping[str, object]] | None = None,
+    without: Collection[str] = (),
+) -> Answer:
+    """Diagnose the joints of a local LeRobot data set, version 2.1 or 3; every episode is a run.
+
+    Without a model each joint is a position servo: the action is its reference, the observed state its position. With
+    one the joints of an arm carry each other, and the model's actuators turn the action into efforts.
+
+    Args:
+        path: folder of the data set.
+        model: MJCF or URDF as `diagnose` takes it; None: servos by themselves.
+        unit: of actions and states, `rad` or `deg`; default guessed, since the data set does not say.
+        episodes: numbers of the episodes to take; default all.
+        joints: the model's joint of each entry of the state; default guessed, see `diagnose`.
+        tags: what differs between episodes, as `diagnose` takes it.
+        without: ids of effects that are left out of the library.
+
+    Returns:
+        The answer; its notes name the periods that the clock missed.
+
+    Raises:
+        InputError: arguments do not fit the data set.
+        MachineError: the data set cannot be read or used; the sentence says why and what to do.
+    """
+    if unit is not None and unit not in ANGLES:
+        raise InputError("unit of the joints is not known", value=unit, limit=", ".join(ANGLES), remedy="convert them")
+    found = read_data_set(Path(path), episodes)
+    guesses: list[str] = []
+    scale = UNITS[unit or _guessed(found, guesses)]
+    runs = [{n: x if n == CLOCK else scale * x for n, x in tables.items()} for tables in found.episodes.values()]
+    if model is None:
+        case = case_of_tables(None, runs, None, tags)
+    else:
+        case = case_of_arrays(model, [_arrays(tables) for tables in runs], Stated(tuple(joints)), tags)
+    notes = list(case.notes)
+    if found.nominal:
+        notes.append(f"stamps are the frame's number over {found.rate:g} Hz: they hide what the control loop missed")
+    return Answer.of(replace(case, guesses=[*guesses, *case.guesses], notes=notes), tuple(without))
+
+
+def _guessed(found: DataSet, guesses: list[str]) -> str:
+    """Return the unit of states: no joint of an arm turns so far that its radians look like degrees."""
+    reached = max(reach(x) for tables in found.episodes.values() for n, x in tables.items() if n.startswith(STATE))
+    unit = "deg" if reached > MOST_TURNS * 2.0 * np.pi else "rad"
+    guesses.append(f"actions and states are in {unit}, because values reach {reached:.4g}; unit='rad' or 'deg'")
+    return unit
+
+
+def _arrays(tables: Mapping[str, Array]) -> Arrays:
+    state, action = (np.column_stack([x for n, x in tables.items() if n.startswith(w)]) for w in (STATE, ACTION))
+    return Arrays(tables[CLOCK], state, action)
