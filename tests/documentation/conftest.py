@@ -36,10 +36,10 @@ def command_tree() -> dict:
 
 
 @pytest.fixture(scope="session")
-def open_terminal(domain: int, command_tree: dict) -> Callable[[Path], Terminal]:
-    """Return a function that opens a terminal in a folder."""
+def open_terminal(domain: int, command_tree: dict) -> Callable[..., Terminal]:
+    """Return a function that opens a terminal in a folder; `empty`: in an empty one."""
     takes_domain = {name for name, command in command_tree.items() if any("--domain" in p.opts for p in command.params)}
-    return lambda folder: Terminal(folder, domain, takes_domain, LIMIT)
+    return lambda folder, empty=False: Terminal(folder, domain, takes_domain, LIMIT, empty)
 
 
 @pytest.fixture(scope="session")

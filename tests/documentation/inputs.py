@@ -46,6 +46,7 @@ class Inputs:
             "bags/after": lambda path: _bag(path, seed=3),
             "bags/case": _case,
             "bags/session": _session,
+            "bags/demo": lambda path: shutil.copytree(self.get("bags/session"), path),
             "case_001": lambda path: self._shell(
                 path, "sher3 gap excite sweep,reversals --simulate -o {} --effects", EFFECTS.format(width="60.0e-6")
             ),

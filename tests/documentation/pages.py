@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 
 from sources import ROOT
 
@@ -63,6 +64,15 @@ def blocks(page: str) -> list[Block]:
         line = text.count("\n", 0, match.start("text")) + 1
         found.append(Block(page, line, language, tag.strip(), match["text"]))
     return found
+
+
+def shown_output(page: str) -> Iterator[tuple[Block, Block]]:
+    """Yield every block that is run with the fence of its output: one `text` that is the next fence of the page."""
+    here = blocks(page)
+    for block, following in pairwise(here):
+        ran = block.language in ("sh", "python") and block.not_run is None and not block.file
+        if ran and following.language == "text":
+            yield block, following
 
 
 def spans(page: str) -> Iterator[tuple[int, bool, str]]:

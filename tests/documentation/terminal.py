@@ -16,6 +16,7 @@ from sources import ROOT
 
 LINKS = ("bench", "tests", "tools", "sher3_ws", "docker", "Makefile", "pyproject.toml")
 """What of the project is seen from the folder."""
+ACTIVATION = ". .venv/bin/activate"
 START = 120.0
 """Seconds until the robot is up at the latest: the kernels of a new machine are compiled first."""
 A_WHILE = 3.0
@@ -30,24 +31,32 @@ class Terminal:
         domain: ROS domain of the robot.
         takes_domain: full names of the commands with an option `--domain`.
         limit: seconds that one command may take.
+        empty: the folder has nothing but the environment, whose commands are found after its activation alone.
     """
 
-    def __init__(self, folder: Path, domain: int, takes_domain: set[str], limit: float) -> None:
+    def __init__(self, folder: Path, domain: int, takes_domain: set[str], limit: float, empty: bool = False) -> None:
         self.folder, self.domain, self.takes_domain, self.limit = folder, domain, takes_domain, limit
         self.running: list[tuple[subprocess.Popen, Path]] = []
-        self.lent = False
+        self.lent, self.broken = False, False
+        self.empty, self.activation = empty, ""
         folder.mkdir(exist_ok=True)
-        for name in LINKS:
+        for name in () if empty else LINKS:
             if not (folder / name).exists():
                 (folder / name).symlink_to(ROOT / name)
         (folder / ".venv").symlink_to(sys.prefix)
         (folder / "home").mkdir()
 
-    def run(self, command: Command) -> None:
-        """Run one command and check its exit code; one that runs until Ctrl-C is started and left running."""
+    def run(self, command: Command) -> str:
+        """Run one command, check its exit code and return what it printed.
+
+        One that runs until Ctrl-C is started and left running; it has printed what it says when it is ready.
+        """
         if command.interrupts:
             self.interrupt()
-            return
+            return ""
+        if command.line.startswith(ACTIVATION):
+            self.activation = f"{command.line} && "
+        self.broken = self.broken or command.bare.startswith("sher3 fault")
         if command.bare.startswith("sher3 up") and command.exit_code == 0:  # a domain has one robot
             self.interrupt()
         elif command.needs_robot and not self.running:
@@ -58,7 +67,7 @@ class Terminal:
             self.interrupt()
         if command.forever:
             self.start(command.line)
-            return
+            return self.running[-1][1].read_text()
         done = subprocess.run(
             self._words(command.line),
             cwd=self.folder,
@@ -73,6 +82,7 @@ class Terminal:
         story = f"{command.line}\n{done.stdout[-3000:]}\n{done.stderr[-3000:]}\nmeanwhile:\n{said}"
         assert done.returncode == command.exit_code, f"exit code {done.returncode}: {story}"
         assert "Traceback" not in done.stderr, story
+        return done.stdout + done.stderr
 
     def start(self, line: str) -> None:
         """Start a command that runs until Ctrl-C, and wait until it is ready."""
@@ -104,7 +114,10 @@ class Terminal:
             process.send_signal(signal.SIGINT)
             code = process.wait(timeout=60)
             self.lent = False
-            assert code == 0, f"exit code {code} after Ctrl-C: {log.read_text()[-3000:]}"
+            # A robot that the page has broken may end in FAULT, and says so.
+            assert code in ((0, 6) if self.broken else (0,)), (
+                f"exit code {code} after Ctrl-C: {log.read_text()[-3000:]}"
+            )
 
     def close(self) -> None:
         """End what still runs, whatever happened, and remove the folder's large files."""
@@ -121,11 +134,13 @@ class Terminal:
     def _words(self, line: str, own: str | None = None) -> list[str]:
         shown = own or line
         asked = in_company(shortened(shown), self.domain, self.takes_domain)
-        return ["bash", "-c", f"set -o pipefail; {line.replace(shown, asked)}"]
+        return ["bash", "-c", f"set -o pipefail; {self.activation}{line.replace(shown, asked)}"]
 
     def _environment(self) -> dict[str, str]:
+        ours = str(Path(sys.executable).parent)
+        paths = [path for path in os.environ["PATH"].split(":") if path != ours]
         return child_environment(
-            PATH=f"{Path(sys.executable).parent}:{os.environ['PATH']}",
+            PATH=":".join(paths if self.empty else [ours, *paths]),
             # A page may write to the home folder; the compiled kernels stay where they are.
             HOME=str(self.folder / "home"),
             XDG_CACHE_HOME=os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache"),

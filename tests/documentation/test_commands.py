@@ -6,7 +6,9 @@ import re
 
 import pytest
 from documentation.commands import Command, commands, words
-from documentation.pages import Unit, blocks, pages, spans, units
+from documentation.expected import tolerance, unlike
+from documentation.pages import Block, Unit, blocks, pages, shown_output, spans, units
+from documentation.terminal import Terminal
 
 NOT_RUN = 24
 """Blocks that cannot be run here, at most. Each says why, where the reader sees it."""
@@ -23,14 +25,27 @@ def cases() -> list[object]:
 def test_commands_of_a_page(unit: Unit, terminal, inputs):
     """Each ends with exit code 0, or with the one that stands beside it."""
     inputs.put(terminal.folder, "\n".join(_shown(block) for block in unit.blocks))
+    follow(unit, terminal)
+
+
+def follow(unit: Unit, terminal: Terminal) -> None:
+    """Write the files of a unit and run its commands; what they print is what the page says."""
     for block in unit.blocks:
-        if block.file:
-            (terminal.folder / block.file).parent.mkdir(exist_ok=True)
-            (terminal.folder / block.file).write_text(block.text)
-            continue
-        for command in commands(block):
-            terminal.run(command)
+        follow_block(block, terminal)
     terminal.interrupt()
+
+
+def follow_block(block: Block, terminal: Terminal) -> None:
+    """Write the file of a block, or run its commands and compare what they print with the fence that follows it."""
+    if block.file:
+        (terminal.folder / block.file).parent.mkdir(exist_ok=True)
+        (terminal.folder / block.file).write_text(block.text)
+    elif block.language == "sh":
+        printed = "".join(terminal.run(command) for command in commands(block))
+        output = dict(shown_output(block.page)).get(block)
+        if output is not None:
+            fault = unlike(output.text, printed, tolerance(output))
+            assert not fault, f"{output.page}:{output.line}: {fault}\n{printed[-6000:]}"
 
 
 def _shown(block) -> str:

@@ -10,7 +10,7 @@ from documentation.pages import FENCE, MADE, blocks, pages
 from sources import ROOT
 
 LONGEST = 120
-LANGUAGES = {"sh", "python", "yaml", "text", "{toctree}"}
+LANGUAGES = {"sh", "python", "yaml", "toml", "text", "{toctree}"}
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
 
 

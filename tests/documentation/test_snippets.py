@@ -7,7 +7,8 @@ import subprocess
 import sys
 
 import pytest
-from documentation.pages import blocks, pages
+from documentation.expected import tolerance, unlike
+from documentation.pages import blocks, pages, shown_output
 
 
 def snippets() -> list[object]:
@@ -39,3 +40,7 @@ def test_snippets_of_a_page(here, terminal, inputs):
         check=False,
     )
     assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-3000:]
+    for block, output in shown_output(here[0].page):
+        if block.language == "python":
+            fault = unlike(output.text, done.stdout, tolerance(output))
+            assert not fault, f"{output.page}:{output.line}: {fault}\n{done.stdout[-6000:]}"

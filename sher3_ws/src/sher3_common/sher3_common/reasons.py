@@ -97,7 +97,7 @@ TEXT: dict[Reason, str] = {
     _R.NOT_OWNER: "another motion mode owns the robot",
     _R.PEDAL_MISSING: "no pedal sample has arrived",
     _R.PEDAL_STALE: "the newest pedal sample is too old",
-    _R.PEDAL_INVALID: "the pedal travel is not a number from 0 to 1",
+    _R.PEDAL_INVALID: "the pedal's message is not one travel from 0 to 1 with one button, its emergency stop",
     _R.EMERGENCY_STOP: "the emergency stop is pressed",
     _R.WRENCH_MISSING: "no wrench sample has arrived",
     _R.WRENCH_STALE: "the newest wrench sample is too old",

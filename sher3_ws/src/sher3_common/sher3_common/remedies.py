@@ -20,7 +20,7 @@ REMEDY: dict[Reason, str] = {
     _R.NOT_OWNER: "wait until the other mode ends, or send disable",
     _R.PEDAL_MISSING: "start the pedal's node, or publish pedal/measured",
     _R.PEDAL_STALE: "the pedal's sender fell silent or slowed down; see that it sends at its rate",
-    _R.PEDAL_INVALID: "send a travel from 0 to 1; check the pedal's calibration",
+    _R.PEDAL_INVALID: "send a Joy of one axis, the travel, and one button, 1 while the emergency stop is pressed",
     _R.EMERGENCY_STOP: "release the emergency stop",
     _R.WRENCH_MISSING: "start the force sensor's node, or publish force/measured_cf",
     _R.WRENCH_STALE: "the force sensor's sender fell silent or slowed down; see that it sends at the control rate",

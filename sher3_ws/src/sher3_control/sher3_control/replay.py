@@ -22,6 +22,7 @@ from sher3_control.law.admittance import NO_WRENCH, LawInput, LawParameters, ini
 from sher3_control.law.angles import roll_and_tilt
 from sher3_control.law.live_parameters import LiveParameters, from_json
 from sher3_control.law.parameters import law_parameters
+from sher3_control.law.pedal import pedal_reading
 from sher3_control.law.position_controller import position_commands
 from sher3_control.motion.cooperative import RESTING, VelocityModes
 from sher3_control.motion.ownership import MODE_CODES, Mode
@@ -246,7 +247,7 @@ class _Inputs:
             stream = self.wrench.stream
             wrench = tuple([*stream.force[w].tolist(), *stream.torque[w].tolist()])  # type: ignore[assignment]
         if p is not None:
-            travel, emergency = float(self.pedal.stream.axes[p][0]), bool(self.pedal.stream.buttons[p][0])
+            travel, emergency = pedal_reading(self.pedal.stream.axes[p], self.pedal.stream.buttons[p])
         if j is not None:
             q = self.joints.stream.position[j].tolist()
             roll, tilt = roll_and_tilt(self._parameters, q[3], q[4])

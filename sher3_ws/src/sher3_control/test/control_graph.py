@@ -23,7 +23,10 @@ COMMANDS = ["servo_cv", "servo_jv", "servo_jp", "servo_cp", "move_jp", "move_cp"
 
 
 class IdealRobot(Node):
-    """Integrates `servo_jv` exactly; `force` acts on the tip in {t}, `travel` is the pedal. None silences a stream."""
+    """Integrates `servo_jv` exactly; `force` acts on the tip in {t}, `travel` is the pedal. None silences a stream.
+
+    `button` is its emergency stop, or all of its buttons.
+    """
 
     def __init__(self, **options):
         super().__init__("ideal_robot", **{**NODE_OPTIONS, **options})
@@ -45,7 +48,8 @@ class IdealRobot(Node):
         if self.joints_alive:
             self._joints(JointSample(stamp, tuple(self.q)))
         if self.travel is not None:
-            self._pedal(JoySample(stamp, (self.travel,), () if self.button is None else (self.button,)))
+            buttons = self.button if isinstance(self.button, tuple) else (self.button,)
+            self._pedal(JoySample(stamp, (self.travel,), buttons))
         if self.force is not None:
             x, y, z = self.force
             wiggle = 1e-6 * (self.count % 7)

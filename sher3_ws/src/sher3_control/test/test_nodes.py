@@ -80,15 +80,20 @@ def test_emergency_stop_faults_in_its_tick():
         assert g.status("supervisor/status")["first_fault"]["code"] == "EMERGENCY_STOP"
 
 
-def test_a_pedal_without_its_stop_button_counts_as_stopped():
+@pytest.mark.parametrize("buttons", [(), (1, 0, 0)], ids=["none", "gamepad"])
+def test_a_message_with_other_buttons_than_a_pedals_stops_and_is_named_for_what_it_is(buttons):
+    """In the same tick; it is no emergency stop, which nobody pressed."""
     with control_graph() as g:
         g.enable()
         g.press(force=(1.0, 0.0, 0.0))
         g.step(50)
-        g.robot.button = None
+        g.robot.button = buttons
         g.step()
         assert g.last("servo_cv").twist == (0.0,) * 6
         g.until_state("FAULT")
+        fault = g.status("supervisor/status")["first_fault"]
+        assert (fault["code"], fault["value"], fault["unit"]) == ("PEDAL_INVALID", len(buttons), "buttons")
+        assert "one axis, the travel, and one button" in fault["remedy"]
 
 
 def test_tare_and_live_parameters_answer_over_the_graph():

@@ -91,7 +91,7 @@ _TABLE = (
     Topic("measured_js", _JOINT, "", STREAM, "load encoder position"),
     Topic("measured_cp", _POSE, "b", STREAM, "tip pose from measured_js"),
     Topic("force/measured_cf", _WRENCH, "f", STREAM, "raw wrench in {f}"),
-    Topic("pedal/measured", _JOY, "", STREAM, "axes[0] travel 0 to 1, buttons[0] emergency stop"),
+    Topic("pedal/measured", _JOY, "", STREAM, "one axis, travel 0 to 1, and one button, the emergency stop"),
     Topic("tracker/measured_cp", _POSE, "b", STREAM, "external tip pose in {b}"),
     Topic("temperature", "sensor_msgs/msg/Temperature", "", STREAM, "structure temperature [deg C]"),
     Topic("operating_state", _TEXT, "", LATCHED, "CRTK operating state; why and since when is in supervisor/status"),
@@ -140,7 +140,9 @@ _TABLE = (
     Topic("gap/diagnostics", "diagnostic_msgs/msg/DiagnosticArray", "", AHEAD, "gap over floor per stage and actuator"),
     # Between a scripted surgeon, the plant process and the device ends of sensor and pedal; mocks only.
     Topic("mock/contact_wrench", _WRENCH, "b", STREAM, "wrench on the tip in {b}, into the plant"),
-    Topic("mock/pedal", _JOY, "", STREAM, "pedal as the foot presses it, into the pedal's device end"),
+    Topic(
+        "mock/pedal", _JOY, "", STREAM, "one axis, the pedal as the foot presses it, and at most one button, the stop"
+    ),
     Topic("mock/step", _TEXT, "", STREAM, "step of the surgeon's script that begins"),
     Topic("mock/force_device", _WRENCH, "f", STREAM, "what the mock force sensor puts on its wire"),
     Topic("mock/pedal_device", _JOY, "", STREAM, "what the mock pedal puts on its wire"),

@@ -8,7 +8,6 @@ devices are requested on `mock/fault`; from the first request on the plant publi
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any, Protocol, cast
 
@@ -194,8 +193,14 @@ class PlantNode(Node):
             self.get_logger().error(f"mock/contact_wrench beyond {MAX_CONTACT:g} N, N m was ignored: {sample.wrench}")
 
     def _on_pedal(self, sample: JoySample) -> None:
-        self._foot = PedalState(sample.axes[0] if sample.axes else math.nan, any(sample.buttons))
-        self._foot_at = self._now()
+        if len(sample.axes) == 1 and len(sample.buttons) <= 1:
+            self._foot, self._foot_at = PedalState(sample.axes[0], any(sample.buttons)), self._now()
+            return
+        found = f"{len(sample.axes)} axes and {len(sample.buttons)} buttons"
+        self.get_logger().error(
+            f"mock/pedal was ignored: {found}; send one axis, the travel, and at most one button, the emergency stop",
+            once=True,
+        )
 
     def _on_fault(self, sample: TextSample) -> None:
         if self._faults is None:

@@ -21,6 +21,8 @@ from sher3_bringup.surgeon.script import Script, demo_script, load_script
 
 DOMAIN = 73
 """ROS domain of the demo: not the default one, so that it does not meet a robot that is running."""
+NEWEST = "demo"
+"""Name of the link to the newest recording of a demo, beside it."""
 AFTERWARDS = 0.4
 """Seconds for which the graph runs on after the script."""
 
@@ -102,6 +104,7 @@ def _evaluate(
     from sher3_bringup.demo.verdict import judge
 
     robot = settings.robot()
+    _link(bag)
     say("analysing the recording")
     run = read_run(bag, check=False)
     analysis = analyse(run, robot)
@@ -116,7 +119,8 @@ def _evaluate(
     ]
     page = write_figures(run, analysis, bag / "summary.html", robot, more)
     say("\n" + "\n\n".join([analysis_text(analysis), *map(str, more)]))
-    say(f"\nbag      {bag}\npicture  {picture}\npage     {page}  (figures, and the robot in motion; for a browser)")
+    say(f"\nbag      {bag}, also {bag.parent / NEWEST}\npicture  {picture}")
+    say(f"page     {page}  (figures, and the robot in motion; for a browser)")
     judge(run, script, int(run["mock/pedal"].stamp[0]))
     say("the robot was enabled, moved in every step that asked for it and did not stop by itself")
     return {
@@ -128,6 +132,14 @@ def _evaluate(
         "nodes": nodes,
         "computed_again": again,
     }
+
+
+def _link(bag: Path) -> None:
+    """Let `demo` beside a recording lead to it; a folder of that name that is none of ours stays."""
+    link, new = bag.parent / NEWEST, bag.parent / f".{bag.name}.link"
+    if link.is_symlink() or not link.exists():
+        new.symlink_to(bag.name)
+        new.replace(link)
 
 
 def _computed_again(replay: Callable[[Any, Any], Any], run: Any, robot: Any) -> dict[str, Any]:

@@ -1,6 +1,20 @@
 """The foot pedal as a velocity factor from 0 to 1, with dead band and hysteresis."""
 
+import math
+from collections.abc import Sequence
+
 from sher3_common.compiled import compiled
+
+
+def pedal_reading(axes: Sequence[float], buttons: Sequence[int]) -> tuple[float, bool]:
+    """Return travel and emergency stop of a sample of `pedal/measured`: one axis and one button.
+
+    A message of another form, as that of a gamepad, is no pedal: its travel is NaN, so that the robot does not move,
+    and none of its buttons is an emergency stop.
+    """
+    if len(axes) != 1 or len(buttons) != 1:
+        return math.nan, False
+    return float(axes[0]), bool(buttons[0])
 
 
 @compiled

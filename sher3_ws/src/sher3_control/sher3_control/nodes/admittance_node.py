@@ -27,6 +27,7 @@ from sher3_control.law.admittance import NO_WRENCH, LawInput, initial_state, ste
 from sher3_control.law.angles import roll_and_tilt
 from sher3_control.law.live_parameters import apply_command, live_parameters, to_json, with_bias
 from sher3_control.law.parameters import law_parameters
+from sher3_control.law.pedal import pedal_reading
 from sher3_control.law.tare import DriftMonitor, TareWindow
 from sher3_control.motion.ownership import Mode
 from sher3_control.nodes.heard import HeardState, status_of
@@ -105,9 +106,7 @@ class AdmittanceNode(Node):
 
     def on_pedal(self, sample: JoySample) -> None:
         """Take the pedal's sample, and run the tick where its wrench has come before it."""
-        travel = sample.axes[0] if sample.axes else -1.0
-        # A pedal box without a stop button cannot say that the stop is not pressed.
-        self._pedal = (sample.stamp, travel, bool(sample.buttons[0]) if sample.buttons else True)
+        self._pedal = (sample.stamp, *pedal_reading(sample.axes, sample.buttons))
         if sample.stamp == self._wrench[0]:
             self._tick(sample.stamp)
 

@@ -24,12 +24,14 @@ from sher3_kinematics import RobotKinematics
 from sher3_runtime.ports import NODE_OPTIONS, advertise, by_ring, clock_of, gathered, latest, on_tick, ports, subscribe
 from sher3_runtime.publishers import Publishers
 
+from sher3_control.law.pedal import pedal_reading
 from sher3_control.nodes.same_tick import SameTick
 from sher3_control.settings import ControlSettings
 from sher3_control.supervision.detectors import (
     Detector,
     EmergencyStopDetector,
     OverrunDetector,
+    PedalFormDetector,
     ReportedFault,
     SilenceDetector,
     TwinDetector,
@@ -93,13 +95,21 @@ class SupervisorNode(Node):
         self.settings = settings.supervisor
         limit = self.settings.stream_age_limit
         self._silence = {name: SilenceDetector(name, limit, *reasons) for name, reasons in STREAMS.items()}
-        self._button = EmergencyStopDetector()
+        self._button, self._form = EmergencyStopDetector(), PedalFormDetector()
         self._drives = ReportedFault("motor_driver")
         self._overruns = OverrunDetector(self.settings.overrun_share)
         kinematics = _warm(RobotKinematics(robot))
         self._leg, self._twins = LegDetector(kinematics, self.settings), TwinDetector()
         self._hand = None if settings.motion.regime == "bench" else HandDetector(kinematics, self.settings)
-        built_in = [self._button, self._drives, *self._silence.values(), self._overruns, self._leg, self._twins]
+        built_in = [
+            self._button,
+            self._form,
+            self._drives,
+            *self._silence.values(),
+            self._overruns,
+            self._leg,
+            self._twins,
+        ]
         hands = [] if self._hand is None else [self._hand]
         self.supervisor = Supervisor([*built_in, *hands, *detectors])
         self._refused: dict[str, Any] | None = None
@@ -180,12 +190,13 @@ class SupervisorNode(Node):
             self._judge()
 
     def _note_pedal(self, sample: JoySample) -> bool:
-        """Note a sample of the pedal; return whether its emergency stop has changed."""
+        """Note a sample of the pedal; return whether its emergency stop or its form has changed."""
         self._silence[PEDAL].last = sample.stamp
-        pressed = bool(sample.buttons[0]) if sample.buttons else True
-        changed = pressed != self._button.pressed
+        _, pressed = pedal_reading(sample.axes, sample.buttons)
+        before = self._button.pressed, self._form.axes, self._form.buttons
         self._button.feed(pressed)
-        return changed
+        self._form.feed(len(sample.axes), len(sample.buttons))
+        return before != (self._button.pressed, self._form.axes, self._form.buttons)
 
     def _on_diagnostics(self, sample: DiagnosticSample) -> None:
         if sample.name == DRIVES:

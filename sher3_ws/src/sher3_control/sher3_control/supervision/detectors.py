@@ -142,6 +142,35 @@ class EmergencyStopDetector(PlainDetector):
 
 
 @dataclass
+class PedalFormDetector(PlainDetector):
+    """A message on the pedal's stream that is no pedal's: it has one axis and one button, the emergency stop.
+
+    A pedal without a button cannot say that the stop is not pressed, and of a gamepad's buttons none is the stop.
+
+    Attributes:
+        axes, buttons: numbers of them in the newest message.
+    """
+
+    source: str = "pedal/measured"
+    axes: int = 1
+    buttons: int = 1
+
+    def feed(self, axes: int, buttons: int) -> None:
+        """Take note of the form of a message."""
+        self.axes, self.buttons = axes, buttons
+
+    def look(self, now: int) -> Finding:
+        """Return the number that is wrong; that of the buttons where none is."""
+        count, unit = (self.axes, "axes") if self.axes != 1 else (self.buttons, "buttons")
+        return Finding(Reason.PEDAL_INVALID, count, 1, unit, self.source)
+
+    def check(self, now: int) -> Finding | None:
+        """Object to any number but one."""
+        found = self.look(now)
+        return None if found.value == found.limit else found
+
+
+@dataclass
 class ReportedFault(PlainDetector):
     """A stop that the motor driver reports; it stays until the driver reports that it is over.
 
