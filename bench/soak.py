@@ -146,7 +146,7 @@ def soak(seconds: float, rate: float, folder: Path) -> dict[str, Any]:
 
     before, watch = places(), Watch()
     run_graph(settings, lambda text: print(text, file=sys.stderr), {"surgeon": surgeon}, watch)
-    names = ["parent", *("+".join(process) for process in settings.processes), "surgeon"]
+    names = ["parent", *("+".join(process) for process in settings.processes), "surgeon", "terminal"]
     pids = [os.getpid(), *sorted(pid for pid in watch.samples if pid != os.getpid())]
     processes = {name: watch.samples[pid].verdict() for name, pid in zip(names, pids, strict=True)}
     nodes = {path.stem: json.loads(path.read_text())["statistics"] for path in sorted(statistics.glob("*.json"))}

@@ -168,3 +168,18 @@ def test_every_socket_is_bound_to_the_loopback_interface():
     addresses = {tuple(line.split()) for line in result.stdout.splitlines()}
     assert ("udp", "0100007F") in addresses, result.stderr
     assert addresses <= {("udp", "0100007F"), ("udp", "0100FFEF")}, addresses
+
+
+def test_a_process_that_has_only_just_been_forked_is_stopped_at_once():
+    """The handlers of its parent, which would only make a note of the signal, are not its own."""
+    result = run(
+        """
+        signal.signal(signal.SIGTERM, lambda *_: None)
+        begin = time.monotonic()
+        with Fleet() as fleet:
+            fleet.launch("slow", lambda: time.sleep(30))
+            fleet.stop(patience=10.0)
+        assert time.monotonic() - begin < 9.0
+        """
+    )
+    assert result.returncode == 0, result.stderr

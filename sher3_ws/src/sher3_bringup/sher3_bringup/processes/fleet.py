@@ -15,7 +15,8 @@ import socket
 import sys
 import time
 import traceback
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
@@ -29,6 +30,8 @@ from sher3_bringup.errors import NotStopped, ProcessDied, StartError
 
 STOP_ORDER = (("motor_driver",), (), ("plant", "recorder"))
 """Who is stopped first and last; the rest in between."""
+STOPS = frozenset({signal.SIGTERM, signal.SIGINT})
+"""Signals that end a process, also one that has only just been forked."""
 
 
 @dataclass
@@ -100,7 +103,11 @@ class Fleet:
         sys.stdout.flush()
         sys.stderr.flush()
         parent = os.getpid()
-        pid = os.fork()
+        with _blocked(STOPS):
+            pid = os.fork()
+            if pid == 0:
+                for number in STOPS:  # the parent's handlers would only make a note of it
+                    signal.signal(number, signal.SIG_DFL)
         if pid == 0:
             die_with_parent(parent)
             os.environ[REALTIME_VARIABLE] = str(realtime)
@@ -225,6 +232,16 @@ class Fleet:
                 if time.monotonic() > deadline:
                     raise StartError("no answer", value=", ".join(m.name for m in waiting), limit=f"{patience} s")
         return [member.said(key) for member in self.members]
+
+
+@contextmanager
+def _blocked(signals: Collection[signal.Signals]) -> Iterator[None]:
+    """Hold signals back: they come at the end of the block."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, signals)
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _ended(member: Member) -> str:
