@@ -9,8 +9,8 @@ demo: $(READY)  ## scripted surgeon on mocks: recorded, analysed, shown
 	$(BIN)/sher3 demo
 
 test: $(READY) lint  ## lint, types and every test but the slow ones; graphs alone, for their clocks' sake
-	$(BIN)/pytest -n 2 --dist loadscope -m "not slow and not graph"; plain=$$?; \
-	$(BIN)/pytest -m "graph and not slow" && exit $$plain
+	$(BIN)/pytest -n 2 --dist loadscope --durations 10 -m "not slow and not graph"; plain=$$?; \
+	$(BIN)/pytest --durations 10 -m "graph and not slow" && exit $$plain
 
 test-slow: $(READY)  ## colcon build and test of the workspace, a sealed challenge end to end
 	$(BIN)/pytest -m slow

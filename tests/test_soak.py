@@ -34,7 +34,7 @@ def run(seconds: float, timeout: float) -> dict:
 
 def check(result: dict) -> None:
     assert result["faults"] == [] and result["leftovers"] == []
-    assert len(result["processes"]) == 10 and len(result["nodes"]) == 9
+    assert len(result["processes"]) == 11 and len(result["nodes"]) == 10
     for name, process in result["processes"].items():
         assert process["files"][0] >= process["files"][1] > 3, name
         assert process["threads"][0] >= process["threads"][1] >= 1, name

@@ -11,17 +11,22 @@ from documentation.expected import tolerance, unlike
 from documentation.pages import blocks, pages, shown_output
 
 
+RUNS_NODES = ("rclpy", "sher3_runtime")
+"""What a snippet imports that runs nodes; the others need no computer of their own."""
+
+
 def snippets() -> list[object]:
     found = []
     for page in pages():
         here = [b for b in blocks(page) if b.language == "python" and b.not_run is None and not b.file]
         if here:
+            graph = any(name in block.text for block in here for name in RUNS_NODES)
             slow = any(block.tag == "slow" for block in here)
-            found.append(pytest.param(here, id=page, marks=[pytest.mark.slow] if slow else []))
+            marks = [*[pytest.mark.graph] * graph, *[pytest.mark.slow] * slow]
+            found.append(pytest.param(here, id=page, marks=marks))
     return found
 
 
-@pytest.mark.graph
 @pytest.mark.parametrize("here", snippets())
 @pytest.mark.flaky(reruns=2)
 def test_snippets_of_a_page(here, terminal, inputs):
