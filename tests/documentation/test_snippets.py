@@ -10,7 +10,6 @@ import pytest
 from documentation.expected import tolerance, unlike
 from documentation.pages import blocks, pages, shown_output
 
-
 RUNS_NODES = ("rclpy", "sher3_runtime")
 """What a snippet imports that runs nodes; the others need no computer of their own."""
 
