@@ -62,6 +62,7 @@ class Inputs:
             "DATA.mat": _slide,
             "robot.xml": _two_links,
             "log.npz": _log_of_two_links,
+            "later.npz": lambda path: _log_of_two_links(path, more=2.0),
             "run/a": lambda path: self._shell(path, "sher3 gap challenge --seeds 11200:11201 --jobs 1 --out {}"),
             "run/b": lambda path: self._shell(path, "sher3 gap challenge --seeds 11201:11202 --jobs 1 --out {}"),
         }
@@ -196,12 +197,12 @@ def _two_links(path: Path) -> None:
     path.write_text(TWO_LINKS)
 
 
-def _log_of_two_links(path: Path) -> None:
-    """Write ten seconds of that arm, its elbow with 1.2 N m more dry friction than the model says."""
+def _log_of_two_links(path: Path, more: float = 1.2) -> None:
+    """Write ten seconds of that arm, its elbow with more dry friction, N m, than the model says."""
     import mujoco
 
     robot = mujoco.MjModel.from_xml_string(TWO_LINKS)
-    robot.dof_frictionloss[1] += 1.2
+    robot.dof_frictionloss[1] += more
     state, rows = mujoco.MjData(robot), []
     for t in np.arange(5000) * 0.002:
         state.ctrl[:] = [0.6 * np.sin(1.7 * t) + 0.3 * np.sin(4.1 * t), 0.7 * np.sin(2.3 * t) + 0.2 * np.sin(5.3 * t)]

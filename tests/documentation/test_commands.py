@@ -10,7 +10,7 @@ from documentation.expected import tolerance, unlike
 from documentation.pages import Block, Unit, blocks, pages, shown_output, spans, units
 from documentation.terminal import Terminal
 
-NOT_RUN = 24
+NOT_RUN = 25
 """Blocks that cannot be run here, at most. Each says why, where the reader sees it."""
 
 
@@ -38,7 +38,7 @@ def follow(unit: Unit, terminal: Terminal) -> None:
 def follow_block(block: Block, terminal: Terminal) -> None:
     """Write the file of a block, or run its commands and compare what they print with the fence that follows it."""
     if block.file:
-        (terminal.folder / block.file).parent.mkdir(exist_ok=True)
+        (terminal.folder / block.file).parent.mkdir(parents=True, exist_ok=True)
         (terminal.folder / block.file).write_text(block.text)
     elif block.language == "sh":
         printed = "".join(terminal.run(command) for command in commands(block))

@@ -1,11 +1,10 @@
-"""Cases and their answers: one or many, diagnosed on this machine or on a cluster, written to files."""
+"""Cases and their answers, written to files."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Collection, Iterator, Sequence
-from contextlib import closing
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -30,6 +29,11 @@ class Task:
     without: tuple[str, ...] = ()
     report: bool = True
     folder: str = ""
+
+    def absolute(self) -> Task:
+        """Return it with paths that do not depend on the working folder."""
+        robot = None if self.robot is None else self.robot.resolve()
+        return Task(self.case.resolve(), robot, self.without, self.report)
 
 
 @dataclass(frozen=True)
@@ -109,45 +113,6 @@ def folders(cases: Collection[Path], out: Path | None) -> dict[Path, Path]:
         names = ", ".join(sorted(str(case) for case in cases))
         raise RequestError("cases of the same name", value=names, remedy="diagnose them with separate --out")
     return chosen
-
-
-def run_here(tasks: Sequence[Task], jobs: int, say: Say) -> Iterator[Answer]:
-    """Diagnose on this machine, `jobs` cases at a time; answers as they come."""
-    if jobs == 1 or len(tasks) == 1:
-        for task in tasks:
-            yield answer(task, say)
-        return
-    from joblib import Parallel, delayed
-
-    parallel = Parallel(n_jobs=min(jobs, len(tasks)), return_as="generator_unordered")
-    yield from parallel(delayed(answer)(task) for task in tasks)
-
-
-def run_on_dask(tasks: Sequence[Task], address: str, timeout: float = 10.0) -> Iterator[Answer]:
-    """Diagnose on a Dask cluster whose workers see the case folders under the same paths; answers as they come.
-
-    Raises:
-        RequestError: no scheduler answers at the address.
-    """
-    from distributed import Client, as_completed
-
-    try:
-        client = Client(address, timeout=timeout)
-    except (OSError, ValueError, TimeoutError) as error:
-        remedy = "start one with `dask scheduler --host 127.0.0.1`"
-        raise RequestError("no Dask scheduler answers", value=address, limit=f"{timeout:g} s", remedy=remedy) from error
-    absolute = [_absolute(task) for task in tasks]
-    with closing(client):
-        futures = client.map(answer, absolute, pure=False)
-        back = dict(zip((f.key for f in futures), tasks, strict=True))
-        for future in as_completed(futures):
-            found = future.result()
-            yield replace(found, task=back[future.key])
-
-
-def _absolute(task: Task) -> Task:
-    robot = None if task.robot is None else task.robot.resolve()
-    return Task(task.case.resolve(), robot, task.without, task.report)
 
 
 def write_answer(found: Answer, folder: Path) -> list[Path]:

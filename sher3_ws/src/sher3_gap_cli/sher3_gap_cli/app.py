@@ -13,8 +13,9 @@ from sher3_gap_cli.discover import discover
 from sher3_gap_cli.excite import excite
 from sher3_gap_cli.experiment import experiment
 from sher3_gap_cli.export import export
+from sher3_gap_cli.guard.check import check
 from sher3_gap_cli.intake import IMPORT_EXAMPLE, case, describe, import_data
-from sher3_gap_cli.library import library
+from sher3_gap_cli.library.command import library
 from sher3_gap_cli.monitor import monitor
 
 app = typer.Typer(no_args_is_help=True, help="Find and explain the gap between a robot and its simulation.")
@@ -28,6 +29,7 @@ EXAMPLES: dict[Callable[..., None], str] = {
     experiment: "sher3 gap experiment gap/case_001/verdict.json case_001 -o tell_apart.yaml",
     library: "sher3 gap library · sher3 gap library friction · sher3 gap library backlash",
     excite: "sher3 gap excite · sher3 gap excite all -o case · sher3 gap excite sweep --simulate -o case",
+    check: "sher3 gap check log.npz robot.xml --baseline verdict.json --junit gap.xml --markdown gap.md",
     monitor: "sher3 gap monitor --effects effects.yaml --json",
     arms: "sher3 gap arms --seeds 0:1 --seconds 20",
     describe: "sher3 gap describe slide.csv --out slide.yaml",

@@ -32,8 +32,9 @@ def diagnose(
     """
     from sher3_effects import add_library
 
-    from sher3_gap_cli.answers import Task, as_data, check_effects, folders, run_here, run_on_dask, write_answer
+    from sher3_gap_cli.answers import Task, answer, as_data, check_effects, folders, write_answer
     from sher3_gap_cli.printing import progress, summary
+    from sher3_gap_cli.workers import run_here, run_on_dask
 
     with reported(as_json):
         add_library(own or [], trust)
@@ -41,7 +42,7 @@ def diagnose(
         tasks = [Task(c, robot, left_out, report, str(target[c])) for c in case]
         data: list[dict[str, Any]] = []
         with progress(len(tasks)) as (say, done):
-            for found in run_on_dask(tasks, dask) if dask else run_here(tasks, jobs, say):
+            for found in run_on_dask(answer, tasks, dask) if dask else run_here(answer, tasks, jobs, say):
                 files = [] if found.error else write_answer(found, target[found.task.case])
                 data.append(as_data(found, files))
                 done(found, "" if as_json else summary(found, files, len(tasks) > 1))

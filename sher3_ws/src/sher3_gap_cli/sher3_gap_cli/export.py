@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from sher3_common.commands.options import Json
 
-from sher3_gap_cli.options import Library, RequestError, Trust, VerdictFile, reported
+from sher3_gap_cli.options import Library, RequestError, Trust, VerdictFile, reported, written
 
 if TYPE_CHECKING:
     from sher3_export.check.check import JointGap
@@ -44,7 +44,7 @@ def export(
         given, names = read_verdict(verdict), _names(joint or [])
         target = out or Path(f"exported.{'yaml' if ranges else _suffix(to)}")
         data = _ranges(given, check, model, names) if ranges else _model(given, to, check, model, names)
-        _write(target, data.pop("text"))
+        written(target, data.pop("text"))
         data = {"file": str(target), **data}
         typer.echo(json.dumps(data) if as_json else _told(data))
 
@@ -109,10 +109,3 @@ def _names(pairs: list[str]) -> dict[str, str]:
 
 def _suffix(to: str) -> str:
     return {"mjcf": "xml", "urdf": "urdf", "sdf": "sdf"}.get(to, "yaml")
-
-
-def _write(path: Path, text: str) -> None:
-    try:
-        path.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise RequestError(f"{path}: cannot be written", value=error.strerror, remedy="choose another --out") from error

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 from sher3_common.commands.options import Json
 
-from sher3_gap_cli.options import RequestError, RobotFile, reported
+from sher3_gap_cli.options import RobotFile, reported, written
 
 IMPORT_EXAMPLE = "sher3 gap import DATA_EMPS.mat emps.yaml --out cases/emps"
 
@@ -56,7 +56,7 @@ def describe(
     with reported(as_json):
         found = draft_of(file, rate, model)
         if out is not None:
-            _write(out, found.text)
+            written(out, found.text)
         if as_json:
             typer.echo(json.dumps({"description": found.text, "guesses": found.guesses}))
         elif out is None:
@@ -82,10 +82,3 @@ def case(
         data = [{"excitation": run.excitation, "repeat": run.repeat, "bag": str(run.bag)} for run in runs]
         lines = [f"  {x['excitation']} {x['repeat']}: {x['bag']}" for x in data]
         typer.echo(json.dumps({"case": str(out), "runs": data}) if as_json else "\n".join([f"{out}", *lines]))
-
-
-def _write(path: Path, text: str) -> None:
-    try:
-        path.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise RequestError(f"{path}: cannot be written", value=error.strerror, remedy="choose another --out") from error

@@ -63,3 +63,11 @@ def of_the_robot(case: Path, instead: str) -> Path:
     if is_machine_case(case):
         raise RequestError(f"{case}: is a case of another machine", limit="cases of the SHER", remedy=instead)
     return case
+
+
+def written(path: Path, text: str) -> None:
+    """Write a file that was asked for; raises RequestError where it cannot be written."""
+    try:
+        path.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise RequestError(f"{path}: cannot be written", value=error.strerror, remedy="choose another --out") from error

@@ -18,8 +18,11 @@ Done = Callable[[Answer, str], None]
 
 
 @contextmanager
-def progress(total: int) -> Iterator[tuple[Callable[[str], None], Done]]:
-    """Show progress on stderr; yields `say(step)` and `done(answer, text)`, which prints the text on stdout."""
+def bar(total: int) -> Iterator[tuple[Callable[[str], None], Callable[[str, str], None]]]:
+    """Show progress on stderr; yields `say(step)`, and `advance(text, said)`: one more is done.
+
+    `text` goes to stdout, `said` to stderr; either may be empty.
+    """
     columns = (
         SpinnerColumn(),
         TextColumn("{task.description}"),
@@ -28,22 +31,34 @@ def progress(total: int) -> Iterator[tuple[Callable[[str], None], Done]]:
         TimeElapsedColumn(),
     )
     console = Console(stderr=True)
-    with Progress(*columns, console=console, transient=True) as bar:
-        task = bar.add_task("diagnosing", total=total)
+    with Progress(*columns, console=console, transient=True) as shown:
+        task = shown.add_task("diagnosing", total=total)
 
         def say(step: str) -> None:
-            bar.update(task, description=step[:STEP])
+            shown.update(task, description=step[:STEP])
             if not console.is_terminal:
                 console.print(f"  {step}", highlight=False, markup=False)
 
-        def done(found: Answer, text: str) -> None:
-            bar.advance(task)
-            if found.error is not None:
-                console.print(f"error: {found.task.case}: {found.error}", highlight=False, markup=False, soft_wrap=True)
-            elif text:
-                bar.stop()
+        def advance(text: str, said: str) -> None:
+            shown.advance(task)
+            if said:
+                console.print(said, highlight=False, markup=False, soft_wrap=True)
+            if text:
+                shown.stop()
                 print(text, flush=True)
-                bar.start()
+                shown.start()
+
+        yield say, advance
+
+
+@contextmanager
+def progress(total: int) -> Iterator[tuple[Callable[[str], None], Done]]:
+    """Show progress on stderr; yields `say(step)` and `done(answer, text)`, which prints the text on stdout."""
+    with bar(total) as (say, advance):
+
+        def done(found: Answer, text: str) -> None:
+            error = "" if found.error is None else f"error: {found.task.case}: {found.error}"
+            advance("" if error else text, error)
 
         yield say, done
 

@@ -9,9 +9,10 @@ from sher3_bags import write_case
 from sher3_diagnosis.verdict import Cause, Interval, Parameter, Verdict, Where
 from sher3_effects import library, load_effects, plants
 from sher3_effects.registry import every
-from sher3_gap_cli.answers import Task, check_effects, folders, run_on_dask
+from sher3_gap_cli.answers import Task, answer, check_effects, folders
 from sher3_gap_cli.app import app
 from sher3_gap_cli.options import RequestError
+from sher3_gap_cli.workers import run_on_dask
 from simulated import ROBOT, runs_of
 from typer.testing import CliRunner
 
@@ -86,7 +87,7 @@ def test_dask_gives_the_same_verdict(answered, case):
     loopback = {"protocol": "tcp://", "host": "127.0.0.1", "dashboard_address": None}
     options = {"n_workers": 1, "threads_per_worker": 1, "processes": False, **loopback}
     with distributed.LocalCluster(**options) as cluster:
-        (found,) = run_on_dask([Task(case, report=False)], cluster.scheduler_address)
+        (found,) = run_on_dask(answer, [Task(case, report=False)], cluster.scheduler_address)
     here = Verdict.read(answered[0] / "verdict.json")
     same = {"seconds": 0.0}
     assert found.verdict.model_copy(update=same) == here.model_copy(update=same)

@@ -8,7 +8,7 @@ from sher3_effects import add_library, library, load_effects, plants, save_effec
 from sher3_effects.registry import VARIABLE
 from sher3_gap.sher import diagnose_runs
 from sher3_gap_cli.app import app
-from sher3_gap_cli.library_page import library_data, page_text
+from sher3_gap_cli.library.page import library_data, page_text
 from simulated import ROBOT, runs_of, signals
 from typer.testing import CliRunner
 

@@ -22,7 +22,7 @@ def library(
     """List the effects the diagnosis knows, or print the whole page of one."""
     from sher3_effects import add_library
 
-    from sher3_gap_cli.library_page import library_data, list_text, page_text
+    from sher3_gap_cli.library.page import library_data, list_text, page_text
 
     with reported(as_json):
         add_library(own or [], trust)

@@ -1,0 +1,55 @@
+"""Logs and what they say now, one by one on this machine or a cluster."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from sher3_common.errors import Sher3Error
+from sher3_public.guard.baseline import Entry
+from sher3_public.guard.worse import Worse
+
+
+@dataclass(frozen=True)
+class Log:
+    """One log and the model it is held against; paths as the worker sees them."""
+
+    log: Path
+    model: Path
+    without: tuple[str, ...] = ()
+
+    @property
+    def name(self) -> str:
+        """Its name in a baseline: the file's, without the ending."""
+        return self.log.resolve().name if self.log.is_dir() else self.log.stem
+
+    def absolute(self) -> Log:
+        """Return it with paths that do not depend on the working folder."""
+        return replace(self, log=self.log.resolve(), model=self.model.resolve())
+
+
+@dataclass(frozen=True)
+class Told:
+    """What a log says: its headline and entry, or the error that stopped it; `worse` once it was compared."""
+
+    task: Log
+    entry: Entry | None = None
+    headline: str = ""
+    error: Sher3Error | None = None
+    worse: tuple[Worse, ...] = ()
+
+
+def told(log: Log, say: Callable[[str], None] = lambda _: None) -> Told:
+    """Diagnose one log; input errors come back as the answer, mistakes of ours are raised."""
+    from sher3_machines.intake.runs import runs_of
+    from sher3_public import diagnose
+    from sher3_public.guard.baseline import entry_of
+
+    say(f"reading {log.log}")
+    try:
+        tables = list(runs_of([log.log]).values())
+        found = diagnose(log.model, tables if len(tables) > 1 else tables[0], without=log.without)
+    except Sher3Error as error:
+        return Told(log, error=error)
+    return Told(log, entry_of(found.diagnosis), found.headline)
