@@ -18,8 +18,9 @@ else:
     import tomli as tomllib
 
 PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
-BASE, ROBOT = PYPROJECT["project"]["dependencies"], PYPROJECT["project"]["optional-dependencies"]["robot"]
-"""What the diagnosis needs, and what the graph needs besides."""
+BASE, EXTRAS = PYPROJECT["project"]["dependencies"], PYPROJECT["project"]["optional-dependencies"]
+ROBOT, CLUSTER = EXTRAS["robot"], EXTRAS["cluster"]
+"""What the diagnosis needs is the base; then what the graph and a cluster of computers need besides."""
 ROS_KEYS = {"rclpy", "std_msgs", "std_srvs", "sensor_msgs", "geometry_msgs", "diagnostic_msgs", "rcl_interfaces"}
 
 
@@ -74,7 +75,7 @@ def test_pyproject_installs_every_package():
 
 
 def test_third_party_imports_are_declared():
-    """A library that is imported is in the project's dependencies or in those of the robot."""
+    """A library that is imported is in the project's dependencies, in those of the robot, or has a command's extra."""
     module_of = {
         "pin": "pinocchio",
         "python-can": "can",
@@ -83,7 +84,7 @@ def test_third_party_imports_are_declared():
         "ros-jazzy-rclpy": "rclpy",
         "typing-extensions": "typing_extensions",
     }
-    declared = {re.split(r"[\[<>=; ]", text)[0] for text in [*BASE, *ROBOT]}
+    declared = {re.split(r"[\[<>=; ]", text)[0] for text in [*BASE, *ROBOT, *CLUSTER]}
     modules = {module_of.get(name, name) for name in declared} | ROS_KEYS | {"pydantic_core"}
     used = set().union(*map(imports, FILES))
     third_party = {n for n in used if n not in sys.stdlib_module_names and not n.startswith("sher3_")}

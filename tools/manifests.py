@@ -22,7 +22,6 @@ KEYS = {
     "can": "python3-can",
     "canopen": "python3-canopen-pip",
     "distributed": "python3-distributed",
-    "faultdiagnosistoolbox": "python3-faultdiagnosistoolbox-pip",
     "jinja2": "python3-jinja2",
     "joblib": "python3-joblib",
     "lz4": "python3-lz4",

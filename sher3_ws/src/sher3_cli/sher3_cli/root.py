@@ -47,8 +47,8 @@ COMMANDS: dict[str, Entry] = {
     "fault": Entry("sher3_safety.cli.fault", "fault", "Break one part of the running robot on mocks."),
     "benchtop": Entry("sher3_benchtop.cli", "benchtop", "The bench-top tests of the paper, on the running graph."),
 }
-OF_ROBOT = ("rclpy", "rcl_interfaces", "can", "canopen")
-"""Libraries of the extra `robot`, beside the message packages."""
+EXTRAS = {**dict.fromkeys(("rclpy", "rcl_interfaces", "can", "canopen"), "robot"), "distributed": "cluster"}
+"""The extra that brings a library; message packages come with `robot`."""
 
 
 class UnknownCommand(Sher3Error):
@@ -62,14 +62,14 @@ class UnknownCommand(Sher3Error):
         super().__init__("no such command", value=name, remedy=remedy)
 
 
-class NoRobot(Sher3Error):
-    """A command of the graph was called where the diagnosis alone is installed."""
+class NotInstalled(Sher3Error):
+    """A command needs a library of an extra that is not installed."""
 
     exit_code = 2
 
-    def __init__(self, library: str) -> None:
-        remedy = "pip install 'sher3[robot]', or source a ROS 2 Jazzy"
-        super().__init__("needs the libraries of the robot", value=f"no {library}", remedy=remedy)
+    def __init__(self, library: str, extra: str) -> None:
+        remedy = f"pip install 'sher3[{extra}]'" + (", or source a ROS 2 Jazzy" if extra == "robot" else "")
+        super().__init__(f"needs the libraries of the extra {extra}", value=f"no {library}", remedy=remedy)
 
 
 def make_app(chosen: str | None = None, completing: bool = False) -> typer.Typer:
@@ -110,10 +110,11 @@ def main(arguments: Sequence[str] | None = None) -> None:
         sys.exit(getattr(error, "exit_code", 1))
     except ModuleNotFoundError as error:
         library = (error.name or "").partition(".")[0]
-        if library not in OF_ROBOT and not library.endswith("_msgs"):
+        extra = "robot" if library.endswith("_msgs") else EXTRAS.get(library)
+        if extra is None:
             raise
-        print(f"sher3: {NoRobot(library)}", file=sys.stderr)
-        sys.exit(NoRobot.exit_code)
+        print(f"sher3: {NotInstalled(library, extra)}", file=sys.stderr)
+        sys.exit(NotInstalled.exit_code)
     except BrokenPipeError:
         # The reader of our output has gone; there is nobody to tell.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

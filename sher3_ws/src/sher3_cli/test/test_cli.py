@@ -106,3 +106,17 @@ def test_a_place_where_nothing_can_be_written_is_a_sentence(tmp_path):
     done = subprocess.run([sys.executable, "-m", "sher3_cli", *words], capture_output=True, text=True, timeout=60)
     assert done.returncode == 1
     assert "folder cannot be made" in done.stderr and "Traceback" not in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("library", "extra"), [("rclpy.node", "robot"), ("std_msgs", "robot"), ("distributed", "cluster")]
+)
+def test_a_missing_library_names_its_extra(monkeypatch, capsys, library, extra):
+    def fail(*_):
+        raise ModuleNotFoundError(name=library)
+
+    monkeypatch.setattr("sher3_cli.root.make_app", fail)
+    with pytest.raises(SystemExit) as ended:
+        main(["gap"])
+    assert ended.value.code == 2
+    assert f"sher3[{extra}]" in capsys.readouterr().err

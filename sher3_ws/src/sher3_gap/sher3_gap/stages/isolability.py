@@ -1,8 +1,8 @@
 """What the recorded topics can tell apart at all: structural isolability, computed before anything is fitted.
 
-One DAE of the signal chain with one fault per effect, analysed by its Dulmage-Mendelsohn decomposition (Krysander and
-Frisk 2008) with `faultdiagnosistoolbox`. Effects in one group show in the same equations: only the *shape* of their
-signature (over speed, position, load, time) can tell them apart, never the place where they show.
+One DAE of the signal chain with one fault per effect, analysed by its Dulmage-Mendelsohn decomposition (see
+`overdetermined`). Effects in one group show in the same equations: only the *shape* of their signature (over speed,
+position, load, time) can tell them apart, never the place where they show.
 """
 
 from __future__ import annotations
@@ -14,6 +14,8 @@ from typing import NamedTuple
 
 import numpy as np
 from sher3_effects import library
+
+from sher3_gap.stages.overdetermined import Mask, not_isolable, overdetermined
 
 PAYLOAD = "payload"
 """Stands for known tip loads among the topics: the contract records them, a surgeon's hand does not."""
@@ -77,23 +79,19 @@ def _chain() -> list[Equation]:
     ]
 
 
-def _incidence(equations: Iterable[Equation], columns: list[str], field: str) -> np.ndarray:
-    rows = [[int(name in getattr(e, field)) for name in columns] for e in equations]
-    return np.array(rows, dtype=np.int64).reshape(len(rows), len(columns))
+def _incidence(equations: Iterable[Equation], columns: list[str], field: str) -> Mask:
+    rows = [[name in getattr(e, field) for name in columns] for e in equations]
+    return np.array(rows, dtype=bool).reshape(len(rows), len(columns))
 
 
 @lru_cache(maxsize=64)
 def _analyse(topics: frozenset[str]) -> Structure:
-    from faultdiagnosistoolbox import DiagnosisModel  # seconds to import, wanted by reports only
-
     equations = [e for e in _chain() if not e.topic or e.topic in topics]
     unknowns = sorted({u for e in equations for u in e.unknowns})
     effects = sorted({f for e in equations for f in e.effects})
     x, f = _incidence(equations, unknowns, "unknowns"), _incidence(equations, effects, "effects")
-    model = DiagnosisModel({"type": "MatrixStruc", "X": x, "F": f, "Z": [], "x": unknowns, "f": effects})
-    overdetermined = list(model.GetDMParts().Mp.row)
-    visible = f[overdetermined].any(axis=0)
-    confused = np.asarray(model.IsolabilityAnalysis(), dtype=bool)  # [i, j]: i cannot be isolated from j
+    visible = f[overdetermined(x)].any(axis=0)
+    confused = not_isolable(x, f)
     alike = confused & confused.T
     groups = {frozenset(effects[j] for j in np.flatnonzero(alike[i] & visible)) for i in np.flatnonzero(visible)}
     hidden = frozenset(e for e, seen in zip(effects, visible, strict=True) if not seen)
