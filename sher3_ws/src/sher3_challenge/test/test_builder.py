@@ -4,7 +4,10 @@ import json
 
 import numpy as np
 import pytest
+import yaml
 from sher3_bags import read_case
+from sher3_challenge.calibration.held_out import judged_by
+from sher3_challenge.calibration.observe import observations
 from sher3_challenge.cases.builder import Request, build_case, withhold
 from sher3_challenge.cases.calibrate import Calibration, calibrated
 from sher3_challenge.cases.plan import KINDS, RECIPES, draw_plan
@@ -14,6 +17,9 @@ from sher3_challenge.oracle.oracle import oracle
 from sher3_challenge.plants.registry import plant_names, truth_plant
 from sher3_challenge.run import requests
 from sher3_description import load_robot
+from sher3_diagnosis.judge.calibration.calibration import in_force
+from sher3_diagnosis.judge.costs import Costs
+from sher3_gap import diagnose_case
 
 ROBOT = load_robot()
 LUMPED = truth_plant("lumped")
@@ -168,3 +174,19 @@ def test_requests_deal_plants_in_turn_and_each_gets_every_kind():
 def test_bad_requests_are_named(call, words):
     with pytest.raises(ChallengeError, match=words):
         call()
+
+
+@pytest.mark.slow
+def test_what_calibration_reads_from_its_file_is_judged_as_verdicts_are(built, tmp_path):
+    """One case, kept as plain data and read again, against the verdict on its folder; under four sets of costs."""
+    folder, truth = built
+    (folder / LABELS).mkdir(exist_ok=True)
+    (folder / LABELS / f"{truth['case']}.yaml").write_text(yaml.safe_dump(truth), encoding="utf-8")
+    case, kept = folder / CASES / truth["case"], tmp_path / "kept.json"
+    observations("lumped", case, kept)
+    seen = observations("lumped", case, kept)
+    assert [o.without for o in seen] == [(), ("lead_error",)]
+    for costs in (Costs(), Costs(name=1e4), Costs(abstain=1e4), Costs(miss=1e4)):
+        found = [diagnose_case(case, without=o.without, costs=costs).verdict for o in seen]
+        assert [j.said for j in judged_by(in_force(), seen, costs)] == [v.status for v in found], costs
+        assert all(v.costs == costs.as_dict() for v in found)

@@ -17,6 +17,7 @@ from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.finding import Finding
 from sher3_diagnosis.judge.calibration.calibration import in_force
 from sher3_diagnosis.judge.causes import causes_of
+from sher3_diagnosis.judge.costs import DEFAULT, Costs
 from sher3_diagnosis.judge.judge import judge
 from sher3_diagnosis.judge.left_over import down_to_floor, left_over
 from sher3_diagnosis.judge.supported import significant_causes, without_imitations
@@ -38,6 +39,7 @@ def diagnose(
     without: Collection[str] = (),
     say: Say = lambda _: None,
     started: float | None = None,
+    costs: Costs = DEFAULT,
 ) -> Diagnosis[E]:
     """Say where a machine leaves its model, which effects explain it, and how far the gap shrinks.
 
@@ -47,6 +49,7 @@ def diagnose(
         without: effect ids that are left out of the library.
         say: takes a line of progress.
         started: value of `time.perf_counter` at which the work began, s; default now.
+        costs: of wrong answers; on machines whose judgement is not calibrated rules decide and costs say nothing.
 
     Raises:
         UnknownEffect: an id in `without` is none of the machine's effects.
@@ -61,8 +64,8 @@ def diagnose(
     notes += [n for f in findings for n in f.notes]
     say("judging")
     if machine.policy.calibrated:
-        findings = [weighed(f, in_force()) for f in findings]
-    verdict = judge(machine, findings, exact, notes)
+        findings = [weighed(f, in_force(), costs) for f in findings]
+    verdict = judge(machine, findings, exact, notes, costs)
     versions = {p: importlib.metadata.version(p) for p in machine.sources}
     verdict = verdict.model_copy(update={"seconds": time.perf_counter() - started, "versions": versions})
     return Diagnosis(verdict, findings, exact, machine)

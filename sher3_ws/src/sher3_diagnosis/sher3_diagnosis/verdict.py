@@ -130,6 +130,7 @@ class Verdict(_Model):
     next_experiment: NextExperiment | None = None
     within_tolerance: list[Within] = []
     probabilities: dict[str, float] = {}
+    costs: dict[str, float] = {}
     seconds: float = 0.0
     versions: dict[str, str] = {}
     notes: list[str] = []

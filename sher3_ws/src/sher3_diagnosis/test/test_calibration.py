@@ -8,10 +8,11 @@ from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.finding import ExactFinding
 from sher3_diagnosis.judge.calibration.calibration import in_force
 from sher3_diagnosis.judge.calibration.logistic import Logistic
+from sher3_diagnosis.judge.costs import DEFAULT
 from sher3_diagnosis.judge.evidence.scales import scaled_cause, scaled_exact, scaled_gap
 from sher3_diagnosis.judge.items import Candidate, Item
 from sher3_diagnosis.judge.probabilities import Judged, judged, probabilities_of
-from sher3_diagnosis.judge.status import answer_to, crosses, status_of
+from sher3_diagnosis.judge.status import answer_to, combined, crosses
 from sher3_diagnosis.verdict import Interval, Residual, Where
 
 TWO = {"classes": ("library", "outside_library"), "inputs": ("x",), "middle": (1.0,), "spread": (2.0,)}
@@ -74,37 +75,38 @@ def test_candidates_share_what_the_library_has_by_their_unlikeness():
 
 
 def test_a_clean_cause_is_named_and_one_that_leaves_half_to_foreign_inputs_is_not():
-    assert judged(cause(), CALIBRATION).answer == "library"
+    assert answer_to(judged(cause(), CALIBRATION, Interval(value=0.99)), DEFAULT) == "library"
     worse = cause(left=0.6, law=0.5, place=0.5, anything=0.1, spread=0.2, lost=0.2, mismatch=0.5)
-    assert judged(worse, CALIBRATION).answer == "outside_library"
+    assert answer_to(judged(worse, CALIBRATION, Interval(value=0.99)), DEFAULT) == "outside_library"
 
 
 def test_a_great_gap_without_a_cause_is_outside():
     gap = Item(Channel("drive", "tilt"), None, {"power": 50.0, "ratio": 7.0, "beside": 0.0, "others": 0.0})
-    assert judged(gap, CALIBRATION).answer == "outside_library"
+    assert answer_to(judged(gap, CALIBRATION), DEFAULT) == "outside_library"
 
 
 def test_a_cause_whose_closure_may_be_nothing_is_not_named():
-    j = judged(cause(), CALIBRATION)
-    assert answer_to(j, Interval(value=0.5, low=0.3)) == answer_to(j, Interval(value=0.5)) == "library"
-    assert answer_to(j, Interval(value=0.5, low=-0.1)) == "outside_library"
-    assert answer_to(j, Interval(value=0.4, low=0.3)) == "outside_library"  # most of the gap is left
-    assert answer_to(j, Interval(value=0.0)) == "no_gap"  # over all runs there is nothing above the floor
-    assert answer_to(j, None) == "library"
+    def said(**closure: float) -> str:
+        return answer_to(judged(cause(), CALIBRATION, Interval(**closure)), DEFAULT)
+
+    assert said(value=0.5, low=0.3) == said(value=0.5) == "library"
+    assert said(value=0.5, low=-0.1) == "outside_library"
+    assert said(value=0.4, low=0.3) == "outside_library"  # most of the gap is left
+    assert said(value=0.0) == "no_gap"  # over all runs there is nothing above the floor
 
 
 def test_of_a_cause_that_is_not_named_the_more_probable_of_the_other_answers_holds():
-    small = Judged(cause(), effects=(0.6,), outside=0.1, no_gap=0.3)
-    assert answer_to(small, Interval(value=0.9, low=0.5)) == "library"
-    assert answer_to(small, Interval(value=0.9, low=-0.1)) == "no_gap"
+    sure, unsure = (Judged(cause(), (0.6,), 0.1, 0.3, Interval(value=0.9, low=low)) for low in (0.5, -0.1))
+    assert answer_to(sure, DEFAULT) == "library"
+    assert answer_to(unsure, DEFAULT) == "no_gap"
 
 
 def test_the_status_follows_from_the_answers():
-    assert status_of([], False) == "no_gap"
-    assert status_of(["no_gap"], True) == "no_gap"
-    assert status_of(["library", "no_gap"], False) == "attributed"
-    assert status_of(["library"], True) == "under_excited"
-    assert status_of(["library", "outside_library"], True) == "outside_library"
+    assert combined([], False) == "no_gap"
+    assert combined(["no_gap"], True) == "no_gap"
+    assert combined(["library", "no_gap"], False) == "attributed"
+    assert combined(["library"], True) == "under_excited"
+    assert combined(["library", "outside_library"], True) == "outside_library"
 
 
 def test_only_another_family_that_gives_the_same_data_makes_runs_poor():

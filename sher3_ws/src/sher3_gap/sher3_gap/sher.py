@@ -14,6 +14,7 @@ from sher3_diagnosis.diagnosis import Diagnosis
 from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.finding import ExactFinding, Finding
 from sher3_diagnosis.flow import Say, diagnose
+from sher3_diagnosis.judge.costs import DEFAULT, Costs
 from sher3_diagnosis.machine import Machine, Policy
 from sher3_diagnosis.verdict import Cause, Interval
 from sher3_effects import library
@@ -84,13 +85,18 @@ def diagnose_runs(
     without: Collection[str] = (),
     say: Say = lambda _: None,
     started: float | None = None,
+    costs: Costs = DEFAULT,
 ) -> Diagnosis[SherEvidence]:
     """Diagnose runs of one robot in one condition; see `sher3_diagnosis.diagnose`."""
-    return diagnose(Sher(robot), runs, without, say, started)
+    return diagnose(Sher(robot), runs, without, say, started, costs)
 
 
 def diagnose_case(
-    case: Path | str, robot: Path | None = None, without: Collection[str] = (), say: Say = lambda _: None
+    case: Path | str,
+    robot: Path | None = None,
+    without: Collection[str] = (),
+    say: Say = lambda _: None,
+    costs: Costs = DEFAULT,
 ) -> Diagnosis[SherEvidence]:
     """Diagnose a case folder.
 
@@ -99,6 +105,7 @@ def diagnose_case(
         robot: `robot.yaml` of the nominal model; default the case's own.
         without: effect ids that are left out of the library.
         say: takes a line of progress.
+        costs: of wrong answers.
 
     Raises:
         CaseError: the case cannot be diagnosed; the error names the run, the value and the remedy.
@@ -107,4 +114,4 @@ def diagnose_case(
     started = time.perf_counter()
     say("reading the bags")
     runs, model = load_case(Path(case), robot)
-    return diagnose_runs(runs, model, without, say, started)
+    return diagnose_runs(runs, model, without, say, started, costs)

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Collection, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from sher3_common.errors import Sher3Error
+from sher3_diagnosis.judge.costs import DEFAULT, Costs
 from sher3_diagnosis.verdict import Verdict
 
 from sher3_gap_cli.options import RequestError
@@ -29,11 +30,12 @@ class Task:
     without: tuple[str, ...] = ()
     report: bool = True
     folder: str = ""
+    costs: Costs = DEFAULT
 
     def absolute(self) -> Task:
         """Return it with paths that do not depend on the working folder."""
         robot = None if self.robot is None else self.robot.resolve()
-        return Task(self.case.resolve(), robot, self.without, self.report)
+        return replace(self, case=self.case.resolve(), robot=robot, folder="")
 
 
 @dataclass(frozen=True)
@@ -79,10 +81,10 @@ def diagnosed(task: Task, say: Say) -> Diagnosis[Any]:
 
         started = time.perf_counter()
         machine, runs = open_case(task.case)
-        return diagnose(machine, runs, task.without, say, started)
+        return diagnose(machine, runs, task.without, say, started, task.costs)
     from sher3_gap import diagnose_case
 
-    return diagnose_case(task.case, task.robot, task.without, say)
+    return diagnose_case(task.case, task.robot, task.without, say, task.costs)
 
 
 def check_effects(without: Sequence[str]) -> tuple[str, ...]:

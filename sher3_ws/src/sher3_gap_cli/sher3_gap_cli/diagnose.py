@@ -23,6 +23,9 @@ def diagnose(
     trust: Trust = False,
     jobs: Annotated[int, typer.Option(min=1, help="Cases at a time on this machine.")] = 1,
     dask: Annotated[str, typer.Option(help="Address of a Dask scheduler that diagnoses the cases.")] = "",
+    costs: Annotated[
+        str, typer.Option(help="What mistakes cost: name (a wrong cause), abstain (needlessly), miss (a gap).")
+    ] = "name=1,abstain=1,miss=1",
     report: Annotated[bool, typer.Option("--report/--no-report", help="Write the HTML report.")] = True,
     as_json: Json = False,
 ) -> None:
@@ -30,6 +33,7 @@ def diagnose(
 
     Exit codes: 0 every case was answered, 2 a case or option is wrong (one sentence says why).
     """
+    from sher3_diagnosis.judge.costs import Costs
     from sher3_effects import add_library
 
     from sher3_gap_cli.answers import Task, answer, as_data, check_effects, folders, write_answer
@@ -39,7 +43,8 @@ def diagnose(
     with reported(as_json):
         add_library(own or [], trust)
         target, left_out = folders(case, out), check_effects(without or [])
-        tasks = [Task(c, robot, left_out, report, str(target[c])) for c in case]
+        mistakes = Costs.parse(costs)
+        tasks = [Task(c, robot, left_out, report, str(target[c]), mistakes) for c in case]
         data: list[dict[str, Any]] = []
         with progress(len(tasks)) as (say, done):
             for found in run_on_dask(answer, tasks, dask) if dask else run_here(answer, tasks, jobs, say):

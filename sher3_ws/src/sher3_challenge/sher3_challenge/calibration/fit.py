@@ -12,8 +12,8 @@ from scipy.optimize import minimize, minimize_scalar
 from scipy.special import softmax
 from sher3_diagnosis.judge.calibration.calibration import Calibration, Provenance
 from sher3_diagnosis.judge.calibration.logistic import Logistic
+from sher3_diagnosis.judge.costs import LIBRARY, NO_GAP, OUTSIDE
 from sher3_diagnosis.judge.evidence.scales import scaled_cause, scaled_exact, scaled_gap
-from sher3_diagnosis.judge.probabilities import LIBRARY, NO_GAP, OUTSIDE
 
 from sher3_challenge.calibration.labels import answer_of, equal, known
 from sher3_challenge.calibration.observe import Observation

@@ -8,10 +8,11 @@ from typing import Any
 
 from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.judge.calibration.calibration import Calibration
+from sher3_diagnosis.judge.costs import DEFAULT, LIBRARY, Costs
 from sher3_diagnosis.judge.evidence.scales import scaled_exact
 from sher3_diagnosis.judge.items import Candidate, Item
-from sher3_diagnosis.judge.probabilities import LIBRARY, NO_GAP, OUTSIDE, judged
-from sher3_diagnosis.judge.status import answer_to, crosses, status_of
+from sher3_diagnosis.judge.probabilities import Judged, judged
+from sher3_diagnosis.judge.status import answer_to, answer_to_exact, status_of
 from sher3_diagnosis.verdict import Interval
 
 from sher3_challenge.calibration.fit import calibrated
@@ -70,37 +71,32 @@ def held_out(observations: Sequence[Observation], plant: str) -> list[Judgement]
     return judged_by(calibration, [o for o in observations if o.plant == plant])
 
 
-def judged_by(calibration: Calibration, observations: Sequence[Observation]) -> list[Judgement]:
-    """Judge observations with a calibration."""
+def judged_by(calibration: Calibration, observations: Sequence[Observation], costs: Costs = DEFAULT) -> list[Judgement]:
+    """Judge observations with a calibration, as verdicts are judged."""
     whole = {o.case: o for o in observations if not o.without}
-    return [_judgement(o, whole[o.case], calibration) for o in observations]
+    return [_judgement(o, whole[o.case], calibration, costs) for o in observations]
 
 
-def _judgement(seen: Observation, whole: Observation, calibration: Calibration) -> Judgement:
-    answers, named, sets, right = [], [], [], []
-    crossing = False
-    for row in seen.items:
-        j = judged(_item(row), calibration)
-        answers.append(answer_to(j, Interval(**row["closure"]) if row.get("closure") else None))
-        if answers[-1] == LIBRARY:
+def _judgement(seen: Observation, whole: Observation, calibration: Calibration, costs: Costs) -> Judgement:
+    items = [_judged(row, calibration) for row in seen.items]
+    exact = [_reproduced(stage, calibration) for stage in seen.exact]
+    named, sets, right = [], [], []
+    for row, j in zip(seen.items, items, strict=True):
+        if answer_to(j, costs) == LIBRARY:
             named.append(row["candidates"][0]["effect"])
             sets.append(frozenset(alike(row, calibration.reach)))
-            crossing = crossing or crosses(j.item, calibration.same)
         truth = answer_of(seen, row, whole)
         if truth is not None:
-            given = {LIBRARY: j.library, OUTSIDE: j.outside, NO_GAP: j.no_gap}
-            right += [(p, name == truth) for name, p in given.items()]
-    for stage in seen.exact:
-        share = calibration.exact.probabilities(scaled_exact(stage["closure"]))[LIBRARY] if stage["causes"] else 0.0
-        answers.append(LIBRARY if share > 0.5 else OUTSIDE)
-        if share > 0.5:
+            right += [(p, name == truth) for name, p in j.odds.items()]
+    for stage, share in zip(seen.exact, exact, strict=True):
+        if answer_to_exact(share, costs) == LIBRARY:
             named += [c["effect"] for c in stage["causes"]]
             sets += [frozenset({c["effect"]}) for c in stage["causes"]]
     found = [row["candidates"][0]["effect"] for row in seen.items if row["index"] is not None]
     found += [c["effect"] for stage in seen.exact for c in stage["causes"]]
     return Judgement(
         seen,
-        status_of(answers, crossing),
+        status_of(items, exact, calibration.same, costs),
         tuple(named),
         tuple(sets),
         tuple(right),
@@ -116,6 +112,14 @@ def _no_mistake(named: Sequence[str], seen: Observation, whole: Observation) -> 
     return all(contains(name, seen.without) or twins(name, whole) or name in company(seen) for name in named)
 
 
-def _item(row: Mapping[str, Any]) -> Item:
-    channel = Channel(*row["channel"].split("/"))
-    return Item(channel, row["index"], row["numbers"], [Candidate(**c) for c in row["candidates"]])
+def _judged(row: Mapping[str, Any], calibration: Calibration) -> Judged:
+    """Return an item that was kept as plain data with its odds."""
+    item = Item(
+        Channel(*row["channel"].split("/")), row["index"], row["numbers"], [Candidate(**c) for c in row["candidates"]]
+    )
+    return judged(item, calibration, Interval(**row["closure"]) if row.get("closure") else None)
+
+
+def _reproduced(stage: Mapping[str, Any], calibration: Calibration) -> float:
+    """Return the probability that the causes of an exact stage are those at work; 0 without one."""
+    return calibration.exact.probabilities(scaled_exact(stage["closure"]))[LIBRARY] if stage["causes"] else 0.0

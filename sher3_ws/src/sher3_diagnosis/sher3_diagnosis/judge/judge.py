@@ -12,10 +12,11 @@ from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.finding import ExactFinding, Finding
 from sher3_diagnosis.judge.calibration.calibration import Calibration, in_force
 from sher3_diagnosis.judge.causes import ordered, places_of
+from sher3_diagnosis.judge.costs import DEFAULT, LIBRARY, NO_GAP, OUTSIDE, Costs
 from sher3_diagnosis.judge.next_experiment import next_experiment
-from sher3_diagnosis.judge.probabilities import LIBRARY, NO_GAP, probabilities_of, reproduced
+from sher3_diagnosis.judge.probabilities import probabilities_of, reproduced
 from sher3_diagnosis.judge.remainder import remainder
-from sher3_diagnosis.judge.status import crosses
+from sher3_diagnosis.judge.status import answer_to_exact, combined, status_of
 from sher3_diagnosis.localise.gaps import Gap, component_rms
 from sher3_diagnosis.machine import Machine, Policy
 from sher3_diagnosis.quantify.closure import closure, residual_after
@@ -25,7 +26,13 @@ from sher3_diagnosis.verdict import Cause, Closure, Interval, Residual, Status, 
 Gaps = dict[Channel, Gap]
 
 
-def judge(machine: Machine, findings: Sequence[Finding], exact: Sequence[ExactFinding], notes: list[str]) -> Verdict:
+def judge(
+    machine: Machine,
+    findings: Sequence[Finding],
+    exact: Sequence[ExactFinding],
+    notes: list[str],
+    costs: Costs = DEFAULT,
+) -> Verdict:
     """Build the verdict of a machine from what was found on its parts and in its exact stages."""
     calibration = in_force() if machine.policy.calibrated else None
     causes = [c for f in exact for c in _probable(f, calibration)] + [c for f in findings for c in f.causes]
@@ -34,20 +41,19 @@ def judge(machine: Machine, findings: Sequence[Finding], exact: Sequence[ExactFi
     gaps = [_own_gaps(machine.policy, f, explained) for f in findings]
     if not any(gaps) and not exact:
         likely = _probabilities(findings, exact, calibration)
-        return Verdict(status="no_gap", probabilities=likely, within_tolerance=within, notes=notes)
+        stated = {} if calibration is None else costs.as_dict()
+        return Verdict(status="no_gap", probabilities=likely, costs=stated, within_tolerance=within, notes=notes)
     causes = ordered(causes, list(findings))
     fitted = [w for f in findings for w in places_of(f, f.significant)]
     where = [f.where for f in exact] + (fitted if len(findings) == 1 else sorted(fitted, key=lambda w: -_ratio(w)))
     stage, residual = _first(findings, gaps, exact, where[0].gap)
-    unexplained = _unexplained(machine.policy, findings, gaps, exact, calibration)
+    unexplained = _unexplained(machine.policy, findings, gaps, exact, calibration, costs)
     proposals = [p for f in findings if (p := next_experiment(f.evidence, f.attribution)) is not None]
-    status: Status = "attributed"
-    if unexplained is not None:
-        status = "outside_library"
-    elif proposals and _poor(machine, findings, causes, calibration):
-        status = "under_excited"
+    by_rules = {LIBRARY if unexplained is None else OUTSIDE}
     return Verdict(
-        status=status,
+        status=combined(by_rules, bool(proposals) and _poor(machine, causes))
+        if calibration is None
+        else _status(findings, exact, calibration, costs),
         where=where,
         causes=causes,
         closure=Closure(stage=stage, tip=machine.end_to_end(findings, causes)),
@@ -56,6 +62,7 @@ def judge(machine: Machine, findings: Sequence[Finding], exact: Sequence[ExactFi
         next_experiment=proposals[0] if proposals else None,
         within_tolerance=within,
         probabilities=_probabilities(findings, exact, calibration),
+        costs={} if calibration is None else costs.as_dict(),
         notes=notes,
     )
 
@@ -78,13 +85,16 @@ def _probabilities(
     return probabilities_of(items, exact, calibration) or {NO_GAP: 1.0}
 
 
-def _poor(
-    machine: Machine, findings: Sequence[Finding], causes: Sequence[Cause], calibration: Calibration | None
-) -> bool:
-    """Whether the runs are too poor to tell a cause from one of another family."""
-    if calibration is not None:
-        named = (j for f in findings for j in f.judged if j.answer == LIBRARY)
-        return any(crosses(j.item, calibration.same) for j in named)
+def _status(
+    findings: Sequence[Finding], exact: Sequence[ExactFinding], calibration: Calibration, costs: Costs
+) -> Status:
+    """Return the status that follows from odds and costs."""
+    items = [j for f in findings for j in f.judged]
+    return status_of(items, [reproduced(e, calibration) for e in exact], calibration.same, costs)
+
+
+def _poor(machine: Machine, causes: Sequence[Cause]) -> bool:
+    """Whether, by the rules, the runs are too poor to tell a cause from one of another family."""
     library = {e.id: e for e in machine.library()}
     return any(_crossing(library, c) for c in causes)
 
@@ -127,10 +137,11 @@ def _unexplained(
     gaps: Sequence[Gaps],
     exact: Sequence[ExactFinding],
     calibration: Calibration | None,
+    costs: Costs,
 ) -> Unexplained | None:
     """What is left that no effect explains: in an exact stage, of a gap, or as a cause that changes its size."""
     for stage in exact:
-        if not _reproduced(stage, calibration):
+        if not _reproduced(stage, calibration, costs):
             reason = f"an exact stage is not reproduced: {stage.note or 'no timing or gain error fits'}"
             return Unexplained(stage=stage.where.stage, actuator=stage.where.actuator, signature=reason)
     for finding, own in zip(findings, gaps, strict=True):
@@ -144,11 +155,11 @@ def _unexplained(
     return next((x for x in changing if x is not None), None)
 
 
-def _reproduced(stage: ExactFinding, calibration: Calibration | None) -> bool:
+def _reproduced(stage: ExactFinding, calibration: Calibration | None, costs: Costs) -> bool:
     """Whether the causes of an exact stage are its causes."""
     if calibration is None:
         return stage.closure.value >= REPRODUCED
-    return reproduced(stage, calibration) > 0.5
+    return answer_to_exact(reproduced(stage, calibration), costs) == LIBRARY
 
 
 def _inconstant(finding: Finding) -> Unexplained | None:

@@ -10,10 +10,10 @@ import numpy as np
 
 from sher3_diagnosis.finding import ExactFinding
 from sher3_diagnosis.judge.calibration.calibration import Calibration
+from sher3_diagnosis.judge.costs import LIBRARY, NO_GAP, OUTSIDE
 from sher3_diagnosis.judge.evidence.scales import scaled_cause, scaled_exact, scaled_gap
 from sher3_diagnosis.judge.items import Item
-
-OUTSIDE, NO_GAP, LIBRARY = "outside_library", "no_gap", "library"
+from sher3_diagnosis.verdict import Interval
 
 
 @dataclass(frozen=True)
@@ -25,12 +25,14 @@ class Judged:
         effects: per candidate of the item, the probability that it is the cause.
         outside: that the cause is none of the library.
         no_gap: that the item is no gap, or no cause, of its own.
+        closure: of a cause; None of a gap without one.
     """
 
     item: Item
     effects: Sequence[float]
     outside: float
     no_gap: float
+    closure: Interval | None = None
 
     @property
     def library(self) -> float:
@@ -38,13 +40,13 @@ class Judged:
         return float(sum(self.effects))
 
     @property
-    def answer(self) -> str:
-        """The most probable of library, outside and no gap."""
-        return max(((self.library, LIBRARY), (self.outside, OUTSIDE), (self.no_gap, NO_GAP)))[1]
+    def odds(self) -> dict[str, float]:
+        """Probabilities of library, outside and no gap."""
+        return {LIBRARY: self.library, OUTSIDE: self.outside, NO_GAP: self.no_gap}
 
 
-def judged(item: Item, calibration: Calibration) -> Judged:
-    """Return an item with its probabilities."""
+def judged(item: Item, calibration: Calibration, closure: Interval | None = None) -> Judged:
+    """Return an item with its probabilities and, of a cause, its closure."""
     if item.index is None:
         found = calibration.gap.probabilities(scaled_gap(item.numbers))
         return Judged(item, (), found[OUTSIDE], found[NO_GAP])
@@ -52,7 +54,7 @@ def judged(item: Item, calibration: Calibration) -> Judged:
     far = np.array([c.unlikeness for c in item.candidates])
     shares = np.exp(-calibration.sharpness * (far - far.min()))
     effects = found[LIBRARY] * shares / shares.sum()
-    return Judged(item, tuple(effects.tolist()), found[OUTSIDE], found[NO_GAP])
+    return Judged(item, tuple(effects.tolist()), found[OUTSIDE], found[NO_GAP], closure)
 
 
 def reproduced(stage: ExactFinding, calibration: Calibration) -> float:

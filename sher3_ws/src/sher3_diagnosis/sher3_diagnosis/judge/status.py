@@ -1,38 +1,55 @@
-"""The status of a verdict from the answers to its causes and gaps: a matter of causes, not of remainders."""
+"""From odds and costs to answers, and from the answers to the status: one path for verdicts, calibration, challenge."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
+from sher3_diagnosis.judge.costs import LIBRARY, NO_GAP, OUTSIDE, Costs
 from sher3_diagnosis.judge.items import Item
-from sher3_diagnosis.judge.probabilities import LIBRARY, NO_GAP, OUTSIDE, Judged
+from sher3_diagnosis.judge.probabilities import Judged
 from sher3_diagnosis.thresholds import COVERED
-from sher3_diagnosis.verdict import Interval, Status
+from sher3_diagnosis.verdict import Status
 
 
-def answer_to(j: Judged, closure: Interval | None) -> str:
-    """Return the answer to an item; a cause is not named that leaves most of its gap, or whose closure may be nothing.
+def answer_to(j: Judged, costs: Costs) -> str:
+    """Return the answer to an item that costs least.
 
-    Then the more probable of the other answers holds: a small gap that the cause may not close is likely none.
-
-    Args:
-        j: the item with its probabilities.
-        closure: of a cause; exactly 0 where over all runs there is nothing above the floor that could be closed.
+    A cause that leaves most of its gap, or whose closure may be nothing, is not named; then the better of the other
+    answers holds: a small gap that the cause may not close is likely none. A closure of exactly 0 says that over all
+    runs there is nothing above the floor that could be closed.
     """
-    if closure is None:
-        return j.answer
-    if closure.value == 0.0:
+    closure = j.closure
+    if closure is not None and closure.value == 0.0:
         return NO_GAP
-    if j.answer == LIBRARY and (closure.value < COVERED or (closure.low is not None and closure.low <= 0.0)):
-        return OUTSIDE if j.outside >= j.no_gap else NO_GAP
-    return j.answer
+    named = closure is not None and closure.value >= COVERED and (closure.low is None or closure.low > 0.0)
+    return costs.cheapest(j.odds, (LIBRARY, OUTSIDE, NO_GAP) if named else (OUTSIDE, NO_GAP))
 
 
-def status_of(answers: Sequence[str], crossing: bool) -> Status:
+def answer_to_exact(known: float, costs: Costs) -> str:
+    """Return the answer to an exact stage, whose causes are those at work with probability `known`; 0 without one."""
+    odds = {LIBRARY: known, OUTSIDE: 1.0 - known}
+    return costs.cheapest(odds, odds if known > 0.0 else (OUTSIDE,))
+
+
+def status_of(items: Sequence[Judged], exact: Sequence[float], same: float, costs: Costs) -> Status:
     """Return the status.
 
     Args:
-        answers: to every cause, gap and exact stage.
+        items: causes and gaps with their odds.
+        exact: per exact stage, the probability that its causes are those at work.
+        same: unlikeness up to which another effect gives the same data.
+        costs: of the mistakes.
+    """
+    answers = [(answer_to(j, costs), j) for j in items]
+    crossing = any(a == LIBRARY and crosses(j.item, same) for a, j in answers)
+    return combined({a for a, _ in answers} | {answer_to_exact(p, costs) for p in exact}, crossing)
+
+
+def combined(answers: Collection[str], crossing: bool) -> Status:
+    """Return the status that answers to every cause, gap and exact stage come to.
+
+    Args:
+        answers: each at least once.
         crossing: whether an effect of another family gives the same data as a named one.
     """
     if OUTSIDE in answers:

@@ -10,16 +10,17 @@ from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.finding import Finding
 from sher3_diagnosis.fit.fitting import fit
 from sher3_diagnosis.judge.calibration.calibration import Calibration
-from sher3_diagnosis.judge.items import items_of
-from sher3_diagnosis.judge.probabilities import LIBRARY, OUTSIDE, Judged, judged
+from sher3_diagnosis.judge.costs import LIBRARY, OUTSIDE, Costs
+from sher3_diagnosis.judge.items import Item, items_of
+from sher3_diagnosis.judge.probabilities import Judged, judged
 from sher3_diagnosis.judge.status import answer_to
 from sher3_diagnosis.verdict import Cause, Imitation, Interval
 
 
-def weighed(finding: Finding, calibration: Calibration) -> Finding:
+def weighed(finding: Finding, calibration: Calibration, costs: Costs) -> Finding:
     """Judge every cause and gap of a finding; keep the causes that are named, and the gaps that need an answer."""
-    items = [judged(i, calibration) for i in items_of(finding)]
-    answers = [answer_to(j, _closure(finding, j)) for j in items]
+    items = [judged(i, calibration, _closure(finding, i)) for i in items_of(finding)]
+    answers = [answer_to(j, costs) for j in items]
     named = [j for j, a in zip(items, answers, strict=True) if a == LIBRARY]
     outside = [j for j, a in zip(items, answers, strict=True) if a == OUTSIDE]
     attribution, causes = _kept(finding, named, calibration.reach)
@@ -35,13 +36,13 @@ def weighed(finding: Finding, calibration: Calibration) -> Finding:
     )
 
 
-def _closure(finding: Finding, j: Judged) -> Interval | None:
+def _closure(finding: Finding, item: Item) -> Interval | None:
     """Closure of a cause; None of a gap."""
-    return None if j.item.index is None else _cause(finding, j).closure
+    return None if item.index is None else _cause(finding, item).closure
 
 
-def _cause(finding: Finding, j: Judged) -> Cause:
-    return finding.causes[list(finding.attribution.causes).index(j.item.index)]  # type: ignore[arg-type]
+def _cause(finding: Finding, item: Item) -> Cause:
+    return finding.causes[list(finding.attribution.causes).index(item.index)]  # type: ignore[arg-type]
 
 
 def _touches(finding: Finding, j: Judged) -> frozenset[Channel]:
@@ -51,7 +52,7 @@ def _touches(finding: Finding, j: Judged) -> frozenset[Channel]:
 
 
 def _imitation(finding: Finding, j: Judged) -> Imitation:
-    cause = _cause(finding, j)
+    cause = _cause(finding, j.item)
     return Imitation(effect=cause.effect, actuator=cause.actuator, closure=cause.closure)
 
 
@@ -75,7 +76,7 @@ def _kept(finding: Finding, named: Sequence[Judged], reach: float) -> tuple[Attr
     for j in named:
         alike = [f.terms[-1].effect.id for f in rivals[j.item.index]]
         update = {"rivals": list(dict.fromkeys(alike)), "probability": j.effects[0]}
-        causes.append(_cause(finding, j).model_copy(update=update))
+        causes.append(_cause(finding, j.item).model_copy(update=update))
     return attribution, causes
 
 
