@@ -47,7 +47,7 @@ def read_case(path: str | Path, topics: Iterable[str] | None = None, *, check: b
     folder = Path(path)
     file = folder / CASE_FILE
     if not file.is_file():
-        raise CaseError("no case.yaml", path=folder, remedy="name a case folder")
+        raise CaseError("no case.yaml", path=folder, remedy=_remedy(folder))
     document = read_yaml(file)
     if not isinstance(document, dict) or document.get("schema") != SCHEMA:
         found = document.get("schema") if isinstance(document, dict) else type(document).__name__
@@ -59,6 +59,12 @@ def read_case(path: str | Path, topics: Iterable[str] | None = None, *, check: b
     wanted = None if topics is None else tuple(topics)
     robot = load_robot(_inside(folder, file, document.get("robot")))
     return Case([_read_entry(folder, file, entry, wanted, check) for entry in entries], robot, folder)
+
+
+def _remedy(folder: Path) -> str:
+    if any(folder.glob("*.mcap")):
+        return f"this is a recording; `sher3 gap case {folder} --out CASE` makes a case of it"
+    return "name a case folder"
 
 
 def _read_entry(folder: Path, file: Path, entry: Any, topics: Sequence[str] | None, check: bool) -> Run:

@@ -31,6 +31,8 @@ class LimitError(BagError):
 class NothingRecorded(BagError):
     """A recording ended without a single message."""
 
+    exit_code = 1
+
 
 class MissingTopicError(Sher3Error, KeyError):
     """A run lacks a topic; carries `topic` and the topics it has."""

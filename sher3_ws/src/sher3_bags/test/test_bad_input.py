@@ -258,6 +258,8 @@ def test_metadata_that_does_not_parse(tmp_path, run):
 def test_cases(tmp_path, build):
     with pytest.raises(CaseError, match=r"no case\.yaml"):
         read_case(tmp_path)
+    with pytest.raises(CaseError, match=r"this is a recording; `sher3 gap case .*bag --out CASE`"):
+        read_case(write_run(tmp_path / "bag", build(10)))
     folder = write_case(tmp_path / "case", [build(10)], load_robot())
     file = folder / "case.yaml"
     good = file.read_text()

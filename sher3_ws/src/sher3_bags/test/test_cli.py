@@ -59,17 +59,17 @@ def test_compare_info_recover(bag, tmp_path):
 def test_failures_are_one_sentence(arguments, monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
     result = runner.invoke(app, arguments)
-    assert result.exit_code == 1
-    assert result.output.startswith("error: missing: no such file or folder;")
+    assert result.exit_code == 2
+    assert result.output.startswith("sher3: missing: no such file or folder;")
     error = json.loads(runner.invoke(app, [*arguments, "--json"]).output)
     assert error["error"] == "ForeignBagError"
 
 
 def test_other_failures(bag, tmp_path):
     result = runner.invoke(app, ["compare", str(bag), str(bag), "--align", "phase"])
-    assert (result.exit_code, "unknown alignment; value phase" in result.output) == (1, True)
+    assert (result.exit_code, "unknown alignment; value phase" in result.output) == (2, True)
     result = runner.invoke(app, ["replay", str(bag), "--rate", "0"])
-    assert (result.exit_code, "rate must be positive" in result.output) == (1, True)
+    assert (result.exit_code, "rate must be positive" in result.output) == (2, True)
 
 
 COMMAND = [sys.executable, "-c", "from sher3_bags.cli import app; app()"]

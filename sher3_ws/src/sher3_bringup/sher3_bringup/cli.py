@@ -94,7 +94,7 @@ def up(
     all are ready, and one more each change of state with its reason and remedy; on a terminal a line below them tells
     state, mode, force, speed and lost cycles. If a process ends, everything is stopped, drives first.
 
-    Exit codes: 0 stopped as asked, 2 wrong option, 1 bad file, 3 not started (a device is missing), 4 a process died,
+    Exit codes: 0 stopped as asked, 2 a wrong option or file, 3 not started (a device is missing), 4 a process died,
     5 a process had to be killed, 6 the robot was in FAULT at the end.
     """
     gc.disable()  # nothing that is imported until the processes are forked is garbage; `preload` enables it again

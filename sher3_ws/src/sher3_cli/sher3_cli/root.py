@@ -12,6 +12,7 @@ from typing import Annotated, NamedTuple
 
 import typer
 from sher3_common import Sher3Error
+from sher3_common.commands.options import BAD_INPUT
 
 from sher3_cli.completion import completed_words
 
@@ -107,7 +108,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         make_app(chosen, completing is not None)(args=words, prog_name="sher3")
     except Sher3Error as error:
         print(f"sher3: {error}", file=sys.stderr)
-        sys.exit(getattr(error, "exit_code", 1))
+        sys.exit(getattr(error, "exit_code", BAD_INPUT))
     except ModuleNotFoundError as error:
         library = (error.name or "").partition(".")[0]
         extra = "robot" if library.endswith("_msgs") else EXTRAS.get(library)

@@ -54,8 +54,8 @@ def test_help_names_every_command_and_imports_none():
         (["up", "--rate", "5000"], 2, "rate: Input should be less than or equal to 1000"),
         (["up", "--nodes", "pedal+pedals"], 2, "unknown node pedals"),
         (["up", "--real"], 2, "needs --can"),
-        (["up", "--robot", "/nowhere.yaml"], 1, "/nowhere.yaml: no such file"),
-        (["teleop", "/nowhere.yaml"], 1, "/nowhere.yaml: no such file"),
+        (["up", "--robot", "/nowhere.yaml"], 2, "/nowhere.yaml: no such file"),
+        (["teleop", "/nowhere.yaml"], 2, "/nowhere.yaml: no such file"),
         (["demo", "--folder", "/proc/none/bags"], 2, "cannot be written"),
         (["no-such-command"], 2, "no such command"),
     ],
@@ -104,7 +104,7 @@ def test_a_place_where_nothing_can_be_written_is_a_sentence(tmp_path):
     in_the_way.touch()
     words = ["record", str(in_the_way / "bag"), "--seconds", "0.1"]
     done = subprocess.run([sys.executable, "-m", "sher3_cli", *words], capture_output=True, text=True, timeout=60)
-    assert done.returncode == 1
+    assert done.returncode == 2
     assert "folder cannot be made" in done.stderr and "Traceback" not in done.stderr
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -11,10 +10,7 @@ from sher3_common.commands import options
 from sher3_common.commands.completing import CASE, Completer, folders_with, words
 from sher3_common.errors import Sher3Error
 
-BAD_INPUT = 2
-"""Exit code when an input or an option is wrong."""
-reported = partial(options.reported, code=BAD_INPUT)
-"""Turns an error of ours into one sentence on stderr (an object with --json) and exit code 2."""
+BAD_INPUT, reported = options.BAD_INPUT, options.reported
 RobotFile = Annotated[Path | None, typer.Option(help="robot.yaml of the nominal model; default: the case's.")]
 NominalFile = Annotated[Path | None, typer.Option(help="robot.yaml; the nominal robot by default.")]
 Library = Annotated[

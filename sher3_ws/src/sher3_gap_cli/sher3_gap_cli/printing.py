@@ -57,10 +57,16 @@ def progress(total: int) -> Iterator[tuple[Callable[[str], None], Done]]:
     with bar(total) as (say, advance):
 
         def done(found: Answer, text: str) -> None:
-            error = "" if found.error is None else f"error: {found.task.case}: {found.error}"
+            error = "" if found.error is None else f"sher3: {_placed(found)}"
             advance("" if error else text, error)
 
         yield say, done
+
+
+def _placed(found: Answer) -> str:
+    """Return the error of an answer with its case in front, where the error does not begin with it itself."""
+    case, said = str(found.task.case), str(found.error)
+    return said if said.startswith(case) else f"{case}: {said}"
 
 
 def summary(found: Answer, files: Sequence[Path], named: bool) -> str:

@@ -49,11 +49,11 @@ def test_millimetres_and_degrees() -> None:
 )
 def test_errors_are_one_sentence_and_exit_code_one(arguments: list[str], says: str) -> None:
     result = run(app, arguments)
-    assert result.exit_code == 1
+    assert result.exit_code == 2
     assert says in result.stderr
     assert result.stdout == ""
     as_json = run(app, [*arguments, "--json"])
-    assert as_json.exit_code == 1
+    assert as_json.exit_code == 2
     assert says in json.loads(as_json.stderr)["what"]
 
 

@@ -115,5 +115,5 @@ def test_fine_search_command() -> None:
 )
 def test_errors_of_the_commands(arguments: list[str], says: str) -> None:
     result = run(app, arguments)
-    assert result.exit_code == 1
+    assert result.exit_code == 2
     assert says in result.stderr

@@ -189,13 +189,13 @@ def test_analyze_writes_figures_picture_and_page(tmp_path):
 
 @pytest.mark.parametrize(
     ("arguments", "said"),
-    [(["missing"], "error: missing: no such file"), (["{bag}", "--picture", "{bag}.xyz"], "cannot be drawn")],
+    [(["missing"], "sher3: missing: no such file"), (["{bag}", "--picture", "{bag}.xyz"], "cannot be drawn")],
 )
 def test_analyze_fails_in_one_sentence(arguments, said, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     bag = write_run(tmp_path / "trial", made())
     result = CliRunner().invoke(app, ["analyze", *(word.format(bag=bag) for word in arguments)])
-    assert result.exit_code == 1 and said in result.output
+    assert result.exit_code == 2 and said in result.output
 
 
 @pytest.mark.flaky(reruns=2)  # a browser on two cores that others use too may not draw in its time

@@ -10,7 +10,8 @@ from sher3_common.vectors import Wrench
 HELP = """Hand    w/s x, a/d y, r/f z push harder (N) · i/k, j/l, u/o turn harder (N*m) · space drops the tool
 Foot    p pedal pressed or released
 Robot   e enable · x disable · z pause · c continue · t tare · g near tissue, G free · h remote centre, H none
-        q quit"""
+        q quit
+A force stays until you change it: with the pedal pressed the tip goes on under it. Space, then p, and it rests."""
 FORCE_STEP = 0.2
 TORQUE_STEP = 0.005
 FORCE_LIMIT = 5.0

@@ -12,14 +12,16 @@ import typer
 from sher3_common.errors import Sher3Error
 
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object instead of text.")]
+BAD_INPUT = 2
+"""Exit code where an option, a file or a value is not valid, as Typer's own."""
 Domain = Annotated[int, typer.Option(min=0, max=232, help="ROS domain id of the graph.", envvar="ROS_DOMAIN_ID")]
 
 
 @contextmanager
-def reported(as_json: bool, code: int = 1) -> Iterator[None]:
-    """Turn an error of the project into one sentence on stderr (an object with --json) and an exit code."""
+def reported(as_json: bool) -> Iterator[None]:
+    """Turn an error of the project into one sentence on stderr (an object with --json) and its exit code, mostly 2."""
     try:
         yield
     except Sher3Error as error:
-        typer.echo(json.dumps(error.to_dict(), default=str) if as_json else f"error: {error}", err=True)
-        raise typer.Exit(code) from error
+        typer.echo(json.dumps(error.to_dict(), default=str) if as_json else f"sher3: {error}", err=True)
+        raise typer.Exit(getattr(error, "exit_code", BAD_INPUT)) from error
