@@ -37,7 +37,7 @@ def test_compare_info_recover(bag, tmp_path):
     assert str(picture) in runner.invoke(app, ["compare", str(bag), str(bag), "--picture", str(picture)]).output
     assert picture.stat().st_size > 10_000
     result = runner.invoke(app, ["compare", str(bag), str(bag), "--picture", str(bag.parent / "a.xyz")])
-    assert (result.exit_code, "cannot be drawn" in result.output) == (1, True)
+    assert (result.exit_code, "cannot be drawn" in result.output) == (2, True)
     assert "b - a" in runner.invoke(app, ["compare", str(bag), str(bag), "--topic", "measured_js"]).output
     data = json.loads(runner.invoke(app, ["info", str(bag), "--json"]).output)
     assert data["topics"]["force/measured_cf"]["frame_id"] == "f"
