@@ -17,6 +17,7 @@ from sher3_gap_cli.guard.check import check
 from sher3_gap_cli.intake import IMPORT_EXAMPLE, case, describe, import_data
 from sher3_gap_cli.library.command import library
 from sher3_gap_cli.monitor import monitor
+from sher3_gap_cli.simulators.compare import compare_simulators
 
 app = typer.Typer(no_args_is_help=True, help="Find and explain the gap between a robot and its simulation.")
 
@@ -38,7 +39,9 @@ EXAMPLES: dict[Callable[..., None], str] = {
     calibrate: "sher3 gap calibrate lumped=run/lumped tables=run/tables -o calibration.json --kept evidence",
 }
 """Every command whose function bears its name, with an example."""
+TRACES = "sher3 gap compare-simulators first.npz second.npz --model robot.xml"
 
 for _command, _example in EXAMPLES.items():
     app.command(epilog=f"Example{'s' * (' · ' in _example)}: {_example}")(_command)
+app.command("compare-simulators", epilog=f"Example: {TRACES}")(compare_simulators)
 app.command("import", epilog=f"Example: {IMPORT_EXAMPLE}")(import_data)

@@ -84,3 +84,14 @@ def test_a_log_that_cannot_be_read_is_named_and_the_others_are_answered(folder, 
 def test_what_makes_no_check_is_said(folder, words, said):
     found = run(folder, *words)
     assert found.exit_code == 2 and said in found.stderr
+
+
+def test_two_traces_are_compared(folder):
+    def compared(*words):
+        words = ["compare-simulators", *(str(folder / w) for w in words), "--json"]
+        return CliRunner().invoke(app, [*words, "--model", str(folder / "arm.xml")])
+
+    found = json.loads(compared("good.npz", "rubbing.npz").stdout)
+    assert "Coulomb friction on shoulder" in found["cause"] and found["settings"] == {"good": "", "rubbing": ""}
+    wrong = compared("good.npz", "same.npz")
+    assert wrong.exit_code == 2 and json.loads(wrong.stderr)["what"] == "commands differ"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -43,6 +44,16 @@ def columns_of(table: Any) -> dict[str, Array]:
     names = list(table) if isinstance(table, Mapping) else [str(name) for name in table.columns]
     found = {str(name): np.asarray(table[name]) for name in names}
     return {name: x.astype(float) for name, x in found.items() if np.issubdtype(x.dtype, np.number)}
+
+
+def columns_named(table: Mapping[str, Array], names: Sequence[str]) -> Array | None:
+    """Return the columns (n, k) of the first name that a table has: an array of it, or `name1`, `name_2`, `name[3]`."""
+    for name in names:
+        numbered = {int(m[1]): x for n, x in table.items() if (m := re.fullmatch(rf"{name}[_.\[]?(\d+)\]?", n))}
+        found = table.get(name, np.column_stack([numbered[i] for i in sorted(numbered)]) if numbered else None)
+        if found is not None:
+            return found[:, None] if found.ndim == 1 else found
+    return None
 
 
 def arrays_of(time: Any, control: Any, position: Any, effort: Any, load: Any) -> list[Arrays]:

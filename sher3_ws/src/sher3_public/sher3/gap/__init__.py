@@ -13,12 +13,14 @@ from sher3_common.faces import lazy
 
 if TYPE_CHECKING:
     from sher3_public import Answer as Answer
+    from sher3_public import Comparison as Comparison
     from sher3_public import Corrected as Corrected
     from sher3_public import InputError as InputError
+    from sher3_public import compare_simulators as compare_simulators
     from sher3_public import diagnose as diagnose
     from sher3_public import from_lerobot as from_lerobot
 
-__all__ = ["Answer", "Corrected", "InputError", "diagnose", "from_lerobot"]
+__all__ = ["Answer", "Comparison", "Corrected", "InputError", "compare_simulators", "diagnose", "from_lerobot"]
 
 __getattr__, __dir__ = lazy(
     "sher3_public",
@@ -28,5 +30,6 @@ __getattr__, __dir__ = lazy(
         "errors": ("InputError",),
         "lerobot": ("from_lerobot",),
         "one_call": ("diagnose",),
+        "simulators.comparing": ("Comparison", "compare_simulators"),
     },
 )

@@ -1,0 +1,1 @@
+"""`sher3 gap compare-simulators`: two traces of the same commands."""
