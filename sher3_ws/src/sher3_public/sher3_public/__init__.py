@@ -10,6 +10,8 @@ if TYPE_CHECKING:
     from sher3_public.errors import InputError as InputError
     from sher3_public.lerobot import from_lerobot as from_lerobot
     from sher3_public.one_call import diagnose as diagnose
+    from sher3_public.simulating import Replay as Replay
+    from sher3_public.simulating import Replays as Replays
     from sher3_public.simulators.comparing import Comparison as Comparison
     from sher3_public.simulators.comparing import compare_simulators as compare_simulators
 
@@ -21,6 +23,7 @@ __getattr__, __dir__ = lazy(
         "errors": ("InputError",),
         "lerobot": ("from_lerobot",),
         "one_call": ("diagnose",),
+        "simulating": ("Replay", "Replays"),
         "simulators.comparing": ("Comparison", "compare_simulators"),
     },
 )

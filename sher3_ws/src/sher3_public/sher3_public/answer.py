@@ -21,6 +21,8 @@ from sher3_public.errors import InputError
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from sher3_public.simulating import Replays
+
 
 @dataclass(frozen=True)
 class Answer:
@@ -119,6 +121,17 @@ class Answer:
         found = corrected(self.verdict, self.case.source, to)
         _written(found.text, path)
         return found
+
+    def simulate(self) -> Replays:
+        """Return paired replays in MuJoCo: recorded, untuned and corrected motion on the same commands, by joint.
+
+        Raises:
+            InputError: an `MjModel` was given, of which no text is known.
+            ExportError: MuJoCo is missing or refuses the model, or the machine is neither axes nor an arm.
+        """
+        from sher3_public.simulating import replays
+
+        return replays(self.verdict, self.case)
 
     def to_rows(self) -> list[dict[str, Any]]:
         """Return one row for each parameter of each cause: cause, place, parameter, value, low, high, unit, rivals."""

@@ -4,6 +4,8 @@ import sys
 from types import ModuleType
 from xml.etree import ElementTree
 
+import mujoco
+import numpy as np
 import pytest
 import sher3.gap as gap
 
@@ -61,3 +63,34 @@ def test_rows_and_frame(answer, monkeypatch):
     pandas.DataFrame = lambda rows, columns: (rows, columns)
     monkeypatch.setitem(sys.modules, "pandas", pandas)
     assert answer.to_frame() == (answer.to_rows(), list(row))
+
+
+def test_paired_replays_show_what_the_causes_are_worth(answer, log):
+    """Windows start at recorded states, so that the untuned model shows its missing friction and nothing else."""
+    found = answer.simulate()
+    turn, shoulder = found.joints["turn"], found.joints["shoulder"]
+    assert shoulder.recorded.shape == shoulder.untuned.shape == shoulder.corrected.shape == shoulder.time.shape
+    assert shoulder.after < 0.2 * shoulder.before and turn.after < 1.2 * turn.before
+    at = np.searchsorted(log.time, shoulder.time[3, 5] - 1e-9)
+    assert shoulder.recorded[3, 5] == pytest.approx(log.qpos[at, 1], abs=1e-9)
+    assert len(found.plot().axes) == 2 and "shoulder: " in str(found)
+
+
+def test_replays_need_a_text_of_the_model(log):
+    answer = gap.diagnose(mujoco.MjModel.from_xml_string(log.xml), log.time, log.ctrl, log.qpos)
+    with pytest.raises(gap.InputError, match="need the text of the model"):
+        answer.simulate()
+
+
+def test_axes_by_themselves_are_replayed_too():
+    time = np.arange(0.0, 12.0, 0.002)
+    place = 0.04 * np.sin(1.3 * time) + 0.015 * np.sin(4.1 * time)
+    speed, signals = np.gradient(place, time), {"position": ("x", "m"), "effort": ("f", "N")}
+    force = 3.0 * np.gradient(speed, time) + 2.0 * np.tanh(speed / 1e-3)
+    axis = {"name": "slide", "motion": "linear", "mass": 3.0, "encoder_resolution": 1e-6}
+    columns = {name: {"column": column, "unit": unit} for name, (column, unit) in signals.items()}
+    axes = [{**axis, "signals": columns, "command_law": {"kind": "none"}}]
+    described = {"kind": "axes", "name": "slide", "time": {"column": "t"}, "axes": axes}
+    noisy = force + 0.02 * np.random.default_rng(1).normal(size=6000)
+    (slide,) = gap.diagnose(described, {"t": time, "x": place, "f": noisy}).simulate().joints.values()
+    assert slide.after < 0.2 * slide.before

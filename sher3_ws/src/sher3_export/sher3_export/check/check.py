@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 from xml.etree.ElementTree import Element
 
 import numpy as np
@@ -50,7 +51,7 @@ class Checked:
     gaps: Sequence[JointGap]
 
 
-def nominal_model(case: Path, model: Path | None) -> tuple[Element, object, Sequence[object]]:
+def nominal_model(case: Path, model: Path | None) -> tuple[Element, object, Sequence[Any]]:
     """Return the nominal model, the machine and its runs; without a model, one is made of the description.
 
     Raises:
@@ -110,6 +111,13 @@ class Bench:
 def bench_of(verdict: Verdict, case: Path, model: Path | None, joints: Mapping[str, str]) -> Bench:
     """Return the case of a verdict on its nominal model; raises as `check` does."""
     original, machine, runs = nominal_model(case, model)
+    return bench_on(verdict, original, machine, runs, joints)
+
+
+def bench_on(
+    verdict: Verdict, original: Element, machine: object, runs: Sequence[Any], joints: Mapping[str, str]
+) -> Bench:
+    """Return the runs of a machine on a nominal model; raises ExportError, MujocoMissing."""
     late = any(c.constant in LATE for c in export(verdict, "yaml").applied)
     records = recorded(machine, runs, joints, late)
     names = list(records[0].tracks)

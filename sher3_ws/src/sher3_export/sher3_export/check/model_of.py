@@ -14,7 +14,7 @@ from sher3_machines.axes.law import is_law
 
 from sher3_export.check.engine import mujoco
 from sher3_export.errors import ExportError
-from sher3_export.xml_file import MAX_BYTES, parse_xml, read_xml, written
+from sher3_export.xml_file import MAX_BYTES, parse_xml, written
 
 SLENDER = 0.5
 """Share of a pendulum's inertia that its point mass makes up; the rest is rotor."""
@@ -33,8 +33,13 @@ def model_of_arm(path: Path) -> Element:
         text = read_text(path, MAX_BYTES)
     except FileError as error:
         raise ExportError(f"{path}: cannot be read", value=error.reason, remedy="give --model") from error
+    return model_of_text(text, str(path))
+
+
+def model_of_text(text: str, label: str) -> Element:
+    """Return the model of a text, as `model_of_arm` does of a file; `label` names it in errors."""
     if "<mujoco" in text and "<robot" not in text:
-        return read_xml(path, "mujoco")
+        return parse_xml(text, "mujoco")
     root = parse_xml(text, "robot")
     for link in root.iter("link"):
         for shape in [*link.findall("visual"), *link.findall("collision")]:
@@ -44,7 +49,7 @@ def model_of_arm(path: Path) -> Element:
         spec.compiler.boundmass = spec.compiler.boundinertia = DUST  # a link without either is refused
         return parse_xml(spec.to_xml(), "mujoco")
     except ValueError as error:
-        raise ExportError(f"{path}: MuJoCo refuses it", value=str(error)[:200], remedy="give --model") from error
+        raise ExportError(f"{label}: MuJoCo refuses it", value=str(error)[:200], remedy="give --model") from error
 
 
 def model_of(parts: Sequence[AxisEvidence]) -> Element:

@@ -91,7 +91,7 @@ def track_of(run: AxesRun, axis: Axis, late: bool) -> Track:
 
 def drive_of(signals: Mapping[str, Array], axis: Axis, late: bool) -> Array | None:
     """Return the force, or None where nothing drives the joint."""
-    if axis.free:
+    if axis.free and "effort" not in signals:
         return None
     if "command" in signals and (late or "effort" not in signals):
         return axis.command_law.gain * signals["command"]

@@ -16,11 +16,23 @@ if TYPE_CHECKING:
     from sher3_public import Comparison as Comparison
     from sher3_public import Corrected as Corrected
     from sher3_public import InputError as InputError
+    from sher3_public import Replay as Replay
+    from sher3_public import Replays as Replays
     from sher3_public import compare_simulators as compare_simulators
     from sher3_public import diagnose as diagnose
     from sher3_public import from_lerobot as from_lerobot
 
-__all__ = ["Answer", "Comparison", "Corrected", "InputError", "compare_simulators", "diagnose", "from_lerobot"]
+__all__ = [
+    "Answer",
+    "Comparison",
+    "Corrected",
+    "InputError",
+    "Replay",
+    "Replays",
+    "compare_simulators",
+    "diagnose",
+    "from_lerobot",
+]
 
 __getattr__, __dir__ = lazy(
     "sher3_public",
@@ -30,6 +42,7 @@ __getattr__, __dir__ = lazy(
         "errors": ("InputError",),
         "lerobot": ("from_lerobot",),
         "one_call": ("diagnose",),
+        "simulating": ("Replay", "Replays"),
         "simulators.comparing": ("Comparison", "compare_simulators"),
     },
 )
