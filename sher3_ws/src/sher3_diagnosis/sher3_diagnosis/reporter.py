@@ -6,7 +6,7 @@ which nothing particular is to be said, so a new machine needs none of its own.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
@@ -71,6 +71,30 @@ class Trace:
     svg: str
 
 
+EMPTY = "–"
+"""Cell in which nothing was found."""
+
+
+@dataclass(frozen=True)
+class Table:
+    """Causes by place and kind, in words.
+
+    Attributes:
+        heads: of the columns, the place first.
+        rows: cells in words, as many as heads; a dash where nothing was found.
+        found: places with a cause.
+    """
+
+    heads: Sequence[str]
+    rows: Sequence[Sequence[str]]
+    found: Collection[str]
+
+    def lines(self) -> list[str]:
+        """Return a line for each place with a cause: the place, and what was found there."""
+        filled = ([row[0], [x for x in row[1:] if x != EMPTY]] for row in self.rows if row[0] in self.found)
+        return [f"{name}: {'; '.join(cells)}" for name, cells in filled]
+
+
 class Reporter(Generic[E]):
     """What a machine adds to its report.
 
@@ -126,6 +150,10 @@ class Reporter(Generic[E]):
     def output(self, evidence: E, run: int, channel: Channel) -> Output:
         """Return what a stage puts out in a run; default its deviation from the model."""
         return Output("measured − nominal")
+
+    def table(self, diagnosis: Findings[E]) -> Table | None:
+        """Return the causes as a table, where a machine has many places alike; None where a list is as short."""
+        return None
 
     def picture(self, diagnosis: Findings[E]) -> str:
         """Return the machine as a drawing (SVG) with the places of its gaps lit; empty when there is none."""

@@ -68,6 +68,14 @@ def test_what_varies_from_window_to_window_is_as_wide_as_it_must_be():
     assert inside(seen, found).mean() == pytest.approx(0.9, abs=0.02)
 
 
+def test_records_of_several_rates_and_lengths_are_one_gap():
+    before = [np.full((3, 125), 2.0), np.full((5, 50), 2.0)]
+    after = [np.full((3, 125), 1.0), np.full((5, 50), 1.0)]
+    gap = checking.gap_of("joint", before, after)
+    assert (gap.before, gap.after) == (2.0, 1.0) and gap.closure.value == pytest.approx(0.75)
+    assert engine.steps_of(0.005) == 5 and engine.steps_of(0.00333) == 4
+
+
 def test_ranges_are_90_percent_of_the_verdicts_95():
     (entry,) = worlds_of(verdict(cause("coulomb_friction", force=10.0)))
     low, high = interval(entry[0].parameters["force"])

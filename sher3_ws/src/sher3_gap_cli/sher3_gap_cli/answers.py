@@ -58,7 +58,8 @@ def answer(task: Task, say: Say = lambda _: None) -> Answer:
     except Sher3Error as error:
         return Answer(task, error=error)
     rests = {e.id: e.leaves_out for e in found.machine.library() if e.leaves_out}
-    lines = five_lines(found.verdict, found.machine.reporter().simulated, rests)
+    reporter = found.machine.reporter()
+    lines = five_lines(found.verdict, reporter.simulated, rests, reporter.table(found))
     if not task.report:
         return Answer(task, found.verdict, lines)
     say("writing the report")

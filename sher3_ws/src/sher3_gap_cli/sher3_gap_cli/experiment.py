@@ -59,14 +59,16 @@ def motion_command(verdict: Path, case: Path, output: Path, as_json: bool) -> st
     from sher3_export.excitation.forms import save
     from sher3_export.verdicts import read_verdict
     from sher3_machines import open_case
+    from sher3_machines.manipulator.confounding import known_weights
 
-    open_ones = [
-        f"{' / '.join([c.effect, *c.rivals])} on {c.actuator}" for c in read_verdict(verdict).causes if c.rivals
-    ]
+    causes = read_verdict(verdict).causes
+    open_ones = [f"{' / '.join([c.effect, *c.rivals])} on {c.actuator}" for c in causes if c.rivals]
+    weights = known_weights(causes)
     made = designed(*open_case(case))
     save(output, made)
     data = {
         "rivals": open_ones,
+        "weights": weights,
         "joints": list(made.joints),
         "seconds": made.motion.seconds,
         "told": made.told,
@@ -76,6 +78,7 @@ def motion_command(verdict: Path, case: Path, output: Path, as_json: bool) -> st
         return json.dumps({"file": str(output), **data})
     lines = [
         f"rivals     {'; '.join(open_ones) or 'none'}",
+        *(f"weight     {text}" for text in weights),
         f"motion     {', '.join(made.joints)}: {made.motion.seconds:g} s from rest to rest, to be repeated",
         "within     range, speed and acceleration of the case's records; collisions are not checked: begin slowly",
         f"tells      the least told constant {made.told:.3g} times as well as the best; median of those tried: "

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
+from sher3_diagnosis.reporter import Table
 from sher3_diagnosis.verdict import Cause, Interval, Parameter, Verdict
 from sher3_diagnosis.words import listed, place, quantity, range_text, ratio_text, share, words
 
@@ -33,19 +34,24 @@ def headline(verdict: Verdict, rests: Mapping[str, str] = MappingProxyType({})) 
 
 
 def five_lines(
-    verdict: Verdict, simulated: bool, rests: Mapping[str, str] = MappingProxyType({})
+    verdict: Verdict,
+    simulated: bool,
+    rests: Mapping[str, str] = MappingProxyType({}),
+    table: Table | None = None,
 ) -> list[tuple[str, str]]:
-    """Return (label, text) of the five lines: verdict, where, cause, closure, next.
+    """Return (label, text) of the five lines: verdict, where, cause, closure, next; with a table a cause for each row.
 
     Args:
         verdict: of any machine.
         simulated: whether `sher3 gap apply` and `sher3 gap experiment` know the machine's simulator.
         rests: as in `headline`.
+        table: of the causes, where the machine has one.
     """
+    causes = ["; ".join(cause_text(c) for c in verdict.causes) or _unknown(verdict)]
     return [
         ("verdict", f"{verdict.status}: {headline(verdict, rests)}"),
         ("where", _where(verdict)),
-        ("cause", "; ".join(cause_text(c) for c in verdict.causes) or _unknown(verdict)),
+        *(("cause", text) for text in (causes if table is None else table.lines())),
         ("closure", _closure(verdict)),
         ("next", _next(verdict, simulated)),
     ]

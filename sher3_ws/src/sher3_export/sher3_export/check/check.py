@@ -127,7 +127,7 @@ def bench_on(
 
 def gap_of(joint: str, before: Sequence[Array], after: Sequence[Array]) -> JointGap:
     """Return the gap of one joint from the errors (windows, samples) of each run under both models."""
-    squares = np.column_stack([np.mean(np.concatenate(x) ** 2, axis=1) for x in (before, after)])
+    squares = np.column_stack([np.concatenate([np.mean(run**2, axis=1) for run in x]) for x in (before, after)])
     rows = [
         [*part.mean(axis=0) / squares[:, 0].mean(), 0.0] for part in np.array_split(squares, min(BLOCKS, len(squares)))
     ]

@@ -54,7 +54,7 @@ def prepared(root: Element, period: float, tracks: Mapping[str, Track]) -> Eleme
         compiler.set(name, compiler.get(name, written(DUST)))
     option = root.find("option")
     option = SubElement(root, "option") if option is None else option
-    option.set("timestep", written(period / math.ceil(period / STEP - 1e-9)))
+    option.set("timestep", written(period / steps_of(period)))
     actuators = root.find("actuator")
     actuators = SubElement(root, "actuator") if actuators is None else actuators
     forced = {joint for joint, track in tracks.items() if track.drive is not None and not track.servo}
@@ -66,6 +66,11 @@ def prepared(root: Element, period: float, tracks: Mapping[str, Track]) -> Eleme
         if joint not in driven:
             SubElement(actuators, "motor", {"joint": joint, "ctrllimited": "false"})
     return root
+
+
+def steps_of(period: float) -> int:
+    """Return the steps of the simulation in a period of a record, s."""
+    return math.ceil(period / STEP - 1e-9)
 
 
 def is_servo(actuator: Element) -> bool:
@@ -101,6 +106,8 @@ class Engine:
     def run(self, record: Recorded, push: Mapping[str, Array] | None = None) -> dict[str, Array]:
         """Return measured less simulated position of each joint, (windows, samples), m or rad.
 
+        The time step becomes one that divides the period of the record.
+
         Args:
             record: of one run.
             push: joint -> (windows,) force that acts beside the model's, constant over a window, N or N m.
@@ -109,7 +116,8 @@ class Engine:
         data = api.MjData(self.model)
         starts, length = windows(record)
         out = {joint: np.empty((len(starts), length)) for joint in record.tracks}
-        steps = max(1, round(record.period / self.model.opt.timestep))
+        steps = steps_of(record.period)
+        self.model.opt.timestep = record.period / steps
         with np.errstate(all="ignore"):
             for w, first in enumerate(starts):
                 self._start(api, data, record, int(first))

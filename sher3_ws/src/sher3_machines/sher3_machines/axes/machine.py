@@ -39,6 +39,7 @@ from sher3_machines.axes.replay import replay
 from sher3_machines.contrast.changes import change_notes, contrasted, of_runs
 from sher3_machines.contrast.conditions import Condition, conditions_of, reference_runs, told_together
 from sher3_machines.errors import MachineError
+from sher3_machines.intake.notes import told_once
 from sher3_machines.thresholds import BLOCKS
 
 if TYPE_CHECKING:
@@ -80,9 +81,10 @@ class Axes(Machine[AxesRun, AxisEvidence]):
 
     def audit(self, runs: Sequence[AxesRun]) -> list[str]:
         """Return what was done to the data, and whether floors are known from repeats."""
-        notes = [note for run in runs for note in run.notes] + told_together(self._conditions(runs))
+        notes = [note for run in runs for note in run.notes]
         for run in runs:
             notes += [said for axis in self.description.axes for said in wrong_readings(run, axis).values()]
+        notes = told_once(notes, [run.name for run in runs]) + told_together(self._conditions(runs))
         return notes if self._repeats(runs) else [*notes, NO_REPEATS]
 
     def gather(self, runs: Sequence[AxesRun]) -> Sequence[AxisEvidence]:

@@ -15,9 +15,10 @@ from sher3_machines.axes.readings.speed import integrated, is_speed
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.columns import MOTION, find, pick, stamps_of
 from sher3_machines.intake.fields import Clock, Column
-from sher3_machines.intake.mending.motion import check_speed, is_magnitude, signs_of, speed_ratio
+from sher3_machines.intake.mending.motion import check_speed, counts_backwards, is_magnitude, signs_of, speed_ratio
 from sher3_machines.intake.mending.parts import LONGEST_HOLE, cut
 from sher3_machines.intake.mending.readings import glitches, known_readings
+from sher3_machines.intake.mending.repeats import filled, fresh_readings, fresh_rows, hold_of
 from sher3_machines.intake.mending.stamps import even_stamps, missed_periods, missing_note
 from sher3_machines.intake.spelling import table_of
 from sher3_machines.intake.tables import Tables
@@ -33,8 +34,11 @@ SIGNALS = ("position", "reference", "command", "effort", "load", "nominal_effort
 
 POSITIONS = ("position", "reference", "load")
 """Signals that are places."""
-ENCODERS = ("position", "load")
-"""Signals that an encoder reads."""
+READINGS = ("position", "load", "effort")
+"""Signals that are measured: a value that stays is an old one. A reference or a command may well be held for a while.
+"""
+OTHERS = ("reference", "load")
+"""Places that follow the position, in its sense or turned."""
 WRAP = 0.1
 """Share of a turn by which a jump between two samples may differ from a whole turn that was wrapped."""
 
@@ -78,21 +82,21 @@ def axes_run(name: str, tables: Tables, machine: Chain) -> AxesRun:
         MachineError: a column is missing, values are not finite, stamps run backwards or have holes, a unit slips.
     """
     raw: dict[str, dict[str, Stamped]] = {}
-    mended: list[str] = []
+    tables, mended = _without_repeats(tables, machine, name)
+    polled = bool(mended)
     for axis in machine.axes:
-        columns = {which: getattr(axis.signals, which) for which in SIGNALS}
         raw[axis.name] = {
             which: _mended(column, tables, machine.time, name, (axis.name, which), mended)
-            for which, column in columns.items()
-            if column is not None
+            for which, column in _columns(axis).items()
         }
         mended += _unwrap(axis, raw[axis.name], name)
         mended += _without_glitches(axis, raw[axis.name], name)
         _check_velocity(axis, raw[axis.name]["position"], tables, machine.time, name)
-    clock, period, notes = _clock([s for a in raw.values() for s in a.values()], machine.time, name)
+    clock, period, notes = _clock([s for a in raw.values() for s in a.values()], machine.time, name, polled)
     signals = {a: {k: _onto(clock, t, x) for k, (t, x) in found.items()} for a, found in raw.items()}
     for axis in machine.axes:
         check_units(axis, signals[axis.name], name)
+        mended += _turned(axis, signals[axis.name], name)
         mended += _signed(axis, clock, signals[axis.name], name)
     return AxesRun(name, period, signals, [*dict.fromkeys(mended), *notes])
 
@@ -114,10 +118,55 @@ def _mended(column: Column, tables: Tables, clock: Clock, run: str, of: tuple[st
     known, note = known_readings(x, stamps is not None, what)
     notes += [note] if note else []
     stamps, x = _only(stamps, x, known)
+    fresh = fresh_readings(x) if of[1] in READINGS else np.ones(len(x), dtype=bool)
+    if not fresh.all():
+        stamps, x = _only(stamps, x, fresh)
+        notes.append(f"{what} is held for {hold_of(fresh):.0f} rows: slower than the log; its new readings are taken")
     if of[1] in POSITIONS and is_speed(column, tables, run):
         x = integrated(stamps, x, clock)
         notes.append(f"{what} is a velocity; integrated, so that places count from the first sample")
     return stamps, x
+
+
+def _without_repeats(tables: Tables, machine: Chain, run: str) -> tuple[Tables, list[str]]:
+    """Return the tables without the rows that repeat their predecessor in all described columns, and a note for each.
+
+    Where the clock is a rate each row has its place: those rows are interpolated.
+    """
+    named = {find(c.column, tables, run) for axis in machine.axes for c in _columns(axis).values()}
+    out, notes = dict(tables), []
+    for table in sorted({table_of(column) for column in named}):
+        own = [tables[c] for c in named if table_of(c) == table and len(tables[c])]
+        if len({len(x) for x in own}) != 1 or any(not np.issubdtype(x.dtype, np.number) for x in own):
+            continue
+        fresh = fresh_rows(own)
+        if fresh.all():
+            continue
+        rows = [c for c, x in tables.items() if table_of(c) == table and x.ndim and len(x) == len(fresh)]
+        timed = machine.time.column is not None
+        out |= {c: tables[c][fresh] if timed else filled(tables[c], fresh) for c in rows if timed or c in named}
+        lost = int((~fresh).sum())
+        notes.append(
+            f"{run}: {lost} of {len(fresh)} rows repeat the row before in every column: polled twice; "
+            f"{'left out' if timed else 'interpolated'}"
+        )
+    return out, notes
+
+
+def _columns(axis: Axis) -> dict[str, Column]:
+    """Return the recorded signals of an axis."""
+    found = {which: getattr(axis.signals, which) for which in SIGNALS}
+    return {which: column for which, column in found.items() if column is not None}
+
+
+def _turned(axis: Axis, signals: dict[str, Array], run: str) -> list[str]:
+    """Turn places that count against the position; return a note for each."""
+    notes = []
+    for which in OTHERS:
+        if which in signals and counts_backwards(signals[which], signals["position"]):
+            signals[which] = -signals[which]
+            notes.append(f"{run}: {axis.name}.{which} counts against the position; turned")
+    return notes
 
 
 def _only(stamps: Array | None, x: Array, kept: Mask) -> Stamped:
@@ -129,9 +178,9 @@ def _only(stamps: Array | None, x: Array, kept: Mask) -> Stamped:
 
 
 def _without_glitches(axis: Axis, raw: dict[str, Stamped], run: str) -> list[str]:
-    """Leave impossible readings of the encoders out; return a note for each encoder that had some."""
+    """Leave impossible readings out; return a note for each signal that had some."""
     notes = []
-    for which in ENCODERS:
+    for which in READINGS:
         if which in raw:
             stamps, x = raw[which]
             bad = glitches(x)
@@ -140,9 +189,10 @@ def _without_glitches(axis: Axis, raw: dict[str, Stamped], run: str) -> list[str
                 kept[bad] = False
                 raw[which] = _only(stamps, x, kept)
                 worst = float(x[bad[int(np.argmax(np.abs(x[bad])))]])
+                unit = ("N m" if axis.motion == "rotary" else "N") if which == "effort" else axis.unit_of_position
                 notes.append(
                     f"{run}: {axis.name}.{which}: {len(bad)} readings are far off those beside them, such as "
-                    f"{worst:.4g} {axis.unit_of_position}; interpolated"
+                    f"{worst:.4g} {unit}; interpolated"
                 )
     return notes
 
@@ -186,8 +236,11 @@ def _signed(axis: Axis, clock: Array, signals: dict[str, Array], run: str) -> li
     return [f"{run}: {axis.name}.effort ({column.column}) has the sign of the motion, {why}"]
 
 
-def _clock(found: list[Stamped], clock: Clock, run: str) -> tuple[Array, float, list[str]]:
-    """The uniform clock (n,) of all signals, its period, and a note where stamps are off it."""
+def _clock(found: list[Stamped], clock: Clock, run: str, polled: bool) -> tuple[Array, float, list[str]]:
+    """The uniform clock (n,) of all signals, its period, and a note where stamps are off it.
+
+    Rows of a `polled` log that were left out are no periods that its clock missed.
+    """
     lengths = {len(x) for _, x in found}
     if min(lengths) < MIN_SAMPLES:
         raise MachineError(
@@ -207,7 +260,7 @@ def _clock(found: list[Stamped], clock: Clock, run: str) -> tuple[Array, float, 
             remedy="check the time unit, or state `offsets` of the clock",
         )
     missed = max((missed_periods(t) for t in stamps), key=lambda x: int(x.sum()))
-    notes = [missing_note(missed, period, run)] if len(missed) else []
+    notes = [missing_note(missed, period, run)] if len(missed) and not polled else []
     uneven = max(float(np.max(np.abs(np.diff(t) - period))) for t in stamps) / period
     note = f"{run}: stamps are off the grid by up to {uneven:.2g} periods; resampled every {period:.4g} s"
     samples = int((end - start) / period + 1e-6) + 1  # the last stamp counts though rounding may put it just before
@@ -243,7 +296,7 @@ def _onto(clock: Array, t: Array | None, x: Array) -> Array:
 
 def parts_of_record(name: str, tables: Tables, machine: Chain) -> tuple[dict[str, Tables], str]:
     """Return the parts of a record whose clock has holes or jumps back, and a note; else the record itself."""
-    columns = [c for axis in machine.axes for which in SIGNALS if (c := getattr(axis.signals, which)) is not None]
+    columns = [c for axis in machine.axes for c in _columns(axis).values()]
     one = len({table_of(c.column) for c in columns}) == 1
     clock = machine.time.column
     if clock is None or not one:

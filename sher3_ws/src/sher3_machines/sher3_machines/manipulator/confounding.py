@@ -7,10 +7,11 @@ length one, a combination of columns that nearly cancels is a change of several 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 from sher3_diagnosis.channel import Array
+from sher3_diagnosis.verdict import Cause
 
 from sher3_machines.manipulator.evidence import ArmMotionEvidence
 from sher3_machines.manipulator.view import MotionView
@@ -83,6 +84,21 @@ def confounding_notes(evidence: ArmMotionEvidence) -> list[str]:
     return [
         f"{', '.join(joints)}: the recorded motion cannot tell {_listed(sorted(g))} apart"
         for g, joints in found.items()
+    ]
+
+
+def known_weights(causes: Iterable[Cause]) -> list[str]:
+    """Return what a known weight would tell of causes that no motion tells apart: the drive's gain, weight, payload.
+
+    Each of them multiplies the same force; a weight that somebody put on a scale adds another one.
+    """
+    same = set(SAME.values())
+    open_ones = [(c.actuator, [e for e in (c.effect, *c.rivals) if e in same]) for c in causes]
+    return [
+        f"no motion tells {_listed([e.replace('_', ' ') for e in found])} on {site} apart, a known weight does: "
+        "hang one on the last link, record the same motion without and with it, and tag the runs by `payload`"
+        for site, found in open_ones
+        if len(found) > 1
     ]
 
 

@@ -13,7 +13,7 @@ from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.finding import ExactFinding, Finding
 from sher3_diagnosis.machine import Machine, Policy
 from sher3_diagnosis.verdict import Cause
-from sher3_effects import pages
+from sher3_effects.inertia.gravity_load import GravityLoad
 from sher3_effects.inertia.payload_mass import PayloadOnLink
 from sher3_effects.scale.torque_constant import TorqueConstant
 from sher3_effects.timing.sensor_delay import SensorDelay
@@ -26,20 +26,24 @@ from sher3_machines.axes.readings.wrong import wrong_readings
 from sher3_machines.axes.record import AxesRun
 from sher3_machines.contrast.changes import change_notes, contrasted, of_runs
 from sher3_machines.contrast.conditions import Condition, conditions_of, reference_runs, told_together
+from sher3_machines.intake.notes import told_once
 from sher3_machines.manipulator.causes import causes_of_arm, centred
 from sher3_machines.manipulator.confounding import SAME, confounding_notes
 from sher3_machines.manipulator.description import ManipulatorDescription
 from sher3_machines.manipulator.evidence import ArmMotionEvidence, gather_arm_motion
+from sher3_machines.manipulator.library import of_joints
 from sher3_machines.manipulator.model import ArmModel
 from sher3_machines.manipulator.readings.lateness import late_efforts, with_closure
 from sher3_machines.manipulator.readings.wrong import level_notes
 
 if TYPE_CHECKING:
-    from sher3_machines.manipulator.reporter import ManipulatorReporter
+    from sher3_machines.manipulator.report.reporter import ManipulatorReporter
 
 
-IN_INERTIAS = (TorqueConstant.id, PayloadOnLink.id)
-"""Effects that gain or inertias found from the data contain."""
+IN_GAIN = (TorqueConstant.id, PayloadOnLink.id)
+"""Effects that a gain found from the data contains."""
+IN_INERTIAS = (*IN_GAIN, GravityLoad.id)
+"""Effects that inertias found from the data contain."""
 
 
 @dataclass(frozen=True)
@@ -67,15 +71,16 @@ class Manipulator(Machine[AxesRun, ArmMotionEvidence]):
         if all(j.lead is not None for j in self.described.joints):
             facts.add("lead")
         known = of_joints(facts)
-        if evidence.shares or evidence.scales or self.described.inertias == "identified":
-            known = [e for e in known if e.id not in IN_INERTIAS]
-        return known
+        contained: tuple[str, ...] = IN_GAIN if evidence.shares or evidence.scales else ()
+        contained = IN_INERTIAS if self.described.inertias == "identified" else contained
+        return [e for e in known if e.id not in contained]
 
     def audit(self, runs: Sequence[AxesRun]) -> list[str]:
         """Return what was done to the data, which channels are dead, and whether floors are known from repeats."""
-        notes = [note for run in runs for note in run.notes] + told_together(self._conditions(runs))
+        notes = [note for run in runs for note in run.notes]
         for run in runs:
             notes += [note for joint in self.described.joints for note in wrong_readings(run, joint).values()]
+        notes = told_once(notes, [run.name for run in runs]) + told_together(self._conditions(runs))
         return notes if self.described.repeats and len(runs) > 1 else [*notes, NO_REPEATS]
 
     def gather(self, runs: Sequence[AxesRun]) -> Sequence[ArmMotionEvidence]:
@@ -132,13 +137,13 @@ class Manipulator(Machine[AxesRun, ArmMotionEvidence]):
                 "and are not looked for"
             )
         notes += change_notes(finding.attribution, self._conditions(evidence.runs))
-        for run in evidence.runs:
-            notes += level_notes(run, self.described.joints, evidence.judged)
+        levels = [x for run in evidence.runs for x in level_notes(run, self.described.joints, evidence.judged)]
+        notes += told_once(levels, [run.name for run in evidence.runs])
         return [*notes, *slip_notes(evidence), *gain_notes(evidence), *confounding_notes(evidence)]
 
     def reporter(self) -> ManipulatorReporter:
         """Return the part of this machine in a report."""
-        from sher3_machines.manipulator.reporter import ManipulatorReporter
+        from sher3_machines.manipulator.report.reporter import ManipulatorReporter
 
         return ManipulatorReporter()
 
@@ -146,13 +151,6 @@ class Manipulator(Machine[AxesRun, ArmMotionEvidence]):
 def views_of(evidence: ArmMotionEvidence, runs: Collection[str]) -> frozenset[int]:
     """Return the identities of the views of some runs."""
     return frozenset(id(v) for v, run in zip(evidence.records, evidence.runs, strict=True) if run.name in runs)
-
-
-def of_joints(facts: set[str] | None = None) -> list[Effect]:
-    """Return the pages for a joint of an arm: its own, and those of an axis that it does not replace."""
-    own = pages("joint", facts)
-    taken = {e.id for e in own}
-    return [*own, *(e for e in pages("axis", facts) if e.id not in taken)]
 
 
 def gain_notes(evidence: ArmMotionEvidence) -> list[str]:

@@ -135,7 +135,7 @@ def test_notes_say_what_cannot_be_told():
     repeated = Axes(described().model_copy(update={"repeats": True}))
     signals = run_of(driven(1.0)).signals
     runs = [AxesRun(name, PERIOD, signals, [f"{name}: resampled"]) for name in "ab"]
-    assert repeated.audit(runs) == ["a: resampled", "b: resampled"]
+    assert repeated.audit(runs) == ["a, b: resampled"]
 
 
 def test_facts_are_what_the_description_states():

@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
+from causes_at import caused
 from lifts import machine, motion, needed, run_of
-from sher3_machines.manipulator.confounding import confounded, confounded_in
+from sher3_machines.manipulator.confounding import confounded, confounded_in, known_weights
 
 
 def test_columns_that_nearly_cancel_are_named():
@@ -30,3 +31,12 @@ def test_a_lift_never_tells_a_constant_force_from_its_weight(tmp_path):
     q, v, a = motion()
     evidence = machine(tmp_path / "lift.urdf").gather([run_of(q, needed(q, v, a))])[0]
     assert any({"constant force", "weight"} <= group for group in confounded_in(evidence, "lift"))
+
+
+def test_gain_against_weight_asks_for_a_known_weight_and_friction_does_not():
+    causes = [
+        caused("torque_constant", "scale", "A5", "relative", 0.45, "1", ["gravity_load", "stribeck_friction"]),
+        caused("coulomb_friction", "friction", "A4", "force", 8.0, "N*m", ["gear_loss"]),
+    ]
+    (told,) = known_weights(causes)
+    assert told.startswith("no motion tells torque constant and gravity load on A5 apart, a known weight does")

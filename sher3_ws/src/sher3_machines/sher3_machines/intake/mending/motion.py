@@ -1,4 +1,6 @@
-"""What the recorded motion says of columns beside it: whether a speed agrees with the clock, the sign of an effort."""
+"""What the recorded motion says of columns beside it: whether a speed agrees with the clock, the sense of a place, the
+sign of an effort.
+"""
 
 from __future__ import annotations
 
@@ -39,6 +41,13 @@ def speed_ratio(t: Array, x: Array, v: Array) -> float | None:
     if min(norms) == 0.0 or abs(float(left[0] @ left[1])) < FOLLOWS * norms[0] * norms[1]:
         return None
     return float(left[0] @ left[1]) / norms[0] ** 2
+
+
+def counts_backwards(other: Array, x: Array) -> bool:
+    """Return whether a second place (n,) counts against the first one (n,): it follows it well, the other way."""
+    if not (np.ptp(x) > 0.0 and np.ptp(other) > 0.0):
+        return False
+    return float(np.corrcoef(other, x)[0, 1]) < -FOLLOWS
 
 
 def check_speed(ratio: float | None, unit: str | None, what: str) -> None:

@@ -5,10 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from sher3_diagnosis.channel import Channel
-from sher3_diagnosis.reporter import Output, Reporter
+from sher3_diagnosis.finding import Findings
+from sher3_diagnosis.reporter import Output, Reporter, Table
 
 from sher3_machines.axes.reporter import samples_of
 from sher3_machines.manipulator.evidence import ArmMotionEvidence
+from sher3_machines.manipulator.library import of_joints
+from sher3_machines.manipulator.report.table import table_of
 
 
 class ManipulatorReporter(Reporter[ArmMotionEvidence]):
@@ -31,6 +34,14 @@ class ManipulatorReporter(Reporter[ArmMotionEvidence]):
         """Return the blocks of the same record."""
         views = evidence.data.views
         return [k for k, view in enumerate(views) if view is views[run]]
+
+    def table(self, diagnosis: Findings[ArmMotionEvidence]) -> Table | None:
+        """Return joints by constants; None where no joint was looked at."""
+        if not diagnosis.findings or not diagnosis.verdict.causes:
+            return None
+        evidence = diagnosis.findings[0].evidence
+        names = [joint.name for joint in evidence.described.joints]
+        return table_of(diagnosis.verdict.causes, of_joints(), names, evidence.judged)
 
     def output(self, evidence: ArmMotionEvidence, run: int, channel: Channel) -> Output:
         """Return the effort of a joint."""

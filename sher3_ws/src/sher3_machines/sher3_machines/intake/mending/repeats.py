@@ -1,0 +1,79 @@
+"""Rows that a logger polled twice, and channels that are slower than the log: a repeated reading is no sample.
+
+A value that stays although its axis moves is told by what follows it: the next reading jumps by many of the smallest
+steps of its column. A coarse encoder that moves slowly repeats its counts too, and goes on by one of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from sher3_diagnosis.channel import Array, Mask
+
+LONGEST_HOLD = 9
+"""Rows in a row that may repeat one: a longer stretch is an axis at rest, or a drive that is off."""
+USUAL_HOLD = 5.0
+"""Rows that usually repeat one, as a median, beyond which an axis dwells: it is started and stopped."""
+FEWEST = 5
+"""Repeats below which nothing is said: they may be chance."""
+POLLED = 0.01
+"""Share of the rows from which repeated ones are those of a logger that polls."""
+HELD = 0.4
+"""Share of the readings of one channel from which it is held: a channel at half the rate of the log repeats half."""
+JUMP = 4.0
+"""Smallest steps of a column beyond which its next reading was not reached by one more count; half of the repeats must
+be followed so."""
+
+
+def repeats(x: Array, least: float) -> Mask:
+    """Return (n,) True where a row of readings (n, m) repeats the one before without being a sample of its own.
+
+    Args:
+        x: readings; a single channel has m = 1.
+        least: share of the rows from which repeats say anything.
+    """
+    out = np.zeros(len(x), dtype=bool)
+    change = np.diff(x, axis=0)
+    same = np.concatenate([[False], (change == 0.0).all(axis=1)])
+    edges = np.flatnonzero(np.diff(np.concatenate([same.astype(np.int8), [0]])))
+    first, last = edges[::2], edges[1::2]  # the row that is repeated, and the last one that repeats it
+    short = (last - first <= LONGEST_HOLD) & (last + 1 < len(x))
+    for a, b in zip(first[short], last[short], strict=True):
+        out[a + 1 : b + 1] = True
+    if out.sum() < max(FEWEST, least * len(x)) or np.median((last - first)[short]) > USUAL_HOLD:
+        return np.zeros_like(out)
+    jumps = np.abs(x[last[short] + 1] - x[first[short]]) > JUMP * smallest_steps(change)
+    return out if jumps.any(axis=1).mean() > 0.5 else np.zeros_like(out)
+
+
+def smallest_steps(change: Array) -> Array:
+    """Return the smallest change of each column, (m,), of changes (n, m); infinite for one that never changes."""
+    size = np.abs(change)
+    return np.asarray(np.where(size > 0.0, size, np.inf).min(axis=0, initial=np.inf))
+
+
+def fresh_rows(columns: Sequence[Array]) -> Mask:
+    """Return (n,) False where a row repeats its predecessor in all columns (n,) or (n, ...)."""
+    flat = [np.nan_to_num(np.asarray(x, dtype=float).reshape(len(x), -1)) for x in columns]
+    return ~repeats(np.hstack(flat), POLLED)
+
+
+def fresh_readings(x: Array) -> Mask:
+    """Return (n,) False where a channel (n,) that is slower than its log repeats a reading."""
+    return ~repeats(np.nan_to_num(x)[:, None], HELD)
+
+
+def hold_of(fresh: Mask) -> float:
+    """Return for how many rows a channel is held, as a median, of what `fresh_readings` (n,) returns."""
+    at: NDArray[np.int64] = np.flatnonzero(fresh)
+    return float(np.median(np.diff(at))) if len(at) > 1 else 1.0
+
+
+def filled(x: Array, fresh: Mask) -> Array:
+    """Return readings (n, ...) with those that are not fresh interpolated: without stamps each row has its place."""
+    place = np.arange(len(x))
+    flat = x.reshape(len(x), -1)
+    out = [np.interp(place, place[fresh], column[fresh]) for column in flat.T]
+    return np.stack(out, axis=1).reshape(x.shape)

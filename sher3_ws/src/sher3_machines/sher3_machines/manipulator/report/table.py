@@ -1,0 +1,68 @@
+"""The constants of an arm as a mechanic asks for them: a row for each joint, a column for each kind of constant."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+
+from sher3_diagnosis.effect import Effect
+from sher3_diagnosis.report.summary import significant, told
+from sher3_diagnosis.reporter import EMPTY, Table
+from sher3_diagnosis.verdict import Cause
+from sher3_diagnosis.words import place, quantity, range_text, words
+
+OTHER = "other"
+HEADS: Mapping[str, Sequence[str]] = {
+    "inertia": ("inertia", "payload"),
+    "weight": ("weight", "offset", "arm"),
+    "Coulomb": ("coulomb", "static", "load_loss", "friction"),
+    "viscous": ("viscous",),
+    "delay": ("delay", "lag", "timing"),
+    "gain": ("drive", "ratio", "scale"),
+    "play": ("backlash", "lost_motion"),
+    "spring": ("compliance", "spring"),
+    OTHER: (),
+}
+"""Head of a column -> constants of the equation of motion, and families of what has none, that stand in it."""
+NOT_JUDGED = "not judged"
+
+
+def table_of(causes: Iterable[Cause], library: Iterable[Effect], joints: Sequence[str], judged: Sequence[str]) -> Table:
+    """Return the table of an arm: joints in their order, then links that a cause sits on.
+
+    Args:
+        causes: of the verdict.
+        library: effects, whose pages say which constant a cause sets.
+        joints: of the arm.
+        judged: those whose force balance was looked at.
+    """
+    sets = {e.id: getattr(e, "on_axis", {}) for e in library}
+    cells: dict[str, dict[str, list[str]]] = {joint: {} for joint in joints}
+    for cause in causes:
+        head = head_of(cause, sets.get(cause.effect, {}))
+        cells.setdefault(cause.actuator, {}).setdefault(head, []).append(cell(cause))
+    rows = [
+        [place(site), *("; ".join(found.get(head, ())) or EMPTY for head in HEADS)]
+        if found or site in judged
+        else [place(site), *[NOT_JUDGED] * len(HEADS)]
+        for site, found in cells.items()
+    ]
+    return Table(["joint", *HEADS], rows, {place(site) for site, found in cells.items() if found})
+
+
+def head_of(cause: Cause, sets: Mapping[str, str]) -> str:
+    """Return the column of a cause: of the constant that its first parameter sets, else of its family."""
+    constant = next((sets[name] for name in cause.parameters if name in sets), cause.family)
+    return next((head for head, held in HEADS.items() if constant in held), OTHER)
+
+
+def cell(cause: Cause) -> str:
+    """Return a cause with the first of its parameters that differs from zero, its interval and its rivals."""
+    parameters = told(cause)
+    name = next((n for n, p in parameters.items() if significant(p)), next(iter(parameters), ""))
+    text, p = words(cause.effect), parameters.get(name)
+    if p is not None:
+        text += f" {p.means or quantity(p.value, p.unit)}"
+        text += "" if p.low is None else f" ({range_text(p.low, p.high, p.unit)})"
+        text += "" if significant(p) else ", not told from zero"
+    text += f" in {cause.condition}" if cause.condition else ""
+    return text + (f" or {', '.join(words(r).lower() for r in cause.rivals)}" if cause.rivals else "")

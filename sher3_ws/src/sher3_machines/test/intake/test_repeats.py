@@ -1,0 +1,47 @@
+"""Rows that a logger polled twice and channels slower than the log are told from coarse readings and from rest."""
+
+import numpy as np
+import pytest
+from sher3_machines.intake.mending.motion import counts_backwards
+from sher3_machines.intake.mending.repeats import filled, fresh_readings, fresh_rows, hold_of
+
+N = 3000
+CLOCK = 0.002 * np.arange(N)
+PLACE = np.sin(2.0 * np.pi * 0.5 * CLOCK)
+EFFORT = np.cos(2.0 * np.pi * 0.5 * CLOCK) + np.random.default_rng(0).normal(0.0, 0.02, N)
+
+
+def polled(share, *columns):
+    """Columns in which a share of the rows repeats the one before, and that mask."""
+    again = np.random.default_rng(1).random(N) < share
+    again[[0, -1]] = False
+    last = np.maximum.accumulate(np.where(again, 0, np.arange(N)))
+    return again, [x[last] for x in columns]
+
+
+@pytest.mark.parametrize("share", [0.05, 0.3, 2.0 / 3.0])
+def test_rows_that_were_polled_twice_are_no_samples(share):
+    again, columns = polled(share, PLACE, EFFORT)
+    assert np.mean(fresh_rows(columns) != ~again) < 0.1  # a run of more than nine is taken for rest
+
+
+def test_a_channel_at_a_third_of_the_rate_is_held_for_three_rows():
+    held = EFFORT[np.arange(N) // 3 * 3]
+    fresh = fresh_readings(held)
+    assert (np.flatnonzero(fresh[:-3]) % 3 == 0).all() and hold_of(fresh) == 3.0
+    assert np.abs(filled(held, fresh) - EFFORT).std() < 0.03
+
+
+def test_coarse_counts_rest_steps_and_noise_are_samples():
+    coarse = np.round(PLACE / 0.02) * 0.02
+    assert fresh_readings(coarse).all() and fresh_rows([coarse, np.round(EFFORT / 0.5)]).all()
+    assert fresh_rows([np.repeat([0.0, 1.0, 0.0], 1000), np.repeat([5.0, 7.0, 5.0], 1000)]).all()  # rest and stairs
+    assert fresh_readings(np.repeat([0.0, 1.0], 5)[np.arange(N) % 10]).all()  # a square wave has one step
+    assert fresh_readings(np.round(EFFORT / 0.02) * 0.02).all()  # a noise of one count
+    dwells = np.repeat(0.1 * np.arange(N // 10), 10) + 0.02 * np.repeat([[0, 1, 2, 3] + [4] * 6], N // 10, 0).ravel()
+    assert fresh_rows([dwells, dwells]).all()  # starts and stops
+
+
+def test_a_second_encoder_that_counts_backwards_is_told_by_the_motion():
+    assert counts_backwards(3.0 - 0.9 * PLACE, PLACE) and not counts_backwards(0.9 * PLACE, PLACE)
+    assert not counts_backwards(np.zeros(N), PLACE) and not counts_backwards(-EFFORT, PLACE)
