@@ -5,13 +5,14 @@ from __future__ import annotations
 import shutil
 from pathlib import Path
 
-from generators import api, commands, effects, hazards, robot_file, thresholds, topics
+from generators import api, commands, effects, hazards, robot_file, targets, thresholds, topics
 
 PAGES = {
     "commands": commands.page,
     "effects": effects.page,
     "hazards": hazards.page,
     "robot-file": robot_file.page,
+    "targets": targets.page,
     "thresholds": thresholds.page,
     "topics": topics.page,
 }

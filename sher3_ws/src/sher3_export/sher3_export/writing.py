@@ -11,15 +11,21 @@ from sher3_diagnosis.verdict import Cause, Verdict
 
 from sher3_export.changes import Change, Untold, changes_of
 from sher3_export.errors import ExportError
+from sher3_export.targets.configuration import Configuration
 from sher3_export.targets.isaac import Isaac
+from sher3_export.targets.isaaclab import IsaacLab
 from sher3_export.targets.mjcf import Mjcf
+from sher3_export.targets.mjlab import Mjlab
 from sher3_export.targets.plain import Plain
+from sher3_export.targets.ros2_control import Ros2Control
 from sher3_export.targets.sdf import Sdf
 from sher3_export.targets.target import Target, XmlTarget
 from sher3_export.targets.urdf import Urdf
 from sher3_export.xml_file import read_xml
 
-TARGETS: Mapping[str, type[Target]] = {"mjcf": Mjcf, "urdf": Urdf, "sdf": Sdf, "isaac": Isaac, "yaml": Plain}
+TARGETS: Mapping[str, type[Target]] = {
+    kind.name: kind for kind in (Mjcf, Urdf, Sdf, Isaac, IsaacLab, Mjlab, Ros2Control, Plain)
+}
 """Name of a target -> how causes are written into it."""
 
 
@@ -79,12 +85,21 @@ def put(
 
 def opened(kind: type[Target], model: Path | Element | None) -> Target:
     """Return a writer for a target; raises ExportError where the model it needs is missing or wrong."""
+    if issubclass(kind, Configuration):
+        return kind(None if model is None else nominal_of(model))
     if not issubclass(kind, XmlTarget):
         return kind()
     if model is None:
         remedy = f"give the nominal model with --model FILE.{kind.name}"
         raise ExportError(f"{kind.name} needs a model to write into", value="no --model", remedy=remedy)
     return kind(read_xml(model, kind.root_tag) if isinstance(model, Path) else model)
+
+
+def nominal_of(model: Path | Element) -> dict[str, dict[str, float]]:
+    """Return what a model says of its joints, MJCF or URDF; raises ExportError where it is neither."""
+    kinds = {kind.root_tag: kind for kind in (Mjcf, Urdf)}
+    root = read_xml(model, "robot" if model.suffix == ".urdf" else "mujoco") if isinstance(model, Path) else model
+    return kinds[root.tag](root).nominal()
 
 
 def remarks(verdict: Verdict, applied: Sequence[Change], untold: Sequence[Untold]) -> list[str]:

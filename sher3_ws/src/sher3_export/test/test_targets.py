@@ -1,5 +1,9 @@
 """URDF, SDF, Isaac and plain YAML: what is written, and what is said to be missing."""
 
+import sys
+from functools import partial
+from types import ModuleType
+
 import pinocchio
 import pytest
 import yaml
@@ -65,14 +69,115 @@ def test_yaml_takes_every_constant_with_its_interval():
     assert joints["backlash"][0]["value"] == 0.01 and not done.untold
 
 
-def test_every_constant_is_written_or_refused_with_a_reason_by_every_target():
-    for name, target in TARGETS.items():
-        if issubclass(target, XmlTarget):
-            model = URDF if name == "urdf" else SDF if name == "sdf" else None
-            if model is None:
-                continue
-            known = set(target(parse_xml(model, target.root_tag)).writers) | set(target.refuses)
-            assert known == set(CONSTANTS), name
+MJCF = """<mujoco><default><joint damping="0.1"/></default><worldbody><body><joint name="slide" frictionloss="0.5"/>
+<geom size="0.1"/></body></worldbody></mujoco>"""
+
+
+@pytest.mark.parametrize("name", TARGETS)
+def test_every_constant_is_written_or_refused_with_a_reason_by_every_target(name):
+    target = TARGETS[name]
+    assert set(target.fields) | set(target.refuses) == set(CONSTANTS)
+    assert all(len(reason) > 20 for reason in target.refuses.values())
+    if issubclass(target, XmlTarget):
+        model = {"urdf": URDF, "sdf": SDF, "mjcf": MJCF}[name]
+        assert set(target(parse_xml(model, target.root_tag)).writers) == set(target.fields)
+
+
+class Group:
+    """Stands for the class of a library: it takes the fields that the library documents and no other."""
+
+    def __init__(self, known, **given):
+        assert set(given) <= set(known.split()), set(given) - set(known.split())
+        self.__dict__.update(given)
+
+
+ISAACLAB = (
+    "joint_names_expr actuator_effort_limit actuator_velocity_limit joint_effort_limit stiffness damping armature "
+    "friction dynamic_friction viscous_friction"
+)
+MJLAB = (
+    "target_names_expr transmission_type command_field armature velocity_limit frictionloss viscous_damping "
+    "delay_min_lag delay_max_lag delay_hold_prob delay_update_period delay_per_env_phase"
+)
+LIBRARIES = {
+    "isaaclab.actuators": {
+        "IdealPDActuatorCfg": partial(Group, ISAACLAB),
+        "DelayedPDActuatorCfg": partial(Group, f"{ISAACLAB} min_delay max_delay"),
+    },
+    "mjlab.actuator": {"XmlActuatorCfg": partial(Group, MJLAB)},
+}
+"""Fields of Isaac Lab 3.0.0 and mjlab 1.6.0, as their wheels have them."""
+
+
+def loaded(text, monkeypatch):
+    """Run a configuration as its library would, against the documented fields."""
+    for module, classes in LIBRARIES.items():
+        stand_in = ModuleType(module)
+        stand_in.__dict__.update(classes)
+        monkeypatch.setitem(sys.modules, module.split(".")[0], ModuleType(module.split(".")[0]))
+        monkeypatch.setitem(sys.modules, module, stand_in)
+    space = {}
+    exec(text, space)
+    return space["ACTUATORS"], space["RANGES"]
+
+
+CAUSES = (
+    FRICTION,
+    DAMPING,
+    cause("rotor_inertia", inertia=0.02, unit="kg*m^2"),
+    cause("force_saturation", limit=4.0, unit="N*m"),
+    cause("command_delay", delay=0.012, unit="s"),
+)
+
+
+def test_isaaclab_s_file_is_python_with_fields_that_isaac_lab_has(monkeypatch):
+    done = export(verdict(*CAUSES), "isaaclab", parse_xml(MJCF, "mujoco"))
+    actuators, ranges = loaded(done.text, monkeypatch)
+    slide = actuators["slide"]
+    assert (slide.dynamic_friction, slide.friction) == (2.5, 2.5) and slide.viscous_friction == pytest.approx(0.4)
+    assert (slide.armature, slide.actuator_effort_limit, slide.stiffness) == (0.02, 4.0, None)
+    assert (slide.min_delay, slide.max_delay) == (2, 3) and not done.untold
+    assert ranges["slide"]["dynamic_friction"] == pytest.approx((2.3, 2.7))
+
+
+def test_mjlab_s_file_is_python_with_fields_that_mjlab_has(monkeypatch):
+    done = export(verdict(*CAUSES), "mjlab", parse_xml(URDF, "robot"))
+    actuators, ranges = loaded(done.text, monkeypatch)
+    slide = actuators["slide"]
+    assert (slide.target_names_expr, slide.frictionloss, slide.viscous_damping) == (("slide",), 2.5, 0.3)
+    assert (slide.delay_min_lag, slide.delay_max_lag) == (2, 3) and set(ranges["slide"]) == {
+        "frictionloss",
+        "viscous_damping",
+        "armature",
+    }
+    assert [(x.constant, "--to mjcf" in x.reason) for x in done.untold] == [("limit", True)]
+
+
+def test_without_a_model_a_configuration_says_that_its_values_add(monkeypatch):
+    text = export(verdict(FRICTION), "mjlab").text
+    assert (
+        "add what your asset has, or give --model" in text and loaded(text, monkeypatch)[0]["slide"].frictionloss == 2.0
+    )
+
+
+@pytest.mark.parametrize("name", ["isaaclab", "mjlab"])
+def test_a_name_of_a_joint_stays_a_name(name, monkeypatch):
+    """Quotes, code and ends of lines in a name neither end its text nor the comment on top."""
+    evil = 'a"]\nraise SystemExit #'
+    actuators, _ = loaded(export(verdict(cause("coulomb_friction", evil, force=2.0)), name).text, monkeypatch)
+    assert list(actuators) == [evil]
+
+
+def test_ros2_control_s_element_parses_and_stays_in_its_schema():
+    done = export(verdict(*CAUSES, cause("payload_mass", mass=1.0)), "ros2_control")
+    root = parse_xml(done.text, "ros2_control")
+    assert root.get("type") == "system" and root.findtext("hardware/plugin") == "mock_components/GenericSystem"
+    joint = root.find("joint")
+    assert {x.tag for x in joint} == {"command_interface", "param", "state_interface"}
+    found = {x.get("name"): float(x.text) for x in joint.findall("param")}
+    assert found["coulomb"] == 2.0 and found["delay"] == 0.012 and "limit" not in found
+    limits = {x.get("name"): float(x.text) for x in joint.findall("command_interface/param")}
+    assert limits == {"min": -4.0, "max": 4.0}
 
 
 def test_a_missing_model_or_target_is_refused_with_a_remedy():

@@ -11,6 +11,9 @@ from sher3_common.commands.options import Json
 
 from sher3_gap_cli.options import Library, RequestError, Trust, VerdictFile, reported, written
 
+TARGETS = "mjcf, urdf, sdf, isaaclab, isaac, mjlab, ros2_control or yaml"
+"""Names of targets as the help has them; the table of `sher3_export` is not imported for it."""
+
 if TYPE_CHECKING:
     from sher3_export.check.check import JointGap
     from sher3_export.writing import Exported
@@ -18,9 +21,11 @@ if TYPE_CHECKING:
 
 def export(
     verdict: VerdictFile,
-    to: Annotated[str, typer.Option(help="Target: mjcf, urdf, sdf, isaac or yaml.")] = "yaml",
+    to: Annotated[
+        str, typer.Option(help="Target: mjcf, urdf, sdf, isaaclab, isaac, mjlab, ros2_control or yaml.")
+    ] = "yaml",
     model: Annotated[Path | None, typer.Option(help="Nominal model that the causes are added to.")] = None,
-    out: Annotated[Path | None, typer.Option(help="File to write; default exported.xml, .urdf, .sdf or .yaml.")] = None,
+    out: Annotated[Path | None, typer.Option(help="File to write; default exported, with the target's ending.")] = None,
     check: Annotated[
         Path | None, typer.Option(help="Run the MJCF in MuJoCo on this case; without --model it is made of the case.")
     ] = None,
@@ -108,4 +113,7 @@ def _names(pairs: list[str]) -> dict[str, str]:
 
 
 def _suffix(to: str) -> str:
-    return {"mjcf": "xml", "urdf": "urdf", "sdf": "sdf"}.get(to, "yaml")
+    from sher3_export.targets.plain import Plain
+    from sher3_export.writing import TARGETS as KINDS
+
+    return KINDS.get(to, Plain).suffix

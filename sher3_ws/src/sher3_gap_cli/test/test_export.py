@@ -79,3 +79,10 @@ def test_ranges_are_written(call, tmp_path):
 def test_what_cannot_be_done_is_one_sentence(call, words, named):
     found = call(*words)
     assert found.exit_code == 2 and named in found.output and "Traceback" not in found.output
+
+
+def test_the_help_names_every_target():
+    from sher3_export import TARGETS
+    from sher3_gap_cli.export import TARGETS as SAID
+
+    assert set(SAID.replace(" or ", ", ").split(", ")) == set(TARGETS)

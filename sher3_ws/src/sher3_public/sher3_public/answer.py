@@ -112,7 +112,8 @@ class Answer:
 
         Args:
             path: file to write.
-            to: `mjcf`, `urdf`, `sdf`, `isaac` or `yaml`; default the format of the model that was given, else `yaml`.
+            to: `mjcf`, `urdf`, `sdf`, `isaaclab`, `isaac`, `mjlab`, `ros2_control` or `yaml`; default the format
+                of the model that was given, else `yaml`.
 
         Raises:
             InputError: the target needs a model that was not given as text or file.

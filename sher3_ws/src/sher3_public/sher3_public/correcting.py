@@ -41,11 +41,11 @@ def corrected(verdict: Verdict, source: Source | None, to: str = "") -> Correcte
     own = "yaml" if source is None else "urdf" if source.bodies.mujoco is None else "mjcf"
     target = to or own
     root = None
-    if target in ROOTS:
-        if source is None or target != own or source.text is None:
-            remedy = "give the model as a path, a text or an MjSpec of that format, or use to='yaml'"
-            given = "an MjModel" if source is not None and source.text is None else own
-            raise InputError(f"{target} is written into the model that was given", value=given, remedy=remedy)
-        root = parse_xml(source.text, ROOTS[target])
+    if target in ROOTS and (source is None or target != own or source.text is None):
+        remedy = "give the model as a path, a text or an MjSpec of that format, or use to='yaml'"
+        given = "an MjModel" if source is not None and source.text is None else own
+        raise InputError(f"{target} is written into the model that was given", value=given, remedy=remedy)
+    if own in ROOTS and source is not None and source.text is not None:
+        root = parse_xml(source.text, ROOTS[own])
     done = export(verdict, target, root)
     return Corrected(done.text, [str(x) for x in done.applied], [str(x) for x in done.untold])

@@ -32,6 +32,7 @@ class Isaac(Target):
     """Actuator groups as YAML: `group: {class, joint_names_expr, field: value}`; values add to the nominal ones."""
 
     name = "isaac"
+    fields: ClassVar[Mapping[str, str]] = {**FIELDS, "delay": "min_delay, max_delay"}
     refuses: ClassVar[Mapping[str, str]] = {
         "load_loss": "friction does not follow the load here; that of the mean load was written",
         "stribeck": "static and sliding friction are stated, the speed between them is not",
@@ -48,6 +49,7 @@ class Isaac(Target):
         **dict.fromkeys(("spring", "rest"), "an actuator has no spring beside it"),
         **dict.fromkeys(("payload", "payload_x", "payload_y", "payload_z"), "a payload belongs to the asset"),
         "ratio": "the load encoder is no part of the actuator",
+        **dict.fromkeys(("shift_x", "shift_y", "shift_z"), "the place of a joint belongs to the asset"),
     }
 
     def __init__(self) -> None:

@@ -33,6 +33,25 @@ class Mjcf(XmlTarget):
     """A MuJoCo model; attributes that come from <default> classes are read there and written at the joint."""
 
     name, root_tag = "mjcf", "mujoco"
+    suffix = "xml"
+    fields: ClassVar[Mapping[str, str]] = {
+        "coulomb": "frictionloss",
+        "viscous": "damping",
+        "inertia": "armature",
+        "offset": "actuator without control",
+        "weight": "gravcomp, for the last joint",
+        "drive": "gear, or kp and kv",
+        "delay": "delay, nsample",
+        "lag": "filterexact, timeconst",
+        "limit": "forcerange",
+        "zero": "ref",
+        "backlash": "a body of the motor's own and a second joint",
+        "compliance": "a body of the motor's own and a second joint",
+        "spring": "stiffness",
+        "rest": "springref",
+        **dict.fromkeys(("payload", "payload_x", "payload_y", "payload_z"), "a body of its own"),
+        **dict.fromkeys(("shift_x", "shift_y", "shift_z"), "pos of the body"),
+    }
     refuses: ClassVar[Mapping[str, str]] = {
         **dict.fromkeys(
             ("arm", "hanging"), "a weight at an arm is mass and centre of a link, which the verdict does not give"
@@ -72,6 +91,14 @@ class Mjcf(XmlTarget):
             "shift_x": self._shift,
             "shift_y": self._shift,
             "shift_z": self._shift,
+        }
+
+    def nominal(self) -> dict[str, dict[str, float]]:
+        """Return what joints have, classes of <default> included."""
+        named = {constant: self.fields[constant] for constant in ("coulomb", "viscous", "inertia")}
+        return {
+            name: {constant: self._inherited(joint, attribute) for constant, attribute in named.items()}
+            for name, joint in self.joints.items()
         }
 
     def stiffness(self, joint: str) -> float:

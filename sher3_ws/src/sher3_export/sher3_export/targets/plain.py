@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Mapping, Sequence
+from typing import Any, ClassVar
 
 from sher3_common import dump_yaml
+from sher3_effects.page import CONSTANTS
 
 from sher3_export.changes import Change
 from sher3_export.targets.target import Target
@@ -15,6 +16,7 @@ class Plain(Target):
     """`schema: sher3.model/1`, `joints: {NAME: {CONSTANT: {value, low, high, unit, from}}}`."""
 
     name = "yaml"
+    fields: ClassVar[Mapping[str, str]] = dict.fromkeys(CONSTANTS, "its own name")
 
     def __init__(self) -> None:
         self.joints: dict[str, dict[str, Any]] = {}

@@ -19,6 +19,14 @@ class Sdf(XmlTarget):
     """A model or world of the Simulation Description Format."""
 
     name, root_tag = "sdf", "sdf"
+    suffix = "sdf"
+    fields: ClassVar[Mapping[str, str]] = {
+        "coulomb": "friction",
+        "viscous": "damping",
+        "limit": "effort",
+        "spring": "spring_stiffness",
+        "rest": "spring_reference",
+    }
     refuses: ClassVar[Mapping[str, str]] = {
         **dict.fromkeys(
             ("arm", "hanging"), "a weight at an arm is mass and centre of a link, which the verdict does not give"
@@ -55,6 +63,13 @@ class Sdf(XmlTarget):
             "spring": lambda change, joint: self._add(joint, "dynamics", "spring_stiffness", change.value),
             "rest": self._rest,
             "limit": self._limit,
+        }
+
+    def nominal(self) -> dict[str, dict[str, float]]:
+        """Return friction and damping of joints; an SDF knows no rotor."""
+        return {
+            name: {c: number(joint.findtext(f"axis/dynamics/{self.fields[c]}")) for c in ("coulomb", "viscous")}
+            for name, joint in self.joints.items()
         }
 
     def _add(self, joint: Element, group: str, name: str, change: float) -> str:

@@ -17,10 +17,14 @@ class Target(ABC):
 
     Class attributes:
         name: as the command line has it.
+        suffix: of a file of it.
+        fields: constant -> the field that takes it, as the documentation shows it.
         refuses: constant -> why this target has no field for it.
     """
 
     name: ClassVar[str]
+    suffix: ClassVar[str] = "yaml"
+    fields: ClassVar[Mapping[str, str]] = {}
     refuses: ClassVar[Mapping[str, str]] = {}
 
     @abstractmethod
@@ -59,6 +63,10 @@ class XmlTarget(Target):
     @abstractmethod
     def writers(self) -> Mapping[str, Callable[[Change, Element], str]]:
         """Return constant -> what writes it at a joint and returns why it cannot, or nothing."""
+
+    @abstractmethod
+    def nominal(self) -> dict[str, dict[str, float]]:
+        """Return joint -> constant -> what the model says of friction, damping and rotor inertia, SI units."""
 
     def apply(self, change: Change) -> str:
         """Write a change at its joint; return why it cannot be written, or nothing."""

@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from sher3_export.changes import Change
 from sher3_export.targets.target import XmlTarget, field
-from sher3_export.xml_file import add, numbers, written
+from sher3_export.xml_file import add, number, numbers, written
 
 DRIVE = "a URDF has no drive: no gain, delay or lag"
 PAYLOAD = "a payload is a link of its own: add it with a fixed joint by hand, or export to mjcf"
@@ -22,6 +22,13 @@ class Urdf(XmlTarget):
     """A robot of the Unified Robot Description Format."""
 
     name, root_tag = "urdf", "robot"
+    suffix = "urdf"
+    fields: ClassVar[Mapping[str, str]] = {
+        "coulomb": "friction",
+        "viscous": "damping",
+        "limit": "effort",
+        **dict.fromkeys(("zero", "shift_x", "shift_y", "shift_z"), "origin"),
+    }
     refuses: ClassVar[Mapping[str, str]] = {
         **dict.fromkeys(
             ("arm", "hanging"), "a weight at an arm is mass and centre of a link, which the verdict does not give"
@@ -58,6 +65,14 @@ class Urdf(XmlTarget):
             "shift_x": self._shift,
             "shift_y": self._shift,
             "shift_z": self._shift,
+        }
+
+    def nominal(self) -> dict[str, dict[str, float]]:
+        """Return friction and damping of joints; a URDF knows no rotor."""
+        said = {name: joint.find("dynamics") for name, joint in self.joints.items()}
+        return {
+            name: {c: 0.0 if x is None else number(x.get(self.fields[c])) for c in ("coulomb", "viscous")}
+            for name, x in said.items()
         }
 
     def _dynamics(self, joint: Element, attribute: str, change: float) -> str:

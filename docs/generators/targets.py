@@ -1,0 +1,48 @@
+"""What each target of an export can say, and why it cannot say the rest, as a page."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import groupby
+
+from sher3_effects.page import CONSTANTS
+from sher3_export.writing import TARGETS
+
+from generators.table import table
+
+HEAD = """# What a target can express
+
+Constants of a joint, and the field of each target of `sher3 gap export --to` that takes it. Written from the sources;
+fields are those of MuJoCo 4.0, URDF 1.0, SDF 1.9, Isaac Lab 3.0 (`isaaclab`) and 2.2 (`isaac`), mjlab 1.6 and
+the schema of ros2_control in ROS 2 Jazzy. `yaml` takes all constants with their intervals. What a target has no field
+for is printed by the export and stands in a comment on top of the file, with its reason.
+
+Periods (cogging, ripple, eccentricity) and friction over position are no constant of a joint and are listed for every
+target.
+
+"""
+SHOWN = [name for name in TARGETS if name != "yaml"]
+
+
+def page() -> str:
+    """Return the page."""
+    rows = [
+        (meaning, *(_shown(TARGETS[name].fields.get(constant, "–")) for name in SHOWN))
+        for constant, meaning in CONSTANTS.items()
+    ]
+    return HEAD + table(("constant", *SHOWN), rows) + "\n## Why not\n\n" + "\n".join(_reasons())
+
+
+def _shown(field: str) -> str:
+    """Return a name as code, a description as it is."""
+    return f"`{field}`" if field.replace("_", "").isalpha() else field
+
+
+def _reasons() -> Iterator[str]:
+    for name in SHOWN:
+        target = TARGETS[name]
+        missing = [(reason, CONSTANTS[c]) for c, reason in target.refuses.items() if c not in target.fields]
+        yield f"### {name}\n"
+        for reason, group in groupby(sorted(missing), key=lambda x: x[0]):
+            yield f"- {', '.join(meaning for _, meaning in group)}: {reason}"
+        yield ""

@@ -1,0 +1,92 @@
+"""Actuator configurations in Python: a group for each joint with the fields of a library, and the range of each."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import ClassVar
+
+from sher3_export.changes import Change
+from sher3_export.targets.target import Target
+
+STEP = 0.005
+"""Physics step, s, in which a delay is counted; the file says so. Set by custom: tasks of both libraries run at 200 Hz.
+"""
+ALONE = "Values are what the machine has beyond its model: add what your asset has, or give --model."
+Nominal = Mapping[str, Mapping[str, float]]
+"""Joint -> constant -> what the nominal model says of it."""
+
+
+class Configuration(Target):
+    """A Python file with `ACTUATORS`, by joint, and `RANGES`, by joint and field.
+
+    Class attributes:
+        source: module that has the classes.
+        plain, delayed: class of a group, without and with a delay.
+        joints: field that names the joints, and the type of its list as written.
+        delays: fields of the shortest and the longest delay, steps.
+        always: fields that a group states anyway.
+        version: of the library whose fields these are.
+    """
+
+    suffix = "py"
+    source: ClassVar[str]
+    plain: ClassVar[str]
+    delayed: ClassVar[str]
+    joints: ClassVar[str]
+    delays: ClassVar[tuple[str, str]]
+    always: ClassVar[Mapping[str, object]] = {}
+    version: ClassVar[str]
+
+    def __init__(self, nominal: Nominal | None = None) -> None:
+        self.nominal = nominal
+        self.groups: dict[str, dict[str, float]] = {}
+        self.ranges: dict[str, dict[str, tuple[float, float]]] = {}
+
+    def apply(self, change: Change) -> str:
+        """Write a change into the group of its joint; return why it cannot be written, or nothing."""
+        if change.over_stiffness:
+            return "given in units of the servo's stiffness, which is not known here"
+        if change.constant not in self.fields:
+            return self.refuses.get(change.constant, f"{self.name} has no field for it")
+        group, ranges = self.groups.setdefault(change.joint, {}), self.ranges.setdefault(change.joint, {})
+        if change.constant == "delay":
+            shortest, longest = self.delays
+            group |= {shortest: math.floor(change.value / STEP), longest: math.ceil(change.value / STEP)}
+            return ""
+        name = self.fields[change.constant]
+        known = (self.nominal or {}).get(change.joint, {}).get(change.constant, 0.0)
+        before = 0.0 if change.constant == "limit" else group.get(name, known)
+        group[name] = before + change.value
+        if change.low is not None and change.high is not None:
+            ranges[name] = (before + change.low, before + change.high)
+        return ""
+
+    def text(self, remarks: Sequence[str]) -> str:
+        """Return the file."""
+        self.finish()
+        totals = ALONE if self.nominal is None else "Values are totals, with the model's."
+        lines = [
+            *remarks,
+            f"Fields of {self.version}. Delays in steps of {STEP} s. {totals}",
+            "RANGES: 95 % intervals of the fields, to draw from in domain randomisation.",
+        ]
+        used = sorted({self._class(group) for group in self.groups.values()} or {self.plain})
+        groups = "".join(f"    {joint!r}: {self._group(joint, group)},\n" for joint, group in self.groups.items())
+        ranges = "".join(f"    {joint!r}: {found!r},\n" for joint, found in self.ranges.items() if found)
+        head = "".join(f"# {' '.join(line.splitlines())}\n" for line in lines)
+        return (
+            f"{head}\nfrom {self.source} import {', '.join(used)}\n\n"
+            f"ACTUATORS = {{\n{groups}}}\n\nRANGES = {{\n{ranges}}}\n"
+        )
+
+    def finish(self) -> None:
+        """Bring the groups into order before they are written; default nothing."""
+
+    def _class(self, group: Mapping[str, float]) -> str:
+        return self.delayed if self.delays[1] in group else self.plain
+
+    def _group(self, joint: str, group: Mapping[str, float]) -> str:
+        fields = {**self.always, **group}
+        said = "".join(f", {name}={value!r}" for name, value in fields.items())
+        return f"{self._class(group)}({self.joints.format(joint)}{said})"

@@ -1,0 +1,88 @@
+"""ros2_control: the description of simulated hardware, with what a joint has beyond its model as parameters.
+
+The schema of `<ros2_control>` gives a joint any parameters; hardware components read them from
+`info_.joints[i].parameters`. `mock_components/GenericSystem` of Jazzy mirrors commands and ignores them: a component of
+your own makes friction, dead time and lag of them. Effort limits are those of the command interface, which the joint
+limiter of the controller manager enforces.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import ClassVar
+from xml.etree import ElementTree
+from xml.etree.ElementTree import Element, SubElement
+
+from sher3_export.changes import Change
+from sher3_export.targets.target import Target
+from sher3_export.xml_file import write_xml, written
+
+PARAMETERS = (
+    "coulomb",
+    "static",
+    "stribeck",
+    "viscous",
+    "load_loss",
+    "offset",
+    "drive",
+    "inertia",
+    "delay",
+    "lag",
+    "zero",
+    "ratio",
+    "backlash",
+    "compliance",
+    "spring",
+    "rest",
+)
+"""Constants that become a parameter of the joint with their own name, SI units."""
+LINK = "it belongs to a link of the URDF, not to the hardware of a joint"
+
+
+class Ros2Control(Target):
+    """A `<ros2_control>` element to include in a URDF."""
+
+    name, suffix = "ros2_control", "xml"
+    fields: ClassVar[Mapping[str, str]] = {
+        **{name: f'param "{name}"' for name in PARAMETERS},
+        "limit": "min and max of the command interface `effort`",
+    }
+    refuses: ClassVar[Mapping[str, str]] = dict.fromkeys(
+        ("weight", "arm", "hanging", "payload", "payload_x", "payload_y", "payload_z", "shift_x", "shift_y", "shift_z"),
+        LINK,
+    )
+
+    def __init__(self) -> None:
+        self.joints: dict[str, dict[str, float]] = {}
+
+    def apply(self, change: Change) -> str:
+        """Write a change into its joint; return why it cannot be written, or nothing."""
+        if change.over_stiffness:
+            return "given in units of the servo's stiffness, which is not known here"
+        if change.constant not in self.fields:
+            return self.refuses.get(change.constant, "hardware of a joint has no such parameter")
+        joint = self.joints.setdefault(change.joint, {})
+        replaced = change.constant == "limit"
+        joint[change.constant] = change.value + (0.0 if replaced else joint.get(change.constant, 0.0))
+        return ""
+
+    def text(self, remarks: Sequence[str]) -> str:
+        """Return the element; every joint with the interfaces of an effort-controlled one."""
+        root = Element("ros2_control", {"name": "simulated", "type": "system"})
+        SubElement(SubElement(root, "hardware"), "plugin").text = "mock_components/GenericSystem"
+        for name, constants in self.joints.items():
+            joint = SubElement(root, "joint", {"name": name})
+            command = SubElement(joint, "command_interface", {"name": "effort"})
+            for constant, value in constants.items():
+                if constant == "limit":
+                    for end, sign in (("min", -1.0), ("max", 1.0)):
+                        SubElement(command, "param", {"name": end}).text = written(sign * value)
+                else:
+                    SubElement(joint, "param", {"name": constant}).text = written(value)
+            for state in ("position", "velocity", "effort"):
+                SubElement(joint, "state_interface", {"name": state})
+        ElementTree.indent(root)
+        note = (
+            "Parameters: SI units, beyond the nominal model. mock_components ignores them; your component reads them."
+        )
+        return write_xml(root, [*remarks, note])
