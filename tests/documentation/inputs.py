@@ -61,8 +61,8 @@ class Inputs:
             "gap/case/verdict.json": self._verdict,
             "DATA.mat": _slide,
             "robot.xml": _two_links,
-            "log.npz": _log_of_two_links,
-            "later.npz": lambda path: _log_of_two_links(path, more=2.0),
+            "log.npz": log_of_two_links,
+            "later.npz": lambda path: log_of_two_links(path, more=2.0),
             "run/a": lambda path: self._shell(path, "sher3 gap challenge --seeds 11200:11201 --jobs 1 --out {}"),
             "run/b": lambda path: self._shell(path, "sher3 gap challenge --seeds 11201:11202 --jobs 1 --out {}"),
         }
@@ -197,7 +197,7 @@ def _two_links(path: Path) -> None:
     path.write_text(TWO_LINKS)
 
 
-def _log_of_two_links(path: Path, more: float = 1.2) -> None:
+def log_of_two_links(path: Path, more: float = 1.2) -> None:
     """Write ten seconds of that arm, its elbow with more dry friction, N m, than the model says."""
     import mujoco
 
