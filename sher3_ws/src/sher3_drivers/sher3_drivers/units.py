@@ -119,6 +119,10 @@ class AxisScale:
             )
         return scale
 
+    def stop_step(self, period: float) -> float:
+        """Return what a quick stop takes off the velocity in a period [s], m/s or rad/s."""
+        return self.stop_deceleration * 1e6 * self.velocity * period
+
     def velocity_counts(self, velocity: float) -> int:
         """Return the counts nearest to a velocity, m/s or rad/s.
 

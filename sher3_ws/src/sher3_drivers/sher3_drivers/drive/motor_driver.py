@@ -353,7 +353,11 @@ class MotorDriver:
         self._send(self.session.next_words())
 
     def _send(self, words: Sequence[Controlword], counts: Sequence[int] = (0,) * len(ACTUATORS)) -> None:
-        self.watches.motion.demand.sent(counts)
+        demand = self.watches.motion.demand
+        if self.goal is Goal.ENABLED:
+            demand.sent(counts)
+        else:
+            demand.stopped()
         self._note_failures(self.wire.send(words, counts))
 
     def _note_failures(self, failures: Failures) -> None:

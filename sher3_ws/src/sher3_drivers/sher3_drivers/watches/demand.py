@@ -4,6 +4,8 @@ The echo of a tick is the mean of the velocity the drive executed since the last
 the newest commands. Whatever lies outside that range, integrated over time, is travel that nobody asked for. A drive
 that does not obey a command will not obey a stop either: then the driver withholds the host's heartbeat too
 (`MotionWatch.deaf`).
+
+A drive that stops is told its own ramp, and it may be at rest before.
 """
 
 from __future__ import annotations
@@ -18,7 +20,7 @@ from sher3_common.vectors import Vector
 
 from sher3_drivers.settings import MotorDriverSettings
 from sher3_drivers.units import AxisScale
-from sher3_drivers.watches.trips import Trip
+from sher3_drivers.watches.trips import Trip, together
 
 _COUNTS = 2.0
 """Counts by which an echo may differ from its command: one for the rounding of each."""
@@ -42,6 +44,8 @@ class DemandCheck:
         self._keep = 1.0 - min(1.0, settings.period / settings.following_memory)
         ticks = math.ceil(settings.obey_latency / settings.period - _ROUNDING)
         self._sent: deque[Vector] = deque(maxlen=max(2, ticks))
+        self._steps = tuple([scale.stop_step(settings.period) for scale in scales])
+        self._brakes = False
         self.strayed = [0.0] * len(scales)
 
     def begin(self) -> None:
@@ -52,6 +56,16 @@ class DemandCheck:
     def sent(self, counts: Sequence[int]) -> None:
         """Take note of a velocity command (5,) on its way to the drives, in their counts."""
         self._sent.append(tuple(map(mul, counts, self._units)))
+        self._brakes = False
+
+    def stopped(self) -> None:
+        """Take note that the drives are told to brake: from the next SYNC on each is slower by its ramp."""
+        self._brakes = True
+
+    def sync(self) -> None:
+        """Take note of a SYNC, which ends a period of a ramp."""
+        if self._brakes:
+            self._sent.append(tuple(map(_slower, self.newest, self._steps)))
 
     @property
     def newest(self) -> Vector:
@@ -62,18 +76,18 @@ class DemandCheck:
         """Judge the echoes (5,) [m/s, rad/s] of a tick."""
         if not self._sent or (echo == self._sent[-1] and not any(self.strayed)):  # nearly always
             return None
-        for axis, scale in enumerate(self._scales):
-            slack = _COUNTS * scale.velocity
-            if abs(echo[axis] - self._sent[-1][axis]) <= slack and not self.strayed[axis]:
-                continue
-            trip = self._stray(axis, echo[axis], slack)
-            if trip is not None:
-                return trip
-        return None
+        return together([self._judge(axis, value) for axis, value in enumerate(echo)])
+
+    def _judge(self, axis: int, value: float) -> Trip | None:
+        """Judge the echo `value` of one axis."""
+        slack = _COUNTS * self._units[axis]
+        if abs(value - self._sent[-1][axis]) <= slack and not self.strayed[axis]:
+            return None
+        return self._stray(axis, value, slack)
 
     def _stray(self, axis: int, value: float, slack: float) -> Trip | None:
         """Integrate how far the echo `value` of an axis lies outside the range of its newest commands."""
-        commands = [sent[axis] for sent in self._sent]
+        commands = [sent[axis] for sent in self._sent] + [0.0] * self._brakes
         outside = max(value - max(commands) - slack, min(commands) - slack - value, 0.0)
         travel = self._keep * self.strayed[axis] + outside * self._period
         limit, scale = self._limits[axis], self._scales[axis]
@@ -83,3 +97,8 @@ class DemandCheck:
         unit = scale.unit
         text = f"{scale.name}: executes {value:.3g} {unit}/s, was sent {commands[-1]:.3g} {unit}/s"
         return Trip(Reason.DRIVE_DISOBEYS, text, travel, limit, unit, (axis,))
+
+
+def _slower(velocity: float, step: float) -> float:
+    """Return a velocity that has come nearer to zero by `step`."""
+    return math.copysign(max(0.0, abs(velocity) - step), velocity)

@@ -16,7 +16,7 @@ from sher3_common.vectors import Vector
 
 from sher3_drivers.settings import MotorDriverSettings
 from sher3_drivers.units import AxisScale
-from sher3_drivers.watches.trips import Trip
+from sher3_drivers.watches.trips import Trip, together
 
 _SLACK = 2.0
 """Rounding of command and echo, counts."""
@@ -49,26 +49,27 @@ class FingerprintCheck:
         """Judge the echoes (5,) [m/s, rad/s] of the newest SYNC."""
         if self._held and echo == self._held[-1] and not any(self.stale) and not any(self.swapped):  # nearly always
             return None
-        for axis, scale in enumerate(self._scales):
-            if len(self._held) < 2:
-                break
-            slack, value, own = _SLACK * scale.velocity, echo[axis], self._held[-1][axis]
-            if abs(value - own) <= slack:
-                if abs(self._held[-2][axis] - own) > 2.0 * slack:
-                    self.stale[axis] = self.swapped[axis] = 0
-                continue
-            age = self._age(axis, value, slack)
-            other = self._other(axis, value, slack)
-            self.stale[axis] = self.stale[axis] + 1 if age else 0
-            self.swapped[axis] = self.swapped[axis] + 1 if other is not None else 0
-            if other is not None and self.swapped[axis] >= self._limit:
-                text = f"{scale.name}: its report repeats the command of {self._scales[other].name}"
-                return Trip(
-                    Reason.FEEDBACK_SWAPPED, text, self.swapped[axis], self._limit - 1, "reports", (axis, other)
-                )
-            if age and self.stale[axis] >= self._limit:
-                text = f"{scale.name}: its report repeats the command of {age} ticks ago"
-                return Trip(Reason.FEEDBACK_STALE, text, self.stale[axis], self._limit - 1, "reports", (axis,))
+        if len(self._held) < 2:
+            return None
+        return together([self._judge(axis, value) for axis, value in enumerate(echo)])
+
+    def _judge(self, axis: int, value: float) -> Trip | None:
+        """Judge the echo `value` of one axis."""
+        scale, own = self._scales[axis], self._held[-1][axis]
+        slack = _SLACK * scale.velocity
+        if abs(value - own) <= slack:
+            if abs(self._held[-2][axis] - own) > 2.0 * slack:
+                self.stale[axis] = self.swapped[axis] = 0
+            return None
+        age, other = self._age(axis, value, slack), self._other(axis, value, slack)
+        self.stale[axis] = self.stale[axis] + 1 if age else 0
+        self.swapped[axis] = self.swapped[axis] + 1 if other is not None else 0
+        if other is not None and self.swapped[axis] >= self._limit:
+            text = f"{scale.name}: its report repeats the command of {self._scales[other].name}"
+            return Trip(Reason.FEEDBACK_SWAPPED, text, self.swapped[axis], self._limit - 1, "reports", (axis, other))
+        if age and self.stale[axis] >= self._limit:
+            text = f"{scale.name}: its report repeats the command of {age} ticks ago"
+            return Trip(Reason.FEEDBACK_STALE, text, self.stale[axis], self._limit - 1, "reports", (axis,))
         return None
 
     def _age(self, axis: int, value: float, slack: float) -> int:

@@ -1,4 +1,8 @@
-"""The driver's eye on the axes: echo, encoders and demand while they follow, rest while they are stopped."""
+"""The driver's eye on the axes: echo, encoders and demand while they follow, ramp and rest while they are stopped.
+
+Every check judges every axis in every tick, and there is no time between two of them: the sum of the commands and the
+echo are followed on through the ramp of a stop, and the rest begins where the ramp ended.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +20,7 @@ from sher3_drivers.watches.frozen import FrozenCheck
 from sher3_drivers.watches.joints import JointWatch
 from sher3_drivers.watches.position import PositionWatch
 from sher3_drivers.watches.rest import RestCheck
-from sher3_drivers.watches.trips import StopLog, Trip
+from sher3_drivers.watches.trips import StopLog, Trip, together
 
 
 class MotionWatch:
@@ -42,6 +46,7 @@ class MotionWatch:
         self._held = self.demand.newest
         self._followed = False
         self._goal, self._rest_since = Goal.DISABLED, 0
+        self._accused: set[int] = set()
 
     def begin(self) -> None:
         """Start afresh with axes that are about to follow."""
@@ -50,10 +55,12 @@ class MotionWatch:
         self.frozen.begin()
         self.position.begin()
         self.rest.begin()
+        self._accused.clear()
         self._stamp, self._followed = None, False
 
     def sync(self) -> None:
-        """Take note of a SYNC: the newest command on the wire is what the drives have executed up to it."""
+        """Take note of a SYNC: the newest command on the wire is what the drives have executed up to it, or a ramp."""
+        self.demand.sync()
         self._held = self.demand.newest
         self.fingerprint.sync(self._held)
 
@@ -68,35 +75,55 @@ class MotionWatch:
             now: time, ns.
         """
         since = self._since(feedback.stamp)
-        self.position.follow(feedback, self._held, since)
         if stop.first is not None or goal is Goal.DISABLED:
-            return self._at_rest(goal, stop, now)
+            return self._at_rest(feedback, goal, stop, now, since)
+        self.position.follow(feedback, self._held, since)
         self._goal = goal
         if not following:
             return self.position.judge()
         if not self._followed:
             # Whatever compares one tick with the one before begins with the first one in which the drives follow.
             self._followed, since = True, 0.0
-        return (
-            self.demand.check(feedback.velocity_demand)
-            or self.fingerprint.check(feedback.velocity_demand)
-            or self.frozen.check(feedback, self._held, since)
-            or self.joints.check(feedback, since)
-            or self.position.judge()
+        return together(
+            (
+                self.demand.check(feedback.velocity_demand),
+                self.fingerprint.check(feedback.velocity_demand),
+                self.frozen.check(feedback, self._held, since),
+                self.joints.check(feedback, since),
+                self.position.judge(),
+            )
         )
 
-    def _at_rest(self, goal: Goal, stop: StopLog, now: int) -> Trip | None:
-        """Judge a robot that is stopped, or disabled, once its axes have had the time to brake."""
-        stopped = stop.first is not None
-        state = Goal.STOPPED if stopped else goal
+    def _at_rest(self, feedback: DriveFeedback, goal: Goal, stop: StopLog, now: int, since: float) -> Trip | None:
+        """Judge a robot that is stopped, or disabled: its ramps, and then its rest."""
+        first = stop.first
+        state = goal if first is None else Goal.STOPPED
         if state is not self._goal:
             self._goal, self._rest_since = state, now
+            self._accused = set(() if first is None else first.axes)
             self.rest.begin()
-        if self.rest.begins_now(stop.since if stopped else self._rest_since, now):
-            self.position.begin()
+            self.position.brake()
+        self.position.follow(feedback, self._held, since)
+        reason = Reason.MOVED_DISABLED if first is None else Reason.STOP_NOT_OBEYED
+        trip = together(
+            (
+                self.position.judge(reason),
+                self.demand.check(feedback.velocity_demand) if goal is Goal.STOPPED else None,
+                self.rest.check(self.position.moved, reason),
+            )
+        )
+        if self.rest.begins_now(self._rest_since if first is None else stop.since, now):
+            self._accused.clear()
+            self.position.brake(rests=True)
+        return self._accuse(trip)
+
+    def _accuse(self, trip: Trip | None) -> Trip | None:
+        """Return an objection to a robot that does not stop, unless it has been made: every axis once for each rest."""
+        if trip is None or self._accused.issuperset(trip.axes):
             return None
-        reason = Reason.STOP_NOT_OBEYED if stopped else Reason.MOVED_DISABLED
-        return self.rest.check(self.position.moved, reason)
+        self.rest.disobeyed = True
+        self._accused.update(trip.axes)
+        return trip
 
     def _since(self, stamp: int) -> float:
         """Return the time since the last feedback, s; 0 for the first.

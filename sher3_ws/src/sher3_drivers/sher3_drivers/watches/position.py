@@ -1,10 +1,13 @@
-"""Has an axis left the place that its commands add up to? Nothing is forgotten from one enabling to the next.
+"""Has an axis left the place that its commands add up to? Nothing is forgotten from one enabling to the next stop.
 
 The judge is what was sent: the velocity commands on the wire, each held from one SYNC to the next, summed up. Both
 encoders have to say that the axis is elsewhere; when they differ, that is the business of `watches.joints`. Of the rest
 that the drive says only its force counts, since that is what holds the hand. A PI velocity loop (recorded-run contract,
 section 3) exerts u = kp (c - v) + ki e, where e is the sum of (c - v): it has no steady error but the load over ki. Its
 law solved for e is a low pass of the force, e + (kp / ki) de/dt = u / ki. What is left of e beyond that is a departure.
+
+A stop goes on with the sums: what a drive is told then is its ramp. It may brake sooner, as by itself, so an axis may
+be anywhere from where the stop found it to the end of its ramp, and nowhere else, with its force or without power.
 """
 
 from __future__ import annotations
@@ -26,11 +29,15 @@ from sher3_drivers.watches.row import Row
 from sher3_drivers.watches.trips import Trip
 
 _LIMITS = ("plain", "elastic", "lag", "share", "time", "keep", "hold")
-_MEMORY = ("motor", "load", "path", "peak", "base", "force", "left", "by_motor", "explained", "limit")
+_SUMS = ("path", "base", "force", "left", "by_motor", "by_load", "explained", "away")
+_MEMORY = ("motor", "load", "peak", "limit", "brakes", *_SUMS)
+_CARRIED = 0.5
+"""Share of the plain limit up to which a departure is carried over into a stop; healthy axes have less of it."""
 PLACE = np.dtype([(name, np.float64) for name in (*_LIMITS, *_MEMORY)])
 """A row: the limits of an axis and what is remembered of it, in m or rad. `left` is how far it is from the sum of its
 commands since the beginning, by the encoder that says less; `explained` how much of that its force explains, at most
-`elastic`; `limit` the largest departure at the newest speeds and force."""
+`elastic`; `away` is the departure, `limit` the largest one at the newest speeds and force. `brakes` is 1 from a stop
+on: then `path` is the travel of the ramp since, of which the axis may do without any part."""
 
 
 def begin_places(places: NDArray[Any], motor: Vector, load: Vector, effort: Vector) -> None:
@@ -40,6 +47,24 @@ def begin_places(places: NDArray[Any], motor: Vector, load: Vector, effort: Vect
     places["motor"], places["load"] = motor, load
     places["base"] = places["force"] = np.divide(effort, places["hold"])
     places["limit"] = places["plain"]
+
+
+def brake_places(places: NDArray[Any], rests: bool) -> None:
+    """Begin a stop, or a rest, in place, where the axes are.
+
+    What force explained is of the past, a departure is carried over. What speed adds to the limit stays for the whole
+    braking, since a ramp that was late ends further away, and is gone in a rest.
+    """
+    bound = _CARRIED * places["plain"]
+    carried = np.clip(places["away"], -bound, bound)
+    places["motor"] += places["path"] - places["by_motor"] + carried
+    places["load"] += places["path"] - places["by_load"] + carried
+    for name in ("by_motor", "by_load", "left", "away"):
+        places[name] = carried
+    places["base"] = places["force"]
+    places["path"] = places["explained"] = 0.0
+    places["peak"] *= not rests
+    places["brakes"] = 1.0
 
 
 @compiled(error_model="numpy")
@@ -53,7 +78,7 @@ def follow_places(places: Any, motor: Vector, load: Vector, effort: Vector, comm
     for number in range(len(places)):
         place = places[number]
         _advance(place, motor[number], load[number], effort[number], command[number], since)
-        departed = departed or abs(place["left"] - place["explained"]) > place["limit"]
+        departed = departed or abs(place["away"]) > place["limit"]
     return departed
 
 
@@ -61,11 +86,26 @@ def follow_places(places: Any, motor: Vector, load: Vector, effort: Vector, comm
 def _advance(place: Any, motor: float, load: float, effort: float, command: float, since: float) -> None:
     place["path"] += command * since
     by_motor, by_load = place["path"] + place["motor"] - motor, place["path"] + place["load"] - load
-    place["by_motor"], place["left"] = by_motor, by_load if abs(by_load) < abs(by_motor) else by_motor
+    place["by_motor"], place["by_load"] = by_motor, by_load
+    place["left"] = left = _lesser(by_load, by_motor)
     place["force"] += min(1.0, since / place["time"]) * (effort / place["hold"] - place["force"])
     place["explained"] = max(-place["elastic"], min(place["elastic"], place["force"] - place["base"]))
-    place["peak"] = max(abs(command), place["keep"] * place["peak"])
+    place["away"] = left - place["explained"]
+    if place["brakes"]:
+        place["away"] = _lesser(_beyond(place["away"], place["path"]), _beyond(left, place["path"]))
+    place["peak"] = max(abs(command), max(place["keep"], place["brakes"]) * place["peak"])
     place["limit"] = place["plain"] + place["lag"] * place["peak"] + place["share"] * abs(place["explained"])
+
+
+@compiled(error_model="numpy")
+def _lesser(one: float, other: float) -> float:
+    return one if abs(one) < abs(other) else other
+
+
+@compiled(error_model="numpy")
+def _beyond(value: float, end: float) -> float:
+    """Return how far a value is outside the range from 0 to `end`, which may be negative."""
+    return value - max(min(0.0, end), min(max(0.0, end), value))
 
 
 @cache
@@ -102,7 +142,7 @@ class AxisPosition(Row):
     @property
     def departure(self) -> float:
         """How far the axis is from where commands and force put it, m or rad."""
-        return self["left"] - self["explained"]
+        return self["away"]
 
     @property
     def limit(self) -> float:
@@ -143,6 +183,11 @@ class PositionWatch:
         """Begin at the next feedback."""
         self._begun = False
 
+    def brake(self, rests: bool = False) -> None:
+        """Go on with axes that stop, or that rest, from where the newest feedback has them."""
+        if self._begun:
+            brake_places(self._rows, rests)
+
     def follow(self, feedback: DriveFeedback, held: Vector, since: float) -> None:
         """Take a feedback and the commands (5,) [m/s, rad/s] held over the `since` s before it."""
         motor, load, effort = feedback.motor_position, feedback.load_position, feedback.effort
@@ -152,7 +197,7 @@ class PositionWatch:
             begin_places(self._rows, motor, load, effort)
             self._begun, self._departed = True, False
 
-    def judge(self) -> Trip | None:
+    def judge(self, reason: Reason = Reason.POSITION_LEFT) -> Trip | None:
         """Object to an axis that is not where its commands put it; whoever is halfway there is suspected too."""
         if not self._departed:
             return None
@@ -163,7 +208,7 @@ class PositionWatch:
                     f"{scale.name}: {value:.3g} {scale.unit} from where its commands add up to (limit {axis.limit:.3g})"
                 )
                 suspects = tuple([n for n, a in enumerate(self.axes) if abs(a.departure) > 0.5 * a.limit])
-                return Trip(Reason.POSITION_LEFT, text, value, axis.limit, scale.unit, suspects)
+                return Trip(reason, text, value, axis.limit, scale.unit, suspects)
         return None
 
     @property

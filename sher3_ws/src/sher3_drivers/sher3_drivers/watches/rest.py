@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import count, repeat
 
 from sher3_common.reasons import Reason
 from sher3_common.vectors import Vector
 
 from sher3_drivers.settings import MotorDriverSettings
 from sher3_drivers.units import AxisScale
-from sher3_drivers.watches.trips import Trip
+from sher3_drivers.watches.trips import Trip, together
 
 _WHEN = {Reason.STOP_NOT_OBEYED: "after the stop", Reason.MOVED_DISABLED: "while the robot is disabled"}
 
@@ -19,7 +20,7 @@ class RestCheck:
 
     Attributes:
         resting: the braking time is over.
-        disobeyed: an axis moved after it was over.
+        disobeyed: an axis moved as it must not, while it braked or after that.
     """
 
     def __init__(self, scales: Sequence[AxisScale], settings: MotorDriverSettings) -> None:
@@ -40,12 +41,12 @@ class RestCheck:
         return True
 
     def check(self, moved: Vector, reason: Reason) -> Trip | None:
-        """Object once, for `reason`, to an axis that has `moved` (5,) [m, rad] since it rests."""
-        if not self.resting or self.disobeyed:
+        """Object, for `reason`, to the axes that have `moved` (5,) [m, rad] since they rest."""
+        return together(map(self._judge, count(), map(abs, moved), repeat(reason))) if self.resting else None
+
+    def _judge(self, axis: int, way: float, reason: Reason) -> Trip | None:
+        limit, scale = self._limits[axis], self._scales[axis]
+        if way <= limit:
             return None
-        for axis, (limit, way) in enumerate(zip(self._limits, map(abs, moved), strict=True)):
-            if way > limit:
-                scale, self.disobeyed = self._scales[axis], True
-                text = f"{scale.name}: moved {way:.3g} {scale.unit} {_WHEN[reason]} (limit {limit:.3g})"
-                return Trip(reason, text, way, limit, scale.unit, (axis,))
-        return None
+        text = f"{scale.name}: moved {way:.3g} {scale.unit} {_WHEN[reason]} (limit {limit:.3g})"
+        return Trip(reason, text, way, limit, scale.unit, (axis,))

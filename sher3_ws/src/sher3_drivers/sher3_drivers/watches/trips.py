@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -30,6 +31,14 @@ class Trip(NamedTuple):
     def action(self) -> Action:
         """How hard the robot is stopped for it."""
         return ACTION[self.reason]
+
+
+def together(trips: Iterable[Trip | None]) -> Trip | None:
+    """Return the first of some objections of one tick, with the axes of all of them; None where nobody objects."""
+    said = [trip for trip in trips if trip is not None]
+    if len(said) < 2:  # nearly always
+        return said[0] if said else None
+    return said[0]._replace(axes=tuple(sorted({axis for trip in said for axis in trip.axes})))
 
 
 @dataclass
