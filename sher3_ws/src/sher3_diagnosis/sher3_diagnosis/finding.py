@@ -50,7 +50,8 @@ class Finding(Generic[E]):
         causes: quantified, in the order of the attribution.
         left: gaps that remain with the causes: channel -> excess loss.
         notes: what the machine says of the part.
-        judged: causes and gaps with their probabilities, where the judgement is calibrated.
+        judged: causes and gaps with their odds.
+        whole: the finding with every cause that was found, named or not; None where it is this one.
         imitations: effects that fit a gap although they are hardly its cause.
         dismissed: channels whose gap is none of its own.
     """
@@ -62,8 +63,14 @@ class Finding(Generic[E]):
     left: dict[Channel, float]
     notes: Sequence[str] = field(default_factory=tuple)
     judged: Sequence[Judged] = ()
+    whole: Finding[E] | None = None
     imitations: Sequence[Imitation] = ()
     dismissed: frozenset[Channel] = frozenset()
+
+    @property
+    def with_all(self) -> Finding[E]:
+        """The finding with every cause that was found."""
+        return self if self.whole is None else self.whole
 
     @property
     def significant(self) -> dict[Channel, Gap]:

@@ -21,7 +21,7 @@ from sher3_diagnosis.judge.costs import DEFAULT, Costs
 from sher3_diagnosis.judge.judge import judge
 from sher3_diagnosis.judge.left_over import down_to_floor, left_over
 from sher3_diagnosis.judge.supported import significant_causes, without_imitations
-from sher3_diagnosis.judge.weigh import weighed
+from sher3_diagnosis.judge.weigh import weighed, with_odds
 from sher3_diagnosis.localise.gaps import localise
 from sher3_diagnosis.machine import Machine
 from sher3_diagnosis.quantify.closure import residual_after
@@ -63,8 +63,8 @@ def diagnose(
     findings = [find(machine, part, without, say) for part in parts]
     notes += [n for f in findings for n in f.notes]
     say("judging")
-    if machine.policy.calibrated:
-        findings = [weighed(f, in_force(), costs) for f in findings]
+    weigh = partial(weighed, costs=costs) if machine.policy.calibrated else with_odds
+    findings = [weigh(f, calibration=in_force()) for f in findings]
     verdict = judge(machine, findings, exact, notes, costs)
     versions = {p: importlib.metadata.version(p) for p in machine.sources}
     verdict = verdict.model_copy(update={"seconds": time.perf_counter() - started, "versions": versions})
@@ -90,7 +90,7 @@ def find(machine: Machine[R, E], evidence: E, without: Collection[str], say: Say
             refined, causes = machine.refine(evidence, causes_of(evidence, attribution), attribution)
     finding = Finding(refined, gaps, attribution, causes, remains(attribution.fit))
     if not machine.policy.calibrated:
-        finding = without_imitations(finding, machine.policy.free_laws)
+        finding = replace(without_imitations(finding, machine.policy.free_laws), whole=finding)
     return replace(finding, notes=machine.remarks(finding))
 
 

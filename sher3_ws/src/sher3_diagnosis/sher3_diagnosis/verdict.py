@@ -8,9 +8,9 @@ from typing import Literal
 from pydantic import BaseModel, ConfigDict, Field, field_validator, model_validator
 from sher3_common import read_text
 
-SCHEMA = "sher3.verdict/2"
-Schema = Literal["sher3.verdict/1", "sher3.verdict/2"]
-"""Schemas that are read: the second is a superset of the first."""
+SCHEMA = "sher3.verdict/3"
+Schema = Literal["sher3.verdict/1", "sher3.verdict/2", "sher3.verdict/3"]
+"""Schemas that are read: each is a superset of those before."""
 Status = Literal["no_gap", "attributed", "under_excited", "outside_library"]
 
 
@@ -117,12 +117,61 @@ class NextExperiment(_Model):
     predicted_separation: float | None
 
 
+class Answer(_Model):
+    """One answer to a place: causes that explain it together, or that the library lacks its cause, or no gap.
+
+    With causes, `closure` and `residual` are of the place on held-out runs; None where too improbable to be fitted.
+    """
+
+    causes: list[Cause] = []
+    answer: Literal["outside_library", "no_gap"] | None = None
+    probability: float = Field(ge=0.0, le=1.0)
+    closure: Interval | None = None
+    residual: Residual | None = None
+
+    @model_validator(mode="after")
+    def _one(self) -> Answer:
+        if bool(self.causes) == (self.answer is not None):
+            raise ValueError("an answer is causes, outside_library or no_gap")
+        return self
+
+
+class Place(_Model):
+    """A place with a gap and what one would bet on it, most probable first; `other` is what the answers leave of 1."""
+
+    stage: str
+    actuator: str
+    gap: float = Field(ge=0.0)
+    floor: float = Field(ge=0.0)
+    unit: str
+    component: str | None = None
+    answers: list[Answer]
+    other: float = Field(default=0.0, ge=0.0, le=1.0)
+
+    @property
+    def bet(self) -> Answer | None:
+        """The best explanation: the first answer with causes."""
+        return next((a for a in self.answers if a.causes), None)
+
+    @model_validator(mode="after")
+    def _whole(self) -> Place:
+        total = self.other + sum(a.probability for a in self.answers)
+        if abs(total - 1.0) > WHOLE:
+            raise ValueError(f"the probabilities of a place add up to {total:g}, not to 1")
+        return self
+
+
+WHOLE = 1e-3
+"""How far the probabilities of a place may add up from one in a file, for their rounding."""
+
+
 class Verdict(_Model):
     """What `diagnose` answers for one case."""
 
-    schema_: Schema = Field(default="sher3.verdict/2", alias="schema")
+    schema_: Schema = Field(default="sher3.verdict/3", alias="schema")
     status: Status
     where: list[Where] = []
+    places: list[Place] = []
     causes: list[Cause] = []
     closure: Closure = Closure()
     residual: Residual | None = None

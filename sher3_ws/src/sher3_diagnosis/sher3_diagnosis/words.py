@@ -25,6 +25,16 @@ def words(identifier: str) -> str:
     return text[:1].upper() + text[1:]
 
 
+NAMES_OF_PEOPLE = ("coulomb", "stribeck")
+"""First words of effects that keep their capital inside a sentence."""
+
+
+def lower(identifier: str) -> str:
+    """Return an id in words as they stand inside a sentence."""
+    text = words(identifier)
+    return text if text.lower().startswith(NAMES_OF_PEOPLE) else text[:1].lower() + text[1:]
+
+
 def place(site: str) -> str:
     """Return a place of a machine in words: `delta_1` -> `delta 1`; `all` is every axis."""
     return "all axes" if site == "all" else site.replace("_", " ")

@@ -5,15 +5,14 @@ import math
 import pytest
 from pydantic import ValidationError
 from sher3_diagnosis.channel import Channel
-from sher3_diagnosis.finding import ExactFinding
 from sher3_diagnosis.judge.calibration.calibration import in_force
 from sher3_diagnosis.judge.calibration.logistic import Logistic
 from sher3_diagnosis.judge.costs import DEFAULT
 from sher3_diagnosis.judge.evidence.scales import scaled_cause, scaled_exact, scaled_gap
 from sher3_diagnosis.judge.items import Candidate, Item
-from sher3_diagnosis.judge.probabilities import Judged, judged, probabilities_of
+from sher3_diagnosis.judge.probabilities import Judged, judged
 from sher3_diagnosis.judge.status import answer_to, combined, crosses
-from sher3_diagnosis.verdict import Interval, Residual, Where
+from sher3_diagnosis.verdict import Interval
 
 TWO = {"classes": ("library", "outside_library"), "inputs": ("x",), "middle": (1.0,), "spread": (2.0,)}
 NUMBERS = {
@@ -44,6 +43,7 @@ def test_what_is_not_known_speaks_neither_way():
     assert model.probabilities({})["library"] == pytest.approx(1.0 / (1.0 + math.exp(6.0)))
     limit = {name: x for name, x in NUMBERS.items() if name not in ("spread", "lost")}  # it has no coefficient
     assert "spread" not in scaled_cause(limit)
+    assert "foreign" not in scaled_cause({n: x for n, x in NUMBERS.items() if n not in ("law", "place", "anything")})
 
 
 def test_a_model_whose_numbers_do_not_fit_is_refused():
@@ -93,6 +93,7 @@ def test_a_cause_whose_closure_may_be_nothing_is_not_named():
     assert said(value=0.5, low=-0.1) == "outside_library"
     assert said(value=0.4, low=0.3) == "outside_library"  # most of the gap is left
     assert said(value=0.0) == "no_gap"  # over all runs there is nothing above the floor
+    assert judged(cause(), CALIBRATION, Interval(value=0.0)).no_gap == 1.0
 
 
 def test_of_a_cause_that_is_not_named_the_more_probable_of_the_other_answers_holds():
@@ -112,19 +113,6 @@ def test_the_status_follows_from_the_answers():
 def test_only_another_family_that_gives_the_same_data_makes_runs_poor():
     assert crosses(cause(), same=0.3)
     assert not crosses(cause(), same=0.1)
-
-
-def test_probabilities_add_up_to_one_per_gap():
-    exact = ExactFinding(
-        Where(stage="transport", actuator="all", gap=1e-3, floor=1e-9, unit="m/s", regime="", confidence=1.0),
-        [],
-        Interval(value=0.0),
-        Residual(gap=1e-3, floor=1e-9, unit="m/s"),
-    )
-    found = probabilities_of([judged(cause(), CALIBRATION)], [exact], CALIBRATION)
-    assert sum(found.values()) == pytest.approx(2.0, abs=2e-3)
-    assert found["coulomb_friction:tilt"] > found["payload_mass:tilt"]
-    assert found["outside_library"] > 1.0  # nothing reproduces the exact stage
 
 
 def test_the_calibration_says_what_it_was_set_on():

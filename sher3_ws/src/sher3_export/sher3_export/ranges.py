@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -78,7 +79,7 @@ def shares_of(verdict: Verdict, worlds: Sequence[Sequence[Cause]]) -> list[float
 
     Without probabilities (they are calibrated on the robot alone) rivals explain as much, and each world counts alike.
     """
-    own, known = {_key(c) for c in verdict.causes}, verdict.probabilities
+    own, known = {_key(c) for c in verdict.causes}, _known(verdict)
 
     def likely(keys: set[str]) -> float:
         return float(np.prod([known.get(key, LEAST) for key in sorted(keys)]))
@@ -87,6 +88,20 @@ def shares_of(verdict: Verdict, worlds: Sequence[Sequence[Cause]]) -> list[float
         return [1.0] * len(worlds)
     each = [{_key(c) for c in world} for world in worlds]
     return [likely(keys - own) / likely(own - keys) for keys in each]
+
+
+def _known(verdict: Verdict) -> dict[str, float]:
+    """Return how probable each cause is: at the place where it is most probable; nothing where odds do not decide."""
+    if not (verdict.costs and verdict.places):
+        return verdict.probabilities
+    out: dict[str, float] = {}
+    for place in verdict.places:
+        here: dict[str, float] = defaultdict(float)
+        for answer in place.answers:
+            for key in map(_key, answer.causes):
+                here[key] += answer.probability
+        out |= {key: max(p, out.get(key, 0.0)) for key, p in here.items()}
+    return out
 
 
 def _key(cause: Cause) -> str:

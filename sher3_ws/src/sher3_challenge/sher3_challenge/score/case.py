@@ -143,10 +143,18 @@ def _stated(truth: Truth, given: Verdict, causes: Sequence[Mapping[str, Any]]) -
     known = [e for e in truth["effects"] if e["family"] != "outside"]
     right = {e["effect"] for e in known} | {name for e in known for name in e["company"]}
     out = [(c["probability"], c["effect"] in right) for c in causes if c.get("probability") is not None]
-    outside = (given.get("probabilities") or {}).get("outside_library")
+    outside = _outside(given)
     if outside is not None:
         out.append((min(1.0, outside), truth["status"] == "outside_library"))
     return out
+
+
+def _outside(given: Verdict) -> float | None:
+    """Return the largest probability, over the places, of a cause outside the library; None where none is stated."""
+    if not given.get("costs"):
+        return (given.get("probabilities") or {}).get("outside_library")
+    answers = [a for place in given.get("places") or [] for a in place["answers"]]
+    return max((a["probability"] for a in answers if a.get("answer") == "outside_library"), default=0.0)
 
 
 def _abstention(truth: Truth, given: Verdict, causes: Sequence[Mapping[str, Any]]) -> dict[str, Any]:

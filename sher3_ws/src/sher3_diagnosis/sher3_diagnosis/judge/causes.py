@@ -44,15 +44,15 @@ def _cause(evidence: Evidence, attribution: Attribution, index: int) -> Cause:
     )
 
 
-def places_of(finding: Finding, gaps: Mapping[Channel, Gap]) -> list[Where]:
+def places_of(finding: Finding, gaps: Mapping[Channel, Gap]) -> list[tuple[Channel, Where]]:
     """Return the places with a gap, largest gap over floor first; those of a companion after its leader's."""
     behind = {(t.effect.companion, t.site) for t in finding.attribution.fit.terms if t.effect.companion}
     sites = {site for _, site in behind}
     entries = []
     for channel, gap in gaps.items():
         follows = channel.stage == "motor_mechanics" and channel.actuator in sites
-        entries.append(((follows, -gap.ratio), _where(finding, channel, gap)))
-    return [where for _, where in sorted(entries, key=lambda e: e[0])]
+        entries.append(((follows, -gap.ratio), (channel, _where(finding, channel, gap))))
+    return [place for _, place in sorted(entries, key=lambda e: e[0])]
 
 
 def _where(finding: Finding, channel: Channel, gap: Gap) -> Where:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -10,18 +11,19 @@ from sher3_diagnosis.attribute.steadiness import steadiness_of
 from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.finding import ExactFinding, Finding
+from sher3_diagnosis.judge.bets import exact_place, place_of
 from sher3_diagnosis.judge.calibration.calibration import Calibration, in_force
 from sher3_diagnosis.judge.causes import ordered, places_of
-from sher3_diagnosis.judge.costs import DEFAULT, LIBRARY, NO_GAP, OUTSIDE, Costs
+from sher3_diagnosis.judge.costs import DEFAULT, LIBRARY, OUTSIDE, Costs
 from sher3_diagnosis.judge.next_experiment import next_experiment
-from sher3_diagnosis.judge.probabilities import probabilities_of, reproduced
+from sher3_diagnosis.judge.probabilities import of_first, reproduced
 from sher3_diagnosis.judge.remainder import remainder
 from sher3_diagnosis.judge.status import answer_to_exact, combined, status_of
 from sher3_diagnosis.localise.gaps import Gap, component_rms
 from sher3_diagnosis.machine import Machine, Policy
 from sher3_diagnosis.quantify.closure import closure, residual_after
 from sher3_diagnosis.thresholds import REPRODUCED, SLIGHT
-from sher3_diagnosis.verdict import Cause, Closure, Interval, Residual, Status, Unexplained, Verdict, Where
+from sher3_diagnosis.verdict import Cause, Closure, Interval, Place, Residual, Status, Unexplained, Verdict, Where
 
 Gaps = dict[Channel, Gap]
 
@@ -37,15 +39,20 @@ def judge(
     calibration = in_force() if machine.policy.calibrated else None
     causes = [c for f in exact for c in _probable(f, calibration)] + [c for f in findings for c in f.causes]
     explained = bool(causes or exact)
-    within = [w for f in findings for w in machine.within(f)]
     gaps = [_own_gaps(machine.policy, f, explained) for f in findings]
+    located = _located(findings)
+    places = _bets(located, exact) if exact or any(gaps) else _unlikely(findings)
+    told: dict[str, Any] = {
+        "places": places,
+        "within_tolerance": [w for f in findings for w in machine.within(f)],
+        "probabilities": {} if calibration is None else of_first(places),
+        "costs": {} if calibration is None else costs.as_dict(),
+        "notes": notes,
+    }
     if not any(gaps) and not exact:
-        likely = _probabilities(findings, exact, calibration)
-        stated = {} if calibration is None else costs.as_dict()
-        return Verdict(status="no_gap", probabilities=likely, costs=stated, within_tolerance=within, notes=notes)
+        return Verdict(status="no_gap", **told)
     causes = ordered(causes, list(findings))
-    fitted = [w for f in findings for w in places_of(f, f.significant)]
-    where = [f.where for f in exact] + (fitted if len(findings) == 1 else sorted(fitted, key=lambda w: -_ratio(w)))
+    where = [f.where for f in exact] + [w for _, _, w in located]
     stage, residual = _first(findings, gaps, exact, where[0].gap)
     unexplained = _unexplained(machine.policy, findings, gaps, exact, calibration, costs)
     proposals = [p for f in findings if (p := next_experiment(f.evidence, f.attribution)) is not None]
@@ -60,11 +67,31 @@ def judge(
         residual=residual,
         unexplained=unexplained,
         next_experiment=proposals[0] if proposals else None,
-        within_tolerance=within,
-        probabilities=_probabilities(findings, exact, calibration),
-        costs={} if calibration is None else costs.as_dict(),
-        notes=notes,
+        **told,
     )
+
+
+Located = tuple[Finding, Channel, Where]
+
+
+def _located(findings: Sequence[Finding]) -> list[Located]:
+    """Return the places of all parts, largest gap over floor first; those of one part as it orders them."""
+    found = [(f, c, w) for f in findings for c, w in places_of(f, f.significant)]
+    return found if len(findings) == 1 else sorted(found, key=lambda x: -_ratio(x[2]))
+
+
+def _bets(located: Sequence[Located], exact: Sequence[ExactFinding]) -> list[Place]:
+    """Return the bets at every place, exact stages first."""
+    stages = [exact_place(e, reproduced(e, in_force())) for e in exact]
+    return stages + [place_of(f.with_all, f.judged, c, w) for f, c, w in located]
+
+
+def _unlikely(findings: Sequence[Finding]) -> list[Place]:
+    """Return the bets at gaps above their floor that are judged to be none."""
+    some = [(f, j.item.channel) for f in findings for j in f.judged]
+    seen = [(f, c, w) for f, x in some for c, w in places_of(f, f.with_all.significant) if c == x]
+    unique = {(id(f), c): (f, c, w) for f, c, w in seen}
+    return _bets(list(unique.values()), [])
 
 
 def _probable(stage: ExactFinding, calibration: Calibration | None) -> list[Cause]:
@@ -73,16 +100,6 @@ def _probable(stage: ExactFinding, calibration: Calibration | None) -> list[Caus
         return list(stage.causes)
     known = reproduced(stage, calibration)
     return [c.model_copy(update={"probability": known}) for c in stage.causes]
-
-
-def _probabilities(
-    findings: Sequence[Finding], exact: Sequence[ExactFinding], calibration: Calibration | None
-) -> dict[str, float]:
-    """Return the answers' probabilities; none for a machine of a kind that the calibration was not set on."""
-    if calibration is None:
-        return {}
-    items = [j for f in findings for j in f.judged]
-    return probabilities_of(items, exact, calibration) or {NO_GAP: 1.0}
 
 
 def _status(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,7 +13,7 @@ from sher3_diagnosis.judge.calibration.calibration import Calibration
 from sher3_diagnosis.judge.costs import LIBRARY, NO_GAP, OUTSIDE
 from sher3_diagnosis.judge.evidence.scales import scaled_cause, scaled_exact, scaled_gap
 from sher3_diagnosis.judge.items import Item
-from sher3_diagnosis.verdict import Interval
+from sher3_diagnosis.verdict import Interval, Place
 
 
 @dataclass(frozen=True)
@@ -46,10 +46,15 @@ class Judged:
 
 
 def judged(item: Item, calibration: Calibration, closure: Interval | None = None) -> Judged:
-    """Return an item with its probabilities and, of a cause, its closure."""
+    """Return an item with its probabilities and, of a cause, its closure.
+
+    A closure of exactly 0 says that over all runs there is nothing above the floor that could be closed: no gap.
+    """
     if item.index is None:
         found = calibration.gap.probabilities(scaled_gap(item.numbers))
         return Judged(item, (), found[OUTSIDE], found[NO_GAP])
+    if closure is not None and closure.value == 0.0:
+        return Judged(item, (0.0,) * len(item.candidates), 0.0, 1.0, closure)
     found = calibration.cause.probabilities(scaled_cause(item.numbers))
     far = np.array([c.unlikeness for c in item.candidates])
     shares = np.exp(-calibration.sharpness * (far - far.min()))
@@ -64,23 +69,9 @@ def reproduced(stage: ExactFinding, calibration: Calibration) -> float:
     return calibration.exact.probabilities(scaled_exact(stage.closure.value))[LIBRARY]
 
 
-def probabilities_of(
-    items: Iterable[Judged], exact: Iterable[ExactFinding], calibration: Calibration
-) -> dict[str, float]:
-    """Return answer -> probability, the sum of which is the number of items: one for each cause and each gap."""
+def of_first(places: Sequence[Place]) -> dict[str, float]:
+    """Return answer -> probability at the first place; causes that act together are joined by `+`."""
     out: dict[str, float] = defaultdict(float)
-    for j in items:
-        for candidate, p in zip(j.item.candidates, j.effects, strict=False):
-            out[f"{candidate.effect}:{candidate.site}"] += p
-        out[OUTSIDE] += j.outside
-        out[NO_GAP] += j.no_gap
-    for stage in exact:
-        known = reproduced(stage, calibration)
-        for cause in stage.causes:
-            out[f"{cause.effect}:{cause.actuator}"] += known / len(stage.causes)
-        out[OUTSIDE] += 1.0 - known
-    return {name: p for name, p in sorted(out.items(), key=lambda x: -x[1]) if p >= LEAST}
-
-
-LEAST = 5e-4
-"""Probability below which an answer is not listed."""
+    for answer in places[0].answers if places else ():
+        out[answer.answer or "+".join(f"{c.effect}:{c.actuator}" for c in answer.causes)] += answer.probability
+    return dict(out) or {NO_GAP: 1.0}

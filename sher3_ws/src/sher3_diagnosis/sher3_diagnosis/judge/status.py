@@ -15,12 +15,9 @@ def answer_to(j: Judged, costs: Costs) -> str:
     """Return the answer to an item that costs least.
 
     A cause that leaves most of its gap, or whose closure may be nothing, is not named; then the better of the other
-    answers holds: a small gap that the cause may not close is likely none. A closure of exactly 0 says that over all
-    runs there is nothing above the floor that could be closed.
+    answers holds: a small gap that the cause may not close is likely none.
     """
     closure = j.closure
-    if closure is not None and closure.value == 0.0:
-        return NO_GAP
     named = closure is not None and closure.value >= COVERED and (closure.low is None or closure.low > 0.0)
     return costs.cheapest(j.odds, (LIBRARY, OUTSIDE, NO_GAP) if named else (OUTSIDE, NO_GAP))
 

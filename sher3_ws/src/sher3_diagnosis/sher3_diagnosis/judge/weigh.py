@@ -17,6 +17,17 @@ from sher3_diagnosis.judge.status import answer_to
 from sher3_diagnosis.verdict import Cause, Imitation, Interval
 
 
+def with_odds(finding: Finding, calibration: Calibration) -> Finding:
+    """Add the odds of every cause and gap to a finding that rules judge.
+
+    The weights are those of the robot they were set on; evidence that a machine does not tell speaks neither way.
+    """
+    whole = finding.with_all
+    return replace(
+        finding, judged=tuple(judged(i, calibration, _closure(whole, i)) for i in items_of(whole)), whole=whole
+    )
+
+
 def weighed(finding: Finding, calibration: Calibration, costs: Costs) -> Finding:
     """Judge every cause and gap of a finding; keep the causes that are named, and the gaps that need an answer."""
     items = [judged(i, calibration, _closure(finding, i)) for i in items_of(finding)]
@@ -31,6 +42,7 @@ def weighed(finding: Finding, calibration: Calibration, costs: Costs) -> Finding
         causes=causes,
         left={j.item.channel: finding.evidence.excess(j.item.channel, attribution.fit) for j in outside},
         judged=tuple(items),
+        whole=finding,
         imitations=tuple(_imitation(finding, j) for j in outside if j.item.index is not None),
         dismissed=frozenset(finding.significant) - touched,
     )

@@ -10,7 +10,8 @@ from sher3_diagnosis.diagnosis import Diagnosis
 from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.finding import Finding
 from sher3_diagnosis.localise.pattern import Pattern, pattern_of
-from sher3_diagnosis.report.summary import significant, told
+from sher3_diagnosis.report.odds import significant
+from sher3_diagnosis.report.summary import told
 from sher3_diagnosis.reporter import Isolability
 from sher3_diagnosis.verdict import Cause, Parameter
 from sher3_diagnosis.words import listed, place, quantity, range_text, share, words

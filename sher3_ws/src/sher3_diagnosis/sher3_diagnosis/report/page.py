@@ -13,6 +13,7 @@ from sher3_diagnosis.report.closures import closure_bars
 from sher3_diagnosis.report.drawing import STYLE
 from sher3_diagnosis.report.experiment_card import experiment_card
 from sher3_diagnosis.report.found import closures, found_rows
+from sher3_diagnosis.report.odds import places_of_bets
 from sher3_diagnosis.report.regimes import regimes
 from sher3_diagnosis.report.summary import command, five_lines, headline
 from sher3_diagnosis.report.traces import traces
@@ -57,6 +58,9 @@ def _sections(diagnosis: Diagnosis, title: str, folder: str, case: str) -> dict[
         simulated=reporter.simulated,
         chain=chain(diagnosis, reporter),
         traces=traces(diagnosis, reporter),
+        bets=places_of_bets(verdict),
+        with_bet=any(p.bet is not None for p in verdict.places),
+        calibrated=bool(verdict.costs),
         closures=closure_bars(verdict, reporter.end),
         table=reporter.table(diagnosis),
         causes=cause_cards(diagnosis, isolability),

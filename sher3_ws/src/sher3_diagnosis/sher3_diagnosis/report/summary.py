@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
+from sher3_diagnosis.report.odds import name_of, odds, significant, sized
 from sher3_diagnosis.reporter import Table
 from sher3_diagnosis.verdict import Cause, Interval, Parameter, Verdict
-from sher3_diagnosis.words import listed, place, quantity, range_text, ratio_text, share, words
+from sher3_diagnosis.words import listed, lower, place, quantity, range_text, ratio_text, share, words
 
 LEFT_OVER = 1.2
 """Rms that is left, over the floor, from which the headline says what it is. A convention of the words."""
@@ -20,16 +21,19 @@ def headline(verdict: Verdict, rests: Mapping[str, str] = MappingProxyType({})) 
         verdict: of any machine.
         rests: effect id -> what its law leaves out, where its page says so.
     """
-    names = [_name(c) for c in verdict.causes]
+    names = [name_of(c) for c in verdict.causes]
     if verdict.status == "no_gap":
         return "No gap: the machine does what its model says, to within its own repeatability."
+    spoken = odds(verdict)
+    if spoken:
+        return _sentence(f"{spoken}.")
     if verdict.status == "attributed":
         return _sentence(f"{_finding(verdict)}: {_share(verdict)}{_rest(verdict, rests)}.")
     if verdict.status == "under_excited":
-        open_ones = [f"{_name(c)} or {listed([_lower(r) for r in c.rivals])}" for c in verdict.causes if c.rivals]
+        open_ones = [f"{name_of(c)} or {listed([lower(r) for r in c.rivals])}" for c in verdict.causes if c.rivals]
         return _sentence(f"{listed(open_ones or names)}: these runs cannot tell.")
     left = verdict.unexplained
-    where = "" if left is None else f" in {_lower(left.stage)}, {place(left.actuator)}"
+    where = "" if left is None else f" in {lower(left.stage)}, {place(left.actuator)}"
     return f"No effect of the library explains the gap{where}."
 
 
@@ -76,13 +80,6 @@ def told(cause: Cause) -> dict[str, Parameter]:
     return out
 
 
-def significant(parameter: Parameter) -> bool:
-    """Return whether a parameter differs from zero: its interval does not hold it, or it has none."""
-    if parameter.low is None or parameter.high is None:
-        return True
-    return not parameter.low <= 0.0 <= parameter.high
-
-
 def closure_text(value: Interval) -> str:
     """Return a closure with its interval."""
     if value.low is None:
@@ -90,34 +87,10 @@ def closure_text(value: Interval) -> str:
     return f"{share(value.value)} ({share(value.low)} … {share(value.high)})"
 
 
-SHARES = ("relative", "fraction")
-"""Parameters without a unit that are shares of what the model has."""
-NAMES_OF_PEOPLE = ("coulomb", "stribeck")
-"""First words of effects that keep their capital inside a sentence."""
-
-
-def _lower(identifier: str) -> str:
-    text = words(identifier)
-    return text if text.lower().startswith(NAMES_OF_PEOPLE) else text[:1].lower() + text[1:]
-
-
-def _name(cause: Cause) -> str:
-    return f"{_lower(cause.effect)} on {place(cause.actuator)}"
-
-
-def _sized(cause: Cause) -> str:
-    """Return a cause with the first of its parameters that differs from zero."""
-    name, first = next(((n, p) for n, p in cause.parameters.items() if significant(p)), ("", None))
-    if first is None or (first.unit == "1" and name not in SHARES):
-        return _name(cause)
-    size = f"{100.0 * first.value:.3g} %" if first.unit == "1" else quantity(first.value, first.unit)
-    return f"{_name(cause)}, {size}"
-
-
 def _finding(verdict: Verdict) -> str:
     """Return the causes with their sizes; a comma keeps a size to its cause."""
-    sized = [_sized(c) for c in verdict.causes]
-    return listed([s + "," * (i == len(sized) - 2 and "," in s) for i, s in enumerate(sized)])
+    each = [sized(c) for c in verdict.causes]
+    return listed([s + "," * (i == len(each) - 2 and "," in s) for i, s in enumerate(each)])
 
 
 def _share(verdict: Verdict) -> str:
@@ -154,7 +127,7 @@ def _where(verdict: Verdict) -> str:
 def _unknown(verdict: Verdict) -> str:
     if verdict.unexplained is None:
         return "none needed"
-    alike = [f"{_lower(i.effect)} ({share(i.closure.value)})" for i in verdict.unexplained.imitated_by]
+    alike = [f"{lower(i.effect)} ({share(i.closure.value)})" for i in verdict.unexplained.imitated_by]
     nearest = f", though {listed(alike)} imitate{'s' * (len(alike) == 1)} it" if alike else ""
     return f"none of the library{nearest}; what is left: {verdict.unexplained.signature}"
 
@@ -164,6 +137,9 @@ def _closure(verdict: Verdict) -> str:
     for name, value in (("stage", verdict.closure.stage), ("tip", verdict.closure.tip)):
         if value is not None and verdict.causes:
             parts.append(f"{name} {closure_text(value)}")
+    bet = verdict.places[0].bet if verdict.places and not verdict.causes else None
+    if bet is not None and bet.closure is not None:
+        parts.append(f"{closure_text(bet.closure)} with the best bet, {name_of(bet.causes[0])}")
     if verdict.residual is not None and verdict.causes:
         r = verdict.residual
         parts.append(f"left {quantity(r.gap, r.unit)} over a floor of {quantity(r.floor, r.unit)}")

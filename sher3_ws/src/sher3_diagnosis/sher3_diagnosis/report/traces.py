@@ -67,6 +67,8 @@ def traces(diagnosis: Diagnosis, reporter: Reporter) -> list[Trace]:
 
 def _channel(finding: Finding, channel: Channel, reporter: Reporter) -> Trace | None:
     """Return the picture of a channel in the run with its largest gap; None where no run has it."""
+    named = _acted_on(finding, channel)
+    finding = finding if named else finding.with_all
     evidence = finding.evidence
     after = residual_after(evidence, finding.attribution.fit, channel)
     if not after:
@@ -80,10 +82,11 @@ def _channel(finding: Finding, channel: Channel, reporter: Reporter) -> Trace | 
     if found.values.shape[1] > 1:
         title += f", {COMPONENTS[best]}"
     caption = reporter.run_name(evidence, run)
-    caption += f", held out: the correction was fitted to the other {reporter.held_out}." if lines.changed else ""
+    bet = "" if named else " (the best bet, which is not sure enough to be named)"
+    caption += f", held out: the correction{bet} was fitted to the other {reporter.held_out}." if lines.changed else ""
     if not lines.changed:
         caption += f": real and nominal model alone, {_why_uncorrected(finding, channel)}."
-    return Trace(title, caption, _draw(lines, title, reporter.abscissa))
+    return Trace(title, caption, _draw(lines, title, reporter.abscissa, "with the causes" if named else "best bet"))
 
 
 def _acted_on(finding: Finding, channel: Channel) -> bool:
@@ -147,9 +150,9 @@ def _component(values: Array, floor: Array) -> int:
     return int(best.start + np.argmax(power[best]))
 
 
-def _draw(lines: _Lines, title: str, abscissa: str) -> str:
+def _draw(lines: _Lines, title: str, abscissa: str, corrected: str) -> str:
     made, (top, bottom) = figure(2, 4.1, sharex=True, height_ratios=[1.5, 1.0])
-    _draw_output(top, lines)
+    _draw_output(top, lines, corrected)
     _draw_residual(bottom, lines)
     bottom.set_xlabel(abscissa)
     for ax in (top, bottom):
@@ -158,12 +161,12 @@ def _draw(lines: _Lines, title: str, abscissa: str) -> str:
     return to_svg(made, title)
 
 
-def _draw_output(ax: Axes, lines: _Lines) -> None:
+def _draw_output(ax: Axes, lines: _Lines, corrected: str) -> None:
     scale, prefix = scale_of(lines.real)
     _line(ax, lines.time, scale * lines.real, REAL, "real", 1.3)
     _line(ax, lines.time, scale * lines.nominal, NOMINAL, "nominal model", 1.1)
     if lines.changed:
-        _line(ax, lines.time, scale * lines.corrected, CORRECTED, "with the causes", 1.1)
+        _line(ax, lines.time, scale * lines.corrected, CORRECTED, corrected, 1.1)
     ax.set_ylabel(f"{lines.name} [{prefix}{lines.unit}]")
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +22,7 @@ from sher3_diagnosis.quantify.remains import excess_of, remains
 from sher3_diagnosis.thresholds import AT_FLOOR
 
 
+@runtime_checkable
 class Recorded(Protocol):
     """What a view tells of the quantities that laws may depend on."""
 
@@ -40,7 +41,8 @@ class CauseEvidence:
 
     Attributes:
         left: share left on held-out runs.
-        law: share left once its law is a free function of the inputs that the effect's page states.
+        law: share left once its law is a free function of the inputs that the effect's page states. Like the next two
+            None on a machine whose views do not tell them.
         place: of all quantities of its place.
         anything: of whatever was recorded anywhere, and its past.
         spread: share that coefficients of their own for every excitation add.
@@ -55,9 +57,9 @@ class CauseEvidence:
     """
 
     left: float
-    law: float
-    place: float
-    anything: float
+    law: float | None
+    place: float | None
+    anything: float | None
     spread: float | None
     scatter: float
     lost: float | None
@@ -89,16 +91,18 @@ def cause_evidence(evidence: Evidence, attribution: Attribution, index: int) -> 
     moving = attribution.moving
     remainder = remains(evidence, found if moving is None else moving.whole, index, channel)
     left = excess_of(evidence, channel, remainder)
-    laws = free_laws(evidence, channel, term, remainder)
+    told = all(isinstance(evidence.views[r], Recorded) for r in remainder)
+    taken = free_laws(evidence, channel, term, remainder) if told else (None, None, None)
+    law, place, anything = (None if x is None else (left - x * samples) / gap for x in taken)
     steady = steadiness_of(evidence, found, index)
     before = residual_after(evidence, without, channel)
     whole = gap_of(evidence, channel, before)
     assert whole is not None
     return CauseEvidence(
         left=left / gap,
-        law=(left - laws[0] * samples) / gap,
-        place=(left - laws[1] * samples) / gap,
-        anything=(left - laws[2] * samples) / gap,
+        law=law,
+        place=place,
+        anything=anything,
         spread=steady.spread if steady.comparable else None,
         scatter=steady.scatter,
         lost=steady.lost,
@@ -159,7 +163,8 @@ def _stacked(columns: Mapping[str, Array], rows: NDArray[np.int64]) -> Array:
 def _sibling(attribution: Attribution, index: int) -> float:
     """Share by which the next effect of another id explains less in the place of a cause."""
     chosen, worth = attribution.fit.terms[index], max(attribution.explained[index], 1.0)
-    others = [f.total for f in attribution.ranking[index] if f.terms[-1].effect.id != chosen.effect.id]
+    ranked = attribution.ranking[index] if attribution.ranking else ()
+    others = [f.total for f in ranked if f.terms[-1].effect.id != chosen.effect.id]
     if not others:
         return 1.0
     return float(np.clip((min(others) - attribution.fit.total) / worth, 0.0, 1.0))

@@ -39,14 +39,28 @@ def scaled_cause(numbers: Mapping[str, float]) -> dict[str, float]:
 
     What nothing tells is not there, so that it speaks neither for the cause nor against it.
     """
-    left, law, anything = (min(max(numbers[name], 0.0), 1.0) for name in ("left", "law", "anything"))
-    floors = max(numbers["power"], 0.0)
+    left, floors = _share(numbers["left"]), max(numbers["power"], 0.0)
     steady = {"spread": log_above(numbers["spread"], 0.001)} if "spread" in numbers else {}
-    return steady | {
-        "left": log_above(left, LEAST_SHARE),
-        "complete": 0.0 if numbers["idealised"] else log_above(left, LEAST_SHARE) - math.log(LEAST_SHARE),
-        "floors": log_above(min(left * floors, MOST_POWER), LEAST_FLOORS),
-        "foreign": max(0.0, law - anything) / max(law, LEAST_LAW, 1.0 / max(floors, 1.0)),
-        "mismatch": log_above(numbers["mismatch"], 0.01),
-        "size": log_above(numbers["ratio"], 1.0),
-    }
+    return (
+        _foreign(numbers, floors)
+        | steady
+        | {
+            "left": log_above(left, LEAST_SHARE),
+            "complete": 0.0 if numbers["idealised"] else log_above(left, LEAST_SHARE) - math.log(LEAST_SHARE),
+            "floors": log_above(min(left * floors, MOST_POWER), LEAST_FLOORS),
+            "mismatch": log_above(numbers["mismatch"], 0.01),
+            "size": log_above(numbers["ratio"], 1.0),
+        }
+    )
+
+
+def _foreign(numbers: Mapping[str, float], floors: float) -> dict[str, float]:
+    """Return the share of what own inputs leave that others explain; nothing where free laws were not looked at."""
+    if "law" not in numbers:
+        return {}
+    law, anything = _share(numbers["law"]), _share(numbers["anything"])
+    return {"foreign": max(0.0, law - anything) / max(law, LEAST_LAW, 1.0 / max(floors, 1.0))}
+
+
+def _share(x: float) -> float:
+    return min(max(x, 0.0), 1.0)

@@ -1,0 +1,128 @@
+"""The odds in words: of the headline, and of every place for the page."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from sher3_diagnosis.verdict import Answer, Cause, Parameter, Place, Verdict
+from sher3_diagnosis.words import listed, lower, place, quantity, range_text, ratio_text, share, words
+
+SURE = 0.95
+"""Probability from which the headline does not speak of odds. A convention of the words, as the next two."""
+SPOKEN = 0.05
+"""Probability from which an answer is spoken of."""
+MOST = 3
+"""Answers in a headline."""
+SHARES = ("relative", "fraction")
+"""Parameters without a unit that are shares of what the model has."""
+LACKS = "something {0}that the library lacks"
+
+
+@dataclass(frozen=True)
+class BetRow:
+    """One answer to a place in words; `parameters` of its causes with their intervals."""
+
+    answer: str
+    probability: str
+    closure: str
+    left: str
+    parameters: str
+
+
+@dataclass(frozen=True)
+class PlaceOfBets:
+    """A place with its answers; `other` is the probability of what is not listed, empty where it is nothing."""
+
+    title: str
+    rows: list[BetRow]
+    other: str
+
+
+def odds(verdict: Verdict) -> str:
+    """Return the answers to the first place with their probabilities; empty where they need not be spoken of.
+
+    They are where the odds are calibrated (only then a verdict has costs), an effect is in play, and none is sure.
+    """
+    first = verdict.places[0] if verdict.places and verdict.costs else None
+    if first is None or first.bet is None or verdict.status not in ("attributed", "outside_library"):
+        return ""
+    ranked = _spoken(first, verdict.status == "attributed")
+    if ranked[0].probability >= SURE or not any(a.causes for a in ranked):
+        return ""
+    text = "; or ".join(_said(a, first, i) for i, a in enumerate(ranked))
+    told = {(c.effect, c.actuator) for c in first.bet.causes}
+    beside = [sized(c) for c in verdict.causes if (c.effect, c.actuator) not in told]
+    return text + (f"; besides {listed(beside)}" if beside else "")
+
+
+def places_of_bets(verdict: Verdict) -> list[PlaceOfBets]:
+    """Return the places of a verdict with what one would bet on each."""
+    return [
+        PlaceOfBets(
+            f"{words(p.stage)}, {place(p.actuator)}: "
+            f"{ratio_text(p.gap / p.floor) + ' floors' if p.floor else quantity(p.gap, p.unit)}",
+            [_row(a) for a in p.answers],
+            share(p.other) if p.other > 0.0 else "",
+        )
+        for p in verdict.places
+    ]
+
+
+def name_of(cause: Cause) -> str:
+    """Return effect and place of a cause."""
+    return f"{lower(cause.effect)} on {place(cause.actuator)}"
+
+
+def sized(cause: Cause) -> str:
+    """Return a cause with the first of its parameters that differs from zero."""
+    name, first = next(((n, p) for n, p in cause.parameters.items() if significant(p)), ("", None))
+    if first is None or (first.unit == "1" and name not in SHARES):
+        return name_of(cause)
+    size = f"{100.0 * first.value:.3g} %" if first.unit == "1" else quantity(first.value, first.unit)
+    return f"{name_of(cause)}, {size}"
+
+
+def significant(parameter: Parameter) -> bool:
+    """Return whether a parameter differs from zero: its interval does not hold it, or it has none."""
+    if parameter.low is None or parameter.high is None:
+        return True
+    return not parameter.low <= 0.0 <= parameter.high
+
+
+def _spoken(first: Place, named: bool) -> list[Answer]:
+    """Return the answers worth speaking of: where causes are named they come first, else the more probable."""
+    ranked = sorted(first.answers, key=lambda a: (named and not a.causes, -round(a.probability, 2), not a.causes))
+    return [a for a in ranked if a.probability >= SPOKEN or a is ranked[0]][:MOST]
+
+
+def _said(answer: Answer, first: Place, rank: int) -> str:
+    """Return an answer with its probability and, of the best explanation, its size and closure."""
+    likely = share(answer.probability)
+    if answer.answer == "no_gap":
+        return f"no gap, {likely}"
+    if answer.answer is not None:
+        where = f" in {lower(first.stage)}, {place(first.actuator)}" if not rank else ""
+        return f"{LACKS.format('like it ' if rank else '')}{where}, {likely}"
+    if answer is not first.bet:
+        return f"{listed([name_of(c) for c in answer.causes])}, {likely}"
+    closes = "" if answer.closure is None else f": closes {share(answer.closure.value)}"
+    return f"{listed([sized(c) for c in answer.causes])}, {likely}{closes}"
+
+
+def _row(answer: Answer) -> BetRow:
+    names = {"no_gap": "No gap", "outside_library": "Something that the library lacks"}
+    told = [
+        f"{n.replace('_', ' ')} {p.means or quantity(p.value, p.unit)} ({range_text(p.low, p.high, p.unit)})"
+        for c in answer.causes
+        for n, p in c.parameters.items()
+        if significant(p)
+    ]
+    left = answer.residual
+    name = words(listed([name_of(c) for c in answer.causes], MOST)) if answer.causes else names[answer.answer or ""]
+    return BetRow(
+        answer=name,
+        probability=share(answer.probability),
+        closure="" if answer.closure is None else share(answer.closure.value),
+        left="" if left is None else quantity(left.gap, left.unit),
+        parameters=", ".join(told),
+    )
