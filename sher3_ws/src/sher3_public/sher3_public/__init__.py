@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from sher3_public.simulating import Replays as Replays
     from sher3_public.simulators.comparing import Comparison as Comparison
     from sher3_public.simulators.comparing import compare_simulators as compare_simulators
+    from sher3_public.sysid import from_sysid as from_sysid
 
 __getattr__, __dir__ = lazy(
     __name__,
@@ -25,5 +26,6 @@ __getattr__, __dir__ = lazy(
         "one_call": ("diagnose",),
         "simulating": ("Replay", "Replays"),
         "simulators.comparing": ("Comparison", "compare_simulators"),
+        "sysid": ("from_sysid",),
     },
 )

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from sher3_public import compare_simulators as compare_simulators
     from sher3_public import diagnose as diagnose
     from sher3_public import from_lerobot as from_lerobot
+    from sher3_public import from_sysid as from_sysid
 
 __all__ = [
     "Answer",
@@ -32,6 +33,7 @@ __all__ = [
     "compare_simulators",
     "diagnose",
     "from_lerobot",
+    "from_sysid",
 ]
 
 __getattr__, __dir__ = lazy(
@@ -44,5 +46,6 @@ __getattr__, __dir__ = lazy(
         "one_call": ("diagnose",),
         "simulating": ("Replay", "Replays"),
         "simulators.comparing": ("Comparison", "compare_simulators"),
+        "sysid": ("from_sysid",),
     },
 )
