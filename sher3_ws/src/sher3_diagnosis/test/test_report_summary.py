@@ -68,12 +68,13 @@ def test_the_headline_is_the_answer(answer, text):
 def test_five_lines_of_an_explained_gap():
     closed = Closure(stage=Interval(value=0.98, low=0.9, high=1.0), tip=Interval(value=0.5))
     left = Residual(gap=2.1e-6, floor=2e-6, unit="m")
-    lines = dict(five_lines(verdict("attributed", causes=[FRICTION], closure=closed, residual=left), simulated=True))
+    answer = verdict("attributed", causes=[FRICTION], closure=closed, residual=left)
+    lines = dict(five_lines(answer, simulated=True, case="bags/case", folder="out"))
     assert list(lines) == ["verdict", "where", "cause", "closure", "next"]
     assert lines["where"] == "transmission, tilt: 6 µm rms, 3.0 times the floor, just after a reversal"
     assert lines["cause"] == "Coulomb friction on delta 2, force 300 mN (250 mN … 350 mN)"
     assert lines["closure"] == "stage 98 % (90 % … 100 %), tip 50 %, left 2.1 µm over a floor of 2 µm"
-    assert "sher3 gap apply" in lines["next"]
+    assert lines["next"].startswith("`sher3 gap apply out/verdict.json -o corrected.yaml --case bags/case` ")
 
 
 def test_commands_are_named_for_a_simulated_machine_only():

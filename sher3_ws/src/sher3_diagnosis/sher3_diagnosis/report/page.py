@@ -50,7 +50,7 @@ def _sections(diagnosis: Diagnosis, title: str, folder: str, case: str) -> dict[
         title=title,
         verdict=verdict,
         headline=headline(verdict, rests),
-        lines=five_lines(verdict, reporter.simulated, rests, reporter.table(diagnosis)),
+        lines=five_lines(verdict, reporter.simulated, rests, reporter.table(diagnosis), case, folder),
         picture=reporter.picture(diagnosis),
         command=command(verdict, reporter.simulated, case, folder),
         data=reporter.data(parts),

@@ -42,6 +42,8 @@ def five_lines(
     simulated: bool,
     rests: Mapping[str, str] = MappingProxyType({}),
     table: Table | None = None,
+    case: str = "CASE",
+    folder: str = "",
 ) -> list[tuple[str, str]]:
     """Return (label, text) of the five lines: verdict, where, cause, closure, next; with a table a cause for each row.
 
@@ -50,6 +52,7 @@ def five_lines(
         simulated: whether `sher3 gap apply` and `sher3 gap experiment` know the machine's simulator.
         rests: as in `headline`.
         table: of the causes, where the machine has one.
+        case: its folder, and `folder` where its verdict is written, as in `command`: the next line is typed as it is.
     """
     causes = ["; ".join(cause_text(c) for c in verdict.causes) or _unknown(verdict)]
     return [
@@ -57,7 +60,7 @@ def five_lines(
         ("where", _where(verdict)),
         *(("cause", text) for text in (causes if table is None else table.lines())),
         ("closure", _closure(verdict)),
-        ("next", _next(verdict, simulated)),
+        ("next", _next(verdict, simulated, case, folder)),
     ]
 
 
@@ -155,7 +158,7 @@ def command(verdict: Verdict, simulated: bool, case: str, folder: str = "") -> t
         case: its folder.
         folder: where the verdict was written; default where `sher3 gap diagnose` writes it.
     """
-    file = f"{folder or f'gap/{case}'}/verdict.json"
+    file = _file(case, folder)
     if verdict.status == "attributed" and simulated:
         line = f"sher3 gap apply {file} -o corrected.yaml --case {case}"
         return line, "puts the causes into the simulator and prints the gap that is left"
@@ -168,15 +171,14 @@ def command(verdict: Verdict, simulated: bool, case: str, folder: str = "") -> t
     return None
 
 
-def _next(verdict: Verdict, simulated: bool) -> str:
-    if verdict.next_experiment is not None:
-        e = verdict.next_experiment
+def _next(verdict: Verdict, simulated: bool, case: str, folder: str) -> str:
+    e = verdict.next_experiment
+    if e is not None:
         tells = f"{e.excitation} tells {' / '.join(words(i).lower() for i in e.separates)} apart"
-        return f"`sher3 gap experiment verdict.json`: {tells}" if simulated else tells
-    if verdict.causes:
-        if simulated:
-            return "`sher3 gap apply verdict.json` puts the causes into the simulator"
-        return "put the parameters into this machine's own simulator"
-    if verdict.unexplained is not None:
-        return "`sher3 gap discover CASE` looks for a formula; else a sensor nearer to that place"
-    return "none"
+        return f"`sher3 gap experiment {_file(case, folder)} {case}`: {tells}" if simulated else tells
+    line = command(verdict, simulated, case, folder)
+    return "none" if line is None else f"`{line[0]}` {line[1]}"
+
+
+def _file(case: str, folder: str) -> str:
+    return f"{folder or f'gap/{case}'}/verdict.json"

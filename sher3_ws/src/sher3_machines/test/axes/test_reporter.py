@@ -23,4 +23,4 @@ def test_the_page_has_the_axis(found):
     page = render(found, "slide")
     assert "<h1>Coulomb friction on slide" in page
     assert "force [N]" in page and "held out: the correction was fitted to the other blocks" in page
-    assert "sher3 gap apply" not in page and "this machine&#39;s own simulator" in page
+    assert "sher3 gap apply" not in page and "your own simulator" in page
