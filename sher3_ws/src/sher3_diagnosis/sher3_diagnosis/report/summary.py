@@ -52,7 +52,8 @@ def five_lines(
         simulated: whether `sher3 gap apply` and `sher3 gap experiment` know the machine's simulator.
         rests: as in `headline`.
         table: of the causes, where the machine has one.
-        case: its folder, and `folder` where its verdict is written, as in `command`: the next line is typed as it is.
+        case: its folder.
+        folder: where its verdict is written; both as in `command`, so that the next line can be typed as it stands.
     """
     causes = ["; ".join(cause_text(c) for c in verdict.causes) or _unknown(verdict)]
     return [
