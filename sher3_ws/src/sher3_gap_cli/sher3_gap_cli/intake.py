@@ -24,8 +24,9 @@ def import_data(
 ) -> None:
     """Turn records of another machine and a short YAML description of it into a case.
 
-    Descriptions of known data sets are named without a path: emps, rhoban_mx_drop, sage_so101, dfki_simple_pendulum,
-    franka_fr3_calib. Exit codes: 0 written, 2 data or description are wrong (one sentence says why).
+    Descriptions of known data sets are named without a path: emps, rhoban_mx_drop, sage_so101,
+    dfki_simple_pendulum, dfki_double_pendulum, franka_fr3_calib, kuka_kr300, davinci_tool, tiago_dynamics. Exit
+    codes: 0 written, 2 data or description are wrong (one sentence says why).
     """
     from sher3_machines import MachineError
     from sher3_machines.intake.case import described, import_case

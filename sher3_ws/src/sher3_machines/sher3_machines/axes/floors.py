@@ -19,6 +19,8 @@ UNIFORM = np.sqrt(12.0)
 """Width of a uniform distribution over its standard deviation: a count over the error of rounding to it."""
 NOISE_SAMPLES = 400
 """Samples of simulated noise at least, so that its filtered power is known to a few per cent."""
+ON_GRID = 20
+"""Samples of the residual grid at least, where a record is so short that it has hardly any."""
 NOTHING = 1e-12
 """Floor in place of none, N or N m."""
 
@@ -45,7 +47,7 @@ def foresight(run: AxisSignals) -> float:
 
     The filter makes neighbours alike, so that a part of what is noise could be foreseen from them.
     """
-    noise = np.random.default_rng(0).normal(size=(max(run.ticks, NOISE_SAMPLES), 1))
+    noise = np.random.default_rng(0).normal(size=(max(run.ticks, NOISE_SAMPLES, ON_GRID * run.stride), 1))
     seen = run.filtered(noise)[:: run.stride]
     return float(innovation(Residual(seen, np.ones(len(seen), dtype=bool)))[0] / seen.std())
 

@@ -211,8 +211,13 @@ def missing(part: AxisEvidence) -> str:
     travel = max(float(np.ptp(view.run.motor)) for view in part.records)
     if travel <= part.axis.encoder_resolution:
         return f"does not move by more than one count, {part.axis.encoder_resolution:.3g} {part.axis.unit_of_position}"
-    short = all(len(view.run.grid) < 2 * BLOCKS for view in part.records)
-    return "the records are too short" if short else "nothing was recorded that its position can be compared with"
+    if not all(len(view.run.grid) < 2 * BLOCKS for view in part.records):
+        return "nothing was recorded that its position can be compared with"
+    longest = max((view.run for view in part.records), key=lambda run: run.ticks * run.period)
+    return (
+        f"the records are too short, {longest.ticks * longest.period:.3g} s at {1.0 / longest.period:.3g} Hz "
+        "(is `time` in that unit? `override: true` corrects a header)"
+    )
 
 
 def views_of(evidence: AxisEvidence, runs: Collection[str]) -> frozenset[int]:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 from sher3_diagnosis.channel import Array, Mask
 
 from sher3_machines.axes.description import Axis
@@ -18,7 +19,7 @@ from sher3_machines.intake.fields import Clock, Column
 from sher3_machines.intake.mending.motion import check_speed, counts_backwards, is_magnitude, signs_of, speed_ratio
 from sher3_machines.intake.mending.parts import LONGEST_HOLE, cut
 from sher3_machines.intake.mending.readings import glitches, known_readings
-from sher3_machines.intake.mending.repeats import filled, fresh_readings, fresh_rows, hold_of
+from sher3_machines.intake.mending.repeats import filled, fresh_readings, fresh_rows, goes_smoothly, hold_of
 from sher3_machines.intake.mending.stamps import even_stamps, missed_periods, missing_note
 from sher3_machines.intake.spelling import table_of
 from sher3_machines.intake.tables import Tables
@@ -34,8 +35,11 @@ SIGNALS = ("position", "reference", "command", "effort", "load", "nominal_effort
 
 POSITIONS = ("position", "reference", "load")
 """Signals that are places."""
-READINGS = ("position", "load", "effort")
-"""Signals that are measured: a value that stays is an old one. A reference or a command may well be held for a while.
+ENCODERS = ("position", "load")
+"""Signals that an encoder reads: nothing moves in steps."""
+READINGS = (*ENCODERS, "effort")
+"""Signals that are measured: a value that stays is an old one. A command may well be held, and a reference that goes in
+steps.
 """
 OTHERS = ("reference", "load")
 """Places that follow the position, in its sense or turned."""
@@ -93,7 +97,9 @@ def axes_run(name: str, tables: Tables, machine: Chain) -> AxesRun:
         mended += _without_glitches(axis, raw[axis.name], name)
         _check_velocity(axis, raw[axis.name]["position"], tables, machine.time, name)
     clock, period, notes = _clock([s for a in raw.values() for s in a.values()], machine.time, name, polled)
-    signals = {a: {k: _onto(clock, t, x) for k, (t, x) in found.items()} for a, found in raw.items()}
+    signals = {
+        a: {k: _onto(clock, t, x, polled and k in ENCODERS) for k, (t, x) in found.items()} for a, found in raw.items()
+    }
     for axis in machine.axes:
         check_units(axis, signals[axis.name], name)
         mended += _turned(axis, signals[axis.name], name)
@@ -118,8 +124,8 @@ def _mended(column: Column, tables: Tables, clock: Clock, run: str, of: tuple[st
     known, note = known_readings(x, stamps is not None, what)
     notes += [note] if note else []
     stamps, x = _only(stamps, x, known)
-    fresh = fresh_readings(x) if of[1] in READINGS else np.ones(len(x), dtype=bool)
-    if not fresh.all():
+    fresh = fresh_readings(x) if of[1] in (*READINGS, "reference") else np.ones(len(x), dtype=bool)
+    if not fresh.all() and (of[1] in READINGS or goes_smoothly(x[fresh])):
         stamps, x = _only(stamps, x, fresh)
         notes.append(f"{what} is held for {hold_of(fresh):.0f} rows: slower than the log; its new readings are taken")
     if of[1] in POSITIONS and is_speed(column, tables, run):
@@ -289,9 +295,11 @@ def _checked(t: Array, run: str) -> Array:
     return t
 
 
-def _onto(clock: Array, t: Array | None, x: Array) -> Array:
-    """Samples interpolated to the clock (n,); those without stamps are on it."""
-    return np.asarray(x if t is None else np.interp(clock, t, x), dtype=float)
+def _onto(clock: Array, t: Array | None, x: Array, smooth: bool) -> Array:
+    """Samples interpolated to the clock (n,), by a spline where they are `smooth`; those without stamps are on it."""
+    if t is None:
+        return np.asarray(x, dtype=float)
+    return np.asarray(CubicSpline(t, x)(clock) if smooth else np.interp(clock, t, x), dtype=float)
 
 
 def parts_of_record(name: str, tables: Tables, machine: Chain) -> tuple[dict[str, Tables], str]:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from sher3_machines.intake.mending.motion import counts_backwards
-from sher3_machines.intake.mending.repeats import filled, fresh_readings, fresh_rows, hold_of
+from sher3_machines.intake.mending.repeats import filled, fresh_readings, fresh_rows, goes_smoothly, hold_of
 
 N = 3000
 CLOCK = 0.002 * np.arange(N)
@@ -40,6 +40,10 @@ def test_coarse_counts_rest_steps_and_noise_are_samples():
     assert fresh_readings(np.round(EFFORT / 0.02) * 0.02).all()  # a noise of one count
     dwells = np.repeat(0.1 * np.arange(N // 10), 10) + 0.02 * np.repeat([[0, 1, 2, 3] + [4] * 6], N // 10, 0).ravel()
     assert fresh_rows([dwells, dwells]).all()  # starts and stops
+
+
+def test_a_reference_in_steps_is_meant_and_one_that_goes_on_is_a_path():
+    assert goes_smoothly(PLACE[::3]) and not goes_smoothly(np.random.default_rng(2).normal(size=500))
 
 
 def test_a_second_encoder_that_counts_backwards_is_told_by_the_motion():

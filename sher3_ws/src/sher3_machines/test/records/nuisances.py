@@ -73,6 +73,14 @@ def _zero(x: Array, size: int, rng: np.random.Generator, record: Record) -> Arra
     return x + (0.01, 0.1, 1.0)[size - 1] * float(np.ptp(x))
 
 
+def _turned(x: Array, size: int, rng: np.random.Generator, record: Record) -> Array:
+    return (0.0, 1.0, -1.0)[size - 1] * float(np.ptp(x)) - x
+
+
+def _opposite(x: Array, size: int, rng: np.random.Generator, record: Record) -> Array:
+    return -x
+
+
 def _hold(x: Array, size: int, rng: np.random.Generator, record: Record) -> Array:
     return x[np.arange(len(x)) // (size + 1) * (size + 1)]
 
@@ -130,6 +138,27 @@ def cut_end(record: Record, size: int, rng: np.random.Generator) -> Record | Non
     return record.rows(np.arange(n - size * n // 50))
 
 
+def polled_rows(record: Record, size: int, rng: np.random.Generator) -> Record | None:
+    """Poll faster than the samples come: one in fifty rows, one in eight, one in three repeats the row before."""
+    if "time" not in record.roles:
+        return None
+    n = len(record.columns[record.roles["time"]])
+    again = rng.random(n) < (0.02, 0.125, 0.33)[size - 1]
+    again[[0, -1]] = False
+    last = np.maximum.accumulate(np.where(again, 0, np.arange(n)))
+    columns = {name: x if name == record.roles["time"] else x[last] for name, x in record.columns.items()}
+    return replace(record, columns=columns)
+
+
+def silent_effort(record: Record, size: int, rng: np.random.Generator) -> Record | None:
+    """Lose the effort for 4, 8, 12 percent of the record: it reads exactly zero."""
+    x = record.of("effort")
+    if x is None:
+        return None
+    first, lost = len(x) // 3, size * len(x) // 25
+    return record.with_column("effort", np.where((np.arange(len(x)) - first) // lost == 0, 0.0, x))
+
+
 def further_columns(record: Record, size: int, rng: np.random.Generator) -> Record | None:
     """Write columns that nobody described: a counter, a constant, noise."""
     n = len(next(iter(record.columns.values())))
@@ -157,7 +186,10 @@ def both_zeros(record: Record, size: int, rng: np.random.Generator) -> Record | 
 NUISANCES: Mapping[str, Nuisance] = {
     "zero of position and reference": both_zeros,
     "zero of the load encoder": _on("load", _zero),
+    "turned load encoder": _on("load", _turned),
+    "turned reference": _on("reference", _opposite),
     "held effort": _on("effort", _hold),
+    "held position": _on("position", _hold),
     "held load encoder": _on("load", _hold),
     "held reference": _on("reference", _hold),
     "counts of the position": _counted("position"),
@@ -177,6 +209,8 @@ NUISANCES: Mapping[str, Nuisance] = {
     "unit of the applied force": _unit("applied"),
     "dropped rows": drop_rows,
     "repeated rows": repeat_rows,
+    "polled rows": polled_rows,
+    "silent effort": silent_effort,
     "late start": cut_start,
     "early end": cut_end,
     "further columns": further_columns,

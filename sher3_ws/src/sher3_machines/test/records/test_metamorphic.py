@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import partial
 
 import numpy as np
 import pytest
-from clean_records import answer, cell, slide
+from answers import answer
+from clean_records import RECORDS, cell, slide
+from measured_records import MEASURED, REAL
 from metamorphic import Outcome, difference, outcomes, table
 from nuisances import NUISANCES, SIZES
+from sweep import swept
 
 QUICK = ("early end",)
 """Nuisances of a slide in the quick sub-sample."""
@@ -49,15 +53,27 @@ def test_misses_are_listed_by_name():
     assert table(found) == "2 verdicts, 50.0% unchanged\n  jitter of the clock, size 3: lost backlash"
 
 
-MISSES = {"held reference"}
-"""What changes the verdict on the slide: a reference logged at a half to a quarter of the rate reads as another law of
-the controller. Of 42 verdicts these 3 change."""
+MISSES: Mapping[str, set[str]] = {
+    "slide": {"held reference"},
+}
+"""Record -> nuisances that change its verdict at one size or more.
+
+A reference logged at a half to a quarter of the rate reads as another law of the controller.
+"""
 
 
 @pytest.mark.slow
-def test_what_changes_the_verdict_on_a_slide_is_known():
-    """Every nuisance on the slide; `pytest -m slow -s -k what_changes` prints the share and the misses."""
-    described, record = slide()
-    found = list(outcomes(record, partial(answer, described)))
-    print(table(found))
-    assert len(found) >= 40 and {x.nuisance for x in found if x.difference} <= MISSES
+@pytest.mark.parametrize("name", sorted(RECORDS))
+def test_what_changes_the_verdict_on_a_clean_record_is_known(name):
+    """Every nuisance on every record; `sweep.py` prints the shares and the misses."""
+    found = swept(name)
+    assert {x.nuisance for x in found if x.difference} <= MISSES.get(name, set()), table(found)
+
+
+@pytest.mark.slow
+@pytest.mark.shared
+@pytest.mark.skipif(not REAL.is_dir(), reason=f"no data sets in {REAL}")
+@pytest.mark.parametrize("name", sorted(MEASURED))
+def test_what_changes_the_verdict_on_a_measured_record_is_known(name):
+    found = swept(name)
+    assert {x.nuisance for x in found if x.difference} <= MISSES.get(name, set()), table(found)

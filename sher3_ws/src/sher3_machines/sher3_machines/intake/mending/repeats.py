@@ -65,6 +65,12 @@ def fresh_readings(x: Array) -> Mask:
     return ~repeats(np.nan_to_num(x)[:, None], HELD)
 
 
+def goes_smoothly(x: Array) -> bool:
+    """Return whether readings (n,) go on as they went: they are samples of a path, and no steps that are meant."""
+    step = np.diff(x)
+    return len(step) > 1 and float(np.std(np.diff(step))) < float(np.std(step))
+
+
 def hold_of(fresh: Mask) -> float:
     """Return for how many rows a channel is held, as a median, of what `fresh_readings` (n,) returns."""
     at: NDArray[np.int64] = np.flatnonzero(fresh)
