@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from documentation.pages import Block
 
-FOREVER = ("sher3 up", "sher3 gap monitor", "sher3 record")
+FOREVER = ("sher3 up", "sher3 gap monitor", "sher3 gap watch", "sher3 record")
 """Commands that end at Ctrl-C, unless one of the options of `ENDS` is given."""
 ENDS = re.compile(r"--(duration|seconds)\b")
 NEEDS_ROBOT = ("sher3 teleop", "sher3 fault", "sher3 record", "sher3 gap monitor", "sher3 gap excite")

@@ -18,6 +18,7 @@ from sher3_gap_cli.intake import IMPORT_EXAMPLE, case, describe, import_data
 from sher3_gap_cli.library.command import library
 from sher3_gap_cli.monitor import monitor
 from sher3_gap_cli.simulators.compare import compare_simulators
+from sher3_gap_cli.watch.command import watch
 
 app = typer.Typer(no_args_is_help=True, help="Find and explain the gap between a robot and its simulation.")
 
@@ -32,6 +33,7 @@ EXAMPLES: dict[Callable[..., None], str] = {
     excite: "sher3 gap excite · sher3 gap excite all -o case · sher3 gap excite sweep --simulate -o case",
     check: "sher3 gap check log.npz robot.xml --baseline verdict.json --junit gap.xml --markdown gap.md",
     monitor: "sher3 gap monitor --effects effects.yaml --json",
+    watch: "sher3 gap watch --model robot.urdf --states /joint_states --best-effort",
     arms: "sher3 gap arms --seeds 0:1 --seconds 20",
     describe: "sher3 gap describe slide.csv --out slide.yaml",
     case: "sher3 gap case bags/a bags/b --out case",

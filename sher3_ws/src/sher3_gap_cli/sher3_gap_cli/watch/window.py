@@ -1,0 +1,117 @@
+"""The last seconds of a robot's joint states and commands, as arrays that a diagnosis takes."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+SHORTEST = 0.5
+"""Share of the window from which it is diagnosed: a robot that has only just begun says little."""
+
+
+EARLY = 0.2
+"""Share of a period by which a sample may come early and be kept: drivers' clocks jitter."""
+
+
+class State(NamedTuple):
+    """Joint states at a stamp, s; rad or m, N m or N; no efforts: empty."""
+
+    stamp: float
+    position: tuple[float, ...]
+    effort: tuple[float, ...]
+
+
+class Command(NamedTuple):
+    """What the joints were told from a stamp on, s."""
+
+    stamp: float
+    values: tuple[float, ...]
+
+
+class Taken(NamedTuple):
+    """A window: stamps (n,), s from its begin; command, position, effort (n, k), None where there is none."""
+
+    time: Array
+    command: Array | None
+    position: Array
+    effort: Array | None
+
+
+class Window:
+    """Keeps the last seconds of the joints of a model.
+
+    Args:
+        joints: in the order of the model.
+        seconds: that are kept.
+        rate: samples per second that are kept at most, Hz: what is faster is passed over.
+    """
+
+    def __init__(self, joints: Sequence[str], seconds: float, rate: float) -> None:
+        self.joints, self.seconds, self.period = tuple(joints), seconds, 1.0 / rate
+        self.states: deque[State] = deque()
+        self.commands: deque[Command] = deque()
+        self.heard, self.strange = 0, 0
+
+    def due(self, stamp: float) -> bool:
+        """Return whether a state of this stamp would be kept."""
+        since = stamp - self.states[-1].stamp if self.states else 0.0
+        return not self.states or since < 0.0 or since >= (1.0 - EARLY) * self.period
+
+    def state(self, stamp: float, names: Sequence[str], position: Sequence[float], effort: Sequence[float]) -> None:
+        """Take joint states; of joints that the model has not nothing is kept, and without one of its own the state."""
+        self.heard += 1
+        if self.states and stamp < self.states[-1].stamp:  # the clock went back: another run
+            self.states.clear()
+            self.commands.clear()
+        if not self.due(stamp):
+            return
+        places = {name: i for i, name in enumerate(names)}
+        if not set(self.joints) <= set(places) or len(position) < len(names):
+            self.strange += 1
+            return
+        order = [places[name] for name in self.joints]
+        efforts = tuple(effort[i] for i in order) if len(effort) == len(names) else ()
+        self.states.append(State(stamp, tuple(position[i] for i in order), efforts))
+        while self.states[0].stamp < stamp - self.seconds:
+            self.states.popleft()
+
+    def command(self, stamp: float, names: Sequence[str], values: Sequence[float]) -> None:
+        """Take a command from `stamp` on; without names it is in the order of the model."""
+        known: Mapping[str, float] = dict(zip(names or self.joints, values, strict=False))
+        if not set(self.joints) <= set(known):
+            self.strange += 1
+            return
+        self.commands.append(Command(stamp, tuple(known[name] for name in self.joints)))
+        while len(self.commands) > 1 and self.commands[1].stamp < stamp - self.seconds:
+            self.commands.popleft()
+
+    def taken(self) -> Taken | None:
+        """Return the window; None while it is shorter than half of what is kept."""
+        states = list(self.states)
+        if not states or states[-1].stamp - states[0].stamp < SHORTEST * self.seconds:
+            return None
+        stamps = np.array([s.stamp for s in states])
+        position = np.array([s.position for s in states])
+        efforts = [s.effort for s in states]
+        effort = np.array(efforts) if all(efforts) else None
+        if effort is not None and not (np.isfinite(effort).all() and effort.any()):
+            effort = None
+        command = self._held(stamps)
+        first = 0 if command is None else int(np.argmax(np.isfinite(command[:, 0])))
+        cut = [None if x is None else x[first:] for x in (command, effort)]
+        return Taken(stamps[first:] - stamps[first], cut[0], position[first:], cut[1])
+
+    def _held(self, stamps: Array) -> Array | None:
+        """Return the command that was in force at each stamp (n, k), NaN before the first; None without commands."""
+        if not self.commands:
+            return None
+        known = list(self.commands)
+        at = np.searchsorted([c.stamp for c in known], stamps, side="right") - 1
+        rows = np.array([[math.nan] * len(self.joints), *(c.values for c in known)])
+        return rows[at + 1]

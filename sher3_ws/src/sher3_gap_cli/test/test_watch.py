@@ -1,0 +1,129 @@
+"""`sher3 gap watch`: the window, what is made of it, and the node beside a plain publisher."""
+
+import os
+import subprocess
+import time
+
+import numpy as np
+import pytest
+from sher3_gap_cli.watch.judged import OK, STALE, WARN, judged, of_actuators
+from sher3_gap_cli.watch.window import Window
+
+ARM = (
+    '<robot name="a"><link name="base"/><link name="arm"><inertial><origin xyz="0.2 0 0"/><mass value="2"/>'
+    '<inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial></link>'
+    '<joint name="turn" type="revolute"><parent link="base"/><child link="arm"/><axis xyz="0 0 1"/>'
+    '<limit lower="-3" upper="3" effort="9" velocity="9"/></joint></robot>'
+)
+INERTIA = 0.01 + 2 * 0.2**2
+
+
+def moved(t, friction):
+    """Return position and effort of the arm that turns about the vertical, with dry friction, N m."""
+    place = 0.6 * np.sin(1.7 * t) + 0.3 * np.sin(4.1 * t)
+    speed = 0.6 * 1.7 * np.cos(1.7 * t) + 0.3 * 4.1 * np.cos(4.1 * t)
+    force = INERTIA * -(0.6 * 1.7**2 * np.sin(1.7 * t) + 0.3 * 4.1**2 * np.sin(4.1 * t))
+    return place, force + friction * np.tanh(speed / 1e-3)
+
+
+def test_a_window_keeps_its_seconds_in_the_model_s_order_at_its_rate():
+    window = Window(["a", "b"], seconds=2.0, rate=50.0)
+    assert window.taken() is None
+    for k in range(1000):
+        window.state(0.005 * k, ["c", "b", "a"], [9.0, 0.01 * k, -0.01 * k], [0.0, 2.0, 1.0])
+    taken = window.taken()
+    assert taken.command is None and len(taken.time) in (100, 101) and taken.time[0] == 0.0
+    assert np.diff(taken.time) == pytest.approx(0.02) and taken.position[-1] == pytest.approx([-9.96, 9.96])
+    assert (taken.effort == [1.0, 2.0]).all() and window.heard == 1000
+    assert window.due(5.0) and window.due(0.0) and not window.due(4.99)
+
+
+def test_commands_hold_until_the_next_and_the_window_begins_with_the_first():
+    window = Window(["a", "b"], seconds=2.0, rate=100.0)
+    window.command(0.5, ["b", "a"], [2.0, 1.0])
+    window.command(1.0, [], [3.0, 4.0])
+    for k in range(201):
+        window.state(0.01 * k, ["a", "b"], [0.0, 0.0], [])
+    taken = window.taken()
+    assert taken.effort is None and len(taken.time) == 151
+    assert (taken.command[:50] == [1.0, 2.0]).all() and (taken.command[50:] == [3.0, 4.0]).all()
+
+
+def test_strange_messages_are_counted_and_a_clock_that_goes_back_begins_anew():
+    window = Window(["a"], seconds=2.0, rate=100.0)
+    window.state(0.0, ["b"], [1.0], [])
+    window.state(0.0, ["a", "b"], [1.0], [])
+    window.command(0.0, ["b"], [1.0])
+    assert window.strange == 3 and not window.states
+    window.state(5.0, ["a"], [1.0], [])
+    window.state(1.0, ["a"], [1.0], [])
+    assert [s.stamp for s in window.states] == [1.0]
+
+
+@pytest.mark.parametrize(("friction", "level"), [(0.0, OK), (0.7, WARN)])
+def test_a_window_is_judged(friction, level):
+    t = np.arange(0.0, 12.0, 0.01)
+    place, effort = moved(t, friction)
+    rng = np.random.default_rng(1)
+    arrays = (t, None, place[:, None], (effort + 1e-3 * rng.normal(size=len(t)))[:, None])
+    found = judged(ARM, ("turn",), arrays)
+    assert found[0].name == "gap" and found[0].level == level
+    causes = [s.message for s in found[1:]]
+    assert bool(causes) == bool(friction) and all("Coulomb friction on turn" in c for c in causes)
+
+
+def test_what_cannot_be_judged_says_why():
+    t = np.arange(0.0, 12.0, 0.01)
+    (found,) = judged(ARM, ("turn",), (t, None, np.zeros((len(t), 1)), None))
+    assert found.level == STALE and found.message
+
+
+def test_a_command_of_joints_is_put_in_the_order_of_the_actuators():
+    from sher3_public.models import source_of
+
+    xml = (
+        '<mujoco><worldbody><body><joint name="a" axis="0 1 0"/><geom size=".1"/><body><joint name="b" axis="0 1 0"/>'
+        '<geom size=".1"/></body></body></worldbody><actuator><motor joint="b"/><motor joint="a"/></actuator></mujoco>'
+    )
+    assert of_actuators(source_of(xml).bodies, ("a", "b"), np.array([[1.0, 2.0]])).tolist() == [[2.0, 1.0]]
+    assert of_actuators(source_of(ARM).bodies, ("turn",), np.array([[1.0]])) is None
+
+
+@pytest.mark.graph
+@pytest.mark.flaky(reruns=2)
+def test_a_plain_publisher_s_friction_is_named_on_diagnostics(tmp_path):
+    """A recorded arm is played at 100 Hz by an ordinary node; the causes come back as diagnostics."""
+    import rclpy
+    from diagnostic_msgs.msg import DiagnosticArray
+    from processes import child_environment, sher3_command
+    from sensor_msgs.msg import JointState
+
+    (tmp_path / "arm.urdf").write_text(ARM)
+    os.environ.update(child_environment())
+    words = ["gap", "watch", "--model", tmp_path / "arm.urdf", "--window", "6", "--every", "2"]
+    watched = subprocess.Popen(sher3_command(*words), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    rclpy.init()
+    node, heard = rclpy.create_node("player"), {}
+    try:
+        publisher = node.create_publisher(JointState, "/joint_states", 10)
+        node.create_subscription(
+            DiagnosticArray, "/diagnostics", lambda m: heard.update({s.name: s.message for s in m.status}), 10
+        )
+        begun = time.monotonic()
+        for k in range(10_000):
+            place, effort = moved(0.01 * k, 0.7)
+            message = JointState(name=["turn"], position=[float(place)], effort=[float(effort)])
+            message.header.stamp.sec, message.header.stamp.nanosec = divmod(k * 10_000_000, 1_000_000_000)
+            publisher.publish(message)
+            rclpy.spin_once(node, timeout_sec=0.0)
+            time.sleep(max(0.0, begun + 0.01 * k - time.monotonic()))
+            if "gap/turn" in heard or watched.poll() is not None:
+                break
+        assert "Coulomb friction on turn" in heard.get("gap/turn", ""), (heard, watched.poll())
+    finally:
+        watched.send_signal(2)
+        printed, _ = watched.communicate(timeout=20)
+        node.destroy_node()
+        rclpy.try_shutdown()
+    assert watched.returncode == 0, printed
+    assert "gap: " in printed
