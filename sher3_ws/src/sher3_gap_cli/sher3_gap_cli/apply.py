@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from sher3_common.commands.options import Json
 
-from sher3_gap_cli.options import Library, RobotFile, Trust, VerdictFile, case_argument, of_the_robot, reported
+from sher3_gap_cli.options import Bet, Library, RobotFile, Trust, VerdictFile, case_argument, of_the_robot, reported
 
 if TYPE_CHECKING:
     from sher3_gap.simulate.apply import StageGap
@@ -24,6 +24,7 @@ def apply(
     verdict: VerdictFile,
     output: Annotated[Path, typer.Option("--output", "-o", help="Effects file to write.")] = Path("effects.yaml"),
     case: Annotated[Path | None, typer.Option(help="Also run this case again and print the gap that is left.")] = None,
+    bet: Bet = False,
     robot: RobotFile = None,
     own: Library = None,
     trust: Trust = False,
@@ -35,15 +36,20 @@ def apply(
     from sher3_gap.case.loading import load_case
     from sher3_gap.simulate.apply import EXPORT, apply_verdict, compare_case
 
+    from sher3_gap_cli.printing import bet_lines, with_bets
+
     with reported(as_json):
         add_library(own or [], trust)
         runs, model = load_case(of_the_robot(case, EXPORT), robot) if case else ([], load_robot(robot))
-        effects = apply_verdict(verdict, output, model)
+        effects = apply_verdict(verdict, output, model, bet)
+        odds = bet_lines(verdict, bet)
         stages = compare_case(runs, model, effects) if runs else []
         if as_json:
-            typer.echo(json.dumps({"effects": str(output), "count": len(effects), "stages": stages_data(stages)}))
+            typer.echo(
+                json.dumps({"effects": str(output), "count": len(effects), "stages": stages_data(stages), "bets": odds})
+            )
         else:
-            typer.echo(applied_text(effects, stages, output))
+            typer.echo(with_bets(odds, applied_text(effects, stages, output)))
 
 
 def compare(

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from sher3_common.commands.options import Json
 
-from sher3_gap_cli.options import RobotFile, VerdictFile, case_argument, of_the_robot, reported
+from sher3_gap_cli.options import Bet, RobotFile, VerdictFile, case_argument, of_the_robot, reported
 
 if TYPE_CHECKING:
     from sher3_gap.experiments.design import Experiment
@@ -34,6 +34,7 @@ def experiment(
     ran: Annotated[
         Path | None, typer.Option(help="Case the written file was run to: predicted against realised.")
     ] = None,
+    bet: Bet = False,
     robot: RobotFile = None,
     as_json: Json = False,
 ) -> None:
@@ -43,17 +44,19 @@ def experiment(
     """
     from sher3_machines import is_machine_case
 
+    from sher3_gap_cli.printing import bet_lines, with_bets
+
     with reported(as_json):
         if ran is not None:
-            text = realised_command(verdict, output, ran, robot, as_json)
+            text = realised_command(verdict, output, ran, robot, as_json, bet)
         elif case is not None and is_machine_case(case):
-            text = motion_command(verdict, case, output, as_json)
+            text = motion_command(verdict, case, output, as_json, bet)
         else:
-            text = design_command(verdict, case, output, robot, as_json)
-        typer.echo(text)
+            text = design_command(verdict, case, output, robot, as_json, bet)
+        typer.echo(text if as_json else with_bets(bet_lines(verdict, bet), text))
 
 
-def motion_command(verdict: Path, case: Path, output: Path, as_json: bool) -> str:
+def motion_command(verdict: Path, case: Path, output: Path, as_json: bool, bet: bool) -> str:
     """Design a motion for another machine, write its file and return what to print."""
     from sher3_export.excitation.design import designed
     from sher3_export.excitation.forms import save
@@ -61,7 +64,7 @@ def motion_command(verdict: Path, case: Path, output: Path, as_json: bool) -> st
     from sher3_machines import open_case
     from sher3_machines.manipulator.confounding import known_weights
 
-    causes = read_verdict(verdict).causes
+    causes = read_verdict(verdict, bet).causes
     open_ones = [f"{' / '.join([c.effect, *c.rivals])} on {c.actuator}" for c in causes if c.rivals]
     weights = known_weights(causes)
     made = designed(*open_case(case))
@@ -88,7 +91,7 @@ def motion_command(verdict: Path, case: Path, output: Path, as_json: bool) -> st
     return "\n".join(lines)
 
 
-def design_command(verdict: Path, case: Path | None, output: Path, robot: Path | None, as_json: bool) -> str:
+def design_command(verdict: Path, case: Path | None, output: Path, robot: Path | None, as_json: bool, bet: bool) -> str:
     """Design an experiment, write its file and return what to print."""
     from sher3_description import load_robot
     from sher3_gap.case.loading import load_case
@@ -98,7 +101,7 @@ def design_command(verdict: Path, case: Path | None, output: Path, robot: Path |
 
     from sher3_gap_cli.printing import steps
 
-    found = read_verdict(verdict, RECORD)
+    found = read_verdict(verdict, RECORD, bet)
     runs, model = load_case(of_the_robot(case, RECORD), robot) if case else ([], load_robot(robot))
     with steps() as say:
         made = design_experiment(found, model, say, runs=runs)
@@ -107,14 +110,14 @@ def design_command(verdict: Path, case: Path | None, output: Path, robot: Path |
     return json.dumps({"file": str(output), **data}) if as_json else experiment_text(made, output)
 
 
-def realised_command(verdict: Path, experiment: Path, ran: Path, robot: Path | None, as_json: bool) -> str:
+def realised_command(verdict: Path, experiment: Path, ran: Path, robot: Path | None, as_json: bool, bet: bool) -> str:
     """Judge the runs of an experiment and return what its prediction came to."""
     from sher3_gap.case.loading import load_case
     from sher3_gap.excitation.file import about_excitation
     from sher3_gap.experiments.design import realised
     from sher3_gap.simulate.apply import read_verdict
 
-    asked = read_verdict(verdict, DIAGNOSE)
+    asked = read_verdict(verdict, DIAGNOSE, bet)
     about = about_excitation(experiment)
     runs, model = load_case(of_the_robot(ran, DIAGNOSE), robot)
     found = realised(asked, model, runs)

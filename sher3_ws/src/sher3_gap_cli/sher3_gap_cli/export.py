@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from sher3_common.commands.options import Json
 
-from sher3_gap_cli.options import Library, RequestError, Trust, VerdictFile, reported, written
+from sher3_gap_cli.options import Bet, Library, RequestError, Trust, VerdictFile, reported, written
 
 TARGETS = "mjcf, urdf, sdf, isaaclab, isaac, mjlab, ros2_control or yaml"
 """Names of targets as the help has them; the table of `sher3_export` is not imported for it."""
@@ -33,6 +33,7 @@ def export(
     joint: Annotated[
         list[str] | None, typer.Option(help="AXIS=JOINT where the model has another name; repeat for more.")
     ] = None,
+    bet: Bet = False,
     own: Library = None,
     trust: Trust = False,
     as_json: Json = False,
@@ -44,14 +45,16 @@ def export(
     from sher3_effects import add_library
     from sher3_export.verdicts import read_verdict
 
+    from sher3_gap_cli.printing import bet_lines, with_bets
+
     with reported(as_json):
         add_library(own or [], trust)
-        given, names = read_verdict(verdict), _names(joint or [])
+        given, names = read_verdict(verdict, bet), _names(joint or [])
         target = out or Path(f"exported.{'yaml' if ranges else _suffix(to)}")
         data = _ranges(given, check, model, names) if ranges else _model(given, to, check, model, names)
         written(target, data.pop("text"))
-        data = {"file": str(target), **data}
-        typer.echo(json.dumps(data) if as_json else _told(data))
+        data = {"file": str(target), **data, "bets": bet_lines(verdict, bet)}
+        typer.echo(json.dumps(data) if as_json else with_bets(data["bets"], _told(data)))
 
 
 def _model(given: Any, to: str, check: Path | None, model: Path | None, names: dict[str, str]) -> dict[str, Any]:

@@ -20,6 +20,9 @@ Library = Annotated[
 Trust = Annotated[
     bool, typer.Option("--trust", help="Run the Python files that --library names: they may do all that you may.")
 ]
+Bet = Annotated[
+    bool, typer.Option("--bet", help="Take the best bet of every place, also where the verdict abstains; say its odds.")
+]
 VerdictFile = Annotated[Path, typer.Argument(help="verdict.json of `sher3 gap diagnose`.")]
 
 

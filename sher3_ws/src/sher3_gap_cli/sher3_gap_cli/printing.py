@@ -8,6 +8,8 @@ from pathlib import Path
 
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+from sher3_diagnosis.bet import bets_text
+from sher3_diagnosis.verdict import Verdict
 
 from sher3_gap_cli.answers import Answer
 
@@ -78,6 +80,16 @@ def summary(found: Answer, files: Sequence[Path], named: bool) -> str:
     notes = [("note", note) for note in found.verdict.notes]
     labelled = [*found.lines, *notes, ("files", written)]
     return "\n".join([*lines, *(f"{label:<8} {text}" for label, text in labelled)])
+
+
+def bet_lines(verdict: Path, bet: bool) -> list[str]:
+    """Return what is bet on at each place of a verdict file, and its odds; nothing where nobody bets."""
+    return bets_text(Verdict.read(verdict)) if bet else []
+
+
+def with_bets(lines: Sequence[str], text: str) -> str:
+    """Return a text below the bets that it rests on."""
+    return "\n".join([*(f"bet on     {line}" for line in lines), text])
 
 
 @contextmanager

@@ -86,3 +86,27 @@ def test_the_help_names_every_target():
     from sher3_gap_cli.export import TARGETS as SAID
 
     assert set(SAID.replace(" or ", ", ").split(", ")) == set(TARGETS)
+
+
+def test_a_bet_is_written_with_its_odds_where_the_verdict_abstains(call, tmp_path):
+    friction, cogging = VERDICT["causes"]
+    place = {k: VERDICT["where"][0][k] for k in ("stage", "actuator", "gap", "floor", "unit")}
+    bet = {"causes": [friction], "probability": 0.3, "closure": {"value": 0.9}}
+    lacks = {"answer": "outside_library", "probability": 0.65}
+    abstains = VERDICT | {
+        "schema": "sher3.verdict/3",
+        "status": "outside_library",
+        "causes": [],
+        "unexplained": {"stage": "motor_mechanics", "actuator": "a", "signature": "largest everywhere"},
+        "places": [{**place, "answers": [lacks, bet, {"causes": [cogging], "probability": 0.05}]}],
+    }
+    (tmp_path / "verdict.json").write_text(json.dumps(abstains))
+    model = ("--to", "mjcf", "--model", "m.xml", "--joint", "a=j")
+    assert "frictionloss" not in call(*model).output + (tmp_path / "exported.xml").read_text()
+    found = call(*model, "--bet")
+    assert found.exit_code == 0, found.output
+    assert found.output.startswith("bet on     motor mechanics, a: Coulomb friction on a, 30 %, closes 90 %")
+    assert 'frictionloss="2"' in (tmp_path / "exported.xml").read_text()
+    (tmp_path / "verdict.json").write_text(json.dumps(VERDICT))
+    refused = call(*model, "--bet")
+    assert refused.exit_code == 2 and "lists no effect to bet on" in refused.output

@@ -15,6 +15,7 @@ from typing import get_args
 import numpy as np
 from sher3_common import FileError, Sher3Error
 from sher3_description import ACTUATORS, Robot
+from sher3_diagnosis.bet import bets, betting
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.verdict import Schema, Verdict
 from sher3_effects import save_effects, to_effects
@@ -59,15 +60,17 @@ class StageGap:
         return None if above <= self.floor**2 else (self.before**2 - self.after**2) / above
 
 
-def read_verdict(path: Path, instead: str = EXPORT) -> Verdict:
+def read_verdict(path: Path, instead: str = EXPORT, bet: bool = False) -> Verdict:
     """Read a verdict file.
 
     Args:
         path: of the file.
         instead: what to do with a verdict on another machine.
+        bet: take the best bets for the causes, also where the verdict abstains.
 
     Raises:
         ApplyError: it cannot be read, is not a verdict, or is one on another machine than the SHER.
+        NoBetError: a bet is asked for and there is none.
     """
     try:
         found = Verdict.read(path)
@@ -76,6 +79,7 @@ def read_verdict(path: Path, instead: str = EXPORT) -> Verdict:
     except ValueError as error:
         reason = str(error).splitlines()[0]
         raise ApplyError(f"{path}: is not a verdict", value=reason, limit=" or ".join(get_args(Schema))) from error
+    found = betting(found) if bet else found
     foreign = [c.actuator for c in found.causes if c.actuator not in PLACES]
     if foreign:
         raise ApplyError(
@@ -94,7 +98,8 @@ def effects_of(verdict: Verdict, robot: Robot) -> list[PlantEffect]:
         ApplyError: the verdict names no cause, or none the simulator knows.
     """
     if not verdict.causes:
-        raise ApplyError(f"a verdict {verdict.status!r} names no cause to apply", remedy="use the nominal simulator")
+        remedy = "take the best bet: --bet" if bets(verdict) else "use the nominal simulator"
+        raise ApplyError(f"a verdict {verdict.status!r} names no cause to apply", remedy=remedy)
     effects = to_effects(verdict.causes, robot)
     if not effects:
         names = ", ".join(c.effect for c in verdict.causes)
@@ -102,9 +107,9 @@ def effects_of(verdict: Verdict, robot: Robot) -> list[PlantEffect]:
     return effects
 
 
-def apply_verdict(verdict: Path, output: Path, robot: Robot) -> list[PlantEffect]:
-    """Write the effects file of a verdict and return the effects; raises ApplyError."""
-    effects = effects_of(read_verdict(verdict), robot)
+def apply_verdict(verdict: Path, output: Path, robot: Robot, bet: bool = False) -> list[PlantEffect]:
+    """Write the effects file of a verdict, or of its best bets, and return the effects; raises ApplyError."""
+    effects = effects_of(read_verdict(verdict, bet=bet), robot)
     save_effects(output, effects)
     return effects
 
