@@ -116,6 +116,7 @@ def calibrate(
     from sher3_challenge.calibration.fit import calibrated
     from sher3_challenge.calibration.held_out import held_out, judged_by
     from sher3_challenge.calibration.observe import gathered
+    from sher3_challenge.calibration.selective import curve
     from sher3_challenge.calibration.table import rates, written
     from sher3_challenge.score.reliability import diagram as drawn
     from sher3_diagnosis.judge.calibration import calibration
@@ -140,6 +141,8 @@ def calibrate(
         typer.echo(json.dumps({n: {k: r.__dict__ for k, r in c.items()} for n, c in columns.items()}))
         return
     typer.echo(written(columns) if columns else "one plant: nothing is left out to show the calibration on")
+    if left_out:
+        typer.echo("\n" + curve([c for judgements in left_out.values() for j in judgements for c in j.causes]))
     if out is not None:
         Console(stderr=True).log(f"calibration of {len(seen)} diagnoses in {out}")
 

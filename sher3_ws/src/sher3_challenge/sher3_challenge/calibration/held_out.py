@@ -31,6 +31,7 @@ class Judgement:
         named: the effects of the causes that are listed; `sets`: each with its rivals.
         right: per cause and gap whose answer the label settles, the probability of each answer and whether it is the
             right one.
+        causes: per cause whose answer the label settles, the probability that it is the library's, and whether it is.
         excused: an effect left out was answered by effects that explain the same data: nothing recorded tells.
         rightly_named: the engine found a true effect, whatever the status.
     """
@@ -40,6 +41,7 @@ class Judgement:
     named: tuple[str, ...]
     sets: tuple[frozenset[str], ...]
     right: tuple[Stated, ...]
+    causes: tuple[Stated, ...]
     excused: bool
     rightly_named: bool
 
@@ -80,7 +82,7 @@ def judged_by(calibration: Calibration, observations: Sequence[Observation], cos
 def _judgement(seen: Observation, whole: Observation, calibration: Calibration, costs: Costs) -> Judgement:
     items = [_judged(row, calibration) for row in seen.items]
     exact = [_reproduced(stage, calibration) for stage in seen.exact]
-    named, sets, right = [], [], []
+    named, sets, right, causes = [], [], [], []
     for row, j in zip(seen.items, items, strict=True):
         if answer_to(j, costs) == LIBRARY:
             named.append(row["candidates"][0]["effect"])
@@ -88,6 +90,7 @@ def _judgement(seen: Observation, whole: Observation, calibration: Calibration, 
         truth = answer_of(seen, row, whole)
         if truth is not None:
             right += [(p, name == truth) for name, p in j.odds.items()]
+            causes += [(j.library, truth == LIBRARY)] if row["index"] is not None else []
     for stage, share in zip(seen.exact, exact, strict=True):
         if answer_to_exact(share, costs) == LIBRARY:
             named += [c["effect"] for c in stage["causes"]]
@@ -100,6 +103,7 @@ def _judgement(seen: Observation, whole: Observation, calibration: Calibration, 
         tuple(named),
         tuple(sets),
         tuple(right),
+        tuple(causes),
         excused=bool(seen.without and named) and _no_mistake(named, seen, whole),
         rightly_named=any(equal(name, known(seen)) for name in found),
     )
