@@ -17,7 +17,7 @@ def call(*words):
     found = CliRunner().invoke(app, [str(w) for w in words])
     assert found.exception is None or isinstance(found.exception, SystemExit), found.exception
     assert found.exit_code in (0, 2), found.output
-    assert found.exit_code == 0 or found.output.count("error:") == 1, found.output
+    assert found.exit_code == 0 or found.output.count("sher3: ") == 1, found.output
     return found
 
 
