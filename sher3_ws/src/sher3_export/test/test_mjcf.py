@@ -132,3 +132,31 @@ def test_what_is_no_model_is_refused(text):
 def test_a_model_without_joints_is_refused():
     with pytest.raises(ExportError, match="no joint"):
         export(verdict(cause("coulomb_friction", force=8.0)), "mjcf", parse_xml("<mujoco/>", "mujoco"))
+
+
+def twice(one, other):
+    """Return the model with a cause, and with a second one of the kind in the model that was made so."""
+    done, first = written(one)
+    _, second = written(other, model=done.text)
+    return first, second
+
+
+def test_a_second_export_changes_what_the_first_one_wrote_and_adds_no_second():
+    """A corrected model is diagnosed again, and what is left is written into it."""
+    first, second = twice(cause("gravity_load", force=2.0), cause("gravity_load", force=0.5))
+    assert (first.nu, second.nu) == (2, 2) and second.actuator_biasprm[1, 0] == pytest.approx(-2.5)
+    first, second = twice(cause("backlash", width=0.01), cause("backlash", width=0.004))
+    assert first.njnt == second.njnt == 2 and second.jnt_range[1] == pytest.approx([-0.007, 0.007])
+    springs = [cause("transmission_compliance", compliance=c) for c in (1e-4, 3e-4)]
+    first, second = twice(*springs)
+    assert first.njnt == second.njnt == 2 and second.jnt_stiffness[1] == pytest.approx(2500.0)
+    first, second = twice(cause("drive_lag", time_constant=0.1), cause("drive_lag", time_constant=0.02))
+    assert (first.na, second.na) == (1, 1) and second.actuator_dynprm[0, 0] == pytest.approx(0.12)
+
+
+def test_a_second_payload_has_a_place_of_its_own():
+    loads = [cause("payload_mass", "b", mass=m, x=x, y=0.0, z=0.0) for m, x in ((1.0, 0.1), (0.5, -0.2))]
+    _, model = twice(*loads)
+    names = ("b_payload", "b_payload_2")
+    assert [model.body(n).mass[0] for n in names] == [1.0, 0.5]
+    assert [model.body(n).pos[0] for n in names] == pytest.approx([0.1, -0.2])

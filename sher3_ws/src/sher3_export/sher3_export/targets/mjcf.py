@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Mapping, Sequence
 from typing import ClassVar
 from xml.etree.ElementTree import Element, SubElement
@@ -25,6 +26,8 @@ PLACE = ("pos", "quat", "euler", "axisangle", "xyaxes", "zaxis")
 """Attributes of a body that place it in its parent."""
 SPARE = 2
 """Samples of a delayed actuator beyond delay over time step."""
+LAG = "filterexact"
+"""Dynamics of an actuator that is a first-order lag; the time constants of two of them add."""
 ACTUATORS = ("motor", "position", "velocity", "intvelocity", "general", "damper", "dcmotor", "pid")
 """Elements under <actuator> that may drive a joint."""
 
@@ -120,6 +123,9 @@ class Mjcf(XmlTarget):
         actuators = self.root.find("actuator")
         actuators = SubElement(self.root, "actuator") if actuators is None else actuators
         name = f"{change.joint}_{change.effect}"
+        standing = next((x for x in actuators if x.get("name") == name), None)
+        if standing is not None:
+            return field(standing, "biasprm", number(standing.get("biasprm")) - change.value)
         law = {"gainprm": "0", "biastype": "affine", "biasprm": written(-change.value)}
         SubElement(actuators, "general", {"name": name, "joint": change.joint, "ctrllimited": "false", **law})
         return ""
@@ -162,10 +168,11 @@ class Mjcf(XmlTarget):
         for actuator in actuators:
             if actuator.tag == "position":
                 actuator.set("timeconst", written(self._inherited(actuator, "timeconst") + change.value))
-            elif actuator.tag in ("motor", "general") and actuator.get("dyntype", "none") == "none":
+            elif actuator.tag in ("motor", "general") and actuator.get("dyntype", "none") in ("none", LAG):
+                before = number(actuator.get("dynprm")) if actuator.get("dyntype") == LAG else 0.0
                 actuator.tag = "general"
-                actuator.set("dyntype", "filterexact")
-                actuator.set("dynprm", written(change.value))
+                actuator.set("dyntype", LAG)
+                actuator.set("dynprm", written(before + change.value))
             else:
                 return f"<{actuator.tag}> has a dynamics of its own"
         return self._needs(actuators)
@@ -196,15 +203,23 @@ class Mjcf(XmlTarget):
         """A body of its own with the mass of a point, at the joint of the link until its centre is known."""
         if change.value <= 0.0:
             return "no mass is zero or less"
-        anchor = body.find("joint")
-        added = SubElement(body, "body", {"name": f"{change.joint}_payload"})
+        anchor, number_ = body.find("joint"), len(self._payloads(change.joint)) + 1
+        name = f"{change.joint}_payload" + (f"_{number_}" if number_ > 1 else "")
+        added = SubElement(body, "body", {"name": name})
         added.set("pos", "0 0 0" if anchor is None else anchor.get("pos", "0 0 0"))
         inertial = {"pos": "0 0 0", "mass": written(change.value), "diaginertia": written(*[DUST] * 3)}
         SubElement(added, "inertial", inertial)
         return ""
 
     def _centre(self, change: Change, body: Element) -> str:
-        return moved(self.root, f"{change.joint}_payload", change)
+        """The centre is that of the payload that was written last."""
+        payloads = self._payloads(change.joint)
+        return moved(payloads[-1], change) if payloads else "the payload itself could not be written"
+
+    def _payloads(self, link: str) -> list[Element]:
+        """Return the payloads that exports have put on a link; each has a place of its own."""
+        named = re.compile(rf"{re.escape(link)}_payload(_\d+)?")
+        return [x for x in elements(self.root, "body") if named.fullmatch(x.get("name", ""))]
 
     def _shift(self, change: Change, joint: Element) -> str:
         """A joint that sits elsewhere than drawn: the body moves by as much in its own frame."""
@@ -219,6 +234,11 @@ class Mjcf(XmlTarget):
     def _backlash(self, change: Change, joint: Element) -> str:
         half = change.value / 2.0
         limit = math.degrees(half) if self._degrees() and joint.get("type", "hinge") == "hinge" else half
+        standing = self.joints.get(f"{change.joint}_play")
+        if standing is not None:
+            limit += numbers(standing.get("range"), "0 0")[1]
+            standing.set("range", written(-limit, limit))
+            return ""
         self._second(change, joint, "play", {"range": written(-limit, limit), "limited": "true"})
         return ""
 
@@ -227,8 +247,14 @@ class Mjcf(XmlTarget):
             return "no spring has a compliance of zero or less"
         option = self.root.find("option")
         step = number(None if option is None else option.get("timestep"), STEP)
-        stiffness = 1.0 / change.value
-        self._second(change, joint, "spring", {"stiffness": written(stiffness), "damping": written(step * stiffness)})
+        standing = self.joints.get(f"{change.joint}_spring")
+        before = 0.0 if standing is None else 1.0 / number(standing.get("stiffness"))
+        stiffness = 1.0 / (before + change.value)  # springs one behind the other
+        law = {"stiffness": written(stiffness), "damping": written(step * stiffness)}
+        if standing is None:
+            self._second(change, joint, "spring", law)
+        else:
+            standing.attrib.update(law)
         return ""
 
     def _second(self, change: Change, joint: Element, what: str, law: Mapping[str, str]) -> None:
@@ -296,11 +322,8 @@ class Mjcf(XmlTarget):
         return None
 
 
-def moved(root: Element, name: str, change: Change) -> str:
-    """Move a body along the axis that the constant of a change ends with; return why not, or nothing."""
-    body = next((x for x in elements(root, "body") if x.get("name") == name), None)
-    if body is None:
-        return "the payload itself could not be written"
+def moved(body: Element, change: Change) -> str:
+    """Move a body along the axis that the constant of a change ends with; return nothing: it could be written."""
     place = numbers(body.get("pos"), "0 0 0")
     place["xyz".index(change.constant[-1])] += change.value
     body.set("pos", written(*place))
