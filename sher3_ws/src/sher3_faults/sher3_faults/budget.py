@@ -23,6 +23,8 @@ from sher3_faults.fault_classes import FaultClass, fault_classes
 
 GUARDED = (Regime.NEAR_TISSUE, Regime.FREE)
 """Regimes with a stated budget."""
+RUNAWAY = {Regime.NEAR_TISSUE: 40e-6, Regime.FREE: 250e-6}
+"""Largest tip travel of axes that go by themselves, one to five, at any speed up to the limits of their drives [m]."""
 
 
 class BudgetRow(NamedTuple):
@@ -155,7 +157,8 @@ class TravelBudget:
         rows = [{**row._asdict(), "budget": row.budget if np.isfinite(row.budget) else None} for row in self.rows]
         creep = {regime: [found._asdict() for found in self.creeps[regime]] for regime in self.creeps}
         forces = {regime.value: [_plain(found) for found in self.false_forces(regime)] for regime in GUARDED}
-        return {"rows": rows, "runaway": self.runaway, "creep": creep, "false_force": forces}
+        most = {regime.value: travel for regime, travel in RUNAWAY.items()}
+        return {"rows": rows, "runaway": self.runaway, "runaway_budget": most, "creep": creep, "false_force": forces}
 
     def as_text(self) -> str:
         """Return the tables."""
@@ -177,7 +180,8 @@ class TravelBudget:
     def _stated(self, regime: Regime) -> list[str]:
         """Return the lines on axes that go by themselves, and on false forces."""
         found = self.creeps[regime.value]
-        lines = [f"{regime.value}: an axis that goes by itself, up to its drive's own limit; travel of the tip [um]"]
+        most = f", budget {RUNAWAY[regime] * 1e6:g}" if regime in RUNAWAY else ""
+        lines = [f"{regime.value}: an axis that goes by itself, to its drive's own limit; travel of the tip [um]{most}"]
         lines.append(f"  {'axis, echo of its drive':34}" + "".join(f"{speed:>9g}" for speed in SPEEDS) + "    limit")
         for (axis, echo), some in groupby(found, key=lambda one: (one.axis, one.echo)):
             lines.append(f"  {axis + ', ' + echo:34}" + "".join(f"{1e6 * one.travel:9.1f}" for one in some))

@@ -12,11 +12,13 @@ from sher3_common.commands.options import Json
 
 from sher3_safety.cli.budget import budget
 from sher3_safety.cli.hazards import hazards
+from sher3_safety.cli.search import search
 
 app = typer.Typer(rich_markup_mode="markdown", invoke_without_command=True)
 
 app.command(epilog="Examples: `sher3 safety budget` · `sher3 safety budget --rate 200 --json`")(budget)
 app.command(epilog="Examples: `sher3 safety hazards` · `sher3 safety hazards --json`")(hazards)
+app.command(epilog="Examples: `sher3 safety search` · `sher3 safety search --trials 1000 --seed 7 --json`")(search)
 
 
 @app.callback(

@@ -93,6 +93,8 @@ class Row:
         budget: travel allowed instead of the budget of the state, m; `why` gives the reason.
         rest: how much longer than usual the foot stays off the pedal before it is pressed again, s.
         lets_go: the hand leaves as the fault sets in.
+        beside: a second fault, with its own component, kind, parameters and duration.
+        after: how much later than the first one the second one begins, s.
         loses: component that is off when the operator recovers the robot, for `LOST` seconds.
         states: in which it is tried.
         why: why the robot may go on, a sentence for the report.
@@ -111,6 +113,8 @@ class Row:
     budget: float | None = None
     rest: float = 0.0
     lets_go: bool = False
+    beside: Row | None = None
+    after: float = 0.0
     loses: str = ""
     states: tuple[State, ...] = STATES
     why: str = ""
@@ -121,6 +125,7 @@ class Row:
         parts = [f"{name} {value:g}" for name, value in self.parameters.items()]
         name = f"{self.component} {self.fault}" + (f" ({', '.join(parts)})" if parts else "")
         lost = f", {self.loses} lost" if self.loses else ""
+        lost += f", {self.after * 1e3:g} ms later {self.beside.name}" if self.beside else ""
         return name + ", pedal released" * self.release + ", hand gone" * self.lets_go + lost
 
     @property
@@ -132,12 +137,13 @@ class Row:
         """Return what this row in a state is called in its bag."""
         return f"{self.name} | {state.name}"
 
-    def request(self, seed: int, label: str) -> FaultRequest:
-        """Return what is sent on `mock/fault`."""
+    def request(self, seed: int, label: str, start: float = 0.0) -> FaultRequest:
+        """Return what is sent on `mock/fault`, for a fault that begins `start` s later."""
         return make_request(
             component=self.component,
             fault=self.fault,
             parameters=dict(self.parameters),
+            start=start,
             duration=self.duration,
             seed=seed,
             label=label,

@@ -11,6 +11,7 @@ from sher3_description import ACTUATORS
 from sher3_safety.rows.row import IDLE, STILL, Row
 from sher3_safety.rows.several import SEVERAL
 from sher3_safety.rows.slow import SLOW
+from sher3_safety.rows.together import TOGETHER
 
 AXIS = ACTUATORS[0]
 CURRENT = "the newest sample in time is the one that counts"
@@ -199,7 +200,7 @@ CLOCK = (
         for name in ("admittance", "kinematics")
     ),
 )
-ROWS = (*FORCE, *PEDAL, *LINES, *ENCODERS, *DRIVE, *SLOW, *SEVERAL, *PROCESSES, *CLOCK)
+ROWS = (*FORCE, *PEDAL, *LINES, *ENCODERS, *DRIVE, *SLOW, *SEVERAL, *TOGETHER, *PROCESSES, *CLOCK)
 """All rows, by component."""
 
 

@@ -52,10 +52,10 @@ Cell = tuple[Row, State]
 class MatrixRun:
     """A robot on which faults are tried."""
 
-    def __init__(self, graph: Graph, robot: Robot, seed: int, composed: bool = False) -> None:
+    def __init__(self, graph: Graph, robot: Robot, seed: int, composed: bool = False, regime: str = "free") -> None:
         self.graph, self.seed = graph, seed
         self.operator = graph.add(OperatorNode)
-        control = ControlSettings.from_robot(robot, {"motion": {"regime": "free"}})
+        control = ControlSettings.from_robot(robot, {"motion": {"regime": regime}})
         drives = default_settings(robot.control_period)
         self.rig = SteppedRobot(graph, seed=seed, robot=robot, control=control, drives=drives, composed=composed)
         self._sign = 1.0
@@ -64,8 +64,8 @@ class MatrixRun:
         """Enable the robot; return whether it is."""
         self.graph.step(SETTLE)
         # The plant tells the truth from the first request on.
-        self._inject(make_request(component="all", fault=OK).to_json())
-        return self._enable()
+        self.inject(make_request(component="all", fault=OK).to_json())
+        return self.enable()
 
     def play(self, row: Row, state: State) -> bool:
         """Play one cell; return whether the robot is ready for the next one."""
@@ -82,19 +82,23 @@ class MatrixRun:
         if row.release:
             self._release_under(row, label)
         else:
-            self._inject(row.request(self.seed, label).to_json())
+            self.inject(row.request(self.seed, label).to_json())
+        if row.beside is not None:
+            self.inject(row.beside.request(self.seed, "", row.after).to_json())
         operator.force *= not row.lets_go
         operator.aim = (state.aim,) * 3 + (0.0, 0.0) if state.aim else None
         duration = OBSERVE if row.duration is None else round(row.duration * 1e9 / self.graph.clock.period_ns)
         self._go_through(row, duration)
         self.graph.step(OBSERVE)
         operator.aim = None
-        self._inject(make_request(component=row.component, fault=OK, label=label).to_json())
+        self.inject(make_request(component=row.component, fault=OK, label=label).to_json())
+        if row.beside is not None:
+            self.inject(make_request(component=row.beside.component, fault=OK).to_json())
         if row.final:
             self.graph.step(5)
             return False
         if row.loses:
-            self._inject(make_request(component=row.loses, fault=OFF, duration=LOST).to_json())
+            self.inject(make_request(component=row.loses, fault=OFF, duration=LOST).to_json())
         if row.effect == "goes on" and operator.state == OperatingState.ENABLED:
             self.graph.step(5)
             operator.pedal = 0.0
@@ -117,14 +121,15 @@ class MatrixRun:
 
         The fault sets in first, so that a stuck pedal is stuck while it is pressed.
         """
-        self._inject(row.request(self.seed, "").to_json())
+        self.inject(row.request(self.seed, "").to_json())
         if not row.component.startswith("process."):
             self.graph.step(2)
         note = make_request(component="process.plant", fault=row.fault, label=label)
-        self._inject(note.to_json())
+        self.inject(note.to_json())
         self.operator.pedal = 0.0
 
-    def _inject(self, request: str) -> None:
+    def inject(self, request: str) -> None:
+        """Send a request for a fault, and let it arrive."""
         self.operator.inject(request)
         self.graph.settle()
 
@@ -135,7 +140,7 @@ class MatrixRun:
         """
         self.operator.command(StateCommand.DISABLE.value)
         self.graph.step(5)
-        if not self._enable():
+        if not self.enable():
             return False
         self.graph.step(HELD)
         self.operator.pedal = 0.0
@@ -146,7 +151,8 @@ class MatrixRun:
         self.graph.step(RELEASED)
         return True
 
-    def _enable(self) -> bool:
+    def enable(self) -> bool:
+        """Enable the robot; return whether it is."""
         for _ in range(ENABLE_TRIES):
             self.operator.command(StateCommand.ENABLE.value)
             self.graph.step(ENABLE_TICKS)

@@ -1,0 +1,44 @@
+"""Axes that run away while the robot brakes for another reason, and together, up to the limits of their drives.
+
+The first stop must not hide what comes after it, and the first axis that is found must not hide the others.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from sher3_control.motion.speed_cap import Regime
+from sher3_faults.budget import RUNAWAY
+
+from sher3_safety.rows.row import AXIS, IDLE, LIMIT, MOVING, Row
+
+NEAR, TOP = 2e-3, 12.2e-3
+"""Limits of a leg's drive near tissue and elsewhere [m/s]."""
+CALM = (IDLE, MOVING)
+NEAR_TRAVEL, TOP_TRAVEL = RUNAWAY[Regime.NEAR_TISSUE], RUNAWAY[Regime.FREE]
+WHY = "an axis that goes by itself at its drive's own limit: 40 um near tissue, 250 um elsewhere"
+GOES = ("POSITION_LEFT", "DRIVE_DISOBEYS", "HAND_DOUBTFUL")
+
+
+def _together() -> Iterator[Row]:
+    """Yield legs, and all five axes, that run away at the same time."""
+    for part in ("power", "demand"):
+        for name in ("legs", "axes"):
+            yield Row(f"{name}.{part}", "creep", {"speed": NEAR}, reasons=GOES, slow=True, states=CALM,
+                      budget=NEAR_TRAVEL, quick=(name, part) == ("axes", "power"), why=WHY)  # fmt: skip
+            yield Row(f"{name}.{part}", "creep", {"speed": -TOP}, reasons=GOES, slow=True, states=(*CALM, LIMIT),
+                      budget=TOP_TRAVEL, why=WHY)  # fmt: skip
+
+
+def _while_braking() -> Iterator[Row]:
+    """Yield a drive that says EMCY while axes run away as the robot brakes for it, 2 to 30 ms later."""
+    for after in (0.002, 0.018, 0.03):
+        for name in (AXIS, "legs"):
+            for speed, budget in ((NEAR, NEAR_TRAVEL), (TOP, TOP_TRAVEL)):
+                yield Row("roll.demand", "wrong", {"code": float(0x8611)}, reasons=("DRIVE_EMERGENCY",), budget=budget,
+                          states=CALM if budget == NEAR_TRAVEL else (*CALM, LIMIT), after=after,
+                          beside=Row(f"{name}.power", "creep", {"speed": speed}),
+                          quick=(after, name, speed) == (0.018, AXIS, NEAR), why=WHY)  # fmt: skip
+
+
+TOGETHER = (*_together(), *_while_braking())

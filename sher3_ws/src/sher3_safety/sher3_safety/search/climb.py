@@ -1,0 +1,97 @@
+"""The search: draws at random, then more of them near those that moved the tip furthest."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from random import Random
+from typing import Any
+
+from sher3_control.motion.speed_cap import Regime
+from sher3_description import Robot, load_robot
+from sher3_faults.budget import RUNAWAY
+
+from sher3_safety.search.draw import Draw, drawn, near
+from sher3_safety.search.trial import Found, try_all
+
+ROUND, PARENTS, CLIMBS = 25, 10, 0.6
+"""Draws of a round, how many of the worst have children, and the share of children after the first round."""
+
+
+@dataclass
+class SearchResult:
+    """What a search found, the worst first.
+
+    Attributes:
+        found: every trial.
+        seed: of the draws.
+    """
+
+    found: list[Found]
+    seed: int
+
+    @property
+    def missed(self) -> list[Found]:
+        """The trials beyond their budget."""
+        return [one for one in self.found if one.share > 1.0]
+
+    def worst(self, number: int = 10) -> list[Found]:
+        """Return the trials that came nearest to their budget, or went beyond it."""
+        return sorted(self.found, key=lambda one: -one.share)[:number]
+
+    def as_text(self) -> str:
+        """Return the worst ten as a table in Markdown, under a sentence."""
+        lines = [
+            f"{len(self.found)} draws, seed {self.seed}: {len(self.missed)} beyond their budget.",
+            "",
+            "| regime | state | faults, onset [ticks] | first reason | travel [um] | budget [um] |",
+            "|---|---|---|---|---|---|",
+        ]
+        for one in self.worst():
+            draw = one.draw
+            lines.append(
+                f"| {draw.regime.value} | {draw.state.name} | {draw.told()} | {one.reason} "
+                f"| {one.travel * 1e6:.1f} | {draw.budget * 1e6:g} |"
+            )
+        return "\n".join(lines)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain data."""
+        rows = [
+            {"regime": one.draw.regime.value, "state": one.draw.state.name, "faults": one.draw.told(),
+             "reason": one.reason, "travel": one.travel, "budget": one.draw.budget}
+            for one in self.worst(len(self.found))
+        ]  # fmt: skip
+        return {"seed": self.seed, "draws": len(rows), "missed": len(self.missed), "trials": rows}
+
+
+def search(
+    trials: int, seed: int = 1, robot: Robot | None = None, say: Callable[[str], None] = lambda _: None
+) -> SearchResult:
+    """Try so many draws, in rounds of one regime each.
+
+    Args:
+        trials: number of draws.
+        seed: of the draws, and of the noise of the robot.
+        robot: nominal by default.
+        say: prints progress.
+    """
+    random, robot = Random(seed), robot or load_robot()
+    result, regimes = SearchResult([], seed), list(RUNAWAY)
+    for number, begin in enumerate(range(0, trials, ROUND)):
+        regime, count = regimes[number % len(regimes)], min(ROUND, trials - begin)
+        draws = _next(random, regime, count, result)
+        result.found += try_all(draws, robot, seed + number)
+        worst = result.worst(1)[0]
+        sizes = f"{worst.travel * 1e6:.1f} um of {worst.draw.budget * 1e6:g}"
+        say(f"{len(result.found)} draws, worst {sizes}, {worst.draw.state.name}: {worst.draw.told()}")
+    return result
+
+
+def _next(random: Random, regime: Regime, count: int, result: SearchResult) -> list[Draw]:
+    """Return the draws of the next round of a regime."""
+    known = SearchResult([one for one in result.found if one.draw.regime is regime], result.seed).worst(PARENTS)
+    return [
+        near(random, random.choice(known).draw) if known and random.random() < CLIMBS else drawn(random, regime)
+        for _ in range(count)
+    ]

@@ -1,0 +1,56 @@
+"""What the search draws and how it climbs; robots are tried in `tests/test_safety_search.py`."""
+
+from random import Random
+
+import pytest
+from sher3_control.motion.speed_cap import Regime
+from sher3_safety.search.climb import SearchResult
+from sher3_safety.search.draw import ONSETS, STATES, Draw, Fault, Shape, drawn, near
+from sher3_safety.search.trial import Found
+
+CREEP = Shape("power", "creep", "speed")
+DRAW = Draw((Fault("delta_1.power", CREEP, 0.5, 0), Fault("legs.power", CREEP, -1.0, 7)), STATES[Regime.FREE][0],
+            Regime.FREE)  # fmt: skip
+
+
+@pytest.mark.parametrize("regime", STATES)
+def test_a_draw_has_two_or_three_faults_of_different_components_and_begins_at_once(regime):
+    random, seen = Random(3), set()
+    for _ in range(300):
+        draw = drawn(random, regime)
+        components = [fault.component for fault in draw.faults]
+        assert 2 <= len(components) <= 3 and len(set(components)) == len(components)
+        assert min(fault.onset for fault in draw.faults) == 0 and draw.state in STATES[regime]
+        assert all(fault.request(regime, 0.002).component == fault.component for fault in draw.faults)
+        seen |= {fault.shape for fault in draw.faults}
+    assert len(seen) >= 15
+
+
+@pytest.mark.parametrize("regime", STATES)
+def test_a_draw_near_another_has_its_faults_a_little_otherwise(regime):
+    random = Random(5)
+    for _ in range(100):
+        draw = drawn(random, regime)
+        child = near(random, draw)
+        assert child.regime is regime and [f.component for f in child.faults] == [f.component for f in draw.faults]
+        for old, new in zip(draw.faults, child.faults, strict=True):
+            assert abs(new.share) <= min(1.0, 2.0 * abs(old.share)) and 0 <= new.onset <= ONSETS
+
+
+def test_the_size_is_a_share_of_the_limit_of_the_drive_and_the_onset_is_in_ticks():
+    """Half of 12.2 mm/s, and all of it 7 ticks of 2 ms later."""
+    first, second = [fault.request(Regime.FREE, 0.002) for fault in DRAW.faults]
+    assert first.parameters == {"speed": pytest.approx(6.1e-3)} and first.start == 0.0
+    assert second.parameters == {"speed": pytest.approx(-12.2e-3)} and second.start == pytest.approx(0.014)
+
+
+def test_the_worst_is_the_one_nearest_to_its_budget_and_one_beyond_it_misses():
+    small, large, near_one = Found(DRAW, 10e-6, "A"), Found(DRAW, 251e-6, "B"), Found(DRAW, 249e-6, "C")
+    result = SearchResult([small, large, near_one], 1)
+    assert result.worst(2) == [large, near_one] and result.missed == [large]
+    assert "3 draws, seed 1: 1 beyond their budget." in result.as_text() and "| B | 251.0 | 250 |" in result.as_text()
+    assert result.to_dict()["trials"][0]["faults"] == DRAW.told()
+
+
+def test_the_same_seed_draws_the_same():
+    assert drawn(Random(9), Regime.FREE) == drawn(Random(9), Regime.FREE)
