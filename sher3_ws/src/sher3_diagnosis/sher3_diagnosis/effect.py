@@ -108,6 +108,8 @@ class Effect:
         polished: shape values beside those of `finer` that are no choice: polished once the search is over.
         companion: family of another effect on the same axis without which this one does not show.
         shown_by: families of effects on the same axis that bring this one to light; it comes after them.
+        plain: whether it is one of the laws that any joint may have: all of them are fitted at once before a richer one
+            is looked for.
         dry: whether it is a friction that holds an axis at rest.
         settles: whether its parameters are of sliding alone, so that samples at which it rests tell nothing of them.
         best: the excitation that shows it best.
@@ -135,6 +137,7 @@ class Effect:
     polished: ClassVar[tuple[str, ...]] = ()
     companion: ClassVar[str] = ""
     shown_by: ClassVar[tuple[str, ...]] = ()
+    plain: ClassVar[bool] = False
     dry: ClassVar[bool] = False
     settles: ClassVar[bool] = False
     best: ClassVar[Best]
@@ -148,6 +151,10 @@ class Effect:
     def shapes(self, views: Sequence[Any], site: str) -> list[Shape]:
         """Return the shapes to search over; empty when the runs cannot show the effect. Default: one without values."""
         return [{}]
+
+    def plain_shapes(self, views: Sequence[Any], site: str) -> list[Shape]:
+        """Return the shapes in which a plain law is fitted beside all others; default all of them."""
+        return self.shapes(views, site)
 
     def bends(self, views: Sequence[Any], site: str, shape: Shape) -> list[Shape]:
         """Return shapes of the law with a bend that some machines have, near the best one without; default none."""

@@ -83,11 +83,12 @@ def find(machine: Machine[R, E], evidence: E, without: Collection[str], say: Say
     attribution = replace(attribution, moving=in_motion(evidence, attribution.fit))
     refined, causes = machine.refine(evidence, causes_of(evidence, attribution), attribution)
     remains = partial(left_over, significant, evidence)
-    if not machine.policy.calibrated:
+    while not machine.policy.calibrated:
         fewer = significant_causes(evidence, attribution, causes, remains)
-        if fewer is not attribution:
-            attribution = fewer
-            refined, causes = machine.refine(evidence, causes_of(evidence, attribution), attribution)
+        if fewer is attribution:
+            break
+        attribution = fewer
+        refined, causes = machine.refine(evidence, causes_of(evidence, attribution), attribution)
     finding = Finding(refined, gaps, attribution, causes, remains(attribution.fit))
     if not machine.policy.calibrated:
         finding = replace(without_imitations(finding, machine.policy.free_laws), whole=finding)

@@ -57,6 +57,10 @@ class Candidates:
             return plain
         return min(plain, bent, key=cost)
 
+    def best_plain(self, effect: Effect, site: str, given: Sequence[Term]) -> Fit | None:
+        """Fit the best shape of a plain law beside the terms given; None where none is possible."""
+        return self._searched(effect, site, given, effect.plain_shapes(self.evidence.views, site))
+
     def _searched(self, effect: Effect, site: str, given: Sequence[Term], shapes: list[Shape]) -> Fit | None:
         """Fit the best of some shapes and of those near it."""
         found: Fit | None = None

@@ -8,41 +8,42 @@ from __future__ import annotations
 from collections.abc import Callable
 from itertools import combinations
 
-from sher3_diagnosis.attribute.candidates import Candidates, complexity
-from sher3_diagnosis.attribute.rivals import RANKED, Attribution, with_rivals, without_term
+from sher3_diagnosis.attribute.candidates import Candidates
+from sher3_diagnosis.attribute.rivals import RANKED, Attribution, with_rivals
 from sher3_diagnosis.attribute.steadiness import steadiness_of
-from sher3_diagnosis.attribute.ties import TIE, first_of_least
+from sher3_diagnosis.attribute.ties import TIE
+from sher3_diagnosis.attribute.together import Left as Left
+from sher3_diagnosis.attribute.together import pruned
 from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import Fit, Term, fit
 from sher3_diagnosis.thresholds import (
     COMPLETE,
     MAX_CAUSES,
-    NEEDED,
     PAIR_GAIN,
     PAIR_WORTH,
-    PARSIMONY,
     WORTH,
 )
 
 Say = Callable[[str], None]
-Left = Callable[[Fit], dict[Channel, float]]
-"""Gaps that are left under a fit: channel -> excess loss."""
 
 
-def attribute(candidates: Candidates, left_over: Left, say: Say, causes: int = MAX_CAUSES) -> Attribution:
+def attribute(
+    candidates: Candidates, left_over: Left, say: Say, causes: int = MAX_CAUSES, start: Fit | None = None
+) -> Attribution:
     """Select causes until no gap is left that an effect explains.
 
     Args:
         candidates: the evidence and the effects that may explain it.
         left_over: says which gaps are left under a fit.
         say: progress.
-        causes: named at most.
+        causes: named at most, beside those of the start.
+        start: fit from which the selection goes on; default the one without causes.
     """
     evidence = candidates.evidence
-    current = evidence.null()
+    current = evidence.null() if start is None else start
     chosen = list(current.terms)
-    most = len(evidence.nuisance) + causes
+    most = len(chosen) + causes
     while len(chosen) < most:
         left = left_over(current)
         if not left:
@@ -53,7 +54,7 @@ def attribute(candidates: Candidates, left_over: Left, say: Say, causes: int = M
             break
         current = step
         chosen = list(current.terms)
-    current = _prune(evidence, current, left_over)
+    current = pruned(evidence, current, left_over, relative=start is not None)
     found = with_rivals(candidates, current)
     steady = _steadier(evidence, found)
     return found if steady is None else with_rivals(candidates, steady)
@@ -97,19 +98,6 @@ def _pair(
         if trial.admissible and (best is None or trial.total < best.total - TIE):
             best = trial
     return best
-
-
-def _prune(evidence: Evidence, current: Fit, left_over: Left) -> Fit:
-    """Backward pass: drop a cause whose loss nobody misses; of equals, the one that was chosen last."""
-    first, base = len(evidence.nuisance), evidence.null().total
-    while len(current.terms) > first + 1:
-        reduced = {i: without_term(evidence, current, i) for i in range(first, len(current.terms))}
-        i = first_of_least({j: reduced[j].total for j in sorted(reduced, reverse=True)})
-        price = NEEDED * complexity(current.terms[i]) + PARSIMONY * (base - current.total)
-        if reduced[i].total - current.total > price or set(left_over(reduced[i])) - set(left_over(current)):
-            return current
-        current = reduced[i]
-    return current
 
 
 def _steadier(evidence: Evidence, found: Attribution) -> Fit | None:

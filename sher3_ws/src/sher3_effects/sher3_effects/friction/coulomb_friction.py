@@ -71,6 +71,7 @@ class CoulombOnAxis(CoulombFriction):
     """The same on one axis of any machine, whose encoder may be finer than any that was foreseen."""
 
     kinds = ("axis",)
+    plain = True
     finer = {}
     polished = ("displacement",)
     DISPLACEMENTS = (1.0e-4, 3.0e-4, 1.0e-3, 2.5e-3, 5.0e-3)
@@ -84,6 +85,7 @@ class ServoStiction(CoulombFriction):
     """
 
     kinds = ("servo",)
+    plain = True
     explanation = (
         "The axis does not answer small changes of its reference: it stays until the error is large enough to break it "
         "loose."
@@ -112,9 +114,12 @@ class ServoStiction(CoulombFriction):
         stroke = max(float(np.ptp(r)) for r, _ in pairs)
         late = [n * views[0].run.period for n in self.LATE]
         forces = [s * span for s in self.SHARES if 0.0 < s * span < self.MOVES * stroke]
+        return [*({"force": f, "late": t} for f in forces for t in late), *self.plain_shapes(views, site)]
+
+    def plain_shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
+        """Return displacements, m or rad, over which the error turns its sign: a force beside the others."""
         travel = max(v.axis(site).travel for v in views)
-        steps = [{"displacement": r * travel} for r in self.REACHES if travel]
-        return [*({"force": f, "late": t} for f in forces for t in late), *steps]
+        return [{"displacement": r * travel} for r in self.REACHES if travel]
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
         """Return minus the play of the lagged reference; nothing is left to fit."""

@@ -64,6 +64,7 @@ class PreslidingOnAxis(PreslidingFriction):
     """The same on one axis of any machine: bristles bend over a small part of its travel, never over degrees."""
 
     kinds = ("axis",)
+    extends = ("coulomb_friction",)
     bounds = {"displacement": (0.0, np.inf), "force": (0.0, np.inf), "stiffness": (0.0, np.inf)}
     SHARES = (0.001, 0.002, 0.004, 0.008, 0.016, 0.03)
     """Of the travel, where the lead is not known."""

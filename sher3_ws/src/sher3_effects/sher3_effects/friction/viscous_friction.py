@@ -55,6 +55,7 @@ class ViscousOnAxis(ViscousFriction):
     """
 
     kinds = ("axis",)
+    plain = True
 
     def __init__(self, nominal: float = 0.0) -> None:
         self.nominal = nominal

@@ -66,9 +66,13 @@ class GravityLoad(Page):
 
 
 class GravityOnAxis(GravityLoad):
-    """The same on one axis of any machine; on an axis that turns it may be a weight at an arm: a sin q + b cos q."""
+    """The same on one axis of any machine; on an axis that turns it may be a weight at an arm: a sin q + b cos q.
+
+    A constant force beside it, such as that of a cable or of a zero that is off, is a bend.
+    """
 
     kinds = ("axis",)
+    plain = True
     units = {"relative": "1", "force": "N", "arm": "N", "hanging": "m"}
     on_axis = {"force": "offset", "relative": "weight", "arm": "arm", "hanging": "hanging"}
     TRAVEL = 0.3
@@ -81,27 +85,34 @@ class GravityOnAxis(GravityLoad):
         swings = all(a.weighed for a in axes) and max(a.travel for a in axes) > self.TRAVEL
         return [*found, {"constant": 2.0}] if swings else found
 
+    def bends(self, views: Sequence[AxisView], site: str, shape: Shape) -> list[Shape]:
+        """Return a weight at an arm and a constant force."""
+        return [{**shape, "constant": 3.0}] if shape["constant"] == 2.0 else []
+
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
-        """Return one column, or for a weight at an arm two: sine and cosine of the position."""
-        if shape["constant"] != 2.0:
+        """Return one column; for a weight at an arm sine and cosine of the position, and for a force beside it one."""
+        if shape["constant"] < 2.0:
             return super().signature(view, site, shape)
         q = view.position[:, view.row(site)]
-        return Signature({Channel(self.stage, site): column(np.sin(q), np.cos(q))})
+        beside = [np.ones_like(q)] if shape["constant"] == 3.0 else []
+        return Signature({Channel(self.stage, site): column(np.sin(q), np.cos(q), *beside)})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the largest weight, and the position at which the axis hangs down."""
-        if shape["constant"] != 2.0:
+        """Return the largest weight, the position at which the axis hangs down, and a force beside it."""
+        if shape["constant"] < 2.0:
             return super().parameters(shape, coefficients)
-        return {"arm": float(np.hypot(*coefficients)), "hanging": float(np.arctan2(-coefficients[1], coefficients[0]))}
+        sine, cosine, *beside = map(float, coefficients)
+        weight = {"arm": float(np.hypot(sine, cosine)), "hanging": float(np.arctan2(-cosine, sine))}
+        return {**weight, **({"force": beside[0]} if beside else {})}
 
 
-class ServoSag(GravityLoad):
+class ServoSag(GravityOnAxis):
     """A position servo that hangs behind its reference under a weight: the load over the servo's stiffness."""
 
     kinds = ("servo",)
     explanation = "The axis rests beside its reference, as a spring does under a weight."
     siblings = {"coulomb_friction": "the side it rests on changes with the direction it came from"}
-    units = {"force": "m", "relative": "m/N"}
+    units = {"force": "m", "relative": "m/N", "arm": "m", "hanging": "m"}
 
 
 @dataclass(frozen=True)

@@ -71,6 +71,7 @@ class MassOnAxis(PayloadMass):
     """Mass on one axis of any machine that its description does not know: F = mass * a."""
 
     kinds, places = ("axis",), ("axis",)
+    plain = True
     needs = ("mass",)
     on_axis = {"mass": "inertia"}
 

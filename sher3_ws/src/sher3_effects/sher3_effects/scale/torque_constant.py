@@ -21,6 +21,7 @@ class TorqueConstant(Page):
     id, family, stage = "torque_constant", "scale", "motor_mechanics"
     inputs = ("force",)
     kinds = ("robot", "axis")
+    plain = True
     needs = ("drive", "forces")
     best = Best("sweep", "long constant-speed strokes separate ratios from offsets")
     leaves_out = "its bend at large forces"

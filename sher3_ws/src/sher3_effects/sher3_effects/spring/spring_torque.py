@@ -50,13 +50,14 @@ class SpringTorque(Page):
 
 
 class SpringOnAxis(SpringTorque):
-    """The same on one axis of any machine: a spring is told from a constant force only where it rests in the travel.
+    """The same on one axis of any machine.
 
     A spring that hardens towards the ends of the travel has a cube of the position beside it; one that softens is a
     weight at an arm.
     """
 
     kinds = ("axis",)
+    plain = True
     units = {"stiffness": "N/m", "rest": "m", "stiffness_at_end": "N/m"}
     bent_from = BENT_FROM
 
@@ -82,9 +83,9 @@ class SpringOnAxis(SpringTorque):
         return {**out, **({"stiffness_at_end": (linear + 3.0 * cube[0]) / shape["half"]} if cube else {})}
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether the spring pulls back, to a place within the travel, and does not soften."""
-        linear, middle, cube = (*map(float, coefficients), 0.0)[:3]
-        return linear > 0.0 and cube >= 0.0 and linear + cube > abs(middle)
+        """Return whether the spring pulls back and does not soften; it may be strained all over the travel."""
+        linear, _, cube = (*map(float, coefficients), 0.0)[:3]
+        return linear > 0.0 and cube >= 0.0
 
 
 def _relaxed(linear: float, middle: float, cube: float = 0.0) -> float:

@@ -93,6 +93,7 @@ class ServoLag(DriveLag):
     """
 
     kinds = ("servo",)
+    plain = True
     on_axis = {"time_constant": "lag"}
     explanation = "The axis follows its reference late, like a filter of first order, or of second with a damping."
     siblings = {"command_delay": "the whole reference comes late, its shape unchanged"}
@@ -104,6 +105,8 @@ class ServoLag(DriveLag):
     """Time constants and dead times that are tried together, in periods of the record."""
     LEAST_OF_SECOND = 1.5
     """Periods from which a filter of second order is tried: below it the record does not show the difference."""
+    BALANCE = ("time_constant", "inertia", "rate")
+    """Numbers of a balance: of the speed, of the acceleration, of the error's slope; as many as told."""
     MOST_DAMPED = 0.99
     """Beyond it a filter of second order is two of the first."""
     units = {"time_constant": "s", "delay": "s", "inertia": "s^2", "rate": "s"}
@@ -124,18 +127,28 @@ class ServoLag(DriveLag):
         first: list[Shape] = [{"time_constant": n * period} for n in self.PERIODS]
         second = [{"time_constant": t, "damping": z} for t in slow for z in self.DAMPINGS]
         both = [{"time_constant": n * period, "delay": d * period} for n in self.LAGS for d in self.LATE]
-        return [*first, *second, *both, {"balance": 1.0}]
+        return [*first, *second, *both, *self.plain_shapes(views, site), {"balance": 3.0}]
+
+    def plain_shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
+        """Return balances of one number and of two, at once and a dead time later.
+
+        A balance stands beside other forces, as a filtered reference does not.
+        """
+        late = [{"delay": n * views[0].run.period} for n in self.LATE]
+        return [{"balance": n, **after} for n in (1.0, 2.0) for after in ({}, *late)]
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Return the time constant, and the damping of a filter of second order or the numbers of a balance."""
-        if "balance" in shape:
-            return dict(zip(("time_constant", "inertia", "rate"), map(float, coefficients), strict=True))
-        return dict(shape)
+        if "balance" not in shape:
+            return dict(shape)
+        told = dict(zip(self.BALANCE, map(float, coefficients), strict=False))
+        return {**told, **{name: shape[name] for name in ("delay",) if name in shape}}
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
         """Return whether a filter of second order is one, and mass and time of a balance are above zero."""
         if "balance" in shape:
-            return bool(coefficients[1] > 0.0 and coefficients[0] + coefficients[2] > 0.0)
+            time, *inertia = coefficients[:2]
+            return bool(time + sum(coefficients[2:]) > 0.0 and min(inertia, default=1.0) > 0.0)
         return shape.get("damping", 0.0) < self.MOST_DAMPED
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
@@ -144,14 +157,10 @@ class ServoLag(DriveLag):
         assert reference is not None
         asked = reference[:, [view.row(site)]]
         if "balance" in shape:
-            run, row = view.run, view.row(site)
-            slope = np.gradient(asked[:, 0] - run.motor[:, row], run.period)
-            parts = (run.velocity[:, row], run.acceleration[:, row], -slope)
-            return Signature({self.channels(site)[0]: column(*(run.to_grid(x[:, None])[:, 0] for x in parts))})
+            return self._balance(view, site, asked, shape)
         time = shape["time_constant"]
         if "delay" in shape:
-            clock = view.run.stage_clock
-            before = np.interp(clock - shape["delay"], clock, asked[:, 0])[:, None]
+            before = _ago(view, asked, shape["delay"])
             late = held_lag(before, time, view.run.period) - before[0] + asked[0]
         elif "damping" in shape:
             damping = min(shape["damping"], self.MOST_DAMPED)
@@ -159,6 +168,22 @@ class ServoLag(DriveLag):
         else:
             late = held_lag(asked, time, view.run.period)
         return Signature({}, {self.channels(site)[0]: view.run.to_grid(asked - late)})
+
+    def _balance(self, view: AxisView, site: str, asked: Array, shape: Shape) -> Signature:
+        """Return speed, acceleration and the error's slope, and what a dead time of the reference (n, 1) adds."""
+        run, row, channel = view.run, view.row(site), self.channels(site)[0]
+        delay = shape.get("delay", 0.0)
+        heard = _ago(view, asked, delay) if delay else asked
+        slope = np.gradient(heard[:, 0] - run.motor[:, row], run.period)
+        parts = (run.velocity[:, row], run.acceleration[:, row], -slope)[: int(shape["balance"])]
+        columns = {channel: column(*(run.to_grid(x[:, None])[:, 0] for x in parts))}
+        return Signature(columns, {channel: run.to_grid(asked - heard)} if delay else {})
+
+
+def _ago(view: AxisView, x: Array, delay: float) -> Array:
+    """Return a signal (n, 1) of the record as it was `delay` ago, s."""
+    clock = view.run.stage_clock
+    return np.interp(clock - delay, clock, x[:, 0])[:, None]
 
 
 @dataclass(frozen=True)

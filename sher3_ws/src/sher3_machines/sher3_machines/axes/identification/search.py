@@ -9,9 +9,11 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from dataclasses import replace
 
-from sher3_diagnosis.attribute.candidates import Candidates, cost
+from sher3_diagnosis.attribute.candidates import Candidates, complexity, cost, price
 from sher3_diagnosis.attribute.rivals import Attribution, with_rivals
 from sher3_diagnosis.attribute.search import Left, Say, attribute
+from sher3_diagnosis.attribute.ties import TIE
+from sher3_diagnosis.attribute.together import pruned, together
 from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.fit.fitting import Fit, Term, fit
@@ -44,7 +46,7 @@ def _chosen(evidence: AxisEvidence, candidates: Candidates, left_over: Left, say
     """
     candidates = Bounded(evidence, candidates.effects, candidates.terms)
     seen = [e for e in candidates.effects if not isinstance(e, BehindMotor)]
-    found = attribute(Bounded(evidence, seen, candidates.terms), left_over, say)
+    found = _plain_first(evidence, Bounded(evidence, seen, candidates.terms), left_over, say)
     if rest_loss(evidence, found.fit) > 0.0:
         dry = DryFirst(evidence, seen, candidates.terms)
         other = attribute(dry, left_over, say)
@@ -54,12 +56,34 @@ def _chosen(evidence: AxisEvidence, candidates: Candidates, left_over: Left, say
         other = attribute(behind, left_over, say)
         if _excess(evidence, other.fit) < (1.0 - WORTH) * _excess(evidence, found.fit):
             found = other
-    best = polished(candidates, found)
-    if [t.effect.id for t in best.terms] == [t.effect.id for t in found.fit.terms]:
-        found = replace(found, fit=best)
-    else:
-        found = with_rivals(candidates, best)
+    found = _refined(candidates, found, left_over)
     return replace(found, rivals=_at_rest_too(evidence, found))
+
+
+def _plain_first(evidence: AxisEvidence, candidates: Candidates, left_over: Left, say: Say) -> Attribution:
+    """Fit the plain laws at once and look for richer ones in what they leave; where a gap is left, search by steps too.
+
+    Of the two the one is taken whose loss, with the price of its numbers, is smaller.
+    """
+    say("fitting the plain laws together")
+    null = evidence.null()
+    plain = together(candidates, evidence.channels, left_over) if left_over(null) else null
+    found = _refined(candidates, attribute(candidates, left_over, say, start=plain), left_over)
+    if not left_over(found.fit):
+        return found
+    return min((found, _refined(candidates, attribute(candidates, left_over, say), left_over)), key=_priced)
+
+
+def _refined(candidates: Candidates, found: Attribution, left_over: Left) -> Attribution:
+    """Return an attribution whose causes were searched again beside the others, without those nobody misses then."""
+    best = pruned(candidates.evidence, polished(candidates, found), left_over, relative=True)
+    if [t.effect.id for t in best.terms] == [t.effect.id for t in found.fit.terms]:
+        return replace(found, fit=best)
+    return with_rivals(candidates, best)
+
+
+def _priced(found: Attribution) -> float:
+    return found.fit.total + sum(price(found.fit.terms[i]) for i in found.causes)
 
 
 class Behind(Bounded):
@@ -132,9 +156,11 @@ def polished(candidates: Candidates, found: Attribution) -> Fit:
             effects = [term.effect, *(f.terms[-1].effect for f in found.rivals[i] if f.terms[-1].site == term.site)]
             for effect in effects:
                 trial = candidates.best(effect, term.site, others)
-                if trial is not None and trial.total < best.total:
-                    terms = [*others[:i], trial.terms[-1], *others[i:]]
-                    best = fit(candidates.evidence.data, terms)
+                if trial is None:
+                    continue
+                more = NEEDED * (complexity(trial.terms[-1]) - complexity(best.terms[i]))
+                if trial.total + more < best.total - TIE:
+                    best = fit(candidates.evidence.data, [*others[:i], trial.terms[-1], *others[i:]])
         if best is before:
             break
     return best

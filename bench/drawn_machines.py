@@ -1,0 +1,174 @@
+"""Bench: axes and servos with three to six causes drawn at once: which are named, with which interval, what is wrong.
+
+Machines are those of `sher3_machines/test/drawn_machines.py`: their friction sticks and slips, their integrator is
+Heun's; the diagnosis has other laws. Beside it, on the same records, stand two fits of the same dictionary: all its
+columns by least squares, and the lasso whose weight is chosen on the last third of the record.
+
+    nice python bench/drawn_machines.py                  # 50 axes and 50 servos
+    nice python bench/drawn_machines.py --seeds 7:9      # others
+
+Printed are recall and precision of the causes, how many 95 % intervals hold the truth, and the share of verdicts with a
+wrong cause; then what was missed and what was wrong, by name.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+from sher3_diagnosis import diagnose
+from sher3_diagnosis.verdict import Verdict
+from sher3_machines.axes.signals import signals_of
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "sher3_ws/src/sher3_machines/test"))
+from drawn_machines import Drawn, drawn_axis, drawn_servo
+
+ALIKE = {
+    "presliding_friction": {"coulomb_friction"},
+    "stribeck_friction": {"coulomb_friction"},
+    "spring_torque": {"gravity_load"},  # it has a constant force of its own
+    "command_delay": {"delay"},
+    "sensor_delay": {"delay"},
+}
+"""Effect -> what else is named with it, since its law contains that."""
+NOTICED = 0.05
+"""Share of the signal from which a column of the two fits is called a cause."""
+COLUMNS = ("payload_mass", "viscous_friction", "coulomb_friction", "gravity_load", "spring_torque")
+LASSO_WEIGHTS = np.geomspace(1e-3, 0.3, 12)
+
+
+def truths(drawn: Drawn) -> set[str]:
+    """Return what is to be found; a friction that falls with speed has a dry one in it."""
+    more = {"coulomb_friction"} if "stribeck_friction" in drawn.truth else set()
+    return set(drawn.truth) | more
+
+
+def named(verdict: Verdict) -> list[set[str]]:
+    """Return for each cause the names that it stands for: its own, its rivals', and what its law contains."""
+    out = []
+    for c in verdict.causes:
+        late = {"delay"} if c.effect == "drive_lag" and "delay" in c.parameters else set()
+        out.append({c.effect, *c.rivals, *ALIKE.get(c.effect, ()), *late})
+    return out
+
+
+def covered(drawn: Drawn, verdict: Verdict) -> list[bool]:
+    """Return whether each interval of a parameter whose truth is known holds it."""
+    out = []
+    for c in verdict.causes:
+        for name, value in drawn.truth.get(c.effect, {}).items():
+            p = c.parameters.get("effort_delay" if name == "delay" else name)
+            if p is not None and p.low is not None and p.high is not None:
+                out.append(p.low <= value <= p.high)
+    return out
+
+
+def columns_of(drawn: Drawn) -> tuple[np.ndarray, np.ndarray]:
+    """Return the dictionary (n, 7) and what it is to explain (n,): the force less the stated mass, or the error."""
+    axis = drawn.machine.description.axes[0]
+    run = signals_of(drawn.run, axis, "run")
+    q, v = run.smooth[:, 0], run.velocity[:, 0]
+    a = run.filtered(run.acceleration)[:, 0]
+    if axis.servo:
+        y = run.filtered(run.reference - run.motor)[:, 0]
+    else:
+        y = run.filtered(run.effort)[:, 0] - axis.mass * a - axis.gravity.arm * np.sin(q)
+    soft = np.tanh(v / (0.02 * np.abs(v).max()))
+    x = np.column_stack([a, v, soft, np.ones_like(q), q - q.mean(), np.sin(q), np.cos(q)])
+    keep = slice(int(run.edge), -max(1, int(run.edge)))
+    x, y = x[keep], y[keep]
+    return (x[:, :5], y) if axis.motion == "linear" else (x[:, [0, 1, 2, 3, 5, 6]], y)
+
+
+def plain_fit(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Return the coefficients of all columns by least squares."""
+    return np.linalg.lstsq(x, y, rcond=None)[0]
+
+
+def lasso(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Return the coefficients of the lasso (coordinate descent), its weight chosen on the last third."""
+    size, cut = np.sqrt(np.mean(x**2, axis=0)), len(y) * 2 // 3
+    z = x / size
+    errors = [float(np.mean((y[cut:] - z[cut:] @ _descend(z[:cut], y[:cut], w)) ** 2)) for w in LASSO_WEIGHTS]
+    return np.asarray(_descend(z, y, LASSO_WEIGHTS[int(np.argmin(errors))]) / size)
+
+
+def _descend(z: np.ndarray, y: np.ndarray, weight: float) -> np.ndarray:
+    gram, right = z.T @ z / len(y), z.T @ y / len(y)
+    threshold, beta = weight * float(np.sqrt(np.mean(y**2))), np.zeros(z.shape[1])
+    for _ in range(300):
+        for k in range(len(beta)):
+            free = right[k] - gram[k] @ beta + gram[k, k] * beta[k]
+            beta[k] = np.sign(free) * max(abs(free) - threshold, 0.0) / gram[k, k]
+    return beta
+
+
+def by_fit(drawn: Drawn, how) -> set[str]:
+    """Return the causes that a fit names: whose column is a noticed share of the signal."""
+    x, y = columns_of(drawn)
+    beta = how(x, y)
+    names = [*COLUMNS] if x.shape[1] == 5 else [*COLUMNS[:4], "gravity_load", "gravity_load"]
+    if drawn.kind == "servo":
+        names = ["drive_lag" if n in ("payload_mass", "viscous_friction") else n for n in names]
+    shares = np.abs(beta) * np.sqrt(np.mean(x**2, axis=0)) / np.sqrt(np.mean(y**2))
+    return {n for n, s in zip(names, shares, strict=True) if s > NOTICED}
+
+
+class Score:
+    """Counts over machines."""
+
+    def __init__(self) -> None:
+        self.right = self.true = self.good = self.all = self.machines = self.spoilt = 0
+        self.missed: Counter[str] = Counter()
+        self.wrong: Counter[str] = Counter()
+
+    def add(self, truth: set[str], found: list[set[str]]) -> None:
+        """Count one machine: what is true, and the names that each of its causes stands for."""
+        seen = set().union(*found) if found else set()
+        bad = [f for f in found if not f & truth]
+        self.right, self.true = self.right + len(truth & seen), self.true + len(truth)
+        self.good, self.all = self.good + len(found) - len(bad), self.all + len(found)
+        self.machines, self.spoilt = self.machines + 1, self.spoilt + bool(bad)
+        self.missed.update(truth - seen)
+        self.wrong.update(sorted(f)[0] for f in bad)
+
+    def line(self) -> str:
+        """Return recall, precision and the share of machines with a wrong cause."""
+        parts = self.right / max(self.true, 1), self.good / max(self.all, 1), self.spoilt / max(self.machines, 1)
+        return "recall {:.3f}  precision {:.3f}  machines with a wrong cause {:.3f}".format(*parts)
+
+
+def main() -> None:
+    """Print the ladder."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--seeds", default="1000:1050")
+    parser.add_argument("--kinds", default="axis,servo")
+    arguments = parser.parse_args()
+    first, last = map(int, arguments.seeds.split(":"))
+    for kind in arguments.kinds.split(","):
+        draw = {"axis": drawn_axis, "servo": drawn_servo}[kind]
+        scores = {name: Score() for name in ("sher3", "least squares", "lasso")}
+        held: list[bool] = []
+        begun, status = time.perf_counter(), Counter()
+        for seed in range(first, last):
+            drawn = draw(seed)
+            verdict = diagnose(drawn.machine, [drawn.run]).verdict
+            status[verdict.status] += 1
+            held += covered(drawn, verdict)
+            scores["sher3"].add(truths(drawn), named(verdict))
+            for name, how in (("least squares", plain_fit), ("lasso", lasso)):
+                scores[name].add(truths(drawn), [{x} for x in sorted(by_fit(drawn, how))])
+        taken = time.perf_counter() - begun
+        print(f"{kind}: {last - first} machines, {taken:.0f} s, {dict(status)}")
+        print(f"  intervals that hold the truth: {sum(held)} of {len(held)} = {np.mean(held):.3f}")
+        for name, score in scores.items():
+            print(f"  {name:14} {score.line()}")
+            print(f"  {'':14} missed {dict(score.missed)}, wrong {dict(score.wrong)}", flush=True)
+
+
+if __name__ == "__main__":
+    main()

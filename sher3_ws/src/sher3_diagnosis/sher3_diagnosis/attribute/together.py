@@ -1,0 +1,92 @@
+"""All plain laws of a place fitted at once, then those dropped that nobody misses on parts left out.
+
+A search that takes one cause at a time gives the first one a part of the others: a dry friction takes a weight's, and
+none of several alike explains enough of the gap alone. Together each has its own.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Collection
+
+from sher3_diagnosis.attribute.candidates import Candidates, complexity
+from sher3_diagnosis.attribute.rivals import without_term
+from sher3_diagnosis.attribute.ties import TIE, first_of_least
+from sher3_diagnosis.channel import Channel
+from sher3_diagnosis.effect import Effect
+from sher3_diagnosis.evidence import Evidence
+from sher3_diagnosis.fit.fitting import Fit, Term, fit
+from sher3_diagnosis.thresholds import NEEDED, OF_THE_REST, PARSIMONY
+
+Left = Callable[[Fit], dict[Channel, float]]
+"""Gaps that are left under a fit: channel -> excess loss."""
+PASSES = 3
+"""Rounds over the laws at most: each is searched again beside the others as they are by then."""
+
+
+def together(candidates: Candidates, gaps: Collection[Channel], left_over: Left) -> Fit:
+    """Return the plain laws that are worth their numbers, fitted at once; the null fit where none is.
+
+    Args:
+        candidates: the evidence and the effects, of which the plain ones are taken.
+        gaps: channels of which at least one must show a law.
+        left_over: says which gaps are left under a fit.
+    """
+    laws = [(e, site) for e in candidates.effects if e.plain for site in candidates.sites(e)]
+    laws = [(e, site) for e, site in laws if set(e.channels(site)) & set(gaps)]
+    current = _linear(candidates, laws)
+    for _ in range(PASSES):
+        before = current
+        for effect, site in laws:
+            others = [t for t in current.terms if t.key != (effect.id, site)]
+            trial = candidates.best_plain(effect, site, others)
+            if trial is not None and trial.total < current.total - TIE:
+                current = trial
+        if current is before:
+            break
+    return pruned(candidates.evidence, current, left_over, relative=True)
+
+
+def _linear(candidates: Candidates, laws: list[tuple[Effect, str]]) -> Fit:
+    """Return the laws that a coefficient of zero takes away, in their first shape, without impossible ones."""
+    evidence = candidates.evidence
+    shapes = [(e, site, next(iter(e.plain_shapes(evidence.views, site)), None)) for e, site in laws]
+    terms = [candidates.term(e, site, shape) for e, site, shape in shapes if shape is not None]
+    current = fit(evidence.data, [*evidence.nuisance, *(t for t in terms if _vanishes(t))])
+    while wrong := [i for i, t in enumerate(current.terms) if not t.effect.admissible(t.shape, current.of(i))]:
+        reduced = {i: without_term(evidence, current, i) for i in wrong}
+        current = reduced[first_of_least({i: f.total for i, f in reduced.items()})]
+    return current
+
+
+def _vanishes(term: Term) -> bool:
+    return term.width > 0 and bool(term.channels) and not any(term.fixed)
+
+
+def worth_of(term: Term, explained: float, left: float) -> float:
+    """Return the held-out loss that a cause must be worth: the price of its numbers, and what laws are off by.
+
+    Laws are off by a share of what they explain, but of plain ones together hardly by more than they leave.
+    """
+    return NEEDED * complexity(term) + min(PARSIMONY * explained, OF_THE_REST * left)
+
+
+def pruned(evidence: Evidence, current: Fit, left_over: Left, relative: bool) -> Fit:
+    """Drop a cause whose loss nobody misses; of equals, the one that was chosen last. One cause is kept.
+
+    Args:
+        evidence: that the fit is of.
+        current: to be pruned.
+        left_over: says which gaps are left under a fit: a cause without which one opens again is kept.
+        relative: whether a plain cause may be worth little beside what all explain, as long as it is much of what they leave.
+    """
+    first, base = len(evidence.nuisance), evidence.null().total
+    while len(current.terms) > first + 1:
+        reduced = {i: without_term(evidence, current, i) for i in range(first, len(current.terms))}
+        i = first_of_least({j: reduced[j].total for j in sorted(reduced, reverse=True)})
+        plain = relative and current.terms[i].effect.plain
+        price = worth_of(current.terms[i], base - current.total, current.total if plain else math.inf)
+        if reduced[i].total - current.total > price or set(left_over(reduced[i])) - set(left_over(current)):
+            return current
+        current = reduced[i]
+    return current

@@ -1,0 +1,34 @@
+"""Several ordinary causes at once: each has its own number, none takes a part of another's."""
+
+import pytest
+from drawn_machines import drawn_axis, drawn_servo
+from sher3_diagnosis import diagnose
+
+
+def told(drawn):
+    """Return the causes by id, and what is named in place of what is true: the same force by another law."""
+    return {c.effect: c for c in diagnose(drawn.machine, [drawn.run]).verdict.causes}
+
+
+def test_a_spring_a_payload_and_three_frictions_at_once():
+    """A search by steps left all of it outside the library: no law alone explains a third of the gap."""
+    drawn = drawn_axis(4)
+    assert set(drawn.truth) == {
+        *("gravity_load", "payload_mass", "spring_torque", "stribeck_friction", "viscous_friction")
+    }
+    found = told(drawn)
+    assert set(found) == {"stribeck_friction", "spring_torque", "torque_constant", "viscous_friction"}
+    assert "payload_mass" in found["torque_constant"].rivals  # without a known weight the two are one number
+    for effect, name in (("viscous_friction", "extra"), ("spring_torque", "stiffness")):
+        parameter = found[effect].parameters[name]
+        assert parameter.low <= drawn.truth[effect][name] <= parameter.high
+
+
+def test_a_servo_with_a_weight_at_an_arm_keeps_lag_stiction_and_weight_apart():
+    """The weight went into the stiction, twice as large as it is."""
+    drawn = drawn_servo(5)
+    found = told(drawn)
+    assert set(found) == {"drive_lag", "coulomb_friction", "gravity_load"}
+    assert found["coulomb_friction"].parameters["force"].value == pytest.approx(0.088, rel=0.05)
+    arm = found["gravity_load"].parameters["arm"]
+    assert arm.low <= drawn.truth["gravity_load"]["arm"] <= arm.high
