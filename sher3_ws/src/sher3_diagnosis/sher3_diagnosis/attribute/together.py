@@ -78,7 +78,7 @@ def pruned(evidence: Evidence, current: Fit, left_over: Left, relative: bool) ->
         evidence: that the fit is of.
         current: to be pruned.
         left_over: says which gaps are left under a fit: a cause without which one opens again is kept.
-        relative: whether a plain cause may be worth little beside what all explain, as long as it is much of what they leave.
+        relative: whether a plain cause may be worth little beside what all explain, if it is much of what they leave.
     """
     first, base = len(evidence.nuisance), evidence.null().total
     while len(current.terms) > first + 1:

@@ -68,11 +68,14 @@ class PayloadMass(Page):
 
 
 class MassOnAxis(PayloadMass):
-    """Mass on one axis of any machine that its description does not know: F = mass * a."""
+    """Mass on one axis of any machine that its description does not know: F = mass * a.
+
+    Of an axis that nothing drives only ratios of forces are told: its mass is what the others are measured by.
+    """
 
     kinds, places = ("axis",), ("axis",)
     plain = True
-    needs = ("mass",)
+    needs = ("mass", "drive")
     on_axis = {"mass": "inertia"}
 
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:

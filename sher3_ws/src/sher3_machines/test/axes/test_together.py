@@ -13,12 +13,12 @@ def told(drawn):
 def test_a_spring_a_payload_and_three_frictions_at_once():
     """A search by steps left all of it outside the library: no law alone explains a third of the gap."""
     drawn = drawn_axis(4)
-    assert set(drawn.truth) == {
-        *("gravity_load", "payload_mass", "spring_torque", "stribeck_friction", "viscous_friction")
-    }
+    assert len(drawn.truth) == 5
     found = told(drawn)
-    assert set(found) == {"stribeck_friction", "spring_torque", "torque_constant", "viscous_friction"}
-    assert "payload_mass" in found["torque_constant"].rivals  # without a known weight the two are one number
+    mass = {"payload_mass", "torque_constant"}  # without a known weight the two are one number
+    assert set(found) - mass == {"stribeck_friction", "spring_torque", "viscous_friction"}
+    (named,) = set(found) & mass
+    assert set(found[named].rivals) >= mass - {named}
     for effect, name in (("viscous_friction", "extra"), ("spring_torque", "stiffness")):
         parameter = found[effect].parameters[name]
         assert parameter.low <= drawn.truth[effect][name] <= parameter.high
