@@ -43,6 +43,26 @@ def test_a_table_with_names(log):
     assert right(gap.diagnose(log.xml, table))
 
 
+class Frame:
+    """What a frame of pandas or Polars has and the diagnosis uses: names of columns, and columns by name."""
+
+    def __init__(self, columns):
+        self.data, self.columns = columns, list(columns)
+
+    def __getitem__(self, name):
+        return self.data[name]
+
+
+def test_frames_of_numbered_columns_as_runs_with_tags_for_each(log):
+    frames = []
+    for run in (logged(log.xml, 8), log):
+        numbered = {f"{name}_{i}": x[:, i] for name, x in (("qpos", run.qpos), ("ctrl", run.ctrl)) for i in (0, 1)}
+        frames.append(Frame({"time": run.time, **numbered}))
+    answer = gap.diagnose(log.xml, frames, tags=[{"day": "first"}, {"day": "second"}])
+    cause = answer.causes[0]
+    assert (cause.effect, cause.actuator, cause.condition) == ("coulomb_friction", "shoulder", "day second")
+
+
 def test_a_simulator_s_own_effort_is_told_from_a_measured_one(log):
     effort = log.actuator_force * gears(log)
     assert any("simulator's own" in g for g in gap.diagnose(log.xml, log.time, log.ctrl, log.qpos, effort).guessed)
@@ -60,7 +80,7 @@ def test_several_runs_with_tags(log):
     assert cause.parameters["force"].value == pytest.approx(1.2, rel=0.05)
 
 
-def test_a_urdf_needs_efforts(log):
+def test_a_urdf_needs_efforts(log, tmp_path):
     urdf = (
         '<robot name="a"><link name="base"/><link name="arm"><inertial><origin xyz="0.2 0 0"/><mass value="2"/>'
         '<inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial></link>'
@@ -70,6 +90,8 @@ def test_a_urdf_needs_efforts(log):
     inertia = 0.01 + 2 * 0.2**2
     speed = np.gradient(log.qpos[:, 0], log.time)
     effort = inertia * np.gradient(speed, log.time) + 0.7 * np.tanh(speed / 1e-3)
+    (tmp_path / "arm.urdf").write_text(urdf)
+    assert gap.diagnose(tmp_path / "arm.urdf", log.time, None, log.qpos[:, 0], effort).status == "attributed"
     answer = gap.diagnose(urdf, log.time, log.ctrl[:, 0], log.qpos[:, 0], effort)
     assert [(c.effect, c.actuator) for c in answer.causes] == [("coulomb_friction", "turn")]
     assert "turn: its control is not used, because the model has no drives" in answer.guessed
