@@ -57,6 +57,9 @@ def test_a_glitch_stands_alone_and_a_step_does_not():
     assert list(glitches(x)) == [60, 130]
     assert not len(glitches(np.where(TIME > 1.0, 1.0, 0.0) + 0.01 * np.sin(9.0 * TIME)))
     assert not len(glitches(np.random.default_rng(0).normal(size=500)))
+    short = np.sin(0.05 * np.arange(150))
+    short[[40, 80, 120]] += 9.0
+    assert list(glitches(short)) == [40, 80, 120]
 
 
 def test_a_log_is_cut_where_its_clock_has_a_hole_or_jumps_back():

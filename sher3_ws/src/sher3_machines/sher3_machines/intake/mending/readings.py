@@ -13,11 +13,14 @@ MISSING = 0.05
 LONGEST_GAP = 10
 """Readings in a row that are interpolated over where no stamps say how long they take."""
 GLITCH = 20.0
-"""A reading off its neighbours' median by so many times what 99 of 100 readings are off is none of the machine's."""
+"""A reading off its neighbours' median by so many times what 97 of 100 readings are off is none of the machine's: in a
+record of a few hundred rows three bad ones are one in a hundred."""
 GLITCH_TRAVEL = 0.05
 """Share of the travel by which a glitch is off at least."""
 FEW_GLITCHES = 0.005
 """Share of the samples that may be glitches: more are a signal."""
+SOME_GLITCHES = 3
+"""Glitches that a short record may have."""
 NEIGHBOURS = 5
 """Readings over which that median is taken."""
 FEWEST = 3
@@ -57,9 +60,9 @@ def glitches(x: Array) -> NDArray[np.int64]:
     half = NEIGHBOURS // 2
     off[half : len(x) - half] = np.abs(x[half : len(x) - half] - np.median(windows, axis=1))
     low, high = np.quantile(x, [0.01, 0.99])
-    limit = max(GLITCH * float(np.quantile(off, 0.99)), GLITCH_TRAVEL * float(high - low))
+    limit = max(GLITCH * float(np.quantile(off, 0.97)), GLITCH_TRAVEL * float(high - low))
     found = np.flatnonzero(off > limit) if limit > 0.0 else np.zeros(0, dtype=np.int64)
-    return found if len(found) <= max(1.0, FEW_GLITCHES * len(x)) else found[:0]
+    return found if len(found) <= max(SOME_GLITCHES, FEW_GLITCHES * len(x)) else found[:0]
 
 
 def longest_run(mask: Mask) -> int:
