@@ -115,6 +115,23 @@ def test_kuka(tmp_path):
     assert found["viscous_friction", "A1", "extra"] == pytest.approx(1921.0, rel=0.15)
 
 
+@pytest.mark.slow
+def test_kuka_as_an_arm(tmp_path):
+    """Six joints at once, inertias from the data: axis 1 has Coulomb and viscous friction, not one along its travel."""
+    text = (REAL / "kuka_kr300/kuka_man.yaml").read_text(encoding="utf-8")
+    for old, new in (("nominal", "identified"), ("column: t,", "column: time_cont,"), ("column: ", "column: rec/")):
+        text = text.replace(old, new)
+    (tmp_path / "arm.yaml").write_text(text, encoding="utf-8")
+    import_case([REAL / f"kuka_kr300/run{x}.mat" for x in "ABC"], tmp_path / "arm.yaml", tmp_path / "arm")
+    verdict = diagnose(*open_case(tmp_path / "arm")).verdict
+    found = values(verdict)
+    assert found["coulomb_friction", "A1", "force"] == pytest.approx(374.0, rel=0.15)
+    assert found["viscous_friction", "A1", "extra"] == pytest.approx(1921.0, rel=0.15)
+    for axis in ("A1", "A2", "A3"):
+        assert found["sensor_delay", axis, "load_delay"] == pytest.approx(3.0e-3, abs=0.3e-3)
+    assert "lost_motion" not in {c.family for c in verdict.causes}
+
+
 def test_double_pendulum(tmp_path):
     """Losses of 6.0 and 8.1 % of the torque beside Coulomb friction of 145 and 116 mN m, by a fit of our own."""
     verdict = verdict_of("dfki_double_pendulum", [REAL / "dfki_double_pendulum/A7.csv"], tmp_path)

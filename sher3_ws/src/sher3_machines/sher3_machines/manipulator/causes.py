@@ -6,7 +6,7 @@ where it and what the joints then still need are cheaper than what the joints ne
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -93,10 +93,33 @@ def _causes(found: Attribution) -> list[Term]:
     return [t for t in found.fit.terms if t.effect.family != NUISANCE]
 
 
+class PlainFirst(Bounded):
+    """Candidates of which two plain laws come before a richer one that contains the first of them.
+
+    Friction that varies with the position takes up a viscous one as long as that is not there. It is a cause where it
+    is worth its numbers beside both.
+    """
+
+    def search(self, channels: Collection[Channel], given: Sequence[Term] = ()) -> list[Fit]:
+        """Search as the engine does; the plain law first where it and another plain one are as cheap as the best."""
+        found = super().search(channels, given)
+        if not found:
+            return found
+        best = found[0].terms[-1]
+        own = [f for f in found if f.terms[-1].site == best.site]
+        first = next((f for f in own if f.terms[-1].effect.id in best.effect.extends), None)
+        if first is None:
+            return found
+        plain = [f.terms[-1] for f in own if f is not first and not f.terms[-1].effect.extends]
+        pairs = [fit(self.evidence.data, [*first.terms, term]) for term in plain]
+        cheaper = any(pair.admissible and spent(pair) <= spent(found[0]) for pair in pairs)
+        return [first, *(f for f in found if f is not first)] if cheaper else found
+
+
 def _searched(own: Evidence, effects: Sequence[Effect], say: Say) -> Attribution:
     """Search one channel for causes."""
     left = partial(down_to_floor, own.channels, own)
-    return borne_out(own, attribute(Bounded(own, effects), left, say, CAUSES_OF_JOINT))
+    return borne_out(own, attribute(PlainFirst(own, effects), left, say, CAUSES_OF_JOINT))
 
 
 def _beside_delay(own: Evidence, late: Late | None, effects: Sequence[Effect], say: Say) -> Attribution:
