@@ -96,26 +96,29 @@ def test_a_plain_publisher_s_friction_is_named_on_diagnostics(tmp_path):
     import rclpy
     from diagnostic_msgs.msg import DiagnosticArray
     from processes import child_environment, sher3_command
+    from rclpy.executors import SingleThreadedExecutor
     from sensor_msgs.msg import JointState
 
     (tmp_path / "arm.urdf").write_text(ARM)
     os.environ.update(child_environment())
     words = ["gap", "watch", "--model", tmp_path / "arm.urdf", "--window", "6", "--every", "2"]
     watched = subprocess.Popen(sher3_command(*words), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-    rclpy.init()
-    node, heard = rclpy.create_node("player"), {}
+    context, heard = rclpy.Context(), {}
+    rclpy.init(context=context)  # of its own: other tests of this process start and stop the common one
+    node, executor = rclpy.create_node("player", context=context), SingleThreadedExecutor(context=context)
+    executor.add_node(node)
     try:
         publisher = node.create_publisher(JointState, "/joint_states", 10)
         node.create_subscription(
             DiagnosticArray, "/diagnostics", lambda m: heard.update({s.name: s.message for s in m.status}), 10
         )
         begun = time.monotonic()
-        for k in range(10_000):
+        for k in range(18_000):
             place, effort = moved(0.01 * k, 0.7)
             message = JointState(name=["turn"], position=[float(place)], effort=[float(effort)])
             message.header.stamp.sec, message.header.stamp.nanosec = divmod(k * 10_000_000, 1_000_000_000)
             publisher.publish(message)
-            rclpy.spin_once(node, timeout_sec=0.0)
+            executor.spin_once(timeout_sec=0.0)
             time.sleep(max(0.0, begun + 0.01 * k - time.monotonic()))
             if "gap/turn" in heard or watched.poll() is not None:
                 break
@@ -124,6 +127,6 @@ def test_a_plain_publisher_s_friction_is_named_on_diagnostics(tmp_path):
         watched.send_signal(2)
         printed, _ = watched.communicate(timeout=20)
         node.destroy_node()
-        rclpy.try_shutdown()
+        rclpy.try_shutdown(context=context)
     assert watched.returncode == 0, printed
     assert "gap: " in printed
