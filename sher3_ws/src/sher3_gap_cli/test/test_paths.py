@@ -27,6 +27,13 @@ def answered(*words):
     return found.stdout
 
 
+def adds_up(verdict):
+    """Every place of a verdict has bets, and these add up to one."""
+    assert len(verdict["places"]) >= len(verdict["where"])
+    for place in verdict["places"]:
+        assert sum(a["probability"] for a in place["answers"]) + place["other"] == pytest.approx(1.0, abs=1e-6)
+
+
 @pytest.fixture(scope="module", params=list(KINDS))
 def case(request, tmp_path_factory):
     """Name of a kind, its case, and the folder with its verdict."""
@@ -34,7 +41,11 @@ def case(request, tmp_path_factory):
     data, description = written(request.param, folder)
     answered("import", data, description, "--out", folder / "case")
     told = json.loads(answered("diagnose", folder / "case", "--out", folder, "--json"))
-    assert told["cases"][0]["verdict"]["causes"], told
+    verdict = told["cases"][0]["verdict"]
+    assert verdict["causes"], told
+    adds_up(verdict)
+    bets = [next((a for a in p["answers"] if a["causes"]), None) for p in verdict["places"]]
+    assert any(bets) and all(b is None or b["closure"] for b in bets)
     return request.param, folder / "case", folder
 
 
@@ -42,7 +53,9 @@ def test_any_effect_may_be_left_out(case):
     _, path, folder = case
     known = [e.id for e in open_case(path)[0].library()]
     told = json.loads(answered("diagnose", path, "--without", ",".join(known), "--out", folder / "none", "--json"))
-    assert told["cases"][0]["verdict"]["causes"] == []
+    verdict = told["cases"][0]["verdict"]
+    assert verdict["causes"] == []
+    adds_up(verdict)
     assert call("diagnose", path, "--without", "wet_friction", "--no-report").exit_code == 2
 
 
