@@ -31,6 +31,7 @@ from sher3_machines.axes.identification.unseen import unseen_note
 from sher3_machines.axes.law import causes_of_law, is_law, law_of_axis
 from sher3_machines.axes.limits import EFFECT as LIMIT
 from sher3_machines.axes.limits import limit_finding
+from sher3_machines.axes.power import least_seen
 from sher3_machines.axes.quantities.bounds import within_bounds
 from sher3_machines.axes.quantities.own_unit import in_own_unit, own_unit_note, renamed
 from sher3_machines.axes.readings.wrong import without_wrong, wrong_readings
@@ -158,6 +159,7 @@ class Axes(Machine[AxesRun, AxisEvidence]):
             *blind_spots(finding),
             *carried_by_others(finding, self.description.axes),
             *([] if finding.significant else unseen(finding.evidence)),
+            *([] if finding.significant else least_seen(finding.evidence, self.effects(finding.evidence))),
             *([again.note] if again else []),
         ]
 

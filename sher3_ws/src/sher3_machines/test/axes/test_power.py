@@ -1,0 +1,10 @@
+"""A verdict without a gap says which causes it would have seen; twice as much of one is seen."""
+
+from slides import driven, effects, verdict_of
+
+
+def test_no_gap_says_which_friction_would_have_shown():
+    said = next(n for n in verdict_of(driven(seconds=8.0)).notes if "would have shown" in n)
+    least = float(said.split("coulomb_friction from ")[1].split()[0])
+    assert 0.0 < least < 1.0
+    assert "coulomb_friction" in effects(verdict_of(driven(seconds=8.0, coulomb=2.0 * least)))
