@@ -22,6 +22,7 @@ class Reason(IntEnum):
     WRENCH_SATURATED = 24
     WRENCH_FROZEN = 25
     HAND_DOUBTFUL = 26
+    FORCE_UNEXPLAINED = 27
     JOINTS_MISSING = 30
     JOINTS_STALE = 31
     JOINTS_NOT_FINITE = 32
@@ -106,6 +107,7 @@ TEXT: dict[Reason, str] = {
     _R.WRENCH_SATURATED: "the force sensor is saturated",
     _R.WRENCH_FROZEN: "the wrench repeats bit for bit",
     _R.HAND_DOUBTFUL: "the force sensor feels a hand that the drives do not hold, or the other way round",
+    _R.FORCE_UNEXPLAINED: "the force sensor reads more than the tool's weight and the tare explain",
     _R.JOINTS_MISSING: "no joint sample has arrived",
     _R.JOINTS_STALE: "the newest joint sample is too old",
     _R.JOINTS_NOT_FINITE: "the joint positions hold NaN or infinity",

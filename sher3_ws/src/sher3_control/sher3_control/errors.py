@@ -39,7 +39,7 @@ class TareRefused(Sher3Error):
     """The tare is refused.
 
     Attributes:
-        reason: `pressed`, `samples` (too few or too old), `faulty`, `moving`, `noisy` or `too_large`.
+        reason: `pressed`, `samples` (too few or too old), `faulty`, `moving`, `noisy`, `too_large` or `pulled`.
     """
 
     def __init__(self, reason: str, what: str, **details: Any) -> None:

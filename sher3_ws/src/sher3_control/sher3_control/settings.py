@@ -102,7 +102,10 @@ class TareSettings(Settings):
             slider move by 4 um.
         noise_factor: largest standard deviation, as a multiple of the sensor's own noise [1].
         residual: largest bias that is accepted, as a fraction of the sensor's range [1].
-        drift_force, drift_torque: drift of the resting wrench from which it is reported [N], [N m].
+        drift_force, drift_torque: contact at the tip [N], [N m] of a tool that nobody touches, from which its drift is
+            reported and the robot is not enabled: half the dead band of the law, so that what passes moves nothing.
+        arming_samples: length of the mean that is judged before the robot is enabled [1]; 0.1 s at 500 Hz, longer than
+            a touch in passing and shorter than the way from the tool to the pedal.
     """
 
     samples: Annotated[int, Field(ge=10, le=10000)] = 250
@@ -111,6 +114,7 @@ class TareSettings(Settings):
     residual: Annotated[Number, Field(gt=0.0, le=1.0)] = 0.2
     drift_force: Annotated[Number, Field(gt=0.0, le=10.0)] = 0.05
     drift_torque: Annotated[Number, Field(gt=0.0, le=1.0)] = 0.001
+    arming_samples: Annotated[int, Field(ge=1, le=10000)] = 50
 
 
 class MotionSettings(Settings):
@@ -197,6 +201,16 @@ class SupervisorSettings(Settings):
         hand_gap: longest time from one tick to the next after which the legs' motion is known [s].
         hand_memory: time constant with which slow changes of it are taken for granted [s].
         hand_settling: how long after enabling all of it is [s]; drives take up a hand of 6 N in half of it.
+        hand_level: what may be taken for granted [N]: the weight of 20 g that the robot file does not know, or a sensor
+            that drifts by as much after its tare.
+        hand_arm: lever at which a torque counts as a force [m]: at this arm torques of healthy running come as near to
+            `hand_limits` as its forces.
+        hand_least: hand that the drives feel for certain behind `hand_notice` [N]: 3.5 times their noise there, and
+            below the dead band of the law.
+        hand_notice: low pass on what the drives feel of a hand [s].
+        hand_travel: farthest that the law may take the tip while the drives feel no hand [m]; a hand that arrives takes
+            up to `linear_gain` times `hand_notice` times `hand_least`, 18 um, and one that turns round twice as much.
+        hand_reach: height above the tip of the point whose travel by turning is added [m].
     """
 
     stream_age_limit: Seconds = 0.1
@@ -218,6 +232,12 @@ class SupervisorSettings(Settings):
     hand_gap: Annotated[Number, Field(ge=1e-3, le=1.0)] = 0.01
     hand_memory: Annotated[Number, Field(ge=1e-2, le=100.0)] = 2.0
     hand_settling: Seconds = 0.36
+    hand_level: Force = 0.2
+    hand_arm: Annotated[Number, Field(gt=0.0, le=1.0)] = 0.015
+    hand_least: Force = 0.07
+    hand_notice: Seconds = 0.25
+    hand_travel: Annotated[Number, Field(gt=0.0, le=0.01)] = 60e-6
+    hand_reach: Annotated[Number, Field(ge=0.0, le=1.0)] = 0.02
 
 
 class ControlSettings(Settings):

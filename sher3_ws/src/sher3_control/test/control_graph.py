@@ -79,13 +79,16 @@ class ControlGraph:
         self.graph.settle()
 
     def enable(self):
-        self.step(5)
+        """Let go of the tool, enable, and take hold of it as before."""
+        held, self.robot.force = self.robot.force, (0.0, 0.0, 0.0)
+        self.step(60 if any(held) else 5)
         # Latched with a depth of one: the next version would take the place of one that is still on its way.
         for topic in ("admittance/settings", "motion/settings"):
             self.graph.until(lambda topic=topic: self.probe.samples[topic], topic)
         self.text("state_command", "enable")
         self.until_state("ENABLED")
         self.until_mode(None)
+        self.robot.force = held
         self.step(2)
 
     def until_state(self, state):

@@ -59,8 +59,7 @@ def test_silence_stops_within_the_age_limit_and_faults(silence):
         assert g.status("supervisor/status")["state"] == "FAULT"
         g.text("state_command", "disable")
         g.until_state("DISABLED")
-        g.text("state_command", "enable")
-        g.until_state("ENABLED")
+        g.enable()
         g.step(30)
         assert g.last("servo_jv").velocity == REST
         g.press(force=(1.0, 0.0, 0.0))
@@ -94,6 +93,21 @@ def test_a_message_with_other_buttons_than_a_pedals_stops_and_is_named_for_what_
         fault = g.status("supervisor/status")["first_fault"]
         assert (fault["code"], fault["value"], fault["unit"]) == ("PEDAL_INVALID", len(buttons), "buttons")
         assert "one axis, the travel, and one button" in fault["remedy"]
+
+
+def test_the_robot_is_enabled_only_while_nothing_pulls_at_the_tool():
+    with control_graph() as g:
+        g.robot.force = (0.3, 0.0, 0.0)
+        g.step(60)
+        g.text("state_command", "enable")
+        g.graph.until(lambda: g.status("supervisor/status")["refused"], "refusal")
+        told = g.status("supervisor/status")
+        assert told["state"] == "DISABLED"
+        assert "FORCE_UNEXPLAINED: force sensor, force x 0.3" in told["refused"]["text"]
+        assert "limit 0.05 N" in told["refused"]["text"] and "let go of the tool" in told["refused"]["text"]
+        g.robot.force = (0.0, 0.0, 0.0)
+        g.step(60)
+        g.enable()
 
 
 def test_tare_and_live_parameters_answer_over_the_graph():

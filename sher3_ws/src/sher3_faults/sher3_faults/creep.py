@@ -98,19 +98,19 @@ def false_forces(control: ControlSettings, kinematics: RobotKinematics, cap: Spe
     found = []
     for force in HANDS:
         speed = min(cap.linear, law.linear_gain * max(0.0, force - law.force_deadband))
-        detection = _noticed(HandDetector(kinematics, supervisor), force, period) + late
+        detection = _noticed(HandDetector(kinematics, control), force, speed, period) + late
         found.append(FalseForce(force, detection, speed * (detection + stop) if speed else 0.0))
     return found
 
 
-def _noticed(detector: HandDetector, force: float, period: float) -> float:
+def _noticed(detector: HandDetector, force: float, speed: float, period: float) -> float:
     """Return when the detector objects to a hand that has left [s], without noise."""
-    tick, felt = round(period * 1e9), np.array([0.0, 0.0, force])
+    tick, felt, moved = round(period * 1e9), force * np.eye(5)[2], speed * period * np.eye(6)[2]
     begin = 2 * 10**9
     for stamp in range(0, begin, tick):
         detector.follow(stamp, felt, -felt)
     for stamp in range(begin, begin + round(LATEST * 1e9), tick):
-        detector.follow(stamp, felt, 0.0 * felt)
+        detector.follow(stamp, felt, 0.0 * felt, moved)
         if detector.check(stamp) is not None:
             return (stamp - begin) * 1e-9
     return float("inf")

@@ -71,7 +71,11 @@ class OneSource:
 
 
 class WrenchRecords(OneSource):
-    """Records of the force sensor. Wrong: scaled, offset along every axis of force [N], with a status word `code`."""
+    """Records of the force sensor.
+
+    Wrong: turned about y by `angle`, scaled, offset along every axis of force [N], with a `force` along z and a
+    `torque` about x of its own, and a status word `code`.
+    """
 
     def garbage(self, item: WrenchRecord, random: Random) -> WrenchRecord:
         """Draw each component from the whole range of 32 bit counts: up to 2147 N and 2.1 N m."""
@@ -84,10 +88,13 @@ class WrenchRecords(OneSource):
         return item._replace(wrench=noisy)  # type: ignore[arg-type]
 
     def wrong(self, item: WrenchRecord, parameters: Parameters) -> WrenchRecord:
-        """Scale, then add the offset to the force."""
-        scale, offset = parameters["scale"], parameters["offset"]
+        """Turn, scale, then add the offset to the force."""
+        scale, offset, angle = parameters["scale"], parameters["offset"], parameters.get("angle", 0.0)
+        force, torque = parameters.get("force", 0.0), parameters.get("torque", 0.0)
+        c, s = math.cos(angle), math.sin(angle)
         fx, fy, fz, mx, my, mz = (scale * value for value in item.wrench)
-        wrench = (fx + offset, fy + offset, fz + offset, mx, my, mz)
+        fx, fz, mx, mz = c * fx + s * fz, c * fz - s * fx, c * mx + s * mz, c * mz - s * mx
+        wrench = (fx + offset, fy + offset, fz + offset + force, mx + torque, my, mz)
         return item._replace(wrench=wrench, status=int(parameters["code"]))
 
 

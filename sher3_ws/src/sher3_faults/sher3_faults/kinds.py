@@ -1,8 +1,9 @@
 """The kinds of faults, each one small class that acts on a stream: items in, items out, told the time.
 
 The names follow PX4's failure injection (off, stuck, garbage, wrong, slow, delayed, intermittent) with duplicated,
-reordered, the slow ones (creep, drift, ramp, late, swap) and the lively ones (held, chatter, contradicted) added. What
-an item is (a CAN frame, a force record, a pedal state, one number) is told by `Items`, so that each kind exists once.
+reordered, the slow ones (creep, drift, ramp, late, swap), the lively ones (held, chatter, contradicted) and those of a
+force (bias, turn) added. What an item is (a CAN frame, a force record, a pedal state, one number) is told by `Items`,
+so that each kind exists once.
 """
 
 from __future__ import annotations
@@ -298,6 +299,26 @@ class Chatter(Kind):
         return count // int(self.parameters["items"]) % 2 == 0
 
 
+class Bias(_Slow):
+    """A force [N] along z and a torque [N m] about x that nobody exerts are added."""
+
+    bounds: ClassVar[Mapping[str, Bounds]] = {"force": Bounds(0.0, -100.0, 100.0), "torque": Bounds(0.0, -1.0, 1.0)}
+
+    def falsity(self, time: float) -> Parameters:
+        """Return the same force and torque at all times."""
+        return self.parameters
+
+
+class Turn(_Slow):
+    """A sensor sits turned by `angle` [rad] about y: what it reads is in a frame that nobody knows."""
+
+    bounds: ClassVar[Mapping[str, Bounds]] = {"angle": Bounds(0.35, -3.2, 3.2)}
+
+    def falsity(self, time: float) -> Parameters:
+        """Return the same angle at all times."""
+        return self.parameters
+
+
 class Contradicted(Kind):
     """A second source of the same name says something else, just after each item, or (`first` 1) just before it."""
 
@@ -330,6 +351,8 @@ KINDS: dict[str, Callable[[Items, Parameters, Random], Kind]] = {
     "held": Held,
     "chatter": Chatter,
     "contradicted": Contradicted,
+    "bias": Bias,
+    "turn": Turn,
 }
 """Every kind by its name."""
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from itertools import chain
 from random import Random
 
@@ -139,3 +140,17 @@ def test_a_contradicted_source_says_two_things(first):
     for item, pair in zip(sent, through("contradicted", items, sent, first=first), strict=True):
         mine, other = reversed(pair) if first else pair
         assert mine == item and other != item and items.key(other) == items.key(item)
+
+
+def test_a_bias_is_a_force_and_a_torque_that_nobody_exerts():
+    items, sent = STREAMS["wrenches"]
+    record = flat(through("bias", items, sent, force=0.18, torque=0.03))[5]
+    assert record.wrench == pytest.approx((0.5, 0.0, 0.18, 0.03, 0.0, 0.0)) and record.status == 0
+
+
+def test_a_turned_sensor_reads_in_another_frame():
+    """A quarter about y takes x to -z, and z to x."""
+    along_x, along_z = WrenchRecord((1.0, 2.0, 0.0, 0.1, 0.0, 0.0), 1), WrenchRecord((0.0, 0.0, 3.0, 0.0, 0.2, 0.3), 2)
+    first, second = flat(through("turn", WrenchRecords(), [along_x, along_z], angle=0.5 * math.pi))
+    assert first.wrench == pytest.approx((0.0, 2.0, -1.0, 0.0, 0.0, -0.1), abs=1e-12)
+    assert second.wrench == pytest.approx((3.0, 0.0, 0.0, 0.3, 0.2, 0.0), abs=1e-12)

@@ -60,14 +60,17 @@ HAZARDS = (
     ),
     Hazard(
         "moves without a hand, or against it",
-        "force sensor silent, frozen, saturated, not finite, faster than a hand, alive without one, of another sign",
-        "age, range, repetition and jumps judged in the same tick; the drives' forces as a second witness; speed cap",
+        "force sensor silent, frozen, saturated, not finite, faster than a hand, alive without one, of another sign, "
+        "with a bias, a drift, a torque of its own",
+        "a zero that is earned before enabling; age, range, repetition and jumps judged in the same tick; the drives' "
+        "efforts as a second witness of force and torque; travel without a hand bounded; speed cap",
         ("force_sensor",),
-        (f"{_DRIVERS}/test_force_sensor.py", "sher3_ws/src/sher3_control/test/test_hand.py"),
+        (f"{_DRIVERS}/test_force_sensor.py", "sher3_ws/src/sher3_control/test/test_hand.py",
+         "sher3_ws/src/sher3_control/test/test_zero.py"),
         ("force sensor silent, dead", "force sensor frozen", "force not finite, out of range",
          "force to and fro every other tick", FALSE_FORCE),
-        "a false force of 0.25 N and less, or below 12 % of the hand: 150 um/s until the pedal is released; one of "
-        "0.3 to 0.9 N is noticed so late that the travel near tissue is beyond the budget of 25 um",
+        "beside a true hand a false force of 0.2 N and less, or below 12 % of the hand: 0.2 mm/s more; without a hand "
+        "0.2 to 0.9 N are noticed so late that the travel near tissue is beyond the budget of 25 um",
     ),
     Hazard(
         "an axis moves by itself",

@@ -18,9 +18,10 @@ from sher3_common.samples import DiagnosticSample, JointSample, JoySample, TextS
 from sher3_common.stamps import NO_STAMP, nanoseconds
 from sher3_common.vectors import Wrench
 from sher3_description import ACTUATORS, Robot
+from sher3_kinematics import RobotKinematics
 from sher3_kinematics.kernel import kernel_parameters
 from sher3_runtime.on_demand import advertise_on_demand
-from sher3_runtime.ports import NODE_OPTIONS, advertise, clock_of, latest, on_tick, subscribe
+from sher3_runtime.ports import NODE_OPTIONS, advertise, clock_of, gathered, latest, on_tick, subscribe
 from std_srvs.srv import Trigger
 
 from sher3_control.law.admittance import NO_WRENCH, LawInput, initial_state, step
@@ -33,6 +34,7 @@ from sher3_control.motion.ownership import Mode
 from sher3_control.nodes.heard import HeardState, status_of
 from sher3_control.nodes.input_report import felt, law_readings
 from sher3_control.settings import ControlSettings
+from sher3_control.supervision.pull import Pull
 from sher3_control.tick_records import AdmittanceRecord, record_text
 
 LATE = 0.7
@@ -73,6 +75,7 @@ class AdmittanceNode(Node):
         self._reason: Reason | None = None
         self._window = TareWindow(robot, self.settings.tare)
         self._drift = DriftMonitor(self.settings.tare, robot.control_period)
+        self._pull = Pull(RobotKinematics(robot), self.settings)
         self._events: dict[str, Any] = {}
         # Compiled now, for the types of every tick, and not in the first tick.
         self._roll_and_tilt = direct(roll_and_tilt, self._kernel, 0.0, 0.0)
@@ -88,6 +91,7 @@ class AdmittanceNode(Node):
         subscribe(self, "force/measured_cf", self.on_wrench)
         subscribe(self, "operating_state", self.on_state)
         self._take_heartbeat = latest(self, "supervisor/heartbeat")
+        self._take_drives = gathered(self, "drives/measured_js", self.settings.tare.samples)
         subscribe(self, "motion/status", self.on_motion)
         subscribe(self, "command/admittance", self._on_command)
         self.create_service(Trigger, "admittance/tare", self._on_tare)
@@ -179,7 +183,11 @@ class AdmittanceNode(Node):
         try:
             pressed = self._pedal[1] > self.settings.pedal.release
             limit = nanoseconds(self.settings.wrench.age_limit)
-            result = self._window.tare(pressed, self._now(), limit, self.live.bias)
+            now = self._now()
+            self._pull.hear(self._take_drives())
+            result = self._window.tare(pressed, now, limit, self.live.bias)
+            if self.heard.enabled(now) and self.settings.motion.regime != "bench":
+                self._pull.require_none()
         except Sher3Error as error:
             response.success, response.message = False, str(error)
             self._report(refused={**error.to_dict(), "text": str(error)})

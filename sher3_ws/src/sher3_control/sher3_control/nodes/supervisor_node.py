@@ -40,6 +40,7 @@ from sher3_control.supervision.driver_reports import DRIVES, LOOP, cycle_counts,
 from sher3_control.supervision.hand import HandDetector
 from sher3_control.supervision.leg_residual import LegDetector, leg_residual
 from sher3_control.supervision.supervisor import Supervisor
+from sher3_control.supervision.zero import ToolContact, ZeroDetector
 
 PEDAL = "pedal/measured"
 STREAMS = {
@@ -53,12 +54,15 @@ OWN_STATE = "operating_state"
 TIP = "tracker/measured_cp"
 SAID = ("motion/settings", "motion/status", "admittance/settings", "admittance/status")
 """What the control nodes say and others obey: the regime with its caps, who owns the robot, the bias of the tare."""
+TARE = "admittance/settings"
 STEERING = ("servo_cv",)
 BESIDE = ("drives/measured_js", "drives/setpoint_jv", "supervisor/heartbeat")
 OWN = (*STREAMS, OWN_STATE, *SAID, TIP, *STEERING, *BESIDE)
 """Topics that only the robot itself publishes: those that are watched, those that steer it, and the others."""
 FELT = ("force/measured_cf", "measured_js", "drives/measured_js", "servo_jv")
 """Streams that tell of a hand; all that is watched but the pedal is among them."""
+TOUCHED = FELT[:2]
+"""Those that tell what touches the tool, whether the drives have power or not."""
 DEPTH = 32
 """Samples of each that wait for the next look: 32 ms of the fastest robot."""
 POWERED = (OperatingState.ENABLED, OperatingState.PAUSED)
@@ -100,7 +104,9 @@ class SupervisorNode(Node):
         self._overruns = OverrunDetector(self.settings.overrun_share)
         kinematics = _warm(RobotKinematics(robot))
         self._leg, self._twins = LegDetector(kinematics, self.settings), TwinDetector()
-        self._hand = None if settings.motion.regime == "bench" else HandDetector(kinematics, self.settings)
+        self._contact = ToolContact(robot)
+        self._hand = None if settings.motion.regime == "bench" else HandDetector(kinematics, settings)
+        self._zero = ZeroDetector(settings.tare)
         built_in = [
             self._button,
             self._form,
@@ -110,7 +116,7 @@ class SupervisorNode(Node):
             self._leg,
             self._twins,
         ]
-        hands = [] if self._hand is None else [self._hand]
+        hands = [] if self._hand is None else [self._hand, self._zero]
         self.supervisor = Supervisor([*built_in, *hands, *detectors])
         self._refused: dict[str, Any] | None = None
         self._beat = TextSample(self.supervisor.status.heartbeat)
@@ -121,15 +127,15 @@ class SupervisorNode(Node):
         self._publish_heartbeat = advertise(self, "supervisor/heartbeat")
         self._publish_error = advertise(self, "error")
         self._publish_report = advertise(self, "diagnostics")
-        self._ticks = SameTick(*FELT)
+        self._ticks, self._touched = SameTick(*FELT), SameTick(*TOUCHED)
         heard = FELT if self._hand is not None else [name for name in FELT if name in STREAMS]
         self._felt = [(name, gathered(self, name, DEPTH)) for name in heard]
         self._command: Vector = (0.0,) * len(ACTUATORS)
         self._take_tip = latest(self, TIP)
         subscribe(self, PEDAL, self.on_pedal)
         self._take_pedal = by_ring(self, PEDAL, DEPTH)
-        for name in (OWN_STATE, *SAID):
-            latest(self, name)  # never taken: it is there to know its publishers, and only those of our type
+        # But for the tare's never taken: they are there to know their publishers, and only those of our type.
+        self._take_tare = {name: latest(self, name) for name in (OWN_STATE, *SAID)}[TARE]
         watched = (*STREAMS, OWN_STATE, *SAID, TIP)
         self._matched = [(name, ports(self).subscriptions[name].handle.get_publisher_count) for name in watched]
         self._living = Publishers(self)
@@ -154,6 +160,8 @@ class SupervisorNode(Node):
                     self._joints = sample
                 if self._hand is not None:
                     self._ticks.put(name, sample)
+                if self._hand is not None and name in TOUCHED:
+                    self._touched.put(name, sample)
 
     def _look_at_leg(self) -> None:
         """Compare the newest sample of the tracker with that of the axes where both are of one tick."""
@@ -165,12 +173,20 @@ class SupervisorNode(Node):
         """Compare what force sensor and drives felt in each tick since the last look."""
         if self._hand is None:
             return
-        powered = self.supervisor.state in POWERED
+        if (said := self._take_tare()) is not None:
+            self._contact.hear(said.text)
+        powered, resting = self.supervisor.state in POWERED, self.supervisor.state is OperatingState.DISABLED
         if not powered:
             self._hand.begin()
+        if not resting:
+            self._zero.begin()
+        for wrench, joints in self._touched.take():
+            if resting and joints.position is not None:
+                self._zero.feed(self._contact.at_tip(wrench.wrench, joints.position))
         for wrench, joints, forces, command in self._ticks.take():
-            if powered and None not in (joints.position, forces.effort):
-                self._hand.feed(wrench.stamp, wrench.wrench, joints.position, forces.effort, self._command)
+            if powered and joints.position is not None and forces.effort is not None:
+                contact = self._contact.at_tip(wrench.wrench, joints.position)
+                self._hand.feed(wrench.stamp, contact, joints.position, forces.effort, self._command)
             self._command = command.velocity or self._command
 
     def _count_publishers(self, *beside: str) -> None:
@@ -224,6 +240,7 @@ class SupervisorNode(Node):
     def _on_command(self, sample: TextSample) -> None:
         self._count_publishers(*BESIDE)
         self._look()
+        self._look_at_hand()
         try:
             self.supervisor.command(sample.text, self._now())
             self._refused = None

@@ -1,14 +1,16 @@
 """Is there a hand where the force sensor says so? What the drives hold is the other witness.
 
-A hand at the tip is felt twice: by the force sensor F, and by the legs, whose drives hold it with the forces u that
-they report, beyond what their own motion takes: u - (m a + d v). F + J^-T of that is what the platform weighs, whoever
-pushes (virtual work on the delta's Jacobian J). So this sum does not change when the hand does; a sensor that stands,
-or is scaled, or pushes by itself changes it. Noise does too, and friction: hence several low passes, the slower the
-finer, and limits that grow with the hand that both feel. Slow changes (bias, posture, temperature) are taken for
-granted.
+What sensor and drives feel (`felt_twice`) adds up to zero, whoever pushes. So the sum does not change when the hand
+does; a sensor that stands, or is scaled, turned, or pushes by itself changes it. Noise does too, and friction: hence
+several low passes, the slower the finer, and limits that grow with the hand that both feel. The sum is judged as change
+against its own slow mean, and that mean as level against zero. Forces, and torques at an arm, are judged apart.
+
+A false force below those limits moves the tip while the drives feel nobody: that travel is bounded.
 """
 
 from __future__ import annotations
+
+import math
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,68 +19,61 @@ from sher3_common.stamps import nanoseconds, seconds
 from sher3_common.vectors import Vector
 from sher3_kinematics import RobotKinematics
 
-from sher3_control.settings import SupervisorSettings
+from sher3_control.settings import ControlSettings
 from sher3_control.supervision.detectors import Finding, PlainDetector
+from sher3_control.supervision.felt_twice import AXES, LEGS, FeltTwice, Motion
 
 Array = NDArray[np.float64]
-LEGS = 3
 CALM = 0.02
 """Time [s] for which nothing counts after a leg strayed from its command: it comes back with kp/ki of its drive."""
+NOWHERE = np.zeros(6)
+GROUPS = (LEGS, AXES - LEGS)
+"""Numbers of channels of force and of torque."""
+TINY, GRIP = 1e-9, 5.0
+"""Least size to divide by; and how many times the level a sample may count while all of it is taken for granted: three
+times the noise of a tick, and little of the moment in which a hand takes hold."""
 
 
-class Motion:
-    """What the legs' own motion takes: the velocity that a drive makes of its commands lags by m/kp.
+def sizes(channels: Array) -> Array:
+    """Return the sizes of force and torque (..., 2) of channels (..., 5)."""
+    return np.sqrt(np.add.reduceat(channels * channels, (0, LEGS), axis=-1))
 
-    Args:
-        kinematics: of the robot, with the masses, the viscous friction and the gains of its drives.
-    """
 
-    def __init__(self, kinematics: RobotKinematics) -> None:
-        legs = kinematics.robot.actuators[:LEGS]
-        self._mass, self._drag = np.array([leg.mass for leg in legs]), np.array([leg.viscous for leg in legs])
-        self.lag = float(np.mean([leg.mass / leg.drive.kp for leg in legs]))
-        self.begin(np.zeros(LEGS))
-
-    def begin(self, legs: Array) -> None:
-        """Take the legs' positions (3,), m, as those at rest."""
-        self._meant, self._expected, self._true, self._legs = *np.zeros((3, LEGS)), legs
-
-    def advance(self, span: float, legs: Array, command: Array) -> tuple[Array, float]:
-        """Go on by `span` [s]; return what the motion takes (3,), N, and how far the speed is off its command [m/s]."""
-        share = min(1.0, span / self.lag)
-        faster = share * (command - self._meant)
-        self._meant = self._meant + faster
-        # The noise of an encoder is kept from the true speed by the same low pass.
-        self._expected = self._expected + share * (self._meant - self._expected)
-        self._true = self._true + share * ((legs - self._legs) / span - self._true)
-        self._legs = legs
-        return self._mass * faster / span + self._drag * self._meant, float(np.abs(self._true - self._expected).max())
+def _at_most(limit: float, channels: Array) -> Array:
+    """Return channels (5,) whose force and torque are no larger than a limit."""
+    return channels * np.repeat(np.minimum(1.0, limit / np.maximum(sizes(channels), TINY)), GROUPS)
 
 
 class HandDetector(PlainDetector):
-    """Watches the sum of the force sensor and the legs' forces while the drives have power.
+    """Watches the sum of what force sensor and drives feel while the drives have power.
 
     Args:
         kinematics: of the robot.
-        settings: `hand_limits`, `hand_share`, `hand_astray`, `hand_gap`, `hand_memory`, `hand_settling`.
+        settings: of the supervisor `hand_*`, and the dead bands of the law.
     """
 
-    def __init__(self, kinematics: RobotKinematics, settings: SupervisorSettings) -> None:
-        self._kinematics, self._settings, self._motion = kinematics, settings, Motion(kinematics)
-        lags, limits = zip(*settings.hand_limits, strict=True)
-        self._lags, self._limits = np.array(lags), np.array(limits)
-        self._force: Array | None = None
-        self._quick, self._slow = np.zeros((len(lags), 3)), np.zeros(3)
-        self._both = np.zeros(len(lags))
-        self._last = self._since = self._astray = -1
+    def __init__(self, kinematics: RobotKinematics, settings: ControlSettings) -> None:
+        self._settings, law = settings.supervisor, settings.admittance
+        self._twice, self._motion = FeltTwice(kinematics, self._settings.hand_arm), Motion(kinematics)
+        self._lag = np.concatenate([np.full(LEGS, self._motion.lag[:LEGS].mean()), self._motion.lag[LEGS:]])
+        lags, limits = zip(*self._settings.hand_limits, strict=True)
+        self._lags = np.array([*lags, self._settings.hand_memory])[:, None]
+        self._limits = np.array([*limits, self._settings.hand_level])[:, None]
+        self._force_deadband, self._torque_deadband = law.force_deadband, law.torque_deadband
+        self._reach = np.repeat((1.0, self._settings.hand_reach), 3)
         self._found = Finding(Reason.HAND_DOUBTFUL, 0.0, min(limits), "N", "force sensor")
+        self._last = -1
+        self.begin()
 
     def begin(self) -> None:
-        """Take the sum as it will be then for right: the drives have just got their power, or are about to."""
-        self._force, self._since, self._astray = None, -1, -1
+        """Forget what was felt: the drives have just got their power, or are about to."""
+        self._felt: Array | None = None
+        self._since = self._astray = -1
+        self._quick, self._slow = np.zeros((len(self._lags) - 1, AXES)), np.zeros(AXES)
+        self._both, self._hand, self._alone = np.zeros((len(self._lags), 2)), np.zeros(AXES), NOWHERE
         self._found = self._found._replace(value=0.0)
 
-    def feed(self, stamp: int, wrench: Vector, q: Vector, effort: Vector, command: Vector) -> None:
+    def feed(self, stamp: int, contact: Vector, q: Vector, effort: Vector, command: Vector) -> None:
         """Take the samples of one tick, each later than the one before.
 
         They count while the legs move as commanded: a leg that does not is another watch's business, and what it takes
@@ -86,57 +81,85 @@ class HandDetector(PlainDetector):
 
         Args:
             stamp: of the samples [ns].
-            wrench: of the force sensor in {f}, N and N m.
+            contact: wrench at the tip in {t}, without weight of the tool and bias, N and N m.
             q: load encoders (5,), m and rad.
-            effort: forces of the drives (5,), N and N m.
+            effort: of the drives (5,), N and N m.
             command: velocities that the axes were told a tick before (5,), m/s and rad/s.
         """
-        joints = np.asarray(q)
-        force = self._kinematics.transform_tip_to_base(joints)[:3, :3] @ np.asarray(wrench[:3])
-        span, forces = seconds(stamp - self._last), np.asarray(effort[:LEGS])
-        if not np.isfinite([force, forces]).all():
+        joints, told, touch, efforts = map(np.array, (q, command, contact, effort))
+        span = seconds(stamp - self._last)
+        if not math.isfinite(sum(contact) + sum(effort)):
             self.begin()
             return
-        if self._force is None or not 0.0 < span <= self._settings.hand_gap:
-            self._last, self._force = stamp, force
-            self._motion.begin(joints[:LEGS])
+        if self._felt is None or not 0.0 < span <= self._settings.hand_gap:
+            self._last = stamp
+            self._felt = self._twice.channels(joints, touch, efforts)[0]
+            self._motion.begin(joints)
             return
-        took, astray = self._motion.advance(span, joints[:LEGS], np.asarray(command[:LEGS]))
-        self._force = self._force + min(1.0, span / self._motion.lag) * (force - self._force)
+        took, astray = self._motion.advance(span, joints, told)
+        felt, held, jacobian = self._twice.channels(joints, touch, efforts - took)
+        self._felt = self._felt + np.minimum(1.0, span / self._lag) * (felt - self._felt)
+        asks = math.hypot(*contact[:3]) > self._force_deadband or math.hypot(*contact[3:]) > self._torque_deadband
+        moved = self._reach * (jacobian @ told) * span if asks else NOWHERE
         if astray > self._settings.hand_astray:
             self._astray = stamp + nanoseconds(CALM)
-        if stamp <= self._astray:
+        if stamp > self._astray:
+            self.follow(stamp, self._felt, held, moved)
+        else:
             self._last = stamp
-            return
-        jacobian = self._kinematics.jacobian(joints)[:LEGS, :LEGS]
-        self.follow(stamp, self._force, np.linalg.solve(jacobian.T, forces - took))
+            self._count(0.0 * held, span, moved)
 
-    def follow(self, stamp: int, force: Array, held: Array) -> None:
-        """Take the force of the sensor (3,) and what the legs hold (3,), N in {b}, of the tick `stamp` [ns]."""
-        total, settings = force + held, self._settings
+    def follow(self, stamp: int, felt: Array, held: Array, moved: Array = NOWHERE) -> None:
+        """Take what the sensor feels and the drives hold (5,), N, of the tick `stamp` [ns].
+
+        `moved`: how far the law took the tip (3,) and by turning a point above it (3,) in this tick, m.
+        """
+        total, settings = felt + held, self._settings
         step, self._last = min(settings.hand_gap, seconds(stamp - self._last)), stamp
         if self._since < 0:
-            self._since, self._slow = stamp, total
-            self._quick, self._both = np.tile(total, (len(self._lags), 1)), np.zeros(len(self._lags))
-        self._quick = self._quick + np.minimum(1.0, step / self._lags)[:, None] * (total - self._quick)
+            self._since, self._slow, self._hand = stamp, total, -held
+            self._quick = np.tile(total, (len(self._quick), 1))
+        self._quick = self._quick + np.minimum(1.0, step / self._lags[:-1]) * (total - self._quick)
         known = seconds(stamp - self._since) - 0.5 * settings.hand_settling
         settled = known >= 0.5 * settings.hand_settling
-        # The mean of the second half of the settling time, then with a memory.
-        self._slow = self._slow + step / (settings.hand_memory if settled else max(step, known)) * (total - self._slow)
-        both = min(float(np.linalg.norm(force)), float(np.linalg.norm(self._quick[0] - self._slow - force)))
+        # The mean of the second half of the settling time, in which a grip counts little, then with a memory.
+        size = settings.hand_memory if settled else max(step, known)
+        calm = total if settled else _at_most(GRIP * settings.hand_level, total)
+        self._slow = self._slow + step / size * (calm - self._slow)
+        both = np.minimum(sizes(felt), sizes(self._quick[0] - felt))
         self._both = np.maximum(both, np.exp(-step / self._lags) * self._both)
         if not settled:
-            self._quick = np.tile(self._slow, (len(self._lags), 1))
+            self._quick = np.tile(self._slow, (len(self._quick), 1))
+            self._hand = self._hand + min(1.0, step / max(step, known)) * (-held - self._hand)
             return
-        doubt = np.linalg.norm(self._quick - self._slow, axis=1)
+        doubt = sizes(np.vstack([self._quick - self._slow, self._slow]))
         limits = self._limits + settings.hand_share * self._both
-        worst = int(np.argmax(doubt / limits))
-        self._found = self._found._replace(value=float(doubt[worst]), limit=float(limits[worst]))
+        row, torque = np.unravel_index(np.argmax(doubt / limits), doubt.shape)
+        self._tell(float(doubt[row, torque]), float(limits[row, torque]), torque=bool(torque))
+        self._count(held, step, moved)
+
+    def _count(self, held: Array, step: float, moved: Array) -> None:
+        """Add up the travel that the law makes while the drives feel nobody; a hand that they feel ends it.
+
+        What they felt counts as twice the least hand at most, so that a firm one is forgotten as soon as a light one.
+        """
+        settings = self._settings
+        hand = self._hand + min(1.0, step / settings.hand_notice) * (-held - self._hand)
+        self._hand = _at_most(2.0 * settings.hand_least, hand)
+        self._alone = NOWHERE if (sizes(hand) > settings.hand_least).any() else self._alone + moved
+        travel = float(np.linalg.norm(self._alone.reshape(2, 3), axis=1).sum())
+        if travel / settings.hand_travel > self._found.value / self._found.limit:
+            self._found = self._found._replace(value=travel, limit=settings.hand_travel, unit="m")
+
+    def _tell(self, value: float, limit: float, torque: bool) -> None:
+        """Report the doubt that is nearest its limit: a force, or a torque back from its arm."""
+        arm, unit = (self._settings.hand_arm, "N m") if torque else (1.0, "N")
+        self._found = self._found._replace(value=value * arm, limit=limit * arm, unit=unit)
 
     def look(self, now: int) -> Finding:
-        """Return how much of the force nobody holds."""
+        """Return how much of the force nobody holds, or how far it moved the tip."""
         return self._found
 
     def recover(self, now: int) -> None:
-        """Take the sum as it is then for right."""
+        """Forget the doubt; that the zero is right is for `zero` to say before the robot is enabled again."""
         self.begin()

@@ -47,7 +47,8 @@ class Outcome:
         excess: largest distance of the tip from its undisturbed path, m: straight on at the speed before, with a stop
             anywhere on it.
         fault: the operating state became FAULT.
-        alone: motion after the end of the observation before the pedal was released, m.
+        alone: how far the tip is, when the pedal is released, from where the observation ended, m; between the two the
+            hand lets go, and takes hold again.
         resumed: motion after release-then-press, m.
         to_end: at the onset, of the axis that is nearest to an end of its travel, as a share of the travel.
         operating: operating state when the fault set in, empty where the bag does not tell.
@@ -188,7 +189,7 @@ class Recording:
             travel=_reach(window, window[0]),
             excess=_off_way(window - window[0], time, velocity),
             fault=fault is not None,
-            alone=_reach(self._tip[last : released + 1], self._tip[last]),
+            alone=float(np.linalg.norm(self._tip[released] - self._tip[last])),
             resumed=_reach(self._tip[pressed : until + 1], self._tip[pressed]),
             to_end=float(self._to_end[first]),
             operating=operating,

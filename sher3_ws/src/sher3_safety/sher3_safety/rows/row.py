@@ -60,11 +60,12 @@ AIMING = State("aiming", 0.0, 0.0, 0.0, 25e-6, aim=15e-6)
 FIRM = State("firm", 0.5e-3, 1.0, 0.5 / 0.9, 25e-6)
 LIGHT = State("light", 0.5e-3, 0.6, 1.0, 140e-6, later=0.22)
 SIDEWAYS = State("sideways", 0.5e-3, 0.0, 1.0, 25e-6, across=0.6)
-FURTHER = (PAUSED, DISABLED, AIMING, FIRM, LIGHT, SIDEWAYS)
+NOBODY = State("nobody", 0.0, 0.0, 1.0, 100e-6)
+FURTHER = (PAUSED, DISABLED, AIMING, FIRM, LIGHT, SIDEWAYS, NOBODY)
 """States for some rows only: held by the drives while motion is paused; without power; a position mode with an aim that
 the axes are not at yet; at the speed near tissue under a hand that is to leave, a firm and a light one, of which
 the noise of the drives' forces does not allow to be sure any sooner; at that speed along x, where each leg moves at
-another speed."""
+another speed; the pedal pressed and nobody at the handle, so that all travel is the sensor's."""
 STILL = (IDLE.name, END.name)
 """States in which nothing moves."""
 AT_END = 1e-3

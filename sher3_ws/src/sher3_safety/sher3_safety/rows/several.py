@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from sher3_safety.rows.row import AIMING, DISABLED, FIRM, IDLE, LIGHT, LIMIT, STATES, STILL, Row
+from sher3_safety.rows.row import AIMING, DISABLED, FIRM, IDLE, LIGHT, LIMIT, NOBODY, STATES, STILL, Row
 from sher3_safety.rows.slow import ALL, AXIS, FAST, LEFT, LONGEST, ROLL
 
 LEGS = "legs"
@@ -19,6 +19,8 @@ WRAP = 65536.0 * 1e-8
 WARNS = "bit 7 is a warning: it is on /diagnostics, and the drive goes on doing as it is told"
 BITS = {"remote": 0x200, "voltage": 0x10, "follows": 0x1000, "limit": 0x800}
 """Bits of the statusword that say that a drive does not do as it is told."""
+FREELY = "at 5 mm/s, where 250 um is the budget; near tissue 0.5 mm/s is the cap and 14 um the travel"
+ALONG = "the tip goes where the hand pushes, only faster"
 NO_POWER = (
     "a motor that turns without being enabled has lost its power stage or is turned by something else: the driver says "
     "so, sends `disable voltage` and withholds its heartbeat; only safe torque off stops it"
@@ -70,8 +72,31 @@ def _lively() -> Iterator[Row]:
     yield Row("force_sensor", "held", reasons=DOUBTFUL, states=(LIGHT, FIRM, LIMIT), lets_go=True, duration=0.4,
               quick=True)  # fmt: skip
     yield Row("force_sensor", "wrong", {"scale": -1.0}, reasons=DOUBTFUL, states=(LIMIT,), slow=True)
+    yield from _forces()
     for first in (0.0, 1.0):
         yield Row(f"{AXIS}.up", "contradicted", {"first": first}, reasons=("DRIVE_TWICE", "DRIVE_RESTARTED"))
+
+
+def _forces() -> Iterator[Row]:
+    """Yield a force sensor that feels what nobody exerts, as a step, slowly, about an axis; or is turned, or grows.
+
+    0.18 N is below every limit of the sum, and only the travel without a hand can tell; at 0.02 N/s nothing else
+    changes fast enough either. A torque is told by the drives of roll and tilt alone.
+    """
+    for force, duration, quick in ((0.18, 3.0, True), (0.3, 1.0, False), (1.0, 0.3, False)):
+        yield Row("force_sensor", "bias", {"force": force}, reasons=DOUBTFUL, states=(NOBODY,), slow=True,
+                  duration=duration, quick=quick)  # fmt: skip
+    yield Row("force_sensor", "bias", {"force": 6.0}, reasons=DOUBTFUL, states=(NOBODY,), slow=True, budget=250e-6,
+              why=FREELY)  # fmt: skip
+    for torque, duration, quick in ((0.005, 1.0, False), (0.03, 0.12, True), (0.1, 0.12, False)):
+        yield Row("force_sensor", "bias", {"torque": torque}, reasons=DOUBTFUL, states=(NOBODY,), slow=True,
+                  duration=duration, quick=quick)  # fmt: skip
+    for rate, duration in ((0.02, 9.0), (0.1, 3.0), (1.0, 1.0)):
+        yield Row("force_sensor", "drift", {"rate": rate}, reasons=DOUBTFUL, states=(NOBODY,), slow=True,
+                  duration=duration)  # fmt: skip
+    yield Row("force_sensor", "turn", {"angle": 1.57}, reasons=DOUBTFUL, states=(FIRM, LIMIT), slow=True)
+    yield Row("force_sensor", "ramp", {"rate": 1.0}, reasons=DOUBTFUL, states=(FIRM,), slow=True, duration=1.5,
+              budget=250e-6, why=ALONG)  # fmt: skip
 
 
 SEVERAL = (*_creeps(), *_encoders(), *_words(), *_lively())

@@ -1,9 +1,9 @@
 """How often a robot stops of which nothing is broken: healthy running in stepped time.
 
-Of four sessions three have a surgeon drawn from a seed (reach, hold, dither, turn, release, press again, 0.1 to 6 N) in
-the regime `free`, and one the standard excitations on the bench. The mocks are strict, the plant has run-to-run
-scatter, its temperature goes up and down, and force sensor and structure drift with it. Whatever stops the robot
-without anybody asking for it is a false trip.
+The force sensor is tared first. Of four sessions three have a surgeon drawn from a seed (reach, hold, dither, turn,
+release, press again, 0.1 to 6 N) in the regime `free`, and one the standard excitations on the bench. The mocks are
+strict, the plant has run-to-run scatter, its temperature goes up and down, and force sensor and structure drift with
+it. Whatever stops the robot without anybody asking for it is a false trip.
 """
 
 from __future__ import annotations
@@ -34,6 +34,7 @@ from sher3_sim.scatter import RunScatter
 from sher3_safety.measurement.recording import INTENDED
 from sher3_safety.measurement.report import false_trips
 from sher3_safety.runs.excitation_node import ExcitationNode
+from sher3_safety.runs.operator_node import tare
 from sher3_safety.runs.sessions import SESSION, excitations, surgeon
 
 RECORDED = ("supervisor/status", "admittance/status", "motion/status", "operating_state", "mock/pedal", "measured_cp")
@@ -81,15 +82,22 @@ def run_session(folder: Path, seed: int) -> list[str]:
             RunScatter(),
             default_settings(robot.control_period),
         )
+        rig.plant.plant.temperature = temperature(seed, 0.0)
+        graph.step(STRETCH)
+        tare(graph)
         _add_user(graph, robot, seed)
         metadata = RunMetadata(excitation="healthy", origin="plant", seed=seed)
         name = f"healthy-{seed}"
         with recorded(graph, name, topics=RECORDED, robot=robot, root=folder, metadata=metadata):
             for start in range(0, round(SESSION / robot.control_period), STRETCH):
-                angle = 2.0 * math.pi * (start * robot.control_period / WARMING + 0.1 * seed)
-                rig.plant.plant.temperature = WARM + SWING * math.sin(angle)
+                rig.plant.plant.temperature = temperature(seed, start * robot.control_period)
                 graph.step(STRETCH)
     return trips_of(read_run(folder / name, check=False))
+
+
+def temperature(seed: int, time: float) -> float:
+    """Return the temperature of the structure [degC] at a time of a session [s]."""
+    return WARM + SWING * math.sin(2.0 * math.pi * (time / WARMING + 0.1 * seed))
 
 
 def _climate() -> list[Any]:

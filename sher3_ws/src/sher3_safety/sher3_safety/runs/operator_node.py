@@ -11,7 +11,9 @@ from sher3_common.samples import JointSample, JoySample, PoseSample, TextSample,
 from sher3_common.vectors import Vector
 from sher3_faults.kinds import OK
 from sher3_faults.requests import make_request
+from sher3_runtime import Graph
 from sher3_runtime.ports import NODE_OPTIONS, advertise, latest, on_tick, subscribe
+from std_srvs.srv import Trigger
 
 
 class OperatorNode(Node):
@@ -70,6 +72,15 @@ class OperatorNode(Node):
         self._follow_aim(stamp)
         self._publish_pedal(JoySample(stamp, (self.pedal,), (0,)))
         self._publish_wrench(WrenchSample(stamp, (self.across, 0.0, self.force, 0.0, 0.0, 0.0)))
+
+
+def tare(graph: Graph) -> Any:
+    """Ask for a tare, as a person does before anybody touches the tool; return the answer of the service."""
+    client = graph.probe().create_client(Trigger, "admittance/tare")
+    graph.until(client.service_is_ready, "tare")
+    asked = client.call_async(Trigger.Request())
+    graph.until(asked.done, "answer of the tare")
+    return asked.result()
 
 
 FIRST, PRESS = 100, 1000

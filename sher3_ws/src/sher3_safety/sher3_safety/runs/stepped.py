@@ -33,9 +33,10 @@ from sher3_safety.measurement.recording import STANDS, Outcome, Recording
 from sher3_safety.rows.row import FURTHER, LOST, STATES, Row, State
 from sher3_safety.runs.operator_node import OperatorNode
 
-SETTLE, APPROACH, OBSERVE, HELD, RELEASED, AGAIN = 60, 90, 40, 25, 15, 40
+SETTLE, APPROACH, OBSERVE, HELD, RELEASED, AGAIN = 60, 90, 40, 60, 15, 40
 """Ticks: before the first `enable`; until the tip has the speed of the state; observed after a fault; enabled with
-the pedal still pressed; with the pedal released; with the pedal pressed again."""
+the pedal still pressed, six times the 20 ms in which drives take up a hand; with the pedal released; with the pedal
+pressed again."""
 LEAVES = {OperatingState.PAUSED: StateCommand.PAUSE.value, OperatingState.DISABLED: StateCommand.DISABLE.value}
 """Commands that lead from ENABLED to the states in which a fault sets in."""
 ENABLE_TRIES, ENABLE_TICKS = 16, 30
@@ -75,7 +76,7 @@ class MatrixRun:
             self._go_to_end(self._sign * state.force)
         operator.force, operator.pedal = self._sign * state.force, state.pedal
         operator.across = self._sign * state.across
-        self.graph.step(APPROACH if state.pedal else SETTLE)
+        self.graph.step(APPROACH)
         if state.operating is not OperatingState.ENABLED:
             operator.command(LEAVES[state.operating])
             self.graph.step(SETTLE)
@@ -134,14 +135,19 @@ class MatrixRun:
         self.graph.settle()
 
     def _recover(self, force: float, released: int) -> bool:
-        """Leave FAULT, enable with the pedal still pressed, release it for so many ticks, press it again.
+        """Leave FAULT with the hand off, enable with the pedal still pressed, release it for so long, press it again.
 
-        `force`: of the hand then, N.
+        Args:
+            force: of the hand after the release, N; it takes hold again while the pedal is still pressed.
+            released: ticks.
         """
+        held = self.operator.force, self.operator.across
+        self.operator.force = self.operator.across = 0.0
         self.operator.command(StateCommand.DISABLE.value)
         self.graph.step(5)
         if not self.enable():
             return False
+        self.operator.force, self.operator.across = held
         self.graph.step(HELD)
         self.operator.pedal = 0.0
         self.graph.step(released)
