@@ -15,13 +15,13 @@ from sher3_diagnosis.diagnosis import Diagnosis
 from sher3_diagnosis.errors import UnknownEffect
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.finding import Finding
+from sher3_diagnosis.judge.borne_out import significant_causes, without_imitations
+from sher3_diagnosis.judge.calibrated_causes import weighed, with_odds
 from sher3_diagnosis.judge.calibration.calibration import in_force
 from sher3_diagnosis.judge.causes import causes_of
 from sher3_diagnosis.judge.costs import DEFAULT, Costs
 from sher3_diagnosis.judge.judge import judge
 from sher3_diagnosis.judge.left_over import down_to_floor, left_over
-from sher3_diagnosis.judge.supported import significant_causes, without_imitations
-from sher3_diagnosis.judge.weigh import weighed, with_odds
 from sher3_diagnosis.localise.gaps import localise
 from sher3_diagnosis.machine import Machine
 from sher3_diagnosis.quantify.closure import residual_after

@@ -23,11 +23,11 @@ from sher3_effects.spring.spring_torque import SpringOnAxis
 
 from sher3_machines.axes.description import AxesDescription, Axis, Gravity
 from sher3_machines.axes.evidence import AxisEvidence, gather_axis, levels_of
-from sher3_machines.axes.identification.alike import SpringBesideWeight, dead_band_note, with_dead_band
-from sher3_machines.axes.identification.fast import requantified, with_unseen
+from sher3_machines.axes.identification.confounded_laws import SpringBesideWeight, dead_band_note, with_dead_band
+from sher3_machines.axes.identification.detection_limits import unseen_note
+from sher3_machines.axes.identification.friction_in_motion import requantified, with_unseen
 from sher3_machines.axes.identification.refine import refine_free
 from sher3_machines.axes.identification.search import causes_of_axis
-from sher3_machines.axes.identification.unseen import unseen_note
 from sher3_machines.axes.law import causes_of_law, is_law, law_of_axis
 from sher3_machines.axes.limits import EFFECT as LIMIT
 from sher3_machines.axes.limits import limit_finding

@@ -25,9 +25,9 @@ from sher3_effects.friction.viscous_friction import ViscousFriction
 from sher3_effects.inertia.payload_mass import PayloadOnLink
 from sher3_effects.timing.sensor_delay import SensorDelay
 
-from sher3_machines.axes.identification.anywhere import borne_out
-from sher3_machines.axes.identification.fast import without_slow
-from sher3_machines.axes.identification.rest import Bounded
+from sher3_machines.axes.identification.away_from_reversals import borne_out
+from sher3_machines.axes.identification.balance_at_rest import Bounded
+from sher3_machines.axes.identification.friction_in_motion import without_slow
 from sher3_machines.manipulator.evidence import ArmMotionEvidence, channel_of, channels_of, of_channel
 from sher3_machines.manipulator.readings.lateness import Late, TimedEffort, lateness
 from sher3_machines.thresholds import CAUSES_OF_JOINT, LEAST_CLOSURE

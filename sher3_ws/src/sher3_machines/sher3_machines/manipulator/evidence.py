@@ -13,7 +13,7 @@ from sher3_diagnosis.fit.whitened import Whitened
 
 from sher3_machines.axes.evidence import blocks_of
 from sher3_machines.axes.quantities.own_unit import RECORDED
-from sher3_machines.axes.readings.share import Share
+from sher3_machines.axes.readings.slip_of_unit import Share
 from sher3_machines.axes.record import AxesRun
 from sher3_machines.chain.constants import ZERO, constants
 from sher3_machines.errors import MachineError

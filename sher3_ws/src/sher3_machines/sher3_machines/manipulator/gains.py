@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 from sher3_diagnosis.channel import Array
 
-from sher3_machines.axes.readings.share import Share, share_in
+from sher3_machines.axes.readings.slip_of_unit import Share, share_in
 from sher3_machines.manipulator.view import MotionView
 
 DAHL_SHARE = 2.5e-3

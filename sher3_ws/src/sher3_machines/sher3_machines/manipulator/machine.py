@@ -18,7 +18,7 @@ from sher3_effects.inertia.payload_mass import PayloadOnLink
 from sher3_effects.scale.torque_constant import TorqueConstant
 from sher3_effects.timing.sensor_delay import SensorDelay
 
-from sher3_machines.axes.identification.fast import requantified
+from sher3_machines.axes.identification.friction_in_motion import requantified
 from sher3_machines.axes.machine import NO_REPEATS
 from sher3_machines.axes.quantities.bounds import within_bounds
 from sher3_machines.axes.quantities.own_unit import RECORDED, in_own_unit

@@ -24,9 +24,9 @@ from sher3_effects.friction.coulomb_friction import CoulombFriction
 from sher3_effects.timing.sensor_delay import SensorDelay
 
 from sher3_machines.axes.evidence import AxisEvidence
-from sher3_machines.axes.identification.alike import told_by_travel
-from sher3_machines.axes.identification.anywhere import borne_out
-from sher3_machines.axes.identification.rest import Bounded, DryFirst, rest_loss
+from sher3_machines.axes.identification.away_from_reversals import borne_out
+from sher3_machines.axes.identification.balance_at_rest import Bounded, DryFirst, rest_loss
+from sher3_machines.axes.identification.confounded_laws import told_by_travel
 from sher3_machines.axes.view import AxisView
 
 POLISHES = 4

@@ -13,7 +13,7 @@ from sher3_diagnosis.channel import Array
 from sher3_machines.axes.description import Axis, Gravity
 from sher3_machines.axes.identification.identify import DAHL_TRAVEL
 from sher3_machines.axes.quantities.own_unit import OWN_UNITS
-from sher3_machines.axes.readings.share import share_in
+from sher3_machines.axes.readings.slip_of_unit import share_in
 from sher3_machines.axes.signals import AxisSignals, held_mean
 from sher3_machines.axes.view import AxisView
 from sher3_machines.thresholds import HEAVIEST, SLIPPED

@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from sher3_diagnosis.channel import Array
 
-from sher3_machines.axes.readings.share import Share, share_in
+from sher3_machines.axes.readings.slip_of_unit import Share, share_in
 from sher3_machines.manipulator.gains import equations, friction_columns
 from sher3_machines.manipulator.view import MotionView
 

@@ -10,10 +10,10 @@ from sher3_diagnosis.attribute.rivals import Attribution
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import Fit, Term, fit
 from sher3_diagnosis.fit.term import again
-from sher3_diagnosis.judge.supported import kept
+from sher3_diagnosis.judge.borne_out import kept
 from sher3_diagnosis.thresholds import NEEDED
 
-from sher3_machines.axes.identification.fast import without_slow
+from sher3_machines.axes.identification.friction_in_motion import without_slow
 
 SHAPED = ("friction", "lost_motion", "compliance")
 """Families whose laws live at a reversal, or shape it."""

@@ -7,7 +7,7 @@ from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.fit.fitting import fit
 from sher3_effects import pages
 from sher3_machines.axes.evidence import gather_axis
-from sher3_machines.axes.identification.rest import DryFirst, rest_loss
+from sher3_machines.axes.identification.balance_at_rest import DryFirst, rest_loss
 from sher3_machines.axes.machine import facts_of
 from sher3_machines.axes.record import AxesRun
 from sher3_machines.thresholds import REST_FLOORS, STATIC

@@ -15,7 +15,7 @@ from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.finding import Finding
 from sher3_diagnosis.fit.fitting import Fit, fit
-from sher3_diagnosis.judge.foreign import foreign_in
+from sher3_diagnosis.judge.foreign_inputs import foreign_in
 from sher3_diagnosis.quantify.closure import closure
 from sher3_diagnosis.thresholds import AT_FLOOR, FOREIGN_SHARE, FOREIGN_SIZE, HALF_CLOSED, PARSIMONY
 from sher3_diagnosis.verdict import Cause, Imitation
