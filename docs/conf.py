@@ -1,7 +1,8 @@
 """Settings of the documentation site: Sphinx with Markdown pages, nothing fetched from the network.
 
 `make docs` builds it into `build/docs`. The pages under `reference/generated` and `reference/api` are written from the
-sources before the others are read, so they cannot lag behind; both folders are ignored by git.
+sources before the others are read, so they cannot lag behind. Those under `generated` are committed, for who reads the
+pages where the repository is shown, and `tests/documentation/test_generated.py` compares them with the sources.
 """
 
 import inspect

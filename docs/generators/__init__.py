@@ -18,9 +18,14 @@ PAGES = {
 }
 
 
+def committed_pages(reference: Path) -> dict[Path, str]:
+    """Return the pages below the folder `reference` that are committed, by their paths."""
+    return {reference / "generated" / f"{name}.md": page() for name, page in PAGES.items()}
+
+
 def write_pages(reference: Path) -> None:
     """Write every generated page below the folder `reference`; files whose content is unchanged are left alone."""
-    wanted = {reference / "generated" / f"{name}.md": page() for name, page in PAGES.items()}
+    wanted = committed_pages(reference)
     wanted |= {reference / "api" / name: text for name, text in api.pages().items()}
     for folder in (reference / "generated", reference / "api"):
         for path in folder.rglob("*") if folder.is_dir() else ():
