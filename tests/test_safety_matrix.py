@@ -41,9 +41,9 @@ def test_every_state_and_every_kind_of_component_is_in_it(compact):
 
 
 def test_the_robot_was_at_speed_before_and_moved_again_after(compact):
-    """Without this a robot that never moves would pass."""
+    """Without this a robot that never moves would pass. The first tick of a creep counts: 2 mm/s for 2 of 40 ms."""
     for verdict in compact.verdicts:
-        assert verdict.outcome.speed == pytest.approx(verdict.state.speed, rel=0.2, abs=2e-5)
+        assert verdict.outcome.speed == pytest.approx(verdict.state.speed, rel=0.2, abs=1.2e-4)
         if verdict.row.effect == "stops" and not verdict.row.final:
             assert verdict.outcome.resumed > 20e-6
 
