@@ -150,6 +150,7 @@ class Axes(Machine[AxesRun, AxisEvidence]):
         changes = change_notes(finding.attribution, self._conditions(finding.evidence.runs))
         untold = finding.evidence.untold
         changes += finding.evidence.notes
+        nothing_found = not finding.significant and bool(finding.evidence.views)
         own = finding.evidence.axis.own_unit
         changes += [own_unit_note(finding.evidence.axis.name, own)] if own else []
         changes += [f"{untold}: its force balance is not judged"] if untold else []
@@ -159,7 +160,7 @@ class Axes(Machine[AxesRun, AxisEvidence]):
             *blind_spots(finding),
             *carried_by_others(finding, self.description.axes),
             *([] if finding.significant else unseen(finding.evidence)),
-            *([] if finding.significant else least_seen(finding.evidence, self.effects(finding.evidence))),
+            *(least_seen(finding.evidence, self.effects(finding.evidence)) if nothing_found else []),
             *([again.note] if again else []),
         ]
 
