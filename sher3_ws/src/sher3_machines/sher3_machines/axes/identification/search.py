@@ -145,7 +145,7 @@ def _at_rest_too(evidence: AxisEvidence, found: Attribution) -> tuple[tuple[Fit,
 def polished(candidates: Candidates, found: Attribution) -> Fit:
     """Search every cause again beside the others, and its rivals in its place: it was chosen before they were there.
 
-    The causes keep their order. A law of more numbers must be worth them.
+    The causes keep their order. Of two laws the one of more numbers must be worth them.
     """
     best = found.fit
     for _ in range(POLISHES):
@@ -158,7 +158,7 @@ def polished(candidates: Candidates, found: Attribution) -> Fit:
                 trial = candidates.best(effect, term.site, others)
                 if trial is None:
                     continue
-                more = NEEDED * max(0, complexity(trial.terms[-1]) - complexity(best.terms[i]))
+                more = NEEDED * (complexity(trial.terms[-1]) - complexity(best.terms[i]))
                 if trial.total + more < best.total - TIE:
                     best = fit(candidates.evidence.data, [*others[:i], trial.terms[-1], *others[i:]])
         if best is before:
