@@ -16,8 +16,9 @@ from sher3_diagnosis.attribute.ties import TIE
 from sher3_diagnosis.attribute.together import pruned, together
 from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.effect import Effect
+from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import Fit, Term, fit
-from sher3_diagnosis.thresholds import NEEDED, WORTH
+from sher3_diagnosis.thresholds import NEEDED, PRICE, WORTH
 from sher3_effects.behind_motor import BehindMotor
 from sher3_effects.compliance.unseen_compliance import ComplianceBehindMotor
 from sher3_effects.friction.coulomb_friction import CoulombFriction
@@ -145,7 +146,7 @@ def _at_rest_too(evidence: AxisEvidence, found: Attribution) -> tuple[tuple[Fit,
 def polished(candidates: Candidates, found: Attribution) -> Fit:
     """Search every cause again beside the others, and its rivals in its place: it was chosen before they were there.
 
-    The causes keep their order. Of two laws the one of more numbers must be worth them.
+    The causes keep their order.
     """
     best = found.fit
     for _ in range(POLISHES):
@@ -158,9 +159,24 @@ def polished(candidates: Candidates, found: Attribution) -> Fit:
                 trial = candidates.best(effect, term.site, others)
                 if trial is None:
                     continue
-                more = NEEDED * (complexity(trial.terms[-1]) - complexity(best.terms[i]))
-                if trial.total + more < best.total - TIE:
+                if _gain(candidates.evidence, best, i, trial) > TIE:
                     best = fit(candidates.evidence.data, [*others[:i], trial.terms[-1], *others[i:]])
         if best is before:
             break
     return best
+
+
+def _gain(evidence: Evidence, best: Fit, index: int, trial: Fit) -> float:
+    """Return what is won by the last law of `trial` in the place of one cause.
+
+    A law of more numbers must be needed. One of fewer may lose their price; what lies below the floor is no loss.
+    """
+    more = complexity(trial.terms[-1]) - complexity(best.terms[index])
+    if more < 0:
+        return _over_floor(evidence, best) - _over_floor(evidence, trial) - PRICE * more
+    return best.total - trial.total - NEEDED * more
+
+
+def _over_floor(evidence: Evidence, found: Fit) -> float:
+    """Return the loss above the floor, channel by channel: what is spared in one pays for nothing in another."""
+    return sum(max(0.0, loss - evidence.data.samples[key]) for key, loss in found.loss.items())
