@@ -82,6 +82,7 @@ def test_processes_in_wall_time_command_the_same(recorded, expected, domain, tmp
     assert {k: v for k, v in found.items() if k[1] < last} == {k: v for k, v in expected.items() if k[1] < last}
 
 
+@pytest.mark.slow
 def test_the_compact_matrix_of_faults_holds_composed():
     """Ages, silence and supervision are the same. Where a node's process stops, the whole loop does: another name."""
     found = run_matrix(ROOT / "bags" / "tests" / "safety-composed", quick=True, composed=True).verdicts
