@@ -77,6 +77,10 @@ class Finding(Generic[E]):
         """Channels with a gap, most significant first."""
         return {g.channel: g for g in self.gaps if g.significant and g.channel not in self.dismissed}
 
+    def cause_of(self, index: int) -> Cause:
+        """Return the quantified cause of a term of the fit."""
+        return self.causes[self.attribution.causes.index(index)]
+
 
 @dataclass(frozen=True)
 class Findings(Generic[E]):

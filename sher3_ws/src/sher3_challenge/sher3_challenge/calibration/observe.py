@@ -148,7 +148,7 @@ def _plain(finding: Finding[SherEvidence], item: Item) -> dict[str, Any]:
         "candidates": [asdict(c) for c in item.candidates],
     }
     if item.index is not None:
-        cause = finding.causes[list(finding.attribution.causes).index(item.index)]
+        cause = finding.cause_of(item.index)
         row |= {"family": cause.family, "stage": cause.stage, "closure": cause.closure.model_dump()}
     return row
 

@@ -135,7 +135,8 @@ def _term(finding: Finding, j: Judged, k: int) -> Term:
 
 def _cause(finding: Finding, j: Judged, k: int) -> Cause:
     """Return a candidate as a cause: the one found is quantified, of others effect, site and probability are told."""
-    found = finding.causes[list(finding.attribution.causes).index(j.item.index)]  # type: ignore[arg-type]
+    assert j.item.index is not None
+    found = finding.cause_of(j.item.index)
     if k == 0:
         return found.model_copy(update={"probability": j.effects[0]})
     candidate, effect = j.item.candidates[k], _term(finding, j, k).effect

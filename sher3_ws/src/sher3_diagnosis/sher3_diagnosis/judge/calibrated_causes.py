@@ -54,7 +54,8 @@ def _closure(finding: Finding, item: Item) -> Interval | None:
 
 
 def _cause(finding: Finding, item: Item) -> Cause:
-    return finding.causes[list(finding.attribution.causes).index(item.index)]  # type: ignore[arg-type]
+    assert item.index is not None
+    return finding.cause_of(item.index)
 
 
 def _touches(finding: Finding, j: Judged) -> frozenset[Channel]:
