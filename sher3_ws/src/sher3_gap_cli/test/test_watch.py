@@ -1,6 +1,5 @@
 """`sher3 gap watch`: the window, what is made of it, and the node beside a plain publisher."""
 
-import os
 import subprocess
 import time
 
@@ -91,7 +90,7 @@ def test_a_command_of_joints_is_put_in_the_order_of_the_actuators():
 
 @pytest.mark.graph
 @pytest.mark.flaky(reruns=2)
-def test_a_plain_publisher_s_friction_is_named_on_diagnostics(tmp_path):
+def test_a_plain_publisher_s_friction_is_named_on_diagnostics(tmp_path, monkeypatch):
     """A recorded arm is played at 100 Hz by an ordinary node; the causes come back as diagnostics."""
     import rclpy
     from diagnostic_msgs.msg import DiagnosticArray
@@ -100,7 +99,8 @@ def test_a_plain_publisher_s_friction_is_named_on_diagnostics(tmp_path):
     from sensor_msgs.msg import JointState
 
     (tmp_path / "arm.urdf").write_text(ARM)
-    os.environ.update(child_environment())
+    for name, value in child_environment().items():
+        monkeypatch.setenv(name, value)
     words = ["gap", "watch", "--model", tmp_path / "arm.urdf", "--window", "6", "--every", "2"]
     watched = subprocess.Popen(sher3_command(*words), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     context, heard = rclpy.Context(), {}
