@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 from functools import partial
 
+import numpy as np
 import pytest
 from geometry_msgs.msg import PoseStamped, TwistStamped
 from rclpy.node import Node
@@ -40,6 +41,9 @@ class CrtkClient(Node):
         for kind, name, quality in (
             (JointState, "measured_js", 10),
             (PoseStamped, "measured_cp", 10),
+            (TwistStamped, "measured_cv", 10),
+            (JointState, "goal_js", LATCHED),
+            (PoseStamped, "goal_cp", LATCHED),
             (String, "operating_state", LATCHED),
             (String, "motion/status", LATCHED),
             (String, "error", 10),
@@ -83,6 +87,21 @@ def test_advertising_every_command_stops_nothing_and_servo_jv_moves_the_joint(ar
     assert client.newest["operating_state"].data == "ENABLED"
 
 
+def test_a_moving_joint_has_a_measured_velocity_and_the_tip_a_twist(arm):
+    graph, client = arm
+    enabled(graph, client)
+    joint, tip = [], []
+    for tick in range(150):
+        client.servo_jv.publish(client.joints(velocity=[0.0, 0.0, 0.0, 0.02, 0.0]))
+        graph.step()
+        if tick >= 50:
+            joint.append(client.newest["measured_js"].velocity)
+            tip.append(client.newest["measured_cv"])
+    assert np.mean(joint, axis=0) == pytest.approx([0.0, 0.0, 0.0, 0.02, 0.0], abs=1e-3)
+    assert tip[0].header.frame_id == "b"
+    assert np.mean([t.twist.angular.x for t in tip]) == pytest.approx(np.mean(joint, axis=0)[3], abs=1e-9)
+
+
 def test_move_jp_goes_there_and_stops(arm):
     graph, client = arm
     start = enabled(graph, client)
@@ -91,6 +110,7 @@ def test_move_jp_goes_there_and_stops(arm):
     graph.step(500)
     assert list(client.newest["measured_js"].position) == pytest.approx(goal, abs=5e-6)
     assert client.newest["measured_cp"].header.frame_id == "b"
+    assert list(client.newest["goal_js"].position) == goal and "goal_cp" not in client.newest
 
 
 def test_a_command_that_is_none_comes_back_as_a_result(arm):
@@ -107,8 +127,10 @@ def test_a_command_that_is_none_comes_back_as_a_result(arm):
         error, refused = client.newest["error"].data, json.loads(client.newest["motion/status"].data)["refused"]
         assert error.startswith(f"{name} rejected: ") and why in error
         assert (refused["command"], refused["text"]) == (name, error)
-    client.move_cp.publish(client.newest["measured_cp"])
+    assert not {"goal_js", "goal_cp"} & set(client.newest)
+    client.move_cp.publish(here := client.newest["measured_cp"])
     graph.step(20)
+    assert client.newest["goal_cp"].pose == here.pose
     assert json.loads(client.newest["motion/status"].data)["refused"] is None
     assert client.newest["measured_js"].position[3] == pytest.approx(start.position[3], abs=1e-5)
 

@@ -13,7 +13,7 @@ from sher3_common.samples import JointSample, PoseSample, TwistSample
 from sher3_control.errors import CommandRejected, OwnerConflict, SettingsError
 from sher3_control.motion.controller import MotionController, MotionInput
 from sher3_control.motion.ownership import Mode
-from sher3_control.motion.pose import tip_pose_sample
+from sher3_control.motion.pose import tip_pose_sample, tip_twist_sample
 from sher3_control.motion.rcm_command import apply_rcm_command
 from sher3_kinematics.kernel import kernel_parameters
 
@@ -285,3 +285,11 @@ def test_where_the_kinematics_fail_the_robot_stops_and_says_so(centre):
     assert out.velocity == REST
     assert out.reason in ((Reason.SINGULAR, Reason.OFF_CENTRE) if centre else (Reason.SINGULAR,))
     assert bench.tick(twist=PUSH).reason is Reason.NOT_REARMED
+
+
+def test_the_twist_of_the_tip_is_what_its_pose_changes_by():
+    q, qd, dt = (1e-3, -5e-4, 2e-4, 0.03, 1e-3), (1e-3, 2e-3, -1e-3, 0.05, 1e-3), 1e-6
+    behind, before = (
+        np.array(tip_pose_sample(PARAMETERS, tuple(np.array(q) + s * dt * np.array(qd)))[0]) for s in (1.0, -1.0)
+    )
+    assert tip_twist_sample(PARAMETERS, q, qd)[:3] == pytest.approx((behind - before) / (2 * dt), rel=1e-5)

@@ -34,5 +34,9 @@ def test_latched_topics_hold_one_sample_and_streams_are_reliable() -> None:
     for topic in TOPICS.values():
         assert topic.qos.reliability == "reliable"
         latched = topic.qos.durability == "transient_local"
-        assert latched == (topic.name == "operating_state" or topic.name.endswith(("/settings", "/status")))
+        assert latched == (
+            topic.name == "operating_state"
+            or topic.name.endswith(("/settings", "/status"))
+            or topic.name.startswith("goal_")
+        )
         assert topic.qos.depth == 1 if latched else topic.qos.depth >= 10

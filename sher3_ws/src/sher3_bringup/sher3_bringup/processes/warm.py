@@ -47,7 +47,7 @@ def _admittance(robot: Robot) -> None:
 def _kinematics(robot: Robot) -> None:
     import numpy as np
     from sher3_control.motion.controller import MotionController, MotionInput
-    from sher3_control.motion.pose import tip_pose_sample
+    from sher3_control.motion.pose import tip_pose_sample, tip_twist_sample
     from sher3_control.settings import ControlSettings
     from sher3_kinematics.kernel import kernel_parameters
 
@@ -59,6 +59,7 @@ def _kinematics(robot: Robot) -> None:
         stamp = STAMP + k * period
         motion.tick(MotionInput(stamp, True, stamp, q, stamp, tuple(1e-3 * component for component in PUSH)))
     tip_pose_sample(np.array(kernel_parameters(robot)), q)
+    tip_twist_sample(np.array(kernel_parameters(robot)), q, q)
 
 
 def _motor_driver(robot: Robot) -> None:

@@ -1,4 +1,4 @@
-"""Tip poses in the form of the topics: position and quaternion (x, y, z, w) in {b}."""
+"""Tip poses and twists in the form of the topics: position and quaternion (x, y, z, w) in {b}."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from sher3_common.compiled import compiled
 from sher3_common.vectors import Vector
 from sher3_kinematics.arrays import unpack
-from sher3_kinematics.kernel import tip_pose_into
+from sher3_kinematics.kernel import tip_jacobian_into, tip_pose_into
 
 from sher3_control.errors import CommandRejected
 
@@ -67,3 +67,22 @@ def tip_pose_sample(
     if w < 0.0:
         scale = -scale
     return (t[0], t[1], t[2]), (x * scale, y * scale, z * scale, w * scale)
+
+
+@compiled
+def tip_twist_sample(
+    parameters: Array, q: tuple[float, ...], qd: tuple[float, ...]
+) -> tuple[float, float, float, float, float, float]:
+    """Return the tip's twist (linear [m/s]; angular [rad/s]) in {b}: the Jacobian at q times the actuator velocities.
+
+    Args:
+        parameters: kernel parameters as an array (44,).
+        q: actuator positions (5,).
+        qd: actuator velocities (5,).
+    """
+    jacobian, twist = np.empty((6, 5)), np.zeros(6)
+    tip_jacobian_into(unpack(parameters), np.array(q), jacobian)
+    for row in range(6):
+        for axis in range(5):
+            twist[row] += jacobian[row, axis] * qd[axis]
+    return twist[0], twist[1], twist[2], twist[3], twist[4], twist[5]

@@ -31,7 +31,7 @@ from sher3_control.motion.controller import MotionController, MotionInput, Motio
 from sher3_control.motion.cooperative import RESTING
 from sher3_control.motion.deflection import DeflectionCompensation
 from sher3_control.motion.ownership import MODE_CODES, Mode
-from sher3_control.motion.pose import tip_pose_sample
+from sher3_control.motion.pose import tip_pose_sample, tip_twist_sample
 from sher3_control.motion.rcm_command import apply_rcm_command
 from sher3_control.motion.speed_cap import Regime, parse_regime
 from sher3_control.nodes.heard import HeardState, status_of
@@ -43,6 +43,8 @@ LATE = 0.85
 """Fraction of the period after which a tick no longer waits for its samples; later than the admittance node's."""
 COMMANDS = [mode for mode in Mode if mode is not Mode.COOPERATIVE]
 """Modes that a user commands on a topic of their name."""
+GOALS = {Mode.MOVE_JP: "goal_js", Mode.MOVE_CP: "goal_cp"}
+"""Topics that tell the newest goal of a mode (CRTK)."""
 
 
 class KinematicsNode(Node):
@@ -77,12 +79,15 @@ class KinematicsNode(Node):
         self._refused: dict[str, Any] | None = None
         # Compiled now, for the types of every tick, and not in the first tick.
         self._tip_pose = direct(tip_pose_sample, self._kernel, RESTING)
+        self._tip_twist = direct(tip_twist_sample, self._kernel, RESTING, RESTING)
         self.motion.warm_up()
 
         # A tick hears its streams in the order of these subscriptions.
         self._publish_velocity = advertise(self, "servo_jv")
         self._publish_setpoint = advertise(self, "setpoint_js")
         self._publish_pose = advertise_on_demand(self, "measured_cp")
+        self._publish_twist = advertise_on_demand(self, "measured_cv")
+        self._publish_goal = {mode: advertise(self, topic) for mode, topic in GOALS.items()}
         self._publish_inputs = advertise_on_demand(self, "motion/inputs")
         self._publish_settings = advertise(self, "motion/settings")
         self._publish_status = advertise(self, "motion/status")
@@ -110,7 +115,7 @@ class KinematicsNode(Node):
         self._report(MotionOutput(RESTING, None, Reason.NOT_ENABLED))
 
     def on_joints(self, sample: JointSample) -> None:
-        """Take the load encoders, run the tick unless its twist is still to come, publish the tip pose."""
+        """Take the load encoders, run the tick unless its twist is still to come, publish the tip's pose and twist."""
         if sample.position is None or len(sample.position) != len(ACTUATORS):
             return
         self._joints = sample
@@ -119,6 +124,10 @@ class KinematicsNode(Node):
             self._tick(sample.stamp)
         if self._publish_pose.wanted():
             self._publish_pose(PoseSample(sample.stamp, *self._tip_pose(self._kernel, sample.position)))
+        if sample.velocity is not None and self._publish_twist.wanted():
+            self._publish_twist(
+                TwistSample(sample.stamp, self._tip_twist(self._kernel, sample.position, sample.velocity))
+            )
 
     def on_twist(self, sample: TwistSample) -> None:
         """Take the twist of the cooperative law, and run the tick where its positions have come before it."""
@@ -187,6 +196,8 @@ class KinematicsNode(Node):
             except Sher3Error as error:
                 self._refuse(error, mode.value)
             else:
+                if (tell := self._publish_goal.get(mode)) is not None:
+                    tell(sample)
                 if self._refused is not None and self._refused["command"] == mode.value:
                     self._refused, self._shown = None, ()
 

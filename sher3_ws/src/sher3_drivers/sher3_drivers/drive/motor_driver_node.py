@@ -7,6 +7,8 @@ from typing import Any
 
 from rclpy.node import Node
 from sher3_common.samples import DiagnosticSample, JointSample
+from sher3_common.stamps import SECOND
+from sher3_common.vectors import Vector
 from sher3_description import Robot
 from sher3_runtime import (
     NODE_OPTIONS,
@@ -67,6 +69,7 @@ class MotorDriverNode(Node):
         self._told = False
         self._refused: str | None = None
         self._logged = False
+        self._before: tuple[int, Vector] | None = None
         self._publish_position = advertise(self, "measured_js")
         self._publish_drives = advertise_on_demand(self, "drives/measured_js")
         self._publish_demand = advertise_on_demand(self, "drives/setpoint_jv")
@@ -86,12 +89,18 @@ class MotorDriverNode(Node):
         driver.tick(stamp)
         position = driver.collect_positions()
         if position is not None:
-            self._publish_position(JointSample(stamp, position))
+            self._publish_position(JointSample(stamp, position, self._velocity(stamp, position)))
         feedback = driver.collect()
         if feedback is not None:
             self._publish_feedback(stamp, feedback)
         if self._told is not (driver.stop.first is not None):
             self._report(stamp)
+
+    def _velocity(self, stamp: int, position: Vector) -> Vector:
+        """Return the difference to the reading before over the time between them, m/s and rad/s; 0 at the first."""
+        (before, there), self._before = self._before or (stamp, position), (stamp, position)
+        rate = SECOND / (stamp - before) if stamp > before else 0.0
+        return tuple([rate * (here - then) for here, then in zip(position, there, strict=True)])
 
     def _publish_feedback(self, stamp: int, feedback: DriveFeedback) -> None:
         if self._publish_drives.wanted():
