@@ -15,10 +15,10 @@ import time
 import numpy as np
 from scipy.spatial.transform import Rotation
 from sher3_diagnosis import diagnose
-from sher3_machines.arm.description import Joint
-from sher3_machines.arm.kinematics import Arm, arm_from_table, postures
-from sher3_machines.arm.machine import SerialArm
-from sher3_machines.arm.record import ArmData
+from sher3_static.arm.description import Joint
+from sher3_static.arm.kinematics import Arm, arm_from_table, postures
+from sher3_static.arm.machine import SerialArm
+from sher3_static.arm.record import ArmData
 
 TARGET = 20.0
 """Seconds for 3000 poses."""

@@ -24,8 +24,8 @@ from sher3_effects import load_effects
 from sher3_gap.excitation.file import load_excitation
 from sher3_gap.simulate.apply import read_verdict
 from sher3_machines import load_description
-from sher3_machines.arm.urdf import arm_from_urdf
 from sher3_machines.intake.tables import read_tables
+from sher3_static.arm.urdf import arm_from_urdf
 
 ROBOT = load_robot()
 HEADER = "schema: sher3.excitation/1\nname: a\namplitude: 1.0\nperiod: 0.002\ndata: "

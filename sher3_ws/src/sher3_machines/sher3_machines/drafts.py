@@ -5,12 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 
 from sher3_machines.intake.draft import Draft, draft
+from sher3_machines.intake.kinds import kinds
 from sher3_machines.intake.runs import longest
-from sher3_machines.positioning.draft import draft_test, is_test
 
 
 def draft_of(path: Path, rate: float | None = None, model: Path | None = None) -> Draft:
-    """Draft the joints of an arm where its model is given, a positioning test of a table, else a chain of axes.
+    """Draft the joints of an arm where its model is given, a table as the kind that knows its columns, else axes.
 
     Args:
         path: of the data.
@@ -25,4 +25,5 @@ def draft_of(path: Path, rate: float | None = None, model: Path | None = None) -
 
         return draft_arm(path, model, rate)
     tables = longest(path)
-    return draft_test(path, tables) if rate is None and is_test(tables) else draft(path, rate, tables)
+    told = (kind.draft(path, tables) for kind in kinds().values()) if rate is None else ()
+    return next((found for found in told if found is not None), None) or draft(path, rate, tables)

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any, Generic, Protocol, TypeVar
 
 from sher3_diagnosis.channel import Array
 from sher3_diagnosis.machine import Machine
 
+from sher3_machines.intake.draft import Draft
 from sher3_machines.intake.fields import Description
 from sher3_machines.intake.tables import Tables
 
@@ -30,7 +32,7 @@ R = TypeVar("R", bound=Record)
 
 
 class Kind(ABC, Generic[D, R]):
-    """A kind of machine: one folder of this package, found by the `KIND` in its `kind.py`.
+    """A kind of machine: a folder of this package with a `kind.py`, or what an entry point of another one names.
 
     Attributes:
         name: as the description's field `kind` gives it.
@@ -47,6 +49,10 @@ class Kind(ABC, Generic[D, R]):
     def parts(self, name: str, tables: Tables, description: D) -> tuple[dict[str, Tables], str]:
         """Return the records that a data file holds by name, and a note; default one."""
         return {name: tables}, ""
+
+    def draft(self, path: Path, tables: Tables) -> Draft | None:
+        """Return a description of columns that speak of this kind; None where they do not, which is the default."""
+        return None
 
     @abstractmethod
     def pack(self, run: R) -> Mapping[str, Array]:

@@ -1,0 +1,54 @@
+"""The description of a serial arm; lengths are in m, angles in rad."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field, model_validator
+from sher3_machines.intake.fields import Column, Description, Strict
+from sher3_machines.intake.poses import Pose
+
+
+class Joint(Strict):
+    """Row of a modified (Craig) Denavit-Hartenberg table; theta = q + offset."""
+
+    name: str
+    a: float
+    d: float
+    alpha: float
+    offset: float = 0.0
+
+
+class ArmDescription(Description):
+    """A serial arm with poses measured from outside; a DH table, or a URDF with its base and tip link.
+
+    Attributes:
+        joint_positions: (n, joints) of a table.
+        poses: (n, 4, 4) of the measured body in the measuring frame, or its position with quaternion or Euler angles.
+        noise: standard deviation of a measured position, m.
+        noise_rotation: the same of an orientation, rad; None: orientations only find the frames, positions are judged.
+        joints: rows of the DH table.
+        tip: from the last DH frame to the flange along z, m.
+        urdf, base_link, tip_link: file, and the ends of the chain in it.
+    """
+
+    kind: Literal["arm"]
+    joint_positions: Column
+    poses: Column | Pose
+    noise: float = Field(gt=0.0)
+    noise_rotation: float | None = Field(default=None, gt=0.0)
+    joints: tuple[Joint, ...] = ()
+    tip: float = 0.0
+    urdf: str | None = None
+    base_link: str = ""
+    tip_link: str = ""
+
+    @model_validator(mode="after")
+    def _either(self) -> ArmDescription:
+        if bool(self.joints) == (self.urdf is not None):
+            raise ValueError("state either `joints` (DH table) or `urdf`")
+        return self
+
+    def named_files(self) -> tuple[str, ...]:
+        """Return the URDF, where there is one."""
+        return () if self.urdf is None else (self.urdf,)

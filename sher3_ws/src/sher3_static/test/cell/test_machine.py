@@ -1,0 +1,85 @@
+"""Load cells with known errors, simulated as a test with weights: each is found with its size."""
+
+import numpy as np
+import pytest
+from sher3_diagnosis import diagnose
+from sher3_machines import MachineError
+from sher3_static.cell.description import CellDescription
+from sher3_static.cell.machine import LoadCell
+from sher3_static.cell.record import cell_run, unloading
+
+NOISE = 0.05
+
+
+def weighed(cycles=3, zero=0.0, gain=1.0, bow=0.0, loop=0.0, creep=0.0, seed=1):
+    """Readings of a cell of 500 N, N: loaded and unloaded in steps of 50 N."""
+    up = np.arange(0.0, 501.0, 50.0)
+    force = np.concatenate([np.tile(np.concatenate([up, up[-2:0:-1]]), cycles), [0.0]])
+    u, falling = force / 500.0, np.concatenate([[False], np.diff(force) < 0.0])
+    noise = np.random.default_rng(seed).normal(0.0, NOISE, len(force))
+    reading = zero + gain * force + bow * np.sin(np.pi * u) + loop * np.sin(np.pi * u) * falling
+    return {"force": force, "mv": (reading + creep * np.linspace(0, 1, len(force)) + noise) / 50.0}
+
+
+def description(factor=50.0, **more):
+    columns = {"applied": {"column": "force", "unit": "N"}, "reading": {"column": "mv", "unit": "1", "factor": factor}}
+    return CellDescription.model_validate({"kind": "load_cell", "name": "cell", **columns, **more})
+
+
+def found(data, **more):
+    verdict = diagnose(LoadCell(description(**more)), [cell_run("a", data, description(**more))]).verdict
+    return verdict, {c.effect: {name: p.value for name, p in c.parameters.items()} for c in verdict.causes}
+
+
+def test_a_healthy_cell_has_no_gap():
+    assert sum(found(weighed(seed=seed))[0].status != "no_gap" for seed in range(10)) <= 1
+
+
+@pytest.mark.parametrize(
+    ("errors", "effect", "parameter", "value"),
+    [
+        ({"zero": 1.0}, "force_bias", "force", 1.0),
+        ({"gain": 0.988}, "force_scale", "relative", -0.012),
+        ({"bow": 1.5}, "force_nonlinearity", "largest", 1.5),
+        ({"loop": 1.0}, "force_hysteresis", "loop", 1.0),
+        ({"creep": 1.0}, "force_drift", "over_test", 1.0),
+    ],
+)
+def test_each_error_is_found_with_its_size(errors, effect, parameter, value):
+    verdict, causes = found(weighed(**errors))
+    assert verdict.status == "attributed" and list(causes) == [effect]
+    assert causes[effect][parameter] == pytest.approx(value, rel=0.15)
+
+
+def test_torque_has_its_unit():
+    verdict, _ = found(weighed(zero=1.0), measures="torque")
+    assert verdict.causes[0].parameters["force"].unit == "N*m"
+
+
+def test_one_pass_without_repeats_is_judged():
+    data = {name: x[:21] for name, x in weighed(loop=1.0).items()}
+    assert list(found(data)[1]) == ["force_hysteresis"]
+
+
+def test_a_force_that_stays_keeps_its_side():
+    assert unloading(np.array([0.0, 1.0, 1.0, 2.0, 1.0, 1.0, 0.0, 1.0])).tolist() == [0, 0, 0, 0, 1, 1, 1, 0]
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"mv": np.zeros(61)}, r"mv never changes: a dead channel; value 0; connect it"),
+        ({"mv": -weighed()["mv"]}, r"falls as the force grows.*other sign"),
+        ({"mv": 1e3 * weighed()["mv"]}, r"another size than the force; value 1000 times; limit .*; .*0.05 would make"),
+        ({"force": np.repeat([0.0, 500.0], [30, 31])}, r"too few different forces; value 2; limit 3; apply"),
+        ({"mv": np.zeros(4)}, r"mv has other rows; value \(4,\)"),
+    ],
+)
+def test_bad_records_are_refused_with_a_remedy(change, said):
+    with pytest.raises(MachineError, match=said):
+        cell_run("a", {**weighed(), **change}, description())
+
+
+def test_few_readings_are_refused():
+    with pytest.raises(MachineError, match="too few readings; value 11; limit 12; record more"):
+        cell_run("a", {name: x[:11] for name, x in weighed().items()}, description())
