@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from functools import cached_property
 
 import numpy as np
+from scipy.ndimage import maximum_filter1d
 from sher3_diagnosis.channel import Array, Channel, Mask
 from sher3_diagnosis.discover.feature import Quantities, Quantity
 from sher3_diagnosis.evidence import Motion
@@ -25,6 +26,8 @@ AROUND_IMPACT = 2
 """Samples of the residual grid around one at which a gap is crossed: the filter smears the impact at its end."""
 LINKS_OF_PAYLOAD = 4
 """Leading inertial parameters of a body that a payload changes linearly: its mass, and mass times centre."""
+DEVELOPED = 0.95
+"""Share of its full size above which a soft dry friction of MuJoCo no longer depends on the exact speed."""
 
 
 class MotionView:
@@ -148,12 +151,20 @@ class MotionView:
 
         Dry friction turns between two samples of the grid: it is computed for every sample and filtered as efforts are.
         """
-        losses, run, back = self.model.losses, self.links, np.linalg.inv(self.coupling).T
+        losses, run = self.model.losses, self.links
         if losses is None:
             return np.zeros_like(self.velocity)
-        q, v = (x @ back for x in (run.smooth, run.velocity))
-        dry = run.to_grid(losses.dry(q, v, np.gradient(v, run.period, axis=0)))
+        dry = run.to_grid(self._dry)
         return self._on_motors((dry + losses.in_motion(*self._of_links[:2]))[..., None])[..., 0]
+
+    @cached_property
+    def _dry(self) -> Array:
+        """Force that dry friction of an MJCF model needs on every joint, for every sample of the run, (n, k)."""
+        losses, run, back = self.model.losses, self.links, np.linalg.inv(self.coupling).T
+        if losses is None:
+            return np.zeros_like(run.smooth)
+        q, v = (x @ back for x in (run.smooth, run.velocity))
+        return losses.dry(q, v, np.gradient(v, run.period, axis=0))
 
     @cached_property
     def _of_links(self) -> tuple[Array, Array, Array]:
@@ -195,7 +206,7 @@ class MotionView:
 
     def in_motion(self, row: int) -> Mask:
         """Return (g,) True where the force balance of a joint can be judged: well inside a stretch of its motion."""
-        still = settled(self.moving[:, row] & ~self.at_a_level[:, row], 1)
+        still = settled(self.moving[:, row] & ~self.at_a_level[:, row] & ~self.turning[:, row], 1)
         return self.run.inner & still & ~self.impacts
 
     @cached_property
@@ -218,6 +229,15 @@ class MotionView:
         before = run.smooth[np.maximum(run.grid - half, 0)]
         after = run.smooth[np.minimum(run.grid + half, run.ticks - 1)]
         return np.abs(after - before) > np.array([j.encoder_resolution for j in self.joints])
+
+    @cached_property
+    def turning(self) -> Mask:
+        """(g, k) True where the soft dry friction of an MJCF model turns: there it follows the noise of the encoder."""
+        if self.model.losses is None:
+            return np.zeros_like(self.velocity, dtype=bool)
+        between = np.abs(self._dry) < DEVELOPED * self.model.losses.full
+        near = maximum_filter1d(between, 2 * self.run.stride + 1, axis=0)[self.run.grid]
+        return near @ (np.linalg.inv(self.coupling) != 0.0)
 
     # what the engine reads
 

@@ -20,6 +20,7 @@ class Losses:
 
     Attributes:
         names: of the k joints.
+        full: their dry friction in motion, (k,), N or N m.
     """
 
     def __init__(self, source: Any, names: Sequence[str], stated: Collection[str] = ()) -> None:
@@ -37,6 +38,7 @@ class Losses:
         joints = [self._model.joint(name) for name in names]
         self._places = np.array([int(j.qposadr[0]) for j in joints])
         self._rows = np.array([int(j.dofadr[0]) for j in joints])
+        self.full = np.array([float(self._model.dof_frictionloss[row]) for row in self._rows])
         for joint in joints:
             if joint.name in stated:
                 self._model.dof_damping[joint.dofadr[0]] = 0.0

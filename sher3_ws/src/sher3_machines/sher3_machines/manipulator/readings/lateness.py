@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.channel import Array, Channel, Mask
 from sher3_diagnosis.effect import Measured, Shape, Signature
 from sher3_diagnosis.filter import BANDWIDTH, EDGE, low_pass
 from sher3_diagnosis.finding import ExactFinding
@@ -158,10 +158,21 @@ def _equations(view: MotionView, joint: str, carried: Array | None) -> tuple[Arr
     given = view.effort[:, row]
     plain = [np.gradient(need) * view.rate, need, view.acceleration[:, row], view.position[:, row]]
     both = np.column_stack([*plain, friction_columns(view, joint), given - need])
-    slow = low_pass(both, 1.0 / view.rate, SLOWER)  # noise in a slope would make the delay too small
+    slow = low_pass(_bridged(both, ok), 1.0 / view.rate, SLOWER)  # noise in a slope would make the delay too small
     spoilt = int(np.ceil(EDGE * BANDWIDTH / SLOWER * view.rate))
     ok = ok & (np.arange(len(ok)) >= spoilt) & (np.arange(len(ok)) < len(ok) - spoilt)
     return slow[ok, :-1], slow[ok, -1]
+
+
+def _bridged(columns: Array, ok: Mask) -> Array:
+    """Return columns (n, k) with straight lines over what cannot be judged: a filter would carry it to its neighbours.
+
+    Lines over gaps are linear in the columns, so that a balance of them that holds beside the gaps holds in them.
+    """
+    if not ok.any():
+        return columns
+    every, judged = np.arange(len(ok)), np.flatnonzero(ok)
+    return np.column_stack([np.interp(every, judged, x[judged]) for x in columns.T])
 
 
 def _fitted(x: Array, y: Array) -> Array:
