@@ -17,11 +17,11 @@ import argparse
 from collections import defaultdict
 
 import numpy as np
+from sher3_chain.axes.description import AxesDescription
+from sher3_chain.axes.machine import Axes
+from sher3_chain.axes.record import AxesRun
 from sher3_diagnosis import diagnose
 from sher3_diagnosis.verdict import Verdict
-from sher3_machines.axes.description import AxesDescription
-from sher3_machines.axes.machine import Axes
-from sher3_machines.axes.record import AxesRun
 
 MASS, COULOMB, VISCOUS, COUNT = 8.0, 6.0, 12.0, 5e-6
 KP, KD = 2.0e4, 160.0

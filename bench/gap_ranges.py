@@ -19,7 +19,7 @@ from sher3_export.check import check as checking
 from sher3_export.check import coverage as covering
 from sher3_machines import described, import_case, open_case
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "sher3_ws/src/sher3_machines/test"))
+sys.path.insert(0, str(Path(__file__).parents[1] / "sher3_ws/src/sher3_chain/test"))
 import slides
 
 SLIDES = (

@@ -17,7 +17,7 @@ import sher3.gap as gap
 from sher3_public.guard.baseline import entry_of
 from sher3_public.guard.worse import Worse, worse
 
-sys.path.append(str(Path(__file__).parents[1] / "sher3_ws/src/sher3_machines/test"))
+sys.path.append(str(Path(__file__).parents[1] / "sher3_ws/src/sher3_chain/test"))
 
 from drawn_arms import drawn_xml, logged
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import sher3.gap as gap
 
-sys.path.append(str(Path(__file__).parents[1] / "sher3_ws/src/sher3_machines/test"))
+sys.path.append(str(Path(__file__).parents[1] / "sher3_ws/src/sher3_chain/test"))
 
 from drawn_arms import drawn_xml, logged
 

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "sher3_ws/src/sher3_machines/test"))
+sys.path.insert(0, str(Path(__file__).parents[1] / "sher3_ws/src/sher3_chain/test"))
 import two_masses
 
 KINDS = ("gap", "spring", "rigid", "slow friction")

@@ -78,7 +78,15 @@ KNOWING = ("plants", "cases", "oracle")
 ANSWERING = ("answers", "baselines")
 """Folders of the challenge that answer."""
 SEAL = {
-    KNOWING: ("sher3_diagnosis", "sher3_effects", "sher3_sim", "sher3_machines", "sher3_static", *ANSWERING),
+    KNOWING: (
+        "sher3_diagnosis",
+        "sher3_effects",
+        "sher3_sim",
+        "sher3_machines",
+        "sher3_chain",
+        "sher3_static",
+        *ANSWERING,
+    ),
     ANSWERING: (*KNOWING, "score", "run"),
 }
 """Folders -> packages, and modules of the challenge, that they never reach."""

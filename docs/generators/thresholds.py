@@ -12,6 +12,7 @@ from generators.table import table
 MODULES = {
     "The engine": "sher3_diagnosis.thresholds",
     "Other machines": "sher3_machines.thresholds",
+    "Chains of joints": "sher3_chain.thresholds",
 }
 INTRODUCTION = """# Thresholds of the diagnosis
 

@@ -121,7 +121,7 @@ SMALL_REMAINDER = 2.5
 
 HALF_CLOSED = 0.75
 """Closure of a gap that is not closed from which its causes are causes: they take half of its size. Set by that
-argument. Measure: `pytest sher3_ws/src/sher3_machines/test/axes/test_foreign_law.py`."""
+argument. Measure: `pytest sher3_ws/src/sher3_chain/test/axes/test_foreign_law.py`."""
 
 FOREIGN_SIZE = 0.05
 """Size, over that of the gap, of what follows quantities that no cause may depend on, from which another law is at

@@ -4,5 +4,5 @@ import sys
 from pathlib import Path
 
 HERE = Path(__file__).parent
-SHER, MACHINES, STATIC = (HERE.parents[1] / f"sher3_{room}" / "test" for room in ("gap", "machines", "static"))
-sys.path[:0] = [str(x) for x in (HERE, SHER, MACHINES, MACHINES / "records", STATIC)]
+SHER, CHAINS, STATIC = (HERE.parents[1] / f"sher3_{room}" / "test" for room in ("gap", "chain", "static"))
+sys.path[:0] = [str(x) for x in (HERE, SHER, CHAINS, CHAINS / "records", STATIC)]

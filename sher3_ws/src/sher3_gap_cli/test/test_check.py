@@ -10,7 +10,7 @@ import pytest
 from sher3_gap_cli.app import app
 from typer.testing import CliRunner
 
-sys.path.append(str(Path(__file__).parents[2] / "sher3_machines" / "test"))
+sys.path.append(str(Path(__file__).parents[2] / "sher3_chain" / "test"))
 
 from drawn_arms import drawn_xml, logged
 

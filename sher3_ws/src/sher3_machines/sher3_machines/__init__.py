@@ -1,6 +1,7 @@
 """Machines other than SHER: a short description and data files become a case that the same engine diagnoses.
 
-A kind of machine is a folder with a `kind.py`; `open_case(path)` returns the `Machine` of a case and its runs.
+A kind of machine is a `Kind` that a package names by an entry point; `open_case(path)` returns the `Machine` of a case
+and its runs.
 """
 
 from importlib import import_module

@@ -10,7 +10,7 @@ from sher3_machines.intake.runs import longest
 
 
 def draft_of(path: Path, rate: float | None = None, model: Path | None = None) -> Draft:
-    """Draft the joints of an arm where its model is given, a table as the kind that knows its columns, else axes.
+    """Draft what the first kind that knows the file makes of it, else a chain of axes.
 
     Args:
         path: of the data.
@@ -20,10 +20,6 @@ def draft_of(path: Path, rate: float | None = None, model: Path | None = None) -
     Raises:
         MachineError: the file cannot be read, or no column looks like a time or a position.
     """
-    if model is not None:
-        from sher3_machines.manipulator.draft import draft_arm  # its rigid bodies take a second to import
-
-        return draft_arm(path, model, rate)
     tables = longest(path)
-    told = (kind.draft(path, tables) for kind in kinds().values()) if rate is None else ()
-    return next((found for found in told if found is not None), None) or draft(path, rate, tables)
+    drafts = (kind.draft(path, tables, rate, model) for kind in kinds().values())
+    return next((found for found in drafts if found is not None), None) or draft(path, rate, tables)

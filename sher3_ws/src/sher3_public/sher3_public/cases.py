@@ -8,15 +8,15 @@ from pathlib import Path
 from typing import Any
 
 from pydantic import ValidationError
+from sher3_chain.manipulator.description import ManipulatorDescription
+from sher3_chain.manipulator.draft import of_arm
+from sher3_chain.manipulator.kind import arm_of
 from sher3_diagnosis.machine import Machine
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.draft import drafted
 from sher3_machines.intake.fields import Description
 from sher3_machines.intake.kinds import kinds, load_description
 from sher3_machines.intake.tables import Tables
-from sher3_machines.manipulator.description import ManipulatorDescription
-from sher3_machines.manipulator.draft import of_arm
-from sher3_machines.manipulator.kind import arm_of
 
 from sher3_public.describing import Stated, described
 from sher3_public.errors import InputError

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 from scipy.signal import savgol_filter
+from sher3_chain.manipulator.mjcf.drives import Drive, Driven
+from sher3_chain.manipulator.mjcf.joint import drive_joint
 from sher3_machines.intake.guesses import count_of, scatter
 from sher3_machines.intake.tables import Tables
-from sher3_machines.manipulator.mjcf.drives import Drive, Driven
-from sher3_machines.manipulator.mjcf.joint import drive_joint
 
 from sher3_public.errors import InputError
 from sher3_public.models import Source

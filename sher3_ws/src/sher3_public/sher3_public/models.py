@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from sher3_chain.manipulator.bodies import Bodies, bodies_of, bodies_of_mujoco
+from sher3_chain.manipulator.mjcf.reading import MAX_BYTES
 from sher3_common import FileError, read_text
-from sher3_machines.manipulator.bodies import Bodies, bodies_of, bodies_of_mujoco
-from sher3_machines.manipulator.mjcf.reading import MAX_BYTES
 
 from sher3_public.errors import InputError
 

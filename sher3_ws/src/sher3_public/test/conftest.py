@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import sher3.gap as gap
 
-sys.path.append(str(Path(__file__).parents[2] / "sher3_machines" / "test"))
+sys.path.append(str(Path(__file__).parents[2] / "sher3_chain" / "test"))
 
 from drawn_arms import drawn_xml, logged
 

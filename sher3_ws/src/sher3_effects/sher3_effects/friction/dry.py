@@ -19,7 +19,7 @@ class DryFriction(Page):
     """A friction with a level. In sliding it has that level; at rest it is any force up to it.
 
     Coulomb's inequality: how a bristle bends below the resolution of the encoders is not recorded. On other machines
-    the balance at rest is a rule of its own (`sher3_machines.axes.identification.balance_at_rest`).
+    the balance at rest is a rule of its own (`sher3_chain.axes.identification.balance_at_rest`).
     """
 
     def held(self, view: AxisView, site: str, shape: Shape, coefficients: Array) -> Array | None:

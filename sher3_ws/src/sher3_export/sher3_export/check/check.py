@@ -9,11 +9,11 @@ from typing import Any
 from xml.etree.ElementTree import Element
 
 import numpy as np
+from sher3_chain.manipulator.machine import Manipulator
 from sher3_diagnosis.channel import Array
 from sher3_diagnosis.quantify.closure import interval_of
 from sher3_diagnosis.verdict import Interval, Verdict
 from sher3_machines import open_case
-from sher3_machines.manipulator.machine import Manipulator
 from sher3_machines.thresholds import BLOCKS
 
 from sher3_export.check.engine import Engine, compiled, copied, prepared

@@ -7,10 +7,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from xml.etree.ElementTree import Element, SubElement, tostring
 
+from sher3_chain.axes.evidence import AxisEvidence
+from sher3_chain.axes.law import is_law
 from sher3_common import FileError, read_text
 from sher3_description.contract import GRAVITY
-from sher3_machines.axes.evidence import AxisEvidence
-from sher3_machines.axes.law import is_law
 
 from sher3_export.check.engine import mujoco
 from sher3_export.errors import ExportError

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from typing import Any
 
 from scipy.signal import savgol_filter
+from sher3_chain.axes.description import Axis
+from sher3_chain.axes.machine import Axes
+from sher3_chain.axes.record import AxesRun
+from sher3_chain.manipulator.description import Joint
+from sher3_chain.manipulator.machine import Manipulator
 from sher3_diagnosis.channel import Array
-from sher3_machines.axes.description import Axis
-from sher3_machines.axes.machine import Axes
-from sher3_machines.axes.record import AxesRun
-from sher3_machines.manipulator.description import Joint
-from sher3_machines.manipulator.machine import Manipulator
 
 from sher3_export.errors import ExportError
 

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from sher3_chain.axes.law import is_law
+from sher3_chain.axes.machine import Axes
+from sher3_chain.manipulator.machine import Manipulator
 from sher3_diagnosis.channel import Array
-from sher3_machines.axes.law import is_law
-from sher3_machines.axes.machine import Axes
-from sher3_machines.manipulator.machine import Manipulator
 
 from sher3_export.errors import ExportError
 from sher3_export.excitation.fourier import Box, Fourier, drawn, within

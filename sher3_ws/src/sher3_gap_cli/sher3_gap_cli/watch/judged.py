@@ -13,8 +13,8 @@ from sher3_common.errors import Sher3Error
 from sher3_gap_cli.watch.window import Array
 
 if TYPE_CHECKING:
+    from sher3_chain.manipulator.bodies import Bodies
     from sher3_diagnosis.verdict import Cause
-    from sher3_machines.manipulator.bodies import Bodies
 
 NICE = 10
 """By how much the process of the diagnosis yields to others."""

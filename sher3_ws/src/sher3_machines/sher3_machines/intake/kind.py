@@ -5,14 +5,16 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, Generic, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
 from sher3_diagnosis.channel import Array
 from sher3_diagnosis.machine import Machine
 
-from sher3_machines.intake.draft import Draft
 from sher3_machines.intake.fields import Description
 from sher3_machines.intake.tables import Tables
+
+if TYPE_CHECKING:
+    from sher3_machines.intake.draft import Draft
 
 
 class Record(Protocol):
@@ -32,7 +34,7 @@ R = TypeVar("R", bound=Record)
 
 
 class Kind(ABC, Generic[D, R]):
-    """A kind of machine: a folder of this package with a `kind.py`, or what an entry point of another one names.
+    """A kind of machine, found by the entry point that names it.
 
     Attributes:
         name: as the description's field `kind` gives it.
@@ -50,8 +52,15 @@ class Kind(ABC, Generic[D, R]):
         """Return the records that a data file holds by name, and a note; default one."""
         return {name: tables}, ""
 
-    def draft(self, path: Path, tables: Tables) -> Draft | None:
-        """Return a description of columns that speak of this kind; None where they do not, which is the default."""
+    def draft(self, path: Path, tables: Tables, rate: float | None, model: Path | None) -> Draft | None:
+        """Draft a description of a file that looks like this kind, default None; raises MachineError.
+
+        Args:
+            path: of the data.
+            tables: what it holds.
+            rate: samples per second, Hz, where no time was recorded.
+            model: URDF or MJCF of the arm whose joints were recorded.
+        """
         return None
 
     @abstractmethod

@@ -1,13 +1,12 @@
-"""The kinds of machine: of this package every folder with a `kind.py`, of any other what its entry points name.
+"""The kinds of machine: what the entry points of this project's packages, and of anybody's, name.
 
-A package of anybody's adds a kind by an entry point of the group `sher3.kinds` that names its `Kind`.
+A package gives a kind by an entry point of the group `sher3.kinds` that names its `Kind`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import lru_cache
-from importlib import import_module
 from importlib.metadata import entry_points
 from pathlib import Path
 from typing import Any
@@ -19,29 +18,28 @@ from sher3_machines.errors import MachineError
 from sher3_machines.intake.fields import Description
 from sher3_machines.intake.kind import Kind
 
-PACKAGE, INTAKE, DOOR = "sher3_machines", "intake", "kind"
-"""This package, its folder that is no kind, and the module by which the other folders give theirs."""
-
-
 GROUP = "sher3.kinds"
-"""Group of entry points by which other packages give kinds of their own."""
+"""Group of entry points by which packages give kinds."""
 
 
 @lru_cache(maxsize=1)
 def kinds() -> Mapping[str, Kind[Any, Any]]:
-    """Return every kind of machine by its name, those of other packages too.
+    """Return every kind of machine by its name.
 
     Raises:
         MachineError: an entry point cannot be loaded, is no kind, or has the name of another one.
     """
-    return {**kinds_in(Path(__file__).parents[1]), **kinds_of_others()}
+    return found_kinds()
 
 
-def kinds_of_others() -> Mapping[str, Kind[Any, Any]]:
-    """Return the kinds that other packages give; raises MachineError as `kinds` does."""
-    own = kinds_in(Path(__file__).parents[1])
+def found_kinds() -> Mapping[str, Kind[Any, Any]]:
+    """Return the kinds that installed packages give, in the order of their names; raises MachineError as `kinds`.
+
+    A package that is installed twice, by pip and in a workspace, gives its kinds once.
+    """
+    points = {point.value: point for point in entry_points(group=GROUP)}
     found: dict[str, Kind[Any, Any]] = {}
-    for point in entry_points(group=GROUP):
+    for point in sorted(points.values(), key=lambda point: point.name):
         try:
             kind = point.load()
         except Exception as error:  # whatever a package of somebody else's raises when it is imported
@@ -50,18 +48,11 @@ def kinds_of_others() -> Mapping[str, Kind[Any, Any]]:
         if not isinstance(kind, Kind):
             remedy = "name an instance of a class that derives from sher3_machines.intake.kind.Kind"
             raise MachineError(f"kind {point.value}: is no kind", value=type(kind).__name__, remedy=remedy)
-        if kind.name in own or kind.name in found:
+        if kind.name in found:
             remedy = "give it another name"
             raise MachineError(f"kind {point.value}: its name is taken", value=kind.name, remedy=remedy)
         found[kind.name] = kind
     return found
-
-
-def kinds_in(package: Path) -> Mapping[str, Kind[Any, Any]]:
-    """Return the kinds whose folders lie in one of the folders of this package, by their names."""
-    folders = sorted(path.parent.name for path in package.glob(f"*/{DOOR}.py") if path.parent.name != INTAKE)
-    found = [import_module(f"{PACKAGE}.{folder}.{DOOR}").KIND for folder in folders]
-    return {kind.name: kind for kind in found}
 
 
 def load_description(path: Path) -> Description:

@@ -1,14 +1,14 @@
-"""Kinds of machine: found by their folder or entry point, and each with all an importer needs."""
+"""Kinds of machine: found by their entry point, and each with all an importer needs."""
 
 import sys
-from importlib.metadata import EntryPoint
+from importlib.metadata import EntryPoint, entry_points
 
 import pytest
 from sher3_machines import MachineError, kinds, load_description
-from sher3_machines.intake.kinds import GROUP, kinds_of_others
+from sher3_machines.intake.kinds import GROUP, found_kinds
 
 
-def test_every_folder_with_a_kind_is_one():
+def test_the_kinds_of_this_project():
     assert set(kinds()) == {"arm", "axes", "force_sensor", "load_cell", "manipulator", "positioning"}
     assert all(kind.name == name for name, kind in kinds().items())
 
@@ -28,30 +28,11 @@ def test_a_file_that_describes_nothing_is_refused(tmp_path, text):
         load_description(tmp_path / "machine.yaml")
 
 
-def test_a_new_folder_is_a_new_kind(tmp_path):
-    """A package in a folder of its own, beside a copy of nothing else: its kind is found, read and opened."""
-    import sher3_machines
-    from sher3_machines.intake.kinds import kinds_in
-
-    folder = tmp_path / "table"
-    folder.mkdir()
-    (folder / "__init__.py").write_text('"""A turning table."""\n')
-    (folder / "kind.py").write_text(
-        "from sher3_machines.axes.kind import AxesKind\n\n\n"
-        "class Table(AxesKind):\n    name = 'table'\n\n\nKIND = Table()\n"
-    )
-    sher3_machines.__path__.append(str(tmp_path))
-    try:
-        assert set(kinds_in(tmp_path)) == {"table"}
-    finally:
-        sher3_machines.__path__.remove(str(tmp_path))
-
-
 def given(monkeypatch, tmp_path, text):
-    """A package of somebody else's with one entry point."""
+    """A package of somebody else's with one entry point beside those of this project."""
     (tmp_path / "scales_of_ours.py").write_text(text)
     monkeypatch.syspath_prepend(str(tmp_path))
-    points = [EntryPoint("scale", "scales_of_ours:KIND", GROUP)]
+    points = [*entry_points(group=GROUP), EntryPoint("scale", "scales_of_ours:KIND", GROUP)]
     monkeypatch.setattr("sher3_machines.intake.kinds.entry_points", lambda group: points if group == GROUP else [])
     monkeypatch.delitem(sys.modules, "scales_of_ours", raising=False)
 
@@ -61,7 +42,7 @@ SCALE = "from sher3_static.cell.kind import CellKind\n\n\nclass Scale(CellKind):
 
 def test_another_package_gives_a_kind_by_its_entry_point(monkeypatch, tmp_path):
     given(monkeypatch, tmp_path, SCALE.format(name="scale") + "KIND = Scale()\n")
-    assert set(kinds_of_others()) == {"scale"}
+    assert found_kinds()["scale"].name == "scale"
 
 
 @pytest.mark.parametrize(
@@ -75,4 +56,4 @@ def test_another_package_gives_a_kind_by_its_entry_point(monkeypatch, tmp_path):
 def test_an_entry_point_that_gives_no_kind_is_refused(monkeypatch, tmp_path, text, words):
     given(monkeypatch, tmp_path, text)
     with pytest.raises(MachineError, match=words):
-        kinds_of_others()
+        found_kinds()

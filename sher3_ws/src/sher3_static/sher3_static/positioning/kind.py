@@ -26,6 +26,10 @@ class PositioningKind(Kind[PositioningDescription, Tests]):
         """Check a data file; raises MachineError."""
         return read_tests(name, tables, description)
 
+    def draft(self, path: Path, tables: Tables, rate: float | None, model: Path | None) -> Draft | None:
+        """Draft a test of a table without a clock that has targets and readings; None without them."""
+        return draft_test(path, tables) if rate is None and model is None and is_test(tables) else None
+
     def pack(self, run: Tests) -> Mapping[str, Array]:
         """Return every column."""
         groups = {"axes": run.axes, "planes": run.planes}
@@ -38,10 +42,6 @@ class PositioningKind(Kind[PositioningDescription, Tests]):
             group, test, column = key.split("/") if key.count("/") == 2 else ("", "", "")
             groups[group].setdefault(test, {})[column] = x
         return Tests(name, groups["axes"], groups["planes"], notes)
-
-    def draft(self, path: Path, tables: Tables) -> Draft | None:
-        """Return a test of the targets that a table holds; None without targets and what was read there."""
-        return draft_test(path, tables) if is_test(tables) else None
 
     def machine(self, description: PositioningDescription) -> Positioning:
         """Return the tests as a machine."""

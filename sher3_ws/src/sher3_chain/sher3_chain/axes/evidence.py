@@ -1,0 +1,151 @@
+"""Residuals and floors of one axis, in blocks that take the place of runs when nothing was repeated."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from sher3_diagnosis.channel import Channel, Residual, Residuals
+from sher3_diagnosis.evidence import Evidence
+from sher3_diagnosis.fit.whitened import Whitened
+from sher3_machines.errors import MachineError
+from sher3_machines.thresholds import BLOCKS
+
+from sher3_chain.axes.description import Axis
+from sher3_chain.axes.floors import floors_of
+from sher3_chain.axes.identification.align import aligned
+from sher3_chain.axes.identification.identify import identify_mass, load_mass_of, share_of_inertia
+from sher3_chain.axes.readings.level import level_note, off, off_note
+from sher3_chain.axes.readings.scale import slip_of
+from sher3_chain.axes.readings.wrong import without_effort
+from sher3_chain.axes.record import AxesRun
+from sher3_chain.axes.signals import AxisSignals, signals_of
+from sher3_chain.axes.view import AxisView
+from sher3_chain.constants import ZERO, constants
+from sher3_chain.thresholds import MIN_BLOCK, NO_INERTIA
+
+
+@dataclass(frozen=True, kw_only=True)
+class AxisEvidence(Evidence):
+    """The engine's evidence for one axis; a block of a record is a run.
+
+    Nothing says where two encoders have their zeros, so that `counts` is empty and their difference is free.
+
+    Attributes:
+        axis: as described.
+        runs: records as imported.
+        records: views of the axis, one for each record; blocks of one record share theirs.
+        mass: nominal or identified, kg or kg m^2; 0 where the force balance is not looked at.
+        mass_interval: 95 %, of an identified mass.
+        untold: why the force balance is not judged, where a mass could not be identified.
+        notes: what was put right of the effort.
+    """
+
+    axis: Axis
+    runs: Sequence[AxesRun]
+    records: Sequence[AxisView]
+    mass: float
+    mass_interval: tuple[float, float] | None = None
+    untold: str = ""
+    notes: Sequence[str] = ()
+
+
+def gather_axis(runs: Sequence[AxesRun], axis: Axis, repeats: bool) -> AxisEvidence:
+    """Compute residuals and floors of one axis and cut them into blocks."""
+    signals: Sequence[AxisSignals] = [signals_of(run, axis, "repeats" if repeats else run.name) for run in runs]
+    slip = slip_of(signals, axis) or ""
+    if slip:
+        runs = [without_effort(run, axis) for run in runs]
+        signals = [replace(s, effort=None) for s in signals]
+    signals, notes = aligned(signals, axis)
+    notes = [*levels_of(signals, axis), *notes]
+    mass, interval = (axis.mass, None) if isinstance(axis.mass, float) else (0.0, None)
+    untold, load_mass = slip, 0.0
+    if axis.mass == "unknown" and all(s.effort is not None for s in signals):
+        try:
+            load_mass = load_mass_of([AxisView(s, axis, 0.0) for s in signals])
+            mass, interval = identify_mass([AxisView(s, axis, 0.0, load_mass) for s in signals])
+        except MachineError as error:
+            share = share_of_inertia([AxisView(s, axis, 0.0) for s in signals])
+            if share < NO_INERTIA:
+                told = f"the record does not tell its mass, which needs at most {share:.1%} of the force; left out"
+                notes = [*notes, f"{axis.name}: {told}"]
+            else:
+                untold = str(error)
+    records = [AxisView(s, axis, mass, load_mass) for s in signals]
+    found = [_judged(residuals_of(view), untold) for view in records]
+    floors = floors_of(records, found, repeats)
+    per_record = -(-BLOCKS // len(records))
+    blocks = [(r, block) for r, x in enumerate(found) for block in blocks_of(x, per_record)]
+    data = Whitened([records[r] for r, _ in blocks], [b for _, b in blocks], [floors[r] for r, _ in blocks])
+    return AxisEvidence(
+        excitations=[records[r].excitation for r, _ in blocks],
+        data=data,
+        nuisance=constants(data, ZERO, [Channel("transmission", axis.name)]),
+        units=units_of(axis),
+        places={"axis": (axis.name,)},
+        rotary=frozenset({axis.name} if axis.motion == "rotary" else ()),
+        axis=axis,
+        runs=list(runs),
+        records=records,
+        mass=mass,
+        mass_interval=interval,
+        untold=untold,
+        notes=notes,
+    )
+
+
+def levels_of(signals: Sequence[AxisSignals], axis: Axis) -> list[str]:
+    """Return a sentence for each record whose effort lies flat at its largest reading, or whose drive is off."""
+    notes = []
+    for s in signals:
+        if s.limited is not None and s.effort is not None:
+            silent = off(s.effort[:, 0])
+            flat = s.limited & ~silent
+            notes += [level_note(f"{s.name}: {axis.name}.effort", flat)] if flat.any() else []
+            notes += [off_note(f"{s.name}: {axis.name}.effort", silent)] if silent.any() else []
+    return notes
+
+
+def _judged(found: Residuals, untold: str) -> Residuals:
+    """Leave the force balance out where its mass is not told."""
+    return {c: x for c, x in found.items() if not untold or c.stage != "motor_mechanics"}
+
+
+def units_of(axis: Axis) -> Mapping[Channel, str]:
+    """Return the unit of each channel; the tracking error of a servo is a position."""
+    force = axis.unit_of_position if axis.servo else axis.unit_of_force
+    return {
+        Channel("motor_mechanics", axis.name): force,
+        Channel("transmission", axis.name): axis.unit_of_position,
+    }
+
+
+def residuals_of(view: AxisView) -> Residuals:
+    """Return the residuals of one record.
+
+    They are the force balance, or the tracking error of a servo, and load encoder minus motor encoder.
+    """
+    run, axis = view.run, view.described
+    out: Residuals = {}
+    if axis.servo:
+        assert run.reference is not None
+        out[Channel("motor_mechanics", axis.name)] = Residual(run.to_grid(run.reference - run.motor), run.inner)
+    elif (axis.mass is not None or axis.signals.nominal_effort is not None) and run.effort is not None:
+        balance = run.to_grid(run.effort) - view.inertial
+        out[Channel("motor_mechanics", axis.name)] = Residual(balance, view.in_motion)
+    if run.load is not None:
+        out[Channel("transmission", axis.name)] = Residual(run.to_grid(run.load - run.motor), run.inner)
+    return {channel: x for channel, x in out.items() if x.ok.sum() >= BLOCKS}
+
+
+def blocks_of(found: Residuals, number: int) -> list[Residuals]:
+    """Cut the residuals of a record into at most `number` blocks with about equal numbers of samples that count."""
+    if not found:
+        return []
+    counts = max(found.values(), key=lambda x: int(x.ok.sum())).ok
+    total = int(counts.sum())
+    number = max(1, min(number, total // MIN_BLOCK))
+    block = np.minimum(np.cumsum(counts) * number // (total + 1), number - 1)
+    return [{c: Residual(x.values, x.ok & (block == k)) for c, x in found.items()} for k in range(number)]

@@ -1,0 +1,73 @@
+"""What an axis at rest tells: a force that no cause accounts for is held by dry friction, or the causes are wrong.
+
+The force balance at rest is an inequality and no part of the fits. It decides between sets of causes that motion in one
+direction alone cannot tell apart, such as a constant force and a constant friction.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+
+import numpy as np
+from sher3_diagnosis.attribute.candidates import Candidates
+from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.fit.fitting import Fit, Term
+from sher3_effects.behind_motor import BehindMotor
+
+from sher3_chain.axes.evidence import AxisEvidence
+from sher3_chain.axes.view import AxisView
+from sher3_chain.thresholds import REST_FLOORS, STATIC
+
+
+def rest_loss(evidence: AxisEvidence, fit: Fit) -> float:
+    """Return the squares over the floor of what causes leave at rest beyond what dry friction holds; 0 for a servo."""
+    axis = evidence.axis
+    channel = Channel("motor_mechanics", axis.name)
+    if axis.servo or not evidence.mass:
+        return 0.0
+    holds = STATIC * sum(abs(float(fit.of(i)[0])) for i, t in enumerate(fit.terms) if t.effect.dry)
+    floors = {id(v): f[channel][0] for v, f in zip(evidence.views, evidence.floors, strict=True) if channel in f}
+    loss = 0.0
+    for view in evidence.records:
+        if id(view) in floors and view.at_rest.any():
+            floor = floors[id(view)]
+            beyond = np.abs(_left(view, fit, channel)[view.at_rest]) - holds - REST_FLOORS * floor
+            loss += float(np.sum((np.maximum(beyond, 0.0) / floor) ** 2))
+    return loss
+
+
+def _left(view: AxisView, fit: Fit, channel: Channel) -> Array:
+    """Force (g,) that weight and the causes other than dry friction leave of the measured one."""
+    assert view.run.effort is not None
+    left = (view.run.to_grid(view.run.effort) - view.path.gravity)[:, 0]
+    for i, term in enumerate(fit.terms):
+        if not term.effect.dry:
+            added = term.effect.signature(view, term.site, term.shape).columns
+            if channel in added:
+                left = left - added[channel][:, 0] @ fit.of(i)
+    return left
+
+
+class Bounded(Candidates):
+    """Candidates of which a new cause may not push another one beyond what is physically possible.
+
+    Of what hides behind one encoder one cause is named: a load that rings looks like one that is thrown across a gap.
+    One law of dry friction holds an axis: two of them side by side have the loop of a play.
+    """
+
+    def possible(self, trial: Fit) -> bool:
+        """Return whether the new cause is possible, and all others still are."""
+        unseen = sum(isinstance(t.effect, BehindMotor) for t in trial.terms)
+        dry = sum(t.effect.dry for t in trial.terms)
+        return unseen <= 1 and dry <= 1 and super().possible(trial) and trial.admissible
+
+
+class DryFirst(Bounded):
+    """Candidates of which a friction that holds an axis at rest is the first cause."""
+
+    def search(self, channels: Collection[Channel], given: Sequence[Term] = ()) -> list[Fit]:
+        """Search as the engine does, but among dry frictions alone as long as none is given."""
+        found = super().search(channels, given)
+        if any(term.effect.dry for term in given):
+            return found
+        return [trial for trial in found if trial.terms[-1].effect.dry]

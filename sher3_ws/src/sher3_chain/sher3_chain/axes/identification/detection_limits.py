@@ -1,0 +1,110 @@
+"""What could hide behind the only encoder of an axis: the smallest play and the stiffest spring that would be seen.
+
+Half of the mass, and half of the friction, is put behind a gap or a spring that is not there. What the other causes
+cannot take of the force that this would need is added to what they leave; where that would be a gap by the engine's own
+rule, and most of it worth a cause, it would have been seen.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.effect import Effect, Shape
+from sher3_diagnosis.fit.fitting import Fit
+from sher3_diagnosis.localise.gaps import gap_of
+from sher3_diagnosis.quantify.closure import residual_after
+from sher3_diagnosis.thresholds import WORTH
+from sher3_effects.compliance.unseen_compliance import ComplianceBehindMotor
+from sher3_effects.lost_motion.unseen_backlash import BacklashBeforeEncoder, BacklashBehindMotor
+
+from sher3_chain.axes.evidence import AxisEvidence
+
+BEHIND = 0.5
+"""Share of mass and friction that is put behind the gap: nobody says how much is there. Set by that argument."""
+TRIED = 16
+"""Widths that are tried before an encoder, from a count to all of the travel."""
+
+
+def unseen_note(evidence: AxisEvidence, after: Fit) -> str:
+    """Return what one encoder cannot show of this axis, in words."""
+    axis, named = evidence.axis, {t.effect.id for t in after.terms}
+    unit = axis.unit_of_position
+    if axis.encoder_at == "load":
+        if not axis.servo:
+            return f"{axis.name}: one encoder, at the load: play before it moves the motor alone and is not looked for"
+        least = _least_before(evidence, after)
+        said = f"play before it above {least:.2g} {unit} would show" if least else "no play before it would show"
+        told = named & {BacklashBeforeEncoder.id, BacklashBeforeEncoder.STICKS.id}
+        return "" if told else f"{axis.name}: one encoder, at the load: {said}"
+    if axis.servo or axis.free:
+        return f"{axis.name}: one encoder and no effort: play and springs behind it are not in the data"
+    if evidence.mass <= 0.0 or any(view.run.effort is None for view in evidence.records):
+        return f"{axis.name}: one encoder and no force balance: play and springs behind it are not in the data"
+    seen = [_play(evidence, after)] if BacklashBehindMotor.id not in named else []
+    seen += [_spring(evidence, after)] if ComplianceBehindMotor.id not in named else []
+    return f"{axis.name}: one encoder: with half of the mass behind it {' and '.join(seen)}" if seen else ""
+
+
+def _least_before(evidence: AxisEvidence, after: Fit) -> float:
+    """Return the smallest play before the encoder of a servo that would show, m or rad; 0 where none would."""
+    page, axis = BacklashBeforeEncoder(), evidence.axis
+    count, travel = axis.encoder_resolution, max(v.axis(axis.name).travel for v in evidence.records)
+    widths = np.geomspace(count, max(travel, 2.0 * count), TRIED)
+    shown = [w for w in widths if shows(evidence, after, page, {"force": 0.5 * float(w), "late": 0.0})]
+    return float(min(shown, default=0.0))
+
+
+def _play(evidence: AxisEvidence, after: Fit) -> str:
+    page, axis = BacklashBehindMotor(evidence.mass), evidence.axis
+    shapes = [s for s in page.shapes(evidence.records, axis.name) if "braking" not in s]
+    widths = [s["width"] for s in shapes if shows(evidence, after, page, s)]
+    return f"play above {min(widths):.2g} {axis.unit_of_position} would show" if widths else "no play would show"
+
+
+def _spring(evidence: AxisEvidence, after: Fit) -> str:
+    page, axis = ComplianceBehindMotor(evidence.mass), evidence.axis
+    shapes = [s for s in page.shapes(evidence.records, axis.name) if s["damping"] == page.DAMPINGS[1]]
+    paces = [s["frequency"] for s in shapes if shows(evidence, after, page, s)]
+    if not paces:
+        return "no spring would show"
+    stiffness = BEHIND * evidence.mass * (2.0 * np.pi * max(paces)) ** 2
+    return (
+        f"a spring below {stiffness:.2g} {axis.unit_of_force}/{axis.unit_of_position} ({max(paces):.2g} Hz) would show"
+    )
+
+
+def shows(evidence: AxisEvidence, after: Fit, page: Effect, shape: Shape) -> bool:
+    """Return whether a load behind a gap or a spring would leave a gap that the causes do not take."""
+    site = evidence.axis.name
+    channel = Channel("motor_mechanics", site)
+    left = residual_after(evidence, after, channel)
+    if not left:
+        return False
+    rubs = sum(abs(float(after.of(i)[0])) for i, t in enumerate(after.terms) if t.effect.dry and t.width)
+    sizes = BEHIND * np.array([evidence.mass, rubs])
+    added = _of_runs(evidence, channel, left, [(page, shape)])
+    added = added @ (sizes[: added.shape[1]] if page.signature(evidence.views[0], site, shape).columns else np.ones(1))
+    others = [(t.effect, t.shape) for t in after.terms if channel in t.channels and t.width]
+    if others:
+        taken = _of_runs(evidence, channel, left, others)
+        added = added - taken @ np.linalg.lstsq(taken, added, rcond=None)[0]
+    ends = np.cumsum([0, *(len(x) for x in left.values())])
+    with_it = {r: x + added[a:b, None] for (r, x), a, b in zip(left.items(), ends, ends[1:], strict=False)}
+    gap, floors = gap_of(evidence, channel, with_it), {r: evidence.floors[r][channel][0] for r in left}
+    power = sum(float(np.sum((added[a:b] / floors[r]) ** 2)) for r, a, b in zip(left, ends, ends[1:], strict=False))
+    excess = sum(float(np.sum((x / floors[r]) ** 2)) - len(x) for r, x in with_it.items())
+    return gap is not None and gap.significant and power > WORTH * excess
+
+
+def _of_runs(evidence: AxisEvidence, channel: Channel, runs: Any, pages: Sequence[tuple[Effect, Shape]]) -> Array:
+    """Return the columns (N, p) of some pages on the samples that count of some runs."""
+    rows = []
+    for r in runs:
+        ok, view = evidence.data.residuals[r][channel].ok, evidence.views[r]
+        found = [page.signature(view, channel.actuator, shape) for page, shape in pages]
+        parts = [x.columns[channel][ok, 0] if channel in x.columns else x.fixed[channel][ok] for x in found]
+        rows.append(np.concatenate(parts, axis=1))
+    return np.concatenate(rows)

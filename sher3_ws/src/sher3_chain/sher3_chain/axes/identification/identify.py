@@ -1,0 +1,195 @@
+"""An unknown mass from the force balance: least squares on acceleration and the usual resisting forces together.
+
+Inverse-dynamics identification (Gautier and Khalil; Janot et al.): force - weight = M a + Fv v + Fc sign(v) + offset,
+on filtered, decimated data. The held-out loss over blocks of the record settles which of the last three are there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+from sher3_diagnosis.channel import Array
+from sher3_diagnosis.fit.fitting import solve
+from sher3_diagnosis.quantify.jackknife import standard_error
+from sher3_diagnosis.thresholds import JACKKNIFE
+from sher3_machines.errors import MachineError
+from sher3_machines.thresholds import BLOCKS
+
+from sher3_chain.axes.view import AxisView
+from sher3_chain.thresholds import LEAST_EXCITED, NOISE_SHARE, SLOW
+
+LEFT = 1e-3
+"""Share of the force's power that must be left without them."""
+BY_PLACE = (4, 5)
+"""Columns of the position."""
+BEHIND = 6
+"""Column of what a second encoder accelerates beyond the first."""
+RESISTING = ((1,), (2,), (3,), BY_PLACE, (BEHIND,))
+"""Columns that may be left out: viscous, dry friction, offset, force by position; column 0 is the acceleration."""
+MARKED = 0.8
+"""Share of the held-out loss that forces by position must leave at most: on one sine they are the acceleration."""
+CHOICES = [
+    [0, *(k for columns in group for k in columns)]
+    for n in range(len(RESISTING) + 1)
+    for group in combinations(RESISTING, n)
+]
+"""Every choice of columns."""
+DAHL_SHARE = 2.5e-3
+"""Displacement over which dry friction builds up, in shares of the lead: the middle one that the effects search."""
+
+DAHL_TRAVEL = 5e-5
+"""The same in shares of the travel, where the lead is not known."""
+
+
+def identify_mass(views: Sequence[AxisView]) -> tuple[float, tuple[float, float]]:
+    """Return a mass and its 95 % interval from a jackknife over blocks and the noise of the encoder, kg or kg m^2.
+
+    Args:
+        views: of all records; their nominal mass is zero.
+
+    Raises:
+        MachineError: the records do not accelerate enough to tell a mass.
+    """
+    x, y, block = _blocks(views)
+    _, columns = _best(x, y, block)
+    used = x[:, columns]
+    noise = noise_share(views, used[:, 0])
+    _, draws = _held_out(used, y, block, noise)
+    mass = float(solve(_relieved(used, noise), used.T @ y)[0])
+    error = float(standard_error(draws))
+    if not mass > LEAST_EXCITED * error:
+        wrong = mass < -LEAST_EXCITED * error
+        what = "its mass comes out below zero: the model is wrong" if wrong else "the record does not tell its mass"
+        raise MachineError(
+            f"axis {views[0].described.name}: {what}",
+            value=f"{mass:.3g} +- {error:.2g}",
+            limit=f"{LEAST_EXCITED:g} standard errors above 0",
+            remedy="check sign and gain of the force, and weight" if wrong else "state `mass`",
+        )
+    half = JACKKNIFE * error + 2.0 * NOISE_SHARE * mass  # what is taken off is known to as much again
+    return mass, (mass - half, mass + half)
+
+
+def noise_share(views: Sequence[AxisView], acceleration: Array) -> float:
+    """Return the share of the power of an acceleration (n,) that is the encoder's noise; at most `NOISE_SHARE`."""
+    false, power = [], float(np.mean(acceleration**2))
+    for view in views:
+        run = view.run
+        white = np.random.default_rng(0).normal(size=(run.ticks, 1))
+        bend = np.zeros_like(white)
+        bend[1:-1] = np.diff(white, 2, axis=0) / run.period**2
+        false.append(float(np.mean(run.to_grid(view.noise * bend) ** 2)))
+    return min(NOISE_SHARE, float(np.mean(false)) / power) if power else 0.0
+
+
+def _relieved(x: Array, noise: float) -> Array:
+    """Return the normal matrix (p, p) without what the noise adds to the power of the acceleration, its first column.
+
+    Least squares on a noisy regressor give too small a coefficient (attenuation); the more so, the more of the
+    acceleration the other columns can stand for.
+    """
+    normal = np.asarray(x.T @ x)
+    normal[0, 0] *= 1.0 - noise
+    return normal
+
+
+def share_of_inertia(views: Sequence[AxisView]) -> float:
+    """Return what a mass can need at most in records that do not tell it, over what the effort gives; rms of both.
+
+    The mass is taken as two standard errors above what is found.
+    """
+    x, y, block = _blocks(views)
+    if len(y) < BLOCKS or not y.any():
+        return np.inf
+    columns = _best(x, y, block)[1]
+    _, draws = _held_out(x[:, columns], y, block)
+    error = float(standard_error(draws))
+    most = abs(float(draws.mean())) + LEAST_EXCITED * error
+    return most * float(np.sqrt(np.mean(x[:, 0] ** 2) / np.mean(y**2)))
+
+
+def loss_of(views: Sequence[AxisView]) -> float:
+    """Return the smallest held-out loss of the force balance, whatever of its columns is left out."""
+    x, y, block = _blocks(views)
+    return _best(x, y, block)[0] if len(y) >= BLOCKS else 0.0
+
+
+def _best(x: Array, y: Array, block: NDArray[np.int64]) -> tuple[float, list[int]]:
+    """Return the smallest held-out loss and its columns; those of the position only where they save markedly."""
+    tried = [(_held_out(x[:, columns], y, block)[0], columns) for columns in CHOICES]
+    plain = min((t for t in tried if BY_PLACE[0] not in t[1] and BEHIND not in t[1]), key=lambda t: t[0])
+    for extra in (BEHIND, BY_PLACE[0]):
+        other = min(
+            (t for t in tried if extra in t[1] and (extra == BY_PLACE[0] or BY_PLACE[0] not in t[1])),
+            key=lambda t: t[0],
+        )
+        if plain[0] > LEFT * float(y @ y) and other[0] < MARKED * plain[0]:
+            plain = other
+    return plain
+
+
+def mass_of(views: Sequence[AxisView]) -> float:
+    """Return the mass that the records tell, whatever its error, kg or kg m^2; 0 without samples in motion."""
+    x, y, block = _blocks(views)
+    if len(y) < BLOCKS:
+        return 0.0
+    used = x[:, _best(x, y, block)[1]]
+    return float(solve(used.T @ used, used.T @ y)[0])
+
+
+def load_mass_of(views: Sequence[AxisView]) -> float:
+    """Return the mass that moves with the second encoder, kg or kg m^2; 0 where the records do not tell it."""
+    if any(view.run.load is None for view in views):
+        return 0.0
+    x, y, block = _blocks(views)
+    columns = _best(x, y, block)[1] if len(y) >= BLOCKS else []
+    if BEHIND not in columns:
+        return 0.0
+    used = x[:, columns]
+    found = float(solve(used.T @ used, used.T @ y)[columns.index(BEHIND)])
+    return max(found, 0.0)
+
+
+def _blocks(views: Sequence[AxisView]) -> tuple[Array, Array, NDArray[np.int64]]:
+    """Equations of all records, and the block of each."""
+    rows, target = zip(*(_equations(view) for view in views), strict=True)
+    x, y = np.concatenate(rows), np.concatenate(target)
+    return x, y, np.arange(len(y)) * BLOCKS // max(len(y), 1)
+
+
+def _equations(view: AxisView) -> tuple[Array, Array]:
+    """Columns (n, 7) acceleration, velocity, direction, one, two of the position, and the load; force (n,) left over.
+
+    Those of the position are a weight at an arm on an axis that turns and a spring on one that slides.
+    """
+    run, site = view.run, view.described.name
+    speed = np.abs(view.velocity[:, 0])
+    ok = view.in_motion
+    if ok.any():
+        ok = ok & (speed > SLOW * np.sqrt(np.mean(speed[ok] ** 2)))
+    nominal = view.axis(site)
+    reach = DAHL_SHARE * nominal.lead if nominal.lead_known else DAHL_TRAVEL * nominal.travel
+    direction = run.to_grid(view.sliding(0, max(reach, view.described.encoder_resolution))[:, None])[:, 0]
+    assert run.effort is not None
+    y = run.to_grid(run.effort)[:, 0] - view.inertial[:, 0]
+    q = view.position[:, 0]
+    spring = q - q.mean() if view.described.motion == "linear" else np.zeros_like(q)
+    by_place = (np.sin(q), np.cos(q)) if view.hangs else (spring, np.zeros_like(q))
+    one = np.ones(len(y))
+    behind = np.zeros_like(one) if view.load_mass else view.behind[:, 0]
+    x = np.column_stack([run.to_grid(run.acceleration)[:, 0], view.velocity[:, 0], direction, one, *by_place, behind])
+    return x[ok], y[ok]
+
+
+def _held_out(x: Array, y: Array, block: NDArray[np.int64], noise: float = 0.0) -> tuple[float, Array]:
+    """Loss of every block under the others' coefficients, and the mass without each block, (BLOCKS,)."""
+    loss, draws = 0.0, []
+    for k in range(BLOCKS):
+        out = block == k
+        beta = solve(_relieved(x[~out], noise), x[~out].T @ y[~out])
+        loss += float(np.sum((y[out] - x[out] @ beta) ** 2))
+        draws.append(beta[0])
+    return loss, np.array(draws)

@@ -1,0 +1,77 @@
+"""How noisy an encoder is, and up to which frequency its second difference still is an acceleration.
+
+A mass found by least squares on a noisy acceleration is too small: the noise is in the regressor (attenuation). The
+noise of a position grows with the square of the frequency when it is differentiated twice, the motion of a machine does
+not; a lower cut-off, the same for every signal, takes the noise out and leaves the equations true.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.special import binom
+from sher3_diagnosis.channel import Array
+from sher3_diagnosis.filter import low_pass
+
+from sher3_chain.thresholds import NOISE_SHARE, SLOWEST_CUT
+
+ORDER = 5
+"""Difference of the position that leaves its noise alone: what moves slowly against the samples is gone in it."""
+GAUSSIAN = 1.4826
+"""Standard deviation over the median of absolute values, of a normal distribution."""
+TOP = 0.85
+"""Share of the Nyquist frequency from which nothing of the motion is left."""
+SHORTEST = 64
+"""Samples below which a record has too few frequencies."""
+STEP = 0.8
+"""Factor from one cut-off that is tried to the next."""
+ENDS = 2.0
+"""Periods of the cut-off at each end of a record that the filter spoils."""
+
+
+def noise_of(position: Array, period: float) -> float:
+    """Return the standard deviation of white noise in a position (n,): of two figures that hold too much the smaller.
+
+    The noise of a fifth difference has the sum of squares of the binomial coefficients in power; in a slow record it
+    holds motion too, which the highest frequencies do not.
+    """
+    power = float(np.sum(binom(ORDER, np.arange(ORDER + 1)) ** 2))
+    bend = np.diff(position, ORDER)
+    told = GAUSSIAN * float(np.median(np.abs(bend))) / np.sqrt(power)
+    return min(told, noise_at_the_top(position))
+
+
+def noise_at_the_top(position: Array) -> float:
+    """Return the standard deviation of white noise in a position (n,) that has the power of its highest frequencies."""
+    n = len(position)
+    if n < SHORTEST:
+        return np.inf
+    window = np.hanning(n)
+    line = np.polyval(np.polyfit(np.arange(n), position, 1), np.arange(n))
+    power = np.abs(np.fft.rfft((position - line) * window)) ** 2 / np.sum(window**2)
+    return float(np.sqrt(np.mean(power[int(TOP * len(power)) :])))
+
+
+def cut_off(position: Array, period: float, most: float) -> float:
+    """Return the highest cut-off, Hz, at which noise is a small share of the acceleration; at most `most`.
+
+    Args:
+        position: as recorded, (n,).
+        period: of its samples, s.
+        most: cut-off without noise, Hz.
+    """
+    noise = noise_of(position, period)
+    white = noise * np.random.default_rng(0).normal(size=len(position))
+    cut = most
+    while cut > SLOWEST_CUT:
+        power, false = (float(np.var(_acceleration(x, period, cut))) for x in (position, white))
+        if false <= NOISE_SHARE * power:
+            return cut
+        cut *= STEP
+    return most  # at no cut-off is there an acceleration to be told: none is worth the samples it costs
+
+
+def _acceleration(x: Array, period: float, cut: float) -> Array:
+    """Filtered second difference without the ends, which the filter spoils."""
+    found = low_pass(np.diff(x, 2), period, cut) / period**2
+    end = min(len(found) // 4, int(ENDS / cut / period))
+    return found[end : len(found) - end]

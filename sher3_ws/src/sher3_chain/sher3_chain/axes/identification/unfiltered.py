@@ -1,0 +1,98 @@
+"""An effort that was low-passed before it was recorded: which filter it was, and the effort before it.
+
+Drives report a current after a filter of some 10 to 100 Hz, and no description says so. Against motion of 2 Hz a filter
+of 17 Hz takes a tenth of the dry friction away and adds half as much to the viscous one. A filter of first or second
+order is undone by the derivatives of what came out of it: x = y + y' / w, or y + sqrt(2) y' / w + y'' / w^2
+(Butterworth), w = 2 pi times the corner. A pure delay does not look like that: it is no filter where it explains as
+much, and is then looked for as a late sensor.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+from sher3_diagnosis.channel import Array
+
+from sher3_chain.axes.description import Axis
+from sher3_chain.axes.identification.identify import loss_of
+from sher3_chain.axes.signals import AxisSignals
+from sher3_chain.axes.view import AxisView
+from sher3_chain.thresholds import ALIGNED
+
+CORNERS = np.geomspace(4.0, 90.0, 10)
+"""Corners that are tried, Hz: below the first one nothing of a machine's motion would be left."""
+FINER = 4
+"""Halvings of the step between two corners."""
+OF_NYQUIST = 0.9
+"""Share of the Nyquist frequency that a corner stays below: beyond it the record does not show it."""
+SPLINE = 5
+"""Order of the spline whose derivatives are taken: those of its neighbours alone are too small near that frequency."""
+
+
+class Filter(NamedTuple):
+    """A low-pass: its corner, Hz, and its order, 1 or 2; order 0 is a delay of as long as a filter of first order."""
+
+    corner: float
+    order: int
+
+    def undone(self, signals: AxisSignals) -> AxisSignals:
+        """Return the signals with the effort as it was before the filter."""
+        if signals.effort is None:
+            return signals
+        clock, effort, pace = signals.stage_clock, signals.effort[:, 0], 1.0 / (2.0 * np.pi * self.corner)
+        if self.order == 0:
+            before: Array = np.interp(clock + pace, clock, effort)
+        else:
+            from scipy.interpolate import make_interp_spline
+
+            spline = make_interp_spline(clock, effort, k=min(SPLINE, len(clock) - 1))
+            if self.order == 1:
+                before = effort + pace * spline(clock, 1)
+            else:
+                before = effort + np.sqrt(2.0) * pace * spline(clock, 1) + pace**2 * spline(clock, 2)
+        return replace(signals, effort=before[:, None])
+
+
+def unfiltered(signals: Sequence[AxisSignals], axis: Axis) -> tuple[Sequence[AxisSignals], str]:
+    """Return the signals with the effort before its filter, and a note; both as they were where none is told.
+
+    Args:
+        signals: of every record of one axis; all have an effort.
+        axis: as described.
+    """
+    top = OF_NYQUIST * 0.5 / signals[0].period
+    corners = [float(f) for f in CORNERS if f < top]
+    plain = loss_of([AxisView(s, axis, 0.0) for s in signals])
+    if not plain or not corners:
+        return signals, ""
+    late = min(_loss(signals, axis, Filter(f, 0)) for f in corners)
+    best = min((_best(signals, axis, order, corners, top) for order in (1, 2)), key=lambda found: found[0])
+    if not best[0] < (1.0 - ALIGNED) * min(plain, late):
+        return signals, ""
+    found = best[1]
+    order = "first" if found.order == 1 else "second"
+    note = f"{axis.name}: effort was low-passed before it was recorded, {found.corner:.3g} Hz of {order} order; undone"
+    return [found.undone(s) for s in signals], note
+
+
+def _best(
+    signals: Sequence[AxisSignals], axis: Axis, order: int, corners: Sequence[float], top: float
+) -> tuple[float, Filter]:
+    """Return the smallest loss and the filter of an order that has it: on the grid, then by halving its step."""
+    tried = {f: _loss(signals, axis, Filter(f, order)) for f in corners}
+    best = min(tried, key=lambda f: tried[f])
+    step = float(CORNERS[1] / CORNERS[0])
+    for _ in range(FINER):
+        step = float(np.sqrt(step))
+        for f in (best / step, best * step):
+            if f < top:
+                tried[f] = _loss(signals, axis, Filter(f, order))
+        best = min(tried, key=lambda f: tried[f])
+    return tried[best], Filter(best, order)
+
+
+def _loss(signals: Sequence[AxisSignals], axis: Axis, filtered: Filter) -> float:
+    return loss_of([AxisView(filtered.undone(s), axis, 0.0) for s in signals])

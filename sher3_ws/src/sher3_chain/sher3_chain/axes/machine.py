@@ -1,0 +1,303 @@
+"""A chain of axes as a machine of the diagnosis."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+from sher3_diagnosis.attribute.candidates import Candidates
+from sher3_diagnosis.attribute.rivals import Attribution
+from sher3_diagnosis.attribute.search import Left, Say
+from sher3_diagnosis.effect import Effect
+from sher3_diagnosis.finding import ExactFinding, Finding
+from sher3_diagnosis.judge.left_over import down_to_floor
+from sher3_diagnosis.machine import Machine, Policy
+from sher3_diagnosis.verdict import Cause, Interval
+from sher3_effects import library, pages
+from sher3_effects.behind_motor import BehindMotor
+from sher3_effects.friction.viscous_friction import ViscousOnAxis
+from sher3_effects.spring.spring_torque import SpringOnAxis
+from sher3_machines.errors import MachineError
+from sher3_machines.intake.notes import told_once
+from sher3_machines.thresholds import BLOCKS
+
+from sher3_chain.axes.description import AxesDescription, Axis, Gravity
+from sher3_chain.axes.evidence import AxisEvidence, gather_axis, levels_of
+from sher3_chain.axes.identification.confounded_laws import SpringBesideWeight, dead_band_note, with_dead_band
+from sher3_chain.axes.identification.detection_limits import unseen_note
+from sher3_chain.axes.identification.friction_in_motion import requantified, with_unseen
+from sher3_chain.axes.identification.refine import refine_free
+from sher3_chain.axes.identification.search import causes_of_axis
+from sher3_chain.axes.law import causes_of_law, is_law, law_of_axis
+from sher3_chain.axes.limits import EFFECT as LIMIT
+from sher3_chain.axes.limits import limit_finding
+from sher3_chain.axes.power import least_seen
+from sher3_chain.axes.quantities.bounds import within_bounds
+from sher3_chain.axes.quantities.own_unit import in_own_unit, own_unit_note, renamed
+from sher3_chain.axes.readings.wrong import without_wrong, wrong_readings
+from sher3_chain.axes.record import AxesRun
+from sher3_chain.axes.replay import replay
+from sher3_chain.contrast.changes import change_notes, contrasted, of_runs
+from sher3_chain.contrast.conditions import Condition, conditions_of, reference_runs, told_together
+
+if TYPE_CHECKING:
+    from sher3_chain.axes.reporter import AxesReporter
+
+NO_REPEATS = (
+    "no repeats: floors are the residuals' innovations or the sensors' resolution, and intervals come from blocks of a "
+    "record: what differs from day to day is in neither"
+)
+
+
+@dataclass(frozen=True)
+class Axes(Machine[AxesRun, AxisEvidence]):
+    """Axes that move independently of each other.
+
+    A description of a few lines leaves several plain causes out, so that the search goes on down to the floor. Records
+    are what somebody happened to take: nothing asks a cause to keep its size from one to the next.
+
+    Attributes:
+        description: nominal constants of every axis, and what was recorded of it.
+    """
+
+    description: AxesDescription
+    policy = Policy(down_to_floor=True, constancy=False, spill_over=False, free_laws=True)
+
+    def library(self) -> Sequence[Effect]:
+        """Return the pages for these kinds of axes, and that of the limit, which is read off without a fit."""
+        kinds = sorted({kind_of(axis) for axis in self.description.axes}, reverse=True)
+        swings = any(axis.swings for axis in self.description.axes)
+        known = [_beside_weight(page) if swings else page for kind in kinds for page in pages(kind)]
+        return [*known, *pages("law"), library()[LIMIT]]
+
+    def effects(self, evidence: AxisEvidence) -> Sequence[Effect]:
+        """Return the pages that can show in what was recorded of an axis."""
+        if is_law(evidence):
+            return pages("law")
+        found = pages(kind_of(evidence.axis), facts_of(evidence.axis))
+        return [_of_axis(page, evidence) for page in found]
+
+    def audit(self, runs: Sequence[AxesRun]) -> list[str]:
+        """Return what was done to the data, and whether floors are known from repeats."""
+        notes = [note for run in runs for note in run.notes]
+        for run in runs:
+            notes += [said for axis in self.description.axes for said in wrong_readings(run, axis).values()]
+        notes = told_once(notes, [run.name for run in runs]) + told_together(self._conditions(runs))
+        return notes if self._repeats(runs) else [*notes, NO_REPEATS]
+
+    def gather(self, runs: Sequence[AxesRun]) -> Sequence[AxisEvidence]:
+        """Compute residuals and floors of every axis; raises MachineError where an unknown mass cannot be found."""
+        parts: list[AxisEvidence] = []
+        for axis in self.description.axes:
+            heard = [without_wrong(run, axis) for run in runs]
+            if all("position" in run.signals[axis.name] for run in heard):
+                parts.append(gather_axis(heard, axis, self._repeats(runs)))
+                law = law_of_axis(heard, axis)
+                parts += [law] if law is not None else []
+        if not parts:
+            raise MachineError("no axis can be judged", value="every position is dead", remedy="connect the encoders")
+        limited = any(limit_finding(runs, axis) for axis in self.description.axes)
+        if not limited and not any(part.channels for part in parts):
+            raise nothing_judged(parts, runs)
+        return parts
+
+    def exact(
+        self, runs: Sequence[AxesRun], evidence: Sequence[AxisEvidence], without: Collection[str]
+    ) -> list[ExactFinding]:
+        """Look for drives at their limit."""
+        if LIMIT in without:
+            return []
+        found = (limit_finding(part.runs, part.axis) for part in evidence if not is_law(part))
+        return [limit for limit in found if limit is not None]
+
+    def attribute(self, evidence: AxisEvidence, candidates: Candidates, left_over: Left, say: Say) -> Attribution:
+        """Choose the causes of one axis, and what changed between conditions; what it does at rest counts too."""
+        if is_law(evidence):
+            return causes_of_law(candidates, left_over, say)
+        conditions = self._conditions(evidence.runs)
+        if not conditions:
+            return causes_of_axis(evidence, candidates, left_over, say)
+        kept = reference_runs(conditions, [run.name for run in evidence.runs])
+        reference = of_runs(evidence, views_of(evidence, kept))
+        left = partial(down_to_floor, reference.channels, reference)
+        common = causes_of_axis(reference, Candidates(reference, candidates.effects), left, say)
+        say("contrasting conditions")
+        each = [(c, views_of(evidence, c.runs)) for c in conditions]
+        return contrasted(evidence, common, candidates.effects, each)
+
+    def refine(
+        self, evidence: AxisEvidence, causes: list[Cause], attribution: Attribution
+    ) -> tuple[AxisEvidence, list[Cause]]:
+        """Refine mass and forces of a free axis on its simulated motion, of a driven one away from its reversals."""
+        if is_law(evidence):
+            return evidence, causes
+        if evidence.axis.free:
+            return refine_free(evidence, causes)
+        causes, own = requantified(evidence, attribution, causes), evidence.axis.own_unit
+        causes = causes if evidence.axis.servo else with_unseen(evidence, attribution, causes)
+        causes = within_bounds(causes, self.effects(evidence))
+        causes = with_dead_band(causes) if evidence.axis.servo else causes
+        return evidence, [in_own_unit(cause, own) for cause in causes] if own else causes
+
+    def remarks(self, finding: Finding[AxisEvidence]) -> list[str]:
+        """Say which mass was found, what the recorded signals cannot tell, and how the axis runs again."""
+        if is_law(finding.evidence):
+            return law_notes(finding)
+        again = replay(finding.evidence, finding.causes) if finding.significant else None
+        changes = change_notes(finding.attribution, self._conditions(finding.evidence.runs))
+        untold = finding.evidence.untold
+        changes += finding.evidence.notes
+        nothing_found = not finding.significant and bool(finding.evidence.views)
+        own = finding.evidence.axis.own_unit
+        changes += [own_unit_note(finding.evidence.axis.name, own)] if own else []
+        changes += [f"{untold}: its force balance is not judged"] if untold else []
+        return [
+            *changes,
+            *mass_notes(finding.evidence),
+            *blind_spots(finding),
+            *carried_by_others(finding, self.description.axes),
+            *([] if finding.significant else unseen(finding.evidence)),
+            *(least_seen(finding.evidence, self.effects(finding.evidence)) if nothing_found else []),
+            *([again.note] if again else []),
+        ]
+
+    def reporter(self) -> AxesReporter:
+        """Return the part of this machine in a report."""
+        from sher3_chain.axes.reporter import AxesReporter
+
+        return AxesReporter()
+
+    def end_to_end(self, findings: Sequence[Finding[AxisEvidence]], causes: Sequence[Cause]) -> Interval | None:
+        """Return the closure of the position of the first axis that can be run again."""
+        runs_again = (replay(f.evidence, f.causes) for f in findings if f.significant and not is_law(f.evidence))
+        return next((again.closure for again in runs_again if again is not None), None)
+
+    def _conditions(self, runs: Sequence[AxesRun]) -> list[Condition]:
+        return conditions_of(self.description.conditions, [run.name for run in runs])
+
+    def _repeats(self, runs: Sequence[AxesRun]) -> bool:
+        return self.description.repeats and len(runs) > 1
+
+
+def _of_axis(page: Effect, evidence: AxisEvidence) -> Effect:
+    """Return a page with what it must know of the axis to say what is possible."""
+    if isinstance(page, ViscousOnAxis):
+        return ViscousOnAxis(evidence.axis.viscous)
+    if isinstance(page, BehindMotor):
+        return type(page)(evidence.mass)
+    return _beside_weight(page) if evidence.axis.swings else page
+
+
+def _beside_weight(page: Effect) -> Effect:
+    """Return a page with what it must know of an axis that may carry a weight at an arm."""
+    return SpringBesideWeight() if isinstance(page, SpringOnAxis) else page
+
+
+def nothing_judged(parts: Sequence[AxisEvidence], runs: Sequence[AxesRun]) -> MachineError:
+    """Return the refusal of records in which there is nothing to compare, with what each axis lacks."""
+    said = []
+    for part in parts:
+        dead = [what for run in runs for what in wrong_readings(run, part.axis).values()]
+        flat = levels_of([view.run for view in part.records], part.axis)
+        said.append("; ".join([*flat[:1], part.untold or (dead[0] if dead else f"{part.axis.name}: {missing(part)}")]))
+    remedy = (
+        "correct what is named, or record the reference of a servo, the effort of a driven axis, or a second encoder"
+    )
+    return MachineError(f"no axis can be judged: {'; '.join(said[:3])}", value=f"{len(parts)} axes", remedy=remedy)
+
+
+def missing(part: AxisEvidence) -> str:
+    """Return what is missing for an axis to be judged."""
+    travel = max(float(np.ptp(view.run.motor)) for view in part.records)
+    if travel <= part.axis.encoder_resolution:
+        return f"does not move by more than one count, {part.axis.encoder_resolution:.3g} {part.axis.unit_of_position}"
+    if not all(len(view.run.grid) < 2 * BLOCKS for view in part.records):
+        return "nothing was recorded that its position can be compared with"
+    longest = max((view.run for view in part.records), key=lambda run: run.ticks * run.period)
+    return (
+        f"the records are too short, {longest.ticks * longest.period:.3g} s at {1.0 / longest.period:.3g} Hz "
+        "(is `time` in that unit? `override: true` corrects a header)"
+    )
+
+
+def views_of(evidence: AxisEvidence, runs: Collection[str]) -> frozenset[int]:
+    """Return the identities of the views of some runs."""
+    return frozenset(id(v) for v, run in zip(evidence.records, evidence.runs, strict=True) if run.name in runs)
+
+
+def kind_of(axis: Axis) -> str:
+    """Return the kind of machine that pages for an axis are written for."""
+    return "servo" if axis.servo else "axis"
+
+
+def facts_of(axis: Axis) -> set[str]:
+    """Return what is known of an axis, as pages ask for it."""
+    known = {
+        "lead": axis.lead is not None,
+        "load": axis.signals.load is not None,
+        "alone": axis.signals.load is None and axis.encoder_at == "motor",
+        "behind": axis.signals.load is None and axis.encoder_at == "load",
+        "temperature": axis.signals.temperature is not None,
+        "mass": isinstance(axis.mass, float),
+        "drive": not axis.free,
+        "forces": isinstance(axis.mass, float) or axis.gravity != Gravity() or axis.signals.nominal_effort is not None,
+    }
+    return {fact for fact, is_known in known.items() if is_known}
+
+
+def law_notes(finding: Finding[AxisEvidence]) -> list[str]:
+    """Return whether the command is what its law states."""
+    axis = finding.evidence.axis
+    floors = [float(x[0]) for floors in finding.evidence.floors for x in floors.values()]
+    if finding.significant or not floors:
+        return list(finding.evidence.notes)
+    held = f"{axis.name}: its command is what the stated law asks for, within {np.median(floors):.2g}"
+    return [held, *finding.evidence.notes]
+
+
+def mass_notes(evidence: AxisEvidence) -> list[str]:
+    """Return the mass that was identified, with its interval."""
+    if evidence.mass_interval is None:
+        return []
+    axis, (low, high) = evidence.axis, evidence.mass_interval
+    unit = renamed("kg" if axis.motion == "linear" else "kg*m^2", axis.own_unit) if axis.own_unit else "kg"
+    unit = "kg m^2" if unit == "kg" and axis.motion == "rotary" else unit
+    behind = max(view.load_mass for view in evidence.records)
+    share = f", of which {behind:.3g} move with the second encoder" if behind else ""
+    return [f"{axis.name}: mass identified as {evidence.mass:.5g} {unit} ({low:.5g} .. {high:.5g}){share}"]
+
+
+def unseen(evidence: AxisEvidence) -> list[str]:
+    """Return how large a gap would have to be to be seen where none was found."""
+    floors: dict[str, list[float]] = {}
+    for found in evidence.floors:
+        for channel, floor in found.items():
+            floors.setdefault(f"{evidence.unit(channel)}, {channel.stage.replace('_', ' ')}", []).append(
+                float(floor[0])
+            )
+    return [f"{evidence.axis.name}: nothing above the floor of {np.median(x):.3g} {of}" for of, x in floors.items()]
+
+
+def carried_by_others(finding: Finding[AxisEvidence], axes: Sequence[Axis]) -> list[str]:
+    """Return that joints of one arm carry each other, where a driven axis of several that turn has a gap left."""
+    turning = [axis.name for axis in axes if axis.motion == "rotary" and axis.driven]
+    name = finding.evidence.axis.name
+    if not finding.left or name not in turning or len(turning) < 2:
+        return []
+    return [
+        f"{name}: axes are judged one by one; joints of an arm carry each other: describe it as `kind: manipulator` "
+        "with its URDF or MJCF"
+    ]
+
+
+def blind_spots(finding: Finding[AxisEvidence]) -> list[str]:
+    """Return what the recorded signals cannot tell."""
+    axis = finding.evidence.axis
+    out = [] if axis.signals.load is not None else [unseen_note(finding.evidence, finding.attribution.fit)]
+    if axis.servo:
+        out.append(f"{axis.name}: force not recorded: forces are given in units of the servo's stiffness")
+        out.append(dead_band_note(axis.name, finding.causes, axis.unit_of_position))
+    return [said for said in out if said]

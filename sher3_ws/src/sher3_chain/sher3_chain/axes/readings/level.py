@@ -1,0 +1,64 @@
+"""An effort that says nothing for a stretch: flat at its largest reading, or exactly zero while the drive is off."""
+
+from __future__ import annotations
+
+import numpy as np
+from sher3_diagnosis.channel import Array, Mask
+
+from sher3_chain.thresholds import LONGEST, PINNED
+
+OFF_FOR = 0.02
+"""Share of a record for which an effort must be exactly zero for its drive to be off: an effort that crosses zero, or
+is read in coarse steps, is zero for some samples. Set by that argument."""
+
+STEPS = 0.5
+"""Share of the other samples that repeat the one before from which an effort goes in steps, and has no level by
+itself."""
+
+
+def at_a_level(effort: Array) -> Mask:
+    """Return (n,) True where a reading lies at its largest or least value for a stretch: it or the drive is limited.
+
+    One that goes in steps everywhere, as a test with constant forces or few bits does, is at no limit.
+    """
+    out = np.zeros(len(effort), dtype=bool)
+    for level in (float(effort.max()), float(effort.min())):
+        at = effort == level
+        if at.mean() >= PINNED and longest(at) >= LONGEST and not at.all():
+            out |= at
+    rest = ~out[1:] & ~out[:-1]
+    stepped = not rest.any() or float(np.mean(np.diff(effort)[rest] == 0.0)) > STEPS
+    return np.zeros_like(out) if stepped else out
+
+
+def off(effort: Array) -> Mask:
+    """Return (n,) True where a reading is exactly zero for a long stretch: the drive is off, and what it gives unknown.
+
+    A record without any other reading is no drive that is off for a while.
+    """
+    zero, out = effort == 0.0, np.zeros(len(effort), dtype=bool)
+    if zero.all():
+        return out
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], zero.astype(int), [0]])))
+    for first, last in zip(edges[::2], edges[1::2], strict=True):
+        out[first:last] = last - first >= max(LONGEST, OFF_FOR * len(effort))
+    return out
+
+
+def off_note(what: str, at: Mask) -> str:
+    """Return the sentence that names a drive which is off in some samples (n,)."""
+    return f"{what} is exactly zero in {at.mean():.0%} of the samples: the drive is off; these samples are not judged"
+
+
+def level_note(what: str, at: Mask) -> str:
+    """Return the sentence that names a reading which is at a level in some samples (n,)."""
+    return (
+        f"{what} lies flat at its largest reading in {at.mean():.0%} of the samples: its reading or the drive is at a "
+        "limit; these samples are not judged"
+    )
+
+
+def longest(mask: Mask) -> int:
+    """Return the largest number of samples in a row for which a mask (n,) holds."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], mask.astype(int), [0]])))
+    return int((edges[1::2] - edges[::2]).max()) if len(edges) else 0

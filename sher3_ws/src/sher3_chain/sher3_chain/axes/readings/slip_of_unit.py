@@ -1,0 +1,87 @@
+"""How many of its units an effort has per unit of a force that is known: the slip of a unit, told before any cause.
+
+effort = share * (known force) + friction. A share of a thousand is an effort in mN that was stated in N; friction and
+payload of a thousand times their size would explain it as well.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from sher3_diagnosis.channel import Array
+from sher3_diagnosis.fit.fitting import solve
+from sher3_diagnosis.quantify.jackknife import standard_error
+from sher3_diagnosis.thresholds import JACKKNIFE
+from sher3_machines.thresholds import BLOCKS
+
+from sher3_chain.thresholds import LEAST_EXCITED, SLIPPED, SURELY
+
+WRONG_SIGN = 2.0
+"""Factor by which the share of a stated gain may be off minus one where its sign alone is wrong."""
+
+
+class Share(NamedTuple):
+    """Units of the recorded effort per unit of the known force; 0 where the motion does not tell it.
+
+    Attributes:
+        value: as found; negative where the effort was recorded with the opposite sign.
+        error: its standard error, from a jackknife over blocks.
+        backwards: whether the effort was recorded with the opposite sign.
+    """
+
+    value: float
+    error: float
+    backwards: bool
+
+    def turned(self) -> Share:
+        """Return the share of the effort with its sign put right."""
+        return Share(abs(self.value), self.error, self.backwards)
+
+    def opposite(self, stated: bool) -> bool:
+        """Return whether the sign is to be turned.
+
+        With a stated gain a wrong sign alone makes the share about minus one; another one below zero is a force that
+        the model lacks, such as that of a payload on a light joint.
+        """
+        return self.backwards and (not (stated and self.told) or 1.0 / WRONG_SIGN < -self.value < WRONG_SIGN)
+
+    def off(self, most: float) -> bool:
+        """Return whether the share is surely more than `most`, or less than a fifth."""
+        size = abs(self.value)
+        return self.told and size > SURELY * self.error and not 1.0 / SLIPPED < size < most
+
+    @property
+    def slipped(self) -> bool:
+        """Whether an effort with a stated gain is so surely in another scale that its unit is wrong and no drive."""
+        return self.off(SLIPPED)
+
+    @property
+    def told(self) -> bool:
+        """Whether the motion tells it."""
+        return self.value != 0.0
+
+    @property
+    def interval(self) -> tuple[float, float]:
+        """Interval of 95 %."""
+        return self.value - JACKKNIFE * self.error, self.value + JACKKNIFE * self.error
+
+
+def share_in(x: Array, y: Array) -> Share:
+    """Return the share of an effort (n,) in columns (n, 4): the known force, velocity, direction, one."""
+    if len(y) < BLOCKS * x.shape[1]:
+        return Share(0.0, np.inf, False)
+    draws, found = _left_out(x, y), solve(x.T @ x, x.T @ y)
+    error = float(standard_error(draws[:, 0]))
+    told = abs(float(found[0])) > LEAST_EXCITED * error
+    speed = x[:, 1]
+    lost = draws[:, 1] * (speed @ speed) + draws[:, 2] * (speed @ x[:, 2])
+    gives = bool(lost.mean() < -LEAST_EXCITED * standard_error(lost))
+    return Share(float(found[0]) if told else 0.0, error, bool(found[0] < 0.0) if told else gives)
+
+
+def _left_out(x: Array, y: Array) -> Array:
+    """Coefficients without each block, (BLOCKS, 4)."""
+    block = np.arange(len(y)) * BLOCKS // len(y)
+    kept = [block != k for k in range(BLOCKS)]
+    return np.array([solve(x[k].T @ x[k], x[k].T @ y[k]) for k in kept])

@@ -1,0 +1,316 @@
+"""From tables to runs on a uniform clock in SI units, with the checks that refuse data no answer could rest on."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+from sher3_diagnosis.channel import Array, Mask
+from sher3_machines.errors import MachineError
+from sher3_machines.intake.columns import MOTION, find, pick, stamps_of
+from sher3_machines.intake.fields import Clock, Column
+from sher3_machines.intake.mending.motion import check_speed, counts_backwards, is_magnitude, signs_of, speed_ratio
+from sher3_machines.intake.mending.parts import LONGEST_HOLE, cut
+from sher3_machines.intake.mending.readings import glitches, known_readings
+from sher3_machines.intake.mending.repeats import filled, fresh_readings, fresh_rows, goes_smoothly, hold_of
+from sher3_machines.intake.mending.stamps import even_stamps, missed_periods, missing_note
+from sher3_machines.intake.spelling import table_of
+from sher3_machines.intake.tables import Tables
+
+from sher3_chain.axes.description import Axis
+from sher3_chain.axes.quantities.units import check_units
+from sher3_chain.axes.readings.speed import integrated, is_speed
+
+MIN_SAMPLES = 20
+"""Samples a run must have: five blocks of the smallest size. Several short runs are judged together."""
+JITTER = 0.01
+"""Share of the period by which stamps may be off before the record is resampled."""
+ROUNDING = 1e-6
+"""Share by which a period may be off through rounding."""
+SIGNALS = ("position", "reference", "command", "effort", "load", "nominal_effort", "applied", "temperature")
+"""Signals of an axis, as the description names them."""
+
+POSITIONS = ("position", "reference", "load")
+"""Signals that are places."""
+ENCODERS = ("position", "load")
+"""Signals that an encoder reads: nothing moves in steps."""
+READINGS = (*ENCODERS, "effort")
+"""Signals that are measured: a value that stays is an old one. A command may well be held, and a reference that goes in
+steps.
+"""
+OTHERS = ("reference", "load")
+"""Places that follow the position, in its sense or turned."""
+WRAP = 0.1
+"""Share of a turn by which a jump between two samples may differ from a whole turn that was wrapped."""
+
+Stamped = tuple[Array | None, Array]
+"""Stamps in s, where there are any, and the samples."""
+
+
+@dataclass(frozen=True)
+class AxesRun:
+    """One record on a uniform clock, SI units.
+
+    Attributes:
+        name: of its file.
+        period: of the samples, s.
+        signals: axis -> signal -> (n,).
+        notes: what was done to the data.
+    """
+
+    name: str
+    period: float
+    signals: dict[str, dict[str, Array]]
+    notes: Sequence[str] = ()
+
+
+class Chain(Protocol):
+    """What the description of a machine says of the axes that were recorded."""
+
+    @property
+    def time(self) -> Clock:
+        """The clock of the samples."""
+
+    @property
+    def axes(self) -> Sequence[Axis]:
+        """Every axis, with its signals."""
+
+
+def axes_run(name: str, tables: Tables, machine: Chain) -> AxesRun:
+    """Bring one record onto a uniform clock.
+
+    Raises:
+        MachineError: a column is missing, values are not finite, stamps run backwards or have holes, a unit slips.
+    """
+    raw: dict[str, dict[str, Stamped]] = {}
+    tables, mended = _without_repeats(tables, machine, name)
+    polled = bool(mended)
+    for axis in machine.axes:
+        raw[axis.name] = {
+            which: _mended(column, tables, machine.time, name, (axis.name, which), mended)
+            for which, column in _columns(axis).items()
+        }
+        mended += _unwrap(axis, raw[axis.name], name)
+        mended += _without_glitches(axis, raw[axis.name], name)
+        _check_velocity(axis, raw[axis.name]["position"], tables, machine.time, name)
+    clock, period, notes = _clock([s for a in raw.values() for s in a.values()], machine.time, name, polled)
+    signals = {
+        a: {k: _onto(clock, t, x, polled and k in ENCODERS) for k, (t, x) in found.items()} for a, found in raw.items()
+    }
+    for axis in machine.axes:
+        check_units(axis, signals[axis.name], name)
+        mended += _turned(axis, signals[axis.name], name)
+        mended += _signed(axis, clock, signals[axis.name], name)
+    return AxesRun(name, period, signals, [*dict.fromkeys(mended), *notes])
+
+
+def _mended(column: Column, tables: Tables, clock: Clock, run: str, of: tuple[str, str], notes: list[str]) -> Stamped:
+    """Return the readings of a column with their stamps, without those that are missing or written twice."""
+    stamps, x = stamps_of(column, tables, clock, run), pick(column, tables, run, finite=False)
+    what = f"{run}: {of[0]}.{of[1]} ({column.column})"
+    if x.ndim != 1:
+        raise MachineError(f"{what} is a list at each sample", value=x.shape, limit="1 number", remedy="give `index`")
+    if stamps is not None:
+        if len(stamps) != len(x):
+            raise MachineError(
+                f"{what}: time and signal differ in length", value=len(x), limit=len(stamps), remedy="check columns"
+            )
+        stamps, keep, note = even_stamps(stamps, run)
+        x = x[keep]
+        notes += [note] if note else []
+    known, note = known_readings(x, stamps is not None, what)
+    notes += [note] if note else []
+    stamps, x = _only(stamps, x, known)
+    fresh = fresh_readings(x) if of[1] in (*READINGS, "reference") else np.ones(len(x), dtype=bool)
+    if not fresh.all() and (of[1] in READINGS or goes_smoothly(x[fresh])):
+        stamps, x = _only(stamps, x, fresh)
+        notes.append(f"{what} is held for {hold_of(fresh):.0f} rows: slower than the log; its new readings are taken")
+    if of[1] in POSITIONS and is_speed(column, tables, run):
+        x = integrated(stamps, x, clock)
+        notes.append(f"{what} is a velocity; integrated, so that places count from the first sample")
+    return stamps, x
+
+
+def _without_repeats(tables: Tables, machine: Chain, run: str) -> tuple[Tables, list[str]]:
+    """Return the tables without the rows that repeat their predecessor in all described columns, and a note for each.
+
+    Where the clock is a rate each row has its place: those rows are interpolated.
+    """
+    named = {find(c.column, tables, run) for axis in machine.axes for c in _columns(axis).values()}
+    out, notes = dict(tables), []
+    for table in sorted({table_of(column) for column in named}):
+        own = [tables[c] for c in named if table_of(c) == table and len(tables[c])]
+        if len({len(x) for x in own}) != 1 or any(not np.issubdtype(x.dtype, np.number) for x in own):
+            continue
+        fresh = fresh_rows(own)
+        if fresh.all():
+            continue
+        rows = [c for c, x in tables.items() if table_of(c) == table and x.ndim and len(x) == len(fresh)]
+        timed = machine.time.column is not None
+        out |= {c: tables[c][fresh] if timed else filled(tables[c], fresh) for c in rows if timed or c in named}
+        lost = int((~fresh).sum())
+        notes.append(
+            f"{run}: {lost} of {len(fresh)} rows repeat the row before in every column: polled twice; "
+            f"{'left out' if timed else 'interpolated'}"
+        )
+    return out, notes
+
+
+def _columns(axis: Axis) -> dict[str, Column]:
+    """Return the recorded signals of an axis."""
+    found = {which: getattr(axis.signals, which) for which in SIGNALS}
+    return {which: column for which, column in found.items() if column is not None}
+
+
+def _turned(axis: Axis, signals: dict[str, Array], run: str) -> list[str]:
+    """Turn places that count against the position; return a note for each."""
+    notes = []
+    for which in OTHERS:
+        if which in signals and counts_backwards(signals[which], signals["position"]):
+            signals[which] = -signals[which]
+            notes.append(f"{run}: {axis.name}.{which} counts against the position; turned")
+    return notes
+
+
+def _only(stamps: Array | None, x: Array, kept: Mask) -> Stamped:
+    """Return the readings that are kept; without stamps the others are interpolated, since each has its place."""
+    if stamps is not None:
+        return stamps[kept], x[kept]
+    place = np.arange(len(x))
+    return None, np.interp(place, place[kept], x[kept])
+
+
+def _without_glitches(axis: Axis, raw: dict[str, Stamped], run: str) -> list[str]:
+    """Leave impossible readings out; return a note for each signal that had some."""
+    notes = []
+    for which in READINGS:
+        if which in raw:
+            stamps, x = raw[which]
+            bad = glitches(x)
+            if len(bad):
+                kept = np.ones(len(x), dtype=bool)
+                kept[bad] = False
+                raw[which] = _only(stamps, x, kept)
+                worst = float(x[bad[int(np.argmax(np.abs(x[bad])))]])
+                unit = ("N m" if axis.motion == "rotary" else "N") if which == "effort" else axis.unit_of_position
+                notes.append(
+                    f"{run}: {axis.name}.{which}: {len(bad)} readings are far off those beside them, such as "
+                    f"{worst:.4g} {unit}; interpolated"
+                )
+    return notes
+
+
+def _unwrap(axis: Axis, raw: dict[str, Stamped], run: str) -> list[str]:
+    """Join the turns of angles that were recorded within one turn; return a note for each such signal."""
+    notes = []
+    for which in POSITIONS if axis.motion == "rotary" else ():
+        if which in raw:
+            stamps, x = raw[which]
+            jumps = np.abs(np.abs(np.diff(x)) - 2.0 * np.pi) < WRAP * 2.0 * np.pi
+            if jumps.any():
+                raw[which] = stamps, np.unwrap(x)
+                notes.append(f"{run}: {axis.name}.{which} wraps {int(jumps.sum())} times within a turn; turns joined")
+    return notes
+
+
+def _check_velocity(axis: Axis, position: Stamped, tables: Tables, clock: Clock, run: str) -> None:
+    """Refuse a clock or a unit that the recorded velocity of an axis contradicts; raises MachineError."""
+    if (column := axis.signals.velocity) is None:
+        return
+    what = f"{run}: {axis.name}.velocity ({column.column})"
+    stamps, v = _mended(column, tables, clock, run, (axis.name, "velocity"), [])
+    t, x = position
+    if t is None or stamps is None:
+        t = stamps = np.arange(len(x)) / (clock.rate or 1.0)
+    check_speed(speed_ratio(t, x, np.interp(t, stamps, v)), clock.unit if clock.rate is None else None, what)
+
+
+def _signed(axis: Axis, clock: Array, signals: dict[str, Array], run: str) -> list[str]:
+    """Give an effort that is a magnitude the sign of the motion; return a note that says so."""
+    column = axis.signals.effort
+    if column is None:
+        return []
+    x, effort = signals["position"], signals["effort"]
+    told = column.signed_by == MOTION
+    if not told and (column.signed_by is not None or not is_magnitude(clock, x, effort)):
+        return []
+    signals["effort"] = np.abs(effort) * signs_of(clock, x)
+    why = "as the description says" if told else "because it is never below zero and clearer so"
+    return [f"{run}: {axis.name}.effort ({column.column}) has the sign of the motion, {why}"]
+
+
+def _clock(found: list[Stamped], clock: Clock, run: str, polled: bool) -> tuple[Array, float, list[str]]:
+    """The uniform clock (n,) of all signals, its period, and a note where stamps are off it.
+
+    Rows of a `polled` log that were left out are no periods that its clock missed.
+    """
+    lengths = {len(x) for _, x in found}
+    if min(lengths) < MIN_SAMPLES:
+        raise MachineError(
+            f"{run}: too short", value=min(lengths), limit=f"{MIN_SAMPLES} samples", remedy="record longer"
+        )
+    if clock.rate is not None:
+        if len(lengths) > 1:
+            raise MachineError(f"{run}: columns differ in length", value=sorted(lengths), remedy="give a time column")
+        return np.arange(min(lengths)) / clock.rate, 1.0 / clock.rate, []
+    stamps = [_checked(t, run) for t, _ in found if t is not None]
+    period = float(max(np.median(np.diff(t)) for t in stamps))  # of the slowest signal: between its samples is nothing
+    start, end = max(t[0] for t in stamps), min(t[-1] for t in stamps)
+    if end - start < (MIN_SAMPLES - 1) * period * (1.0 - ROUNDING):
+        raise MachineError(
+            f"{run}: the signals hardly overlap",
+            value=f"{end - start:.3g} s",
+            remedy="check the time unit, or state `offsets` of the clock",
+        )
+    missed = max((missed_periods(t) for t in stamps), key=lambda x: int(x.sum()))
+    notes = [missing_note(missed, period, run)] if len(missed) and not polled else []
+    uneven = max(float(np.max(np.abs(np.diff(t) - period))) for t in stamps) / period
+    note = f"{run}: stamps are off the grid by up to {uneven:.2g} periods; resampled every {period:.4g} s"
+    samples = int((end - start) / period + 1e-6) + 1  # the last stamp counts though rounding may put it just before
+    return start + period * np.arange(samples), period, notes + ([note] if uneven > JITTER else [])
+
+
+def _checked(t: Array, run: str) -> Array:
+    """Stamps (n,), refused where they run backwards or have a hole."""
+    steps = np.diff(t)
+    if (steps <= 0.0).any():
+        at = int(np.argmax(steps <= 0.0)) + 1
+        raise MachineError(
+            f"{run}: time does not increase at sample {at}",
+            value=f"{steps[at - 1]:.3g} s",
+            remedy="cut the record there",
+        )
+    hole = float(steps.max() / np.median(steps))
+    if hole > LONGEST_HOLE:
+        at = int(np.argmax(steps)) + 1
+        raise MachineError(
+            f"{run}: a hole of {steps[at - 1]:.3g} s before sample {at}",
+            value=f"{hole:.0f} periods",
+            limit=f"{LONGEST_HOLE:.0f} periods",
+            remedy="import the parts as runs of their own",
+        )
+    return t
+
+
+def _onto(clock: Array, t: Array | None, x: Array, smooth: bool) -> Array:
+    """Samples interpolated to the clock (n,), by a spline where they are `smooth`; those without stamps are on it."""
+    if t is None:
+        return np.asarray(x, dtype=float)
+    return np.asarray(CubicSpline(t, x)(clock) if smooth else np.interp(clock, t, x), dtype=float)
+
+
+def parts_of_record(name: str, tables: Tables, machine: Chain) -> tuple[dict[str, Tables], str]:
+    """Return the parts of a record whose clock has holes or jumps back, and a note; else the record itself."""
+    columns = [c for axis in machine.axes for c in _columns(axis).values()]
+    one = len({table_of(c.column) for c in columns}) == 1
+    clock = machine.time.column
+    if clock is None or not one:
+        return {name: tables}, ""
+    table = table_of(columns[0].column)
+    try:
+        return cut(name, tables, find(f"{table}/{clock}" if table else clock, tables, name))
+    except MachineError:
+        return {name: tables}, ""  # the reader names what is missing

@@ -1,0 +1,191 @@
+"""One axis' signals of a run, filtered and sampled on the residual grid."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+from sher3_diagnosis.channel import Array, Mask
+from sher3_diagnosis.filter import BANDWIDTH, DECIMATED_RATE, EDGE, SHORT, low_pass
+
+from sher3_chain.axes.description import Axis
+from sher3_chain.axes.identification.noise import cut_off
+from sher3_chain.axes.readings.level import at_a_level, off
+from sher3_chain.axes.record import AxesRun
+
+NYQUIST_SHARE = 0.4
+"""Cut-off over the Nyquist rate where a record is too slow for the engine's: two differentiations must survive it."""
+
+
+@dataclass(frozen=True)
+class AxisSignals:
+    """Signals of one axis, (n, 1) each in SI units; None where a signal was not recorded.
+
+    The second index is the axis, so that the laws of the effects read one axis and a robot's five alike.
+
+    Attributes:
+        name: of the run; `excitation`: the name that repeats share.
+        period: of the samples, s.
+        motor: position of the axis' encoder.
+        effort: measured force, or the force the command asks for.
+        reference, command: as recorded.
+        load: position of the second encoder.
+        nominal: force that the user's own model asks for, less what is known to be applied from outside.
+        applied: known force from outside, positive along the motion.
+        temperature: of the axis, deg C.
+        bandwidth: cut-off of the low-pass, Hz.
+        limited: (n,) True where the measured force says nothing: flat at its largest reading, which the command does
+            not ask, or exactly zero while the drive is off.
+        UNSTATED: periods within which nobody states the moment of an effort; it is put right before anything is judged.
+    """
+
+    UNSTATED: ClassVar[float] = 1.0
+
+    name: str
+    excitation: str
+    period: float
+    motor: Array
+    effort: Array | None = None
+    reference: Array | None = None
+    command: Array | None = None
+    load: Array | None = None
+    nominal: Array | None = None
+    applied: Array | None = None
+    temperature: Array | None = None
+    bandwidth: float = BANDWIDTH
+    limited: Mask | None = None
+
+    @property
+    def ticks(self) -> int:
+        """Number of samples."""
+        return len(self.motor)
+
+    @cached_property
+    def stage_clock(self) -> Array:
+        """Time since the first sample, (n,), s."""
+        return self.period * np.arange(self.ticks, dtype=np.float64)
+
+    @cached_property
+    def stride(self) -> int:
+        """Samples of the record per sample of the residual grid: 2.5 grid samples per period of the cut-off."""
+        if self.ticks < SHORT:
+            return 1
+        return max(1, round(BANDWIDTH / self.bandwidth / (DECIMATED_RATE * self.period)))
+
+    @property
+    def rate(self) -> float:
+        """Samples per second of the residual grid, Hz."""
+        return 1.0 / (self.stride * self.period)
+
+    @cached_property
+    def grid(self) -> NDArray[np.int64]:
+        """Samples of the record that are on the residual grid, (g,)."""
+        return np.arange(0, self.ticks, self.stride)
+
+    @property
+    def edge(self) -> float:
+        """Samples at each end of the record, and at each side of a step, that the filter spoils."""
+        short = self.ticks < SHORT  # too short for the filter: only the differences lose their ends
+        return 2.0 if short else EDGE * BANDWIDTH / self.bandwidth / self.period
+
+    @cached_property
+    def inner(self) -> Mask:
+        """(g,) False where the ends of the filter spoil a sample."""
+        return (self.grid >= self.edge) & (self.grid < self.ticks - self.edge)
+
+    @cached_property
+    def loaded_ok(self) -> Mask:
+        """(g,) True where the load on the axis is known: everywhere, since none acts."""
+        return np.ones(len(self.grid), dtype=bool)
+
+    @cached_property
+    def smooth(self) -> Array:
+        """Position after the low-pass, (n, 1)."""
+        return self.filtered(self.motor)
+
+    @cached_property
+    def velocity(self) -> Array:
+        """Velocity from the smoothed position, (n, 1)."""
+        return np.gradient(self.smooth, self.period, axis=0)
+
+    @cached_property
+    def acceleration(self) -> Array:
+        """Second difference of the position, not smoothed, (n, 1)."""
+        out = np.zeros_like(self.motor)
+        out[1:-1] = np.diff(self.motor, 2, axis=0) / self.period**2
+        return out
+
+    def filtered(self, x: Array) -> Array:
+        """Return an (n, ...) signal after the low-pass; n may differ from the run's."""
+        return low_pass(x, self.period, self.bandwidth)
+
+    def to_grid(self, x: Array) -> Array:
+        """Low-pass an (n, ...) signal and sample it on the residual grid -> (g, ...)."""
+        return self.filtered(x)[self.grid]
+
+
+def signals_of(run: AxesRun, axis: Axis, excitation: str) -> AxisSignals:
+    """Return the signals of one axis.
+
+    Args:
+        run: the record.
+        axis: of the record.
+        excitation: the name that repeats of the run share.
+    """
+    found = {k: x[:, None] for k, x in run.signals[axis.name].items()}
+    most = min(BANDWIDTH, NYQUIST_SHARE * 0.5 / run.period)
+    return AxisSignals(
+        name=run.name,
+        excitation=excitation,
+        period=run.period,
+        motor=found["position"],
+        effort=_effort(found, axis),
+        reference=found.get("reference"),
+        command=found.get("command"),
+        load=found.get("load"),
+        nominal=_nominal(found),
+        applied=found.get("applied"),
+        temperature=found.get("temperature"),
+        limited=None if axis.servo or axis.free else limited_by_reading(run.signals[axis.name]),
+        bandwidth=most if axis.servo or axis.mass is None else cut_off(found["position"][:, 0], run.period, most),
+    )
+
+
+def _effort(found: dict[str, Array], axis: Axis) -> Array | None:
+    """The force on the axis (n, 1): measured, else what the command asks for; zero where nothing drives it."""
+    law = axis.command_law
+    if "effort" in found:
+        return found["effort"]
+    if "command" in found:
+        return law.gain * (held_mean(found["command"]) if law.held else found["command"])
+    return np.zeros_like(found["position"]) if axis.free else None
+
+
+def _nominal(found: dict[str, Array]) -> Array | None:
+    """The force (n, 1) that the user's model asks of the drive, which need not give what is applied from outside."""
+    parts = [sign * found[name] for name, sign in (("nominal_effort", 1.0), ("applied", -1.0)) if name in found]
+    return np.sum(parts, axis=0) if parts else None
+
+
+def limited_by_reading(found: dict[str, Array]) -> Mask | None:
+    """Return (n,) True where an effort is at a level; not where its command is, too: it is then what the drive gives.
+
+    And where the drive is off. None where there is no effort, or none of it is at a level.
+    """
+    if "effort" not in found:
+        return None
+    at = at_a_level(found["effort"])
+    if "command" in found:
+        at &= ~at_a_level(found["command"])
+    at |= off(found["effort"])
+    return at if at.any() else None
+
+
+def held_mean(command: Array) -> Array:
+    """Return the mean around each sample of a command (n, 1) that is held from one sample to the next."""
+    out = command.copy()
+    out[1:] = 0.5 * (command[1:] + command[:-1])
+    return out

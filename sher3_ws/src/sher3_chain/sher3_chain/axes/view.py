@@ -1,0 +1,318 @@
+"""A run of one axis with its nominal forces, as the effects and the engine see it."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from sher3_diagnosis.channel import Array, Channel, Mask
+from sher3_diagnosis.discover.feature import Quantities, Quantity
+from sher3_diagnosis.evidence import Motion
+from sher3_diagnosis.filter import EDGE, settled
+from sher3_effects.operators import dahl_turned
+from sher3_effects.view import NominalAxis
+
+from sher3_chain.axes.description import Axis
+from sher3_chain.axes.identification.noise import noise_of
+from sher3_chain.axes.signals import AxisSignals
+
+LEAD_OF_STROKE = 0.02
+"""Share of the stroke that stands for the lead of a linear axis where it is not known. Effects search displacements in
+shares of the lead; of a turning axis one turn stands for it."""
+SLIP = 1e-9
+"""Viscous coefficient in place of none, N/(m/s) or N m/(rad/s): effects take it as a scale."""
+SEEN = 5.0
+"""Standard deviations of a noise that nothing passes by chance."""
+STIRRING = 0.01
+"""Share of the travel above which a change is no noise: what a slow record moves by is not taken for one."""
+REFERENCE = 20.0
+"""Temperature, deg C, at which lengths are stated (ISO 1)."""
+SPREAD = 0.5
+"""Periods of the cut-off by which the filter spreads a step."""
+PAST = (0.003, 0.03, 0.3)
+"""Shares of a range over which a state forgets: what went before within a fine, a usual and a coarse stroke."""
+ENOUGH = 0.5
+"""Share of the samples in motion that must be away from such reversals for the others to be left out."""
+STILL = 1e-12
+"""Top speed in place of none, m/s or rad/s: shares of the top speed are taken."""
+
+
+class Loads(NamedTuple):
+    """Nominal loads on the residual grid, (g, 1) each, N or N m.
+
+    Attributes:
+        gravity: weight on the axis.
+        contact_force: known force from outside, positive along the motion; zero where none was recorded.
+    """
+
+    gravity: Array
+    contact_force: Array
+
+
+class AxisView:
+    """A run of one axis with its nominal forces.
+
+    Attributes:
+        run: signals of the axis.
+        described: the axis as its description has it.
+        mass: nominal mass, or the one identified, kg or kg m^2.
+        load_mass: part of it that moves with the second encoder.
+    """
+
+    def __init__(self, run: AxisSignals, axis: Axis, mass: float, load_mass: float = 0.0) -> None:
+        self.run = run
+        self.described = axis
+        self.mass = mass
+        self.load_mass = load_mass
+        self._sliding: dict[float, Array] = {}
+
+    # what the effects read
+
+    def row(self, site: str) -> int:
+        """Return the column of the axis: signals have one."""
+        return 0
+
+    def axis(self, site: str) -> NominalAxis:
+        """Return the nominal constants of the axis."""
+        axis, known = self.described, self.described.lead is not None
+        travel = float(np.ptp(self.run.smooth))
+        return NominalAxis(
+            self.mass,
+            max(axis.viscous, SLIP),
+            self.lead(site),
+            self.top,
+            travel,
+            self.hangs,
+            known,
+            self.load_mass,
+            axis.motion == "rotary",
+            max(axis.encoder_resolution, self.noise),
+        )
+
+    @property
+    def hangs(self) -> bool:
+        """Whether the axis turns and its description says nothing of a weight at an arm."""
+        return self.described.swings
+
+    def lead(self, site: str) -> float:
+        """Return the travel per motor revolution, m or rad; what stands for it where it is not known."""
+        if self.described.lead is not None:
+            return self.described.lead
+        if self.described.motion == "rotary":
+            return 2.0 * np.pi
+        return LEAD_OF_STROKE * max(float(np.ptp(self.run.motor)), self.described.encoder_resolution)
+
+    def sliding(self, axis: int, displacement: float) -> Array:
+        """Return the Dahl state of the axis, -1..1, (n,): +1 after moving forward by a few `displacement`, m or rad."""
+        if displacement not in self._sliding:
+            path, pace = (np.ascontiguousarray(x[:, 0]) for x in (self.run.smooth, self.run.velocity))
+            self._sliding[displacement] = dahl_turned(path, pace, displacement, self.run.period)
+        return self._sliding[displacement]
+
+    @cached_property
+    def path(self) -> Loads:
+        """Nominal weight along the motion, and the known force from outside."""
+        law = self.described.gravity
+        weight = law.constant + law.arm * np.sin(self.position - law.hanging)
+        applied = self.run.applied
+        return Loads(weight, np.zeros_like(weight) if applied is None else self.run.to_grid(applied))
+
+    @cached_property
+    def position(self) -> Array:
+        """Smoothed position on the residual grid, (g, 1)."""
+        return self.run.smooth[self.run.grid]
+
+    @cached_property
+    def velocity(self) -> Array:
+        """Velocity on the residual grid, (g, 1)."""
+        return self.run.velocity[self.run.grid]
+
+    @cached_property
+    def inertial(self) -> Array:
+        """Nominal force that the motion needs, (g, 1): mass * a + viscous * v + weight + the user's own model."""
+        run, viscous = self.run, max(self.described.viscous, SLIP)
+        needed = run.to_grid(self.mass * run.acceleration + viscous * run.velocity) + self.path.gravity
+        if self.load_mass:
+            needed = needed + self.load_mass * self.behind
+        return needed if run.nominal is None else needed + run.to_grid(run.nominal)
+
+    @cached_property
+    def behind(self) -> Array:
+        """Acceleration of the second encoder less that of the first, (g, 1); zero where there is one encoder."""
+        run = self.run
+        if run.load is None:
+            return np.zeros((len(run.grid), 1))
+        bend = np.zeros_like(run.motor)
+        bend[1:-1] = np.diff(run.load, 2, axis=0) / run.period**2
+        return np.asarray(run.to_grid(bend) - run.to_grid(run.acceleration))
+
+    # which samples can be judged
+
+    @cached_property
+    def moving(self) -> Mask:
+        """(g,) True where the axis moves: at rest friction takes any value, and the force balance says nothing."""
+        run = self.run
+        half = max(1, run.stride)
+        before = run.smooth[np.maximum(run.grid - half, 0), 0]
+        after = run.smooth[np.minimum(run.grid + half, run.ticks - 1), 0]
+        return np.abs(after - before) > max(self.described.encoder_resolution, self._jitter)
+
+    @cached_property
+    def noise(self) -> float:
+        """Standard deviation of the encoder's noise, m or rad."""
+        return noise_of(self.run.motor[:, 0], self.run.period)
+
+    @cached_property
+    def _jitter(self) -> float:
+        """Change of the smoothed position that the encoder's noise makes, m or rad; a small part of the travel."""
+        run = self.run
+        white = np.random.default_rng(0).normal(size=(run.ticks, 1))
+        left = self.noise * float(run.filtered(white).std())
+        return min(SEEN * left, STIRRING * float(np.ptp(run.smooth)))
+
+    @cached_property
+    def released(self) -> Mask:
+        """(g,) False for an undriven axis until the filter has forgotten what held it before it was let go."""
+        if not self.described.free:
+            return np.ones(len(self.run.grid), dtype=bool)
+        smeared = self.run.edge - EDGE / self.run.period  # what a lower cut-off than the engine's spoils more
+        return self.run.grid >= self.release + max(smeared, 0.0)
+
+    @cached_property
+    def release(self) -> int:
+        """Sample of the record at which the stretch of motion with the largest travel begins."""
+        edges = np.flatnonzero(np.diff(np.concatenate([[0], self.moving.astype(int), [0]])))
+        q = self.position[:, 0]
+        travel = [abs(q[min(b, len(q) - 1)] - q[a]) for a, b in zip(edges[::2], edges[1::2], strict=True)]
+        return int(self.run.grid[edges[::2][int(np.argmax(travel))]]) if travel else 0
+
+    @cached_property
+    def in_motion(self) -> Mask:
+        """(g,) True where the force balance can be judged: well inside a stretch of motion."""
+        limited = self.run.limited
+        told = self.moving if limited is None else self.moving & ~limited[self.run.grid]
+        inside = self.run.inner & self.released & settled(told, 1)
+        clear = inside & self.clear
+        return clear if clear.sum() >= ENOUGH * inside.sum() and not self.described.free else inside
+
+    @cached_property
+    def clear(self) -> Mask:
+        """(g,) False about a reversal that the samples pass over by more than a count: friction turns in between.
+
+        A count, or the noise. Half a sample more or less then is the whole step of the friction, spread by the filter.
+        """
+        run = self.run
+        pace, turn = run.velocity[:, 0], np.gradient(run.velocity[:, 0])
+        seen = max(self.described.encoder_resolution, self.noise)
+        at = np.flatnonzero((pace[1:] * pace[:-1] < 0.0) & (run.period * np.abs(turn[1:]) > seen))
+        reach = SPREAD / (run.bandwidth * run.period)
+        near = np.searchsorted(at, run.grid)
+        after = run.grid - np.concatenate([[-np.inf], at + 0.5])[near]
+        before = np.concatenate([at + 0.5, [np.inf]])[near] - run.grid
+        return np.asarray(np.minimum(after, before) > reach)
+
+    @cached_property
+    def at_rest(self) -> Mask:
+        """(g,) True well inside a stretch without motion."""
+        return self.run.inner & self.released & settled(~self.moving, 2)
+
+    # what the engine reads
+
+    @property
+    def excitation(self) -> str:
+        """Name that repeats of the run share."""
+        return self.run.excitation
+
+    @property
+    def rate(self) -> float:
+        """Samples per second of the residual grid, Hz."""
+        return self.run.rate
+
+    @cached_property
+    def top(self) -> float:
+        """Largest velocity of the run, m/s or rad/s."""
+        return max(float(np.abs(self.run.velocity).max()), STILL)
+
+    @cached_property
+    def speed_share(self) -> Array:
+        """(g,) speed over the largest of the run."""
+        return np.abs(self.velocity[:, 0]) / self.top
+
+    @property
+    def loaded(self) -> Mask:
+        """(g,) True where a known force from outside acts."""
+        return np.abs(self.path.contact_force[:, 0]) > 0.0
+
+    @cached_property
+    def warmth(self) -> Array:
+        """(g,) temperature above the reference, K; zero where it was not recorded."""
+        warm = self.run.temperature
+        return np.zeros(len(self.run.grid)) if warm is None else self.run.to_grid(warm - REFERENCE)[:, 0]
+
+    @property
+    def temperature_known(self) -> bool:
+        """Whether the temperature was recorded."""
+        return self.run.temperature is not None
+
+    def motion(self, actuator: str) -> Motion | None:
+        """Return the motion of the axis."""
+        return Motion(self.position[:, 0], self.velocity[:, 0], self.top, self.described.lead)
+
+    def inputs(self, actuator: str) -> Array:
+        """Return (g, 3): position, velocity, and direction of the motion, 0 at rest."""
+        velocity = self.velocity[:, 0]
+        return np.column_stack([self.position[:, 0], velocity, np.sign(velocity) * self.moving])
+
+    def quantities(self, site: str) -> dict[str, Array]:
+        """Return quantity, of `sher3_diagnosis.effect.INPUTS`, -> (g, k) columns, as the axis feels them.
+
+        The past of force and path is in Dahl states, which turn over a share of what each goes through. The force is
+        the one that the motion needs; where no mass is known and no force balance judged, the recorded one.
+        """
+        run, needed = self.run, self.inertial
+        if not self.mass and run.effort is not None and run.nominal is None:
+            needed = run.to_grid(run.effort)
+        force = np.interp(run.stage_clock, run.stage_clock[run.grid], needed[:, 0])
+        reach = float(np.ptp(force)) or 1.0
+        pace = np.gradient(force, run.period)
+        loops = [dahl_turned(force, pace, share * reach, run.period)[run.grid] for share in PAST]
+        travel = max(float(np.ptp(run.smooth)), self.described.encoder_resolution)
+        turned = [self.sliding(0, share * travel)[run.grid] for share in PAST]
+        return {
+            "position": self.position,
+            "velocity": self.velocity,
+            "direction": np.column_stack(turned),
+            "acceleration": run.to_grid(run.acceleration),
+            "force": needed,
+            "loading": np.column_stack(loops),
+            "load": self.path.contact_force,
+            "temperature": self.warmth[:, None],
+        }
+
+    # what discovery reads
+
+    @property
+    def step(self) -> float:
+        """Time between two samples of the record, s."""
+        return self.run.period
+
+    def recorded(self, channel: Channel) -> Quantities:
+        """Return what was recorded that the law of a gap might depend on; not the effort, which is the output."""
+        run, unit = self.run, "rad" if self.described.motion == "rotary" else "m"
+        newton = self.described.unit_of_force
+        weight = np.interp(run.stage_clock, run.stage_clock[run.grid], self.path.gravity[:, 0])
+        acceleration = np.gradient(run.velocity[:, 0], run.period)
+        force = self.mass * acceleration + self.described.viscous * run.velocity[:, 0] + weight
+        return {
+            "position": Quantity(run.smooth[:, 0], unit, "the position", "place"),
+            "velocity": Quantity(run.velocity[:, 0], f"{unit}/s", "the velocity", "speed"),
+            "acceleration": Quantity(acceleration, f"{unit}/s^2", "the acceleration", "state"),
+            "force": Quantity(force, newton, "the force that the motion needs", "force"),
+            "load": Quantity(weight, newton, "the weight on the axis", "force"),
+            "time": Quantity(run.stage_clock, "s", "the time since the run began", "clock"),
+        }
+
+    def at_residuals(self, x: Array) -> Array:
+        """Low-pass values of the record and sample them on the residual grid."""
+        return self.run.to_grid(x)

@@ -1,0 +1,203 @@
+"""What changed between conditions: terms that act in some runs alone, beside causes that are common to all.
+
+The common causes are chosen on the runs of the reference, so that no change can pass for one of them. Then changes are
+added one by one while each is worth its price; common causes are fitted again with them, on all runs. An effect that
+explains as much when it acts in all runs alike is no change: the reference left it out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, TypeVar
+
+from sher3_diagnosis.attribute.candidates import Candidates, complexity, cost
+from sher3_diagnosis.attribute.rivals import Attribution, without_term
+from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.effect import Effect, Shape, Signature
+from sher3_diagnosis.evidence import Evidence
+from sher3_diagnosis.fit.fitting import Fit, Term, fit, make_term
+from sher3_diagnosis.fit.term import again
+from sher3_diagnosis.fit.whitened import Whitened
+from sher3_diagnosis.thresholds import NEEDED, PARSIMONY, RIVAL
+
+from sher3_chain.contrast.conditions import Condition
+from sher3_chain.thresholds import CHANGES
+
+E = TypeVar("E", bound=Evidence)
+Finish = Callable[[Candidates, Fit], Fit]
+"""Improves the fit of a change by what its search does not do."""
+
+
+class Changed(Effect):
+    """An effect that acts under one condition alone, beside the same effect as all runs have it.
+
+    Attributes:
+        of: the effect.
+        condition: it acts under, in words; `views`: of its runs, by identity.
+        common: shape and coefficients that all runs have of it, where they have it.
+    """
+
+    def __init__(self, of: Effect, condition: Condition, views: frozenset[int], common: Common | None) -> None:
+        self.of, self.views, self.common = of, views, common
+        self.condition = str(condition)
+        for name in ("id", "family", "stage", "explanation", "places", "units", "companion", "shown_by", "dry", "best"):
+            setattr(self, name, getattr(of, name))
+
+    def channels(self, site: str) -> tuple[Channel, ...]:
+        """Return those of the effect."""
+        return self.of.channels(site)
+
+    def shapes(self, views: Sequence[Any], site: str) -> list[Shape]:
+        """Return the shapes of the effect under its condition; the common one where all runs have it."""
+        return [self.common.shape] if self.common else self.of.shapes([v for v in views if id(v) in self.views], site)
+
+    def refine(self, shape: Shape) -> list[Shape]:
+        """Return the neighbours of a shape that is not common."""
+        return [] if self.common else self.of.refine(shape)
+
+    def signature(self, view: Any, site: str, shape: Shape) -> Signature:
+        """Return what the effect adds under its condition, nothing elsewhere."""
+        found = self.of.signature(view, site, shape)
+        if id(view) in self.views:
+            return found
+        return Signature({c: 0.0 * x for c, x in found.columns.items()}, {c: 0.0 * x for c, x in found.fixed.items()})
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Return the change of the parameters."""
+        return self.of.parameters(shape, coefficients)
+
+    def admissible(self, shape: Shape, coefficients: Array) -> bool:
+        """Return whether what then acts, the common part and the change together, is physically possible."""
+        together = coefficients + self.common.coefficients if self.common else coefficients
+        return self.of.admissible(shape, together)
+
+    def unit(self, name: str, site: str, rotary: bool) -> str:
+        """Return the unit of a parameter of the effect."""
+        return self.of.unit(name, site, rotary)
+
+    def stage_at(self, channel: Channel) -> str:
+        """Return the stage of the effect."""
+        return self.of.stage_at(channel)
+
+
+@dataclass(frozen=True)
+class Common:
+    """A cause that all runs have."""
+
+    shape: Shape
+    coefficients: Array
+
+
+def of_runs(evidence: E, views: frozenset[int]) -> E:
+    """Return the evidence of some runs alone, given by the identity of their views."""
+    data = evidence.data
+    kept = [r for r, view in enumerate(data.views) if id(view) in views]
+    part = Whitened([data.views[r] for r in kept], [data.residuals[r] for r in kept], [data.floors[r] for r in kept])
+    names, nuisance = [evidence.excitations[r] for r in kept], again(part, evidence.nuisance)
+    return replace(evidence, excitations=names, data=part, nuisance=nuisance)
+
+
+def contrasted(
+    evidence: Evidence,
+    common: Attribution,
+    effects: Sequence[Effect],
+    conditions: Sequence[tuple[Condition, frozenset[int]]],
+    finish: Finish = lambda _, found: found,
+) -> Attribution:
+    """Add to the causes of the reference what changed under the other conditions.
+
+    Args:
+        evidence: of all runs.
+        common: causes of the runs of the reference.
+        effects: that may have changed.
+        conditions: each with the identities of the views of its runs.
+        finish: improves the fit of a change.
+    """
+    kept = list(again(evidence.data, common.fit.terms))
+    current, rivals = fit(evidence.data, kept), [_again(evidence, kept, i, common) for i in range(len(kept))]
+    for _ in range(CHANGES):
+        trials = [t for c, views in conditions for t in _trials(evidence, current, effects, c, views, finish)]
+        if not trials:
+            break
+        best = _unless_common(evidence, current, min(trials, key=cost))
+        worth = current.total - best.total
+        if worth < NEEDED * complexity(best.terms[-1]) + PARSIMONY * _explained(evidence, best):
+            break
+        margin = max(NEEDED, RIVAL * worth)
+        rivals.append(tuple(t for t in trials if t.total < best.total + margin and _other(t.terms[-1], best.terms[-1])))
+        current = best
+    explained = tuple(without_term(evidence, current, i).total - current.total for i in range(len(current.terms)))
+    ranking = (*common.ranking, *((),) * (len(current.terms) - len(common.ranking)))
+    return Attribution(current, tuple(rivals), explained, ranking, common.nuisance)
+
+
+def _unless_common(evidence: Evidence, current: Fit, change: Fit) -> Fit:
+    """Return the effect of a change in all runs alike, where the change is not worth its numbers more than that.
+
+    What the reference is too short or too quiet to tell is no change: the other runs may show it for all.
+    """
+    last = change.terms[-1]
+    if not isinstance(last.effect, Changed) or last.effect.common is not None:
+        return change
+    effect = last.effect.of
+    shared = Candidates(evidence, [effect]).best(effect, last.site, current.terms)
+    return shared if shared is not None and shared.total <= change.total + NEEDED else change
+
+
+def _explained(evidence: Evidence, found: Fit) -> float:
+    """Return the loss that all causes explain where the last one shows."""
+    null, shown = evidence.null().loss, found.terms[-1].channels
+    return sum(null[key] - loss for key, loss in found.loss.items() if key[1] in shown)
+
+
+def _again(evidence: Evidence, kept: Sequence[Term], index: int, common: Attribution) -> tuple[Fit, ...]:
+    """Fit the rivals of a common cause to all runs."""
+    others = [t for j, t in enumerate(kept) if j != index]
+    own = [f.terms[-1] for f in common.rivals[index]]
+    return tuple(fit(evidence.data, [*others, make_term(evidence.data, t.effect, t.site, t.shape)]) for t in own)
+
+
+def _trials(
+    evidence: Evidence,
+    current: Fit,
+    effects: Sequence[Effect],
+    condition: Condition,
+    views: frozenset[int],
+    finish: Finish,
+) -> list[Fit]:
+    """Fit every effect at every site as a change under one condition."""
+    have = {t.key: Common(t.shape, current.of(i)) for i, t in enumerate(current.terms) if t.effect.condition is None}
+    taken = {t.key for t in current.terms if t.effect.condition == str(condition)}
+    out = []
+    for effect in effects:
+        sites = [s for place in effect.places for s in evidence.places.get(place, ()) if (effect.id, s) not in taken]
+        for site in sites:
+            changed = Changed(effect, condition, views, have.get((effect.id, site)))
+            candidates = Candidates(evidence, [changed])
+            found = candidates.best(changed, site, current.terms)
+            if found is not None:
+                out.append(finish(candidates, found))
+    return out
+
+
+def _other(a: Term, b: Term) -> bool:
+    return a.effect.id != b.effect.id
+
+
+def change_notes(attribution: Attribution, conditions: Sequence[Condition]) -> list[str]:
+    """Return in words what changed under each condition."""
+    if not conditions:
+        return []
+    out = []
+    for condition in conditions:
+        of = [i for i, t in enumerate(attribution.fit.terms) if t.effect.condition == str(condition)]
+        said = [_in_words(attribution.fit, i) for i in of] or ["nothing changed that the library knows"]
+        out.append(f"{condition} against {condition.reference}, all else held common: {'; '.join(said)}")
+    return out
+
+
+def _in_words(found: Fit, index: int) -> str:
+    term = found.terms[index]
+    values = term.effect.parameters(term.shape, found.of(index))
+    return f"{term.effect.id} on {term.site}: " + ", ".join(f"{n} {x:+.3g}" for n, x in values.items())

@@ -1,0 +1,83 @@
+"""The model of an arm before its joints are chosen: rigid bodies, and the `MjModel` where it is one of MuJoCo."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import pinocchio as pin
+from sher3_common import FileError, read_text
+from sher3_machines.errors import MachineError
+
+from sher3_chain.manipulator.mjcf.bodies import model_from_mjcf
+from sher3_chain.manipulator.mjcf.drives import Driven, driven
+from sher3_chain.manipulator.mjcf.reading import MAX_BYTES, compiled, is_mjcf
+
+
+@dataclass(frozen=True)
+class Bodies:
+    """A model of an arm.
+
+    Attributes:
+        label: path or name, for errors.
+        pinocchio: all bodies and joints.
+        mujoco: `MjModel` of an MJCF file; None for a URDF.
+    """
+
+    label: str
+    pinocchio: pin.Model
+    mujoco: Any = None
+
+    @property
+    def joints(self) -> dict[str, bool]:
+        """Joint -> whether it slides, of every joint that turns or slides, in the model's order."""
+        model = self.pinocchio
+        return {model.names[j]: slides(model.joints[j]) for j in range(1, model.njoints) if model.joints[j].nv == 1}
+
+    @cached_property
+    def drives(self) -> dict[str, Driven]:
+        """Joint -> how the model drives it; nothing of a URDF, which has no drives."""
+        return {} if self.mujoco is None else driven(self.mujoco)
+
+
+def read_bodies(path: Path) -> Bodies:
+    """Read a URDF or MJCF file; raises MachineError where it cannot be read."""
+    try:
+        return bodies_of(read_text(path, MAX_BYTES), str(path), path)
+    except FileError as error:
+        remedy = "give a URDF or MJCF file"
+        raise MachineError(f"{path}: cannot be read", value=str(error)[:120], remedy=remedy) from error
+
+
+def bodies_of(text: str, label: str, path: Path | None = None) -> Bodies:
+    """Return the model of a text, URDF or MJCF.
+
+    Args:
+        text: of the file.
+        label: that errors name.
+        path: of the file, beside which meshes are; None: the text stands alone.
+
+    Raises:
+        MachineError: MuJoCo is missing, the text cannot be read, or a joint of an MJCF neither turns nor slides.
+    """
+    if "<!DOCTYPE" in text:  # what declares entities can expand without bound or name other files
+        raise MachineError(f"{label}: has a document type", value="<!DOCTYPE", remedy="give a plain file")
+    if is_mjcf(text):
+        return bodies_of_mujoco(compiled(text, label, path), label)
+    try:
+        return Bodies(label, pin.buildModelFromXML(text))
+    except (ValueError, RuntimeError) as error:
+        remedy = "give a URDF or MJCF file"
+        raise MachineError(f"{label}: cannot be read", value=str(error)[:120], remedy=remedy) from error
+
+
+def bodies_of_mujoco(model: Any, label: str) -> Bodies:
+    """Return an `MjModel`; raises MachineError where a joint neither turns nor slides."""
+    return Bodies(label, model_from_mjcf(model, label), model)
+
+
+def slides(joint: pin.JointModel) -> bool:
+    """Return whether a joint slides."""
+    return joint.shortname().startswith("JointModelP")

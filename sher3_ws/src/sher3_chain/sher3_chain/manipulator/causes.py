@@ -1,0 +1,286 @@
+"""How the causes of a serial arm are looked for: joint by joint, without and with a payload that all joints carry.
+
+What a joint does alone is a matter of its own force balance. A payload shows on several joints at once; it is taken
+where it and what the joints then still need are cheaper than what the joints need without it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+
+from sher3_diagnosis.attribute.candidates import Candidates, cost, possible, price
+from sher3_diagnosis.attribute.rivals import Attribution, without_term
+from sher3_diagnosis.attribute.search import Say, attribute
+from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.effect import Effect
+from sher3_diagnosis.evidence import Evidence
+from sher3_diagnosis.fit.fitting import Fit, Term, fit, make_term
+from sher3_diagnosis.judge.left_over import down_to_floor
+from sher3_diagnosis.thresholds import NEEDED, PARSIMONY, RIVAL
+from sher3_diagnosis.tolerance import NUISANCE
+from sher3_effects.friction.coulomb_friction import CoulombFriction
+from sher3_effects.friction.viscous_friction import ViscousFriction
+from sher3_effects.inertia.payload_mass import PayloadOnLink
+from sher3_effects.timing.sensor_delay import SensorDelay
+
+from sher3_chain.axes.identification.away_from_reversals import borne_out
+from sher3_chain.axes.identification.balance_at_rest import Bounded
+from sher3_chain.axes.identification.friction_in_motion import without_slow
+from sher3_chain.manipulator.evidence import ArmMotionEvidence, channel_of, channels_of, of_channel
+from sher3_chain.manipulator.readings.lateness import Late, TimedEffort, lateness
+from sher3_chain.thresholds import CAUSES_OF_JOINT, LEAST_CLOSURE
+
+HEAVIEST = 2.0
+"""Mass of a payload over that of the whole arm at most: what is heavier is no body on a link."""
+CENTRE_ROUNDS = 3
+"""Rounds on the centre of a payload: its inertia is that of a point there, and small beside its weight."""
+
+
+@dataclass(frozen=True)
+class Explained:
+    """One set of causes of the whole arm.
+
+    Attributes:
+        fit: all terms together; the payload first of the causes where there is one.
+        alone: what the engine's search said of each force balance, and of each pair of encoders, alone.
+    """
+
+    fit: Fit
+    alone: Sequence[Attribution]
+
+    @property
+    def cost(self) -> float:
+        """Held-out loss and the price of every number."""
+        return spent(self.fit)
+
+
+def causes_of_arm(evidence: ArmMotionEvidence, candidates: Candidates, say: Say) -> Attribution:
+    """Choose the causes of an arm in motion, with their rivals; none where no joint has a gap."""
+    if not down_to_floor(evidence.channels, evidence, evidence.null()):
+        return Attribution(evidence.null(), (), (), nuisance=len(evidence.nuisance))
+    found = _explained(evidence, candidates, None, say)
+    loaded = _payload(evidence, candidates)
+    if loaded is None:
+        return _with_rivals(evidence, candidates, found, None)
+    other = _explained(evidence, candidates, loaded, say)
+    best, second = (other, found) if other.cost < found.cost and closes(evidence, other) else (found, other)
+    return _with_rivals(evidence, candidates, best, second)
+
+
+def _explained(evidence: ArmMotionEvidence, candidates: Candidates, payload: Fit | None, say: Say) -> Explained:
+    """Search every joint for causes beside a payload, and fit all of them together.
+
+    What lies between two encoders says nothing of a force balance, since the links move as their own encoders say.
+    """
+    effects = [e for e in candidates.effects if e.places == ("axis",)]
+    beside = _added(evidence, payload) if payload is not None else ()
+    alone: list[Attribution] = []
+    for channel in (c for joint in evidence.judged for c in channels_of(joint)):
+        own = of_channel(evidence, channel, beside)
+        say(f"{channel}{' beside a payload' if payload is not None else ''}")
+        balance = channel == channel_of(channel.actuator)
+        late = lateness(evidence, channel.actuator, beside) if balance else None
+        alone.append(_beside_delay(own, late, effects, say) if balance else _searched(own, effects, say))
+    terms = [*evidence.nuisance, *([payload.terms[-1]] if payload is not None else [])]
+    for found in alone:
+        terms += [candidates.term(t.effect, t.site, t.shape) for t in _causes(found)]
+    return Explained(fit(evidence.data, terms), alone)
+
+
+def _causes(found: Attribution) -> list[Term]:
+    return [t for t in found.fit.terms if t.effect.family != NUISANCE]
+
+
+class PlainFirst(Bounded):
+    """Candidates of which two plain laws come before a richer one that contains the first of them.
+
+    Friction that varies with the position takes up a viscous one as long as that is not there. It is a cause where it
+    is worth its numbers beside both.
+    """
+
+    def search(self, channels: Collection[Channel], given: Sequence[Term] = ()) -> list[Fit]:
+        """Search as the engine does; the plain law first where it and another plain one are as cheap as the best."""
+        found = super().search(channels, given)
+        if not found:
+            return found
+        best = found[0].terms[-1]
+        own = [f for f in found if f.terms[-1].site == best.site]
+        first = next((f for f in own if f.terms[-1].effect.id in best.effect.extends), None)
+        if first is None:
+            return found
+        plain = [f.terms[-1] for f in own if f is not first and not f.terms[-1].effect.extends]
+        pairs = [fit(self.evidence.data, [*first.terms, term]) for term in plain]
+        cheaper = any(pair.admissible and spent(pair) <= spent(found[0]) for pair in pairs)
+        return [first, *(f for f in found if f is not first)] if cheaper else found
+
+
+def _searched(own: Evidence, effects: Sequence[Effect], say: Say) -> Attribution:
+    """Search one channel for causes."""
+    left = partial(down_to_floor, own.channels, own)
+    return borne_out(own, attribute(PlainFirst(own, effects), left, say, CAUSES_OF_JOINT))
+
+
+def _beside_delay(own: Evidence, late: Late | None, effects: Sequence[Effect], say: Say) -> Attribution:
+    """Search the force balance of a joint without and beside a late effort; return what is cheaper.
+
+    The delay is told by its shape: causes may be at the floor without it, and a fit would take up a viscous friction or
+    how a dry one turns. Where the shape tells none, none is looked for. They are compared away from reversals, where a
+    dry friction is no matter of a moment.
+    """
+    others = [e for e in effects if not isinstance(e, SensorDelay)]
+    if late is not None and late.told and not late.sure:
+        others = list(effects)
+    found = _searched(own, others, say)
+    if late is None or not late.sure or len(others) == len(effects):
+        return found
+    site = own.places["axis"][0]
+    trials = [make_term(own.data, TimedEffort(), site, shape) for shape in late.shapes]
+    best = min(trials, key=lambda term: fit(own.data, [*found.fit.terms, term]).total)
+    beside = _searched(replace(own, nuisance=(best,)), others, say)
+    return beside if beside.fit.admissible and _worth(own, site, found.fit, beside.fit) > NEEDED else found
+
+
+def _worth(own: Evidence, site: str, without: Fit, beside: Fit) -> float:
+    """Return by how much a fit lowers the loss away from reversals, in units of what it leaves there.
+
+    The floor of an arm counts the noise of all encoders at their worst; a delay shows in what is really left.
+    """
+    away = without_slow(own, {site}).data
+    again = ([make_term(away, t.effect, t.site, t.shape) for t in found.terms] for found in (without, beside))
+    first, second = (fit(away, terms).total for terms in again)
+    return (first - second) * sum(away.samples.values()) / max(second, 1.0)
+
+
+def spent(found: Fit) -> float:
+    """Return the held-out loss of a fit and the price of every number."""
+    return found.total + sum(price(t) for t in found.terms)
+
+
+def _payload(evidence: ArmMotionEvidence, candidates: Candidates) -> Fit | None:
+    """Return the fit of a payload at the link that needs it most, beside plain friction; None where none is needed."""
+    page = next((e for e in candidates.effects if isinstance(e, PayloadOnLink)), None)
+    if page is None:
+        return None
+    rubbing = [(e, j) for j in evidence.judged for e in _plain(candidates)]
+    plain = [*evidence.nuisance, *(candidates.term(e, j, _middle(e, evidence, j)) for e, j in rubbing)]
+    base, null = fit(evidence.data, plain), evidence.null().total
+    trials = [t for link in evidence.places["link"] if (t := _at(evidence, candidates, page, link, plain)) is not None]
+    if not trials:
+        return None
+    best = min(trials, key=cost)
+    worth = NEEDED * best.terms[-1].width + PARSIMONY * (null - base.total)
+    worthy = base.total - best.total > worth and shows_on_enough(base, best)
+    return best if worthy else None
+
+
+def shows_on_enough(base: Fit, best: Fit) -> bool:
+    """Return whether a payload, the last term of `best`, is seen by two of the joints that carry it, or the only one.
+
+    A payload that one joint of several feels is an inertia or a force of that joint.
+    """
+    carrying = best.terms[-1].channels
+    gains = dict.fromkeys(carrying, 0.0)
+    for (run, channel), loss in best.loss.items():
+        if channel in gains:
+            gains[channel] += base.loss.get((run, channel), loss) - loss
+    return sum(gain > NEEDED for gain in gains.values()) >= min(2, len(carrying))
+
+
+def closes(evidence: ArmMotionEvidence, loaded: Explained) -> bool:
+    """Return whether a payload, the first term, shrinks the gaps of joints that carry it by a share worth a name."""
+    first = len(evidence.nuisance)
+    carrying = loaded.fit.terms[first].channels
+    gap = sum(loss for (_, channel), loss in evidence.null().loss.items() if channel in carrying)
+    return without_term(evidence, loaded.fit, first).total - loaded.fit.total > LEAST_CLOSURE * gap
+
+
+def _plain(candidates: Candidates) -> list[Effect]:
+    ids = (CoulombFriction.id, ViscousFriction.id)
+    return [e for e in candidates.effects if e.id in ids]
+
+
+def _middle(effect: Effect, evidence: ArmMotionEvidence, joint: str) -> dict[str, float]:
+    shapes = effect.shapes(evidence.views, joint)
+    return dict(shapes[len(shapes) // 2])
+
+
+def _at(
+    evidence: ArmMotionEvidence, candidates: Candidates, page: Effect, link: str, plain: Sequence[Term]
+) -> Fit | None:
+    """Fit a payload at a link."""
+    trial = fit(evidence.data, [*plain, candidates.term(page, link, {})])
+    if not possible(trial):  # friction that is not there may fit below zero
+        return None
+    found = centred(candidates, trial)
+    arm, carried = evidence.records[0].model.mass, page.parameters({}, found.of(len(plain)))["mass"]
+    return found if not arm or carried < HEAVIEST * arm else None
+
+
+def centred(candidates: Candidates, found: Fit) -> Fit:
+    """Return a fit with the inertia of its last term, where that is a payload, about the centre of the round before."""
+    last = len(found.terms) - 1
+    page, link = found.terms[last].effect, found.terms[last].site
+    for _ in range(CENTRE_ROUNDS if page.id == PayloadOnLink.id else 0):
+        values = page.parameters({}, found.of(last))
+        shape = {name: round(values[name], 4) for name in "xyz"}
+        trial = fit(candidates.evidence.data, [*found.terms[:last], candidates.term(page, link, shape)])
+        if not possible(trial):
+            break
+        found = trial
+    return found
+
+
+def _added(evidence: ArmMotionEvidence, loaded: Fit) -> list[dict[Channel, Array]]:
+    """Return what the last term of a fit adds to the residuals of every block, (g, 1) in SI units."""
+    term, coefficients = loaded.terms[-1], loaded.of(len(loaded.terms) - 1)
+    seen: dict[int, dict[Channel, Array]] = {}
+    for view in evidence.views:
+        if id(view) not in seen:
+            columns = term.effect.signature(view, term.site, term.shape).columns
+            seen[id(view)] = {c: x @ coefficients for c, x in columns.items()}
+    return [seen[id(view)] for view in evidence.views]
+
+
+def _with_rivals(
+    evidence: ArmMotionEvidence, candidates: Candidates, best: Explained, second: Explained | None
+) -> Attribution:
+    """Add to every cause what would explain as much: rivals at its joint, and for a payload what takes its place."""
+    terms, rivals, ranking = best.fit.terms, [], []
+    alike = second is not None and _alike(evidence, best, second)
+    of_joints = {_name(t): (found, i) for found in best.alone for i, t in enumerate(found.fit.terms)}
+    for i, term in enumerate(terms):
+        others = [t for j, t in enumerate(terms) if j != i]
+        if _name(term) in of_joints:
+            found, k = of_joints[_name(term)]
+            own = [f.terms[-1] for f in found.rivals[k]]
+            ranking.append(found.ranking[k])
+        else:
+            own = []
+            ranking.append(())
+        trials = [fit(evidence.data, [*others, candidates.term(t.effect, t.site, t.shape)]) for t in own]
+        if alike and second is not None:
+            taken = {t.key for t in terms}
+            new = [t for t in second.fit.terms if t.key not in taken]
+            kept = {t.key for t in second.fit.terms}
+            if term.key not in kept:
+                trials += [fit(evidence.data, [*others, t]) for t in new]
+        rivals.append(tuple(trials))
+    explained = tuple(without_term(evidence, best.fit, i).total - best.fit.total for i in range(len(terms)))
+    return Attribution(best.fit, tuple(rivals), explained, tuple(ranking), len(evidence.nuisance))
+
+
+def _name(term: Term) -> tuple[object, ...]:
+    """Return what tells a term from all others: a late effort and a late encoder of one joint differ by shape alone."""
+    return (*term.key, *sorted(term.shape.items()))
+
+
+def _alike(evidence: ArmMotionEvidence, best: Explained, second: Explained) -> bool:
+    """Whether a second set of causes explains as much as the best one, but for the share that a rival may leave.
+
+    The share is of what those causes explain that the second set does not have.
+    """
+    kept = {t.key for t in second.fit.terms}
+    without = fit(evidence.data, [t for t in best.fit.terms if t.key in kept])
+    return second.fit.total - best.fit.total < max(NEEDED, RIVAL * (without.total - best.fit.total))

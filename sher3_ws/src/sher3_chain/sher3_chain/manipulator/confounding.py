@@ -1,0 +1,106 @@
+"""What the recorded motion cannot tell apart, computed before anything is fitted.
+
+Every quantity that may be off gives columns of the stacked regressor: the force that a unit of it adds. Scaled to
+length one, a combination of columns that nearly cancels is a change of several quantities that nobody can see
+(near-null space; Gautier and Khalil, IEEE Trans. Robotics and Automation 6, 1990, for the inertial parameters).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+
+import numpy as np
+from sher3_diagnosis.channel import Array
+from sher3_diagnosis.verdict import Cause
+
+from sher3_chain.manipulator.evidence import ArmMotionEvidence
+from sher3_chain.manipulator.view import MotionView
+from sher3_chain.thresholds import CONFOUNDED, TAKES_PART
+
+GAIN, WEIGHT, PAYLOAD = "drive gain", "weight", "payload"
+SAME = {GAIN: "torque_constant", WEIGHT: "gravity_load", PAYLOAD: "payload_mass"}
+"""Quantity -> id of the effect by which it is off."""
+
+
+def confounded(columns: Mapping[str, Array]) -> list[frozenset[str]]:
+    """Return the sets of quantities of which only a combination can be told.
+
+    Args:
+        columns: quantity -> (N, p) what it adds; columns of zeros are not excited and are left out.
+    """
+    names = [name for name, x in columns.items() for _ in range(x.shape[1])]
+    stacked = np.hstack(list(columns.values()))
+    length = np.linalg.norm(stacked, axis=0)
+    alive = length > 1e-9 * max(float(length.max(initial=0.0)), 1e-300)
+    if alive.sum() < 2:
+        return []
+    values, vectors = np.linalg.svd(stacked[:, alive] / length[alive], full_matrices=False)[1:]
+    kept = [n for n, a in zip(names, alive, strict=True) if a]
+    out = []
+    for value, vector in zip(values, vectors, strict=True):
+        if value < CONFOUNDED:
+            taking = {n for n, x in zip(kept, vector, strict=True) if abs(x) > TAKES_PART}
+            if len(taking) > 1:
+                out.append(frozenset(taking))
+    return joined(out)
+
+
+def joined(groups: Sequence[frozenset[str]]) -> list[frozenset[str]]:
+    """Return the groups with those that share a quantity made one."""
+    out: list[frozenset[str]] = []
+    for group in groups:
+        meeting = [g for g in out if g & group]
+        out = [g for g in out if g not in meeting] + [group.union(*meeting)]
+    return out
+
+
+def confounded_in(evidence: ArmMotionEvidence, joint: str) -> list[frozenset[str]]:
+    """Return what the force balance of one joint cannot tell apart."""
+    parts = [_columns(evidence, view, joint) for view in evidence.records]
+    return confounded({name: np.concatenate([p[name] for p in parts]) for name in parts[0]})
+
+
+def _columns(evidence: ArmMotionEvidence, view: MotionView, joint: str) -> dict[str, Array]:
+    row, ok = view.row(joint), view.in_motion(view.row(joint))
+    last = evidence.places["link"][-1]
+    out = {
+        GAIN: view.rigid[ok, row][:, None],
+        WEIGHT: view.path.gravity[ok, row][:, None] / (view.shares[row] or 1.0),
+        PAYLOAD: view.payload(last, (0.0, 0.0, 0.0))[joint][ok] / (view.shares[row] or 1.0),
+        "constant force": np.ones((int(ok.sum()), 1)),
+        "rotor inertia": view.acceleration[ok, row][:, None],
+        "viscous friction": view.velocity[ok, row][:, None],
+        "Coulomb friction": np.sign(view.velocity[ok, row])[:, None],
+    }
+    return out
+
+
+def confounding_notes(evidence: ArmMotionEvidence) -> list[str]:
+    """Return in words what cannot be told apart, joint by joint; the same of several joints in one sentence."""
+    found: dict[frozenset[str], list[str]] = {}
+    for joint in evidence.judged:
+        for group in confounded_in(evidence, joint):
+            found.setdefault(group, []).append(joint)
+    return [
+        f"{', '.join(joints)}: the recorded motion cannot tell {_listed(sorted(g))} apart"
+        for g, joints in found.items()
+    ]
+
+
+def known_weights(causes: Iterable[Cause]) -> list[str]:
+    """Return what a known weight would tell of causes that no motion tells apart: the drive's gain, weight, payload.
+
+    Each of them multiplies the same force; a weight that somebody put on a scale adds another one.
+    """
+    same = set(SAME.values())
+    open_ones = [(c.actuator, [e for e in (c.effect, *c.rivals) if e in same]) for c in causes]
+    return [
+        f"no motion tells {_listed([e.replace('_', ' ') for e in found])} on {site} apart, a known weight does: "
+        "hang one on the last link, record the same motion without and with it, and tag the runs by `payload`"
+        for site, found in open_ones
+        if len(found) > 1
+    ]
+
+
+def _listed(words: Sequence[str]) -> str:
+    return f"{', '.join(words[:-1])} and {words[-1]}"

@@ -1,0 +1,133 @@
+"""A drafted chain of axes as the arm of a URDF or MJCF file: which axis is which joint, and what its effort is in."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from sher3_machines.errors import MachineError
+from sher3_machines.intake.draft import Draft, drafted, written
+from sher3_machines.intake.names import EFFORT, words_of
+from sher3_machines.intake.runs import longest
+from sher3_machines.intake.tables import Tables
+
+from sher3_chain.manipulator.bodies import Bodies, read_bodies
+from sher3_chain.manipulator.mjcf.joint import OWN_EFFORT, drive_joint
+
+TORQUES = EFFORT - frozenset(("iq", "strom", "amps"))
+"""Words of an effort that is a force or a torque where its name has no unit."""
+FORCES = ("N", "kN", "N*m", "mN*m")
+OF_JOINT = ("position", "reference", "effort", "command", "load")
+"""Signals of a joint that a draft keeps: an arm is judged by its forces."""
+OF_AXIS = re.compile(r": (driven by|mass is not|a position servo|undriven)")
+"""Guesses on single axes that an arm has no use for."""
+
+
+def draft_arm(path: Path, model: Path, rate: float | None = None, tables: Tables | None = None) -> Draft:
+    """Draft the description of an arm in motion from a data file, folder or bag.
+
+    Args:
+        path: of the data.
+        model: URDF or MJCF of the arm.
+        rate: samples per second, Hz, where no time was recorded.
+        tables: what the path holds, where it has been read.
+
+    Raises:
+        MachineError: data or model cannot be read, no column looks like a time or a position, or the columns do not fit
+            the joints.
+    """
+    guesses: list[str] = []
+    chain = drafted(path, longest(path) if tables is None else tables, rate, guesses)
+    return written(of_arm(chain, read_bodies(model), guesses), guesses)
+
+
+def of_arm(data: Mapping[str, Any], model: Bodies, guesses: list[str]) -> dict[str, Any]:
+    """Return a drafted chain of axes as the joints of a model; raises MachineError where they do not fit.
+
+    Args:
+        data: of the chain.
+        model: of the arm.
+        guesses: so far; those on driving and mass of single axes are taken out.
+    """
+    slides = model.joints
+    axes = {axis["name"]: axis for axis in data["axes"]}
+    found = fitted(list(axes), list(slides), model.label)
+    guesses[:] = [g for g in guesses if not OF_AXIS.search(g)]
+    guesses += [
+        f"{axis} is joint {joint}, because of its {why}" for axis, (joint, why) in found.items() if axis != joint
+    ]
+    joints = [_joint(axes[axis], joint, slides[joint], guesses) for axis, (joint, _) in found.items()]
+    for joint in joints:
+        if joint["name"] in model.drives:
+            effort = joint["signals"].get("effort", {})
+            words = set(words_of(effort.get("column", "")))
+            own = model.drives[joint["name"]]
+            if "actuator" in words and "qfrc" not in words and own.drive is not None and own.drive.gear != 1.0:
+                effort["factor"] = own.drive.gear
+            drive_joint(joint, own, bool(words & OWN_EFFORT), guesses)
+    left = [joint for joint in slides if joint not in {j for j, _ in found.values()}]
+    if left:
+        guesses.append(f"joints that were not recorded stay at zero: {', '.join(left)}")
+    out = {"kind": "manipulator", "name": data["name"], "model": str(Path(model.label).resolve()), "time": data["time"]}
+    return {**out, "joints": joints}
+
+
+def fitted(axes: Sequence[str], joints: Sequence[str], model: object) -> dict[str, tuple[str, str]]:
+    """Return axis -> joint and why: by name, by number, or in their order where there are as many.
+
+    Raises:
+        MachineError: none of these does.
+    """
+    plain = {_plain(joint): joint for joint in joints}
+    if all(_plain(axis) in plain for axis in axes):
+        return {axis: (plain[_plain(axis)], "name") for axis in axes}
+    numbers = {n: joint for joint in joints if (n := _number(joint)) is not None}
+    own = {axis: n for axis in axes if (n := _number(axis)) is not None}
+    if len(set(own.values())) == len(axes):
+        if set(own.values()) <= numbers.keys():
+            return {axis: (numbers[n], "number") for axis, n in own.items()}
+        first = min(own.values())
+        if max(own.values()) - first < len(joints):
+            return {axis: (joints[n - first], "number") for axis, n in own.items()}
+    if len(axes) == len(joints):
+        return {axis: (joint, "order") for axis, joint in zip(axes, joints, strict=True)}
+    raise MachineError(
+        f"{model}: columns and joints do not fit",
+        value=f"{len(axes)} columns: {', '.join(axes[:8])}",
+        limit=f"{len(joints)} joints: {', '.join(joints[:8])}",
+        remedy="name columns as the joints are, or write `joints` by hand",
+    )
+
+
+def _number(name: str) -> int | None:
+    """Return the number that a name ends in."""
+    found = re.search(r"\d+$", name)
+    return int(found[0]) if found else None
+
+
+def _plain(name: str) -> str:
+    return re.sub(r"[^a-z0-9]", "", name.lower())
+
+
+def _joint(axis: Mapping[str, Any], joint: str, slides: bool, guesses: list[str]) -> dict[str, Any]:
+    """Return one joint of a draft: its effort in N m where it is called a torque, else with a gain to be found."""
+    signals = {name: dict(axis["signals"][name]) for name in OF_JOINT if name in axis["signals"]}
+    if slides and signals["position"]["unit"] == "rad":
+        signals["position"]["unit"] = "m"
+    out = {"name": joint, "motion": "linear" if slides else "rotary", "signals": signals}
+    out["encoder_resolution"] = axis["encoder_resolution"]
+    if "reference" in signals:
+        signals["reference"]["unit"] = signals["position"]["unit"]
+    effort = signals.get("effort") or signals.get("command")
+    if effort is not None and effort["unit"] not in FORCES:
+        if "effort" in signals and effort["unit"] == "1" and set(words_of(effort["column"])) & TORQUES:
+            effort["unit"] = "N" if slides else "N*m"
+            guesses.append(f"{joint}: effort in {effort['unit']}, because it is called a force or a torque")
+        else:
+            out["gain"] = "unknown"
+            guesses.append(
+                f"{joint}: gain unknown: {effort['column']!r} is no torque; state N m per unit where you can"
+            )
+    return out

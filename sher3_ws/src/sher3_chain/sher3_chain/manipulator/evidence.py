@@ -1,0 +1,206 @@
+"""Residuals and floors of a serial arm in motion: what every joint is given beyond what its model says it needs."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from sher3_diagnosis.channel import Array, Channel, Residual, Residuals
+from sher3_diagnosis.evidence import Evidence
+from sher3_diagnosis.fit.term import again
+from sher3_diagnosis.fit.whitened import Whitened
+from sher3_machines.errors import MachineError
+from sher3_machines.thresholds import BLOCKS
+
+from sher3_chain.axes.evidence import blocks_of
+from sher3_chain.axes.quantities.own_unit import RECORDED
+from sher3_chain.axes.readings.slip_of_unit import Share
+from sher3_chain.axes.record import AxesRun
+from sher3_chain.constants import ZERO, constants
+from sher3_chain.manipulator.description import PER_RUN, ManipulatorDescription
+from sher3_chain.manipulator.gains import share_of
+from sher3_chain.manipulator.identify import with_identified_inertias
+from sher3_chain.manipulator.model import ArmModel
+from sher3_chain.manipulator.readings.encoders import links_of
+from sher3_chain.manipulator.readings.floors import floors_of
+from sher3_chain.manipulator.readings.slipped import slipped
+from sher3_chain.manipulator.readings.wrong import without_wrong_loads
+from sher3_chain.manipulator.signals import JointSignals, joint_signals
+from sher3_chain.manipulator.view import MotionView
+
+
+@dataclass(frozen=True, kw_only=True)
+class ArmMotionEvidence(Evidence):
+    """The engine's evidence for an arm in motion; a block of a record is a run.
+
+    Attributes:
+        described: the arm.
+        runs: records as imported.
+        records: views of the arm, one for each record; blocks of one record share theirs.
+        judged: joints whose force balance is looked at.
+        shares: joint -> units of its recorded effort per newton metre, where its gain was found from the data.
+        turned: joints whose effort was recorded with the opposite sign, and was turned.
+        scales: joint -> units of its recorded effort per newton metre in each record, where they differ by run.
+        slips: joint -> times by which its effort is in another scale than its stated gain says; they are not judged.
+    """
+
+    described: ManipulatorDescription
+    runs: Sequence[AxesRun]
+    records: Sequence[MotionView]
+    judged: Sequence[str]
+    shares: Mapping[str, Share] = field(default_factory=dict)
+    turned: Sequence[str] = ()
+    slips: Mapping[str, Share] = field(default_factory=dict)
+    scales: Mapping[str, Sequence[Share]] = field(default_factory=dict)
+
+
+def channel_of(joint: str) -> Channel:
+    """Return the force balance of a joint."""
+    return Channel("motor_mechanics", joint)
+
+
+def between(joint: str) -> Channel:
+    """Return the difference of the two encoders of a joint."""
+    return Channel("transmission", joint)
+
+
+def channels_of(joint: str) -> list[Channel]:
+    """Return the channels that are looked at for a joint alone."""
+    return [channel_of(joint), between(joint)]
+
+
+def gather_arm_motion(
+    runs: Sequence[AxesRun], described: ManipulatorDescription, model: ArmModel, judged: Sequence[str]
+) -> ArmMotionEvidence:
+    """Compute residuals and floors of every joint and cut them into blocks of time.
+
+    Args:
+        runs: records.
+        described: the arm.
+        model: of it.
+        judged: joints whose effort was recorded; the others only move.
+
+    Raises:
+        MachineError: no joint can be judged.
+    """
+    repeats = described.repeats and len(runs) > 1
+    n = len(described.joints)
+    coupling = np.asarray(described.coupling if described.coupling is not None else np.eye(n), dtype=float)
+    read = [without_wrong_loads(run, described) for run in runs]
+    signals = [joint_signals(run, described, "repeats" if repeats else run.name) for run in read]
+    links = [links_of(s, described.joints, model, coupling) for s in signals]
+
+    def seen_by(model: ArmModel, shares: Array) -> list[MotionView]:
+        both = zip(signals, links, strict=True)
+        return [MotionView(s, link, described.joints, model, coupling, shares) for s, link in both]
+
+    plain = seen_by(model, np.ones(n))
+    found = {name: share_of(plain, name) for name in judged}
+    stated = {j.name for j in described.joints if not isinstance(j.gain, str)}
+    own = [j.name for j in described.joints if j.gain == PER_RUN and j.name in judged]
+    scales = {name: [share_of([view], name) for view in plain] for name in own}
+    judged = [name for name in judged if all(share.told for share in scales.get(name, ()))]
+    slips = slipped(plain, {name: found[name] for name in judged if name in stated})
+    judged = [name for name in judged if name not in slips]
+    turned = tuple(name for name in judged if name not in own and found[name].opposite(name in stated))
+    if turned or own:
+        signals = _put_right(signals, described, turned, scales)
+        plain = seen_by(model, np.ones(n))
+    if described.inertias == "identified":
+        model = with_identified_inertias(plain, model, judged)
+    unknown = [j.name for j in described.joints if j.gain == "unknown" and j.name in judged]
+    shares = {name: found[name].turned() for name in unknown}
+    factors = np.array([shares[j.name].value if j.name in shares else 1.0 for j in described.joints])
+    views = seen_by(model, factors)
+    residuals = [_residuals(view, judged) for view in views]
+    if not any(residuals):
+        raise MachineError("no joint can be judged", value="0 joints", remedy="record efforts while the joints move")
+    floors = floors_of(views, residuals, repeats)
+    per_record = -(-BLOCKS // len(views))
+    blocks = [(r, block) for r, x in enumerate(residuals) for block in blocks_of(x, per_record)]
+    seen = tuple(j for j in judged if any(channel_of(j) in x for x in residuals))
+    data = Whitened([views[r] for r, _ in blocks], [b for _, b in blocks], [floors[r] for r, _ in blocks])
+    return ArmMotionEvidence(
+        excitations=[views[r].excitation for r, _ in blocks],
+        data=data,
+        nuisance=constants(data, ZERO, [between(j) for j in judged]),
+        units={
+            **{channel_of(j.name): unit_of_force(j.gain == "unknown", j.motion) for j in described.joints},
+            **{between(j.name): j.unit_of_position for j in described.joints},
+        },
+        places={"axis": seen, "link": model.links},
+        rotary=frozenset(j.name for j in described.joints if j.motion == "rotary"),
+        described=described,
+        runs=list(runs),
+        records=views,
+        judged=seen,
+        shares=shares,
+        turned=turned,
+        slips=slips,
+        scales=scales,
+    )
+
+
+def _put_right(
+    signals: Sequence[JointSignals],
+    described: ManipulatorDescription,
+    turned: Collection[str],
+    scales: Mapping[str, Sequence[Share]],
+) -> list[JointSignals]:
+    """Return the signals with efforts of the opposite sign turned, and those of another unit in each run in N m."""
+    out = []
+    for r, s in enumerate(signals):
+        by = [-1.0 if j.name in turned else 1.0 for j in described.joints]
+        for i, joint in enumerate(described.joints):
+            share = scales[joint.name][r] if joint.name in scales else None
+            by[i] = share.value if share is not None and share.told else by[i]
+        assert s.effort is not None
+        out.append(replace(s, effort=s.effort / np.array(by)))
+    return out
+
+
+def unit_of_force(own: bool, motion: str) -> str:
+    """Return the unit of a joint's force; its `own` where the gain is not known."""
+    return RECORDED if own else ("N" if motion == "linear" else "N*m")
+
+
+def of_channel(
+    evidence: ArmMotionEvidence, channel: Channel, beside: Sequence[Mapping[Channel, Array]] = ()
+) -> Evidence:
+    """Return the evidence of one channel alone.
+
+    Args:
+        evidence: of the arm.
+        channel: of a joint to be looked at.
+        beside: per block, what causes of the whole arm add to the residuals, (g, 1) in SI units; taken off.
+    """
+    data = evidence.data
+    residuals: list[Residuals] = []
+    for r, found in enumerate(data.residuals):
+        own = {channel: found[channel]} if channel in found else {}
+        known = beside[r].get(channel) if beside else None
+        if own and known is not None:
+            own[channel] = replace(own[channel], values=own[channel].values - known)
+        residuals.append(own)
+    floors = [{channel: f[channel]} if channel in f else {} for f in data.floors]
+    alone = Whitened(data.views, residuals, floors)
+    return Evidence(
+        excitations=evidence.excitations,
+        data=alone,
+        nuisance=again(alone, [t for t in evidence.nuisance if channel in t.channels]),
+        units=evidence.units,
+        places={"axis": (channel.actuator,)},
+        rotary=evidence.rotary,
+    )
+
+
+def _residuals(view: MotionView, judged: Sequence[str]) -> Residuals:
+    run, out = view.run, Residuals()
+    left = view.effort - view.inertial
+    for joint in judged:
+        row, told = view.row(joint), run.inner & ~view.impacts
+        out[channel_of(joint)] = Residual(left[:, [row]], view.in_motion(row))
+        if run.load is not None and np.isfinite(run.load[:, row]).all():
+            out[between(joint)] = Residual(run.to_grid(run.load[:, [row]] - run.motor[:, [row]]), told)
+    return {channel: x for channel, x in out.items() if x.ok.sum() >= BLOCKS}

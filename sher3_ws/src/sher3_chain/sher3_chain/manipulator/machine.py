@@ -1,0 +1,199 @@
+"""A serial arm in motion as a machine of the diagnosis."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from sher3_diagnosis.attribute.candidates import Candidates
+from sher3_diagnosis.attribute.rivals import Attribution
+from sher3_diagnosis.attribute.search import Left, Say
+from sher3_diagnosis.effect import Effect
+from sher3_diagnosis.finding import ExactFinding, Finding
+from sher3_diagnosis.machine import Machine, Policy
+from sher3_diagnosis.verdict import Cause
+from sher3_effects.inertia.gravity_load import GravityLoad
+from sher3_effects.inertia.payload_mass import PayloadOnLink
+from sher3_effects.scale.torque_constant import TorqueConstant
+from sher3_effects.timing.sensor_delay import SensorDelay
+from sher3_machines.intake.notes import told_once
+
+from sher3_chain.axes.identification.friction_in_motion import requantified
+from sher3_chain.axes.machine import NO_REPEATS
+from sher3_chain.axes.quantities.bounds import within_bounds
+from sher3_chain.axes.quantities.own_unit import RECORDED, in_own_unit
+from sher3_chain.axes.readings.wrong import wrong_readings
+from sher3_chain.axes.record import AxesRun
+from sher3_chain.contrast.changes import change_notes, contrasted, of_runs
+from sher3_chain.contrast.conditions import Condition, conditions_of, reference_runs, told_together
+from sher3_chain.manipulator.causes import causes_of_arm, centred
+from sher3_chain.manipulator.confounding import SAME, confounding_notes
+from sher3_chain.manipulator.description import ManipulatorDescription
+from sher3_chain.manipulator.evidence import ArmMotionEvidence, gather_arm_motion
+from sher3_chain.manipulator.library import of_joints
+from sher3_chain.manipulator.model import ArmModel
+from sher3_chain.manipulator.readings.lateness import late_efforts, with_closure
+from sher3_chain.manipulator.readings.wrong import level_notes
+
+if TYPE_CHECKING:
+    from sher3_chain.manipulator.report.reporter import ManipulatorReporter
+
+
+IN_GAIN = (TorqueConstant.id, PayloadOnLink.id)
+"""Effects that a gain found from the data contains."""
+IN_INERTIAS = (*IN_GAIN, GravityLoad.id)
+"""Effects that inertias found from the data contain."""
+
+
+@dataclass(frozen=True)
+class Manipulator(Machine[AxesRun, ArmMotionEvidence]):
+    """A serial arm whose joints move together; its model says what force each of them needs.
+
+    Attributes:
+        described: the arm.
+        model: of its rigid bodies.
+    """
+
+    described: ManipulatorDescription
+    model: ArmModel
+    policy = Policy(down_to_floor=True, constancy=False, spill_over=False)
+
+    def library(self) -> Sequence[Effect]:
+        """Return the pages of an axis and those of a joint of an arm."""
+        return of_joints()
+
+    def effects(self, evidence: ArmMotionEvidence) -> Sequence[Effect]:
+        """Return the pages that the recorded signals can show."""
+        facts = {"drive", "forces"}
+        if any(channel.stage == "transmission" for channel in evidence.channels):
+            facts.add("load")
+        if all(j.lead is not None for j in self.described.joints):
+            facts.add("lead")
+        known = of_joints(facts)
+        contained: tuple[str, ...] = IN_GAIN if evidence.shares or evidence.scales else ()
+        contained = IN_INERTIAS if self.described.inertias == "identified" else contained
+        return [e for e in known if e.id not in contained]
+
+    def audit(self, runs: Sequence[AxesRun]) -> list[str]:
+        """Return what was done to the data, which channels are dead, and whether floors are known from repeats."""
+        notes = [note for run in runs for note in run.notes]
+        for run in runs:
+            notes += [note for joint in self.described.joints for note in wrong_readings(run, joint).values()]
+        notes = told_once(notes, [run.name for run in runs]) + told_together(self._conditions(runs))
+        return notes if self.described.repeats and len(runs) > 1 else [*notes, NO_REPEATS]
+
+    def gather(self, runs: Sequence[AxesRun]) -> Sequence[ArmMotionEvidence]:
+        """Return the arm as one part; joints without an effort only move."""
+        dead = {
+            j.name
+            for j in self.described.joints
+            if all({"effort", "position"} & wrong_readings(run, j).keys() for run in runs)
+        }
+        judged = [j.name for j in self.described.joints if j.name not in dead and j.driven]
+        return [gather_arm_motion(runs, self.described, self.model, judged)]
+
+    def exact(
+        self, runs: Sequence[AxesRun], evidence: Sequence[ArmMotionEvidence], without: Collection[str]
+    ) -> list[ExactFinding]:
+        """Return the efforts that are late on an arm without any other gap."""
+        return [] if SensorDelay.id in without else [late for part in evidence for late in late_efforts(part)]
+
+    def attribute(self, evidence: ArmMotionEvidence, candidates: Candidates, left_over: Left, say: Say) -> Attribution:
+        """Choose the causes joint by joint, without and with a payload, and what changed between conditions."""
+        conditions = self._conditions(evidence.runs)
+        if not conditions:
+            return causes_of_arm(evidence, candidates, say)
+        kept = reference_runs(conditions, [run.name for run in evidence.runs])
+        reference = of_runs(evidence, views_of(evidence, kept))
+        common = causes_of_arm(reference, Candidates(reference, candidates.effects), say)
+        say("contrasting conditions")
+        each = [(c, views_of(evidence, c.runs)) for c in conditions]
+        return contrasted(evidence, common, candidates.effects, each, centred)
+
+    def _conditions(self, runs: Sequence[AxesRun]) -> list[Condition]:
+        return conditions_of(self.described.conditions, [run.name for run in runs])
+
+    def refine(
+        self, evidence: ArmMotionEvidence, causes: list[Cause], attribution: Attribution
+    ) -> tuple[ArmMotionEvidence, list[Cause]]:
+        """Fit friction again away from reversals; give forces of a joint with unknown gain in the recorded unit."""
+        causes = within_bounds(requantified(evidence, attribution, causes), self.effects(evidence))
+        terms = [attribution.fit.terms[i] for i in attribution.causes]
+        causes = [with_closure(cause, term.shape) for cause, term in zip(causes, terms, strict=True)]
+        return evidence, [with_hidden(in_own_unit(c, RECORDED)) if c.actuator in evidence.shares else c for c in causes]
+
+    def remarks(self, finding: Finding[ArmMotionEvidence]) -> list[str]:
+        """Say what cannot be told apart, which gains were found, and which joints were not judged."""
+        evidence = finding.evidence
+        silent = [j.name for j in self.described.joints if j.name not in evidence.judged]
+        notes = [f"not judged, no usable effort or no motion: {', '.join(silent)}"] if silent else []
+        turned = ", ".join(evidence.turned)
+        if turned:
+            notes.append(f"{turned}: effort recorded with the opposite sign: friction would give energy; it was turned")
+        if self.described.inertias == "identified":
+            notes.append(
+                "inertias identified from the data: drive gain, weight and payload are in them, cannot be told apart "
+                "and are not looked for"
+            )
+        notes += change_notes(finding.attribution, self._conditions(evidence.runs))
+        levels = [x for run in evidence.runs for x in level_notes(run, self.described.joints, evidence.judged)]
+        notes += told_once(levels, [run.name for run in evidence.runs])
+        return [*notes, *slip_notes(evidence), *gain_notes(evidence), *confounding_notes(evidence)]
+
+    def reporter(self) -> ManipulatorReporter:
+        """Return the part of this machine in a report."""
+        from sher3_chain.manipulator.report.reporter import ManipulatorReporter
+
+        return ManipulatorReporter()
+
+
+def views_of(evidence: ArmMotionEvidence, runs: Collection[str]) -> frozenset[int]:
+    """Return the identities of the views of some runs."""
+    return frozenset(id(v) for v, run in zip(evidence.records, evidence.runs, strict=True) if run.name in runs)
+
+
+def gain_notes(evidence: ArmMotionEvidence) -> list[str]:
+    """Return what was found of gains that nobody stated."""
+    notes = [scale_note(evidence, joint) for joint in evidence.scales]
+    if not evidence.shares:
+        return notes
+    notes += [
+        f"{', '.join(evidence.shares)}: drive gain not stated: forces are in eu, the unit of the recorded "
+        "effort; drive gain, weight and payload are confounded unless the model's inertias are right, and no payload "
+        "is looked for"
+    ]
+    for joint, share in evidence.shares.items():
+        if share.told:
+            low, high = share.interval
+            text = f"{joint}: {share.value:.3g} recorded units per N m ({low:.3g} .. {high:.3g}), inertias as modelled"
+            notes.append(text)
+        else:
+            notes.append(f"{joint}: the motion does not tell the drive gain; weight and inertia are left in the force")
+    return notes
+
+
+def scale_note(evidence: ArmMotionEvidence, joint: str) -> str:
+    """Return what was found of a gain that differs by run."""
+    each = zip(evidence.runs, evidence.scales[joint], strict=True)
+    told = ", ".join(f"{run.name} {share.value:.4g}" if share.told else f"{run.name} not told" for run, share in each)
+    return (
+        f"{joint}: recorded units per newton metre, run by run, inertias as modelled: {told}; drive gain, weight and "
+        "payload are in them and are not looked for"
+    )
+
+
+def slip_notes(evidence: ArmMotionEvidence) -> list[str]:
+    """Return a sentence for each effort in another scale than its stated gain says."""
+    return [
+        f"{joint}: effort is {share.value:.4g} times what the model needs: state its `factor`, or `gain: unknown`"
+        for joint, share in evidence.slips.items()
+    ]
+
+
+def with_hidden(cause: Cause) -> Cause:
+    """Return a cause with the rivals that it can by no motion be told from while the drive gain is not known."""
+    if cause.effect not in SAME.values():
+        return cause
+    hidden = [e for e in SAME.values() if e != cause.effect and e not in cause.rivals]
+    return cause.model_copy(update={"rivals": [*cause.rivals, *hidden]})

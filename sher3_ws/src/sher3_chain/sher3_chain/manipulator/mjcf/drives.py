@@ -1,0 +1,128 @@
+"""The drives of an MJCF model: whether a control is a force or a place, and what a simulated step adds to a force.
+
+An actuator gives gain * control + bias (chapter Computation of MuJoCo's documentation).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from sher3_chain.manipulator.mjcf.bodies import SLIDE
+
+EULER, IMPLICIT, IMPLICIT_FAST = 0, 2, 3
+"""MuJoCo's numbers of integrators (mjtIntegrator)."""
+EULER_DAMP = 1 << 15
+"""Flag that switches the implicit damping of Euler's method off (mjDSBL_EULERDAMP)."""
+FIXED, AFFINE, NONE = 0, 1, 0
+"""MuJoCo's numbers of an actuator's laws: fixed gain, affine bias, no bias, no dynamics."""
+JOINT, JOINT_IN_PARENT = 0, 1
+"""MuJoCo's numbers of transmissions that end at a joint (mjtTrn)."""
+
+
+@dataclass(frozen=True)
+class Drive:
+    """An actuator on one joint.
+
+    Attributes:
+        name, number: of the actuator.
+        gear: joint force per force of the actuator.
+        servo: whether its control is a place, else a force.
+        factor: what turns the control into a place, m or rad, or into the joint's force, N or N m.
+        position_gain, velocity_gain: of a servo, N/m and N/(m/s), or N m/rad and N m/(rad/s), at the joint.
+        limit: largest force at the joint; None: none stated.
+    """
+
+    name: str
+    number: int
+    gear: float
+    servo: bool
+    factor: float
+    position_gain: float = 0.0
+    velocity_gain: float = 0.0
+    limit: float | None = None
+
+
+@dataclass(frozen=True)
+class Driven:
+    """How the model drives one joint.
+
+    Attributes:
+        slides: whether the joint slides.
+        recorded, of_law: inertia, kg or kg m^2, by which a force is larger than the one that acted, where it is the one
+            that the simulator recorded, or that of the drive's law by the speed of central differences.
+        drive: its actuator; None: none, or none whose force is a line in control, place and speed.
+        reason: why there is no drive.
+    """
+
+    slides: bool
+    recorded: float
+    of_law: float
+    drive: Drive | None
+    reason: str = ""
+
+
+def driven(source: Any) -> dict[str, Driven]:
+    """Return joint -> how an `MjModel` drives it, of every joint that turns or slides."""
+    return {_name(source.joint(j).name, j): _driven(source, j) for j in range(source.njnt) if source.jnt_type[j] > 1}
+
+
+def _name(name: str, joint: int) -> str:
+    return name or f"joint{joint}"
+
+
+def _driven(source: Any, joint: int) -> Driven:
+    """Reckon what a step adds: its speed lies half a step before central differences, an implicit one behind."""
+    half, method = 0.5 * float(source.opt.timestep), source.opt.integrator
+    damping = float(source.dof_damping[source.jnt_dofadr[joint]])
+    drive, reason = _drive(source, joint)
+    gain = 0.0 if drive is None else drive.velocity_gain
+    recorded = of_law = 0.0
+    if method in (IMPLICIT, IMPLICIT_FAST):
+        recorded, of_law = half * (damping + 2.0 * gain), half * (damping + gain)
+    elif method == EULER:
+        recorded = half * damping * (-1.0 if source.opt.disableflags & EULER_DAMP else 1.0)
+        of_law = recorded - half * gain
+    return Driven(source.jnt_type[joint] == SLIDE, recorded, of_law, drive, reason)
+
+
+def _drive(source: Any, joint: int) -> tuple[Drive | None, str]:
+    """Return the actuator of a joint, or why its force is not known from its control."""
+    at_joint = [
+        i
+        for i in range(source.nu)
+        if source.actuator_trntype[i] in (JOINT, JOINT_IN_PARENT) and source.actuator_trnid[i][0] == joint
+    ]
+    if not at_joint:
+        return None, "the model has no actuator on it"
+    if len(at_joint) > 1:
+        return None, f"the model has {len(at_joint)} actuators on it"
+    i = at_joint[0]
+    name, gear = source.actuator(i).name or f"actuator{i}", float(source.actuator_gear[i][0])
+    if source.actuator_dyntype[i] != NONE:
+        return None, f"actuator {name} has dynamics of its own"
+    if source.actuator_gaintype[i] != FIXED or source.actuator_biastype[i] not in (NONE, AFFINE) or not gear:
+        return None, f"the force of actuator {name} is no line in control, place and speed"
+    gain = float(source.actuator_gainprm[i][0])
+    offset, place, speed = (float(x) for x in source.actuator_biasprm[i][:3])
+    limit = _limit(source, i, joint, gear)
+    if source.actuator_biastype[i] == NONE or (not place and not speed and not offset):
+        return Drive(name, i, gear, False, gain * gear, limit=limit), ""
+    if not place or not gain or offset:
+        return (
+            None,
+            f"actuator {name} is no servo of places: its force is {gain:g} u {offset:+g} {place:+g} q {speed:+g} v",
+        )
+    return Drive(name, i, gear, True, -gain / (place * gear), -place * gear**2, -speed * gear**2, limit), ""
+
+
+def _limit(source: Any, actuator: int, joint: int, gear: float) -> float | None:
+    """Return the largest force that an actuator may give at its joint; None where none is stated."""
+    limits = []
+    if source.actuator_forcelimited[actuator]:
+        limits.append(abs(gear) * float(np.abs(source.actuator_forcerange[actuator]).max()))
+    if source.jnt_actfrclimited[joint]:
+        limits.append(float(np.abs(source.jnt_actfrcrange[joint]).max()))
+    return min(limits) if limits and min(limits) > 0.0 else None

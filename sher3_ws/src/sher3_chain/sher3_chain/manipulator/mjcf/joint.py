@@ -1,0 +1,81 @@
+"""A joint as its model drives it: what its control is, and the force that the control stands for."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from sher3_chain.manipulator.mjcf.drives import Drive, Driven
+
+OWN_EFFORT = frozenset(("actuator", "qfrc"))
+"""Words in a column's name by which an effort is MuJoCo's own: `actuator_force`, `qfrc_actuator`."""
+
+
+def drive_joint(joint: dict[str, Any], own: Driven, simulated: bool, guesses: list[str]) -> None:
+    """Write what a model says of the drive of a joint into the joint's part of a description.
+
+    The control of a servo is its reference, that of a motor its force. Without a recorded effort the law of the drive
+    gives it.
+
+    Args:
+        joint: of a description, as plain data; a control that was recorded is its signal `command`.
+        own: of the joint in the model.
+        simulated: whether a recorded effort is the simulator's own.
+        guesses: so far; what is taken from the model is added.
+    """
+    name, signals, drive = joint["name"], joint["signals"], own.drive
+    measured = "effort" in signals
+    if drive is None:
+        if signals.pop("command", None) is not None:
+            known = "" if measured else "; record efforts, this joint is not judged"
+            guesses.append(f"{name}: its control is not used, because {own.reason}{known}")
+        inertia = own.recorded if simulated and measured else 0.0
+    elif drive.servo:
+        _servo(joint, drive, guesses)
+        of_law = 0.0 if "reference" not in signals else own.of_law
+        inertia = (own.recorded if simulated else 0.0) if measured else of_law
+    else:
+        _motor(joint, drive, guesses)
+        inertia = own.recorded if simulated or not measured else 0.0
+    if inertia:
+        joint["step_inertia"] = float(f"{inertia:.6g}")
+        guesses.append(f"{name}: a step of the simulator adds {inertia:.4g} {_inertia(own)} to what this effort moves")
+
+
+def _servo(joint: dict[str, Any], drive: Drive, guesses: list[str]) -> None:
+    signals, place = joint["signals"], "m" if joint["motion"] == "linear" else "rad"
+    control = signals.pop("command", None)
+    if control is not None and "reference" not in signals:
+        signals["reference"] = {**control, "unit": place}
+        if drive.factor != 1.0:
+            signals["reference"]["factor"] = drive.factor
+    if "reference" not in signals:
+        return
+    law = {"kind": "force", "position_gain": drive.position_gain, "velocity_gain": drive.velocity_gain}
+    joint["command_law"] = {**law, **({"limit": drive.limit} if drive.limit else {})}
+    if "effort" not in signals:
+        _force_known(joint, guesses)
+    text = f"{joint['name']}: its control is the reference of servo {drive.name}"
+    force = f"{drive.position_gain:.4g} (reference - q) - {drive.velocity_gain:.4g} v"
+    guesses.append(text if "effort" in signals else f"{text}, whose force is {force}: no effort was recorded")
+
+
+def _motor(joint: dict[str, Any], drive: Drive, guesses: list[str]) -> None:
+    signals = joint["signals"]
+    if "command" not in signals:
+        return
+    unit = "N" if joint["motion"] == "linear" else "N*m"
+    signals["command"] = {**signals["command"], "unit": unit}
+    joint["command_law"] = {"kind": "force", "gain": drive.factor}
+    if "effort" not in signals:
+        _force_known(joint, guesses)
+    guesses.append(f"{joint['name']}: its control times {drive.factor:.4g} is the force of motor {drive.name}, {unit}")
+
+
+def _force_known(joint: dict[str, Any], guesses: list[str]) -> None:
+    """Take back that the gain of a joint is not known."""
+    joint.pop("gain", None)
+    guesses[:] = [guess for guess in guesses if not guess.startswith(f"{joint['name']}: gain unknown")]
+
+
+def _inertia(own: Driven) -> str:
+    return "kg" if own.slides else "kg*m^2"

@@ -1,0 +1,68 @@
+"""Forces of an MJCF model beside its rigid bodies, as MuJoCo computes them: springs, gravity compensation, losses."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from copy import copy
+from typing import Any
+
+import numpy as np
+from sher3_diagnosis.channel import Array
+
+from sher3_chain.manipulator.mjcf.reading import mujoco
+
+
+class Losses:
+    """What the joints of a model need beside the force on its rigid bodies.
+
+    `frictionloss` is a soft constraint of MuJoCo: it turns over the speeds that its `solref` gives, so its own inverse
+    dynamics say how large it is. Contacts, limits and equalities are left out: joints are judged in free motion.
+
+    Attributes:
+        names: of the k joints.
+        full: their dry friction in motion, (k,), N or N m.
+    """
+
+    def __init__(self, source: Any, names: Sequence[str], stated: Collection[str] = ()) -> None:
+        """Take a copy of an `MjModel`; the damping of `stated` joints is known from elsewhere and left out."""
+        api = mujoco()
+        self.names = tuple(names)
+        self._model = copy(source)
+        flags = api.mjtDisableBit
+        for flag in (flags.mjDSBL_CONTACT, flags.mjDSBL_LIMIT, flags.mjDSBL_EQUALITY):
+            self._model.opt.disableflags |= int(flag)
+        self._lag = 0.0  # s, by which the speed of a step lies before that of central differences
+        if self._model.opt.integrator != api.mjtIntegrator.mjINT_RK4:
+            self._model.opt.enableflags |= int(api.mjtEnableBit.mjENBL_INVDISCRETE)
+            self._lag = 0.5 * float(self._model.opt.timestep)
+        joints = [self._model.joint(name) for name in names]
+        self._places = np.array([int(j.qposadr[0]) for j in joints])
+        self._rows = np.array([int(j.dofadr[0]) for j in joints])
+        self.full = np.array([float(self._model.dof_frictionloss[row]) for row in self._rows])
+        for joint in joints:
+            if joint.name in stated:
+                self._model.dof_damping[joint.dofadr[0]] = 0.0
+
+    def at_rest(self, q: Array) -> Array:
+        """Return the force that springs and gravity compensation leave to the drives at positions q (n, k), (n, k)."""
+        still = np.zeros_like(q)
+        return -self._forces(q, still, still)[0]
+
+    def in_motion(self, q: Array, v: Array) -> Array:
+        """Return the force that damping and drag need at positions and velocities (n, k), (n, k)."""
+        return -self._forces(q, v, np.zeros_like(q))[0] - self.at_rest(q)
+
+    def dry(self, q: Array, v: Array, a: Array) -> Array:
+        """Return the force that dry friction needs at positions, velocities and accelerations (n, k), (n, k)."""
+        return -self._forces(q, v - self._lag * a, a)[1]
+
+    def _forces(self, q: Array, v: Array, a: Array) -> tuple[Array, Array]:
+        """Return passive forces and those of dry friction on the joints, (n, k) each."""
+        api = mujoco()
+        data = api.MjData(self._model)
+        passive, dry = np.empty_like(q), np.empty_like(q)
+        for i, (qi, vi, ai) in enumerate(zip(q, v, a, strict=True)):
+            data.qpos[self._places], data.qvel[self._rows], data.qacc[self._rows] = qi, vi, ai
+            api.mj_inverse(self._model, data)
+            passive[i], dry[i] = data.qfrc_passive[self._rows], data.qfrc_constraint[self._rows]
+        return passive, dry

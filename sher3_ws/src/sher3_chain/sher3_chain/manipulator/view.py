@@ -1,0 +1,327 @@
+"""A run of a serial arm with the forces that its model asks for, as the effects and the engine see it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+
+import numpy as np
+from scipy.ndimage import maximum_filter1d
+from sher3_diagnosis.channel import Array, Channel, Mask
+from sher3_diagnosis.discover.feature import Quantities, Quantity
+from sher3_diagnosis.evidence import Motion
+from sher3_diagnosis.filter import settled
+from sher3_effects.operators import dahl_turned
+from sher3_effects.view import NominalAxis
+
+from sher3_chain.axes.readings.level import at_a_level, off
+from sher3_chain.axes.signals import AxisSignals
+from sher3_chain.axes.view import LEAD_OF_STROKE, SLIP, STILL, Loads
+from sher3_chain.manipulator.description import Joint
+from sher3_chain.manipulator.model import PARAMETERS, ArmModel
+from sher3_chain.manipulator.readings.encoders import crossing
+from sher3_chain.manipulator.signals import JointSignals
+
+AROUND_IMPACT = 2
+"""Samples of the residual grid around one at which a gap is crossed: the filter smears the impact at its end."""
+LINKS_OF_PAYLOAD = 4
+"""Leading inertial parameters of a body that a payload changes linearly: its mass, and mass times centre."""
+DEVELOPED = 0.95
+"""Share of its full size above which a soft dry friction of MuJoCo no longer depends on the exact speed."""
+
+
+class MotionView:
+    """A run of k joints with their nominal forces; on the side of the motors where a transmission couples them.
+
+    Attributes:
+        run: signals of the joints; `links`: the same with the positions of the links.
+        joints: as described.
+        model: of the arm.
+        coupling: motor travel = coupling * joint travel, (k, k).
+        inertia: moved by each joint in the middle posture, (k,).
+        shares: (k,) by which the model's forces are multiplied: 1, or units of the recorded effort per newton metre
+            where the gain was found from the data.
+    """
+
+    def __init__(
+        self,
+        run: JointSignals,
+        links: AxisSignals,
+        joints: Sequence[Joint],
+        model: ArmModel,
+        coupling: Array,
+        shares: Array,
+    ) -> None:
+        self.run = run
+        self.links = links
+        self.joints = joints
+        self.model = model
+        self.coupling = coupling
+        self.shares = shares
+        self._sliding: dict[tuple[int, float], Array] = {}
+        self._payload: dict[tuple[str, tuple[float, ...]], dict[str, Array]] = {}
+
+    # what the effects read
+
+    def row(self, site: str) -> int:
+        """Return the column of a joint."""
+        return self.model.names.index(site)
+
+    def axis(self, site: str) -> NominalAxis:
+        """Return the nominal constants of a joint."""
+        row = self.row(site)
+        viscous = max(self.joints[row].viscous, SLIP)
+        return NominalAxis(float(self.inertia[row]), viscous, self.lead(site), float(self.tops[row]))
+
+    def lead(self, site: str) -> float:
+        """Return the travel per motor revolution, m or rad; what stands for it where it is not known."""
+        row = self.row(site)
+        stated = self.joints[row].lead
+        if stated is not None:
+            return stated
+        return LEAD_OF_STROKE * max(float(np.ptp(self.run.motor[:, row])), self.joints[row].encoder_resolution)
+
+    def sliding(self, axis: int, displacement: float) -> Array:
+        """Return the Dahl state of a joint, -1..1, (n,): +1 after moving forward by a few `displacement`, m or rad."""
+        if (axis, displacement) not in self._sliding:
+            x, v = (np.ascontiguousarray(y[:, axis]) for y in (self.run.smooth, self.run.velocity))
+            self._sliding[axis, displacement] = dahl_turned(x, v, displacement, self.run.period)
+        return self._sliding[axis, displacement]
+
+    def payload(self, link: str, centre: tuple[float, float, float]) -> dict[str, Array]:
+        """Return joint -> (g, 4) force: per kg at the joint of a link, and per kg m of its centre.
+
+        Args:
+            link: that carries the payload.
+            centre: about which its mass is taken to lie when its inertia is reckoned, m, in the frame of the link's
+                joint; the inertia of a point there is quadratic in it and goes with the mass.
+        """
+        if (link, centre) not in self._payload:
+            first = PARAMETERS * self.model.links.index(link)
+            columns = self.regressor_of_joints[..., first : first + PARAMETERS]
+            out = columns[..., :LINKS_OF_PAYLOAD].copy()
+            out[..., 0] += columns[..., LINKS_OF_PAYLOAD:] @ point_inertia(np.array(centre))
+            forces = self._on_motors(out) * self.shares[:, None]
+            self._payload[link, centre] = dict(zip(self.model.names, np.moveaxis(forces, 1, 0), strict=True))
+        return self._payload[link, centre]
+
+    @cached_property
+    def path(self) -> Loads:
+        """Weight on every joint along the motion, (g, k); no contact."""
+        still = np.zeros_like(self._joint_position)
+        weight = self._on_motors(self.model.needed(self._joint_position, still, still)[..., None])[..., 0] * self.shares
+        return Loads(weight, np.zeros_like(weight))
+
+    @cached_property
+    def position(self) -> Array:
+        """Smoothed position on the residual grid, (g, k)."""
+        return self.run.smooth[self.run.grid]
+
+    @cached_property
+    def velocity(self) -> Array:
+        """Velocity on the residual grid, (g, k)."""
+        return self.run.velocity[self.run.grid]
+
+    @cached_property
+    def acceleration(self) -> Array:
+        """Acceleration on the residual grid, (g, k)."""
+        return self.run.to_grid(self.run.acceleration)
+
+    @cached_property
+    def effort(self) -> Array:
+        """Recorded effort on the residual grid, (g, k)."""
+        assert self.run.effort is not None
+        return self.run.to_grid(self.run.effort)
+
+    @cached_property
+    def rigid(self) -> Array:
+        """Force that the rigid bodies of the model need on every motor, (g, k), N or N m."""
+        step = np.array([j.step_inertia for j in self.joints])
+        return self._on_motors(self.model.needed(*self._of_links)[..., None])[..., 0] + step * self.acceleration
+
+    @cached_property
+    def inertial(self) -> Array:
+        """Nominal force that the measured motion needs, (g, k), in the unit of the effort."""
+        viscous = np.array([max(j.viscous, SLIP) for j in self.joints])
+        return self.shares * (self.rigid + self.lost) + viscous * self.velocity
+
+    @cached_property
+    def lost(self) -> Array:
+        """Force that the losses of an MJCF model need on every motor, (g, k), N or N m.
+
+        Dry friction turns between two samples of the grid: it is computed for every sample and filtered as efforts are.
+        """
+        losses, run = self.model.losses, self.links
+        if losses is None:
+            return np.zeros_like(self.velocity)
+        dry = run.to_grid(self._dry)
+        return self._on_motors((dry + losses.in_motion(*self._of_links[:2]))[..., None])[..., 0]
+
+    @cached_property
+    def _dry(self) -> Array:
+        """Force that dry friction of an MJCF model needs on every joint, for every sample of the run, (n, k)."""
+        losses, run, back = self.model.losses, self.links, np.linalg.inv(self.coupling).T
+        if losses is None:
+            return np.zeros_like(run.smooth)
+        q, v = (x @ back for x in (run.smooth, run.velocity))
+        return losses.dry(q, v, np.gradient(v, run.period, axis=0))
+
+    @cached_property
+    def _of_links(self) -> tuple[Array, Array, Array]:
+        """Position, velocity and acceleration of the joints on the residual grid, (g, k) each."""
+        run, back = self.links, np.linalg.inv(self.coupling).T
+        motion = (run.smooth[run.grid], run.velocity[run.grid], run.to_grid(run.acceleration))
+        q, v, a = (x @ back for x in motion)
+        return q, v, a
+
+    @property
+    def _joint_position(self) -> Array:
+        return self._of_links[0]
+
+    @cached_property
+    def regressor(self) -> Array:
+        """Force per inertial parameter on every motor, (g, k, 10 links)."""
+        return self._on_motors(self.regressor_of_joints)
+
+    @cached_property
+    def regressor_of_joints(self) -> Array:
+        """The same on every joint."""
+        return self.model.regressor(*self._of_links)
+
+    def _on_motors(self, forces: Array) -> Array:
+        """Bring forces on the joints (g, k, p) to the motors: tau_joint = coupling^T tau_motor."""
+        return np.einsum("ji,gjp->gip", np.linalg.inv(self.coupling), forces)
+
+    @cached_property
+    def inertia(self) -> Array:
+        """Inertia that each joint moves in the middle posture, (k,)."""
+        return self.shares * np.diag(self.model.inertia_matrix(np.median(self._joint_position, axis=0)))
+
+    def inertia_matrix(self, sample: int) -> Array:
+        """Return motor force by motor acceleration in the posture of a sample of the residual grid, (k, k)."""
+        back = np.linalg.inv(self.coupling)
+        return np.asarray(back.T @ self.model.inertia_matrix(self._joint_position[sample]) @ back)
+
+    # which samples can be judged
+
+    def in_motion(self, row: int) -> Mask:
+        """Return (g,) True where the force balance of a joint can be judged: well inside a stretch of its motion."""
+        still = settled(self.moving[:, row] & ~self.at_a_level[:, row] & ~self.turning[:, row], 1)
+        return self.run.inner & still & ~self.impacts
+
+    @cached_property
+    def impacts(self) -> Mask:
+        """(g,) True where the link of any joint flies across a gap; the impact at its end shakes all of them."""
+        flying = np.any([crossing(self.run, row) for row in range(len(self.joints))], axis=0)
+        return ~settled(~flying, AROUND_IMPACT)
+
+    @cached_property
+    def at_a_level(self) -> Mask:
+        """(g, k) True where an effort lies flat at its largest reading, or its drive is off."""
+        effort = self.run.effort
+        assert effort is not None
+        return np.column_stack([at_a_level(x) | off(x) | (not x.any()) for x in effort.T])[self.run.grid]
+
+    @cached_property
+    def moving(self) -> Mask:
+        """(g, k) True where a joint moves: at rest friction takes any value, and the force balance says nothing."""
+        run, half = self.run, max(1, self.run.stride)
+        before = run.smooth[np.maximum(run.grid - half, 0)]
+        after = run.smooth[np.minimum(run.grid + half, run.ticks - 1)]
+        return np.abs(after - before) > np.array([j.encoder_resolution for j in self.joints])
+
+    @cached_property
+    def turning(self) -> Mask:
+        """(g, k) True where the soft dry friction of an MJCF model turns: there it follows the noise of the encoder."""
+        if self.model.losses is None:
+            return np.zeros_like(self.velocity, dtype=bool)
+        between = np.abs(self._dry) < DEVELOPED * self.model.losses.full
+        near = maximum_filter1d(between, 2 * self.run.stride + 1, axis=0)[self.run.grid]
+        return near @ (np.linalg.inv(self.coupling) != 0.0)
+
+    # what the engine reads
+
+    @property
+    def excitation(self) -> str:
+        """Name that repeats of the run share."""
+        return self.run.excitation
+
+    @property
+    def rate(self) -> float:
+        """Samples per second of the residual grid, Hz."""
+        return self.run.rate
+
+    @cached_property
+    def tops(self) -> Array:
+        """Largest velocity of every joint, (k,)."""
+        return np.maximum(np.abs(self.run.velocity).max(axis=0), STILL)
+
+    @cached_property
+    def speed_share(self) -> Array:
+        """(g,) speed of the fastest joint over its largest of the run."""
+        return (np.abs(self.velocity) / self.tops).max(axis=1)
+
+    @property
+    def loaded(self) -> Mask:
+        """(g,) False: no load acts but the arm's own weight."""
+        return np.zeros(len(self.run.grid), dtype=bool)
+
+    @property
+    def warmth(self) -> Array:
+        """(g,) zero: temperatures are not recorded."""
+        return np.zeros(len(self.run.grid))
+
+    @property
+    def temperature_known(self) -> bool:
+        """False: temperatures are not recorded."""
+        return False
+
+    def motion(self, actuator: str) -> Motion | None:
+        """Return the motion of a joint."""
+        row = self.row(actuator)
+        return Motion(self.position[:, row], self.velocity[:, row], float(self.tops[row]), self.joints[row].lead)
+
+    def inputs(self, actuator: str) -> Array:
+        """Return (g, 5): position, velocity and direction of the joint, the force it needs, and its acceleration."""
+        row = self.row(actuator)
+        velocity = self.velocity[:, row]
+        direction = np.sign(velocity) * self.moving[:, row]
+        own = [self.position[:, row], velocity, direction, self.inertial[:, row], self.acceleration[:, row]]
+        return np.column_stack(own)
+
+    # what discovery reads
+
+    @property
+    def step(self) -> float:
+        """Time between two samples of the record, s."""
+        return self.run.period
+
+    def recorded(self, channel: Channel) -> Quantities:
+        """Return what was recorded that the law of a gap of a joint might depend on; not the effort, the output."""
+        run, row, joint = self.run, self.row(channel.actuator), self.joints[self.row(channel.actuator)]
+        turns, newton = joint.unit_of_position, "N*m" if joint.motion == "rotary" else "N"
+        need, weight = (
+            np.interp(run.stage_clock, run.stage_clock[run.grid], x[:, row]) for x in (self.inertial, self.path.gravity)
+        )
+        acceleration = np.gradient(run.velocity[:, row], run.period)
+        return {
+            "position": Quantity(run.smooth[:, row], turns, "the position", "place"),
+            "velocity": Quantity(run.velocity[:, row], f"{turns}/s", "the velocity", "speed"),
+            "acceleration": Quantity(acceleration, f"{turns}/s^2", "the acceleration", "state"),
+            "force": Quantity(need, newton, "the force that the motion needs", "force"),
+            "load": Quantity(weight, newton, "the weight on the joint", "force"),
+            "time": Quantity(run.stage_clock, "s", "the time since the run began", "clock"),
+        }
+
+    def at_residuals(self, x: Array) -> Array:
+        """Low-pass values of the record and sample them on the residual grid."""
+        return self.run.to_grid(x)
+
+
+def point_inertia(centre: Array) -> Array:
+    """Return the inertia of a kilogram at `centre` (3,), m, about the origin: xx xy yy xz yz zz, (6,), as Pinocchio's.
+
+    I = |c|^2 1 - c c^T.
+    """
+    x, y, z = centre
+    return np.array([y * y + z * z, -x * y, x * x + z * z, -x * z, -y * z, x * x + y * y])

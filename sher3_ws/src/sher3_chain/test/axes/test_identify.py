@@ -1,0 +1,35 @@
+"""An unknown mass from forces worked out by hand."""
+
+import numpy as np
+import pytest
+from sher3_chain.axes.identification.identify import identify_mass
+from sher3_chain.axes.signals import AxisSignals
+from sher3_chain.axes.view import AxisView
+from sher3_machines import MachineError
+from slides import axis_of
+
+CLOCK = 0.002 * np.arange(10000)
+
+
+def seen(force, position):
+    run = AxisSignals("run", "run", 0.002, position[:, None], effort=force[:, None])
+    return AxisView(run, axis_of(mass="unknown", encoder_resolution=1e-7), 0.0)
+
+
+def swing(mass, viscous=0.0, dry=0.0, offset=0.0):
+    """Force of a mass on q = 0.05 sin 3t."""
+    q, v, a = 0.05 * np.sin(3 * CLOCK), 0.15 * np.cos(3 * CLOCK), -0.45 * np.sin(3 * CLOCK)
+    return mass * a + viscous * v + dry * np.sign(v) + offset, q
+
+
+@pytest.mark.parametrize("more", [{}, {"viscous": 20.0}, {"dry": 3.0, "offset": -1.0}])
+def test_the_mass_is_found_beside_whatever_resists(more):
+    mass, (low, high) = identify_mass([seen(*swing(7.0, **more))])
+    assert mass == pytest.approx(7.0, rel=0.01)
+    assert low <= mass <= high
+
+
+def test_motion_at_constant_speed_tells_no_mass():
+    noise = np.random.default_rng(0).normal(size=len(CLOCK))
+    with pytest.raises(MachineError, match="does not tell its mass"):
+        identify_mass([seen(5.0 + noise, 0.1 * CLOCK)])

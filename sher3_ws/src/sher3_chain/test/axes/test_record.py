@@ -1,0 +1,90 @@
+"""Units, clocks and holes of the records of a chain of axes."""
+
+import numpy as np
+import pytest
+from sher3_chain.axes.quantities.units import check_units
+from sher3_chain.axes.record import axes_run
+from sher3_machines import MachineError
+from slides import axis_of, columns, described
+
+SERVO = {"signals": columns("position", "reference"), "command_law": {"kind": "position"}}
+
+
+def tables(n=200, **more):
+    t = 0.01 * np.arange(n)
+    return {"t": t, "position": 0.1 * t, "reference": 0.1 * t, **more}
+
+
+def test_an_even_record_is_taken_as_it_is():
+    run = axes_run("run", tables(), described(**SERVO))
+    assert run.period == pytest.approx(0.01) and run.notes == []
+    assert run.signals["slide"]["position"] == pytest.approx(0.1 * 0.01 * np.arange(200))
+
+
+def test_a_late_stamp_is_moved_to_the_grid_and_said():
+    """One stamp is 0.4 periods late: the line is read 0.4 periods earlier there."""
+    late = tables()
+    late["t"] = late["t"].copy()
+    late["t"][50] += 0.004
+    late["position"] = late["reference"] = 0.1 * late["t"]
+    run = axes_run("run", late, described(**SERVO))
+    assert run.signals["slide"]["position"] == pytest.approx(0.1 * 0.01 * np.arange(200), abs=1e-12)
+    assert "off the grid by up to 0.4 periods" in run.notes[0]
+
+
+def test_signals_on_clocks_of_their_own_meet_where_they_overlap():
+    machine = described(
+        **{**SERVO, "signals": {k: {"column": f"{k}/x", "unit": "m"} for k in ("position", "reference")}}
+    )
+    t = 0.01 * np.arange(300)
+    found = {"position/t": t, "position/x": t, "reference/t": t + 0.5, "reference/x": 2.0 * (t + 0.5)}
+    signals = axes_run("run", found, machine).signals["slide"]
+    assert len(signals["position"]) == 250
+    assert signals["position"][0] == pytest.approx(0.5) and signals["reference"][0] == pytest.approx(1.0)
+
+
+def test_a_rate_stands_for_stamps():
+    machine = described(**SERVO).model_copy(
+        update={"time": described().time.model_copy(update={"column": None, "rate": 50.0})}
+    )
+    assert axes_run("run", tables(), machine).period == pytest.approx(0.02)
+    with pytest.raises(MachineError, match="differ in length"):
+        axes_run("run", {**tables(), "reference": np.zeros(150)}, machine)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"n": 15}, "too short"),
+        ({"reference": np.zeros(150)}, "time and signal differ in length"),
+    ],
+)
+def test_a_record_that_cannot_be_used_is_named(change, words):
+    with pytest.raises(MachineError, match=words):
+        axes_run("run", tables(**change), described(**SERVO))
+
+
+def test_positions_outside_the_stated_range_are_a_wrong_unit():
+    """A range of 0.3 m: 200 is 200 mm; 0.32 is inside what rounding of the range allows."""
+    axis = axis_of(range=(0.0, 0.3))
+    with pytest.raises(MachineError, match="likely mm recorded as m"):
+        check_units(axis, {"position": np.array([0.0, 200.0])}, "run")
+    with pytest.raises(MachineError, match="leaves the range of the axis"):
+        check_units(axis, {"position": np.array([0.0, 0.4])}, "run")
+    check_units(axis, {"position": np.array([0.0, 0.32])}, "run")
+
+
+def test_a_reference_in_another_unit_is_named():
+    found = {"position": 0.1 * np.linspace(0.0, 1.0, 100), "reference": 100.0 * np.linspace(0.0, 1.0, 100)}
+    with pytest.raises(MachineError, match=r"slide.reference: likely mm recorded as m"):
+        check_units(axis_of(range=(0.0, 1.0)), found, "run")
+
+
+def test_a_motor_that_counts_may_make_many_turns():
+    """117 rad in counts are no degrees; 117 that were stated as rad may be."""
+    found = {"position": np.linspace(0.0, 117.0, 50)}
+    signals = {"position": {"column": "q", "unit": "count", "factor": 1e-3}, "effort": {"column": "i", "unit": "A"}}
+    check_units(axis_of(motion="rotary", signals=signals), found, "run")
+    signals["position"] = {"column": "q", "unit": "rad"}
+    with pytest.raises(MachineError, match="likely deg recorded as rad; value 117"):
+        check_units(axis_of(motion="rotary", signals=signals), found, "run")

@@ -1,0 +1,51 @@
+"""Delay and lag of a servo together, and a load that rings behind a second encoder."""
+
+import numpy as np
+import pytest
+from scipy.signal import lfilter
+from sher3_chain.axes.record import AxesRun
+from sher3_diagnosis import diagnose
+from slides import columns, machine, servo
+
+COUNT = 1e-4
+
+
+def test_delay_and_lag_are_told_together():
+    """30 ms and 60 ms; within half a period of 10 ms nobody states when a set-point acts."""
+    period = 0.01
+    t = np.arange(0.0, 40.0, period)
+    asked = 0.4 * np.sin(0.9 * t) + 0.1 * np.sin(4.7 * t) + 0.2 * np.sign(np.sin(0.37 * t))
+    fine = np.arange(0.0, 40.0, 0.1 * period)
+    keep = np.exp(-0.1 * period / 0.06)
+    place = lfilter([1.0 - keep], [1.0, -keep], np.interp(fine - 0.03, t, asked))[::10]
+    run = AxesRun("run", period, {"slide": {"position": COUNT * np.round(place / COUNT), "reference": asked}})
+    verdict = diagnose(servo(encoder_resolution=COUNT), [run]).verdict
+    assert [c.effect for c in verdict.causes] == ["drive_lag"]
+    found = verdict.causes[0].parameters
+    assert found["time_constant"].value == pytest.approx(0.06, rel=0.03)
+    assert found["delay"].value == pytest.approx(0.03, abs=0.007)
+
+
+def test_a_load_that_rings_tells_its_frequency_without_a_force():
+    """12 Hz and a damping of 0.08, shaken by a sweep to 20 Hz."""
+    period, pace = 0.002, 2.0 * np.pi * 12.0
+    t = np.arange(0.0, 20.0, period)
+    motor = 0.05 * np.sin(2.1 * t) + 0.01 * np.sin(2.0 * np.pi * (2.0 + 0.45 * t) * t)
+    x, v, load = motor[0], 0.0, []
+    for k, start in enumerate(motor):
+        load.append(x)
+        end = motor[min(k + 1, len(motor) - 1)]
+        for part in np.arange(20) / 20.0:
+            v += (
+                period
+                / 20.0
+                * (pace**2 * (start + part * (end - start) - x) + 0.16 * pace * ((end - start) / period - v))
+            )
+            x += period / 20.0 * v
+    signals = {"position": 1e-6 * np.round(1e6 * motor), "load": 1e-6 * np.round(1e6 * np.array(load)) + 0.02}
+    law = {"mass": None, "command_law": {"kind": "none"}, "encoder_resolution": 1e-6}
+    verdict = diagnose(
+        machine(signals=columns("position", "load"), **law), [AxesRun("run", period, {"slide": signals})]
+    ).verdict
+    assert [c.effect for c in verdict.causes] == ["transmission_compliance"]
+    assert verdict.causes[0].parameters["frequency"].value == pytest.approx(12.0, rel=0.02)

@@ -1,0 +1,92 @@
+"""What lies between two encoders of one axis: play or a spring; under a servo and under known loads."""
+
+import numpy as np
+import pytest
+from sher3_chain.axes.record import AxesRun
+from sher3_diagnosis import diagnose
+from slides import columns, machine, servo
+
+PERIOD = 0.002
+T = np.arange(0.0, 20.0, PERIOD)
+R = 0.4 * np.sin(0.9 * T) + 0.1 * np.sin(2.7 * T)
+COUNT = 1e-5
+
+
+def behind_a_gap(x, width):
+    side, out = x[0], np.empty_like(x)
+    for k, place in enumerate(x):
+        side = min(max(side, place - 0.5 * width), place + 0.5 * width)
+        out[k] = side
+    return out
+
+
+def read(x):
+    return COUNT * np.round(x / COUNT)
+
+
+def of_servo(position, load, **more):
+    signals = columns("position", "reference", "load", *(("applied",) if "applied" in more else ()), unit="rad")
+    if "applied" in more:
+        signals["applied"]["unit"] = "N*m"
+    run = AxesRun("run", PERIOD, {"slide": {"position": read(position), "reference": R, "load": read(load), **more}})
+    return diagnose(servo(signals=signals, encoder_resolution=COUNT), [run]).verdict
+
+
+def between(verdict):
+    return {c.effect: c for c in verdict.causes if c.stage in ("transmission", "sensing")}
+
+
+def test_the_play_of_a_servo_is_found_in_position_mode_too():
+    """2.0 mrad between the encoders of a servo that follows its reference exactly."""
+    found = between(of_servo(R, behind_a_gap(R, 2.0e-3)))
+    assert set(found) == {"backlash"}
+    assert found["backlash"].parameters["width"].value == pytest.approx(2.0e-3, rel=0.03)
+
+
+def test_the_play_of_a_late_servo_is_its_transmission_s():
+    """A servo 40 ms behind its reference, with 1 mrad of play: a lag of the servo and a gap behind it."""
+    from scipy.signal import lfilter
+
+    share = 1.0 - np.exp(-PERIOD / 0.04)
+    position = lfilter([share], [1.0, share - 1.0], R)
+    verdict = of_servo(position, behind_a_gap(position, 1.0e-3))
+    assert set(between(verdict)) == {"backlash"}
+    assert {"timing", "lost_motion"} == {c.family for c in verdict.causes}
+
+
+def test_a_spring_between_the_encoders_gives_way_to_a_known_load():
+    """Weights of up to 5 N m are hung on a held joint whose gear has 500 N m/rad: 10 mrad."""
+    applied = 5.0 * np.round(np.sin(0.5 * T))
+    found = between(of_servo(R, R + applied / 500.0, applied=applied))
+    assert set(found) == {"transmission_compliance"}
+    assert found["transmission_compliance"].parameters["stiffness"].value == pytest.approx(500.0, rel=0.06)
+
+
+def test_a_gap_under_a_known_load_is_crossed_by_the_load():
+    """A held joint: its motor rests, the load lies on whichever flank the weight pushes it to, 3 mrad apart."""
+    applied = np.where(np.sin(0.5 * T) > 0.0, 1.0, -1.0)
+    still = np.zeros_like(R)
+    signals = columns("position", "reference", "load", "applied", unit="rad")
+    signals["applied"]["unit"] = "N*m"
+    rng = np.random.default_rng(0)
+    load = read(1.5e-3 * applied + 2e-6 * rng.normal(size=len(T)))
+    run = AxesRun("run", PERIOD, {"slide": {"position": still, "reference": still, "load": load, "applied": applied}})
+    found = between(diagnose(servo(signals=signals, encoder_resolution=COUNT), [run]).verdict)
+    assert {"backlash", "transmission_compliance"} & set(found)
+    cause = next(iter(found.values()))
+    assert {cause.effect, *cause.rivals} >= {"backlash", "transmission_compliance"}, (
+        "two loads tell no spring from a gap"
+    )
+
+
+def test_a_spring_is_found_from_the_recorded_effort():
+    """The mass is not stated: the recorded effort tells the force on a spring of 2e5 N/m."""
+    effort = 40.0 * np.sin(1.9 * T + 0.4) + 15.0 * np.sin(3.1 * T)
+    signals = {**columns("position", "load"), **columns("effort", unit="N")}
+    run = AxesRun(
+        "run", PERIOD, {"slide": {"position": read(0.1 * R), "load": 0.1 * R - effort / 2e5, "effort": effort}}
+    )
+    arm = machine(signals=signals, mass=None, command_law={"kind": "force"}, encoder_resolution=1e-6)
+    found = between(diagnose(arm, [run]).verdict)
+    assert set(found) == {"transmission_compliance"}
+    assert found["transmission_compliance"].parameters["stiffness"].value == pytest.approx(2e5, rel=0.06)

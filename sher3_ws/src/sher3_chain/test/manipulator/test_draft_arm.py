@@ -1,0 +1,49 @@
+"""A description of an arm drafted from a log and its model."""
+
+import numpy as np
+import pytest
+from lifts import URDF, friction, motion, needed
+from sher3_chain.manipulator.draft import draft_arm, fitted
+from sher3_diagnosis import diagnose
+from sher3_machines import MachineError, import_case, open_case
+
+Q, V, A = motion(16.0)
+TIME = np.arange(len(Q)) * 0.005
+EFFORT = needed(Q, V, A) + friction(V, (8.0, 0.5)) + 0.02 * np.random.default_rng(1).normal(size=Q.shape)
+
+
+def drafted(tmp_path, names):
+    (tmp_path / "lift.urdf").write_text(URDF)
+    rows = np.column_stack([TIME, Q, EFFORT])
+    np.savetxt(tmp_path / "a.csv", rows, delimiter=",", header=",".join(names), comments="", fmt="%.9g")
+    return draft_arm(tmp_path / "a.csv", tmp_path / "lift.urdf")
+
+
+def test_a_drafted_arm_is_diagnosed(tmp_path):
+    found = drafted(tmp_path, ["t", "q1", "q2", "tau1", "tau2"])
+    (tmp_path / "a.yaml").write_text(found.text, encoding="utf-8")
+    import_case([tmp_path / "a.csv"], tmp_path / "a.yaml", tmp_path / "case")
+    verdict = diagnose(*open_case(tmp_path / "case")).verdict
+    assert {(c.effect, c.actuator) for c in verdict.causes} == {
+        ("coulomb_friction", "lift"),
+        ("coulomb_friction", "swing"),
+    }
+    assert "joint1 is joint lift, because of its number" in found.guesses
+    assert not any("mass is not known" in guess or "driven by" in guess for guess in found.guesses)
+
+
+def test_a_current_has_an_unknown_gain(tmp_path):
+    found = drafted(tmp_path, ["t", "lift_pos", "swing_pos", "lift_current", "swing_torque_Nm"])
+    assert found.text.count("gain: unknown") == 1
+    assert any(guess.startswith("lift: gain unknown") for guess in found.guesses)
+
+
+def test_axes_are_joints_by_name_by_number_or_in_their_order(tmp_path):
+    model = tmp_path / "a.urdf"
+    joints = [f"arm_joint_{i}" for i in range(1, 4)]
+    assert fitted(["arm_joint_2", "armjoint1"], joints, model)["armjoint1"] == ("arm_joint_1", "name")
+    assert fitted(["q_3", "q_1"], joints, model) == {"q_3": (joints[2], "number"), "q_1": (joints[0], "number")}
+    assert fitted(["q0", "q2", "q1"], ["a", "b", "c"], model)["q2"] == ("c", "number")
+    assert fitted(["pan", "lift", "roll"], joints, model)["lift"] == (joints[1], "order")
+    with pytest.raises(MachineError, match="do not fit"):
+        fitted(["pan", "lift"], joints, model)

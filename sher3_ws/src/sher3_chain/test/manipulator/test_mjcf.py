@@ -1,0 +1,85 @@
+"""What an MJCF file says of its joints: actuators as laws, forces beside the bodies as MuJoCo's inverse dynamics."""
+
+import re
+
+import mujoco
+import numpy as np
+import pytest
+from drawn_arms import drawn_xml
+from sher3_chain.manipulator.description import ManipulatorDescription
+from sher3_chain.manipulator.kind import KIND
+from sher3_chain.manipulator.mjcf.drives import driven
+from sher3_chain.manipulator.mjcf.joint import drive_joint
+
+XML = """<mujoco><option timestep="0.002" integrator="implicitfast"/><worldbody>
+<body><joint name="a" axis="0 1 0" damping="0.5"/><geom size="0.1" mass="2" pos="0.2 0 0"/></body></worldbody>
+<actuator>{}</actuator></mujoco>"""
+
+
+def drive_of(actuators):
+    return driven(mujoco.MjModel.from_xml_string(XML.format(actuators)))["a"]
+
+
+def test_a_position_actuator_is_a_servo_at_its_joint():
+    found = drive_of('<position joint="a" kp="100" kv="5" gear="2" forcerange="-30 30"/>')
+    drive = found.drive
+    assert drive.servo and (drive.position_gain, drive.velocity_gain, drive.limit) == (400.0, 20.0, 60.0)
+    assert drive.factor == 0.5  # control 1 asks for half a radian behind a gear of two
+    assert found.recorded == pytest.approx(0.002 * 20.0 + 0.001 * 0.5)
+    assert found.of_law == pytest.approx(0.001 * (20.0 + 0.5))
+
+
+def test_a_motor_is_a_force():
+    drive = drive_of('<motor joint="a" gear="-3"/>').drive
+    assert not drive.servo and drive.factor == -3.0
+
+
+@pytest.mark.parametrize(
+    ("actuators", "words"),
+    [
+        ("", "no actuator"),
+        ('<motor joint="a"/><position joint="a" kp="1"/>', "2 actuators"),
+        ('<general joint="a" dyntype="filter" dynprm="0.1"/>', "dynamics of its own"),
+        ('<velocity joint="a" kv="3"/>', "no servo of places"),
+    ],
+)
+def test_what_is_no_law_of_the_control_says_why(actuators, words):
+    found = drive_of(actuators)
+    assert found.drive is None and words in found.reason
+
+
+def test_a_control_without_a_law_leaves_its_joint_unjudged():
+    joint = {"name": "a", "motion": "rotary", "signals": {"position": {}, "command": {"column": "ctrl"}}}
+    guesses = []
+    drive_joint(joint, drive_of('<velocity joint="a" kv="3"/>'), False, guesses)
+    assert "command" not in joint["signals"] and "record efforts" in guesses[0]
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_forces_are_those_of_mujoco(seed, tmp_path):
+    """MuJoCo's own inverse dynamics, where its step adds nothing."""
+    xml = re.sub('integrator="[a-zA-Z]+"', 'integrator="RK4"', drawn_xml(np.random.default_rng(seed)))
+    (tmp_path / "arm.xml").write_text(xml)
+    model = mujoco.MjModel.from_xml_string(xml)
+    names = [model.joint(i).name for i in range(model.njnt)]
+    signals = {"position": {"column": "q", "unit": "rad"}, "effort": {"column": "f", "unit": "N*m"}}
+    joint = {"motion": "rotary", "signals": signals, "encoder_resolution": 1e-5}
+    data = {"kind": "manipulator", "name": "arm", "model": str(tmp_path / "arm.xml"), "time": {"rate": 100.0}}
+    described = ManipulatorDescription.model_validate({**data, "joints": [{"name": n, **joint} for n in names]})
+    arm = KIND.machine(described).model
+    q, v, a = np.random.default_rng(9).normal(size=(3, 5, len(names)))
+    state, wanted = mujoco.MjData(model), []
+    for qi, vi, ai in zip(q, v, a, strict=True):
+        state.qpos[:], state.qvel[:], state.qacc[:] = qi, vi, ai
+        mujoco.mj_inverse(model, state)
+        wanted.append(state.qfrc_inverse + state.qfrc_constraint)
+    np.testing.assert_allclose(arm.needed(q, v, a) + arm.losses.in_motion(q, v), wanted, atol=1e-8)
+
+
+def test_a_stated_damping_stands_in_place_of_the_model_s(tmp_path):
+    (tmp_path / "arm.xml").write_text(XML.format(""))
+    signals = {"position": {"column": "q", "unit": "rad"}, "effort": {"column": "f", "unit": "N*m"}}
+    joint = {"name": "a", "motion": "rotary", "signals": signals, "encoder_resolution": 1e-5, "viscous": 0.1}
+    data = {"kind": "manipulator", "name": "arm", "model": str(tmp_path / "arm.xml"), "time": {"rate": 100.0}}
+    arm = KIND.machine(ManipulatorDescription.model_validate({**data, "joints": [joint]})).model
+    np.testing.assert_allclose(arm.losses.in_motion(np.zeros((1, 1)), np.ones((1, 1))), 0.0)

@@ -1,0 +1,38 @@
+"""The table of an arm: a row for each joint, a column for each kind of constant, words that a mechanic uses."""
+
+from causes_at import caused
+from lifts import friction, machine, motion, needed, run_of
+from sher3_chain.manipulator.library import of_joints
+from sher3_chain.manipulator.report.table import HEADS, table_of
+from sher3_diagnosis import diagnose
+from sher3_diagnosis.report.page import render
+
+
+def test_each_constant_stands_in_its_column_with_interval_and_rivals():
+    causes = [
+        caused("coulomb_friction", "friction", "A1", "force", 373.0, "N*m", ["stribeck_friction"]),
+        caused("viscous_friction", "friction", "A1", "extra", 1.9, "N*m/(rad/s)"),
+        caused("sensor_delay", "timing", "A1", "load_delay", 0.00309, "s"),
+        caused("transmission_compliance", "compliance", "A2", "compliance", 1.3e-7, "rad/(N*m)"),
+        caused("backlash", "lost_motion", "A2", "width", 0.002, "rad"),
+    ]
+    table = table_of(causes, of_joints(), ["A1", "A2", "A3"], ["A1", "A2"])
+    rows = {row[0]: dict(zip(table.heads[1:], row[1:], strict=True)) for row in table.rows}
+    assert rows["A1"]["Coulomb"] == "Coulomb friction 373 N·m (336 N·m … 410 N·m) or stribeck friction"
+    assert rows["A1"]["delay"].startswith("Sensor delay 3.09 ms") and rows["A1"]["viscous"].startswith("Viscous")
+    assert rows["A2"]["spring"].startswith("Transmission compliance") and rows["A2"]["play"].startswith("Backlash 2 m")
+    assert rows["A2"]["Coulomb"] == "–" and set(rows["A3"].values()) == {"not judged"}
+    assert [x.split(":")[0] for x in table.lines()] == ["A1", "A2"] and len(table.heads) == len(HEADS) + 1
+
+
+def test_a_link_with_a_payload_has_a_row_of_its_own():
+    table = table_of([caused("payload_mass", "inertia", "hand", "mass", 1.2, "kg")], of_joints(), ["A1"], ["A1"])
+    assert [row[0] for row in table.rows] == ["A1", "hand"] and "1.2 kg" in table.rows[1][1]
+
+
+def test_the_page_of_an_arm_shows_its_table(tmp_path):
+    q, v, a = motion(8.0)
+    page = render(
+        diagnose(machine(tmp_path / "lift.urdf"), [run_of(q, needed(q, v, a) + friction(v, (8.0, 0.5)))]), "lift"
+    )
+    assert "Joint by joint" in page and "<th>Coulomb</th>" in page
