@@ -9,10 +9,11 @@ from generators.table import table
 INTRODUCTION = """# Topics
 
 Every topic of the graph, from `sher3_description.topics.TOPICS`, where publishers and subscribers take type, frame and
-quality of service from. Names are relative to `/sher3`, but for `/diagnostics`. *In the graph*: the name on the wire,
-where it is not that of recordings; there CRTK's rules hold: commands of the user are at the root, and no stream of
-the robot's own bears the name of a command. *Latched*: a late subscriber gets the last message. *Depth* is the length
-of the queue in messages.
+quality of service from. Names are relative to `/sher3`, but for `/diagnostics`, or to another
+[namespace](../../how-to/native-ros.md#two-robots-in-one-domain), which gives frames a prefix. *In the graph*: the name
+on the wire, where it is not that of recordings; there CRTK's rules hold: commands of the user are at the root, and no
+stream of the robot's own bears the name of a command. *Latched*: a late subscriber gets the last message. *Depth* is
+the length of the queue in messages.
 
 """
 

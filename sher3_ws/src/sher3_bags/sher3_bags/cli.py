@@ -10,7 +10,7 @@ from typing import Annotated, Any
 
 import typer
 from sher3_common.commands.completing import BAG, CASE, folders_with
-from sher3_common.commands.options import Domain, Json, reported
+from sher3_common.commands.options import Domain, InNamespace, Json, reported
 from sher3_description.topics import NAMESPACE
 
 app = typer.Typer(no_args_is_help=True, help="Record, replay, compare and recover bags.")
@@ -32,6 +32,7 @@ def record(
     topic: Topics = None,
     robot: Annotated[Path | None, typer.Option(help="robot.yaml to attach; default the nominal one.")] = None,
     domain: Domain = 0,
+    namespace: InNamespace = NAMESPACE,
     as_json: Json = False,
 ) -> None:
     """Record the running graph into a new bag; exit code 1 where no message came."""

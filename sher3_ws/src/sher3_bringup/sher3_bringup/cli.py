@@ -10,7 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Optional
 
 import typer
-from sher3_common.commands.options import Domain, Json
+from sher3_common.commands.options import Domain, InNamespace, Json
+from sher3_common.namespace import NAMESPACE
 
 if TYPE_CHECKING:
     from sher3_bringup.terminal.screen import Screen
@@ -83,6 +84,7 @@ def up(
     view: Annotated[bool, typer.Option("--view", help="Also show the robot in the browser (extra `view`).")] = False,
     view_port: Annotated[int, typer.Option(help="Port of the view, on 127.0.0.1 alone.", min=1, max=65535)] = 8080,
     domain: Domain = 0,
+    namespace: InNamespace = NAMESPACE,
     other_hosts: Annotated[
         bool, typer.Option("--other-hosts", help="Also talk to other machines; loopback by default.")
     ] = False,
@@ -146,6 +148,7 @@ def teleop(
     show: Annotated[bool, typer.Option("--print", help="Print the script of the demo and leave.")] = False,
     rate: Annotated[float, typer.Option(help="Control rate of the running graph [Hz].")] = 500.0,
     domain: Domain = 0,
+    namespace: InNamespace = NAMESPACE,
 ) -> None:
     """Act the surgeon on a running mock: press the pedal and push the tool.
 
@@ -176,6 +179,7 @@ def demo(
     view: Annotated[bool, typer.Option("--view", help="Also show the robot in the browser (extra `view`).")] = False,
     view_port: Annotated[int, typer.Option(help="Port of the view, on 127.0.0.1 alone.", min=1, max=65535)] = 8080,
     domain: Domain = 73,
+    namespace: InNamespace = NAMESPACE,
     as_json: Json = False,
 ) -> None:
     """Run every node on mocks with a scripted surgeon, record it, analyse the recording, show figures and a picture."""

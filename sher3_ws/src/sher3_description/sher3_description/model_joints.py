@@ -34,9 +34,17 @@ class ModelJoint(NamedTuple):
     origin: Triple
     axis: Triple = Z
 
+    def prefixed(self, prefix: str) -> ModelJoint:
+        """Return the joint with `prefix` before its own name and those of its links."""
+        names = {name: prefix + getattr(self, name) for name in ("name", "parent", "child")}
+        return self._replace(**names)
 
-def moving_joints(robot: Robot) -> list[ModelJoint]:
-    """Return the movable joints in the order of `sher3_kinematics.model_joints.MODEL_JOINTS`."""
+
+def moving_joints(robot: Robot, prefix: str = "") -> list[ModelJoint]:
+    """Return the movable joints in the order of `sher3_kinematics.model_joints.MODEL_JOINTS`.
+
+    `prefix` stands before the names of joints and links.
+    """
     delta, arm = robot.delta, robot.arm
     out = delta.base_distance
     sliders = [
@@ -49,7 +57,7 @@ def moving_joints(robot: Robot) -> list[ModelJoint]:
         )
         for k, azimuth in enumerate(delta.leg_azimuth)
     ]
-    return [
+    joints = [
         *sliders,
         ModelJoint("platform_x", "prismatic", "b", "p_x", ZERO, X),
         ModelJoint("platform_y", "prismatic", "p_x", "p_y", ZERO, Y),
@@ -57,11 +65,13 @@ def moving_joints(robot: Robot) -> list[ModelJoint]:
         ModelJoint("roll", "revolute", "p", "r", (0.0, 0.0, arm.d1), X),
         ModelJoint("tilt_angle", "revolute", "r", "a", (arm.d2, 0.0, arm.d3), Y),
     ]
+    return [joint.prefixed(prefix) for joint in joints]
 
 
-def fixed_joints(robot: Robot) -> list[ModelJoint]:
-    """Return the joints that never move: tool and force sensor."""
-    return [
+def fixed_joints(robot: Robot, prefix: str = "") -> list[ModelJoint]:
+    """Return the joints that never move, tool and force sensor; `prefix` as for `moving_joints`."""
+    joints = [
         ModelJoint("tip", "fixed", "a", "t", robot.arm.tool),
         ModelJoint("force_sensor", "fixed", "t", "f", robot.force_sensor.position),
     ]
+    return [joint.prefixed(prefix) for joint in joints]

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Literal
 
-NAMESPACE = "/sher3"
+from sher3_common.namespace import NAMESPACE as NAMESPACE
+from sher3_common.namespace import in_graph, prefix
 
 
 @dataclass(frozen=True)
@@ -31,7 +32,8 @@ class Topic:
         name: Name in recordings relative to `NAMESPACE`, as in `measured_js`; the key of `TOPICS`. It is that of the
             recorded-run contract, section 4.
         type: ROS interface, as in `sensor_msgs/msg/JointState`.
-        frame_id: `header.frame_id` of every message; empty where the message belongs to no frame.
+        frame_id: `header.frame_id` of every message, without the robot's prefix; empty where the message belongs to no
+            frame.
         qos: Quality of service of publishers and subscribers alike.
         content: What the topic carries, for `--help` and the docs.
         graph: Name in the graph relative to `NAMESPACE`, where it is not `name`. There CRTK's rules hold: commands of
@@ -47,8 +49,17 @@ class Topic:
 
     @property
     def full_name(self) -> str:
-        """The absolute name in the graph; `diagnostics` alone is outside the namespace (ROS convention)."""
-        return self._absolute(self.graph or self.name)
+        """The absolute name in the graph, in the namespace of this process's robot.
+
+        `/diagnostics` is outside `/sher3` (ROS convention), but within any other namespace: robots of one domain must
+        not take each other's for their own.
+        """
+        return in_graph(self._absolute(self.graph or self.name))
+
+    @property
+    def frame(self) -> str:
+        """`header.frame_id` in the graph: with the prefix of this process's robot."""
+        return prefix() + self.frame_id if self.frame_id else ""
 
     @property
     def recorded_name(self) -> str:

@@ -15,9 +15,12 @@ from sher3_description.model_joints import ZERO, ModelJoint, Triple, fixed_joint
 from sher3_description.robot import Robot
 from sher3_description.visuals import Shape, shapes
 
+_NAMES = {"link": ("name",), "joint": ("name",), "parent": ("link",), "child": ("link",)}
+"""Attributes that name a link or a joint, by tag."""
 
-def urdf(robot: Robot) -> str:
-    """Return the URDF text.
+
+def urdf(robot: Robot, prefix: str = "") -> str:
+    """Return the URDF text; `prefix` stands before the names of links and joints.
 
     Movable joints: `delta_1 delta_2 delta_3` (sliders), `platform_x platform_y platform_z`, `roll`, `tilt_angle`.
     Links: `b`, `slider_k`, `p`, `r`, `a`, `t`, `f` and two massless ones inside the platform's translation.
@@ -33,6 +36,9 @@ def urdf(robot: Robot) -> str:
         assert link is not None
         for number, body in enumerate(bodies):
             _visual(link, f"{name}_{number}", body)
+    for element in root.iter():
+        for key in _NAMES.get(element.tag, ()):
+            element.set(key, prefix + element.attrib[key])
     ElementTree.indent(root)
     return ElementTree.tostring(root, encoding="unicode", xml_declaration=True) + "\n"
 

@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-from sher3_common.commands.options import Domain, Json
+from sher3_common.commands.options import Domain, InNamespace, Json
+from sher3_common.namespace import NAMESPACE
 
 from sher3_gap_cli.options import NominalFile, reported
 
@@ -62,6 +63,7 @@ def excite(
     seed: Annotated[int, typer.Option(help="With --simulate: of noise and scatter.")] = 0,
     robot: NominalFile = None,
     domain: Domain = 0,
+    namespace: InNamespace = NAMESPACE,
     as_json: Json = False,
 ) -> None:
     """List the standard excitations, or run some on the running graph (or simulated) and record them as a case.

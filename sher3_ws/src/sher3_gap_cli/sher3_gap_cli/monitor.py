@@ -6,7 +6,8 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from sher3_common.commands.options import Domain
+from sher3_common.commands.options import Domain, InNamespace
+from sher3_common.namespace import NAMESPACE
 
 from sher3_gap_cli.options import NominalFile, reported
 
@@ -16,6 +17,7 @@ def monitor(
     window: Annotated[float, typer.Option(min=0.5, max=60.0, help="Seconds a gap is taken over.")] = 4.0,
     robot: NominalFile = None,
     domain: Domain = 0,
+    namespace: InNamespace = NAMESPACE,
     as_json: Annotated[bool, typer.Option("--json", help="Also print one JSON object a second.")] = False,
 ) -> None:
     """Run the model beside the running robot; gap over floor per stage on gap/diagnostics at 1 Hz, until Ctrl-C."""

@@ -13,7 +13,8 @@ from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.utilities import get_default_context
 from sher3_common import Sher3Error
-from sher3_description.topics import NAMESPACE, TOPICS, Qos, Topic
+from sher3_common.namespace import graph_namespace
+from sher3_description.topics import TOPICS, Qos, Topic
 
 from sher3_runtime.clock import Clock
 from sher3_runtime.composed.composition import Composition, composing
@@ -27,7 +28,7 @@ TRACE_VARIABLE = "SHER3_TRACE"
 STATISTICS_VARIABLE = "SHER3_STATISTICS"
 
 NODE_OPTIONS: dict[str, Any] = {
-    "namespace": NAMESPACE,
+    "namespace": graph_namespace(),
     "enable_rosout": False,
     "start_parameter_services": False,
     "use_global_arguments": False,

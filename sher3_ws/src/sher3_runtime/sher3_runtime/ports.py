@@ -80,7 +80,7 @@ def subscribe(
             topic, port.turn, receive, profile.depth, lambda: port.leave(node, name, subscription)
         )
     if raw:
-        decode, garbage = codec(topic.type, topic.frame_id, ACTUATORS).decode, port.statistics.garbage
+        decode, garbage = codec(topic.type, topic.frame, ACTUATORS).decode, port.statistics.garbage
 
         def deliver(data: Any) -> None:
             port.received[name] += 1
@@ -164,7 +164,7 @@ def advertise(node: Node, name: str) -> Publish:
     trace = port.statistics.trace(f"publish {name}") if stamped else None
     sent, now = port.sent, port.clock.now
     sent[name] = 0
-    encode = codec(topic.type, topic.frame_id, ACTUATORS).encode
+    encode = codec(topic.type, topic.frame, ACTUATORS).encode
     raw, composition = raw_mode(), port.composition
     # The handle's own method: rclpy's wrapper would enter the handle's context at each call.
     send = publisher.handle.publish_raw if raw else publisher.publish
@@ -246,7 +246,7 @@ def gathered(node: Node, name: str, depth: int) -> Callable[[], list[Any]]:
     rings = newest_of_rings()
     if rings is None:
         return ask
-    rank, decode = rings.look_at(name, depth), codec(topic.type, topic.frame_id, ACTUATORS).decode
+    rank, decode = rings.look_at(name, depth), codec(topic.type, topic.frame, ACTUATORS).decode
     # A stream that comes by a ring may come by the middleware as well, later, where somebody else listens there.
     return lambda: _decoded(port, name, decode, rings.take(rank)) if rings.offers(rank) else ask()
 
@@ -262,7 +262,7 @@ def _asks(node: Node, topic: Topic, depth: int) -> tuple[Callable[[], list[Any]]
     )
     port.subscriptions[name] = subscription
     port.polled.add(subscription.handle.pointer)
-    decode, take = codec(topic.type, topic.frame_id, ACTUATORS).decode, subscription.handle.take_message
+    decode, take = codec(topic.type, topic.frame, ACTUATORS).decode, subscription.handle.take_message
 
     def ask() -> list[Any]:
         found: list[bytes] = []
@@ -284,7 +284,7 @@ def by_ring(node: Node, name: str, depth: int) -> Callable[[], list[Any]]:
     if rings is None:
         return list
     port.subscribed[port.subscriptions[name].handle.pointer].urgent = True
-    rank, decode = rings.look_at(name, depth), codec(topic.type, topic.frame_id, ACTUATORS).decode
+    rank, decode = rings.look_at(name, depth), codec(topic.type, topic.frame, ACTUATORS).decode
     return lambda: _decoded(port, name, decode, rings.take(rank) if rings.offers(rank) else [])
 
 

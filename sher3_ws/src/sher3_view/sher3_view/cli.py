@@ -9,8 +9,8 @@ from typing import Annotated, Optional
 
 import typer
 from sher3_common.commands.completing import BAG, folders_with
-from sher3_common.commands.options import Domain, Json, reported
-from sher3_description.topics import NAMESPACE
+from sher3_common.commands.options import Domain, InNamespace, Json, reported
+from sher3_common.namespace import NAMESPACE
 
 app = typer.Typer(rich_markup_mode="markdown")
 
@@ -47,6 +47,7 @@ def view(
     robot: Annotated[Optional[Path], typer.Option(help="Robot file; by default the one in the bag.")] = None,  # noqa: UP045
     port: Annotated[int, typer.Option(help="Port of the live page, on 127.0.0.1 alone.", min=1, max=65535)] = 8080,
     domain: Domain = 0,
+    namespace: InNamespace = NAMESPACE,
     seconds: Annotated[float | None, typer.Option("--for", help="Seconds the live page lasts; until Ctrl-C.")] = None,
     as_json: Json = False,
 ) -> None:
@@ -120,6 +121,7 @@ def state(
     ] = None,
     robot: Annotated[Optional[Path], typer.Option(help="Robot file; the nominal one by default.")] = None,  # noqa: UP045
     domain: Domain = 0,
+    namespace: InNamespace = NAMESPACE,
     parameters: Annotated[
         bool, typer.Option("--parameters", help="Also serve the settings as parameters of /sher3/parameters.")
     ] = False,
@@ -155,6 +157,7 @@ def foxglove(
     port: Annotated[int, typer.Option(help="Port of the server, on 127.0.0.1 alone.", min=1, max=65535)] = 8765,
     robot: Annotated[Optional[Path], typer.Option(help="Robot file; the nominal one by default.")] = None,  # noqa: UP045
     domain: Domain = 0,
+    namespace: InNamespace = NAMESPACE,
     seconds: Annotated[float | None, typer.Option("--for", help="Seconds it lasts; until Ctrl-C.")] = None,
     as_json: Json = False,
 ) -> None:

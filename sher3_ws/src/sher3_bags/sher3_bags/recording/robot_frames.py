@@ -12,6 +12,7 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
+from sher3_common.namespace import prefix
 from sher3_common.stamps import SECOND
 from sher3_description import Qos, Robot
 from sher3_description.model_joints import ModelJoint, fixed_joints, moving_joints
@@ -44,22 +45,25 @@ class RobotFrames:
     """Makes the robot's description, joint states, transforms and legs from what a recorder hears.
 
     Args:
-        robot: in force.
+        robot: in force; its frames and joints have the prefix of its namespace.
     """
 
     def __init__(self, robot: Robot) -> None:
-        self._robot = robot
+        self._robot, self._prefix = robot, prefix()
         self._kinematics = RobotKinematics(robot)
-        self._joints = moving_joints(robot)
+        self._joints = moving_joints(robot, self._prefix)
+        self._names = [self._prefix + name for name in MODEL_JOINTS]
         base, platform = ball_centres(robot)
         self._balls = base + np.array([0.0, 0.0, robot.delta.slider_zero]), platform
         self._next = -(2**62)
 
     def fixed(self, stamp: int) -> list[Made]:
         """Return what never changes: the URDF and the transforms of its fixed joints; stamp in ns."""
-        still = [(joint.parent, joint.child, joint.origin, UPRIGHT) for joint in fixed_joints(self._robot)]
+        still = [
+            (joint.parent, joint.child, joint.origin, UPRIGHT) for joint in fixed_joints(self._robot, self._prefix)
+        ]
         return [
-            Made("/robot_description", TEXT, LATCHED, text(urdf(self._robot))),
+            Made("/robot_description", TEXT, LATCHED, text(urdf(self._robot, self._prefix))),
             Made("/tf_static", TF, LATCHED, transforms(stamp, still)),
         ]
 
@@ -97,10 +101,11 @@ class RobotFrames:
             (joint.parent, joint.child, *joint_transform(joint, at))
             for joint, at in zip(self._joints, positions, strict=True)
         ]
+        legs = self._legs(positions)
         return [
-            Made("/joint_states", JOINT_STATE, Qos(), joint_state(stamp, MODEL_JOINTS, positions)),
+            Made("/joint_states", JOINT_STATE, Qos(), joint_state(stamp, self._names, positions)),
             Made("/tf", TF, Qos(), transforms(stamp, moving)),
-            Made("/sher3/markers", MARKER, Qos(), lines(stamp, "b", "legs", LEG_WIDTH, self._legs(positions))),
+            Made("/sher3/markers", MARKER, Qos(), lines(stamp, f"{self._prefix}b", "legs", LEG_WIDTH, legs)),
         ]
 
     def _legs(self, positions: tuple[float, ...]) -> list[tuple[float, float, float]]:

@@ -13,11 +13,11 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from sher3_common import Sher3Error
-from sher3_description import NAMESPACE, TOPICS
+from sher3_common.namespace import use_namespace
 from sher3_runtime import environment
 
-SERVICES = ("admittance/tare",)
 NAMESPACE_RULE = "__ns:="
+"""ROS's own rule; it would move the node alone, since topics have absolute names, so that it is obeyed here."""
 
 
 def main() -> None:
@@ -36,6 +36,8 @@ def run_one(name: str, words: Sequence[str]) -> None:
         ConfigurationError: an option is wrong. Sher3Error: the node does not start, a device is missing for instance.
     """
     ours, theirs = split(words)
+    if asked := [word.removeprefix(NAMESPACE_RULE) for word in theirs if word.startswith(NAMESPACE_RULE)]:
+        use_namespace(asked[-1])
     wanted = _parser(name).parse_args(ours)
     environment.apply(wanted.domain, wanted.other_hosts)
     from sher3_runtime.ports import NODE_OPTIONS, PERIOD_VARIABLE
@@ -67,20 +69,9 @@ def run_one(name: str, words: Sequence[str]) -> None:
 
 
 def split(words: Sequence[str]) -> tuple[list[str], list[str]]:
-    """Return our options, and those of ROS with a rule for every topic where a namespace is asked for.
-
-    Topics have absolute names, so ROS's own namespace rule would move the node alone.
-    """
+    """Return our options, and those of ROS."""
     at = list(words).index("--ros-args") if "--ros-args" in words else len(words)
-    ours, theirs = list(words[:at]), list(words[at:])
-    asked = [word.removeprefix(NAMESPACE_RULE) for word in theirs if word.startswith(NAMESPACE_RULE)]
-    if not asked:
-        return ours, theirs
-    space = "/" + asked[-1].strip("/")
-    names = [topic.full_name for topic in TOPICS.values() if topic.full_name.startswith(NAMESPACE + "/")]
-    names += [f"{NAMESPACE}/{service}" for service in SERVICES]
-    rules = [word for name in names for word in ("-r", f"{name}:={space}{name.removeprefix(NAMESPACE)}")]
-    return ours, [*(theirs[:-1] if theirs[-1] == "--" else theirs), *rules]
+    return list(words[:at]), list(words[at:])
 
 
 def _parser(name: str) -> argparse.ArgumentParser:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from sher3_common.namespace import robot_name
 from sher3_control.settings import ControlSettings, MotionSettings
 from sher3_description import Robot, load_robot
 from sher3_drivers.name_plates import load_name_plates
@@ -145,15 +147,15 @@ class RunSettings(BaseModel):
         return tuple(name for process in self.processes for name in process)
 
     def force_address(self) -> tuple[str, int]:
-        """Return host and port of the force sensor; the mock's lies in the domain's own block of DDS ports."""
+        """Return host and port of the force sensor; the mock's port lies in the domain's own block of DDS ports."""
         if self.mock:
-            return "127.0.0.1", MOCK_FORCE_PORT + 250 * self.domain
+            return loopback_address(robot_name()), MOCK_FORCE_PORT + 250 * self.domain
         host, _, port = self.force_device.partition(":")
         return host, int(port or NETFT_PORT)
 
     def mock_name(self) -> str:
-        """Return the name that the devices of this domain's mocks go by."""
-        return f"sher3-{self.domain}"
+        """Return the name that the devices of this robot's mocks go by."""
+        return f"{robot_name()}-{self.domain}"
 
     def robot(self) -> Robot:
         """Return the robot with the control period of this run."""
@@ -209,6 +211,11 @@ class RunSettings(BaseModel):
         from sher3_faults.budget import TravelBudget
 
         return TravelBudget(self.robot(), self.control(), self.drives())
+
+
+def loopback_address(name: str) -> str:
+    """Return an address of the loopback network (127/8) of a robot's own, so that robots of a domain share no port."""
+    return "127.0.0.1" if name == "sher3" else ".".join(map(str, (127, *hashlib.sha256(name.encode()).digest()[:3])))
 
 
 def parse_processes(

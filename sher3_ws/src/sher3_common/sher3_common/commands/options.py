@@ -10,11 +10,19 @@ from typing import Annotated
 import typer
 
 from sher3_common.errors import Sher3Error
+from sher3_common.namespace import NAMESPACE_VARIABLE, use_namespace
 
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object instead of text.")]
 BAD_INPUT = 2
 """Exit code where an option, a file or a value is not valid, as Typer's own."""
 Domain = Annotated[int, typer.Option(min=0, max=232, help="ROS domain id of the graph.", envvar="ROS_DOMAIN_ID")]
+InNamespace = Annotated[
+    str,
+    typer.Option(
+        "--namespace", help="Namespace of the robot in the graph.", envvar=NAMESPACE_VARIABLE, callback=use_namespace
+    ),
+]
+"""Where the robot is; the command is in that namespace as soon as its options are read."""
 
 
 @contextmanager

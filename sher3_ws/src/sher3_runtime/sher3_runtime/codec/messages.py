@@ -39,7 +39,7 @@ def to_message(topic: Topic, sample: Sample) -> Any:
     if isinstance(sample, TextSample):
         message.data = sample.text
         return message
-    message.header.frame_id = topic.frame_id
+    message.header.frame_id = topic.frame
     message.header.stamp.sec, message.header.stamp.nanosec = divmod(sample.stamp, SECOND)
     _FILL[type(sample)](message, sample)
     return message

@@ -7,6 +7,8 @@ from typing import Annotated, Any, Optional
 
 import typer
 from sher3_bringup.errors import ConfigurationError
+from sher3_common.commands.options import Domain, InNamespace
+from sher3_common.namespace import NAMESPACE
 
 app = typer.Typer(rich_markup_mode="markdown")
 
@@ -23,7 +25,8 @@ def fault(
     start: Annotated[float, typer.Option(help="Seconds from now.")] = 0.0,
     parameter: Annotated[Optional[list[str]], typer.Option("-p", "--parameter", help="NAME=VALUE of the kind.")] = None,  # noqa: UP045
     seed: Annotated[int, typer.Option(help="Seed of what is random in it.", min=0)] = 0,
-    domain: Annotated[int, typer.Option(help="ROS domain id.", min=0, max=232, envvar="ROS_DOMAIN_ID")] = 0,
+    domain: Domain = 0,
+    namespace: InNamespace = NAMESPACE,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of text.")] = False,
 ) -> None:
     """Break a part of the running robot on mocks (`sher3 up`).

@@ -15,7 +15,7 @@ from rclpy.context import Context
 from rclpy.node import Node
 from sher3_bags.recording.made import Made
 from sher3_bags.recording.typed_status import LATCHED, OPERATING_STATE
-from sher3_description import NAMESPACE
+from sher3_common.namespace import graph_namespace
 from sher3_runtime.codec.messages import message_class
 from sher3_runtime.ports import NODE_OPTIONS, qos_profile
 
@@ -39,8 +39,8 @@ class CrtkNode(Node):
         state, asked = message_class(OPERATING_STATE), message_class(COMMAND)
         super().__init__("crtk", context=context, **{**NODE_OPTIONS, **options})
         self._command, self._kind = command, asked
-        self._state = self.create_publisher(state, f"{NAMESPACE}/operating_state", qos_profile(LATCHED))
-        self._asked = self.create_subscription(asked, f"{NAMESPACE}/state_command", lambda _: None, QUEUE)
+        self._state = self.create_publisher(state, f"{graph_namespace()}/operating_state", qos_profile(LATCHED))
+        self._asked = self.create_subscription(asked, f"{graph_namespace()}/state_command", lambda _: None, QUEUE)
 
     def tell(self, made: Made) -> None:
         """Send a message if it is the operating state."""

@@ -17,6 +17,7 @@ from rclpy.time import Time
 from sher3_bags.recording.made import Made
 from sher3_bags.recording.robot_frames import PERIOD_NS, SOURCE, RobotFrames
 from sher3_bags.recording.typed_status import SOURCES, TypedStatuses
+from sher3_common.namespace import in_graph
 from sher3_common.samples import TextSample
 from sher3_description import Robot
 from sher3_runtime.beside import beside
@@ -94,7 +95,7 @@ class StateNode(Node):
                 self.left_out.add(made.topic)
                 return
             self._by_topic[made.topic] = self.create_publisher(
-                message_class(made.type), made.topic, qos_profile(made.qos)
+                message_class(made.type), in_graph(made.topic), qos_profile(made.qos)
             )
         self._by_topic[made.topic].publish(made.data)
 
