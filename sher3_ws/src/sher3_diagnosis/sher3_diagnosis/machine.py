@@ -34,16 +34,11 @@ class Policy:
     Attributes:
         down_to_floor: causes are searched until no gap is left at all. For machines whose description leaves several
             plain causes out; otherwise a known cause may leave a share, since laws are idealisations.
-        constancy: a cause must keep its size over the excitations. Only where these were designed to differ.
-        spill_over: a slight gap beside an explained one needs no cause of its own.
-        calibrated: causes and gaps are weighed by the calibration, which was set on machines of this kind; the two
-            rules before it then have nothing to say.
+        calibrated: causes and gaps are weighed by the calibration, which was set on machines of this kind.
         free_laws: what causes leave must not follow quantities that none of them depends on.
     """
 
     down_to_floor: bool = False
-    constancy: bool = True
-    spill_over: bool = True
     calibrated: bool = False
     free_laws: bool = False
 

@@ -131,10 +131,6 @@ FOREIGN_SHARE = 0.5
 """Share of what a free law of the causes' own inputs leaves that such quantities must tell: most of it. Set by that
 argument and measured as `HALF_CLOSED`."""
 
-SLIGHT = 1.6
-"""Power over threshold below which a gap beside an explained one is spill-over and no cause of its own.
-Set on and measured as `REMAINDER`."""
-
 REPRODUCED = 0.9
 """Share of an exact stage's error that its causes must reproduce. Set on: development seeds with faults of transport
 and controller. Measure: `sher3 gap challenge --seeds 0:40` (status)."""

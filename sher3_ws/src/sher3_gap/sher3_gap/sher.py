@@ -42,7 +42,7 @@ class Sher(Machine[RunSignals, SherEvidence]):
     """
 
     robot: Robot
-    policy = Policy(constancy=False, spill_over=False, calibrated=True)
+    policy = Policy(calibrated=True)
 
     def library(self) -> Sequence[Effect]:
         """Return every effect of the robot."""

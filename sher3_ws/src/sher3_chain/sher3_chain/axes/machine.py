@@ -56,15 +56,14 @@ NO_REPEATS = (
 class Axes(Machine[AxesRun, AxisEvidence]):
     """Axes that move independently of each other.
 
-    A description of a few lines leaves several plain causes out, so that the search goes on down to the floor. Records
-    are what somebody happened to take: nothing asks a cause to keep its size from one to the next.
+    A description of a few lines leaves several plain causes out, so that the search goes on down to the floor.
 
     Attributes:
         description: nominal constants of every axis, and what was recorded of it.
     """
 
     description: AxesDescription
-    policy = Policy(down_to_floor=True, constancy=False, spill_over=False, free_laws=True)
+    policy = Policy(down_to_floor=True, free_laws=True)
 
     def library(self) -> Sequence[Effect]:
         """Return the pages for these kinds of axes, and that of the limit, which is read off without a fit."""

@@ -57,7 +57,7 @@ class Manipulator(Machine[AxesRun, ArmMotionEvidence]):
 
     described: ManipulatorDescription
     model: ArmModel
-    policy = Policy(down_to_floor=True, constancy=False, spill_over=False)
+    policy = Policy(down_to_floor=True)
 
     def library(self) -> Sequence[Effect]:
         """Return the pages of an axis and those of a joint of an arm."""

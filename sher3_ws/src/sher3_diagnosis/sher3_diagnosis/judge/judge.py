@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from sher3_diagnosis.attribute.steadiness import steadiness_of
 from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.finding import ExactFinding, Finding
@@ -20,9 +19,9 @@ from sher3_diagnosis.judge.probabilities import of_first, reproduced
 from sher3_diagnosis.judge.remainder import remainder
 from sher3_diagnosis.judge.status import answer_to_exact, combined, status_of
 from sher3_diagnosis.localise.gaps import Gap, component_rms
-from sher3_diagnosis.machine import Machine, Policy
+from sher3_diagnosis.machine import Machine
 from sher3_diagnosis.quantify.closure import closure, residual_after
-from sher3_diagnosis.thresholds import REPRODUCED, SLIGHT
+from sher3_diagnosis.thresholds import REPRODUCED
 from sher3_diagnosis.verdict import Cause, Closure, Interval, Place, Residual, Status, Unexplained, Verdict, Where
 
 Gaps = dict[Channel, Gap]
@@ -38,8 +37,7 @@ def judge(
     """Build the verdict of a machine from what was found on its parts and in its exact stages."""
     calibration = in_force() if machine.policy.calibrated else None
     causes = [c for f in exact for c in _probable(f, calibration)] + [c for f in findings for c in f.causes]
-    explained = bool(causes or exact)
-    gaps = [_own_gaps(machine.policy, f, explained) for f in findings]
+    gaps = [f.significant for f in findings]
     located = _located(findings)
     places = _bets(located, exact) if exact or any(gaps) else _unlikely(findings)
     told: dict[str, Any] = {
@@ -54,7 +52,7 @@ def judge(
     causes = ordered(causes, list(findings))
     where = [f.where for f in exact] + [w for _, _, w in located]
     stage, residual = _first(findings, gaps, exact, where[0].gap)
-    unexplained = _unexplained(machine.policy, findings, gaps, exact, calibration, costs)
+    unexplained = _unexplained(findings, gaps, exact, calibration, costs)
     proposals = [p for f in findings if (p := next_experiment(f.evidence, f.attribution)) is not None]
     by_rules = {LIBRARY if unexplained is None else OUTSIDE}
     return Verdict(
@@ -120,17 +118,6 @@ def _ratio(where: Where) -> float:
     return where.gap / max(where.floor, np.finfo(float).tiny)
 
 
-def _slight(finding: Finding) -> set[Channel]:
-    """Channels whose gap is left and so slight that it may be spill-over from an explained one."""
-    return {c for c in finding.left if finding.significant[c].power < SLIGHT}
-
-
-def _own_gaps(policy: Policy, finding: Finding, explained: bool) -> Gaps:
-    """Gaps that ask for a cause of their own."""
-    spilt = _slight(finding) if policy.spill_over and explained else set()
-    return {c: g for c, g in finding.significant.items() if c not in spilt}
-
-
 def _first(
     findings: Sequence[Finding], gaps: Sequence[Gaps], exact: Sequence[ExactFinding], size: float
 ) -> tuple[Interval | None, Residual | None]:
@@ -149,14 +136,13 @@ def _first(
 
 
 def _unexplained(
-    policy: Policy,
     findings: Sequence[Finding],
     gaps: Sequence[Gaps],
     exact: Sequence[ExactFinding],
     calibration: Calibration | None,
     costs: Costs,
 ) -> Unexplained | None:
-    """What is left that no effect explains: in an exact stage, of a gap, or as a cause that changes its size."""
+    """What is left that no effect explains: in an exact stage, or of a gap."""
     for stage in exact:
         if not _reproduced(stage, calibration, costs):
             reason = f"an exact stage is not reproduced: {stage.note or 'no timing or gain error fits'}"
@@ -164,12 +150,11 @@ def _unexplained(
     for finding, own in zip(findings, gaps, strict=True):
         left = {c: x for c, x in finding.left.items() if c in own}
         if left:
-            return _described(finding, max(left, key=left.__getitem__), "")
+            return _described(finding, max(left, key=left.__getitem__))
     if not any(f.causes for f in findings) and not exact:
         finding, own = next((f, own) for f, own in zip(findings, gaps, strict=True) if own)
-        return _described(finding, max(own, key=lambda c: own[c].power), "")
-    changing = (_inconstant(f) for f in findings) if policy.constancy else ()
-    return next((x for x in changing if x is not None), None)
+        return _described(finding, max(own, key=lambda c: own[c].power))
+    return None
 
 
 def _reproduced(stage: ExactFinding, calibration: Calibration | None, costs: Costs) -> bool:
@@ -179,23 +164,10 @@ def _reproduced(stage: ExactFinding, calibration: Calibration | None, costs: Cos
     return answer_to_exact(reproduced(stage, calibration), costs) == LIBRARY
 
 
-def _inconstant(finding: Finding) -> Unexplained | None:
-    """A cause whose size differs between excitations stands in for an effect the library does not have."""
-    for i in finding.attribution.causes:
-        found = steadiness_of(finding.evidence, finding.attribution.fit, i)
-        if not found.constant:
-            term = finding.attribution.fit.terms[i]
-            channel = max(sorted(term.channels), key=finding.evidence.excess)
-            share = f"{found.spread:.1%} of what it explains differs"
-            text = f"{term.effect.id} fits, but not with one size in all excitations ({share}); "
-            return _described(finding, channel, text)
-    return None
-
-
-def _described(finding: Finding, channel: Channel, before: str) -> Unexplained:
+def _described(finding: Finding, channel: Channel) -> Unexplained:
     text = remainder(finding.evidence, channel, finding.attribution.fit)
     imitated = sorted(finding.imitations, key=lambda i: -i.closure.value)
-    return Unexplained(stage=channel.stage, actuator=channel.actuator, signature=before + text, imitated_by=imitated)
+    return Unexplained(stage=channel.stage, actuator=channel.actuator, signature=text, imitated_by=imitated)
 
 
 def _crossing(library: Mapping[str, Effect], cause: Cause) -> bool:

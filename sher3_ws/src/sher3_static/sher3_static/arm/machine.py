@@ -14,7 +14,7 @@ from sher3_diagnosis.attribute.stepwise import grow
 from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.finding import Finding
 from sher3_diagnosis.fit.fitting import Fit
-from sher3_diagnosis.machine import Machine, Policy
+from sher3_diagnosis.machine import Machine
 from sher3_diagnosis.quantify.closure import closure
 from sher3_diagnosis.verdict import Cause, Interval
 from sher3_effects import pages
@@ -53,7 +53,6 @@ class SerialArm(Machine[ArmData, ArmEvidence]):
     arm: Arm
     noise: float
     noise_rotation: float | None = None
-    policy = Policy(constancy=False, spill_over=False)
 
     def library(self) -> Sequence[Effect]:
         """Return the pages of geometric errors of a joint."""

@@ -36,7 +36,7 @@ class LoadCell(Machine[CellRun, Evidence]):
     """
 
     description: CellDescription
-    policy = Policy(down_to_floor=True, constancy=False, spill_over=False)
+    policy = Policy(down_to_floor=True)
 
     def library(self) -> Sequence[Effect]:
         """Return the pages for a cell."""

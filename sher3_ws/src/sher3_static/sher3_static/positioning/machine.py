@@ -36,7 +36,7 @@ class Positioning(Machine[Tests, TableEvidence]):
     """
 
     description: PositioningDescription
-    policy = Policy(down_to_floor=True, constancy=False, spill_over=False)
+    policy = Policy(down_to_floor=True)
 
     def library(self) -> Sequence[Effect]:
         """Return the pages for tables and circles."""

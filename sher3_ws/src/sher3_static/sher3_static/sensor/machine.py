@@ -38,7 +38,7 @@ class ForceSensor(Machine[SensorRun, SensorEvidence]):
     """
 
     description: SensorDescription
-    policy = Policy(down_to_floor=True, constancy=False, spill_over=False)
+    policy = Policy(down_to_floor=True)
 
     def library(self) -> Sequence[Effect]:
         """Return the pages for a sensor."""
