@@ -11,6 +11,7 @@ from sher3_bags import read_case
 from sher3_challenge.cases.calibrate import residual_keys
 from sher3_challenge.errors import ChallengeError
 from sher3_challenge.oracle.oracle import excess, stage_residuals
+from sher3_challenge.plants.grammar import CATALOGUE
 from sher3_challenge.plants.kinds import Fault, FaultError
 from sher3_challenge.plants.plant import Climate, RunPlan
 from sher3_challenge.plants.registry import truth_plant
@@ -61,6 +62,8 @@ def healthy(name, label):
 
 
 def label_for(kind):
+    if kind.name in CATALOGUE:  # laws that follow the motion
+        return "sweep"
     if kind.name in LOADED or kind.places == ("force_sensor",):
         return "loads"
     return "steps" if kind.stage == "drive" or kind.name in SHAKEN else "sweep"

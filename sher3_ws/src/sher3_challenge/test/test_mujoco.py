@@ -7,6 +7,7 @@ from sher3_challenge.errors import ChallengeError
 from sher3_challenge.oracle import nominal as contract
 from sher3_challenge.oracle.oracle import excess, floors, stage_residuals
 from sher3_challenge.plants import registry
+from sher3_challenge.plants.level import Level
 from sher3_challenge.plants.mujoco import built
 from sher3_challenge.plants.mujoco.axes.field import contact_force, gravity
 from sher3_challenge.plants.mujoco.axes.laws import Film, Grease, Guide, Magnet
@@ -130,7 +131,7 @@ def test_deviations_keep_to_the_tolerances_of_the_amendment():
     drawn, rng = built.as_drawn(ROBOT), np.random.default_rng(7)
     for _ in range(200):
         rig = built.as_drawn(ROBOT)
-        built.deviate(rig, rng)
+        built.deviate(rig, rng, Level(3.0))
         for axis, plain, actuator in zip(rig.axes, drawn.axes, ROBOT.actuators, strict=True):
             assert abs(axis.mass / plain.mass - 1) < 0.010001 and abs(axis.viscous / plain.viscous - 1) < 0.050001
             assert abs(axis.torque_gain - 1) < 0.0020001 and abs(axis.lead_error) < 2.0001e-5

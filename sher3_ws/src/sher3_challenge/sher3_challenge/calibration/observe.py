@@ -9,10 +9,12 @@ from pathlib import Path
 from typing import Any
 
 from sher3_common import read_text, read_yaml
+from sher3_description import Robot
 from sher3_diagnosis.finding import ExactFinding, Finding
 from sher3_diagnosis.flow import find
 from sher3_diagnosis.judge.items import Item, items_of
 from sher3_gap.evidence import SherEvidence
+from sher3_gap.signals import RunSignals
 
 from sher3_challenge.cases.seal import CASES, LABELS
 
@@ -91,16 +93,25 @@ def observations(plant: str, case: Path, kept: Path | None = None) -> list[Obser
         case: folder with its label.
         kept: file that holds them from one call to the next.
     """
-    if kept is not None and kept.exists():
-        stored = json.loads(read_text(kept))
-        if stored["version"] == VERSION:
-            return [_again(row) for row in stored["rows"]]
+    if kept is not None and (found := stored(kept)):
+        return found
     truth = truth_of(case)
     found = _observed(plant, case, truth)
     if kept is not None:
-        kept.parent.mkdir(parents=True, exist_ok=True)
-        kept.write_text(json.dumps({"version": VERSION, "rows": [asdict(o) for o in found]}), encoding="utf-8")
+        keep(found, kept)
     return found
+
+
+def keep(found: Sequence[Observation], file: Path) -> None:
+    """Write observations of one case."""
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(json.dumps({"version": VERSION, "rows": [asdict(o) for o in found]}), encoding="utf-8")
+
+
+def stored(file: Path) -> list[Observation]:
+    """Return the observations of a file; none where it is not there or of another version."""
+    kept = json.loads(read_text(file)) if file.exists() else {}
+    return [_again(row) for row in kept["rows"]] if kept.get("version") == VERSION else []
 
 
 def _again(row: dict[str, Any]) -> Observation:
@@ -110,9 +121,14 @@ def _again(row: dict[str, Any]) -> Observation:
 
 def _observed(plant: str, case: Path, truth: dict[str, Any]) -> list[Observation]:
     from sher3_gap.case.loading import load_case
+
+    return observed(plant, name_of(case), truth, *load_case(case))
+
+
+def observed(plant: str, name: str, truth: dict[str, Any], runs: list[RunSignals], robot: Robot) -> list[Observation]:
+    """Return the observations of a case whose runs are at hand."""
     from sher3_gap.sher import Sher
 
-    runs, robot = load_case(case)
     machine = Sher(robot)
     (evidence,) = machine.gather(runs)
     out = []
@@ -122,7 +138,7 @@ def _observed(plant: str, case: Path, truth: dict[str, Any]) -> list[Observation
         out.append(
             Observation(
                 plant,
-                name_of(case),
+                name,
                 truth,
                 tuple(without),
                 tuple(_plain(finding, item) for item in items_of(finding)),

@@ -76,6 +76,16 @@ def withhold(truth: Mapping[str, Any]) -> dict[str, Any]:
 
 def label(plan: CasePlan, plant: Plant, runs: list[Run]) -> dict[str, Any]:
     """Return the truth of a case, schema `sher3.truth/1`."""
+    stages, tips = _oracles(plan, plant, runs)
+    return {
+        **described(plan, plant),
+        "oracle": {key: value.as_dict() for key, value in stages.items()},
+        "tip": {key: value.as_dict() for key, value in tips.items()} if plan.tracker else None,
+    }
+
+
+def described(plan: CasePlan, plant: Plant) -> dict[str, Any]:
+    """Return the truth of a case without what an oracle would close."""
     effects = [
         {
             "stage": fault.kind.stage,
@@ -89,7 +99,6 @@ def label(plan: CasePlan, plant: Plant, runs: list[Run]) -> dict[str, Any]:
         }
         for fault, values in zip(plan.faults, plant.parameters(), strict=True)
     ]
-    stages, tips = _oracles(plan, plant, runs)
     return {
         "schema": "sher3.truth/1",
         "case": plan.name,
@@ -97,8 +106,7 @@ def label(plan: CasePlan, plant: Plant, runs: list[Run]) -> dict[str, Any]:
         "tracker": plan.tracker,
         "effects": effects,
         "rivals": list(plan.rivals),
-        "oracle": {key: value.as_dict() for key, value in stages.items()},
-        "tip": {key: value.as_dict() for key, value in tips.items()} if plan.tracker else None,
+        "level": {"built": plant.level.built, "shape": plant.level.shape},
         "kind": plan.kind,
         "seed": plan.seed,
         "plant": plan.truth.name,

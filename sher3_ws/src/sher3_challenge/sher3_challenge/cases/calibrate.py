@@ -64,13 +64,22 @@ def reference_floor(robot: Robot, name: str) -> dict[str, float]:
 
 @dataclass
 class Calibration:
-    """Scales the faults of a plan, one at a time, against the ideal nominal robot's residuals."""
+    """Scales the faults of a plan, one at a time, against the ideal nominal robot's residuals.
+
+    Attributes:
+        robot: nominal robot.
+        plan: with the faults at their start.
+        iterations: at most.
+        excitations: how many of the plan's are simulated, the repeated ones first; all where None.
+    """
 
     robot: Robot
     plan: CasePlan
+    iterations: int = ITERATIONS
+    excitations: int | None = None
 
     def __post_init__(self) -> None:
-        self.runs = distinct_runs(self.plan)
+        self.runs = distinct_runs(self.plan)[: self.excitations]
         self.nominal = nominal_residuals(self.robot, self.plan.truth.name, self.plan.climate, self.runs)
         self.floor = reference_floor(self.robot, self.plan.truth.name)
 
@@ -81,21 +90,21 @@ class Calibration:
         own = excess(ideal_residuals(plant, self.runs), self.nominal)
         return max((math.sqrt(own[key] / self.floor[key]) for key in residual_keys(fault) if key in own), default=0.0)
 
-    def fit(self, fault: Fault, target: float) -> Fault:
-        """Return the fault with the magnitude that meets the target, or as near as its bounds let it."""
-        best, best_error = fault, math.inf
-        for _ in range(ITERATIONS):
+    def fit(self, fault: Fault, target: float) -> tuple[Fault, float]:
+        """Return the fault with the magnitude that meets the target, or as near as its bounds let it, and its ratio."""
+        best, best_error, reached = fault, math.inf, 0.0
+        for _ in range(self.iterations):
             ratio = self.ratio(fault)
             error = abs(math.log(max(ratio, 1e-9) / target))
             if error < best_error:
-                best, best_error = fault, error
+                best, best_error, reached = fault, error, ratio
             if error < CLOSE_ENOUGH:
                 break
             # some faults (a limit, a threshold) start late: step towards, not beyond, a factor of 8
             fault = fault.scaled_by(min(8.0, max(0.125, target / max(ratio, 1e-9))))
             if fault == best:
                 break
-        return best
+        return best, reached
 
 
 def calibrated(plan: CasePlan, robot: Robot | None = None) -> CasePlan:
@@ -105,7 +114,7 @@ def calibrated(plan: CasePlan, robot: Robot | None = None) -> CasePlan:
         return plan
     calibration = Calibration(robot, plan)
     faults = tuple(
-        calibration.fit(fault, target) if target else fault
+        calibration.fit(fault, target)[0] if target else fault
         for fault, target in zip(plan.faults, plan.targets, strict=True)
     )
     return replace(plan, faults=faults)

@@ -8,19 +8,26 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from sher3_bags import Run
-from sher3_description import Robot
+from sher3_description import ACTUATORS, Robot
 from sher3_gap.excitation import Excitation
 
 from sher3_challenge.errors import ChallengeError
-from sher3_challenge.plants.kinds import Fault, Kind
+from sher3_challenge.oracle import nominal
+from sher3_challenge.plants.grammar import ON_SENSOR, ON_TIP, Foreign, added
+from sher3_challenge.plants.kinds import ANGULAR, Fault, Kind
+from sher3_challenge.plants.level import EXACT, Level
 
 Array = NDArray[np.floating[Any]]
+Behind = tuple[Array, Array]
 AXES = 5
+SCALE = np.array([1e-3 * (ANGULAR["length"] if name == "roll" else 1.0) for name in ACTUATORS])
+"""Travel over which laws behind the axes may bend: a millimetre of a slider."""
 
 
 @dataclass(frozen=True)
@@ -69,6 +76,31 @@ class Plant(ABC):
     tracker: bool = True
     built: bool = True
     region: tuple[float, ...] = (0.0,) * AXES
+
+    @cached_property
+    def level(self) -> Level:
+        """How imperfect this robot is."""
+        return Level.drawn(self.seed) if self.built else EXACT
+
+    def behind(self, law: Foreign, load: Array, force: Array, contact: Array, tip: Array, wrench: Array) -> Behind:
+        """Return tip (n, 3) and force reading (n, 6) with the robot's bends and its foreign law, if it has one there.
+
+        Args:
+            law: foreign law of the robot.
+            load: (n, 5) true positions of the axes.
+            force: (n, 5) forces of their drives.
+            contact: (n, 3) force at the tip in {b}.
+            tip: as mechanism and structure make it by their pages.
+            wrench: as the sensor makes it.
+        """
+        period = self.robot.control_period
+        if self.level.shape:
+            position, rotation = nominal.tip_pose(self.robot, load)
+            inputs = np.hstack([load / SCALE, contact])
+            tip = self.level.bent(self.seed, position, tip, inputs)
+            wrench = self.level.bent(self.seed, nominal.force_reading(self.robot, rotation, contact), wrench, inputs)
+        tip = added(law, ON_TIP, tip, load, force, period)
+        return tip, added(law, ON_SENSOR, wrench, load, force, period)
 
     @abstractmethod
     def run(self, plan: RunPlan, *, ideal: bool = False) -> Run:

@@ -75,14 +75,19 @@ def friction_level(m: Motor, q: float, v: float, time: float) -> float:
 
 
 @compiled_inner
+def motor_bent(m: Motor, q: float, v: float) -> float:
+    """Return the factor by which the motor side's laws differ from their pages."""
+    return 1.0 + m.bend * math.sin(m.bend_rate * q + m.bend_quick * v + m.bend_phase)
+
+
+@compiled_inner
 def motor_force(m: Motor, q: float, v: float, force: float, time: float, slip: Array, cable: Array) -> float:
     """Return what accelerates the motor side, external load left out."""
-    gain = m.torque_gain
+    gain = 1.0
     if m.loss != 0.0:
         gain *= max(0.3, 1 - m.loss * max(0.0, abs(v) / m.loss_velocity - 1.0))
-    total = gain * force - m.viscous * v - m.weight
-    if m.wander != 0.0:
-        total -= m.wander * math.sin(TWO_PI * m.wander_frequency * time + m.wander_phase)
+    gain *= 1.0 + (m.torque_gain - 1.0) * motor_bent(m, q, v)
+    total = (m.own_viscous - m.viscous) * v - m.weight
     total -= friction_level(m, q, v, time) * slip_state(q, slip, m.presliding)
     if m.cogging != 0.0:
         total -= m.cogging * math.sin(TWO_PI * m.cogging_order * q / m.lead + m.cogging_phase)
@@ -90,24 +95,40 @@ def motor_force(m: Motor, q: float, v: float, force: float, time: float, slip: A
         total -= m.cable * (q - m.cable_rest) + m.cable_loop * slip_state(q, cable, m.cable_reach)
     if m.quadratic != 0.0:
         total -= m.quadratic * v * abs(v)
-    return total
+    total *= motor_bent(m, q, v)
+    if m.wander != 0.0:
+        total -= m.wander * math.sin(TWO_PI * m.wander_frequency * time + m.wander_phase)
+    return gain * force - m.own_viscous * v + total
+
+
+@compiled_inner
+def weight_gain(m: Motor, q: float) -> float:
+    """Return the real weight of an axis over the modelled one at `q`."""
+    return 1.0 + (m.gravity_gain - 1.0) * motor_bent(m, q, 0.0)
 
 
 @compiled_inner
 def inertia(m: Motor, q: float) -> float:
     """Return the moving mass at `q`."""
+    mass = m.own_mass + (m.mass - m.own_mass) * motor_bent(m, q, 0.0)
     if m.mass_wave == 0.0:
-        return m.mass
-    return m.mass + m.mass_wave * math.sin(TWO_PI * q / m.mass_period)
+        return mass
+    return mass + m.mass_wave * math.sin(TWO_PI * q / m.mass_period)
+
+
+@compiled_inner
+def bent(t: Transmission, q: float) -> float:
+    """Return the factor by which the transmission's laws differ from their pages at `q`."""
+    return 1.0 + t.bend * math.sin(t.bend_rate * q + t.bend_phase)
 
 
 @compiled_inner
 def input_position(t: Transmission, q: float) -> float:
     """Return where the motor would put a rigid load: ratio and ripple, without lost motion."""
-    x = (1 + t.lead_error) * q
+    x = t.lead_error * q
     if t.ripple != 0.0:
         x += t.ripple * math.sin(TWO_PI * t.ripple_order * q / t.lead + t.ripple_phase)
-    return x
+    return q + x * bent(t, q)
 
 
 @compiled_inner
@@ -131,7 +152,7 @@ def rates(
     if t.compliance == 0.0:
         return v, (total - load) / mass, xi_rate, lagged_rate, current_rate, 0.0, 0.0
     load_mass = t.load_share * mass
-    stiffness = 1.0 / (t.compliance * (1 + t.compliance_slope * q))
+    stiffness = 1.0 / (t.compliance * (1 + t.compliance_slope * q) * bent(t, q))
     damping = 0.08 * math.sqrt(stiffness * load_mass)
     spring = stiffness * (input_position(t, q) - load_q) + damping * ((1 + t.lead_error) * v - load_v)
     return (

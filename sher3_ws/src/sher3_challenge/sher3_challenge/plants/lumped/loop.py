@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sher3_challenge.plants.compiled import compiled, compiled_inner
+from sher3_challenge.plants.grammar import ON_FORCE, ON_READING, Foreign, foreign
 from sher3_challenge.plants.lumped.axis import (
     LOAD_Q,
     LOAD_V,
@@ -16,9 +17,12 @@ from sher3_challenge.plants.lumped.axis import (
     Q,
     V,
     advance,
+    bent,
     input_position,
+    motor_bent,
     motor_force,
     reported_force,
+    weight_gain,
 )
 from sher3_challenge.plants.lumped.hysteresis import ELEMENTS, drag_anchors, play_offset, slip_state
 from sher3_challenge.plants.lumped.mechanism import load_forces
@@ -80,18 +84,20 @@ def load_of(t: Transmission, state: Array, load: float, slip: Array, follower: A
         x -= load * t.bump * math.exp(-place * place)
     out = x
     if t.hysteresis != 0.0:
-        out -= t.hysteresis * slip_state(x, slip, t.hysteresis_reach)
+        out -= t.hysteresis * bent(t, state[Q]) * slip_state(x, slip, t.hysteresis_reach)
         drag_anchors(x, slip, t.hysteresis_reach)
     if t.backlash != 0.0:
-        out += play_offset(x, t.backlash, follower)
+        out += play_offset(x, t.backlash * bent(t, state[Q]), follower)
     return out
 
 
 @compiled_inner
 def encoder_angle(h: Host, j: int, load: float, speed: float) -> float:
     """Return what the load encoder would read without quantisation, hysteresis and jumps."""
-    x = (1 + h.encoder_scale[j]) * (load - h.encoder_lag[j] * speed)
-    return x + h.eccentricity[j] * math.sin(2 * math.pi * load / h.lead[j] + h.eccentricity_phase[j])
+    x = load - h.encoder_lag[j] * speed
+    turn = 2 * math.pi * load / h.lead[j] + h.eccentricity_phase[j]
+    off = h.encoder_scale[j] * x + h.eccentricity[j] * math.sin(turn)
+    return x + off * (1.0 + h.bend[j] * math.sin(h.bend_rate[j] * load + h.bend_phase[j]))
 
 
 @compiled_inner
@@ -107,9 +113,9 @@ def start_states(
             q[j] -= encoder_angle(h, j, q[j], 0.0) - target[j]
     gravity, external = load_forces(g, q, pose, s.contact[0])
     for j in range(AXES):
-        load = gravity[j] * m[j].gravity_gain - external[j]
+        load = gravity[j] * weight_gain(m[j], q[j]) - external[j]
         lost = 0.5 * s.side[j] * t[j].backlash + s.side[j] * t[j].hysteresis
-        sprung = load * t[j].compliance * (1 + t[j].compliance_slope * q[j])
+        sprung = load * t[j].compliance * (1 + t[j].compliance_slope * q[j]) * bent(t[j], q[j])
         motor = q[j]
         for _ in range(6):
             motor -= input_position(t[j], motor) - q[j] - lost - sprung
@@ -122,8 +128,9 @@ def start_states(
             slip[0, j, i] = slip[1, j, i] = motor
         drag_anchors(q[j] + lost, slip[2, j], reach)
         held = load - motor_force(m[j], motor, 0.0, 0.0, 0.0, slip[0, j], slip[1, j])
-        state[j, XI] = held / m[j].torque_gain / d[j].ki
-        state[j, 4] = held / m[j].torque_gain
+        force = held / (1.0 + (m[j].torque_gain - 1.0) * motor_bent(m[j], motor, 0.0))
+        state[j, XI] = force / d[j].ki
+        state[j, 4] = force
     return state
 
 
@@ -171,9 +178,9 @@ def tick_interval(
 
 
 @compiled
-def _run(m: Motors, d: Drives, t: Transmissions, h: Host, g: Geometry, s: Script) -> Course:
+def _run(m: Motors, d: Drives, t: Transmissions, h: Host, g: Geometry, odd: Foreign, s: Script) -> Course:
     """Run the closed loop over the script."""
-    n = len(s.position)
+    n, memory, extra = len(s.position), np.zeros(1), 0.0
     out = Course(
         np.zeros((n, AXES)), np.zeros((n, AXES)), np.zeros((n, AXES)), np.zeros((n, AXES)),
         np.zeros((n, AXES)), np.zeros((n, AXES)), np.zeros((n, AXES)),
@@ -189,6 +196,8 @@ def _run(m: Motors, d: Drives, t: Transmissions, h: Host, g: Geometry, s: Script
             q = load_of(t[j], state[j], load[j, 0], slip[2, j], follower[j])
             speed = state[j, LOAD_V] if t[j].compliance > 0.0 else state[j, V]
             reading = encoder_angle(h, j, q, speed) + h.offset[j] + s.glitch[k, j]
+            if odd.where == ON_READING and odd.on == j:
+                reading += extra
             if h.encoder_loop[j] > 0.0:
                 reading += play_offset(reading, 2 * h.encoder_loop[j], slip[3, j])
             out.load[k, j], out.motor[k, j] = q, state[j, Q]
@@ -198,9 +207,13 @@ def _run(m: Motors, d: Drives, t: Transmissions, h: Host, g: Geometry, s: Script
             out.command[k, j] = host_command(h, j, s, k, out.load_reading)
         total = (np.abs(out.force[k]) / h.force_limit).sum() * h.sag[0]
         gravity, external = load_forces(g, out.load[k], pose, s.contact[k])
-        coupling = h.coupling @ np.ascontiguousarray(state[:, V])
+        speed_now = np.ascontiguousarray(state[:, V])
+        coupling = h.coupling @ speed_now
+        extra = foreign(odd, out.load[k], speed_now, out.force[k], memory, s.period)
+        if odd.where == ON_FORCE:
+            coupling[odd.on] += extra
         for j in range(AXES):
-            now = gravity[j] * m[j].gravity_gain - external[j] + coupling[j] + total * out.force[k, j]
+            now = gravity[j] * weight_gain(m[j], out.load[k, j]) - external[j] + coupling[j] + total * out.force[k, j]
             slope = (now - load_before[j]) / s.period if k > 0 else 0.0
             load_before[j] = now
             load[j, 0], load[j, 1] = now - slope * k * s.period, slope
@@ -211,9 +224,9 @@ def _run(m: Motors, d: Drives, t: Transmissions, h: Host, g: Geometry, s: Script
     return out
 
 
-def run_loop(p: TruthParameters, s: Script) -> Course:
+def run_loop(p: TruthParameters, odd: Foreign, s: Script) -> Course:
     """Run the closed loop of one robot over a script."""
     motors, drives, transmissions = (
         tuple(axis_slice(part, j) for j in range(AXES)) for part in (p.motor, p.drive, p.transmission)
     )
-    return _run(motors, drives, transmissions, p.host, p.geometry, s)
+    return _run(motors, drives, transmissions, p.host, p.geometry, odd, s)

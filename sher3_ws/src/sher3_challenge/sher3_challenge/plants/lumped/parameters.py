@@ -53,6 +53,12 @@ class Motor(NamedTuple):
     loss: Value  # force lost above a speed: fraction per (v / threshold - 1)
     loss_velocity: Value
     lead: Value  # travel per motor revolution
+    own_mass: Value  # of the drawing: what is beyond it is bent
+    own_viscous: Value
+    bend: Value  # law of what is no drawing's: size, rate per position and per speed, phase
+    bend_rate: Value
+    bend_quick: Value
+    bend_phase: Value
 
 
 class Drive(NamedTuple):
@@ -88,6 +94,9 @@ class Transmission(NamedTuple):
     bump_place: Value
     bump_width: Value
     lead: Value
+    bend: Value  # as of the motor
+    bend_rate: Value
+    bend_phase: Value
 
 
 class Host(NamedTuple):
@@ -111,6 +120,9 @@ class Host(NamedTuple):
     demand_resolution: Array  # the drive rounds the demand it takes
     demand_slew: Array  # the drive limits the demand's rate; 0: it does not
     lead: Array
+    bend: Array  # as of the motor
+    bend_rate: Array
+    bend_phase: Array
     coupling: Array  # (5, 5) force on i per velocity of j
     sag: Array  # (1,) relative loss of force per share of their limits that all drives use
 

@@ -11,7 +11,7 @@ from sher3_bags import Run
 from sher3_challenge.plants.lumped.motion import Timing, signals_of
 from sher3_challenge.plants.lumped.parameters import TruthParameters, copied
 from sher3_challenge.plants.lumped.rig import Rig
-from sher3_challenge.plants.lumped.robot import individual, nominal, scatter
+from sher3_challenge.plants.lumped.robot import bend, individual, nominal, scatter
 from sher3_challenge.plants.plant import Plant, RunPlan
 from sher3_challenge.plants.recorder import recorded
 
@@ -23,7 +23,9 @@ class LumpedPlant(Plant):
     @cached_property
     def individual(self) -> TruthParameters:
         """The robot as built, before faults."""
-        return individual(self.robot, np.random.default_rng(self.seed)) if self.built else nominal(self.robot)
+        if not self.built:
+            return nominal(self.robot)
+        return individual(self.robot, np.random.default_rng(self.seed), self.level)
 
     def rig(self, run_seed: int) -> Rig:
         """Return robot and transport of one run: a copy with the faults in it and the run's scatter."""
@@ -31,6 +33,7 @@ class LumpedPlant(Plant):
         for fault in self.faults:
             fault.apply(rig)
         if self.built:
+            bend(rig.truth, self.level.bend(self.seed))
             rig.truth = scatter(self.robot, rig.truth, np.random.default_rng((self.seed, run_seed)))
         return rig
 
@@ -43,7 +46,7 @@ class LumpedPlant(Plant):
         rng = np.random.default_rng(plan.seed)
         timing = Timing(rig.delay, rig.jitter, rig.loss)
         warmth = self.climate.course(plan.stamp)(plan.excitation.time)
-        signals = signals_of(self.robot, rig.truth, timing, plan.excitation, warmth, rng)
+        signals = signals_of(self, rig, timing, plan.excitation, warmth, rng)
         return recorded(self.robot, plan, signals, rng, tracker=self.tracker or ideal, ideal=ideal)
 
     def parameters(self) -> list[dict[str, float]]:

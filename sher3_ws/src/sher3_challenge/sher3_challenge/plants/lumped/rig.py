@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from sher3_description import Robot
 
+from sher3_challenge.plants.grammar import NOTHING, Foreign
 from sher3_challenge.plants.lumped.parameters import AXES, Array, TruthParameters
 
 
@@ -19,4 +20,5 @@ class Rig:
     delay: Array = field(default_factory=lambda: np.zeros(AXES))
     jitter: float = 0.0
     loss: float = 0.0
+    foreign: Foreign = NOTHING
     region: Array = field(default_factory=lambda: np.zeros(AXES))

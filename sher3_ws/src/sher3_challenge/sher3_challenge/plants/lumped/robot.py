@@ -8,6 +8,7 @@ from collections.abc import Callable
 import numpy as np
 from sher3_description import Robot
 
+from sher3_challenge.plants.level import Bend, Level
 from sher3_challenge.plants.lumped.parameters import (
     AXES,
     Array,
@@ -53,6 +54,8 @@ def nominal(robot: Robot) -> TruthParameters:
         mass_period=ones,
         loss_velocity=ones,
         lead=lead,
+        own_mass=column(lambda a: a.mass),
+        own_viscous=column(lambda a: a.viscous),
     )
     drive = zeros_of(
         Drive,
@@ -115,12 +118,12 @@ def _geometry(robot: Robot) -> Geometry:
     )
 
 
-def individual(robot: Robot, rng: np.random.Generator) -> TruthParameters:
-    """Return one robot as built: every number off by a little, all together below the floor of the contract."""
+def individual(robot: Robot, rng: np.random.Generator, level: Level) -> TruthParameters:
+    """Return one robot as built: every number off by a little, at a level of the robot's own."""
     p = nominal(robot)
 
     def off(array: Array, relative: float) -> None:
-        array *= 1 + relative * rng.standard_normal(array.shape)
+        array *= 1 + level.off(rng, relative, array.shape)
 
     off(p.motor.mass, 1.5e-3)
     off(p.motor.viscous, 0.01)
@@ -133,20 +136,27 @@ def individual(robot: Robot, rng: np.random.Generator) -> TruthParameters:
     p.motor.cogging[:] = scaled(robot, 0.01, 2.5e-4) * rng.uniform(0, 1, AXES)
     p.motor.cogging_order[:] = rng.integers(3, 9, AXES)
     p.motor.cogging_phase[:] = rng.uniform(0, 2 * np.pi, AXES)
-    p.transmission.lead_error[:] = scaled(robot, 8e-6, 8e-6) * rng.standard_normal(AXES)
-    p.host.eccentricity[:] = scaled(robot, 4e-8, 1e-6) * rng.uniform(0, 1, AXES)
+    p.transmission.lead_error[:] = level.off(rng, scaled(robot, 6.6e-6, 6.6e-6), AXES)
+    p.host.eccentricity[:] = np.abs(level.off(rng, scaled(robot, 2e-8, 0.5e-6), AXES))
     p.host.eccentricity_phase[:] = rng.uniform(0, 2 * np.pi, AXES)
     g = p.geometry
-    g.rail_ball[...] += 0.8e-7 * rng.standard_normal((6, 3))
-    g.platform_ball[...] += 0.8e-7 * rng.standard_normal((6, 3))
-    g.link[:] += 0.8e-7 * rng.standard_normal(6)
-    g.rail[...] += 5e-6 * rng.standard_normal((3, 3))
+    g.rail_ball[...] += level.off(rng, 0.8e-7, (6, 3))
+    g.platform_ball[...] += level.off(rng, 0.8e-7, (6, 3))
+    g.link[:] += level.off(rng, 0.8e-7, 6)
+    g.rail[...] += level.off(rng, 5e-6, (3, 3))
     g.rail[...] /= np.linalg.norm(g.rail, axis=1, keepdims=True)
-    g.arm[:] += 1.5e-7 * rng.standard_normal(6)
-    g.base_tilt[:] = 1e-6 * rng.standard_normal(3)
-    p.sensors.force_bias[:] = np.repeat([6e-4, 4e-6], 3) * rng.standard_normal(6)
+    g.arm[:] += level.off(rng, 1.5e-7, 6)
+    g.base_tilt[:] = level.off(rng, 1e-6, 3)
+    p.sensors.force_bias[:] = level.off(rng, np.repeat([2e-4, 2e-6], 3), 6)
     off(p.sensors.force_scale, 5e-4)
     return p
+
+
+def bend(p: TruthParameters, how: Bend) -> None:
+    """Bend the laws of what is no drawing's, in place."""
+    for part in (p.motor, p.transmission, p.host):
+        part.bend[:], part.bend_rate[:], part.bend_phase[:] = how.size, how.rate, how.phase
+    p.motor.bend_quick[:] = how.quick
 
 
 def scatter(robot: Robot, p: TruthParameters, rng: np.random.Generator) -> TruthParameters:

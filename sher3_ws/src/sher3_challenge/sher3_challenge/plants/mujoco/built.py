@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
 from sher3_description import ACTUATORS, Robot
 
+from sher3_challenge.plants.level import Bend, Level
+from sher3_challenge.plants.mujoco.axes.laws import Bent, Constant
 from sher3_challenge.plants.mujoco.axes.parts import AXES, ROLL, Array, Axis, Host
 from sher3_challenge.plants.mujoco.axes.wheels import Eccentric
 from sher3_challenge.plants.mujoco.rig import Mechanism, Rig, Sensor, Yielding
@@ -66,36 +70,51 @@ def _mechanism(robot: Robot) -> Mechanism:
     )
 
 
-def deviate(rig: Rig, rng: np.random.Generator) -> None:
+def deviate(rig: Rig, rng: np.random.Generator, level: Level) -> None:
     """Make the robot as drawn the one of a case: every quantity somewhere within its tolerance."""
+
+    def within(limit: Any, shape: Any = ()) -> Any:
+        return level.off(rng, limit / 3, shape)
+
     for j, (axis, actuator) in enumerate(zip(rig.axes, rig.robot.actuators, strict=True)):
-        axis.mass *= 1 + within(rng, MASS)
-        axis.viscous *= 1 + within(rng, VISCOUS)
-        axis.gravity_gain *= 1 + within(rng, GRAVITY)
-        axis.torque_gain *= 1 + within(rng, TORQUE)
+        axis.mass *= 1 + within(MASS)
+        axis.viscous *= 1 + within(VISCOUS)
+        axis.gravity_gain *= 1 + within(GRAVITY)
+        axis.torque_gain *= 1 + within(TORQUE)
         axis.coulomb = float(FRICTION * actuator.drive.rated * rng.uniform(0.2, 1.0))
-        axis.lead_error = float(within(rng, RATIO))
+        axis.lead_error = float(within(RATIO))
         ripple = RIPPLE_ROLL if j == ROLL else RIPPLE
-        axis.ripples = (Eccentric(float(abs(within(rng, ripple))), actuator.lead, float(rng.uniform(0, 2 * math.pi))),)
+        axis.ripples = (Eccentric(float(abs(within(ripple))), actuator.lead, float(rng.uniform(0, 2 * math.pi))),)
     rig.host.edge = rng.uniform(-0.5, 0.5, AXES)
     m = rig.mechanism
-    _seat(m, rng)
-    m.rail = m.rail + within(rng, RAIL, (3, 3)) * [1, 1, 0]
-    m.arm = m.arm + within(rng, LENGTH, 6) * [0, 0, 0, 1, 1, 1]
-    m.linkage = m.linkage + within(rng, LENGTH, 3)
-    m.expansion = float(within(rng, EXPANSION))
-    rig.yielding.healthy = float(abs(within(rng, YIELDING)))
+    _seat(m, within)
+    m.rail = m.rail + within(RAIL, (3, 3)) * [1, 1, 0]
+    m.arm = m.arm + within(LENGTH, 6) * [0, 0, 0, 1, 1, 1]
+    m.linkage = m.linkage + within(LENGTH, 3)
+    m.expansion = float(within(EXPANSION))
+    rig.yielding.healthy = float(abs(within(YIELDING)))
     s, sensor = rig.sensor, rig.robot.force_sensor
     reach = np.array([*sensor.range_force, *sensor.range_torque])
-    s.matrix = s.matrix + within(rng, MATRIX, (6, 6)) * np.outer(reach, 1 / reach)
-    s.bias = s.bias + within(rng, BIAS, 6)
-    s.tool_mass += float(within(rng, TOOL_MASS))
+    s.matrix = s.matrix + within(MATRIX, (6, 6)) * np.outer(reach, 1 / reach)
+    s.bias = s.bias + within(BIAS, 6)
+    s.tool_mass += float(within(TOOL_MASS))
 
 
-def _seat(m: Mechanism, rng: np.random.Generator) -> None:
-    m.rail_ball = m.rail_ball + within(rng, BALL, (6, 3))
-    m.platform_ball = m.platform_ball + within(rng, BALL, (6, 3))
-    m.link = m.link + within(rng, BALL, 6)
+def _seat(m: Mechanism, within: Callable[..., Any]) -> None:
+    m.rail_ball = m.rail_ball + within(BALL, (6, 3))
+    m.platform_ball = m.platform_ball + within(BALL, (6, 3))
+    m.link = m.link + within(BALL, 6)
+
+
+def bend(rig: Rig, how: Bend, friction: Sequence[float]) -> None:
+    """Bend the laws of what is no drawing's: transmission and readings, pushes, and friction beyond what is healthy."""
+    rig.host.bend = how
+    for axis, healthy, numbers in zip(rig.axes, friction, zip(*how, strict=True), strict=True):
+        if axis.coulomb > healthy:
+            axis.levels += (Constant(axis.coulomb - healthy),)
+            axis.coulomb = healthy
+        axis.levels = tuple(Bent(law, *map(float, numbers)) for law in axis.levels)
+        axis.pushes = tuple(Bent(law, *map(float, numbers)) for law in axis.pushes)
 
 
 def on_the_day(rig: Rig, rng: np.random.Generator) -> None:
@@ -107,6 +126,6 @@ def on_the_day(rig: Rig, rng: np.random.Generator) -> None:
     counts = np.array([a.load_encoder for a in rig.robot.actuators])
     rig.host.start = within(rng, START / counts[0] * counts, AXES)
     rig.host.edge = rig.host.edge + within(rng, 1.0, AXES)
-    _seat(rig.mechanism, rng)
+    _seat(rig.mechanism, partial(within, rng))
     rig.mechanism.base_shift = rig.mechanism.base_shift + within(rng, TIP_DAY, 3)
     rig.known_load = float(1 + within(rng, KNOWN_LOAD))

@@ -12,7 +12,7 @@ from sher3_challenge.plants.mujoco.axes.field import field_along
 from sher3_challenge.plants.mujoco.axes.loop import Script, run_loop
 from sher3_challenge.plants.mujoco.axes.parts import AXES
 from sher3_challenge.plants.mujoco.axes.transport import arrivals
-from sher3_challenge.plants.mujoco.built import as_drawn, deviate, on_the_day
+from sher3_challenge.plants.mujoco.built import as_drawn, bend, deviate, on_the_day
 from sher3_challenge.plants.mujoco.mechanism import tilt_angle
 from sher3_challenge.plants.mujoco.rig import Rig
 from sher3_challenge.plants.mujoco.sensing import force_reading
@@ -36,8 +36,13 @@ class MujocoPlant(Plant):
         rig = as_drawn(self.robot)
         rig.region = np.array(self.region)
         if self.built:
-            deviate(rig, np.random.default_rng(self.seed))
-        return rig, [fault.apply(rig) for fault in self.faults]
+            deviate(rig, np.random.default_rng(self.seed), self.level)
+        friction = [axis.coulomb for axis in rig.axes]
+        told = [fault.apply(rig) for fault in self.faults]
+        if self.built:
+            bend(rig, self.level.bend(self.seed), friction)
+        rig.host.foreign = rig.foreign
+        return rig, told
 
     def parameters(self) -> list[dict[str, float]]:
         """Return the parameters of each fault by the contract's names."""
@@ -68,6 +73,7 @@ class MujocoPlant(Plant):
         angle = tilt_angle(rig.mechanism, course.leg[:, 4])
         kelvin = temperature - REFERENCE_TEMPERATURE
         wrench = force_reading(self.robot, rig.sensor, turn, course.load[:, 3], angle, contact, kelvin)
+        tip, wrench = self.behind(rig.foreign, course.load, course.force, contact, tip, wrench)
         return Signals(
             course.command, course.echo, course.motor_reading, course.load_reading, course.force, wrench, tip,
             turn.as_matrix(), temperature,

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from sher3_description import Robot
 
+from sher3_challenge.plants.grammar import NOTHING, Foreign
 from sher3_challenge.plants.mujoco.axes.parts import AXES, Array, Axis, Bristle, Host
 
 
@@ -87,3 +88,4 @@ class Rig:
     sensor: Sensor
     region: Array = field(default_factory=lambda: np.zeros(AXES))
     known_load: float = 1.0
+    foreign: Foreign = NOTHING

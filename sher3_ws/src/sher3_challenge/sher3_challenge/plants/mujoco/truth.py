@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from sher3_challenge.plants import grammar
 from sher3_challenge.plants.mujoco.faults import axis, drive, outside, tip
 from sher3_challenge.plants.mujoco.plant import MujocoPlant
 from sher3_challenge.plants.plant import TruthPlant
@@ -10,6 +11,6 @@ PLANT = TruthPlant(
     name="mujoco",
     summary="bodies, tendons, springs and contacts moved by MuJoCo's solver; dry friction on a creeping contact",
     library={**drive.CATALOGUE, **axis.CATALOGUE, **tip.CATALOGUE},
-    outside=dict(outside.CATALOGUE),
+    outside={**outside.CATALOGUE, **grammar.CATALOGUE},
     make=MujocoPlant,
 )

@@ -50,9 +50,15 @@ def friction_level(m: Motor, q: float, v: float) -> float:
 
 
 @compiled_inner
+def bent(m: Motor, q: float, v: float) -> float:
+    """Return the factor by which the laws of an axis differ from their pages at a position and speed."""
+    return 1.0 + m.bend * math.sin(m.bend_rate * q + m.bend_quick * v + m.bend_phase)
+
+
+@compiled_inner
 def driven(t: Transmission, m: Motor, q: float) -> float:
     """Return where the motor would put a load without lost motion: ratio, error along the stroke and by turn."""
-    return (1.0 + t.ratio) * q + around(t.wave, q / m.span) + around(t.ripple, q / m.lead)
+    return q + bent(m, q, 0.0) * (t.ratio * q + around(t.wave, q / m.span) + around(t.ripple, q / m.lead))
 
 
 @compiled_inner
@@ -106,7 +112,7 @@ def motor_resistance(m: Motor, o: Odd, y: Array, time: float) -> float:
         total += at(m.cable, 0.5 + 0.5 * (q - m.cable_rest) / m.cable_span) + m.cable_loop * y[CABLE]
     if o.detent != 0.0:
         total += o.detent * math.sin(2 * math.pi * o.detent_order * q / m.lead + 1.2 * y[DETENT])
-    return total + o.snap * y[SNAP]
+    return total * bent(m, q, v) + o.snap * y[SNAP]
 
 
 @compiled_inner
@@ -147,10 +153,10 @@ def drift(m: Motor, d: Drive, o: Odd, t: Transmission, y: Array, demand: float, 
 
 
 @compiled_inner
-def spring(m: Motor, t: Transmission, pull: float) -> float:
-    """Return the force of the transmission for a wind-up `pull`: the stiffness is a table over the force."""
+def spring(m: Motor, t: Transmission, q: float, pull: float) -> float:
+    """Return the force of the transmission at `q` for a wind-up `pull`: the stiffness is a table over the force."""
     stiffness = 1.0 / t.compliance
-    return stiffness * pull * at(t.stiffening, abs(stiffness * pull) / m.full)
+    return stiffness * pull * at(t.stiffening, abs(stiffness * pull) / m.full) / bent(m, q, 0.0)
 
 
 @compiled_inner
@@ -182,11 +188,12 @@ def kick(
         y[POLE] = force + keep * (y[POLE] - force)
         y[FORCE] = y[POLE] + keep * (y[FORCE] - y[POLE])
         force, falls = y[FORCE], 0.0
-    gain = at(m.force_gain, abs(force) / m.full)
+    gain = 1.0 + (at(m.force_gain, abs(force) / m.full) - 1.0) * bent(m, y[Q], v)
     if o.heat != 0.0:
         y[HEAT] += h / WARM_TIME * ((force / (0.2 * d.rated)) ** 2 - y[HEAT])
         gain *= 1.0 - o.heat * min(1.0, y[HEAT])
-    total = gain * force - m.viscous * v - motor_resistance(m, o, y, time)
+    viscous = m.own_viscous + (m.viscous - m.own_viscous) * bent(m, y[Q], v)
+    total = gain * force - viscous * v - motor_resistance(m, o, y, time)
     mass = m.mass
     if o.engaged != 0.0:
         mass += o.engaged * min(1.0, max(0.0, 0.5 + (y[Q] - o.place) / (0.05 * m.span)))
@@ -200,7 +207,7 @@ def kick(
     if elastic:
         behind = t.share * mass
         damping = 2 * MATERIAL_DAMPING * math.sqrt(behind / t.compliance)
-        wound = spring(m, t, input_q - y[X1]) + damping * (input_v - y[W1])
+        wound = spring(m, t, y[Q], input_q - y[X1]) + damping * (input_v - y[W1])
         back = carried(t, y, y[X1], y[W1], h) if gap else 0.0
         y[W1] += h * (wound - load - back) / behind
         total -= wound
@@ -226,7 +233,7 @@ def load_position(m: Motor, o: Odd, t: Transmission, y: Array) -> float:
     if o.joint != 0.0:
         u = min(1.0, max(0.0, 0.5 + (x - o.place) / o.joint_width))
         x += o.joint * u * u * (3.0 - 2.0 * u)
-    return x - t.hysteresis * y[LOOP]
+    return x - t.hysteresis * bent(m, y[Q], 0.0) * y[LOOP]
 
 
 @compiled_inner

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sher3_challenge.plants.compiled import compiled, compiled_inner
+from sher3_challenge.plants.grammar import ON_FORCE, ON_READING, Foreign, foreign
 from sher3_challenge.plants.plant import AXES, Array
 from sher3_challenge.plants.tables.axis import (
     FORCE,
@@ -22,6 +23,7 @@ from sher3_challenge.plants.tables.axis import (
     Q,
     V,
     advance,
+    bent,
     driven,
     load_position,
     motor_resistance,
@@ -84,7 +86,7 @@ def counted(x: float, count: float) -> float:
 @compiled_inner
 def seen(m: Motor, o: Odd, h: Host, x: float, speed: float) -> float:
     """Return what the load encoder sees of a position before it counts."""
-    out = (1.0 + h.scale) * x + around(h.eccentricity, x / m.lead)
+    out = x + bent(m, x, 0.0) * (h.scale * x + around(h.eccentricity, x / m.lead))
     if o.grating != 0.0:
         phase = 2 * math.pi * x / o.grating_period
         out += o.grating * (math.sin(phase) + 2.0 * min(1.0, abs(speed) / m.top) * math.sin(2 * phase + 0.6))
@@ -96,7 +98,8 @@ def weighed(m: Motors, g: Mechanism, load: Array, force: Array, gravity: Array, 
     """Write the load force of every axis into `gravity`: its weight by its own table, less the contact."""
     load_forces(g, load, force, gravity, external, room)
     for j in range(AXES):
-        gravity[j] = gravity[j] * at(m[j].gravity_gain, 0.5 + 0.25 * load[j] / m[j].span) - external[j]
+        beyond = at(m[j].gravity_gain, 0.5 + 0.25 * load[j] / m[j].span) - 1.0
+        gravity[j] = gravity[j] * (1.0 + beyond * bent(m[j], load[j], 0.0)) - external[j]
 
 
 @compiled_inner
@@ -109,7 +112,7 @@ def start(m: Motor, d: Drive, o: Odd, t: Transmission, y: Array, x: float, load:
     wound = 0.0
     for _ in range(40):
         if t.compliance > 0.0:
-            wound = load * t.compliance / at(t.stiffening, abs(wound / t.compliance) / m.full)
+            wound = load * t.compliance * bent(m, x, 0.0) / at(t.stiffening, abs(wound / t.compliance) / m.full)
     motor = y[X1] + wound
     for _ in range(6):
         motor -= driven(t, m, motor) - y[X1] - wound
@@ -119,7 +122,7 @@ def start(m: Motor, d: Drive, o: Odd, t: Transmission, y: Array, x: float, load:
     holds = load + m.mount_weight + motor_resistance(m, o, y, 0.0)
     force = holds
     for _ in range(8):
-        force = holds / at(m.force_gain, abs(force) / m.full)
+        force = holds / (1.0 + (at(m.force_gain, abs(force) / m.full) - 1.0) * bent(m, motor, 0.0))
     y[POLE] = y[FORCE] = force
     swallowed = o.crossover
     if swallowed > 0.0:
@@ -166,10 +169,10 @@ def held_mean(average: float, j: int, s: Script, command: Array, begin: float, e
 
 
 @compiled_inner
-def read_encoders(m: Motor, o: Odd, h: Host, j: int, k: int, y: Array, x: float, out: Course) -> None:
-    """Write positions and readings of axis `j` at tick `k`."""
+def read_encoders(m: Motor, o: Odd, h: Host, j: int, k: int, y: Array, x: float, off: float, out: Course) -> None:
+    """Write positions and readings of axis `j` at tick `k`; the load encoder reads `off` too much."""
     out.motor[k, j], out.load[k, j] = y[Q], x
-    out.load_reading[k, j] = counted(seen(m, o, h, x, y[V]) + h.offset + h.load_edge, h.load_count)
+    out.load_reading[k, j] = counted(seen(m, o, h, x, y[V]) + off + h.offset + h.load_edge, h.load_count)
     if o.repeat > 0.0 and k > 0 and k % int(o.repeat) == 0:
         out.load_reading[k, j] = out.load_reading[k - 1, j]
     out.motor_reading[k, j] = counted(y[Q] + h.offset + h.motor_edge, h.motor_count)
@@ -184,7 +187,9 @@ def commanded(o: Odd, h: Host, j: int, s: Script, k: int, reading: float, worked
 
 
 @compiled
-def _run(m: Motors, o: Odds, d: Drives, t: Transmissions, h: Hosts, g: Mechanism, stray: Array, s: Script) -> Course:
+def _run(
+    m: Motors, o: Odds, d: Drives, t: Transmissions, h: Hosts, g: Mechanism, stray: Array, odd: Foreign, s: Script
+) -> Course:
     """Run the closed loop over the script; `stray` (5, 5) is the force on one axis per force of another drive."""
     n = len(s.position)
     out = Course(
@@ -192,18 +197,24 @@ def _run(m: Motors, o: Odds, d: Drives, t: Transmissions, h: Hosts, g: Mechanism
         np.zeros((n, AXES)), np.zeros((n, AXES)), np.zeros((n, AXES)),
     )  # fmt: skip
     force, load, external, contact = np.zeros(AXES), np.zeros(AXES), np.zeros(AXES), np.zeros(3)
+    memory, extra = np.zeros(1), np.zeros(AXES)
     drive, worked, demands, room = np.zeros((2, AXES)), np.zeros(AXES), np.zeros(ABREAST), np.zeros((ROOM, 3))
     y = begin(m, d, o, t, h, g, s, force, room)
     rounds = round(s.period / STEP / ABREAST)
     step = s.period / (rounds * ABREAST)
     for k in range(n):
         for j in range(AXES):
-            read_encoders(m[j], o[j], h[j], j, k, y[j], load_position(m[j], o[j], t[j], y[j]), out)
+            read_encoders(m[j], o[j], h[j], j, k, y[j], load_position(m[j], o[j], t[j], y[j]), extra[j], out)
             out.command[k, j] = commanded(o[j], h[j], j, s, k, out.load_reading[k, j], worked)
             out.force[k, j] = reported_force(d[j], o[j], m[j], y[j], drive[0, j])
         if k + 1 == n:
             break
         strayed = stray @ out.force[k]
+        more = foreign(odd, out.load[k], np.ascontiguousarray(y[:, V]), out.force[k], memory, s.period)
+        if odd.where == ON_FORCE:
+            strayed[odd.on] += more
+        if odd.where == ON_READING:
+            extra[odd.on] = more
         for i in range(rounds):
             time, share = k * s.period + i * ABREAST * step, (i + 0.5) / rounds
             for a in range(3):
@@ -221,8 +232,8 @@ def _run(m: Motors, o: Odds, d: Drives, t: Transmissions, h: Hosts, g: Mechanism
     return out
 
 
-def run_loop(p: TableParameters, s: Script) -> Course:
+def run_loop(p: TableParameters, odd: Foreign, s: Script) -> Course:
     """Run the closed loop of one robot over a script."""
     parts = (p.motor, p.odd, p.drive, p.transmission, p.host)
     axes = (tuple(axis_slice(part, j) for j in range(AXES)) for part in parts)
-    return _run(*axes, p.mechanism, p.stray, s)
+    return _run(*axes, p.mechanism, p.stray, odd, s)

@@ -46,6 +46,11 @@ class Motor(NamedTuple):
     mount_stiffness: Value
     mount_damping: Value
     mount_weight: Value
+    own_viscous: Value  # of the drawing: what is beyond it is bent
+    bend: Value  # laws of what is no drawing's: size, rate per position and per speed, phase
+    bend_rate: Value
+    bend_quick: Value
+    bend_phase: Value
 
 
 class Odd(NamedTuple):

@@ -10,11 +10,12 @@ from sher3_bags import Run
 from sher3_description import Robot
 from sher3_description.contract import REFERENCE_TEMPERATURE
 
+from sher3_challenge.plants.grammar import NOTHING, Foreign
 from sher3_challenge.plants.plant import AXES, Array, Plant, RunPlan
 from sher3_challenge.plants.recorder import Signals, recorded
 from sher3_challenge.plants.tables.loop import Script, run_loop
 from sher3_challenge.plants.tables.parameters import TableParameters, copied
-from sher3_challenge.plants.tables.robot import individual, nominal, scatter
+from sher3_challenge.plants.tables.robot import bend, individual, nominal, scatter
 from sher3_challenge.plants.tables.sensing import force_reading
 from sher3_challenge.plants.tables.tip import tip_of
 from sher3_challenge.plants.tables.transport import Transport
@@ -28,6 +29,7 @@ class Rig:
     robot: Robot
     truth: TableParameters
     transport: Transport = field(default_factory=Transport)
+    foreign: Foreign = NOTHING
     region: Array = field(default_factory=lambda: np.zeros(AXES))
 
 
@@ -38,7 +40,9 @@ class TablesPlant(Plant):
     @cached_property
     def individual(self) -> TableParameters:
         """The robot as built, before faults."""
-        return individual(self.robot, np.random.default_rng((3, self.seed))) if self.built else nominal(self.robot)
+        if not self.built:
+            return nominal(self.robot)
+        return individual(self.robot, np.random.default_rng((3, self.seed)), self.level)
 
     def rig(self) -> Rig:
         """Return a copy of the robot with the faults in it."""
@@ -50,6 +54,7 @@ class TablesPlant(Plant):
         for fault in self.faults:
             fault.apply(rig)
         if self.built:
+            bend(rig.truth, self.level.bend(self.seed))
             rig.truth = scatter(self.robot, rig.truth, np.random.default_rng((3, self.seed, plan.seed)))
         p, e, rng = rig.truth, plan.excitation, np.random.default_rng((3, plan.seed))
         if ideal:
@@ -60,11 +65,12 @@ class TablesPlant(Plant):
             np.ascontiguousarray(e.position), np.ascontiguousarray(e.velocity), contact,
             rig.transport.arrivals(len(contact), period, rng), np.where(rng.random(AXES) < 0.5, -1.0, 1.0), period,
         )  # fmt: skip
-        course = run_loop(p, script)
+        course = run_loop(p, rig.foreign, script)
         room, body = temperatures(self.climate, plan.stamp, e.time)
         kelvin = body - REFERENCE_TEMPERATURE
         tips, turns = tip_of(self.robot, p, course.load, contact, kelvin, period)
         wrench = force_reading(self.robot, p, turns, course.load, contact, kelvin)
+        tips, wrench = self.behind(rig.foreign, course.load, course.force, contact, tips, wrench)
         signals = Signals(
             course.command, course.echo, course.motor_reading, course.load_reading, course.force, wrench, tips, turns,
             room,

@@ -12,6 +12,7 @@ import numpy as np
 from sher3_description import Robot
 
 from sher3_challenge.plants.kinds import ANGULAR
+from sher3_challenge.plants.level import Bend, Level
 from sher3_challenge.plants.plant import AXES, Array
 from sher3_challenge.plants.tables import parameters as parts
 from sher3_challenge.plants.tables.curves import CURVE, RING, loop_slope, ring, wobble
@@ -58,6 +59,7 @@ def nominal(robot: Robot) -> TableParameters:
         cable=np.zeros((AXES, CURVE)),
         cable_span=ones,
         cable_reach=ones,
+        own_viscous=column["viscous"],
     )
     odd = _part(parts.Odd, plough_reach=ones, snap_width=ones, joint_width=ones, grating_period=ones, detent_order=ones)
     transmission = _part(
@@ -126,47 +128,52 @@ def _sensor(robot: Robot) -> parts.Sensor:
     )  # fmt: skip
 
 
-def individual(robot: Robot, rng: np.random.Generator) -> TableParameters:
+def individual(robot: Robot, rng: np.random.Generator, level: Level) -> TableParameters:
     """Return one robot as built."""
     p = nominal(robot)
     m, g = p.motor, p.mechanism
     rated = p.drive.rated
 
     def off(array: Array, three_sigma: float) -> None:
-        array *= 1 + three_sigma / 3 * rng.standard_normal(array.shape)
+        array *= 1 + level.off(rng, three_sigma / 3, array.shape)
 
     off(m.mass, 0.01)
     off(m.viscous, 0.05)
-    m.force_gain[:] *= 1 + 0.002 / 3 * rng.standard_normal(AXES)[:, None]
-    m.gravity_gain[:] *= 1 + 0.005 / 3 * rng.standard_normal(AXES)[:, None]
-    level = 3e-4 * rated * rng.uniform(0.2, 0.7, AXES)
+    m.force_gain[:] *= 1 + level.off(rng, 0.002 / 3, (AXES, 1))
+    m.gravity_gain[:] *= 1 + level.off(rng, 0.005 / 3, (AXES, 1))
+    friction = 3e-4 * rated * rng.uniform(0.2, 0.7, AXES)
     for j in range(AXES):
         m.slope[j] = loop_slope(rng)
         along = [0.2 * np.interp(np.linspace(0, RING, PLACES, False), np.arange(RING), ring(rng)) for _ in range(2)]
-        m.friction[j] = level[j] * (wobble(rng, 0.1, SPEEDS)[None, :, None] + np.array(along)[:, None, :])
+        m.friction[j] = friction[j] * (wobble(rng, 0.1, SPEEDS)[None, :, None] + np.array(along)[:, None, :])
         p.transmission.ripple[j] = ring(rng) * rng.uniform(0, 0.15)  # the tolerance is from peak to peak
     p.transmission.ripple[:] *= np.where(np.arange(AXES) == 3, 50e-6, 0.05e-6)[:, None]
-    p.transmission.ratio[:] = 2e-5 / 3 * rng.standard_normal(AXES)
-    g.centre[:, :] += 0.25e-6 / 3 * rng.standard_normal((3, 3))
-    g.length[:] += 0.25e-6 / 3 * rng.standard_normal(3)
-    g.rail[:, :2] += 50e-6 / 3 * rng.standard_normal((3, 2))
+    p.transmission.ratio[:] = level.off(rng, 2e-5 / 3, AXES)
+    g.centre[:, :] += level.off(rng, 0.25e-6 / 3, (3, 3))
+    g.length[:] += level.off(rng, 0.25e-6 / 3, 3)
+    g.rail[:, :2] += level.off(rng, 50e-6 / 3, (3, 2))
     for leg in range(3):
         for side in range(2):
             g.bow[leg, side] = 3e-8 * (wobble(rng, 1.0) - 1.0)
-    g.arm[:] += 1e-6 / 3 * rng.standard_normal(6)
-    g.linkage[:] += 1e-6 / 3 * rng.standard_normal(3)
+    g.arm[:] += level.off(rng, 1e-6 / 3, 6)
+    g.linkage[:] += level.off(rng, 1e-6 / 3, 3)
     g.angle[:] = angle_table(g.linkage, g.travel)
-    p.tip.expansion[0] = 0.4e-6 / 3 * rng.standard_normal()
-    p.tip.spring[:] = 1e-3 / 3 * rng.standard_normal() * SPRINGS
+    p.tip.expansion[0] = level.off(rng, 0.4e-6 / 3)
+    p.tip.spring[:] = level.off(rng, 1e-3 / 3) * SPRINGS
     ranges = np.array([*robot.force_sensor.range_force, *robot.force_sensor.range_torque])
-    p.sensor.matrix[:] += 1e-3 / 3 * rng.standard_normal((6, 6)) * ranges[:, None] / ranges[None, :]
-    p.sensor.bias[:] = np.repeat([0.6e-3, 6e-6], 3) / 3 * rng.standard_normal(6)
-    p.sensor.tool_mass[:] += 1e-4 / 3 * rng.standard_normal()
+    p.sensor.matrix[:] += level.off(rng, 1e-3 / 3, (6, 6)) * ranges[:, None] / ranges[None, :]
+    p.sensor.bias[:] = level.off(rng, np.repeat([0.6e-3, 6e-6], 3) / 3, 6)
+    p.sensor.tool_mass[:] += level.off(rng, 1e-4 / 3)
     return p
 
 
 SPRINGS = np.array([15e-6, 1 / 244, 1 / 213])
 """The published lumped compliance of the arm: along x [m/N], about y and z [rad/(N m)]."""
+
+
+def bend(p: TableParameters, how: Bend) -> None:
+    """Bend the laws of what is no drawing's, in place."""
+    p.motor.bend[:], p.motor.bend_rate[:], p.motor.bend_quick[:], p.motor.bend_phase[:] = how
 
 
 def scatter(robot: Robot, p: TableParameters, rng: np.random.Generator) -> TableParameters:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from sher3_challenge.plants import grammar
 from sher3_challenge.plants.plant import TruthPlant
 from sher3_challenge.plants.tables.faults import drive, friction, outside, tip
 from sher3_challenge.plants.tables.plant import TablesPlant
@@ -10,6 +11,6 @@ PLANT = TruthPlant(
     name="tables",
     summary="sampled laws: friction maps, gear records, two-mass stages with elastic contacts, lagging temperatures",
     library={**drive.CATALOGUE, **friction.CATALOGUE, **tip.CATALOGUE},
-    outside=dict(outside.CATALOGUE),
+    outside={**outside.CATALOGUE, **grammar.CATALOGUE},
     make=TablesPlant,
 )

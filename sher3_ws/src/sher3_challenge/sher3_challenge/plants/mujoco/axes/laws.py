@@ -6,7 +6,34 @@ They are called at every substep and written into the model (`dof_frictionloss`)
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Constant:
+    """Friction of one level."""
+
+    force: float
+
+    def __call__(self, q: float, v: float, t: float) -> float:
+        """Return the level."""
+        return self.force
+
+
+@dataclass(frozen=True)
+class Bent:
+    """A law that differs from its page by a factor 1 + size sin(rate q + quick v + phase)."""
+
+    law: Callable[[float, float, float], float]
+    size: float
+    rate: float
+    quick: float
+    phase: float
+
+    def __call__(self, q: float, v: float, t: float) -> float:
+        """Return the law's value with its factor."""
+        return self.law(q, v, t) * (1 + self.size * math.sin(self.rate * q + self.quick * v + self.phase))
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import joblib
 import numpy as np
 
+from sher3_challenge.plants.grammar import ON_FORCE, ON_READING, foreign
 from sher3_challenge.plants.mujoco.axes.field import Field
 from sher3_challenge.plants.mujoco.axes.mjcf import SUBSTEPS
 from sher3_challenge.plants.mujoco.axes.model import machine
@@ -74,20 +75,22 @@ class Loop:
 
     def positions(self, shares: Array, q: Array) -> Array:
         """Return (..., 5) positions behind the motors: shares of the joints' (..., nq), and ripples."""
-        return np.asarray(q @ shares.T + self.ripples(q[..., self.machine.motor]))
+        motor = q[..., self.machine.motor]
+        return np.asarray(motor + (q @ shares.T + self.ripples(motor) - motor) * self.host.bend.factor(motor))
 
     def load_angle(self, load: Array, q: Array) -> Array:
         """Return (5,) what the load encoders would read without rounding."""
-        x = (1 + self.host.encoder_scale) * load + self.machine.read @ q
+        off = self.host.encoder_scale * load + self.machine.read @ q
         for j, disc in self.host.discs.items():
-            x[j] += disc(load[j])
-        return np.asarray(x)
+            off[j] += disc(load[j])
+        return np.asarray(load + off * self.host.bend.factor(load))
 
     def _loads(self, k: int, load: Array) -> Array:
         """Return (5,) the force on the axes at tick `k`: contact, less weight and constant forces."""
         field = self.script.field
         weight = field.gravity[k] + field.slope[k] @ (load - self.script.position[k])
-        return np.asarray(field.contact[k] - self.gain * weight - self.constant)
+        gain = 1 + (self.gain - 1) * self.host.bend.factor(load)
+        return np.asarray(field.contact[k] - gain * weight - self.constant)
 
     def _start(self) -> None:
         """Stand at rest with the load encoders at the first set-point, plays at one side, and the drives holding."""
@@ -126,17 +129,21 @@ class Loop:
         state, held = np.empty((n, self.model.na)), np.empty((n, AXES))
         command, echo, reading = np.zeros((n, AXES)), np.zeros((n, AXES)), np.empty((n, AXES))
         keep = np.exp(-self.period / np.maximum(host.smoothing, 1e-9))
+        odd, memory, extra = host.foreign, np.zeros(1), np.zeros((5, AXES))
         half, sent = 0.5 * self.period / SUBSTEPS, np.zeros(AXES)
         for k in range(n):
             speed[k], state[k], held[k] = d.qvel, d.act, self.servos.demand
             q = joints[k] = d.qpos - half * speed[k]
             load = self.positions(m.load, q)
-            reading[k] = rounded(self.load_angle(load, q) + host.offset, host.load_resolution, host.edge)
+            seen = self.load_angle(load, q) + extra[ON_READING] + host.offset
+            reading[k] = rounded(seen, host.load_resolution, host.edge)
             self.servos.tell()
             law = s.velocity[k] + host.gain * (s.position[k] - reading[k])
             law = np.minimum(host.velocity_limit, np.maximum(-host.velocity_limit, law))
             command[k] = sent = law + keep * (sent - law)
-            d.qfrc_applied[m.load_force] = self._loads(k, load)
+            force = self.servos.now(q[m.motor], speed[k][m.motor])
+            extra[odd.where, odd.on] = foreign(odd, load, speed[k][m.motor], force, memory, self.period)
+            d.qfrc_applied[m.load_force] = self._loads(k, load) - extra[ON_FORCE]
             mean = self.transport.take(k, command)
             if k + 1 < n:
                 echo[k + 1] = mean

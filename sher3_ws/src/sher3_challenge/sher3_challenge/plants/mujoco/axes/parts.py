@@ -13,6 +13,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sher3_challenge.plants.grammar import NOTHING, Foreign
+from sher3_challenge.plants.level import EXACT, Bend
 from sher3_challenge.plants.mujoco.axes.wheels import Eccentric
 
 Array = NDArray[np.floating[Any]]
@@ -28,6 +30,7 @@ ELEMENTS = ((0.6, 0.6), (0.4, 1.6))
 The shares times the reaches add up to one: the loop has the area of the contract's exponential law.
 """
 
+NO_BEND = EXACT.bend(0)
 RUBBER_SOFT = 0.9
 """Share of a rubber coupling's softness that comes with time."""
 
@@ -162,6 +165,7 @@ class Host:
         encoder_scale, discs: ratio error and eccentric discs of load encoders, by axis.
         delay, jitter, loss: lateness of commands [s], its half-normal spread [s], probability of a loss.
         smoothing: time constant of a filter on the commands [s].
+        bend: by which factors the laws of the axes differ; `foreign`: a law that no page has.
         hold: ticks from one demand that the drive takes to the next.
     """
 
@@ -177,5 +181,7 @@ class Host:
     delay: Array = field(default_factory=lambda: np.zeros(AXES))
     jitter: float = 0.0
     loss: float = 0.0
+    bend: Bend = NO_BEND
+    foreign: Foreign = NOTHING
     smoothing: Array = field(default_factory=lambda: np.zeros(AXES))
     hold: Array = field(default_factory=lambda: np.ones(AXES))

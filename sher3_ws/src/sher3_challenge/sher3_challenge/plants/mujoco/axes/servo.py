@@ -57,6 +57,14 @@ class Servos:
             force[:, j] = drive.told
         return force
 
+    def now(self, position: Array, speed: Array) -> Array:
+        """Return (5,) the forces the drives make at positions and speeds (5,) of the motors."""
+        force = self.kp * (self.demand - speed)
+        force[self.own] += self.ki[self.own] * (self.data.act[self.state] - position[self.own])
+        for j, drive in self.special.items():
+            force[j] = drive.told[-1]
+        return np.asarray(force)
+
     def tell(self) -> None:
         """Let the drives with a law of their own report; the others are read from MuJoCo's state."""
         for j, drive in self.special.items():
