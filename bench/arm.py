@@ -16,9 +16,11 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 from sher3_diagnosis import diagnose
 from sher3_static.arm.description import Joint
+from sher3_static.arm.kind import KIND, KnownArm
 from sher3_static.arm.kinematics import Arm, arm_from_table, postures
-from sher3_static.arm.machine import SerialArm
-from sher3_static.arm.record import ArmData
+from sher3_static.arm.sight import PoseSight
+from sher3_static.machine import StaticTest
+from sher3_static.readings import Readings
 
 TARGET = 20.0
 """Seconds for 3000 poses."""
@@ -29,7 +31,7 @@ TABLE = ((0.0, 0.0, 0.333), (0.0, -1.5708, 0.0), (0.0, 1.5708, 0.316), (0.0825, 
 """a [m], alpha [rad], d [m] of a seven-joint arm."""
 
 
-def calibration(poses: int, seed: int = 1) -> tuple[Arm, ArmData]:
+def calibration(poses: int, seed: int = 1) -> tuple[Arm, Readings]:
     """Return the nominal arm and measured poses of one whose zeros and lengths are off by 2 mrad and 0.3 mm."""
     rng = np.random.default_rng(seed)
     nominal = [Joint(name=f"joint_{k + 1}", a=a, alpha=alpha, d=d, offset=0.0) for k, (a, alpha, d) in enumerate(TABLE)]
@@ -42,7 +44,7 @@ def calibration(poses: int, seed: int = 1) -> tuple[Arm, ArmData]:
     measured[:, :3, 3] += NOISE * rng.standard_normal((poses, 3))
     turn = Rotation.from_rotvec(NOISE_ROTATION * rng.standard_normal((poses, 3))).as_matrix()
     measured[:, :3, :3] = measured[:, :3, :3] @ turn
-    return arm_from_table(nominal, 0.107), ArmData("tracker", q, measured)
+    return arm_from_table(nominal, 0.107), Readings("tracker", {"joints": q, "poses": measured})
 
 
 def main() -> None:
@@ -52,7 +54,7 @@ def main() -> None:
     parser.add_argument("--json", action="store_true")
     options = parser.parse_args()
     arm, data = calibration(options.poses)
-    machine = SerialArm(arm, NOISE, NOISE_ROTATION)
+    machine = StaticTest(KIND, KnownArm(arm, PoseSight(), NOISE, NOISE_ROTATION))
     clock, processor = time.perf_counter(), time.process_time()
     verdict = diagnose(machine, [data]).verdict
     row = {

@@ -13,6 +13,7 @@ MODULES = {
     "The engine": "sher3_diagnosis.thresholds",
     "Other machines": "sher3_machines.thresholds",
     "Chains of joints": "sher3_chain.thresholds",
+    "Tables of readings": "sher3_static.thresholds",
 }
 INTRODUCTION = """# Thresholds of the diagnosis
 

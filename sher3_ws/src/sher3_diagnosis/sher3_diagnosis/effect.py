@@ -47,6 +47,21 @@ INPUTS: Mapping[str, str] = {
 """Quantities that the law of an effect may depend on."""
 
 
+KINDS: Mapping[str, str] = {
+    "robot": "the robot",
+    "axis": "an axis",
+    "servo": "a position servo",
+    "joint": "a joint of a serial arm in motion",
+    "arm": "the geometry of a serial arm",
+    "table": "an axis in a positioning test",
+    "circle": "two axes on a circle",
+    "sensor": "a force sensor by itself",
+    "cell": "a force sensor of one axis",
+    "law": "the command of an axis against its stated law",
+}
+"""Kinds of machine that an effect may be written for -> plain words; a joint has the pages of an axis too."""
+
+
 class Measured(NamedTuple):
     """A parameter that is told by other means than the fit, SI units.
 
@@ -86,16 +101,12 @@ class Effect:
         id, family, stage: of the recorded-run contract, section 7.
         explanation: plain language: what it is and how it shows.
         places: kinds of place it may sit on; a machine says which of its sites are such a place.
-        kinds: kinds of machine this form of the effect is written for: "robot" the SHER; "axis" one axis of any
-            machine; "servo" a position servo whose force was not recorded; "law" the command of an axis against its
-            stated law; "joint" a joint of a serial arm in motion,
-            which has the pages of an axis too; "arm" the geometry of a serial arm;
-            "table" an axis in a positioning test without a clock, "circle" two axes on a circle, "sensor"
-            a force sensor by itself.
+        kinds: kinds of machine this form of the effect is written for, of `KINDS`.
         needs: facts that must be known of an axis before the effect can be looked for: "lead" its travel per motor
             revolution, "load" a second encoder behind the transmission, "temperature" of the axis, "mass" its mass,
             "drive" the force it is driven with, "forces" what the motion needs of it: mass, weight or a model of the
-            user's, "alone" that its only encoder is at the motor, "behind" that it is at the load.
+            user's, "orientation" how a sensor is turned, "alone" that its only encoder is at the motor, "behind" that
+            it is at the load.
         inputs: quantities the law may depend on, of `INPUTS`; none for an error that is constant.
         units: parameter -> SI unit on a linear axis.
         bent_from: share of what a law with a bend explains that the one without must leave for the bend to be named.
@@ -180,6 +191,10 @@ class Effect:
     def measured(self, views: Sequence[Any], site: str, shape: Shape) -> Mapping[str, Measured]:
         """Return parameters that other means than the fit tell better, by name; default none."""
         return {}
+
+    def in_words(self, view: Any, values: Mapping[str, float]) -> str:
+        """Return what fitted parameters mean on this machine, for the notes; default nothing."""
+        return ""
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
         """Return whether a fit is physically possible; default always."""

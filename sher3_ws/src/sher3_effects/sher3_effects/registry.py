@@ -58,7 +58,7 @@ def pages(kind: str, facts: Collection[str] | None = None) -> list[Page]:
     """Return the pages written for a kind of machine, in alphabetical order of their ids.
 
     Args:
-        kind: "robot", "axis", "servo", "joint" or "arm"; see `Effect.kinds`.
+        kind: a word of `sher3_diagnosis.effect.KINDS`.
         facts: what is known, see `Effect.needs`; pages that need more are left out. None: everything is known, so that
             no encoder is alone.
 

@@ -1,7 +1,8 @@
-"""What effects may ask of a force sensor on its own: readings in known orientations."""
+"""What effects may ask of a force sensor on its own: readings in known orientations or under known weights."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Protocol
 
 from sher3_diagnosis.channel import Array
@@ -35,3 +36,9 @@ class SensorView(Protocol):
 
     def turn(self, frame: int) -> Array:
         """Return (3,) rotation vector by which forces in a frame of the list fit the readings best, rad."""
+
+    def frame_in_words(self, frame: int, further: Sequence[float]) -> str:
+        """Return how readings are expressed in a frame turned further by a rotation vector (3,); nothing as stated."""
+
+    def load_in_words(self, mass: float, moment: Sequence[float]) -> str:
+        """Return the load with a further mass, kg, and first moment (3,), kg m; nothing where there is none."""

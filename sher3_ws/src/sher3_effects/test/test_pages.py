@@ -5,16 +5,16 @@ import sys
 
 import pytest
 from sher3_diagnosis.channel import STAGES
-from sher3_diagnosis.effect import INPUTS, ROTARY
+from sher3_diagnosis.effect import INPUTS, KINDS, ROTARY
 from sher3_effects import library, load_effects, pages, plants, save_effects
 from sher3_sim.effect import REVOLUTE, SITES
 
-KINDS = ("robot", "axis", "servo", "law", "joint", "arm", "table", "circle", "sensor")
 KNOWN = {page.id for kind in KINDS for page in pages(kind)}
 EVERY = [pytest.param(page, id=f"{kind}-{page.id}") for kind in KINDS for page in pages(kind)]
 ROBOT_PAGES = [pytest.param(page, id=page.id) for page in library().values()]
 CONSTANT = {"force_bias"}
 """Effects whose law depends on nothing."""
+FACTS = {"lead", "load", "temperature", "mass", "drive", "forces", "alone", "behind", "orientation"}
 RELATIONS = {"", "load_encoder", "both_encoders", "force_sensor"}
 
 
@@ -24,7 +24,17 @@ def test_the_data_sheet_is_complete(page):
     assert page.explanation.endswith(".") and page.best.why
     assert set(page.kinds) <= set(KINDS) and page.places
     assert set(page.inputs) <= set(INPUTS) and (page.inputs or page.id in CONSTANT or page.kinds == ("arm",))
-    assert set(page.needs) <= {"lead", "load", "temperature", "mass", "drive", "forces", "alone", "behind"}
+    assert set(page.needs) <= {
+        "lead",
+        "load",
+        "temperature",
+        "mass",
+        "drive",
+        "forces",
+        "alone",
+        "behind",
+        "orientation",
+    }
     assert page.breaks in RELATIONS
     assert set(page.extends) <= KNOWN
     assert type(page).__doc__

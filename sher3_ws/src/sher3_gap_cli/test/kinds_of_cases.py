@@ -86,7 +86,7 @@ def positioning(folder):
 def arm(folder):
     """Poses of an arm whose second joint reads too much."""
     data = arms.measured(np.array([0.0, 0.004, 0.0, 0.0, 0.0, 0.0]), n=40)
-    return arms.described().model_dump(mode="json", exclude_unset=True), {"x": data.joints, "p": data.poses}
+    return arms.described().model_dump(mode="json", exclude_unset=True), {"x": data["joints"], "p": data["poses"]}
 
 
 KINDS = {f.__name__: f for f in (axes, servo, manipulator, load_cell, force_sensor, positioning, arm)}

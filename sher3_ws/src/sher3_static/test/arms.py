@@ -5,8 +5,8 @@ from scipy.spatial.transform import Rotation
 from sher3_static.arm.description import ArmDescription
 from sher3_static.arm.kind import KIND
 from sher3_static.arm.kinematics import postures, transform
-from sher3_static.arm.machine import SerialArm
-from sher3_static.arm.record import ArmData
+from sher3_static.machine import StaticTest
+from sher3_static.readings import Readings
 
 HALF = np.pi / 2
 ROWS = [(0.0, 0.3, 0.0), (0.0, 0.0, -HALF), (0.25, 0.0, 0.0), (0.05, 0.28, -HALF), (0.0, 0.0, HALF), (0.0, 0.08, -HALF)]
@@ -23,14 +23,14 @@ def described(rows=ROWS, **more) -> ArmDescription:
     return ArmDescription.model_validate({**base, "noise": 2e-4, "joints": joints, **more})
 
 
-def machine(rows=ROWS, **more) -> SerialArm:
+def machine(rows=ROWS, **more) -> StaticTest:
     return KIND.machine(described(rows, **more))
 
 
-def measured(offsets, n=80, seed=0, noise=2e-4) -> ArmData:
+def measured(offsets, n=80, seed=0, noise=2e-4) -> Readings:
     """Poses of the arm whose joints read `offsets` too much."""
     rng = np.random.default_rng(seed)
     q = rng.uniform(-1.2, 1.2, (n, len(ROWS)))
-    poses = Z @ postures(machine().arm, q - offsets).tip @ X
+    poses = Z @ postures(machine().known.arm, q - offsets).tip @ X
     poses[:, :3, 3] += noise * rng.normal(size=(n, 3))
-    return ArmData("run", q, poses)
+    return Readings("run", {"joints": q, "poses": poses})

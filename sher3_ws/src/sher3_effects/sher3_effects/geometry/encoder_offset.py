@@ -54,6 +54,7 @@ class JointOffset(Page):
     }
     units = {"offset": "rad"}
     on_axis = {"offset": "zero"}
+    plain = True
 
     def channels(self, site: str) -> tuple[Channel, ...]:
         """Return the pose of the measured body."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from sher3_diagnosis.channel import Array, Channel
@@ -51,6 +51,10 @@ class SensorFrame(Page):
         """Return the number of the frame, and the further turn of the readings about its axes."""
         turned = {n: shape.get(n, 0.0) + float(c) for n, c in zip(("rx", "ry", "rz"), coefficients, strict=True)}
         return {"frame": shape["frame"], **turned}
+
+    def in_words(self, view: SensorView, values: Mapping[str, float]) -> str:
+        """Return the frame of the readings, unless it is the stated one."""
+        return view.frame_in_words(round(values["frame"]), [values[name] for name in ("rx", "ry", "rz")])
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
         """Return whether the further turn is small: what is larger is another frame of the list."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -70,7 +70,7 @@ class SensorLoad(Page):
     """A load on any force sensor: reading += mass * g turned into the sensor, at its centre of mass."""
 
     id, family, stage, best = ToolGravity.id, ToolGravity.family, ToolGravity.stage, ToolGravity.best
-    kinds, places = ("sensor",), ToolGravity.places
+    kinds, places, needs = ("sensor",), ToolGravity.places, ("orientation",)
     inputs, explanation = ToolGravity.inputs, "What hangs on the sensor weighs more, or elsewhere, than stated."
     siblings = {"force_bias": "does not turn", "force_scale": "in proportion to everything the sensor reads"}
     units = {"mass": "kg", **ToolGravity.units}
@@ -94,6 +94,10 @@ class SensorLoad(Page):
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Return the extra mass and its extra first moment."""
         return dict(zip(("mass", "com_x", "com_y", "com_z"), map(float, coefficients), strict=True))
+
+    def in_words(self, view: SensorView, values: Mapping[str, float]) -> str:
+        """Return the load as it was found."""
+        return f"found: {view.load_in_words(values['mass'], [values[f'com_{x}'] for x in 'xyz'])}"
 
 
 @dataclass(frozen=True)

@@ -7,26 +7,13 @@ from collections.abc import Mapping, Sequence
 from difflib import get_close_matches
 from typing import Any
 
-from sher3_diagnosis.effect import INPUTS
+from sher3_diagnosis.effect import INPUTS, KINDS
 from sher3_effects import Page, every
 
 from sher3_gap_cli.options import RequestError
 
 WIDTH = 80
 """Columns of a page: what every terminal shows."""
-KINDS = {
-    "robot": "the robot",
-    "axis": "an axis",
-    "servo": "a position servo",
-    "joint": "a joint of a serial arm in motion",
-    "arm": "the geometry of a serial arm",
-    "table": "an axis in a positioning test",
-    "circle": "two axes on a circle",
-    "sensor": "a force sensor by itself",
-    "cell": "a force sensor of one axis",
-    "law": "the command of an axis against its stated law",
-}
-"""Kind of machine -> plain words."""
 NEEDS = {
     "lead": "its travel per motor revolution",
     "load": "an encoder behind the transmission",

@@ -20,12 +20,14 @@ class Joint(Strict):
 
 
 class ArmDescription(Description):
-    """A serial arm with poses measured from outside; a DH table, or a URDF with its base and tip link.
+    """A serial arm measured from outside; a DH table, or a URDF with its base and tip link.
 
     Attributes:
         joint_positions: (n, joints) of a table.
         poses: (n, 4, 4) of the measured body in the measuring frame, or its position with quaternion or Euler angles.
-        noise: standard deviation of a measured position, m.
+        positions: (n, 3) of a target on the last link, or three columns, where no orientation was measured.
+        lengths: (n,) of a cable or a ball bar from a point that stays to a point on the last link.
+        noise: standard deviation of a measured position or length, m.
         noise_rotation: the same of an orientation, rad; None: orientations only find the frames, positions are judged.
         joints: rows of the DH table.
         tip: from the last DH frame to the flange along z, m.
@@ -34,7 +36,9 @@ class ArmDescription(Description):
 
     kind: Literal["arm"]
     joint_positions: Column
-    poses: Column | Pose
+    poses: Column | Pose | None = None
+    positions: Column | tuple[Column, Column, Column] | None = None
+    lengths: Column | None = None
     noise: float = Field(gt=0.0)
     noise_rotation: float | None = Field(default=None, gt=0.0)
     joints: tuple[Joint, ...] = ()
@@ -47,6 +51,8 @@ class ArmDescription(Description):
     def _either(self) -> ArmDescription:
         if bool(self.joints) == (self.urdf is not None):
             raise ValueError("state either `joints` (DH table) or `urdf`")
+        if sum(x is not None for x in (self.poses, self.positions, self.lengths)) != 1:
+            raise ValueError("state either `poses`, `positions` or `lengths`")
         return self
 
     def named_files(self) -> tuple[str, ...]:

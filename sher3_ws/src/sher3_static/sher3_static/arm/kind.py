@@ -1,46 +1,162 @@
-"""The kind `arm`: a serial arm in a case folder."""
+"""The kind `arm`: a serial arm measured from outside at rest, joint zeros first, then the rest of its geometry."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
+from typing import NamedTuple
 
-from sher3_diagnosis.channel import Array
-from sher3_machines.intake.kind import Kind
+import numpy as np
+from sher3_diagnosis.attribute.candidates import Candidates
+from sher3_diagnosis.attribute.rivals import Attribution, without_term
+from sher3_diagnosis.attribute.search import Left, Say
+from sher3_diagnosis.attribute.stepwise import grow
+from sher3_diagnosis.channel import Channel
+from sher3_diagnosis.effect import Effect
+from sher3_diagnosis.finding import Finding
+from sher3_diagnosis.machine import Policy
+from sher3_diagnosis.quantify.closure import closure
+from sher3_diagnosis.verdict import Interval
+from sher3_machines.errors import MachineError
 from sher3_machines.intake.tables import Tables
 
 from sher3_static.arm.description import ArmDescription
-from sher3_static.arm.kinematics import arm_from_table
-from sher3_static.arm.machine import SerialArm
-from sher3_static.arm.record import ArmData, arm_data
+from sher3_static.arm.frames import fitted_view, set_up
+from sher3_static.arm.kinematics import Arm, arm_from_table
+from sher3_static.arm.reading import read_arm
+from sher3_static.arm.sight import LengthSight, PoseSight, PositionSight, Sight
 from sher3_static.arm.urdf import arm_from_urdf
+from sher3_static.arm.words import errors_in_words, worst_postures
+from sher3_static.kind import TableKind
+from sher3_static.readings import Readings, joined
+from sher3_static.reporter import Words
+from sher3_static.table import Table, TableEvidence
+from sher3_static.thresholds import FOLDS
+
+TIP = Channel("mechanism", "tip")
+"""The channel of what is measured."""
 
 
-class ArmKind(Kind[ArmDescription, ArmData]):
-    """Serial arms; a case stores `joints` and `poses`."""
+class KnownArm(NamedTuple):
+    """What is known of an arm and of the instrument that measures it.
 
-    name = "arm"
-    description = ArmDescription
+    Attributes:
+        arm: nominal kinematics.
+        sight: what the instrument sees.
+        noise: standard deviation of a measured position or length, m.
+        noise_rotation: of an orientation, rad; None where orientations are not judged.
+    """
 
-    def read(self, name: str, tables: Tables, description: ArmDescription) -> ArmData:
-        """Check a data file; raises MachineError."""
-        return arm_data(name, tables, description)
+    arm: Arm
+    sight: Sight
+    noise: float
+    noise_rotation: float | None = None
 
-    def pack(self, run: ArmData) -> Mapping[str, Array]:
-        """Return joint positions and poses."""
-        return {"joints": run.joints, "poses": run.poses}
 
-    def unpack(self, name: str, arrays: Tables, notes: Sequence[str]) -> ArmData:
-        """Return the record that a case stores; raises KeyError where an array is missing."""
-        return ArmData(name, arrays["joints"], arrays["poses"], notes)
+class ArmKind(TableKind[ArmDescription]):
+    """Serial arms.
 
-    def machine(self, description: ArmDescription) -> SerialArm:
+    Every joint has a small error of its own: a known cause may leave a share, and the next layer looks for it.
+    """
+
+    name, description = "arm", ArmDescription
+    stored = ("joints",)
+    written_for = ("arm",)
+    policy = Policy()
+    words = Words(
+        rows="{n} postures, measured from outside",
+        whole="All postures",
+        row="posture",
+        parts="postures",
+        end="measured pose",
+        flows={"mechanism": "joint positions → pose"},
+        residual={"mechanism": "measured − nominal pose"},
+    )
+
+    def known(self, description: ArmDescription) -> KnownArm:
         """Return the arm; raises MachineError for a URDF that cannot be read or has no such chain."""
-        if description.urdf is None:
-            arm = arm_from_table(description.joints, description.tip)
-        else:
-            arm = arm_from_urdf(Path(description.urdf), description.base_link, description.tip_link)
-        return SerialArm(arm, description.noise, description.noise_rotation)
+        arm = (
+            arm_from_table(description.joints, description.tip)
+            if description.urdf is None
+            else arm_from_urdf(Path(description.urdf), description.base_link, description.tip_link)
+        )
+        seen: dict[str, Sight] = {"poses": PoseSight(), "positions": PositionSight(), "lengths": LengthSight()}
+        sight = next(x for name, x in seen.items() if getattr(description, name) is not None)
+        return KnownArm(arm, sight, description.noise, description.noise_rotation)
+
+    def read(self, name: str, tables: Tables, description: ArmDescription) -> Readings:
+        """Check a data file; raises MachineError."""
+        return read_arm(name, tables, description)
+
+    def tables(self, known: KnownArm, runs: Sequence[Readings]) -> Sequence[Table]:
+        """Return all postures as one table with the frames fitted to all; a tenth is held out in turn.
+
+        Raises:
+            MachineError: the arm has another number of joints, or the postures do not tell the frames.
+        """
+        rows = joined(runs)
+        q, measured, names = rows["joints"], rows[known.sight.column], known.arm.names
+        if q.shape[1] != len(names):
+            what, remedy = "joint positions do not fit the arm", "correct the table"
+            raise MachineError(what, value=q.shape[1], limit=len(names), remedy=remedy)
+        floor = known.sight.floor(known.noise, known.noise_rotation)
+        view = fitted_view(known.arm, q, measured, rows["run"], floor, known.sight)
+        table = Table(
+            name="arm",
+            channel=TIP,
+            view=view,
+            residual=known.sight.error(view.pose, measured),
+            floor=floor,
+            part=np.arange(len(q)) % FOLDS,
+            run=rows["run"],
+            unit="m",
+            pages=self.library(),
+            places={"joint": names},
+            rotary=frozenset(names),
+            free=set_up(view, "told"),
+            zeros=set_up(view, "moved"),
+        )
+        return [table]
+
+    def attribute(self, evidence: TableEvidence, candidates: Candidates, left_over: Left, say: Say) -> Attribution:
+        """Grow the fit layer by layer where there is a gap.
+
+        Rivals are not named: each of many small errors could be another joint's, and the notes say how far the postures
+        tell them apart.
+        """
+        current = evidence.null()
+        steps = [current]
+        for layer in layers(candidates.effects) if left_over(current) else ():
+            say(f"fitting {', '.join(e.id for e in layer)}")
+            current = grow(candidates, layer, current)
+            steps.append(current)
+        terms = range(len(current.terms))
+        explained = tuple(without_term(evidence, current, i).total - current.total for i in terms)
+        rivals: tuple[tuple[()], ...] = tuple(() for _ in terms)
+        nuisance = len(evidence.nuisance)
+        return Attribution(current, rivals=rivals, explained=explained, nuisance=nuisance, steps=tuple(steps))
+
+    def remarks(self, finding: Finding[TableEvidence]) -> list[str]:
+        """Say how far held-out postures are off, layer by layer, and where what is left lies."""
+        evidence, steps = finding.evidence, finding.attribution.steps
+        folds = f"{evidence.table.view.rows} postures, one in {FOLDS} held out in turn"
+        notes = [f"{folds}; floor: the stated noise of a measured pose"]
+        labels = ["measurement frames only"]
+        for layer, after in zip(layers(evidence.table.pages), steps[1:], strict=False):
+            count = len(after.terms) - len(evidence.nuisance)
+            labels.append(f"with {' and '.join(e.id for e in layer)} ({count} in all)")
+        notes += [f"{label}: {errors_in_words(evidence, fit)}" for label, fit in zip(labels, steps, strict=True)]
+        return notes + ([worst_postures(evidence, finding.attribution.fit)] if finding.left else [])
+
+    def end_to_end(self, findings: Sequence[Finding[TableEvidence]]) -> Interval | None:
+        """Return the closure of the measured pose, which is the end of the chain."""
+        evidence = findings[0].evidence
+        return closure(evidence, TIP, evidence.null(), findings[0].attribution.fit)
+
+
+def layers(effects: Sequence[Effect]) -> list[list[Effect]]:
+    """Return effects in the order they are looked for: what plain homing explains is not blamed on the machining."""
+    return [[e for e in effects if e.plain], [e for e in effects if not e.plain]]
 
 
 KIND = ArmKind()

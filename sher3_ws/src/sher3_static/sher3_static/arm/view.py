@@ -1,19 +1,20 @@
-"""The postures of an arm as the measuring system sees them: what effects and the engine read."""
+"""The postures of an arm as effects see them, through whatever instrument measures it."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 import numpy as np
-from sher3_diagnosis.channel import Array, Mask
-from sher3_diagnosis.evidence import Motion
+from sher3_diagnosis.channel import Array
 
 from sher3_static.arm.kinematics import Arm, Postures
+from sher3_static.arm.sight import Sight
+from sher3_static.view import Still
 
 
-@dataclass(frozen=True)
-class ArmView:
-    """Nominal postures with the two frames of the measurement: measured = Z * T(q) * X.
+@dataclass(frozen=True, eq=False)
+class ArmView(Still):
+    """Nominal postures with the two frames of the measurement: measured = what is seen of Z * T(q) * X.
 
     Attributes:
         arm: nominal.
@@ -21,20 +22,21 @@ class ArmView:
         postures: nominal, in the base frame.
         base: (4, 4) Z, the arm's base in the measuring frame.
         body: (4, 4) X, the measured body on the flange.
+        sight: what the instrument sees of a pose.
     """
 
+    excitation = "postures"
     arm: Arm
     joints: Array
     postures: Postures
     base: Array
     body: Array
+    sight: Sight
 
     @property
     def pose(self) -> Array:
         """Predicted pose (n, 4, 4) of the measured body in the measuring frame."""
         return self.base @ self.postures.tip @ self.body
-
-    # what the effects read
 
     def row(self, site: str) -> int:
         """Return the number of a joint, from 0 at the base."""
@@ -49,49 +51,17 @@ class ArmView:
         return self.postures.frames[:, self.row(site), :3, 3]
 
     def turned(self, axis: Array, through: Array) -> Array:
-        """Return the pose change (n, 6) per rad of a turn about `axis` (n, 3) through a point (n, 3), base frame."""
+        """Return the change (n, d) of what is seen per rad of a turn about `axis` through a point, (n, 3) each."""
         turn = self.base[:3, :3]
         u, p = axis @ turn.T, through @ turn.T + self.base[:3, 3]
-        return np.concatenate([np.cross(u, self.pose[:, :3, 3] - p), u], axis=1)
+        return self._seen(np.concatenate([np.cross(u, self.pose[:, :3, 3] - p), u], axis=1))
 
     def shifted(self, direction: Array) -> Array:
-        """Return the pose change (n, 6) per m along `direction` (n, 3) in the base frame."""
-        return np.concatenate([direction @ self.base[:3, :3].T, np.zeros_like(direction)], axis=1)
+        """Return the change (n, d) of what is seen per m along `direction` (n, 3) in the base frame."""
+        return self._seen(np.concatenate([direction @ self.base[:3, :3].T, np.zeros_like(direction)], axis=1))
 
-    # what the engine reads: postures are no course in time, and nothing but the joints is known of them
-
-    @property
-    def excitation(self) -> str:
-        """Name of what was recorded."""
-        return "postures"
-
-    @property
-    def rate(self) -> None:
-        """None: postures are no course in time."""
-
-    @property
-    def loaded(self) -> Mask:
-        """(n,) False: no load was recorded."""
-        return np.zeros(len(self.joints), dtype=bool)
-
-    @property
-    def warmth(self) -> Array:
-        """(n,) zero: temperatures are not recorded."""
-        return np.zeros(len(self.joints))
-
-    @property
-    def temperature_known(self) -> bool:
-        """False: temperatures are not recorded."""
-        return False
-
-    @property
-    def speed_share(self) -> Array:
-        """(n,) zero: the arm is at rest when it is measured."""
-        return np.zeros(len(self.joints))
-
-    def motion(self, actuator: str) -> Motion | None:
-        """Return None: nothing moves."""
-        return None
+    def _seen(self, change: Array) -> Array:
+        return self.sight.seen(change[:, :, None], self.pose)[:, :, 0]
 
     def inputs(self, actuator: str) -> Array:
         """Return the joint positions (n, k), rad."""

@@ -1,39 +1,81 @@
-"""The kind `load_cell`: readings under known forces in a case folder."""
+"""The kind `load_cell`: readings of one axis under known forces."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
-from sher3_diagnosis.channel import Array
-from sher3_machines.intake.kind import Kind
+import numpy as np
+from sher3_diagnosis.channel import Channel
+from sher3_diagnosis.finding import Finding
 from sher3_machines.intake.tables import Tables
+from sher3_machines.thresholds import BLOCKS
 
 from sher3_static.cell.description import CellDescription
-from sher3_static.cell.machine import LoadCell
-from sher3_static.cell.record import CellRun, cell_run
+from sher3_static.cell.reading import read_cell, scatter, unloading
+from sher3_static.cell.view import ForcesView
+from sher3_static.kind import TableKind
+from sher3_static.readings import Readings, joined, warmed
+from sher3_static.reporter import Words
+from sher3_static.table import Table, TableEvidence
+
+READING = Channel("sensing", "load_cell")
+"""The one channel of a cell."""
+RESOLVED = 1e-6
+"""Smallest floor as a share of the range: readings that agree to the last digit are limited by their rounding."""
 
 
-class CellKind(Kind[CellDescription, CellRun]):
-    """Load cells; a case stores `applied`, `reading` and `temperature`."""
+class CellKind(TableKind[CellDescription]):
+    """Load cells: what a cell read under known forces."""
 
-    name = "load_cell"
-    description = CellDescription
+    name, description = "load_cell", CellDescription
+    stored = ("applied", "reading", "temperature")
+    written_for = ("cell",)
+    words = Words(
+        rows="{n} readings under known forces",
+        whole="All readings",
+        row="reading",
+        parts="readings",
+        end="of the reading",
+        flows={"sensing": "force → reading"},
+        residual={"sensing": "reading − force"},
+    )
 
-    def read(self, name: str, tables: Tables, description: CellDescription) -> CellRun:
+    def read(self, name: str, tables: Tables, description: CellDescription) -> Readings:
         """Check a data file; raises MachineError."""
-        return cell_run(name, tables, description)
+        return read_cell(name, tables, description)
 
-    def pack(self, run: CellRun) -> Mapping[str, Array]:
-        """Return forces, readings and temperatures."""
-        return {"applied": run.applied, "reading": run.reading, "temperature": run.temperature}
+    def tables(self, known: CellDescription, runs: Sequence[Readings]) -> Sequence[Table]:
+        """Return all readings as one table; every eighth is held out in turn."""
+        rows = joined(runs)
+        side = np.concatenate([unloading(run["applied"]) for run in runs])
+        view = ForcesView(warmed(runs), rows["applied"], side)
+        least = RESOLVED * float(np.ptp(rows["applied"]))
+        floor = known.noise or max(scatter(view, rows["reading"], rows["run"]), least)
+        table = Table(
+            name=known.name,
+            channel=READING,
+            view=view,
+            residual=(rows["reading"] - rows["applied"])[:, None],
+            floor=np.array([floor]),
+            part=np.arange(view.rows) % BLOCKS,
+            run=rows["run"],
+            unit=known.unit,
+            pages=self.library(),
+            places={"load_cell": (READING.actuator,)},
+            rotary=frozenset({READING.actuator} if known.measures == "torque" else ()),
+            zeros=np.ones((view.rows, 1, 1)),
+        )
+        return [table]
 
-    def unpack(self, name: str, arrays: Tables, notes: Sequence[str]) -> CellRun:
-        """Return the record that a case stores; raises KeyError where an array is missing."""
-        return CellRun(name, arrays["applied"], arrays["reading"], arrays["temperature"], notes)
-
-    def machine(self, description: CellDescription) -> LoadCell:
-        """Return the cell."""
-        return LoadCell(description)
+    def remarks(self, finding: Finding[TableEvidence]) -> list[str]:
+        """Return what data sheets of cells state: errors in shares of the largest force."""
+        table = finding.evidence.table
+        whole = float(np.abs(table.view.applied).max())  # type: ignore[attr-defined]
+        notes = [f"readings scatter by {100.0 * table.floor[0] / whole:.2g}% of the largest force"]
+        for cause in finding.causes:
+            forces = [p.value for p in cause.parameters.values() if p.unit == table.unit]
+            notes += [f"{cause.effect}: {100.0 * value / whole:.2g}% of it" for value in forces]
+        return notes
 
 
 KIND = CellKind()

@@ -1,28 +1,42 @@
-"""The kind `positioning`: tests without a clock in a case folder."""
+"""The kind `positioning`: tests of axes (ISO 230-2) and circles of two axes (ISO 230-4)."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
-from sher3_diagnosis.channel import Array
+from sher3_diagnosis.finding import Finding
 from sher3_machines.intake.draft import Draft
-from sher3_machines.intake.kind import Kind
 from sher3_machines.intake.tables import Tables
 
+from sher3_static.kind import TableKind
+from sher3_static.positioning.axis import axis_table
+from sher3_static.positioning.circle import circle_table
 from sher3_static.positioning.description import PositioningDescription
 from sher3_static.positioning.draft import draft_test, is_test
-from sher3_static.positioning.machine import Positioning
-from sher3_static.positioning.record import Tests, read_tests
+from sher3_static.positioning.ranking import ranking
+from sher3_static.positioning.reading import read_tests
+from sher3_static.readings import Readings
+from sher3_static.reporter import Words
+from sher3_static.table import Table, TableEvidence
 
 
-class PositioningKind(Kind[PositioningDescription, Tests]):
-    """Positioning tests; a case stores `axes/NAME/COLUMN` and `planes/NAME/COLUMN`."""
+class PositioningKind(TableKind[PositioningDescription]):
+    """Axes and planes of a machine tool or stage, each a table of its own."""
 
-    name = "positioning"
-    description = PositioningDescription
+    name, description = "positioning", PositioningDescription
+    written_for = ("table", "circle")
+    words = Words(
+        rows="{name}: {n} rows",
+        whole="All rows of {name}",
+        row="row",
+        parts="cycles",
+        end="at the reference",
+        flows={"transmission": "target → position", "mechanism": "circle → radius"},
+        residual={"transmission": "reading − target", "mechanism": "radius − nominal"},
+    )
 
-    def read(self, name: str, tables: Tables, description: PositioningDescription) -> Tests:
+    def read(self, name: str, tables: Tables, description: PositioningDescription) -> Readings:
         """Check a data file; raises MachineError."""
         return read_tests(name, tables, description)
 
@@ -30,22 +44,23 @@ class PositioningKind(Kind[PositioningDescription, Tests]):
         """Draft a test of a table without a clock that has targets and readings; None without them."""
         return draft_test(path, tables) if rate is None and model is None and is_test(tables) else None
 
-    def pack(self, run: Tests) -> Mapping[str, Array]:
-        """Return every column."""
-        groups = {"axes": run.axes, "planes": run.planes}
-        return {f"{g}/{n}/{c}": x for g, tests in groups.items() for n, rows in tests.items() for c, x in rows.items()}
+    def tables(self, known: PositioningDescription, runs: Sequence[Readings]) -> Sequence[Table]:
+        """Return every test as a table; raises MachineError where nothing tells what repeats."""
+        axes = [axis_table(test, [within(run, f"axes/{test.name}/") for run in runs]) for test in known.axes]
+        circles = [circle_table(test, [within(run, f"planes/{test.name}/") for run in runs]) for test in known.planes]
+        return [*axes, *circles]
 
-    def unpack(self, name: str, arrays: Tables, notes: Sequence[str]) -> Tests:
-        """Return the tests that a case stores; raises KeyError for an array of another case."""
-        groups: dict[str, dict[str, dict[str, Array]]] = {"axes": {}, "planes": {}}
-        for key, x in arrays.items():
-            group, test, column = key.split("/") if key.count("/") == 2 else ("", "", "")
-            groups[group].setdefault(test, {})[column] = x
-        return Tests(name, groups["axes"], groups["planes"], notes)
+    def remarks(self, finding: Finding[TableEvidence]) -> list[str]:
+        """Return the contribution ranking."""
+        return ranking(finding.evidence.table, finding.attribution)
 
-    def machine(self, description: PositioningDescription) -> Positioning:
-        """Return the tests as a machine."""
-        return Positioning(description)
+
+def within(run: Readings, test: str) -> Readings:
+    """Return the columns of one test of a file; raises KeyError for a case that has none."""
+    columns = {name.removeprefix(test): x for name, x in run.columns.items() if name.startswith(test)}
+    if not columns:
+        raise KeyError(test)
+    return Readings(run.name, columns)
 
 
 KIND = PositioningKind()

@@ -1,4 +1,4 @@
-"""Rows and circles as effects and engine see them; none is a course in time."""
+"""Rows of a positioning test and points of a circle as effects see them."""
 
 from __future__ import annotations
 
@@ -6,48 +6,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from sher3_diagnosis.channel import Array, Mask
-from sher3_diagnosis.evidence import Motion
+from sher3_diagnosis.channel import Array
 
-
-@dataclass(frozen=True, eq=False)
-class Still:
-    """What the engine reads of a table without a clock; `rows` is the number of rows."""
-
-    rows: int
-
-    @property
-    def excitation(self) -> str:
-        """Name of what was recorded."""
-        return "cycle"
-
-    @property
-    def rate(self) -> None:
-        """None: rows are no course in time."""
-
-    @property
-    def loaded(self) -> Mask:
-        """(g,) False: no load was recorded."""
-        return np.zeros(self.rows, dtype=bool)
-
-    @property
-    def speed_share(self) -> Array:
-        """(g,) zero: the axis is at rest when it is measured."""
-        return np.zeros(self.rows)
-
-    @property
-    def temperature_known(self) -> bool:
-        """False: no regime is named after it."""
-        return False
-
-    @property
-    def warmth(self) -> Array:
-        """(g,) zero."""
-        return np.zeros(self.rows)
-
-    def motion(self, actuator: str) -> Motion | None:
-        """Return None: nothing moves."""
-        return None
+from sher3_static.view import Still
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,24 +18,13 @@ class RowsView(Still):
     Attributes:
         target: (g,) from the middle of the travel, m or rad.
         direction: (g,) side of the approach, +1 or -1.
-        temperature: (g,) above the reference, K.
         lead: travel per motor revolution, m or rad.
     """
 
+    excitation, by_temperature = "cycle", False
     target: Array
     direction: Array
-    temperature: Array
     lead: float | None
-
-    @property
-    def warmth(self) -> Array:
-        """(g,) temperature above the reference, K."""
-        return self.temperature
-
-    @cached_property
-    def elapsed(self) -> Array:
-        """(g,) share of the test that had passed."""
-        return np.linspace(0.0, 1.0, self.rows)
 
     @cached_property
     def nodes(self) -> Array:
@@ -83,7 +33,7 @@ class RowsView(Still):
 
     def inputs(self, actuator: str) -> Array:
         """Return target, direction, warmth and order (g, 4)."""
-        return np.column_stack([self.target, self.direction, self.temperature, self.elapsed])
+        return np.column_stack([self.target, self.direction, self.warmth, self.elapsed])
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,6 +46,7 @@ class RingView(Still):
         radius: nominal, m.
     """
 
+    excitation = "circle"
     angle: Array
     turning: Array
     radius: float

@@ -24,13 +24,29 @@ class Load(Strict):
     centre: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
-class SensorDescription(Description):
-    """Static readings of a force sensor in several orientations.
+class Applied(Strict):
+    """Known weights that pull at known levers on a sensor that stays as it is; vectors are in the sensor's frame.
 
     Attributes:
-        force, torque: readings in the sensor's frame.
+        weight: of each reading, kg or N.
+        direction: which way it pulls, columns or one direction of any length for all readings.
+        lever: from the sensor's origin to where it pulls, columns or one place, m.
+    """
+
+    weight: Column
+    direction: Three | tuple[float, float, float]
+    lever: Three | tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+
+class SensorDescription(Description):
+    """Static readings of a force sensor in several orientations, or under several weights.
+
+    Attributes:
+        force, torque: readings; the torque is about the sensor's origin.
+        expressed_in: frame of the readings: the sensor's, or the upright one of `orientation`, as controllers give it.
         orientation: of the sensor in a frame whose z points up, as a matrix, quaternion or Euler angles.
         load: what hangs on it.
+        applied: known weights and levers, in place of `orientation` and `load`.
         temperature: deg C, where it was recorded.
         noise_force, noise_torque: standard deviation of a reading, N and N m; left out: from the readings.
     """
@@ -38,8 +54,10 @@ class SensorDescription(Description):
     kind: Literal["force_sensor"]
     force: Three
     torque: Three
-    orientation: Turn
+    expressed_in: Literal["sensor", "base"] = "sensor"
+    orientation: Turn | None = None
     load: Load = Load()
+    applied: Applied | None = None
     temperature: Column | None = None
     noise_force: float | None = Field(default=None, gt=0.0)
     noise_torque: float | None = Field(default=None, gt=0.0)
@@ -48,4 +66,8 @@ class SensorDescription(Description):
     def _both(self) -> SensorDescription:
         if (self.noise_force is None) != (self.noise_torque is None):
             raise ValueError("state both noise_force and noise_torque, or neither")
+        if (self.orientation is None) == (self.applied is None):
+            raise ValueError("state either `orientation`, with what hangs on the sensor, or `applied` weights")
+        if self.orientation is None and self.expressed_in == "base":
+            raise ValueError("readings in the base frame need the `orientation` of the sensor")
         return self

@@ -1,39 +1,88 @@
-"""The kind `force_sensor`: readings in known orientations in a case folder."""
+"""The kind `force_sensor`: readings of six components under a load in known orientations, or under known weights."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
-from sher3_diagnosis.channel import Array
-from sher3_machines.intake.kind import Kind
+import numpy as np
+from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.finding import Finding
+from sher3_effects import pages
 from sher3_machines.intake.tables import Tables
+from sher3_machines.thresholds import BLOCKS
 
+from sher3_static.kind import TableKind
+from sher3_static.readings import Readings, joined, warmed
+from sher3_static.reporter import Words
 from sher3_static.sensor.description import SensorDescription
-from sher3_static.sensor.machine import ForceSensor
-from sher3_static.sensor.record import SensorRun, sensor_run
+from sher3_static.sensor.reading import identify, read_sensor, scatter
+from sher3_static.sensor.view import AppliedView, SensorView, TurnedView
+from sher3_static.table import Table, TableEvidence
+
+READING = Channel("sensing", "force_sensor")
+"""The one channel of a sensor."""
 
 
-class SensorKind(Kind[SensorDescription, SensorRun]):
-    """Force sensors; a case stores `wrench`, `turn` and `temperature`."""
+class SensorKind(TableKind[SensorDescription]):
+    """Force sensors of six components."""
 
-    name = "force_sensor"
-    description = SensorDescription
+    name, description = "force_sensor", SensorDescription
+    stored = ("wrench", "temperature")
+    written_for = ("sensor",)
+    words = Words(
+        rows="{n} readings under known loads",
+        whole="All readings",
+        row="reading",
+        parts="readings",
+        end="of the reading",
+        flows={"sensing": "load → reading"},
+        residual={"sensing": "reading − nominal"},
+    )
 
-    def read(self, name: str, tables: Tables, description: SensorDescription) -> SensorRun:
+    def read(self, name: str, tables: Tables, description: SensorDescription) -> Readings:
         """Check a data file; raises MachineError."""
-        return sensor_run(name, tables, description)
+        return read_sensor(name, tables, description)
 
-    def pack(self, run: SensorRun) -> Mapping[str, Array]:
-        """Return readings, orientations and temperatures."""
-        return {"wrench": run.wrench, "turn": run.turn, "temperature": run.temperature}
+    def tables(self, known: SensorDescription, runs: Sequence[Readings]) -> Sequence[Table]:
+        """Return all readings as one table; every eighth is held out in turn."""
+        rows = joined(runs)
+        view = view_of(known, rows, warmed(runs))
+        floor = scatter(view, rows["run"])
+        if known.noise_force is not None and known.noise_torque is not None:
+            floor = np.repeat([known.noise_force, known.noise_torque], 3)
+        table = Table(
+            name=known.name,
+            channel=READING,
+            view=view,
+            residual=view.reading - view.wrench(0),
+            floor=floor,
+            part=np.arange(view.rows) % BLOCKS,
+            run=rows["run"],
+            unit="N",
+            pages=pages("sensor", {"orientation"} if "turn" in rows else set()),
+            places={"force_sensor": (READING.actuator,)},
+            zeros=np.tile(np.eye(6), (view.rows, 1, 1)),
+        )
+        return [table]
 
-    def unpack(self, name: str, arrays: Tables, notes: Sequence[str]) -> SensorRun:
-        """Return the record that a case stores; raises KeyError where an array is missing."""
-        return SensorRun(name, arrays["wrench"], arrays["turn"], arrays["temperature"], notes)
+    def remarks(self, finding: Finding[TableEvidence]) -> list[str]:
+        """Say what is known of the load."""
+        view = finding.evidence.table.view
+        assert isinstance(view, SensorView)
+        return view.in_words()
 
-    def machine(self, description: SensorDescription) -> ForceSensor:
-        """Return the sensor."""
-        return ForceSensor(description)
+
+def view_of(known: SensorDescription, rows: dict[str, Array], warmth: Array) -> SensorView:
+    """Return what the effects ask of the readings; an unknown load is identified first."""
+    wrench, load = rows["wrench"], known.load
+    if "applied" in rows:
+        return AppliedView(warmth, wrench, rows["applied"])
+    mass, moment = (
+        (load.mass, load.mass * np.array(load.centre))
+        if isinstance(load.mass, float)
+        else identify(wrench, rows["turn"])
+    )
+    return TurnedView(warmth, wrench, rows["turn"], mass, moment, load.mass == "unknown")
 
 
 KIND = SensorKind()

@@ -24,7 +24,7 @@ def urdf(tmp_path):
 
 def test_a_planar_arm_reaches_as_far_as_its_links():
     """Two links of 0.3 and 0.2 m: stretched 0.5 m along x, the elbow at a right angle (0.3, 0.2)."""
-    arm = machine([(0.0, 0.0, 0.0), (0.3, 0.0, 0.0), (0.2, 0.0, 0.0)]).arm
+    arm = machine([(0.0, 0.0, 0.0), (0.3, 0.0, 0.0), (0.2, 0.0, 0.0)]).known.arm
     along = postures(arm, np.array([[0.0, 0.0, 0.0], [0.0, np.pi / 2, 0.0]]))
     np.testing.assert_allclose(along.tip[:, :3, 3], [[0.5, 0.0, 0.0], [0.3, 0.2, 0.0]], atol=1e-12)
     np.testing.assert_allclose(along.frames[1, 2, :3, 3], [0.3, 0.2, 0.0], atol=1e-12)
@@ -33,7 +33,7 @@ def test_a_planar_arm_reaches_as_far_as_its_links():
 
 def test_a_twisted_joint_turns_about_another_axis():
     """A twist of -90 degrees: the second joint's z lies along the base's y."""
-    arm = machine([(0.0, 0.3, 0.0), (0.0, 0.0, -np.pi / 2)]).arm
+    arm = machine([(0.0, 0.3, 0.0), (0.0, 0.0, -np.pi / 2)]).known.arm
     np.testing.assert_allclose(postures(arm, np.zeros((1, 2))).axes[0, 1], [0.0, 1.0, 0.0], atol=1e-12)
 
 
@@ -45,7 +45,7 @@ def test_a_transform_is_identity_unless_told():
 def test_urdf_and_table_agree(urdf):
     q = np.random.default_rng(1).uniform(-1, 1, (5, 2))
     by_urdf = postures(arm_from_urdf(urdf, "base", "tip"), q).tip
-    by_table = postures(machine(ROWS[:2]).arm, q).tip @ transform([0.25, 0.0, 0.1])
+    by_table = postures(machine(ROWS[:2]).known.arm, q).tip @ transform([0.25, 0.0, 0.1])
     np.testing.assert_allclose(by_urdf, by_table, atol=1e-12)
 
 

@@ -5,8 +5,8 @@ import pytest
 from sher3_diagnosis import diagnose
 from sher3_machines import MachineError
 from sher3_static.cell.description import CellDescription
-from sher3_static.cell.machine import LoadCell
-from sher3_static.cell.record import cell_run, unloading
+from sher3_static.cell.kind import KIND
+from sher3_static.cell.reading import read_cell, unloading
 
 NOISE = 0.05
 
@@ -26,8 +26,10 @@ def description(factor=50.0, **more):
     return CellDescription.model_validate({"kind": "load_cell", "name": "cell", **columns, **more})
 
 
-def found(data, **more):
-    verdict = diagnose(LoadCell(description(**more)), [cell_run("a", data, description(**more))]).verdict
+def found(*data, **more):
+    described = description(**more)
+    runs = [read_cell(f"run {i}", x, described) for i, x in enumerate(data)]
+    verdict = diagnose(KIND.machine(described), runs).verdict
     return verdict, {c.effect: {name: p.value for name, p in c.parameters.items()} for c in verdict.causes}
 
 
@@ -77,9 +79,9 @@ def test_a_force_that_stays_keeps_its_side():
 )
 def test_bad_records_are_refused_with_a_remedy(change, said):
     with pytest.raises(MachineError, match=said):
-        cell_run("a", {**weighed(), **change}, description())
+        read_cell("a", {**weighed(), **change}, description())
 
 
 def test_few_readings_are_refused():
     with pytest.raises(MachineError, match="too few readings; value 11; limit 12; record more"):
-        cell_run("a", {name: x[:11] for name, x in weighed().items()}, description())
+        read_cell("a", {name: x[:11] for name, x in weighed().items()}, description())

@@ -6,8 +6,8 @@ from sher3_diagnosis import diagnose
 from sher3_machines import MachineError
 from sher3_static.positioning.description import PositioningDescription
 from sher3_static.positioning.iso import circular, positioning
-from sher3_static.positioning.machine import Positioning
-from sher3_static.positioning.record import read_tests
+from sher3_static.positioning.kind import KIND
+from sher3_static.positioning.reading import read_tests
 
 RADIUS = 0.1
 DESCRIPTION = PositioningDescription.model_validate(
@@ -40,7 +40,7 @@ def ring(square=0.0, mismatch=0.0, lag_x=0.0, sense=1, seed=1):
 
 def verdict_of(**errors):
     runs = [read_tests(f"turn {s}", ring(sense=s, seed=s + 2, **errors), DESCRIPTION) for s in (1, -1)]
-    return diagnose(Positioning(DESCRIPTION), runs).verdict
+    return diagnose(KIND.machine(DESCRIPTION), runs).verdict
 
 
 @pytest.mark.parametrize(
@@ -100,10 +100,10 @@ def test_a_ball_bar_gives_angle_and_deviation():
         across, moving = np.sin(np.radians(angle)), np.sign(sense * np.cos(np.radians(angle)))
         data = {"a": angle % 360.0, "r": 2.0 * np.cos(np.radians(angle)) - 4.0 * across * moving + noise}
         runs.append(read_tests(f"turn {sense}", data, described))
-    (cause,) = diagnose(Positioning(described), runs).verdict.causes
+    (cause,) = diagnose(KIND.machine(described), runs).verdict.causes
     assert cause.effect == "backlash" and cause.actuator == "xy.y"
     assert cause.parameters["width"].value == pytest.approx(8e-6, rel=0.1)
-    (line,) = [n for n in diagnose(Positioning(described), runs).verdict.notes if "contribution 1" in n]
+    (line,) = [n for n in diagnose(KIND.machine(described), runs).verdict.notes if "contribution 1" in n]
     assert float(line.split("G(b) ")[1].split(",")[0]) < 2.0, line
     with pytest.raises(ValueError, match="either `x` and `y`, or `angle` and `deviation`"):
         PositioningDescription.model_validate(

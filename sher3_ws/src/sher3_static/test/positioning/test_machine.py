@@ -5,8 +5,8 @@ import pytest
 from sher3_diagnosis import diagnose
 from sher3_machines import MachineError
 from sher3_static.positioning.description import PositioningDescription
-from sher3_static.positioning.machine import Positioning
-from sher3_static.positioning.record import cycles, directions, read_tests
+from sher3_static.positioning.kind import KIND
+from sher3_static.positioning.reading import cycles, directions, read_tests
 
 TARGETS = np.linspace(0.0, 0.5, 11)
 NOISE = 0.3e-6
@@ -38,7 +38,7 @@ def description(**changes):
 
 def verdict_of(data, **changes):
     described = description(**changes)
-    return diagnose(Positioning(described), [read_tests("a", data, described)]).verdict
+    return diagnose(KIND.machine(described), [read_tests("a", data, described)]).verdict
 
 
 def found(verdict):

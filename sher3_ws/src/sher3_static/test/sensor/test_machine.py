@@ -7,10 +7,10 @@ from scipy.spatial.transform import Rotation
 from sher3_diagnosis import diagnose
 from sher3_machines import MachineError
 from sher3_static.sensor.description import SensorDescription
-from sher3_static.sensor.evidence import floors
 from sher3_static.sensor.frames import frames
-from sher3_static.sensor.machine import ForceSensor
-from sher3_static.sensor.record import sensor_run
+from sher3_static.sensor.kind import KIND
+from sher3_static.sensor.reading import read_sensor, scatter
+from sher3_static.sensor.view import TurnedView
 
 MASS, CENTRE = 1.5, np.array([0.01, -0.02, 0.06])
 NOISE = np.repeat([0.02, 0.002], 3)
@@ -48,7 +48,7 @@ def description(mass=MASS, centre=CENTRE):
 
 def verdict_of(data, **load):
     described = description(**load)
-    return diagnose(ForceSensor(described), [sensor_run("a", data, described)]).verdict
+    return diagnose(KIND.machine(described), [read_sensor("a", data, described)]).verdict
 
 
 def effects(verdict):
@@ -144,7 +144,9 @@ def test_records_that_tell_nothing_are_refused():
 def test_the_floor_is_the_noise_in_every_frame():
     data = readings(inverted=True, bias=3.0, n=400)
     wrench = np.hstack([data["f"], data["t"]])
-    found = floors(wrench, Rotation.from_quat(data["q"]).as_matrix(), np.zeros(400))
+    turn = Rotation.from_quat(data["q"]).as_matrix()
+    view = TurnedView(np.zeros(400), wrench, turn, MASS, MASS * CENTRE, False)
+    found = scatter(view, np.zeros(400, dtype=int))
     assert found == pytest.approx(NOISE, rel=0.15)
 
 

@@ -1,9 +1,6 @@
-"""Records of a load cell, with the checks that refuse readings no answer could rest on."""
+"""Readings of a load cell: the checks that refuse a record no answer could rest on, and their scatter."""
 
 from __future__ import annotations
-
-from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from sher3_diagnosis.channel import Array
@@ -12,60 +9,37 @@ from sher3_machines.intake.columns import pick, pick_beside
 from sher3_machines.intake.tables import Tables
 
 from sher3_static.cell.description import CellDescription
+from sher3_static.cell.view import ForcesView
+from sher3_static.readings import Labels, Readings, enough, temperature, thinned
 
 LEAST_ROWS = 12
 """Readings that a record must have: six forces, going and coming."""
 LEAST_FORCES = 3
 """Different forces that it must have: two tell no more than a line."""
-MOST_ROWS = 5000
-"""Readings that are used; of more every n-th counts, since neighbours tell the same."""
 SLIPPED = 3.0
 """Factor between reading and force, either way, from which the `factor` is wrong: sensitivities are off by less."""
 SAME = 1e-3
 """Share of the range by which two forces must differ to be a change of the load."""
+REPEATED = 8
+"""Repeats from which they tell the scatter of a reading by themselves: a third of it is then not known, no more."""
 
 
-@dataclass(frozen=True)
-class CellRun:
-    """One record, SI units.
-
-    Attributes:
-        name: of its file.
-        applied, reading: (n,) known force, and what the cell read.
-        temperature: (n,) deg C; nan where it was not recorded.
-        notes: what was done to the data.
-    """
-
-    name: str
-    applied: Array
-    reading: Array
-    temperature: Array
-    notes: Sequence[str] = ()
-
-
-def cell_run(name: str, tables: Tables, description: CellDescription) -> CellRun:
-    """Check the columns of a file and bring them to SI units.
+def read_cell(name: str, tables: Tables, description: CellDescription) -> Readings:
+    """Check the columns of a file and bring them to SI units: `applied`, `reading`, `temperature`.
 
     Raises:
         MachineError: a column is missing, too few readings or forces, a dead channel, or a factor that is far off.
     """
     applied = pick(description.applied, tables, name)
     reading = pick_beside((len(applied),), description.reading, tables, name)
-    warm = np.full(len(applied), np.nan)
-    if description.temperature is not None:
-        warm = pick_beside((len(applied),), description.temperature, tables, name)
-    if len(applied) < LEAST_ROWS:
-        remedy = "record more readings: six forces with growing and with falling load are enough"
-        raise MachineError(f"{name}: too few readings", value=len(applied), limit=LEAST_ROWS, remedy=remedy)
+    warm = temperature(description.temperature, len(applied), tables, name)
+    remedy = "record more readings: six forces with growing and with falling load are enough"
+    enough(f"{name}: too few readings", len(applied), LEAST_ROWS, remedy)
     span = float(np.ptp(applied))
     forces = len(np.unique(np.round(applied / (SAME * span)))) if span else 1
-    if forces < LEAST_FORCES:
-        remedy = "apply more different forces"
-        raise MachineError(f"{name}: too few different forces", value=forces, limit=LEAST_FORCES, remedy=remedy)
+    enough(f"{name}: too few different forces", forces, LEAST_FORCES, "apply more different forces")
     _check_reading(name, applied, reading, description)
-    step = -(-len(applied) // MOST_ROWS)
-    notes = [f"{name}: every {step}th of {len(applied)} readings is used"] if step > 1 else []
-    return CellRun(name, applied[::step], reading[::step], warm[::step], notes)
+    return thinned(name, {"applied": applied, "reading": reading, "temperature": warm})
 
 
 def _check_reading(name: str, applied: Array, reading: Array, description: CellDescription) -> None:
@@ -95,3 +69,23 @@ def unloading(applied: Array) -> Array:
         step = applied[i] - applied[i - 1]
         out[i] = out[i - 1] if abs(step) < least else float(step < 0.0)
     return out
+
+
+def scatter(view: ForcesView, reading: Array, run: Labels) -> float:
+    """Return the standard deviation of a reading beyond a zero that wanders and is another one in each run.
+
+    What differs at one force reached from one side, where forces were repeated; else what no curve of third order in
+    the force, of its own for each direction, explains.
+    """
+    drift = np.column_stack([view.elapsed, view.warmth, np.eye(run.max() + 1)[run]])
+    force = np.round(view.share / SAME)
+    cell = np.unique(np.column_stack([force, view.unloading]), axis=0, return_inverse=True)[1].ravel()
+    same = np.eye(cell.max() + 1)[cell]
+    u, bow = view.share, view.share * (1.0 - view.share) * view.unloading
+    smooth = np.column_stack([np.ones(len(u)), u, u**2, u**3, bow, bow * u])
+    for x in (np.hstack([same, drift]), np.hstack([smooth, drift])):
+        free = len(reading) - int(np.linalg.matrix_rank(x))
+        if free >= REPEATED:
+            break
+    left = reading - x @ np.linalg.lstsq(x, reading, rcond=None)[0]
+    return float(np.sqrt(np.sum(left**2) / max(free, 1)))

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Sequence
 
 import numpy as np
 from sher3_diagnosis.channel import Array
@@ -13,42 +12,32 @@ from sher3_machines.intake.fields import Column
 from sher3_machines.intake.tables import Tables
 
 from sher3_static.positioning.description import AxisTest, CircleTest, PositioningDescription
+from sher3_static.readings import Readings, enough
 
 LEAST_ROWS = 20
 """Rows that a test must have: five targets, from both sides, twice."""
+MORE_ROWS = "measure more cycles: five targets from both sides, twice, are enough"
 LEAST_TARGETS = 3
 """Targets that a test must have: two tell no more than a line."""
 LIKELY_SLIP = 0.1
 """Deviation, as a share of the travel, beyond which reading and target are taken for different units."""
 
 
-@dataclass(frozen=True)
-class Tests:
-    """The tests of one file.
-
-    Attributes:
-        name: of the file.
-        axes: axis -> `target`, `deviation`, `direction`, `cycle`, and `temperature` where recorded; (n,) each, SI.
-        planes: plane -> `x` and `y`, (n,), m.
-        notes: what was done to the data.
-    """
-
-    name: str
-    axes: Mapping[str, Mapping[str, Array]]
-    planes: Mapping[str, Mapping[str, Array]]
-    notes: Sequence[str] = field(default_factory=tuple)
-
-
-def read_tests(name: str, tables: Tables, machine: PositioningDescription) -> Tests:
+def read_tests(name: str, tables: Tables, machine: PositioningDescription) -> Readings:
     """Check the columns of a file and bring them to SI units.
+
+    Returns:
+        `axes/AXIS/COLUMN` with `target`, `deviation`, `direction`, `cycle`, and `temperature` where it was recorded;
+        `planes/PLANE/COLUMN` with `x` and `y`, m.
 
     Raises:
         MachineError: a column is missing, rows or targets are too few, or units differ.
     """
     notes: list[str] = []
-    axes = {test.name: axis_rows(name, tables, test, notes) for test in machine.axes}
-    planes = {test.name: circle_rows(name, tables, test) for test in machine.planes}
-    return Tests(name, axes, planes, notes)
+    found = {f"axes/{test.name}": axis_rows(name, tables, test, notes) for test in machine.axes}
+    found |= {f"planes/{test.name}": circle_rows(name, tables, test) for test in machine.planes}
+    columns = {f"{test}/{column}": x for test, rows in found.items() for column, x in rows.items()}
+    return Readings(name, columns, notes)
 
 
 def axis_rows(run: str, tables: Tables, test: AxisTest, notes: list[str]) -> dict[str, Array]:
@@ -57,8 +46,7 @@ def axis_rows(run: str, tables: Tables, test: AxisTest, notes: list[str]) -> dic
         return pass_rows(run, tables, test, test.passes)
     target = pick(test.target, tables, run)
     _one_column(run, test.target, target)
-    _enough(run, test.name, len(target))
-    _enough_targets(run, test.name, target)
+    _enough(run, test.name, len(target), target)
     column = test.reading or test.deviation
     assert column is not None
     value = pick_beside(target.shape, column, tables, run)
@@ -90,8 +78,7 @@ def pass_rows(run: str, tables: Tables, test: AxisTest, passes: Sequence[Column]
     """Return the rows of a table with a column for each pass: from below, from above and so on, in turn."""
     target = pick(test.target, tables, run)
     _one_column(run, test.target, target)
-    _enough(run, test.name, len(target) * len(passes))
-    _enough_targets(run, test.name, target)
+    _enough(run, test.name, len(target) * len(passes), target)
     found = [pick_beside(target.shape, column, tables, run) for column in passes]
     for column, deviation in zip(passes, found, strict=True):
         _likely(run, test, column, target, deviation)
@@ -145,7 +132,7 @@ def circle_rows(run: str, tables: Tables, test: CircleTest) -> dict[str, Array]:
     y = pick_beside(x.shape, second, tables, run)
     if test.angle is not None:
         x, y = (test.radius + y) * np.cos(x), (test.radius + y) * np.sin(x)
-    _enough(run, test.name, len(x))
+    enough(f"{run}: {test.name}: too few rows", len(x), LEAST_ROWS, MORE_ROWS)
     size = float(np.hypot(x - x.mean(), y - y.mean()).mean())
     if not 0.5 < size / test.radius < 2.0:
         raise MachineError(
@@ -163,13 +150,6 @@ def _one_column(run: str, column: Column, x: Array) -> None:
         raise MachineError(f"{run}: {column.column} is a matrix", value=x.shape, limit="(n,)", remedy=remedy)
 
 
-def _enough(run: str, name: str, rows: int) -> None:
-    if rows < LEAST_ROWS:
-        remedy = "measure more cycles: five targets from both sides, twice, are enough"
-        raise MachineError(f"{run}: {name}: too few rows", value=rows, limit=LEAST_ROWS, remedy=remedy)
-
-
-def _enough_targets(run: str, name: str, target: Array) -> None:
-    if (targets := len(np.unique(target))) < LEAST_TARGETS:
-        remedy = "measure more targets"
-        raise MachineError(f"{run}: {name}: too few targets", value=targets, limit=LEAST_TARGETS, remedy=remedy)
+def _enough(run: str, name: str, rows: int, target: Array) -> None:
+    enough(f"{run}: {name}: too few rows", rows, LEAST_ROWS, MORE_ROWS)
+    enough(f"{run}: {name}: too few targets", len(np.unique(target)), LEAST_TARGETS, "measure more targets")

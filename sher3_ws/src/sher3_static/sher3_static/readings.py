@@ -1,0 +1,75 @@
+"""One record of readings: named columns in SI units, with the checks that every table has to pass."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from sher3_diagnosis.channel import Array
+from sher3_machines.errors import MachineError
+from sher3_machines.intake.columns import pick_beside
+from sher3_machines.intake.fields import Column
+from sher3_machines.intake.tables import Tables
+
+Labels = NDArray[Any]
+"""(g,) a number for each row: of its run, or of the part that is held out together."""
+
+MOST_ROWS = 5000
+"""Readings that are used; of more every n-th counts, since neighbours tell the same."""
+
+
+@dataclass(frozen=True)
+class Readings:
+    """The readings of one file, n rows.
+
+    Attributes:
+        name: of the file.
+        columns: name -> (n, ...), SI.
+        notes: what was done to the data.
+    """
+
+    name: str
+    columns: Mapping[str, Array]
+    notes: Sequence[str] = ()
+
+    def __getitem__(self, column: str) -> Array:
+        return self.columns[column]
+
+
+def joined(runs: Sequence[Readings]) -> dict[str, Array]:
+    """Return the columns of all runs after each other, and as `run` (g,) the number of each row's run."""
+    columns = {name: np.concatenate([run[name] for run in runs]) for name in runs[0].columns}
+    return {**columns, "run": np.repeat(np.arange(len(runs)), [len(next(iter(r.columns.values()))) for r in runs])}
+
+
+def enough(what: str, found: int, least: int, remedy: str) -> None:
+    """Raise MachineError where fewer were found than are needed."""
+    if found < least:
+        raise MachineError(f"{what}", value=found, limit=least, remedy=remedy)
+
+
+def alive(what: str, reading: Array, remedy: str) -> None:
+    """Raise MachineError where a channel (n,) never changes."""
+    if not np.ptp(reading):
+        raise MachineError(f"{what} never changes", value=f"{reading[0]:.6g}", remedy=remedy)
+
+
+def thinned(name: str, columns: Mapping[str, Array]) -> Readings:
+    """Return the readings of one file, every n-th of very many."""
+    rows = len(next(iter(columns.values())))
+    step = -(-rows // MOST_ROWS)
+    notes = [f"{name}: every {step}th of {rows} readings is used"] if step > 1 else []
+    return Readings(name, {column: x[::step] for column, x in columns.items()}, notes)
+
+
+def temperature(column: Column | None, rows: int, tables: Tables, name: str) -> Array:
+    """Return temperatures (n,), deg C; nan where none were recorded."""
+    return np.full(rows, np.nan) if column is None else pick_beside((rows,), column, tables, name)
+
+
+def warmed(runs: Sequence[Readings]) -> Array:
+    """Return how much warmer each reading is than the first of its run, (g,), K; zero where it was not recorded."""
+    return np.nan_to_num(np.concatenate([run["temperature"] - run["temperature"][0] for run in runs]))
