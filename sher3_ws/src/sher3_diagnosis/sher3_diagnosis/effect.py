@@ -113,6 +113,7 @@ class Effect:
         discrete: parameters that are a choice (a source, a member, a number of periods) and have no interval.
         choices: parameter of `discrete` -> value -> what it means, in a word.
         bounds: parameter -> smallest and largest value that is physically possible.
+        told_by: parameters that must differ from zero for the effect to be told from a simpler one that it extends.
         siblings: effect id -> what tells it from this one.
         extends: ids of simpler effects that this one contains; it must explain markedly more than they do.
         finer: shape value -> factors by which the best value is multiplied in the finer search.
@@ -142,6 +143,7 @@ class Effect:
     discrete: ClassVar[frozenset[str]] = frozenset()
     choices: ClassVar[Mapping[str, Mapping[float, str]]] = {}
     bounds: ClassVar[Mapping[str, tuple[float, float]]] = {}
+    told_by: ClassVar[tuple[str, ...]] = ()
     siblings: ClassVar[Mapping[str, str]] = {}
     extends: ClassVar[tuple[str, ...]] = ()
     finer: ClassVar[Mapping[str, tuple[float, ...]]] = {}
@@ -199,6 +201,10 @@ class Effect:
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
         """Return whether a fit is physically possible; default always."""
         return True
+
+    def limits(self, shape: Shape) -> Mapping[str, tuple[float, float]]:
+        """Return parameter -> smallest and largest value that may be in its interval; default the bounds."""
+        return self.bounds
 
     def held(self, view: Any, site: str, shape: Shape, coefficients: Array) -> Array | None:
         """Return the force (g,) up to which the law holds anything, 0 where the record tells its state; default None.

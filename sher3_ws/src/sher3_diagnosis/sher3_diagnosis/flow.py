@@ -22,6 +22,7 @@ from sher3_diagnosis.judge.causes import causes_of
 from sher3_diagnosis.judge.costs import DEFAULT, Costs
 from sher3_diagnosis.judge.judge import judge
 from sher3_diagnosis.judge.left_over import down_to_floor, left_over
+from sher3_diagnosis.judge.meaning import without_empty
 from sher3_diagnosis.localise.gaps import localise
 from sher3_diagnosis.machine import Machine
 from sher3_diagnosis.quantify.closure import residual_after
@@ -84,7 +85,8 @@ def find(machine: Machine[R, E], evidence: E, without: Collection[str], say: Say
     refined, causes = machine.refine(evidence, causes_of(evidence, attribution), attribution)
     remains = partial(left_over, significant, evidence)
     while not machine.policy.calibrated:
-        fewer = significant_causes(evidence, attribution, causes, remains)
+        fewer = without_empty(candidates, attribution, causes)
+        fewer = significant_causes(evidence, attribution, remains) if fewer is attribution else fewer
         if fewer is attribution:
             break
         attribution = fewer

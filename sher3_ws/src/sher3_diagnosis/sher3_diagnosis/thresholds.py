@@ -119,17 +119,18 @@ SMALL_SHARE = 0.25
 SMALL_REMAINDER = 2.5
 """Power over floor of what is left up to which it is small. Set on and measured as `REMAINDER`."""
 
-HALF_CLOSED = 0.75
-"""Closure of a gap that is not closed from which its causes are causes: they take half of its size. Set by that
-argument. Measure: `pytest sher3_ws/src/sher3_chain/test/axes/test_foreign_law.py`."""
+PART_CLOSED = 0.25
+"""Closure of a gap that is not closed, at the lower end of its interval, from which its causes are named with their
+part: a quarter is no accident, and what follows other quantities is asked beside it. Set by that argument.
+Measure: `pytest sher3_ws/src/sher3_chain/test/axes/test_foreign_law.py`."""
 
 FOREIGN_SIZE = 0.05
 """Size, over that of the gap, of what follows quantities that no cause may depend on, from which another law is at
-work: laws are off by a few per cent. Set by that argument and measured as `HALF_CLOSED`."""
+work: laws are off by a few per cent. Set by that argument and measured as `PART_CLOSED`."""
 
 FOREIGN_SHARE = 0.5
 """Share of what a free law of the causes' own inputs leaves that such quantities must tell: most of it. Set by that
-argument and measured as `HALF_CLOSED`."""
+argument and measured as `PART_CLOSED`."""
 
 REPRODUCED = 0.9
 """Share of an exact stage's error that its causes must reproduce. Set on: development seeds with faults of transport

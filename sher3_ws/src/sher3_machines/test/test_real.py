@@ -5,6 +5,7 @@ import os
 from pathlib import Path
 
 import pytest
+from meaning import meaningless
 from sher3_diagnosis import diagnose
 from sher3_machines import described, import_case, open_case
 
@@ -14,8 +15,15 @@ pytestmark = [pytest.mark.shared, pytest.mark.skipif(not REAL.is_dir(), reason=f
 
 
 def verdict_of(name, data, tmp_path):
-    import_case(data, described(Path(name)), tmp_path / name)
-    return diagnose(*open_case(tmp_path / name)).verdict
+    return verdict_with(name, described(Path(name)), data, tmp_path)
+
+
+def verdict_with(name, description, data, tmp_path):
+    """Of any set each cause says something."""
+    import_case(data, description, tmp_path / name)
+    verdict = diagnose(*open_case(tmp_path / name)).verdict
+    assert not meaningless(verdict)
+    return verdict
 
 
 def values(verdict):
@@ -122,8 +130,8 @@ def test_kuka_as_an_arm(tmp_path):
     for old, new in (("nominal", "identified"), ("column: t,", "column: time_cont,"), ("column: ", "column: rec/")):
         text = text.replace(old, new)
     (tmp_path / "arm.yaml").write_text(text, encoding="utf-8")
-    import_case([REAL / f"kuka_kr300/run{x}.mat" for x in "ABC"], tmp_path / "arm.yaml", tmp_path / "arm")
-    verdict = diagnose(*open_case(tmp_path / "arm")).verdict
+    runs = [REAL / f"kuka_kr300/run{x}.mat" for x in "ABC"]
+    verdict = verdict_with("arm", tmp_path / "arm.yaml", runs, tmp_path)
     found = values(verdict)
     assert found["coulomb_friction", "A1", "force"] == pytest.approx(374.0, rel=0.15)
     assert found["viscous_friction", "A1", "extra"] == pytest.approx(1921.0, rel=0.15)

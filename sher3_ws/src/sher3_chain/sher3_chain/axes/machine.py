@@ -133,12 +133,13 @@ class Axes(Machine[AxesRun, AxisEvidence]):
         """Refine mass and forces of a free axis on its simulated motion, of a driven one away from its reversals."""
         if is_law(evidence):
             return evidence, causes
-        if evidence.axis.free:
+        free, servo, own = evidence.axis.free, evidence.axis.servo, evidence.axis.own_unit
+        causes = causes if free else requantified(evidence, attribution, causes)
+        causes = causes if free or servo else with_unseen(evidence, attribution, causes)
+        causes = within_bounds(causes, attribution.told, self.effects(evidence))
+        if free:
             return refine_free(evidence, causes)
-        causes, own = requantified(evidence, attribution, causes), evidence.axis.own_unit
-        causes = causes if evidence.axis.servo else with_unseen(evidence, attribution, causes)
-        causes = within_bounds(causes, self.effects(evidence))
-        causes = with_dead_band(causes) if evidence.axis.servo else causes
+        causes = with_dead_band(causes) if servo else causes
         return evidence, [in_own_unit(cause, own) for cause in causes] if own else causes
 
     def remarks(self, finding: Finding[AxisEvidence]) -> list[str]:

@@ -118,7 +118,8 @@ class Manipulator(Machine[AxesRun, ArmMotionEvidence]):
         self, evidence: ArmMotionEvidence, causes: list[Cause], attribution: Attribution
     ) -> tuple[ArmMotionEvidence, list[Cause]]:
         """Fit friction again away from reversals; give forces of a joint with unknown gain in the recorded unit."""
-        causes = within_bounds(requantified(evidence, attribution, causes), self.effects(evidence))
+        causes = requantified(evidence, attribution, causes)
+        causes = within_bounds(causes, attribution.told, self.effects(evidence))
         terms = [attribution.fit.terms[i] for i in attribution.causes]
         causes = [with_closure(cause, term.shape) for cause, term in zip(causes, terms, strict=True)]
         return evidence, [with_hidden(in_own_unit(c, RECORDED)) if c.actuator in evidence.shares else c for c in causes]

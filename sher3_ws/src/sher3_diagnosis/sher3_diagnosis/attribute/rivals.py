@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from sher3_diagnosis.attribute.candidates import Candidates
-from sher3_diagnosis.channel import AT_TIP
+from sher3_diagnosis.channel import AT_TIP, Array
 from sher3_diagnosis.evidence import Evidence
-from sher3_diagnosis.fit.fitting import Fit, fit
+from sher3_diagnosis.fit.fitting import Fit, Term, fit
 from sher3_diagnosis.thresholds import NEEDED, RIVAL
 
 if TYPE_CHECKING:
@@ -39,6 +39,11 @@ class Attribution:
     def causes(self) -> range:
         """Indices of the terms that are causes."""
         return range(self.nuisance, len(self.fit.terms))
+
+    @property
+    def told(self) -> list[tuple[Term, Array]]:
+        """The term of each cause with its coefficients, (p,)."""
+        return [(self.fit.terms[i], self.fit.of(i)) for i in self.causes]
 
 
 def without_term(evidence: Evidence, current: Fit, index: int) -> Fit:

@@ -1,7 +1,7 @@
 """Which causes the data bear out, where no calibration weighs them.
 
-Three things are asked of a cause: that one of its sizes differs from zero; that the causes of a gap which is not closed
-take at least half of its size; and that what they leave does not follow quantities which none of them may depend on.
+Beside what `meaning` asks of each cause by itself: a cause is worth more than laws are off by; the causes of a gap that
+is not closed surely take a part of it; and what they leave does not follow quantities which none of them may depend on.
 What fails the first is left out; what fails the others imitates an effect that the library does not have.
 """
 
@@ -17,31 +17,24 @@ from sher3_diagnosis.finding import Finding
 from sher3_diagnosis.fit.fitting import Fit, fit
 from sher3_diagnosis.judge.foreign_inputs import foreign_in
 from sher3_diagnosis.quantify.closure import closure
-from sher3_diagnosis.thresholds import AT_FLOOR, FOREIGN_SHARE, FOREIGN_SIZE, HALF_CLOSED, PARSIMONY
-from sher3_diagnosis.verdict import Cause, Imitation
+from sher3_diagnosis.thresholds import AT_FLOOR, FOREIGN_SHARE, FOREIGN_SIZE, PARSIMONY, PART_CLOSED
+from sher3_diagnosis.verdict import Imitation
 
 
 def significant_causes(
-    evidence: Evidence, attribution: Attribution, causes: Sequence[Cause], left: Callable[[Fit], Collection[Channel]]
+    evidence: Evidence, attribution: Attribution, left: Callable[[Fit], Collection[Channel]]
 ) -> Attribution:
-    """Return the attribution without causes that say nothing, where their gap stays closed without them.
+    """Return the attribution without causes that are not told, where their gap stays closed without them.
 
-    No size of such a cause differs from zero; or it is worth next to nothing, and an effect of another family, where
-    nobody can tell which, is worth as much: what the law of a larger cause leaves out.
+    Such a cause is worth next to nothing, and an effect of another family, where nobody can tell which, is worth as
+    much: what the law of a larger cause leaves out.
     """
-    idle = [holds_zero(c) or untold(evidence, attribution, i) for i, c in zip(attribution.causes, causes, strict=True)]
-    for i, says_nothing in zip(reversed(attribution.causes), reversed(idle), strict=True):
-        if len(attribution.causes) > 1 and says_nothing:
+    for i in reversed([i for i in attribution.causes if untold(evidence, attribution, i)]):
+        if len(attribution.causes) > 1:
             fewer = kept(evidence, attribution, [k for k in attribution.causes if k != i])
             if set(left(fewer.fit)) <= set(left(attribution.fit)):
                 attribution = fewer
     return attribution
-
-
-def holds_zero(cause: Cause) -> bool:
-    """Return whether every interval of a cause holds zero; one without any interval is not judged so."""
-    told = [(p.low, p.high) for p in cause.parameters.values() if p.low is not None and p.high is not None]
-    return bool(told) and all(low <= 0.0 <= high for low, high in told)
 
 
 def untold(evidence: Evidence, attribution: Attribution, index: int) -> bool:
@@ -65,8 +58,9 @@ def without_imitations(finding: Finding, free_laws: bool) -> Finding:
         own = [i for i in found.causes if channel in found.fit.terms[i].channels]
         if not own:
             continue
-        half = channel in left and closure(evidence, channel, evidence.null(), found.fit).value < HALF_CLOSED
-        if half or (free_laws and foreign_law(evidence, found, channel)):
+        share = closure(evidence, channel, evidence.null(), found.fit)
+        small = channel in left and min(share.value, share.low or share.value) < PART_CLOSED
+        if small or (free_laws and foreign_law(evidence, found, channel)):
             fake += own
             left[channel] = max(1.0, evidence.excess(channel))
     if not fake:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -87,6 +87,10 @@ class MassOnAxis(PayloadMass):
         return Signature(
             {Channel(self.stage, site): column(view.run.to_grid(view.run.acceleration)[:, view.row(site)])}
         )
+
+    def limits(self, shape: Shape) -> Mapping[str, tuple[float, float]]:
+        """Return that no more is missing than was stated."""
+        return {"mass": (-shape["stated"], np.inf)}
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
         """Return whether a mass is left: none is below zero."""

@@ -23,6 +23,7 @@ class SpringTorque(Page):
     kinds: ClassVar[tuple[str, ...]] = ("joint",)
     best = Best("sweep", "long constant-speed strokes separate ratios from offsets")
     extends: ClassVar[tuple[str, ...]] = ("gravity_load",)
+    told_by = ("stiffness",)
     explanation = (
         "A spring pulls the axis to one place: a force that grows in proportion to the distance from it, the same "
         "going and coming."

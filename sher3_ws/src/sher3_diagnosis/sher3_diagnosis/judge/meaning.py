@@ -1,0 +1,127 @@
+"""Which causes say nothing: of no size, impossible, or of no use to parts of the data that they were not fitted to.
+
+This is asked of every cause of every machine whose judgement is not calibrated, in one place, whatever found it. A law
+that contains a simpler one and is no more than that is replaced by it; anything else that says nothing is left out,
+even if its gap is open then: a gap without a name is an answer, a wrong name is none.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from sher3_diagnosis.attribute.candidates import Candidates
+from sher3_diagnosis.attribute.rivals import Attribution
+from sher3_diagnosis.channel import Array
+from sher3_diagnosis.evidence import Evidence
+from sher3_diagnosis.fit.fitting import Fit, Term, fit
+from sher3_diagnosis.verdict import Cause, Parameter
+
+LOST = "lost_motion"
+"""Family of which nothing is wider than the travel."""
+HALF = 0.5
+"""Factor of all coefficients that shows which parameters they scale."""
+ALIKE = 1e-9
+"""Relative difference of two numbers that are the same but for rounding."""
+
+
+def without_empty(candidates: Candidates, attribution: Attribution, causes: Sequence[Cause]) -> Attribution:
+    """Return the attribution without the causes that say nothing, or the same where each says something.
+
+    Of one place the cause that explains least goes first: what it leaves may give the others their size.
+    """
+    evidence, empty = candidates.evidence, dict[str, int]()
+    for i, cause in zip(attribution.causes, causes, strict=True):
+        site, worth = cause.actuator, attribution.explained[i]
+        if says_nothing(evidence, attribution.fit, i, cause):
+            least = empty.setdefault(site, i)
+            empty[site] = i if worth < attribution.explained[least] else least
+    for i in sorted(empty.values(), reverse=True):
+        attribution = _simpler(candidates, attribution, i)
+    return attribution
+
+
+def says_nothing(evidence: Evidence, found: Fit, index: int, cause: Cause) -> bool:
+    """Return whether a cause has no size, cannot be, or does not shrink its gap on parts of the data left out."""
+    term = found.terms[index]
+    idle = cause.closure.value <= 0.0 or (cause.closure.low is not None and cause.closure.low <= 0.0)
+    return idle or of_no_size(term, found.of(index), cause) or impossible(evidence, term, cause)
+
+
+def of_no_size(term: Term, coefficients: Array, cause: Cause) -> bool:
+    """Return whether no size of a cause, or one that tells it from a simpler effect, differs from zero."""
+    told = {n: p for n, p in cause.parameters.items() if p.low is not None and p.high is not None}
+    sizes = [told[n] for n in sizes_of(term, coefficients) if n in told]
+    beyond = [told[n] for n in term.effect.told_by if n in told]
+    return (bool(sizes) and all(map(_holds_zero, sizes))) or any(map(_holds_zero, beyond))
+
+
+def sizes_of(term: Term, coefficients: Array) -> list[str]:
+    """Return the parameters that say how much of an effect there is: what all coefficients scale; without any, all.
+
+    An effect that is there by a choice, such as a frame, has none: its coefficients are what is beyond that choice.
+    """
+    if term.effect.discrete and any(term.fixed):
+        return []
+    whole, half = _scaled(term, coefficients, 1.0), _scaled(term, coefficients, HALF)
+    return [n for n, x in whole.items() if not len(coefficients) or not math.isclose(half[n], x, rel_tol=ALIKE)]
+
+
+def linear_in(term: Term, coefficients: Array) -> list[str]:
+    """Return the parameters of a cause that are in proportion to its coefficients."""
+    whole, half = _scaled(term, coefficients, 1.0), _scaled(term, coefficients, HALF)
+    return [n for n, x in whole.items() if len(coefficients) and math.isclose(half[n], HALF * x, rel_tol=ALIKE)]
+
+
+def _scaled(term: Term, coefficients: Array, factor: float) -> dict[str, float]:
+    return term.effect.parameters(term.shape, factor * np.asarray(coefficients))
+
+
+def impossible(evidence: Evidence, term: Term, cause: Cause) -> bool:
+    """Return whether an end of an interval lies where no value can."""
+    limits = dict(term.effect.limits(term.shape))
+    if term.effect.family == LOST:
+        travel = _travel(evidence, term.site)
+        limits |= {n: (0.0, travel) for n in cause.parameters if term.effect.units.get(n) == "m"}
+    return any(_outside(cause.parameters[n], *limit) for n, limit in limits.items() if n in cause.parameters)
+
+
+def _travel(evidence: Evidence, site: str) -> float:
+    """Return the largest travel of an axis, m or rad; infinite for a place that is no axis."""
+    moved = [view.motion(site) for view in evidence.views]
+    return max((float(np.ptp(m.position)) for m in moved if m is not None and len(m.position)), default=math.inf)
+
+
+def _outside(p: Parameter, least: float, most: float) -> bool:
+    ends = [x for x in (p.low, p.value, p.high) if x is not None]
+    return min(ends) < least or max(ends) > most
+
+
+def _holds_zero(p: Parameter) -> bool:
+    assert p.low is not None and p.high is not None
+    return p.low <= 0.0 <= p.high
+
+
+def _simpler(candidates: Candidates, attribution: Attribution, index: int) -> Attribution:
+    """Return the attribution with the best simpler law in the place of a cause; without it where there is none."""
+    found, evidence = attribution.fit, candidates.evidence
+    term = found.terms[index]
+    others = [t for i, t in enumerate(found.terms) if i != index]
+    beside = {t.effect.id for t in others if t.site == term.site}
+    plain = [e for e in candidates.effects if e.id in term.effect.extends and e.id not in beside]
+    trials = [f for e in plain if (f := candidates.best(e, term.site, others)) is not None]
+    new = [min(trials, key=lambda f: f.total).terms[-1]] if trials else []
+
+    def put(x: tuple, of: tuple) -> tuple:
+        return (*x[:index], *of, *x[index + 1 :]) if x else x
+
+    return replace(
+        attribution,
+        fit=fit(evidence.data, [*others[:index], *new, *others[index:]]),
+        rivals=put(attribution.rivals, ((),) * len(new)),
+        explained=put(attribution.explained, (attribution.explained[index],) * len(new)),
+        ranking=put(attribution.ranking, ((),) * len(new)),
+    )

@@ -1,0 +1,83 @@
+"""Causes that say nothing, by hand: of no size, wider than the travel, of no use to what was left out."""
+
+import numpy as np
+import pytest
+from sher3_diagnosis.attribute.candidates import Candidates
+from sher3_diagnosis.attribute.rivals import with_rivals
+from sher3_diagnosis.fit.fitting import fit, make_term
+from sher3_diagnosis.judge.meaning import linear_in, of_no_size, says_nothing, sizes_of, without_empty
+from sher3_diagnosis.verdict import Cause, Interval, Parameter
+from toy import DIRECTION, Column, case, evidence_of
+
+
+class Law(Column):
+    """A size, its inverse, and a place that does not depend on how much of the law there is."""
+
+    def parameters(self, shape, coefficients):
+        a, b = map(float, coefficients)
+        return {"size": a, "inverse": 1.0 / a, "place": b / a, "shape": 3.0}
+
+
+class Term:
+    """What of a term is asked here."""
+
+    def __init__(self, effect):
+        self.effect, self.shape, self.site, self.fixed = effect, {}, "axis", []
+
+
+def cause(closure=(0.9, 0.8), **parameters):
+    told = {n: Parameter(value=0.5 * (a + b), low=a, high=b, unit="N") for n, (a, b) in parameters.items()}
+    shrinks = Interval(value=closure[0], low=closure[1], high=1.0)
+    return Cause(effect="x", family="y", stage="z", actuator="axis", parameters=told, closure=shrinks)
+
+
+def test_sizes_are_what_all_coefficients_scale():
+    term, found = Term(Law("law", "spring", "one")), np.array([2.0, 4.0])
+    assert sizes_of(term, found) == ["size", "inverse"]
+    assert linear_in(term, found) == ["size"]
+
+
+def test_an_effect_that_is_there_by_a_choice_has_no_size():
+    term = Term(Law("law", "spring", "one", discrete=frozenset({"shape"})))
+    term.fixed = [{"channel": np.ones(3)}]
+    assert sizes_of(term, np.array([2.0, 4.0])) == []
+
+
+def test_a_cause_whose_sizes_hold_zero_has_none():
+    term, found = Term(Law("law", "spring", "one")), np.array([2.0, 4.0])
+    assert of_no_size(term, found, cause(size=(-1.0, 3.0), place=(1.0, 2.0)))
+    assert not of_no_size(term, found, cause(size=(1.0, 3.0), place=(-1.0, 2.0)))
+
+
+def test_what_tells_a_law_from_a_simpler_one_must_not_hold_zero():
+    effect = Law("law", "spring", "one", told_by=("place",))
+    assert of_no_size(Term(effect), np.array([2.0, 4.0]), cause(size=(1.0, 3.0), place=(-1.0, 2.0)))
+
+
+@pytest.mark.parametrize(
+    ("told", "empty"),
+    [
+        (cause(size=(1.0, 1.5)), False),
+        (cause(size=(1.0, 1.5), closure=(0.1, -0.1)), True),  # may be of no use to parts left out
+        (cause(size=(1.0, 1.5), closure=(-0.1, -0.3)), True),  # makes them worse
+        (cause(size=(1.0, 2.5)), True),  # the travel is 2 m
+    ],
+)
+def test_a_lost_motion_is_no_wider_than_the_travel_and_shrinks_what_was_left_out(told, empty):
+    evidence = evidence_of(case(6.0))
+    gap = Column("gap", "lost_motion", "direction", units={"size": "m"})
+    found = fit(evidence.data, [make_term(evidence.data, gap, "axis", {})])
+    assert says_nothing(evidence, found, 0, told) is empty
+
+
+def test_a_law_that_is_no_more_than_a_simpler_one_becomes_that_one_and_others_go():
+    rich = Column("rich", "friction", "direction", extends=("direction",))
+    evidence = evidence_of(case(6.0))
+    candidates = Candidates(evidence, [DIRECTION, rich])
+    found = with_rivals(candidates, fit(evidence.data, [make_term(evidence.data, rich, "axis", {})]))
+    kept = without_empty(candidates, found, [cause(size=(1.0, 2.0))])
+    assert kept is found
+    plain = without_empty(candidates, found, [cause(size=(-1.0, 2.0))])
+    assert [t.effect.id for t in plain.fit.terms] == ["direction"]
+    none = without_empty(candidates, plain, [cause(size=(-1.0, 2.0))])
+    assert none.fit.terms == () and none.rivals == ()
