@@ -8,6 +8,8 @@ from typing import Any
 
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, UserWideCacheLocator
 
+from sher3_common.compiling.telling import TELLING
+
 
 class SourceNamedCache(FunctionCache):
     """The machine code of one function for each combination of argument types, kept in a given folder.
@@ -29,3 +31,15 @@ class SourceNamedCache(FunctionCache):
 
         self._impl_class = Implementation
         super().__init__(function)
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """Return the machine code of these types, None where it must be compiled, which is then told."""
+        found = super().load_overload(sig, target_context)
+        if found is None:
+            TELLING.begins()
+        return found
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        """Keep the machine code that was compiled."""
+        super().save_overload(sig, data)
+        TELLING.ended()
