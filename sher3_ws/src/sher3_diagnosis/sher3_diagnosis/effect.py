@@ -123,6 +123,13 @@ class Effect:
         plain: whether it is one of the laws that any joint may have: all of them are fitted at once before a richer one
             is looked for.
         dry: whether it is a friction that holds an axis at rest.
+        slow: whether its law lives at low speed, so that samples in quick motion tell nothing of its parameters.
+        unseen: whether it is behind the only encoder of an axis, where the effort alone shows it.
+        scales: the known force that it multiplies, in words ("drive gain", "weight", "payload"); no motion tells such
+            effects of one joint apart while its drive gain is not known.
+        indistinct: ids of effects that give the same readings where the force was not recorded.
+        told_by_travel: share of what it explains by which it differs, over the recorded travel, from other forces that
+            follow the position; 0 for an effect that is none.
         settles: whether its parameters are of sliding alone, so that samples at which it rests tell nothing of them.
         best: the excitation that shows it best.
         leaves_out: what a real machine adds to the idealised law, in words. Empty for a law of geometry, mechanics or
@@ -152,6 +159,11 @@ class Effect:
     shown_by: ClassVar[tuple[str, ...]] = ()
     plain: ClassVar[bool] = False
     dry: ClassVar[bool] = False
+    slow: ClassVar[bool] = False
+    unseen: ClassVar[bool] = False
+    scales: ClassVar[str] = ""
+    indistinct: ClassVar[tuple[str, ...]] = ()
+    told_by_travel: ClassVar[float] = 0.0
     settles: ClassVar[bool] = False
     best: ClassVar[Best]
     leaves_out: ClassVar[str] = ""

@@ -10,7 +10,7 @@ from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Shape
 
 from sher3_effects.page import Page
-from sher3_effects.view import AxisView
+from sher3_effects.view import AxisView, NominalAxis
 
 
 class BehindMotor(Page):
@@ -22,12 +22,17 @@ class BehindMotor(Page):
 
     kinds = ("axis",)
     needs: ClassVar[tuple[str, ...]] = ("alone", "drive")
+    unseen = True
     on_axis: ClassVar[Mapping[str, str]] = {}
     LEAST_SHARE = 0.05
     """Share of the mass that must be behind the motor, at least: less is an error of the mass."""
 
     def __init__(self, mass: float = np.inf) -> None:
         self.mass = mass
+
+    def on(self, axis: NominalAxis) -> BehindMotor:
+        """Return the page with the mass of the axis."""
+        return type(self)(axis.mass)
 
     def channels(self, site: str) -> tuple[Channel, ...]:
         """Return the force balance."""

@@ -10,6 +10,8 @@ from sher3_description import Robot
 from sher3_diagnosis.effect import ROTARY, Effect, Shape
 from sher3_sim.effect import Parameter, PlantEffect
 
+from sher3_effects.view import NominalAxis
+
 Values = Mapping[str, float]
 """Fitted parameters by name, SI units."""
 
@@ -82,6 +84,10 @@ class Page(Effect):
     source: ClassVar[Path | None] = None
     breaks: ClassVar[str] = ""
     on_axis: ClassVar[Mapping[str, str]] = {}
+
+    def on(self, axis: NominalAxis) -> Page:
+        """Return the page with what it must know of the axis it is looked for on; default as it is."""
+        return self
 
     def tolerated(self, robot: Robot, site: str) -> Sequence[Tolerated]:
         """Return how the effect may show at a site of a healthy robot, from its table of tolerances; default not."""

@@ -17,16 +17,14 @@ from sher3_diagnosis.judge.left_over import down_to_floor
 from sher3_diagnosis.machine import Machine, Policy
 from sher3_diagnosis.verdict import Cause, Interval
 from sher3_effects import library, pages
-from sher3_effects.behind_motor import BehindMotor
-from sher3_effects.friction.viscous_friction import ViscousOnAxis
-from sher3_effects.spring.spring_torque import SpringOnAxis
+from sher3_effects.view import NominalAxis
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.notes import told_once
 from sher3_machines.thresholds import BLOCKS
 
 from sher3_chain.axes.description import AxesDescription, Axis, Gravity
 from sher3_chain.axes.evidence import AxisEvidence, gather_axis, levels_of
-from sher3_chain.axes.identification.confounded_laws import SpringBesideWeight, dead_band_note, with_dead_band
+from sher3_chain.axes.identification.confounded_laws import dead_band_note, with_dead_band
 from sher3_chain.axes.identification.detection_limits import unseen_note
 from sher3_chain.axes.identification.friction_in_motion import requantified, with_unseen
 from sher3_chain.axes.identification.refine import refine_free
@@ -68,16 +66,17 @@ class Axes(Machine[AxesRun, AxisEvidence]):
     def library(self) -> Sequence[Effect]:
         """Return the pages for these kinds of axes, and that of the limit, which is read off without a fit."""
         kinds = sorted({kind_of(axis) for axis in self.description.axes}, reverse=True)
-        swings = any(axis.swings for axis in self.description.axes)
-        known = [_beside_weight(page) if swings else page for kind in kinds for page in pages(kind)]
+        any_axis = NominalAxis(np.inf, 0.0, 0.0, 0.0, weighed=any(axis.swings for axis in self.description.axes))
+        known = [page.on(any_axis) for kind in kinds for page in pages(kind)]
         return [*known, *pages("law"), library()[LIMIT]]
 
     def effects(self, evidence: AxisEvidence) -> Sequence[Effect]:
         """Return the pages that can show in what was recorded of an axis."""
         if is_law(evidence):
             return pages("law")
-        found = pages(kind_of(evidence.axis), facts_of(evidence.axis))
-        return [_of_axis(page, evidence) for page in found]
+        axis = evidence.axis
+        nominal = NominalAxis(evidence.mass, axis.viscous, 0.0, 0.0, weighed=axis.swings)
+        return [page.on(nominal) for page in pages(kind_of(axis), facts_of(axis))]
 
     def audit(self, runs: Sequence[AxesRun]) -> list[str]:
         """Return what was done to the data, and whether floors are known from repeats."""
@@ -180,20 +179,6 @@ class Axes(Machine[AxesRun, AxisEvidence]):
 
     def _repeats(self, runs: Sequence[AxesRun]) -> bool:
         return self.description.repeats and len(runs) > 1
-
-
-def _of_axis(page: Effect, evidence: AxisEvidence) -> Effect:
-    """Return a page with what it must know of the axis to say what is possible."""
-    if isinstance(page, ViscousOnAxis):
-        return ViscousOnAxis(evidence.axis.viscous)
-    if isinstance(page, BehindMotor):
-        return type(page)(evidence.mass)
-    return _beside_weight(page) if evidence.axis.swings else page
-
-
-def _beside_weight(page: Effect) -> Effect:
-    """Return a page with what it must know of an axis that may carry a weight at an arm."""
-    return SpringBesideWeight() if isinstance(page, SpringOnAxis) else page
 
 
 def nothing_judged(parts: Sequence[AxisEvidence], runs: Sequence[AxesRun]) -> MachineError:

@@ -28,6 +28,12 @@ E = TypeVar("E", bound=Evidence)
 Finish = Callable[[Candidates, Fit], Fit]
 """Improves the fit of a change by what its search does not do."""
 
+SAME_AS_ALWAYS = (
+    *("id", "family", "stage", "explanation", "places", "units"),
+    *("companion", "shown_by", "dry", "slow", "best"),
+)
+"""What a page says of an effect that is so under a condition too."""
+
 
 class Changed(Effect):
     """An effect that acts under one condition alone, beside the same effect as all runs have it.
@@ -41,7 +47,7 @@ class Changed(Effect):
     def __init__(self, of: Effect, condition: Condition, views: frozenset[int], common: Common | None) -> None:
         self.of, self.views, self.common = of, views, common
         self.condition = str(condition)
-        for name in ("id", "family", "stage", "explanation", "places", "units", "companion", "shown_by", "dry", "best"):
+        for name in SAME_AS_ALWAYS:
             setattr(self, name, getattr(of, name))
 
     def channels(self, site: str) -> tuple[Channel, ...]:

@@ -20,18 +20,16 @@ from sher3_diagnosis.fit.fitting import Fit, Term, fit, make_term
 from sher3_diagnosis.judge.left_over import down_to_floor
 from sher3_diagnosis.thresholds import NEEDED, PARSIMONY, RIVAL
 from sher3_diagnosis.tolerance import NUISANCE
-from sher3_effects.friction.coulomb_friction import CoulombFriction
-from sher3_effects.friction.viscous_friction import ViscousFriction
-from sher3_effects.inertia.payload_mass import PayloadOnLink
-from sher3_effects.timing.sensor_delay import SensorDelay
 
 from sher3_chain.axes.identification.away_from_reversals import borne_out
 from sher3_chain.axes.identification.balance_at_rest import Bounded
-from sher3_chain.axes.identification.friction_in_motion import without_slow
+from sher3_chain.axes.identification.friction_in_motion import FRICTION, without_slow
 from sher3_chain.manipulator.evidence import ArmMotionEvidence, channel_of, channels_of, of_channel
 from sher3_chain.manipulator.readings.lateness import Late, TimedEffort, lateness
 from sher3_chain.thresholds import CAUSES_OF_JOINT, LEAST_CLOSURE
 
+TIMING, ON_LINK = "timing", "link"
+"""Family of what is late, and the kind of place that a payload sits on."""
 HEAVIEST = 2.0
 """Mass of a payload over that of the whole arm at most: what is heavier is no body on a link."""
 CENTRE_ROUNDS = 3
@@ -129,7 +127,7 @@ def _beside_delay(own: Evidence, late: Late | None, effects: Sequence[Effect], s
     how a dry one turns. Where the shape tells none, none is looked for. They are compared away from reversals, where a
     dry friction is no matter of a moment.
     """
-    others = [e for e in effects if not isinstance(e, SensorDelay)]
+    others = [e for e in effects if e.family != TIMING]
     if late is not None and late.told and not late.sure:
         others = list(effects)
     found = _searched(own, others, say)
@@ -160,7 +158,7 @@ def spent(found: Fit) -> float:
 
 def _payload(evidence: ArmMotionEvidence, candidates: Candidates) -> Fit | None:
     """Return the fit of a payload at the link that needs it most, beside plain friction; None where none is needed."""
-    page = next((e for e in candidates.effects if isinstance(e, PayloadOnLink)), None)
+    page = next((e for e in candidates.effects if ON_LINK in e.places), None)
     if page is None:
         return None
     rubbing = [(e, j) for j in evidence.judged for e in _plain(candidates)]
@@ -197,8 +195,7 @@ def closes(evidence: ArmMotionEvidence, loaded: Explained) -> bool:
 
 
 def _plain(candidates: Candidates) -> list[Effect]:
-    ids = (CoulombFriction.id, ViscousFriction.id)
-    return [e for e in candidates.effects if e.id in ids]
+    return [e for e in candidates.effects if e.plain and e.family == FRICTION]
 
 
 def _middle(effect: Effect, evidence: ArmMotionEvidence, joint: str) -> dict[str, float]:
@@ -222,7 +219,7 @@ def centred(candidates: Candidates, found: Fit) -> Fit:
     """Return a fit with the inertia of its last term, where that is a payload, about the centre of the round before."""
     last = len(found.terms) - 1
     page, link = found.terms[last].effect, found.terms[last].site
-    for _ in range(CENTRE_ROUNDS if page.id == PayloadOnLink.id else 0):
+    for _ in range(CENTRE_ROUNDS if ON_LINK in page.places else 0):
         values = page.parameters({}, found.of(last))
         shape = {name: round(values[name], 4) for name in "xyz"}
         trial = fit(candidates.evidence.data, [*found.terms[:last], candidates.term(page, link, shape)])

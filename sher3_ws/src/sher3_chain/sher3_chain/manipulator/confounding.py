@@ -14,12 +14,17 @@ from sher3_diagnosis.channel import Array
 from sher3_diagnosis.verdict import Cause
 
 from sher3_chain.manipulator.evidence import ArmMotionEvidence
+from sher3_chain.manipulator.library import of_joints
 from sher3_chain.manipulator.view import MotionView
 from sher3_chain.thresholds import CONFOUNDED, TAKES_PART
 
 GAIN, WEIGHT, PAYLOAD = "drive gain", "weight", "payload"
-SAME = {GAIN: "torque_constant", WEIGHT: "gravity_load", PAYLOAD: "payload_mass"}
-"""Quantity -> id of the effect by which it is off."""
+"""Quantities that multiply one force, see `Effect.scales`."""
+
+
+def same_force() -> list[str]:
+    """Return the ids of the effects by which these quantities are off, in their order."""
+    return [e.id for quantity in (GAIN, WEIGHT, PAYLOAD) for e in of_joints() if e.scales == quantity]
 
 
 def confounded(columns: Mapping[str, Array]) -> list[frozenset[str]]:
@@ -92,7 +97,7 @@ def known_weights(causes: Iterable[Cause]) -> list[str]:
 
     Each of them multiplies the same force; a weight that somebody put on a scale adds another one.
     """
-    same = set(SAME.values())
+    same = set(same_force())
     open_ones = [(c.actuator, [e for e in (c.effect, *c.rivals) if e in same]) for c in causes]
     return [
         f"no motion tells {_listed([e.replace('_', ' ') for e in found])} on {site} apart, a known weight does: "

@@ -13,10 +13,6 @@ from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.finding import ExactFinding, Finding
 from sher3_diagnosis.machine import Machine, Policy
 from sher3_diagnosis.verdict import Cause
-from sher3_effects.inertia.gravity_load import GravityLoad
-from sher3_effects.inertia.payload_mass import PayloadOnLink
-from sher3_effects.scale.torque_constant import TorqueConstant
-from sher3_effects.timing.sensor_delay import SensorDelay
 from sher3_machines.intake.notes import told_once
 
 from sher3_chain.axes.identification.friction_in_motion import requantified
@@ -28,22 +24,22 @@ from sher3_chain.axes.record import AxesRun
 from sher3_chain.contrast.changes import change_notes, contrasted, of_runs
 from sher3_chain.contrast.conditions import Condition, conditions_of, reference_runs, told_together
 from sher3_chain.manipulator.causes import causes_of_arm, centred
-from sher3_chain.manipulator.confounding import SAME, confounding_notes
+from sher3_chain.manipulator.confounding import GAIN, PAYLOAD, WEIGHT, confounding_notes, same_force
 from sher3_chain.manipulator.description import ManipulatorDescription
 from sher3_chain.manipulator.evidence import ArmMotionEvidence, gather_arm_motion
 from sher3_chain.manipulator.library import of_joints
 from sher3_chain.manipulator.model import ArmModel
-from sher3_chain.manipulator.readings.lateness import late_efforts, with_closure
+from sher3_chain.manipulator.readings.lateness import LATE, late_efforts, with_closure
 from sher3_chain.manipulator.readings.wrong import level_notes
 
 if TYPE_CHECKING:
     from sher3_chain.manipulator.report.reporter import ManipulatorReporter
 
 
-IN_GAIN = (TorqueConstant.id, PayloadOnLink.id)
-"""Effects that a gain found from the data contains."""
-IN_INERTIAS = (*IN_GAIN, GravityLoad.id)
-"""Effects that inertias found from the data contain."""
+IN_GAIN = (GAIN, PAYLOAD)
+"""Quantities that a gain found from the data contains."""
+IN_INERTIAS = (*IN_GAIN, WEIGHT)
+"""Quantities that inertias found from the data contain."""
 
 
 @dataclass(frozen=True)
@@ -73,7 +69,7 @@ class Manipulator(Machine[AxesRun, ArmMotionEvidence]):
         known = of_joints(facts)
         contained: tuple[str, ...] = IN_GAIN if evidence.shares or evidence.scales else ()
         contained = IN_INERTIAS if self.described.inertias == "identified" else contained
-        return [e for e in known if e.id not in contained]
+        return [e for e in known if e.scales not in contained]
 
     def audit(self, runs: Sequence[AxesRun]) -> list[str]:
         """Return what was done to the data, which channels are dead, and whether floors are known from repeats."""
@@ -97,7 +93,7 @@ class Manipulator(Machine[AxesRun, ArmMotionEvidence]):
         self, runs: Sequence[AxesRun], evidence: Sequence[ArmMotionEvidence], without: Collection[str]
     ) -> list[ExactFinding]:
         """Return the efforts that are late on an arm without any other gap."""
-        return [] if SensorDelay.id in without else [late for part in evidence for late in late_efforts(part)]
+        return [] if LATE in without else [late for part in evidence for late in late_efforts(part)]
 
     def attribute(self, evidence: ArmMotionEvidence, candidates: Candidates, left_over: Left, say: Say) -> Attribution:
         """Choose the causes joint by joint, without and with a payload, and what changed between conditions."""
@@ -194,7 +190,8 @@ def slip_notes(evidence: ArmMotionEvidence) -> list[str]:
 
 def with_hidden(cause: Cause) -> Cause:
     """Return a cause with the rivals that it can by no motion be told from while the drive gain is not known."""
-    if cause.effect not in SAME.values():
+    same = same_force()
+    if cause.effect not in same:
         return cause
-    hidden = [e for e in SAME.values() if e != cause.effect and e not in cause.rivals]
+    hidden = [e for e in same if e != cause.effect and e not in cause.rivals]
     return cause.model_copy(update={"rivals": [*cause.rivals, *hidden]})

@@ -86,6 +86,7 @@ class ServoStiction(CoulombFriction):
 
     kinds = ("servo",)
     plain = True
+    indistinct = ("command_deadband",)
     explanation = (
         "The axis does not answer small changes of its reference: it stays until the error is large enough to break it "
         "loose."

@@ -25,6 +25,7 @@ class PreslidingFriction(DryFriction):
     kinds: ClassVar[tuple[str, ...]] = ("robot",)
     on_axis = {"force": "coulomb"}
     dry = True
+    slow = True
     best = Best("reversals", "reversals of several amplitudes and speeds separate friction laws")
     leaves_out = "how its level varies over the stroke"
     explanation = (

@@ -39,6 +39,7 @@ class StribeckFriction(DryFriction):
     kinds: ClassVar[tuple[str, ...]] = ("robot",)
     dry = True
     settles = True
+    slow = True
     best = Best("reversals", "reversals of several amplitudes and speeds separate friction laws")
     leaves_out = "how its level varies over the stroke"
     extends = ("coulomb_friction",)

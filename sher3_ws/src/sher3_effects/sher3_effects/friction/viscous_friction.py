@@ -12,7 +12,7 @@ from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.page import Page, Tolerated
-from sher3_effects.view import AxisView
+from sher3_effects.view import AxisView, NominalAxis
 
 
 class ViscousFriction(Page):
@@ -59,6 +59,10 @@ class ViscousOnAxis(ViscousFriction):
 
     def __init__(self, nominal: float = 0.0) -> None:
         self.nominal = nominal
+
+    def on(self, axis: NominalAxis) -> ViscousOnAxis:
+        """Return the page with the coefficient of the axis."""
+        return ViscousOnAxis(axis.viscous)
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
         """Return whether all of it together resists."""

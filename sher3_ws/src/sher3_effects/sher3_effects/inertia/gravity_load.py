@@ -14,6 +14,7 @@ from sher3_kinematics.kernel import gravity_load_into, kernel_parameters
 from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
+from sher3_effects.compliance.two_slopes import BENT_FROM
 from sher3_effects.inertia.carried import carried_mass
 from sher3_effects.page import Page, Part, Tolerated, Values
 from sher3_effects.view import AxisView
@@ -25,6 +26,7 @@ class GravityLoad(Page):
     id, family, stage = "gravity_load", "inertia", "motor_mechanics"
     inputs = ("weight",)
     kinds: ClassVar[tuple[str, ...]] = ("robot",)
+    scales = "weight"
     best = Best("steps", "accelerations separate mass from weight")
     explanation = "The axis holds more or less weight than the model says, at rest and in motion, without more inertia."
     siblings = {
@@ -73,6 +75,7 @@ class GravityOnAxis(GravityLoad):
 
     kinds = ("axis",)
     plain = True
+    told_by_travel = BENT_FROM
     units = {"relative": "1", "force": "N", "arm": "N", "hanging": "m"}
     on_axis = {"force": "offset", "relative": "weight", "arm": "arm", "hanging": "hanging"}
     TRAVEL = 0.3

@@ -24,6 +24,7 @@ class PayloadMass(Page):
 
     id, family, stage = "payload_mass", "inertia", "motor_mechanics"
     inputs = ("acceleration", "weight")
+    scales = "payload"
     best = Best("steps", "accelerations separate mass from weight")
     places: ClassVar[tuple[str, ...]] = ("axis", "tip")
     explanation = "Extra mass: more force in proportion to acceleration, and more weight where the axis carries it."

@@ -22,6 +22,7 @@ class TorqueConstant(Page):
     inputs = ("force",)
     kinds = ("robot", "axis")
     plain = True
+    scales = "drive gain"
     needs = ("drive", "forces")
     best = Best("sweep", "long constant-speed strokes separate ratios from offsets")
     leaves_out = "its bend at large forces"

@@ -12,7 +12,7 @@ from sher3_diagnosis.effect import Best, Shape, Signature, column
 from sher3_effects.compliance.two_slopes import BENT_FROM
 from sher3_effects.page import Page
 from sher3_effects.travel import over_travel, share_of
-from sher3_effects.view import AxisView
+from sher3_effects.view import AxisView, NominalAxis
 
 
 class SpringTorque(Page):
@@ -57,10 +57,15 @@ class SpringOnAxis(SpringTorque):
     weight at an arm.
     """
 
-    kinds = ("axis",)
+    kinds: ClassVar[tuple[str, ...]] = ("axis",)
     plain = True
     units = {"stiffness": "N/m", "rest": "m", "stiffness_at_end": "N/m"}
     bent_from = BENT_FROM
+    told_by_travel = BENT_FROM
+
+    def on(self, axis: NominalAxis) -> Page:
+        """Return the page beside a weight at an arm where the axis may carry one."""
+        return SpringBesideWeight() if axis.weighed else self
 
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
         """Return the middle and half of the travel over all runs."""
@@ -87,6 +92,17 @@ class SpringOnAxis(SpringTorque):
         """Return whether the spring pulls back and does not soften; it may be strained all over the travel."""
         linear, _, cube = (*map(float, coefficients), 0.0)[:3]
         return linear > 0.0 and cube >= 0.0
+
+
+class SpringBesideWeight(SpringOnAxis):
+    """A spring on an axis that turns, whose description says nothing of a weight at an arm.
+
+    A spring and the sine of a weight at an arm are the same over a small travel, and each has numbers of its own:
+    neither contains the other, as both contain a constant force.
+    """
+
+    kinds = ()
+    extends = ()
 
 
 def _relaxed(linear: float, middle: float, cube: float = 0.0) -> float:

@@ -12,7 +12,6 @@ import numpy as np
 from sher3_diagnosis.attribute.candidates import Candidates
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.fit.fitting import Fit, Term
-from sher3_effects.behind_motor import BehindMotor
 
 from sher3_chain.axes.evidence import AxisEvidence
 from sher3_chain.axes.view import AxisView
@@ -57,7 +56,7 @@ class Bounded(Candidates):
 
     def possible(self, trial: Fit) -> bool:
         """Return whether the new cause is possible, and all others still are."""
-        unseen = sum(isinstance(t.effect, BehindMotor) for t in trial.terms)
+        unseen = sum(t.effect.unseen for t in trial.terms)
         dry = sum(t.effect.dry for t in trial.terms)
         return unseen <= 1 and dry <= 1 and super().possible(trial) and trial.admissible
 

@@ -16,20 +16,12 @@ from dataclasses import replace
 from sher3_diagnosis.attribute.rivals import Attribution
 from sher3_diagnosis.thresholds import NEEDED
 from sher3_diagnosis.verdict import Cause
-from sher3_effects.compliance.two_slopes import BENT_FROM
-from sher3_effects.friction.coulomb_friction import ServoStiction
-from sher3_effects.inertia.gravity_load import GravityOnAxis
-from sher3_effects.limit.command_deadband import CommandDeadband
-from sher3_effects.spring.spring_torque import SpringOnAxis
-
-FOLLOWS_PLACE = (SpringOnAxis.id, GravityOnAxis.id)
-"""Effects whose force follows the position."""
+from sher3_effects import pages
 
 
-class SpringBesideWeight(SpringOnAxis):
-    """A spring on an axis that turns, whose description says nothing of a weight at an arm."""
-
-    extends = ()
+def indistinct() -> dict[str, tuple[str, ...]]:
+    """Return cause of a position servo -> effects that give it the same readings."""
+    return {e.id: e.indistinct for e in pages("servo") if e.indistinct}
 
 
 def told_by_travel(found: Attribution) -> Attribution:
@@ -39,26 +31,27 @@ def told_by_travel(found: Attribution) -> Attribution:
     """
     rivals = list(found.rivals)
     for i in found.causes:
-        if found.fit.terms[i].effect.id in FOLLOWS_PLACE:
-            worth = max(NEEDED, BENT_FROM * found.explained[i])
+        share = found.fit.terms[i].effect.told_by_travel
+        if share:
+            worth = max(NEEDED, share * found.explained[i])
             rivals[i] = tuple(
-                f for f in rivals[i] if f.terms[-1].effect.id not in FOLLOWS_PLACE or f.total - found.fit.total < worth
+                f for f in rivals[i] if not f.terms[-1].effect.told_by_travel or f.total - found.fit.total < worth
             )
     return replace(found, rivals=tuple(rivals))
 
 
 def with_dead_band(causes: Sequence[Cause]) -> list[Cause]:
     """Return the causes of a position servo with a dead band among the rivals of its stiction."""
-    return [_beside(cause) if cause.effect == ServoStiction.id else cause for cause in causes]
-
-
-def _beside(cause: Cause) -> Cause:
-    return cause.model_copy(update={"rivals": list(dict.fromkeys([*cause.rivals, CommandDeadband.id]))})
+    beside = indistinct()
+    return [
+        cause.model_copy(update={"rivals": list(dict.fromkeys([*cause.rivals, *beside.get(cause.effect, ())]))})
+        for cause in causes
+    ]
 
 
 def dead_band_note(name: str, causes: Sequence[Cause], unit: str) -> str:
     """Return what would tell a stiction from a dead band; empty where no stiction was found."""
-    stuck = next((c.parameters["force"] for c in causes if c.effect == ServoStiction.id), None)
+    stuck = next((c.parameters["force"] for c in causes if c.effect in indistinct()), None)
     if stuck is None:
         return ""
     return (

@@ -23,15 +23,13 @@ from sher3_diagnosis.fit.term import again
 from sher3_diagnosis.fit.whitened import Whitened
 from sher3_diagnosis.quantify.parameters import parameters
 from sher3_diagnosis.verdict import Cause, Parameter
-from sher3_effects.friction.presliding_friction import PreslidingFriction
-from sher3_effects.friction.stribeck_friction import StribeckFriction
-from sher3_effects.friction.viscous_friction import ViscousFriction
+from sher3_effects import pages
 
 from sher3_chain.thresholds import MIN_BLOCK, SLOW
 
 E = TypeVar("E", bound=Evidence)
-AT_LOW_SPEED = (PreslidingFriction.id, StribeckFriction.id)
-"""Effects whose law lives at low speed: nothing is fitted again at a joint that has one."""
+FRICTION = "friction"
+"""Family of the forces that resist."""
 
 
 def requantified(evidence: Evidence, attribution: Attribution, causes: Sequence[Cause]) -> list[Cause]:
@@ -43,7 +41,7 @@ def requantified(evidence: Evidence, attribution: Attribution, causes: Sequence[
         causes: as quantified on all samples.
     """
     terms = attribution.fit.terms
-    slow = {t.site for t in terms if t.effect.id in AT_LOW_SPEED}
+    slow = {t.site for t in terms if t.effect.slow}  # nothing is fitted again beside a law that lives there
     dry = {t.site for t in terms if t.effect.dry} - slow
     if not dry:
         return list(causes)
@@ -67,12 +65,13 @@ def with_unseen(evidence: Evidence, attribution: Attribution, causes: Sequence[C
     Under noise the one stands in for a part of the other: at one speed they are the same.
     """
     terms = attribution.fit.terms
-    rubbed = {t.site for t in terms if isinstance(t.effect, ViscousFriction)}
+    viscous = next(e for e in pages("axis") if e.plain and e.family == FRICTION and not e.dry)
+    rubbed = {t.site for t in terms if t.effect.id == viscous.id}
     out = []
     for i, cause in zip(attribution.causes, causes, strict=True):
         term = terms[i]
         if term.effect.dry and term.site not in rubbed and "force" in cause.parameters and cause.condition is None:
-            beside = fit(evidence.data, [*terms, make_term(evidence.data, ViscousFriction(), term.site, {})])
+            beside = fit(evidence.data, [*terms, make_term(evidence.data, viscous, term.site, {})])
             if beside.of(len(terms))[0] > 0.0 and term.effect.admissible(term.shape, beside.of(i)):
                 other = parameters(evidence, beside, i)["force"]
                 told = {**cause.parameters, "force": _holding(cause.parameters["force"], other)}

@@ -19,10 +19,6 @@ from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import Fit, Term, fit
 from sher3_diagnosis.thresholds import NEEDED, PRICE, WORTH
-from sher3_effects.behind_motor import BehindMotor
-from sher3_effects.compliance.unseen_compliance import ComplianceBehindMotor
-from sher3_effects.friction.coulomb_friction import CoulombFriction
-from sher3_effects.timing.sensor_delay import SensorDelay
 
 from sher3_chain.axes.evidence import AxisEvidence
 from sher3_chain.axes.identification.away_from_reversals import borne_out
@@ -46,7 +42,7 @@ def _chosen(evidence: AxisEvidence, candidates: Candidates, left_over: Left, say
     the one with the smaller loss is taken, in motion and at rest together.
     """
     candidates = Bounded(evidence, candidates.effects, candidates.terms)
-    seen = [e for e in candidates.effects if not isinstance(e, BehindMotor)]
+    seen = [e for e in candidates.effects if not e.unseen]
     found = _plain_first(evidence, Bounded(evidence, seen, candidates.terms), left_over, say)
     if rest_loss(evidence, found.fit) > 0.0:
         dry = DryFirst(evidence, seen, candidates.terms)
@@ -90,29 +86,34 @@ def _priced(found: Attribution) -> float:
 class Behind(Bounded):
     """Candidates of which the first two causes are plain dry friction and what hides behind one encoder."""
 
-    ORDER: tuple[tuple[type[Effect], ...], ...] = (
-        (CoulombFriction, ComplianceBehindMotor),
-        (CoulombFriction, BehindMotor, SensorDelay),
-    )
-    """Friction, or a spring that rings; then what else hides, or a late effort: a load that gives way is late too."""
+    FAMILIES = ("compliance", "timing")
+    """Beside plain friction: of what hides a spring that rings; then all that hides, or a late effort.
+
+    A load that gives way is late too.
+    """
 
     @property
     def looks(self) -> bool:
         """Whether there is anything that hides behind one encoder."""
         views = [v for v in self.evidence.views if isinstance(v, AxisView)]
-        unseen = [e for e in self.effects if isinstance(e, BehindMotor)]
+        unseen = [e for e in self.effects if e.unseen]
         return any(e.shapes(views, site) for e in unseen for site in self.sites(e)) if views else False
 
     def search(self, channels: Collection[Channel], given: Sequence[Term] = ()) -> list[Fit]:
         """Search as the engine does, but for the first two causes in this order."""
         found, chosen = super().search(channels, given), len(given) - len(self.evidence.nuisance)
-        if chosen >= len(self.ORDER):
+        if chosen >= len(self.FAMILIES):
             return found
-        of_order = [trial for trial in found if isinstance(trial.terms[-1].effect, self.ORDER[chosen])]
+        of_order = [trial for trial in found if self._in_turn(trial.terms[-1].effect, chosen)]
         if not chosen:
             return of_order
         sharp = [self._beside(trial, self._sharp(given)) for trial in of_order]
         return sorted((self._beside(trial, given) for trial in [*of_order, *sharp]), key=cost)
+
+    def _in_turn(self, effect: Effect, chosen: int) -> bool:
+        """Return whether an effect may be the first cause, or the second."""
+        hides = effect.unseen and bool(chosen)
+        return (effect.plain and effect.dry) or hides or effect.family == self.FAMILIES[chosen]
 
     def _sharp(self, given: Sequence[Term]) -> Sequence[Term]:
         """Return terms with a friction that reverses at once: alone it builds up as slowly as the load comes in."""

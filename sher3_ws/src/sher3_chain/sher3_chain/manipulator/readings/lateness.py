@@ -29,6 +29,8 @@ from sher3_chain.manipulator.evidence import ArmMotionEvidence, channel_of
 from sher3_chain.manipulator.gains import friction_columns
 from sher3_chain.manipulator.view import MotionView
 
+LATE = SensorDelay.id
+"""Effect that these findings are of."""
 WITHIN_PERIOD = 0.5
 """Periods of the record within which nobody states when an effort was taken."""
 SLOWER = 5.0
