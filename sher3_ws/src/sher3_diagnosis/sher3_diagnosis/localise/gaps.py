@@ -12,8 +12,8 @@ from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.thresholds import FLOOR_SCATTER, GROUPED, GROUPED_ENCODERS, POOLED, ZERO_COUNTS
 
-PARTS = {6: (slice(0, 3), slice(3, 6)), 1: (slice(0, 1),)}
-"""Number of components -> those that are judged together: position and rotation, force and torque."""
+PARTS = {6: (slice(0, 3), slice(3, 6)), 3: (slice(0, 3),), 1: (slice(0, 1),)}
+"""Number of components -> those that are judged together: position and rotation, force and torque, position alone."""
 
 Powers = Mapping[str, Sequence[Array]]
 """Excitation -> mean squares of its runs, (d,) each."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Any, Literal
 
 from pydantic import Field, model_validator
 from sher3_machines.intake.fields import Column, Description, Strict
@@ -46,6 +46,14 @@ class ArmDescription(Description):
     urdf: str | None = None
     base_link: str = ""
     tip_link: str = ""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _turned(cls, data: Any) -> Any:
+        poses = data.get("poses") if isinstance(data, dict) else None
+        if isinstance(poses, dict) and set(poses) == {"position"}:
+            raise ValueError("poses without an orientation are `positions`, with the columns of `position`")
+        return data
 
     @model_validator(mode="after")
     def _either(self) -> ArmDescription:

@@ -26,7 +26,7 @@ def read_arm(name: str, tables: Tables, machine: ArmDescription) -> Readings:
     """Check one record and bring it to SI units.
 
     Returns:
-        `joints` (n, k), and `poses` (n, 4, 4), `positions` (n, 3) or `lengths` (n, 1).
+        `joints` (n, k), and `poses` (n, 4, 4), `positions` (n, 3) or `lengths` (n,).
 
     Raises:
         MachineError: a column is missing or has the wrong shape, postures are too few, a unit slips, or a pose is no
@@ -57,7 +57,7 @@ def _measured(name: str, tables: Tables, machine: ArmDescription) -> tuple[str, 
         positions = together(machine.positions, tables, name, 3)
         return "positions", positions, positions
     assert machine.lengths is not None
-    lengths = together(machine.lengths, tables, name, 1)
+    lengths = together(machine.lengths, tables, name, 1)[:, 0]
     return "lengths", lengths, lengths
 
 

@@ -121,7 +121,7 @@ class LengthSight(Sight):
 
     def start(self, tip: Array, measured: Array, run: Labels) -> tuple[Array, Array]:
         """Return the frames whose lengths fit best, from a start that is linear in anchor, body and their products."""
-        turn, t, length = tip[:, :3, :3], tip[:, :3, 3], measured[:, 0]
+        turn, t, length = tip[:, :3, :3], tip[:, :3, 3], measured
         own = np.eye(int(run.max()) + 1)[run]
         rows = [2.0 * np.einsum("nji,nj->ni", turn, t), -2.0 * t, -2.0 * turn.reshape(-1, 9)]
         linear = np.hstack([*rows, own, 2.0 * own * length[:, None]])
@@ -136,7 +136,7 @@ class LengthSight(Sight):
 
     def error(self, pose: Array, measured: Array) -> Array:
         """Return the length, m."""
-        return measured - np.linalg.norm(pose[:, :3, 3], axis=1, keepdims=True)
+        return (measured - np.linalg.norm(pose[:, :3, 3], axis=1))[:, None]
 
     def seen(self, change: Array, pose: Array) -> Array:
         """Return the shift along the cable."""
