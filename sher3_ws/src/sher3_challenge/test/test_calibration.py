@@ -190,7 +190,7 @@ def plants(name):
 
 def test_a_plant_left_out_is_judged_by_the_others():
     both = plants("a") + plants("b")
-    judgements = held_out(both, "b")
+    judgements = held_out(both)["b"]
     assert len(judgements) == 30
     said = {j.seen.case[1:2] + str(bool(j.seen.without)): j.said for j in judgements}
     found = rates(judgements)

@@ -1,8 +1,10 @@
 """The answer in words, for each status."""
 
 import pytest
+from sher3_diagnosis.judge.bets import placed
 from sher3_diagnosis.report.summary import cause_text, closure_text, command, five_lines, headline
 from sher3_diagnosis.verdict import (
+    Answer,
     Cause,
     Closure,
     Interval,
@@ -83,6 +85,18 @@ def test_commands_are_named_for_a_simulated_machine_only():
     open_one = verdict("under_excited", causes=[BACKLASH], next_experiment=TELLS)
     assert dict(five_lines(open_one, simulated=False))["next"] == "loads tells backlash / cogging apart"
     assert "`sher3 gap experiment" in dict(five_lines(open_one, simulated=True))["next"]
+
+
+@pytest.mark.parametrize(("odds", "tried"), [(0.3, True), (0.05, False)])
+def test_the_next_line_tries_a_bet_that_is_worth_it(odds, tried):
+    outside = Answer(answer="outside_library", probability=1.0 - odds)
+    bet = Answer(causes=[FRICTION], probability=odds, closure=Interval(value=0.97))
+    answer = verdict("outside_library", places=[placed(PLACE, [outside, bet])], unexplained=LEFT)
+    lines = {known: dict(five_lines(answer, known, case="bags/case"))["next"] for known in (True, False)}
+    starts = ("`sher3 gap apply gap/bags/case/verdict.json -o corrected.yaml --case bags/case --bet` tries",
+              "`sher3 gap export gap/bags/case/verdict.json --to yaml --bet` tries the best bet, 30 %")  # fmt: skip
+    assert [lines[k].startswith(s) for k, s in zip((True, False), starts, strict=True)] == [tried, tried]
+    assert tried or "sher3 gap discover" in lines[True]
 
 
 def test_a_parameter_that_may_be_zero_is_not_told():

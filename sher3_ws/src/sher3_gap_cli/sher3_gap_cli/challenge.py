@@ -96,9 +96,12 @@ def plants_of(arguments: list[str]) -> dict[str, list[Path]]:
 
 def calibrate(
     folders: Annotated[
-        list[str],
+        list[str] | None,
         typer.Argument(metavar="[PLANT=]FOLDER...", help="Labelled cases of each plant, or as labels name it."),
-    ],
+    ] = None,
+    drawn: Annotated[
+        str | None, typer.Option(help="Range A:B of seeds of cases drawn on all plants in turn; no bags are written.")
+    ] = None,
     out: Annotated[Path | None, typer.Option("--out", "-o", help="File for the calibration.")] = None,
     kept: Annotated[
         Path | None, typer.Option(help="Folder that keeps the evidence of every case from one call to the next.")
@@ -113,30 +116,37 @@ def calibrate(
 ) -> None:
     """Set the probabilities of verdicts on labelled cases; print how they hold on each plant when it is left out."""
     from rich.console import Console
+    from sher3_challenge.calibration.drawn import draw
     from sher3_challenge.calibration.fit import calibrated
-    from sher3_challenge.calibration.held_out import held_out, judged_by
+    from sher3_challenge.calibration.held_out import GROUPS, by_plant, held_out, judged_by
     from sher3_challenge.calibration.observe import gathered
     from sher3_challenge.calibration.selective import curve
     from sher3_challenge.calibration.table import rates, written
-    from sher3_challenge.score.reliability import diagram as drawn
+    from sher3_challenge.plants.registry import truth_plants
+    from sher3_challenge.score.reliability import diagram as panels
     from sher3_diagnosis.judge.calibration import calibration
 
     with reported(as_json), tempfile.TemporaryDirectory() as scratch:
-        seen = gathered(plants_of(folders), kept or Path(scratch), jobs)
-        names = sorted({o.plant for o in seen})
+        room = kept or Path(scratch)
+        seen = gathered(plants_of(folders or []), room, jobs)
+        if drawn is not None:
+            names = [plant.name for plant in truth_plants(Console(stderr=True).log)]
+            seen += [o for rows in draw(names, range(*parse_seeds(drawn)), room) for o in rows]
         if in_force:
             found = calibration.in_force()
+            names = sorted({o.plant for o in seen})
             left_out = {name: judged_by(found, [o for o in seen if o.plant == name]) for name in names}
+            columns = {name: rates(judgements) for name, judgements in left_out.items()}
         else:
             found = calibrated(seen)
-            left_out = {name: held_out(seen, name) for name in names} if len(names) > 1 else {}
-        columns = {name: rates(judgements) for name, judgements in left_out.items()}
-        if len(columns) > 1:
+            left_out = held_out(seen, by_plant)
+            columns = {n: rates(js) for of in GROUPS for n, js in held_out(seen, of).items()}
+        if len(left_out) > 1:
             columns["all"] = rates([j for judgements in left_out.values() for j in judgements])
         if out is not None:
             out.write_text(found.model_dump_json(by_alias=True, indent=1) + "\n", encoding="utf-8")
         if diagram is not None and left_out:
-            drawn({name: [r for j in js for r in j.right] for name, js in left_out.items()}, diagram)
+            panels({name: [r for j in js for r in j.right] for name, js in left_out.items()}, diagram)
     if as_json:
         typer.echo(json.dumps({n: {k: r.__dict__ for k, r in c.items()} for n, c in columns.items()}))
         return

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,6 +19,7 @@ from sher3_diagnosis.verdict import Interval
 from sher3_challenge.calibration.fit import calibrated
 from sher3_challenge.calibration.labels import alike, answer_of, company, contains, equal, known, same_data, twins
 from sher3_challenge.calibration.observe import Observation
+from sher3_challenge.plants.level import BUILT, SHAPE
 from sher3_challenge.score.reliability import Stated
 
 
@@ -67,16 +69,50 @@ class Judgement:
         return sum(map(len, self.sets)) / len(self.sets) if self.single and self.sets else None
 
 
-def held_out(observations: Sequence[Observation], plant: str) -> list[Judgement]:
-    """Judge the observations of one plant with a calibration fitted to all others."""
-    calibration = calibrated([o for o in observations if o.plant != plant])
-    return judged_by(calibration, [o for o in observations if o.plant == plant])
+Group = Callable[[Observation], str | None]
+"""What an observation belongs to, of a kind of groups; None where it belongs to none."""
+
+
+def by_plant(seen: Observation) -> str:
+    """Return the plant."""
+    return seen.plant
+
+
+def by_shape(seen: Observation) -> str | None:
+    """Return whether the laws of its robot are close to their pages, or far from them."""
+    level = seen.truth.get("level")
+    return level and ("close laws" if level["shape"] < middle(SHAPE) else "bent laws")
+
+
+def by_build(seen: Observation) -> str | None:
+    """Return whether its robot is built well, or badly."""
+    level = seen.truth.get("level")
+    return level and ("built well" if level["built"] < middle(BUILT) else "built badly")
+
+
+def middle(ends: tuple[float, float]) -> float:
+    """Return the middle of a range, on a scale of logarithms."""
+    return math.sqrt(ends[0] * ends[1])
+
+
+GROUPS: tuple[Group, ...] = (by_plant, by_shape, by_build)
+
+
+def held_out(observations: Sequence[Observation], of: Group = by_plant) -> dict[str, list[Judgement]]:
+    """Judge each group with a calibration fitted to all observations that are not of it; none where there is one."""
+    names = sorted({name for o in observations if (name := of(o)) is not None})
+    return {
+        name: judged_by(
+            calibrated([o for o in observations if of(o) != name]), [o for o in observations if of(o) == name]
+        )
+        for name in (names if len(names) > 1 else ())
+    }
 
 
 def judged_by(calibration: Calibration, observations: Sequence[Observation], costs: Costs = DEFAULT) -> list[Judgement]:
     """Judge observations with a calibration, as verdicts are judged."""
-    whole = {o.case: o for o in observations if not o.without}
-    return [_judgement(o, whole[o.case], calibration, costs) for o in observations]
+    whole = {(o.plant, o.case): o for o in observations if not o.without}
+    return [_judgement(o, whole[o.plant, o.case], calibration, costs) for o in observations]
 
 
 def _judgement(seen: Observation, whole: Observation, calibration: Calibration, costs: Costs) -> Judgement:

@@ -20,7 +20,7 @@ Array = NDArray[np.floating[Any]]
 BUILT = (0.3, 3.0)
 """Range of the factor on deviations as built; none goes beyond its tolerance, three standard deviations."""
 SHAPE = (0.003, 0.10)
-"""Range of the share of an effect, rms, by which its law is another than its page's."""
+"""Range of the share of an effect's power by which its law is another than its page's: what its closure may lack."""
 PERIOD = (0.8e-3, 8e-3)
 """Travel of a slider over which a law bends once [m]: between a lead and its whole stroke."""
 QUICK = 0.1
@@ -46,7 +46,7 @@ class Level:
 
     Attributes:
         built: factor on its deviations as built.
-        shape: share of an effect, rms, by which its law is bent.
+        shape: share of an effect's power by which its law is bent.
     """
 
     built: float = 1.0
@@ -69,7 +69,7 @@ class Level:
         unit = np.array([ANGULAR["length"] if name == "roll" else 1.0 for name in ACTUATORS])
         rate = 2 * math.pi / (unit * np.exp(rng.uniform(math.log(PERIOD[0]), math.log(PERIOD[1]), len(unit))))
         quick = QUICK * rate * rng.uniform(-1.0, 1.0, len(unit))
-        size = np.full(len(unit), math.sqrt(2.0) * self.shape)
+        size = np.full(len(unit), math.sqrt(2.0 * self.shape))
         return Bend(size, rate, quick, rng.uniform(0.0, 2 * math.pi, len(unit)))
 
     def bent(self, seed: int, nominal: Array, true: Array, inputs: Array) -> Array:
@@ -86,7 +86,7 @@ class Level:
         rng = np.random.default_rng((29, seed, nominal.shape[1]))
         rates = rng.standard_normal((inputs.shape[1], nominal.shape[1])) * math.pi / math.sqrt(inputs.shape[1])
         phase = rng.uniform(0.0, 2 * math.pi, nominal.shape[1])
-        factor = 1 + math.sqrt(2.0) * self.shape * np.sin(inputs @ rates + phase)
+        factor = 1 + math.sqrt(2.0 * self.shape) * np.sin(inputs @ rates + phase)
         return np.asarray(nominal + (true - nominal) * factor)
 
 

@@ -9,6 +9,8 @@ from pathlib import Path
 import numpy as np
 
 BINS = 10
+ABREAST = 3
+"""Panels of a row."""
 
 Stated = tuple[float, bool]
 """A probability, and whether what it was given for is true."""
@@ -48,20 +50,21 @@ def calibration_error(answers: Sequence[Stated]) -> float:
 
 
 def diagram(answers: Mapping[str, Sequence[Stated]], path: Path) -> None:
-    """Write the reliability diagram, one curve per name, as a picture."""
+    """Write the reliability diagram, one panel per name, as a picture."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(5.0, 5.0), layout="constrained")
-    axes = figure.subplots()
-    axes.plot([0.0, 1.0], [0.0, 1.0], color="0.7", linewidth=1.0)
-    for name, given in answers.items():
+    rows = -(-max(len(answers), 1) // ABREAST)
+    figure = Figure(figsize=(3.4 * ABREAST, 3.4 * rows), layout="constrained")
+    panels = figure.subplots(rows, ABREAST, squeeze=False, sharex=True, sharey=True).ravel()
+    for axes, (name, given) in zip(panels, answers.items(), strict=False):
         found = bins(given)
-        if found:
-            label = f"{name} (n {len(given)}, error {calibration_error(given):.3f})"
-            axes.plot([b.stated for b in found], [b.met for b in found], marker="o", label=label)
-            for b in found:
-                axes.annotate(str(b.n), (b.stated, b.met), textcoords="offset points", xytext=(5, -9), fontsize=7)
-    axes.set(xlim=(0, 1), ylim=(0, 1), xlabel="stated probability", ylabel="share that was right")
-    if any(answers.values()):
-        axes.legend(loc="lower right", fontsize=8)
+        axes.plot([0.0, 1.0], [0.0, 1.0], color="0.7", linewidth=1.0)
+        axes.plot([b.stated for b in found], [b.met for b in found], marker="o")
+        for b in found:
+            axes.annotate(str(b.n), (b.stated, b.met), textcoords="offset points", xytext=(5, -9), fontsize=7)
+        axes.set(xlim=(0, 1), ylim=(0, 1), title=f"{name}: n {len(given)}, error {calibration_error(given):.3f}")
+    for axes in panels[len(answers) :]:
+        axes.set_visible(False)
+    figure.supxlabel("stated probability")
+    figure.supylabel("share that was right")
     figure.savefig(path, dpi=120)

@@ -13,6 +13,9 @@ from sher3_diagnosis.words import listed, lower, place, quantity, range_text, ra
 LEFT_OVER = 1.2
 """Rms that is left, over the floor, from which the headline says what it is. A convention of the words."""
 
+WORTH_TRYING = 0.1
+"""Probability of the best bet from which the next line tries it although something else is more probable."""
+
 
 def headline(verdict: Verdict, rests: Mapping[str, str] = MappingProxyType({})) -> str:
     """Return the answer as one sentence: the finding, its size, and how much of the gap it is.
@@ -167,6 +170,10 @@ def command(verdict: Verdict, simulated: bool, case: str, folder: str = "") -> t
         return f"sher3 gap export {file} --to yaml", "writes the parameters for your own simulator"
     if verdict.status == "under_excited" and simulated:
         return f"sher3 gap experiment {file} {case}", "designs the motion that tells the rivals apart"
+    bet = verdict.places[0].bet if verdict.places else None
+    if verdict.status == "outside_library" and bet is not None and bet.probability >= WORTH_TRYING:
+        tries = f"apply {file} -o corrected.yaml --case {case}" if simulated else f"export {file} --to yaml"
+        return f"sher3 gap {tries} --bet", f"tries the best bet, {share(bet.probability)}"
     if verdict.status == "outside_library":
         return f"sher3 gap discover {case} --save found.yaml", "looks for a formula that explains it"
     return None
