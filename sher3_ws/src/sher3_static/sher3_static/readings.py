@@ -73,3 +73,23 @@ def temperature(column: Column | None, rows: int, tables: Tables, name: str) -> 
 def warmed(runs: Sequence[Readings]) -> Array:
     """Return how much warmer each reading is than the first of its run, (g,), K; zero where it was not recorded."""
     return np.nan_to_num(np.concatenate([run["temperature"] - run["temperature"][0] for run in runs]))
+
+
+def scatter_beyond(columns: Array, reading: Array) -> tuple[Array, int]:
+    """Return the standard deviation (d,) of readings (g, d) beyond what columns (g, p) explain, and what is left free.
+
+    Without a degree of freedom the standard deviation is that of the residual itself.
+    """
+    left = reading - columns @ np.linalg.lstsq(columns, reading, rcond=None)[0]
+    free = len(reading) - int(np.linalg.matrix_rank(columns))
+    return np.sqrt(np.sum(left**2, axis=0) / max(free, 1)), free
+
+
+def one_hot(labels: Labels) -> Array:
+    """Return a column for each label (g,), counted from zero, that is one in its rows."""
+    return np.eye(int(labels.max()) + 1)[labels.astype(int)]
+
+
+def same(*conditions: Array) -> Array:
+    """Return a column for each combination of conditions, (g,) each, that is one in its rows."""
+    return one_hot(np.unique(np.column_stack(conditions), axis=0, return_inverse=True)[1].ravel())

@@ -13,7 +13,7 @@ from sher3_diagnosis.channel import Array
 from sher3_machines.errors import MachineError
 
 from sher3_static.arm.kinematics import transform
-from sher3_static.readings import Labels
+from sher3_static.readings import Labels, one_hot
 
 AMBIGUOUS = 1e-6
 """Smallest but one singular value over the largest below which the rotations of the frames cannot be told."""
@@ -122,7 +122,7 @@ class LengthSight(Sight):
     def start(self, tip: Array, measured: Array, run: Labels) -> tuple[Array, Array]:
         """Return the frames whose lengths fit best, from a start that is linear in anchor, body and their products."""
         turn, t, length = tip[:, :3, :3], tip[:, :3, 3], measured
-        own = np.eye(int(run.max()) + 1)[run]
+        own = one_hot(run)
         rows = [2.0 * np.einsum("nji,nj->ni", turn, t), -2.0 * t, -2.0 * turn.reshape(-1, 9)]
         linear = np.hstack([*rows, own, 2.0 * own * length[:, None]])
         found = np.linalg.lstsq(linear, length**2 - np.sum(t**2, axis=1), rcond=None)[0]

@@ -10,7 +10,7 @@ from sher3_machines.intake.tables import Tables
 
 from sher3_static.cell.description import CellDescription
 from sher3_static.cell.view import ForcesView
-from sher3_static.readings import Labels, Readings, enough, temperature, thinned
+from sher3_static.readings import Labels, Readings, enough, one_hot, same, scatter_beyond, temperature, thinned
 
 LEAST_ROWS = 12
 """Readings that a record must have: six forces, going and coming."""
@@ -77,15 +77,9 @@ def scatter(view: ForcesView, reading: Array, run: Labels) -> float:
     What differs at one force reached from one side, where forces were repeated; else what no curve of third order in
     the force, of its own for each direction, explains.
     """
-    drift = np.column_stack([view.elapsed, view.warmth, np.eye(run.max() + 1)[run]])
-    force = np.round(view.share / SAME)
-    cell = np.unique(np.column_stack([force, view.unloading]), axis=0, return_inverse=True)[1].ravel()
-    same = np.eye(cell.max() + 1)[cell]
+    drift = np.column_stack([view.elapsed, view.warmth, one_hot(run)])
     u, bow = view.share, view.share * (1.0 - view.share) * view.unloading
     smooth = np.column_stack([np.ones(len(u)), u, u**2, u**3, bow, bow * u])
-    for x in (np.hstack([same, drift]), np.hstack([smooth, drift])):
-        free = len(reading) - int(np.linalg.matrix_rank(x))
-        if free >= REPEATED:
-            break
-    left = reading - x @ np.linalg.lstsq(x, reading, rcond=None)[0]
-    return float(np.sqrt(np.sum(left**2) / max(free, 1)))
+    repeated = same(np.round(u / SAME), view.unloading)
+    found, free = scatter_beyond(np.hstack([repeated, drift]), reading[:, None])
+    return float((found if free >= REPEATED else scatter_beyond(np.hstack([smooth, drift]), reading[:, None])[0])[0])

@@ -13,7 +13,7 @@ from sher3_machines.errors import MachineError
 from sher3_static.positioning.description import AxisTest
 from sher3_static.positioning.iso import Positioning, positioning
 from sher3_static.positioning.view import RowsView
-from sher3_static.readings import Labels, Readings, joined
+from sher3_static.readings import Labels, Readings, joined, one_hot, same, scatter_beyond
 from sher3_static.table import PARTS, Table
 
 RESOLVED = 1e-9
@@ -89,17 +89,11 @@ def scatter(name: str, rows: dict[str, Array], target: Array) -> float:
     Raises:
         MachineError: there are too few repeats.
     """
-    keys = np.column_stack([rows["target"], rows["direction"]])
-    cell = np.unique(keys, axis=0, return_inverse=True)[1].ravel()
-    cycle = rows["cycle"].astype(int)
-    cells = np.eye(cell.max() + 1)[cell]
-    own = np.eye(cycle.max() + 1)[cycle][:, 1:]
-    x = np.hstack([cells, own, own * target[:, None]])
-    free = len(target) - np.linalg.matrix_rank(x)
+    own = one_hot(rows["cycle"])[:, 1:]
+    x = np.hstack([same(rows["target"], rows["direction"]), own, own * target[:, None]])
+    found, free = scatter_beyond(x, rows["deviation"][:, None])
     if free < 1:
         remedy = "measure each target twice from the same side, or state `noise`"
-        raise MachineError(
-            f"{name}: no target was met twice from one side", value=free, limit="1 repeat", remedy=remedy
-        )
-    left = rows["deviation"] - x @ np.linalg.lstsq(x, rows["deviation"], rcond=None)[0]
-    return max(RESOLVED, float(np.sqrt(np.sum(left**2) / free)))
+        what = f"{name}: no target was met twice from one side"
+        raise MachineError(what, value=free, limit="1 repeat", remedy=remedy)
+    return max(RESOLVED, float(found[0]))

@@ -11,7 +11,7 @@ from sher3_machines.intake.columns import pick
 from sher3_machines.intake.poses import together, turns_of
 from sher3_machines.intake.tables import Tables
 
-from sher3_static.readings import Labels, Readings, alive, enough, temperature, thinned
+from sher3_static.readings import Labels, Readings, alive, enough, one_hot, scatter_beyond, temperature, thinned
 from sher3_static.sensor.description import Applied, SensorDescription, Three
 from sher3_static.sensor.frames import Frame, frames
 from sher3_static.sensor.view import SensorView, TurnedView
@@ -100,11 +100,8 @@ def _check_conditions(name: str, conditions: dict[str, Array]) -> None:
 
 def scatter(view: SensorView, run: Labels) -> Array:
     """Return the standard deviation of a reading (6,): what no linear sensor in any frame, drifting, explains."""
-    zeros = np.eye(int(run.max()) + 1)[run]
-    x = np.column_stack([zeros, view.conditions, view.elapsed - 0.5, view.warmth])
-    left = view.reading - x @ np.linalg.lstsq(x, view.reading, rcond=None)[0]
-    free = max(1, view.rows - int(np.linalg.matrix_rank(x)))
-    each = np.sqrt(np.sum(left**2, axis=0) / free)
+    x = np.column_stack([one_hot(run), view.conditions, view.elapsed - 0.5, view.warmth])
+    each, _ = scatter_beyond(x, view.reading)
     pooled = [np.sqrt(np.mean(each[part] ** 2)) for part in (slice(0, 3), slice(3, 6))]
     return np.repeat(np.maximum(pooled, np.finfo(float).eps), 3)
 
