@@ -5,7 +5,7 @@ Seams are closed while nothing is wrong, so a healthy run costs nothing.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from random import Random
 from typing import NamedTuple, Protocol
@@ -20,13 +20,13 @@ from sher3_drivers.pedal.device import PedalState
 from sher3_drivers.sensor.device import WrenchRecord
 
 from sher3_faults.errors import FaultRefused
-from sher3_faults.items import BusFrames, DriveFrames, Numbers, PedalStates, WrenchRecords
+from sher3_faults.items import BusFrames, Columns, DriveFrames, Numbers, PedalStates, WrenchRecords
 from sher3_faults.kinds import KINDS, OFF, OK, Items, Kind
-from sher3_faults.requests import DEVICES, GROUPS, RESETS, FaultRequest, parse_request
+from sher3_faults.requests import DEVICES, GROUPS, PLUGS, RESETS, WIRES, FaultRequest, parse_request
 
 _UP, _DOWN = "up", "down"
 _TORQUE = "safe_torque_off"
-_NO_LINES = ("force_sensor", "pedal", _TORQUE)
+_NO_LINES = ("force_sensor", "pedal", _TORQUE, WIRES)
 """Components without frames."""
 
 
@@ -169,6 +169,7 @@ class FaultInjector:
         self._force.tamper = self._record if "force_sensor" in names else None
         pedal = {"pedal", "pedal.travel", "pedal.contact"} & names.keys()
         self._pedal.tamper = self._foot if pedal else None
+        self._drives.crossed = self._crossed if names.keys() & PLUGS.keys() else None
         for name, drive in self._drives.drives.items():
             says = self._faulty(name, "load_encoder", "motor_encoder", "encoders", "echo")
             drive.tamper = self._feedback(name) if says else None
@@ -185,6 +186,15 @@ class FaultInjector:
         """Return the records of the force sensor as a fault leaves them."""
         active, now = self.active["force_sensor"], self._clock()
         return active.kind("", WrenchRecords())([record], now) if active.acts(now) else [record]
+
+    def _crossed(self, column: str, values: Sequence[float]) -> Sequence[float]:
+        """Return a column of all axes as exchanged plugs leave it."""
+        now = self._clock()
+        for plug, columns in PLUGS.items():
+            active = self.active.get(plug)
+            if active is not None and column in columns and active.acts(now):
+                (values,) = active.kind(column, Columns())([values], now)
+        return values
 
     def _foot(self, state: PedalState) -> list[PedalState]:
         """Return the states of the pedal as faults of its travel, of its contact, and of its line leave them."""

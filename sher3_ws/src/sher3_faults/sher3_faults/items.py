@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import struct
-from collections.abc import Hashable
+from collections.abc import Hashable, Sequence
 from random import Random
 from typing import Any
 
@@ -141,3 +141,18 @@ class Numbers(OneSource):
     def wrong(self, item: float, parameters: Parameters) -> float:
         """Return the value scaled, then offset."""
         return parameters["scale"] * item + parameters["offset"]
+
+
+class Columns(OneSource):
+    """One number of each axis at a time, as the plugs of its cabinet are wired."""
+
+    def garbage(self, item: Sequence[float], random: Random) -> Sequence[float]:
+        """Return the item: cables draw nothing."""
+        return item
+
+    def wrong(self, item: Sequence[float], parameters: Parameters) -> Sequence[float]:
+        """Exchange the numbers of two axes, or turn the sign of one."""
+        one, other = int(parameters["one"]) - 1, int(parameters["other"]) - 1
+        crossed = list(item)
+        crossed[one], crossed[other] = item[other], item[one] if one != other else -item[one]
+        return crossed

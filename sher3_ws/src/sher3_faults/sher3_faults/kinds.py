@@ -1,9 +1,9 @@
 """The kinds of faults, each one small class that acts on a stream: items in, items out, told the time.
 
 The names follow PX4's failure injection (off, stuck, garbage, wrong, slow, delayed, intermittent) with duplicated,
-reordered, the slow ones (creep, drift, ramp, late, swap), the lively ones (held, chatter, contradicted) and those of a
-force (bias, turn) added. What an item is (a CAN frame, a force record, a pedal state, one number) is told by `Items`,
-so that each kind exists once.
+reordered, the slow ones (creep, drift, ramp, late, swap), the lively ones (held, chatter, contradicted), those of a
+force (bias, turn), of an encoder (jitter) and of a cable (miswired) added. What an item is (a CAN frame, a force
+record, a pedal state, one number) is told by `Items`, so that each kind exists once.
 """
 
 from __future__ import annotations
@@ -319,6 +319,28 @@ class Turn(_Slow):
         return self.parameters
 
 
+class Jitter(Chatter):
+    """A number goes to and fro by `size` [m, rad], `items` of them on either side."""
+
+    bounds: ClassVar[Mapping[str, Bounds]] = {"size": Bounds(2e-6, 0.0, 1.0), "items": Bounds(4.0, 1.0, 1e3)}
+
+    def __call__(self, items: list[Any], now: int) -> list[Any]:
+        """Return each item off by `size`, to one side and to the other."""
+        size, told = self.parameters["size"], {"scale": 1.0, "code": 0.0}
+        sides = [size if self._is_false(item) else -size for item in items]
+        return [self.items.wrong(item, {**told, "offset": side}) for item, side in zip(items, sides, strict=True)]
+
+
+class Miswired(Kind):
+    """The plugs of the axes `one` and `other` (1 to 5) are exchanged; where both are the same, its poles are."""
+
+    bounds: ClassVar[Mapping[str, Bounds]] = {"one": Bounds(1.0, 1.0, 5.0), "other": Bounds(2.0, 1.0, 5.0)}
+
+    def __call__(self, items: list[Any], now: int) -> list[Any]:
+        """Return rows of axes with two exchanged."""
+        return [self.items.wrong(item, self.parameters) for item in items]
+
+
 class Contradicted(Kind):
     """A second source of the same name says something else, just after each item, or (`first` 1) just before it."""
 
@@ -353,6 +375,8 @@ KINDS: dict[str, Callable[[Items, Parameters, Random], Kind]] = {
     "contradicted": Contradicted,
     "bias": Bias,
     "turn": Turn,
+    "jitter": Jitter,
+    "miswired": Miswired,
 }
 """Every kind by its name."""
 

@@ -21,6 +21,16 @@ PARTS = ("load_encoder", "motor_encoder", "encoders", "demand", "power", "motor"
 """What each axis has: its two encoders, both alike (`encoders`), the velocity demand in its drive, what the power stage
 does while it has power, what the motor does with power or without (`motor`), and what the drive says of its demand."""
 STATUSWORD, RESETS = "statusword", "resets"
+MISWIRED = "miswired"
+WIRES = "wires"
+PLUGS = {
+    WIRES: ("command", "demand", "effort", "motor_position", "load_position"),
+    f"{WIRES}.motors": ("command", "demand", "effort"),
+    f"{WIRES}.encoder_pairs": ("motor_position", "load_position"),
+    f"{WIRES}.motor_encoders": ("motor_position",),
+    f"{WIRES}.load_encoders": ("load_position",),
+}
+"""Plugs between drives and axes, with the columns that go through them; `wires`: those of motors and encoders."""
 GROUPS = {"legs": ACTUATORS[:3], "axes": ACTUATORS}
 """Several axes that have the same fault at the same time."""
 DEVICES = (
@@ -32,6 +42,7 @@ DEVICES = (
     *(name + way for name in LINES for way in ("", ".up", ".down")),
     *(f"{name}.{part}" for name in (*ACTUATORS, *GROUPS) for part in PARTS),
     *(f"{name}.{part}" for name in ACTUATORS for part in (STATUSWORD, RESETS)),
+    *PLUGS,
 )
 """What the plant process can break: `.up` is towards the host, `.down` towards the drives; without either, both.
 `safe_torque_off` is the line that takes the torque from all motors: `off`. A `statusword` is wrong by the bits of
@@ -108,6 +119,8 @@ def checked(request: FaultRequest) -> FaultRequest:
         raise FaultRefused(component, fault, "it comes or it does not", value=fault, limit=f"{OFF}, {OK}")
     if part == STATUSWORD and fault not in ("wrong", OK):
         raise FaultRefused(component, fault, "a drive tells its own state", value=fault, limit=f"wrong, {OK}")
+    if (component in PLUGS) != (fault == MISWIRED) and fault != OK:
+        raise FaultRefused(component, fault, "only plugs are miswired", value=fault, limit=", ".join(PLUGS))
     if component == "all" and fault != OK:
         raise FaultRefused(component, fault, "only ok goes with all", remedy="name one component")
     bounds = bounds_of(fault) if component in DEVICES else {}

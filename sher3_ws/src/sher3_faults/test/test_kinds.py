@@ -10,7 +10,7 @@ import pytest
 from sher3_drivers.bus.frame import ERROR_FLAG, iter_frames, pack_frame
 from sher3_drivers.pedal.device import PedalState
 from sher3_drivers.sensor.device import WrenchRecord
-from sher3_faults.items import BusFrames, DriveFrames, Numbers, PedalStates, WrenchRecords
+from sher3_faults.items import BusFrames, Columns, DriveFrames, Numbers, PedalStates, WrenchRecords
 from sher3_faults.kinds import KINDS
 
 MS = 1_000_000
@@ -132,6 +132,18 @@ def test_the_contacts_of_a_chattering_pedal_go_with_its_travel():
     off, on = flat(through("chatter", PedalStates(), [pressed] * 2, items=1.0, code=1.0))
     assert (off.travel, off.made, off.rest) == (0.0, False, True)
     assert on == pressed
+
+
+def test_jitter_goes_to_and_fro():
+    items, sent = STREAMS["numbers"]
+    out = flat(through("jitter", items, sent, size=0.01, items=2.0))
+    assert out[:5] == pytest.approx([0.01, 0.11, 0.19, 0.29, 0.41])
+
+
+def test_exchanged_plugs_and_exchanged_poles():
+    axes = (1.0, 2.0, 3.0, 4.0, 5.0)
+    assert flat(through("miswired", Columns(), [axes], one=1.0, other=3.0)) == [[3.0, 2.0, 1.0, 4.0, 5.0]]
+    assert flat(through("miswired", Columns(), [axes], one=2.0, other=2.0)) == [[1.0, -2.0, 3.0, 4.0, 5.0]]
 
 
 @pytest.mark.parametrize("first", [0.0, 1.0])

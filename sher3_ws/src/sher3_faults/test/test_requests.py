@@ -18,7 +18,7 @@ from sher3_drivers.sensor.device import InProcessForceSensor
 from sher3_drivers.settings import default_settings
 from sher3_faults.errors import FaultRefused
 from sher3_faults.injector import FaultInjector
-from sher3_faults.requests import DEVICES, make_request, parse_request
+from sher3_faults.requests import DEVICES, PLUGS, make_request, parse_request
 from sher3_safety.rows.stepped import ROWS
 
 ROBOT = load_robot()
@@ -56,6 +56,8 @@ def injector(devices):
             "every is out of range; value 1;",
         ),
         ({"component": "all", "fault": "off"}, "only ok goes with all"),
+        ({"component": "wires", "fault": "off"}, "only plugs are miswired"),
+        ({"component": "bus", "fault": "miswired"}, "only plugs are miswired"),
         ({"component": "pedal", "fault": "off", "duration": -1.0}, "duration: Input should be greater"),
         ({"component": "pedal", "fault": "off", "extra": 1}, "extra: Extra inputs"),
         ({"component": "bus2", "fault": "off"}, "no such channel; value bus2; limit bus0 to bus1"),
@@ -88,16 +90,17 @@ def test_every_row_of_the_matrix_is_a_valid_request():
 
 def test_seams_are_closed_unless_a_fault_needs_them(devices, injector):
     drives, force, pedal = devices.drives, devices.force, devices.pedal
-    seams = lambda: (drives.tamper_frames, drives.tamper_received, force.tamper, pedal.tamper)  # noqa: E731
-    assert seams() == (None,) * 4
+    names = ("tamper_frames", "tamper_received", "crossed")
+    seams = lambda: (*(getattr(drives, name) for name in names), force.tamper, pedal.tamper)  # noqa: E731
+    assert seams() == (None,) * 5
     for component in DEVICES:
         if not component.startswith(("bus2", "bus3", "bus4")):
-            fault = "wrong" if component.endswith(".statusword") else "off"
+            fault = "wrong" if component.endswith(".statusword") else "miswired" if component in PLUGS else "off"
             injector.take(make_request(component=component, fault=fault).to_json(), 0)
     assert all(seams())
     injector.take(make_request(component="all", fault="ok").to_json(), 0)
     injector.poll(0)
-    assert seams() == (None,) * 4
+    assert seams() == (None,) * 5
     assert all(drive.tamper is None and drive.powered for drive in drives.drives.values())
 
 
@@ -162,6 +165,22 @@ def test_a_statusword_is_misstated_while_the_fault_lasts(devices, injector):
     injector.poll(20_000_000)
     injector.poll(20_000_000)
     assert drive.statusword == true
+
+
+@pytest.mark.parametrize(
+    ("plug", "crossed"),
+    [
+        ("wires", {"command", "effort", "demand", "motor_position", "load_position"}),
+        ("wires.load_encoders", {"load_position"}),
+        ("wires.motors", {"command", "effort", "demand"}),
+        ("wires.encoder_pairs", {"motor_position", "load_position"}),
+    ],
+)
+def test_exchanged_plugs_take_what_goes_through_them(devices, injector, plug, crossed):
+    injector.take(make_request(component=plug, fault="miswired").to_json(), 0)
+    for column in ("command", "effort", "demand", "motor_position", "load_position"):
+        through = devices.drives.crossed(column, (1.0, 2.0, 3.0, 4.0, 5.0))
+        assert tuple(through[:3]) == ((2.0, 1.0, 3.0) if column in crossed else (1.0, 2.0, 3.0))
 
 
 def test_a_lost_reset_leaves_all_other_frames_of_all_drives(devices, injector):

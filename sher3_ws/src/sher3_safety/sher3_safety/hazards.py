@@ -92,6 +92,16 @@ HAZARDS = (
         "both encoders wrong alike by less than the force explains; a slip behind the load encoder without a tracker",
     ),
     Hazard(
+        "goes elsewhere, since cables are exchanged",
+        "plugs of two axes exchanged, poles reversed, at motor, encoders or both",
+        "each axis against its commands from enabling on; the hand, felt twice, where a whole axis has another name",
+        ("wires", "wires.*"),
+        ("sher3_ws/src/sher3_control/test/test_hand.py", f"{_DRIVERS}/test_position.py"),
+        ("axis leaves its commands",),
+        "two legs exchanged whole are not told while the hand pushes along z, where they do the same; across, they are "
+        "within 20 um; a pedal pressed within 0.36 s of enabling: 30 um",
+    ),
+    Hazard(
         "acts on reports that are old, garbled or of another axis",
         "CAN frames lost, late, twice, exchanged; two drives with one node id",
         "counter of SYNC and CRC with the node id behind every report; such a report is not believed",

@@ -5,7 +5,8 @@ does; a sensor that stands, or is scaled, turned, or pushes by itself changes it
 several low passes, the slower the finer, and limits that grow with the hand that both feel. The sum is judged as change
 against its own slow mean, and that mean as level against zero. Forces, and torques at an arm, are judged apart.
 
-A false force below those limits moves the tip while the drives feel nobody: that travel is bounded.
+A false force below those limits moves the tip while the drives feel nobody: that travel is bounded. So is the time for
+which the law moves the tip while nothing can be compared, as beside an encoder that jitters.
 """
 
 from __future__ import annotations
@@ -61,17 +62,17 @@ class HandDetector(PlainDetector):
         self._limits = np.array([*limits, self._settings.hand_level])[:, None]
         self._force_deadband, self._torque_deadband = law.force_deadband, law.torque_deadband
         self._reach = np.repeat((1.0, self._settings.hand_reach), 3)
-        self._found = Finding(Reason.HAND_DOUBTFUL, 0.0, min(limits), "N", "force sensor")
+        self._nothing = self._found = Finding(Reason.HAND_DOUBTFUL, 0.0, min(limits), "N", "force sensor")
         self._last = -1
         self.begin()
 
     def begin(self) -> None:
         """Forget what was felt: the drives have just got their power, or are about to."""
         self._felt: Array | None = None
-        self._since = self._astray = -1
+        self._since, self._astray, self._settled, self._blind = -1, -1, False, 0.0
         self._quick, self._slow = np.zeros((len(self._lags) - 1, AXES)), np.zeros(AXES)
         self._both, self._hand, self._alone = np.zeros((len(self._lags), 2)), np.zeros(AXES), NOWHERE
-        self._found = self._found._replace(value=0.0)
+        self._found = self._nothing
 
     def feed(self, stamp: int, contact: Vector, q: Vector, effort: Vector, command: Vector) -> None:
         """Take the samples of one tick, each later than the one before.
@@ -108,6 +109,7 @@ class HandDetector(PlainDetector):
         else:
             self._last = stamp
             self._count(0.0 * held, span, moved)
+            self._miss(span * bool(moved.any()))
 
     def follow(self, stamp: int, felt: Array, held: Array, moved: Array = NOWHERE) -> None:
         """Take what the sensor feels and the drives hold (5,), N, of the tick `stamp` [ns].
@@ -118,25 +120,35 @@ class HandDetector(PlainDetector):
         step, self._last = min(settings.hand_gap, seconds(stamp - self._last)), stamp
         if self._since < 0:
             self._since, self._slow, self._hand = stamp, total, -held
-            self._quick = np.tile(total, (len(self._quick), 1))
-        self._quick = self._quick + np.minimum(1.0, step / self._lags[:-1]) * (total - self._quick)
         known = seconds(stamp - self._since) - 0.5 * settings.hand_settling
         settled = known >= 0.5 * settings.hand_settling
         # The mean of the second half of the settling time, in which a grip counts little, then with a memory.
         size = settings.hand_memory if settled else max(step, known)
         calm = total if settled else _at_most(GRIP * settings.hand_level, total)
         self._slow = self._slow + step / size * (calm - self._slow)
+        self._quick = self._quick + np.minimum(1.0, step / self._lags[:-1]) * (calm - self._quick)
         both = np.minimum(sizes(felt), sizes(self._quick[0] - felt))
         self._both = np.maximum(both, np.exp(-step / self._lags) * self._both)
-        if not settled:
-            self._quick = np.tile(self._slow, (len(self._quick), 1))
-            self._hand = self._hand + min(1.0, step / max(step, known)) * (-held - self._hand)
-            return
+        if settled:
+            self._compare(step, held, moved)
+        else:
+            self._settle(step, known, held)
+
+    def _settle(self, step: float, known: float, held: Array) -> None:
+        """Judge the sum itself in the second half of the settling time, more coarsely: no mean of it is known yet."""
+        self._quick = self._quick * (known > 0.0)
+        self._hand = self._hand + min(1.0, step / max(step, known)) * (-held - self._hand)
+        limits = self._limits[:-1] + self._settings.hand_level + self._settings.hand_share * self._both[:-1]
+        self._tell(sizes(self._quick), limits)
+
+    def _compare(self, step: float, held: Array, moved: Array) -> None:
+        """Judge the sum as a change against its mean, and that mean."""
+        if not self._settled:
+            self._quick, self._settled = np.tile(self._slow, (len(self._quick), 1)), True
         doubt = sizes(np.vstack([self._quick - self._slow, self._slow]))
-        limits = self._limits + settings.hand_share * self._both
-        row, torque = np.unravel_index(np.argmax(doubt / limits), doubt.shape)
-        self._tell(float(doubt[row, torque]), float(limits[row, torque]), torque=bool(torque))
+        self._tell(doubt, self._limits + self._settings.hand_share * self._both)
         self._count(held, step, moved)
+        self._blind = max(0.0, self._blind - step)
 
     def _count(self, held: Array, step: float, moved: Array) -> None:
         """Add up the travel that the law makes while the drives feel nobody; a hand that they feel ends it.
@@ -149,10 +161,19 @@ class HandDetector(PlainDetector):
         self._alone = NOWHERE if (sizes(hand) > settings.hand_least).any() else self._alone + moved
         travel = float(np.linalg.norm(self._alone.reshape(2, 3), axis=1).sum())
         if travel / settings.hand_travel > self._found.value / self._found.limit:
-            self._found = self._found._replace(value=travel, limit=settings.hand_travel, unit="m")
+            self._found = self._found._replace(value=1e6 * travel, limit=1e6 * settings.hand_travel, unit="um")
 
-    def _tell(self, value: float, limit: float, torque: bool) -> None:
-        """Report the doubt that is nearest its limit: a force, or a torque back from its arm."""
+    def _miss(self, span: float) -> None:
+        """Add up for how long the law moves the tip while nothing is compared; as long of comparing makes up for it."""
+        self._blind += span
+        limit = self._settings.hand_blind
+        if self._blind / limit > self._found.value / self._found.limit:
+            self._found = self._found._replace(value=self._blind, limit=limit, unit="s")
+
+    def _tell(self, doubts: Array, limits: Array) -> None:
+        """Report the doubt (n, 2) that is nearest its limit: a force, or a torque back from its arm."""
+        row, torque = np.unravel_index(np.argmax(doubts / limits), doubts.shape)
+        value, limit = float(doubts[row, torque]), float(limits[row, torque])
         arm, unit = (self._settings.hand_arm, "N m") if torque else (1.0, "N")
         self._found = self._found._replace(value=value * arm, limit=limit * arm, unit=unit)
 

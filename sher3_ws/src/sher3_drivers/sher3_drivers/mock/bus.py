@@ -30,6 +30,9 @@ _BATCHES = 64
 """Batches of frames taken in by one `poll` at most."""
 
 FrameTamper = Callable[[int, bytes, int], bytes]
+Crossing = Callable[[str, Sequence[float]], Sequence[float]]
+READINGS = ("motor_position", "load_position", "demand", "effort")
+"""Columns of a plant's reading, as a drive samples them."""
 
 
 class PlantReading(Protocol):
@@ -121,6 +124,8 @@ class MockDriveBus:
         step_end: time at which the present step of the plant ends, ns; steps that are made up for have their own.
         tamper_frames: called with (channel, frames, now) for frames the drives send; returns those that go on the wire.
         tamper_received: the same for frames they are sent; called with b"" too, so that it can deliver frames later.
+        crossed: called with a column's name (`command` or one of `READINGS`) and its values (5,) between drives and
+            plant; returns them as exchanged plugs leave them.
     """
 
     def __init__(
@@ -136,6 +141,7 @@ class MockDriveBus:
         self.step_end = 0
         self.tamper_frames: FrameTamper | None = None
         self.tamper_received: FrameTamper | None = None
+        self.crossed: Crossing | None = None
         self.plant, self._clock, self._period = plant, clock, settings.period
         self._period_ns = round(settings.period * 1e9)
         self._stepped_at = clock()
@@ -266,9 +272,12 @@ class MockDriveBus:
 
     def _plant_step(self) -> list[bytes]:
         """Step the plant with the drives' demands; return the TPDOs of every drive."""
-        drives = self._in_order
-        reading = self.plant.step([drive.demand(self._period) for drive in drives])
-        columns = map(_floats, (reading.motor_position, reading.load_position, reading.demand, reading.effort))
+        drives, crossed = self._in_order, self.crossed
+        command = [drive.demand(self._period) for drive in drives]
+        reading = self.plant.step(command if crossed is None else list(crossed("command", command)))
+        columns = list(map(_floats, (reading.motor_position, reading.load_position, reading.demand, reading.effort)))
+        if crossed is not None:
+            columns = [list(crossed(name, values)) for name, values in zip(READINGS, columns, strict=True)]
         return [drive.sample(*axis) for drive, *axis in zip(drives, *columns, strict=True)]
 
     def close(self) -> None:

@@ -45,7 +45,7 @@ class Outcome:
         stop: from the onset until the tip is at rest, s; None: it did not come to rest.
         travel: largest distance of the tip from where it was at the onset, m.
         excess: largest distance of the tip from its undisturbed path, m: straight on at the speed before, with a stop
-            anywhere on it.
+            anywhere on it; of a robot that a hand leads off from rest, along the hand.
         fault: the operating state became FAULT.
         alone: how far the tip is, when the pedal is released, from where the observation ended, m; between the two the
             hand lets go, and takes hold again.
@@ -132,19 +132,29 @@ class Recording:
         stream = self._run[topic]
         return [(int(s), json.loads(text)) for s, text in zip(stream.stamp, stream.data, strict=True)]
 
-    def outcomes(self, stands: Callable[[str], float]) -> list[Outcome]:
+    def outcomes(
+        self, stands: Callable[[str], float], pushed: Callable[[str], bool] = lambda _: False
+    ) -> list[Outcome]:
         """Return one outcome for each labelled fault that was begun and ended.
 
         Args:
             stands: how close to its end the tip must stay to stand, m, by label.
+            pushed: whether the way of the tip is that of a hand which leads it off, by label.
         """
         requests = [(stamp, data) for stamp, data in self._texts("mock/fault") if data.get("label")]
         outcomes = []
         for (onset, request), (end, closing) in pairwise(requests):
             if request["fault"] != OK and closing["fault"] == OK and closing["label"] == request["label"]:
                 following = next((s for s, data in requests if s > end and data["fault"] != OK), None)
-                outcomes.append(self.outcome(request["label"], onset, end, following, stands(request["label"])))
+                name = request["label"]
+                outcomes.append(self.outcome(name, onset, end, following, stands(name), pushed(name)))
         return outcomes
+
+    def _hand(self, stamp: int) -> NDArray[np.float64]:
+        """Return the force of the hand (3,) at a time, N."""
+        told = self._run["mock/contact_wrench"]
+        force = told.force[max(0, int(np.searchsorted(told.stamp, stamp, side="right")) - 1)]
+        return np.asarray(force, dtype=np.float64)
 
     def _row(self, stamp: int, after: int = 0) -> int:
         """Return the first row at or behind a time; only forwards, so that a clock that jumps does no harm."""
@@ -157,7 +167,9 @@ class Recording:
             return self._row(stamp)
         return max(0, int(np.searchsorted(self._stamp, stamp, side="right")) - 1)
 
-    def outcome(self, label: str, onset: int, end: int, following: int | None, stands: float) -> Outcome:
+    def outcome(
+        self, label: str, onset: int, end: int, following: int | None, stands: float, pushed: bool = False
+    ) -> Outcome:
         """Return the outcome of a fault that was observed from `onset` to `end` [ns of the graph's clock].
 
         Args:
@@ -166,6 +178,7 @@ class Recording:
             end: of the observation, ns.
             following: onset of the next fault, None for the end of the bag.
             stands: how close to its last place the tip must stay to be at rest, m.
+            pushed: the way of the tip is that of the hand.
         """
         first = self._onset(onset)
         last = self._row(end, first)
@@ -173,10 +186,13 @@ class Recording:
         span = max(self._time[first] - self._time[begin], 1e-9)
         velocity = (self._tip[first] - self._tip[begin]) / span
         speed = float(np.linalg.norm(velocity))
+        moved = self._tip[first : last + 1] - self._tip[first]
         window, time = self._tip[first : last + 1], self._time[first : last + 1] - self._time[first]
         operating = self._state(onset)
         known = operating in ("", OperatingState.ENABLED)
         events = [event for event in self._events if onset <= event[0] <= end and (known or event[1] != SILENT)]
+        if operating == OperatingState.FAULT:  # found before; the newest of what was said counts from the onset on
+            events = [(onset, *event[1:]) for event in self._events if event[0] < onset and event[2]][-1:] + events
         fault = next((event for event in events if event[2]), None)
         reported = self._row(events[0][0], first) if events else last
         released, pressed, until = self._operator(last, following)
@@ -187,7 +203,7 @@ class Recording:
             detection=self._detection(events[0][0], first, last) if events else None,
             stop=_standstill(window, time, stands),
             travel=_reach(window, window[0]),
-            excess=_off_way(window - window[0], time, velocity),
+            excess=_off_hand(moved, self._hand(onset)) if pushed else _off_way(moved, time, velocity),
             fault=fault is not None,
             alone=float(np.linalg.norm(self._tip[released] - self._tip[last])),
             resumed=_reach(self._tip[pressed : until + 1], self._tip[pressed]),
@@ -244,6 +260,14 @@ def _off_way(moved: NDArray[np.float64], time: NDArray[np.float64], velocity: ND
     along = moved @ velocity / speed if speed > 0.0 else np.zeros(len(moved))
     nearest = np.clip(along, 0.0, speed * time)[:, None] * (velocity / speed if speed > 0.0 else 0.0)
     return float(np.linalg.norm(moved - nearest, axis=1).max())
+
+
+def _off_hand(moved: NDArray[np.float64], force: NDArray[np.float64]) -> float:
+    """Return the largest distance [m] from a way that begins where the tip is and goes on as the hand pushes."""
+    size = float(np.linalg.norm(force))
+    way = force / size if size > 0.0 else force
+    along = np.maximum(moved @ way, 0.0)[:, None] * way
+    return float(np.linalg.norm(moved - along, axis=1).max())
 
 
 def _standstill(tip: NDArray[np.float64], time: NDArray[np.float64], stands: float) -> float | None:

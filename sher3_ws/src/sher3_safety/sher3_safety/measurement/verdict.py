@@ -6,6 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
+from sher3_common.operating_state import OperatingState
+
 from sher3_safety.measurement.recording import STANDS, Outcome
 from sher3_safety.rows.row import AT_END, DETECTION_LIMIT, STOP_LIMIT, Row, State
 
@@ -47,9 +49,11 @@ def judge(row: Row, state: State, outcome: Outcome | None, recovered: bool = Tru
 def _misses(row: Row, state: State, o: Outcome, recovered: bool) -> Iterator[str]:
     budget = state.budget if row.budget is None else row.budget
     # Where the pedal is released, that is the onset, and the fault may have been noticed before.
-    if o.operating not in ("", state.operating) and not row.release:
-        yield f"was {o.operating} when the fault set in instead of {state.operating.value}"
-    if o.speed < 0.8 * state.speed:
+    operating = OperatingState.DISABLED if row.effect == "barred" else state.operating
+    found_before = row.since and o.operating == OperatingState.FAULT
+    if o.operating not in ("", operating) and not row.release and not found_before:
+        yield f"was {o.operating} when the fault set in instead of {operating.value}"
+    if o.speed < 0.8 * state.speed and not row.since:
         yield f"moved at {o.speed * 1e3:.2f} mm/s before the fault instead of {state.speed * 1e3:g}"
     if state.end and o.to_end > AT_END:
         yield f"{o.to_end * 100:.1f} % of its travel from its end before the fault (limit {AT_END * 100:g} %)"
@@ -59,6 +63,8 @@ def _misses(row: Row, state: State, o: Outcome, recovered: bool) -> Iterator[str
         yield from _of_an_end(row, o)
     elif row.effect == "said":
         yield from _of_a_report(row, o)
+    elif row.effect == "barred":
+        yield from _of_a_bar(row, o, budget)
     elif row.effect == "stops":
         yield from _of_a_stop(row, state, o, budget)
     elif o.excess > budget and row.effect != "residual":
@@ -102,6 +108,14 @@ def _of_a_report(row: Row, o: Outcome) -> Iterator[str]:
         yield "nobody noticed" if o.detection is None else f"noticed after {o.detection * 1e3:.0f} ms"
     elif row.reasons and o.reason not in row.reasons:
         yield f"reason {o.reason} instead of {' or '.join(row.reasons)}"
+
+
+def _of_a_bar(row: Row, o: Outcome, budget: float) -> Iterator[str]:
+    """Ask of a robot that cannot be enabled that it stays where it is."""
+    if o.travel > budget:
+        yield f"travelled {o.travel * 1e6:.0f} um (budget {budget * 1e6:.0f} um)"
+    if o.tripped:
+        yield f"tripped: {o.reason}"
 
 
 def _of_an_end(row: Row, o: Outcome) -> Iterator[str]:

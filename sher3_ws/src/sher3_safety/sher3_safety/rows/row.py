@@ -10,7 +10,8 @@ from sher3_common.operating_state import OperatingState
 from sher3_description import ACTUATORS
 from sher3_faults.requests import FaultRequest, make_request
 
-Effect = Literal["stops", "goes on", "either", "residual", "ends", "said"]
+Effect = Literal["stops", "goes on", "either", "residual", "ends", "said", "barred"]
+Since = Literal["", "enabling", "recovery"]
 DETECTION_LIMIT, STOP_LIMIT = 0.050, 0.100
 """Longest times [s] from the onset of a fault to the first reaction and to rest. In 50 ms the tip travels the whole
 budget: 250 um at 5 mm/s, 25 um at 0.5 mm/s."""
@@ -82,7 +83,9 @@ class Row:
             undisturbed path. `either`: chance decides between the two. `residual`: no detector can see the fault, so
             the travel is only stated. `ends`: the emulated robot itself has ended and there is no tip to measure; the
             fault must be reported, and FAULT entered, in time. `said`: no software can stop it; it is reported in time
-            and for one of `reasons`, and the travel is stated.
+            and for one of `reasons`, and the travel is stated. `barred`: the robot cannot be enabled.
+        since: the fault is there before the robot is enabled, or before it is recovered from another stop; then the
+            hand comes, and what counts is how far the tip is off the way of the hand from the first press on.
         duration: of the fault, s; None: until it is taken away.
         reasons: the first reported reason, or that of the FAULT (`ends`), must be one of these; empty where nobody
             needs to notice (`goes on`).
@@ -117,6 +120,7 @@ class Row:
     beside: Row | None = None
     after: float = 0.0
     loses: str = ""
+    since: Since = ""
     states: tuple[State, ...] = STATES
     why: str = ""
 
@@ -126,6 +130,7 @@ class Row:
         parts = [f"{name} {value:g}" for name, value in self.parameters.items()]
         name = f"{self.component} {self.fault}" + (f" ({', '.join(parts)})" if parts else "")
         lost = f", {self.loses} lost" if self.loses else ""
+        lost += f", there at {self.since}" if self.since else ""
         lost += f", {self.after * 1e3:g} ms later {self.beside.name}" if self.beside else ""
         return name + ", pedal released" * self.release + ", hand gone" * self.lets_go + lost
 
@@ -139,13 +144,13 @@ class Row:
         return f"{self.name} | {state.name}"
 
     def request(self, seed: int, label: str, start: float = 0.0) -> FaultRequest:
-        """Return what is sent on `mock/fault`, for a fault that begins `start` s later."""
+        """Return what is sent on `mock/fault`, for a fault that begins `start` s later; one that is there stays."""
         return make_request(
             component=self.component,
             fault=self.fault,
             parameters=dict(self.parameters),
             start=start,
-            duration=self.duration,
+            duration=None if self.since else self.duration,
             seed=seed,
             label=label,
         )

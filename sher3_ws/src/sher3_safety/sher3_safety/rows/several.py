@@ -21,6 +21,8 @@ BITS = {"remote": 0x200, "voltage": 0x10, "follows": 0x1000, "limit": 0x800}
 """Bits of the statusword that say that a drive does not do as it is told."""
 FREELY = "at 5 mm/s, where 250 um is the budget; near tissue 0.5 mm/s is the cap and 14 um the travel"
 ALONG = "the tip goes where the hand pushes, only faster"
+BLIND = "0.12 s of motion in which nothing can be compared"
+SHAKES = "2 um are no fault to the encoders' own check; the robot may stop since nothing can be compared"
 NO_POWER = (
     "a motor that turns without being enabled has lost its power stage or is turned by something else: the driver says "
     "so, sends `disable voltage` and withholds its heartbeat; only safe torque off stops it"
@@ -73,6 +75,7 @@ def _lively() -> Iterator[Row]:
               quick=True)  # fmt: skip
     yield Row("force_sensor", "wrong", {"scale": -1.0}, reasons=DOUBTFUL, states=(LIMIT,), slow=True)
     yield from _forces()
+    yield from _blinded()
     for first in (0.0, 1.0):
         yield Row(f"{AXIS}.up", "contradicted", {"first": first}, reasons=("DRIVE_TWICE", "DRIVE_RESTARTED"))
 
@@ -97,6 +100,16 @@ def _forces() -> Iterator[Row]:
     yield Row("force_sensor", "turn", {"angle": 1.57}, reasons=DOUBTFUL, states=(FIRM, LIMIT), slow=True)
     yield Row("force_sensor", "ramp", {"rate": 1.0}, reasons=DOUBTFUL, states=(FIRM,), slow=True, duration=1.5,
               budget=250e-6, why=ALONG)  # fmt: skip
+
+
+def _blinded() -> Iterator[Row]:
+    """Yield an encoder that jitters as the hand leaves a sensor that stays: nothing can be compared then."""
+    for size in (1e-6, 2e-6, 5e-6):
+        yield Row("force_sensor", "held", reasons=DOUBTFUL, states=(FIRM,), lets_go=True, duration=0.4, slow=True,
+                  beside=Row(f"{AXIS}.encoders", "jitter", {"size": size}, duration=0.4), budget=100e-6, why=BLIND,
+                  quick=size == 2e-6)  # fmt: skip
+    yield Row(f"{AXIS}.load_encoder", "jitter", {"size": 2e-6}, reasons=DOUBTFUL, slow=True, duration=0.4,
+              states=(FIRM, LIMIT), effect="either", why=SHAKES)  # fmt: skip
 
 
 SEVERAL = (*_creeps(), *_encoders(), *_words(), *_lively())

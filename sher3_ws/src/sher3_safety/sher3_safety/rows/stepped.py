@@ -12,6 +12,7 @@ from sher3_safety.rows.row import IDLE, STILL, Row
 from sher3_safety.rows.several import SEVERAL
 from sher3_safety.rows.slow import SLOW
 from sher3_safety.rows.together import TOGETHER
+from sher3_safety.rows.wiring import WIRING
 
 AXIS = ACTUATORS[0]
 CURRENT = "the newest sample in time is the one that counts"
@@ -200,7 +201,7 @@ CLOCK = (
         for name in ("admittance", "kinematics")
     ),
 )
-ROWS = (*FORCE, *PEDAL, *LINES, *ENCODERS, *DRIVE, *SLOW, *SEVERAL, *TOGETHER, *PROCESSES, *CLOCK)
+ROWS = (*FORCE, *PEDAL, *LINES, *ENCODERS, *DRIVE, *SLOW, *SEVERAL, *TOGETHER, *WIRING, *PROCESSES, *CLOCK)
 """All rows, by component."""
 
 

@@ -40,6 +40,10 @@ pressed again."""
 LEAVES = {OperatingState.PAUSED: StateCommand.PAUSE.value, OperatingState.DISABLED: StateCommand.DISABLE.value}
 """Commands that lead from ENABLED to the states in which a fault sets in."""
 ENABLE_TRIES, ENABLE_TICKS = 16, 30
+GRACE = 300
+"""Ticks after a recovery until the supervisor listens to the motor driver again, and some more."""
+STOPS = {"code": float(0x8611)}
+"""EMCY with which a drive stops the robot that is then recovered."""
 TRAVEL = 4e-3
 """Travel of the sliders to either side [m] where the robot has to be at the end of it: the real end is 38 mm and 8 s
 away at the speed limit."""
@@ -80,7 +84,9 @@ class MatrixRun:
         if state.operating is not OperatingState.ENABLED:
             operator.command(LEAVES[state.operating])
             self.graph.step(SETTLE)
-        if row.release:
+        if row.since:
+            self._enable_under(row, state, label)
+        elif row.release:
             self._release_under(row, label)
         else:
             self.inject(row.request(self.seed, label).to_json())
@@ -129,6 +135,31 @@ class MatrixRun:
         self.inject(note.to_json())
         self.operator.pedal = 0.0
 
+    def _enable_under(self, row: Row, state: State, label: str) -> None:
+        """Enable the robot with the fault there, let the hand come, and measure from the first press of the pedal on.
+
+        What was noticed at once is cleared first, as somebody would who does not ask why.
+        """
+        operator, hand = self.operator, (self.operator.force, self.operator.across)
+        operator.force = operator.across = operator.pedal = 0.0
+        if row.since == "recovery":
+            self.inject(make_request(component="roll.demand", fault="wrong", duration=0.01, parameters=STOPS).to_json())
+            self.graph.step(SETTLE)
+        else:
+            self._disable()
+        self.inject(row.request(self.seed, "").to_json())
+        self._disable()
+        self.enable(2)
+        operator.force, operator.across = hand
+        self.graph.step(HELD)
+        self.inject(make_request(component="process.plant", fault=OFF, label=label).to_json())
+        operator.pedal = state.pedal
+
+    def _disable(self) -> None:
+        """Disable or recover the robot, and wait until the motor driver's reports count again."""
+        self.operator.command(StateCommand.DISABLE.value)
+        self.graph.step(GRACE)
+
     def inject(self, request: str) -> None:
         """Send a request for a fault, and let it arrive."""
         self.operator.inject(request)
@@ -157,9 +188,9 @@ class MatrixRun:
         self.graph.step(RELEASED)
         return True
 
-    def enable(self) -> bool:
-        """Enable the robot; return whether it is."""
-        for _ in range(ENABLE_TRIES):
+    def enable(self, tries: int = ENABLE_TRIES) -> bool:
+        """Enable the robot, in some tries at most; return whether it is."""
+        for _ in range(tries):
             self.operator.command(StateCommand.ENABLE.value)
             self.graph.step(ENABLE_TICKS)
             if self.operator.state == OperatingState.ENABLED:
@@ -223,6 +254,12 @@ def _tick_through(fault: Kind, call: Callable[[int], None], stamp: int) -> None:
         call(told)
 
 
+def _pushed(cells: Sequence[Cell]) -> Callable[[str], bool]:
+    """Return which labels are of cells in which a robot is led off by a hand after it was enabled."""
+    labels = {row.label(state) for row, state in cells if row.since}
+    return labels.__contains__
+
+
 def _stands(label: str) -> float:
     return STANDS * next(state.budget for state in (*STATES, *FURTHER) if label.endswith(f"| {state.name}"))
 
@@ -256,7 +293,8 @@ def _run_all(
     while left:
         bag = f"{name}-{number}" if number else name
         count = _run_some(bag, left, robot, folder, seed, composed)
-        for outcome in Recording(read_run(folder / bag, check=False), robot, robot.control_period).outcomes(_stands):
+        recording = Recording(read_run(folder / bag, check=False), robot, robot.control_period)
+        for outcome in recording.outcomes(_stands, _pushed(left)):
             found[outcome.label] = outcome
         left, number = left[count:], number + 1
     return found
