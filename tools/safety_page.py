@@ -11,7 +11,7 @@ INTRODUCTION = """# Safety matrix
 
 The table of the faults, as `sher3 safety` writes it into `report.md` of its folder (`--out`, by default
 `bags/safety`); `tools/safety_page.py` makes this page of it. What a cell is, when it holds and how it is measured
-stands in [safety](safety.md); why some rows go on stands in the report.
+stands in [matrix](matrix.md); why some rows go on stands in the report.
 
 """
 WIDTH = 118

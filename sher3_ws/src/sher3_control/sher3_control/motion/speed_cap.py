@@ -1,7 +1,7 @@
 """How fast the tip may move: two regimes with a travel budget each, and the bench, where nobody is near the tool.
 
 `near_tissue` and `free` cap the speed of the tip in every mode. Their caps follow from the time that a stop takes
-(docs/reference/safety.md, `sher3_faults.budget`). `bench` knows no cap but those of the actuators; it is for
+(docs/reference/travel.md, `sher3_faults.budget`). `bench` knows no cap but those of the actuators; it is for
 excitations and calibration, and is chosen at the start, never while the robot runs.
 """
 

@@ -48,7 +48,7 @@ PATIENCE, RUN_LIMIT = 20.0, 900.0
 """Seconds: longest start of a robot; and of all cases together, after which further ones are not begun."""
 HAND_GAP = 100_000_000
 """Longest silence of the surgeon, ns. After 0.2 s the plant lets hand and foot go, and the tip gives way a little, see
-`docs/reference/safety.md`: that is no motion of the robot's own."""
+`docs/reference/wall-faults.md`: that is no motion of the robot's own."""
 
 
 def run_wall(
