@@ -49,13 +49,14 @@ def test_three_guards_are_missed_when_they_are_gone():
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(2000)
+@pytest.mark.timeout(7500)
 def test_every_guard_is_missed_when_it_is_gone():
-    run = mutate(timeout=1800)
+    """The limits of time are for a core that other work shares."""
+    run = mutate(timeout=7200)
     assert run["guards"] == run["killed"] >= 90
 
 
-def mutate(*arguments: str, timeout: float = 120.0) -> dict:
+def mutate(*arguments: str, timeout: float = 280.0) -> dict:
     command = [sys.executable, str(TOOL), "--json", *arguments]
     options = {"env": child_environment(), "capture_output": True, "text": True, "timeout": timeout}
     done = subprocess.run(command, check=False, **options)

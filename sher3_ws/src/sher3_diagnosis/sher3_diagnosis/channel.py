@@ -57,7 +57,7 @@ class Residual:
         return np.sqrt(np.mean(self.values[self.ok] ** 2, axis=0))
 
     def relieved(self, values: Array, at: Mask | None = None) -> Array:
-        """Take the free share of the mean and what is not told off (n, ...) values of one run.
+        """Subtract the free share of the mean, and undetermined components, from (n, ...) values of one run.
 
         Args:
             values: at the samples of a mask.
@@ -69,11 +69,11 @@ class Residual:
         return self.centred(values)
 
     def centred(self, values: Array) -> Array:
-        """Take the free share of the mean off (n, ...) values of one run."""
+        """Subtract the free share of the mean from (n, ...) values of one run."""
         return values - self.free_mean * values.mean(axis=0) if self.free_mean else values
 
     def wholly_told(self) -> Residual:
-        """Return the residual with those samples alone that tell all of their components."""
+        """Return the residual with only those samples that determine all of their components."""
         if self.told is None:
             return self
         whole = np.all(self.told == np.eye(self.values.shape[1]), axis=(1, 2))
@@ -85,7 +85,7 @@ class Residual:
         return 0.0 < self.free_mean < 1.0
 
     def restored(self, values: Array) -> Array:
-        """Put back what `relieved` took off, where a share remains that tells it."""
+        """Add back what `relieved` subtracted, where a share remains that determines it."""
         if not self.partly_free:
             return values
         return values + self.free_mean / (1.0 - self.free_mean) * values.mean(axis=0)

@@ -67,7 +67,7 @@ class Machine(ABC, Generic[R, E]):
         return self.library()
 
     def audit(self, runs: Sequence[R]) -> list[str]:
-        """Refuse runs no answer could rest on; return a sentence for each thing that narrows the answer."""
+        """Refuse runs that cannot support an answer; return a sentence for each thing that narrows the answer."""
         return []
 
     def exact(self, runs: Sequence[R], evidence: Sequence[E], without: Collection[str]) -> list[ExactFinding]:
@@ -79,14 +79,14 @@ class Machine(ABC, Generic[R, E]):
         return attribute(candidates, left_over, say)
 
     def refine(self, evidence: E, causes: list[Cause], attribution: Attribution) -> tuple[E, list[Cause]]:
-        """Improve a part's causes, and nominal constants found from the data, by means the fit does not have.
+        """Improve a part's causes, and nominal constants found from the data, beyond what the fit can do.
 
         Default: both as they are.
         """
         return evidence, causes
 
     def within(self, finding: Finding[E]) -> list[Within]:
-        """Return what one part deviates by within its tolerances; default what the terms that are no causes say."""
+        """Return a part's deviations within its tolerances; default those of the terms that are no causes."""
         return within(finding.evidence.data, finding.attribution.fit)
 
     def remarks(self, finding: Finding[E]) -> list[str]:
@@ -98,5 +98,5 @@ class Machine(ABC, Generic[R, E]):
         return None
 
     def reporter(self) -> Reporter[E]:
-        """Return what a report shows that only this machine knows; default nothing."""
+        """Return the machine's own sections of the report; default none."""
         return Reporter()

@@ -1,4 +1,4 @@
-"""What a report shows that only the machine knows.
+"""The machine's own sections of the report.
 
 The report itself is the same for every machine. A machine hands it a `Reporter`; each default suits a machine about
 which nothing particular is to be said, so a new machine needs none of its own.

@@ -1,4 +1,4 @@
-"""Ranges for randomisation: where each constant lies with 90 %, rivals included, and what the causes leave."""
+"""Ranges for randomisation: 90 % interval of each constant, rivals included, and the residual of the causes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the commands show while they work, and the answer of a diagnosis as text."""
+"""Progress of the commands, and the answer of a diagnosis as text."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""LeRobot data sets in one call: what the joints were told against what they did."""
+"""LeRobot data sets in one call: commands of the joints against their motion."""
 
 from __future__ import annotations
 

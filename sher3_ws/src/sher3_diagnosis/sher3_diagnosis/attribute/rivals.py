@@ -69,7 +69,7 @@ def with_rivals(candidates: Candidates, current: Fit) -> Attribution:
 
 
 def unlikeness(rival: Fit, chosen: Fit, worth: float) -> float:
-    """Return how far a rival is from explaining as much as the chosen effect; below 1 it does, all but a share.
+    """Return the normalised loss difference of a rival to the chosen effect; below 1 it explains as much.
 
     The share is of the gap with its floor: rounding repeats, so that a small part of the floor is no evidence. At the
     tip there is none.

@@ -1,4 +1,4 @@
-"""Whether a cause has one size in every excitation, and holds in one left out: an effect does, a stand-in does not.
+"""Parameter constancy: whether a cause has one size in every excitation, and predicts an excitation left out.
 
 Letting the coefficients of a cause differ from excitation to excitation explains hardly more when its law is right.
 The share it explains more is the parameter's spread, weighted by what each excitation tells of it.
@@ -20,7 +20,7 @@ from sher3_diagnosis.thresholds import CERTAIN, CONSTANT, INFORMED
 
 @dataclass(frozen=True)
 class Steadiness:
-    """What each run tells of the coefficients of one cause, the other causes as fitted.
+    """What each run determines of the coefficients of one cause, the other causes as fitted.
 
     Attributes:
         excitation: of every run.
@@ -45,7 +45,7 @@ class Steadiness:
 
     @cached_property
     def varying(self) -> float:
-        """Loss that it explains in addition with coefficients of its own in every excitation."""
+        """Loss that it explains in addition when each excitation has coefficients of its own."""
         return self.gained(self.excitation) - self.explained
 
     @property
@@ -104,7 +104,7 @@ def _explained(normal: Array, right: Array, coefficients: Array) -> float:
 
 
 def steadiness_of(evidence: Evidence, fit: Fit, index: int) -> Steadiness:
-    """Return what every run tells of one cause of a fit."""
+    """Return what every run determines of one cause of a fit."""
     data, term = evidence.data, fit.terms[index]
     offsets = np.cumsum([0, *(t.width for t in fit.terms)])
     normal = np.zeros((len(data.target), term.width, term.width))

@@ -18,7 +18,7 @@ from sher3_diagnosis.thresholds import NEEDED, PARSIMONY, PRICE
 
 
 def grow(candidates: Candidates, effects: Sequence[Effect], current: Fit) -> Fit:
-    """Add the error that lowers the held-out loss most while it is worth its price, then drop those nobody misses.
+    """Add the error that lowers the held-out loss most while it pays its price, then drop those that no longer pay.
 
     Args:
         candidates: the evidence, and the sites effects may sit on.

@@ -1,4 +1,4 @@
-"""All plain laws of a place fitted at once, then those dropped that nobody misses on parts left out.
+"""All plain laws of a place fitted at once, then pruned by the loss on parts left out.
 
 A search that takes one cause at a time gives the first one a part of the others: a dry friction takes a weight's, and
 none of several alike explains enough of the gap alone. Together each has its own.
@@ -64,7 +64,7 @@ def _vanishes(term: Term) -> bool:
 
 
 def worth_of(term: Term, explained: float, left: float) -> float:
-    """Return the held-out loss that a cause must be worth: the price of its numbers, and what laws are off by.
+    """Return by how much a cause must lower the held-out loss: its parameters' price and the error laws are allowed.
 
     Laws are off by a share of what they explain, but of plain ones together hardly by more than they leave.
     """
@@ -72,7 +72,7 @@ def worth_of(term: Term, explained: float, left: float) -> float:
 
 
 def pruned(evidence: Evidence, current: Fit, left_over: Left, relative: bool) -> Fit:
-    """Drop a cause whose loss nobody misses; of equals, the one that was chosen last. One cause is kept.
+    """Drop a cause whose removal costs nothing; of equals, the one that was chosen last. One cause is kept.
 
     Args:
         evidence: that the fit is of.

@@ -133,7 +133,7 @@ class Search:
         return out
 
     def run(self, suggest: Suggest) -> Found:
-        """Add groups as long as they are worth it, then drop what is not missed."""
+        """Add groups while each pays its price in held-out loss, then drop those that no longer do."""
         null = float(sum(np.sum(self.target(r) ** 2) for r in self.runs))
         excess = max(null - sum(len(self.target(r)) for r in self.runs), 1.0)
         groups: list[Group] = []

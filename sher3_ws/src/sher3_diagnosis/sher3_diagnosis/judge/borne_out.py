@@ -24,7 +24,7 @@ from sher3_diagnosis.verdict import Imitation
 def significant_causes(
     evidence: Evidence, attribution: Attribution, left: Callable[[Fit], Collection[Channel]]
 ) -> Attribution:
-    """Return the attribution without causes that are not told, where their gap stays closed without them.
+    """Return the attribution without insignificant causes, where their gap stays closed without them.
 
     Such a cause is worth next to nothing, and an effect of another family, where nobody can tell which, is worth as
     much: what the law of a larger cause leaves out.
@@ -38,7 +38,7 @@ def significant_causes(
 
 
 def untold(evidence: Evidence, attribution: Attribution, index: int) -> bool:
-    """Return whether a cause is worth less than laws are off by, and as much as one of another family."""
+    """Return whether a cause gains less than laws may be off by, and no more than one of another family would."""
     family = attribution.fit.terms[index].effect.family
     others = any(f.terms[-1].effect.family != family for f in attribution.rivals[index])
     whole = evidence.null().total - attribution.fit.total
@@ -46,7 +46,7 @@ def untold(evidence: Evidence, attribution: Attribution, index: int) -> bool:
 
 
 def without_imitations(finding: Finding, free_laws: bool) -> Finding:
-    """Return a finding whose causes are borne out; the others are its imitations, and their gaps are left.
+    """Return a finding with only the causes that the data bear out; the others become imitations.
 
     Args:
         finding: on a part of a machine.

@@ -76,7 +76,7 @@ def _where(finding: Finding, channel: Channel, gap: Gap) -> Where:
 
 
 def ordered(causes: list[Cause], findings: list[Finding]) -> list[Cause]:
-    """Return the causes with most closure first; what another cause accompanies or brings to light comes after it."""
+    """Return the causes with most closure first; a companion comes after the cause that it shows beside."""
     terms = [t for f in findings for t in f.attribution.fit.terms]
     behind = {(t.effect.companion, t.site) for t in terms if t.effect.companion}
     have = {(t.effect.family, t.site) for t in terms}

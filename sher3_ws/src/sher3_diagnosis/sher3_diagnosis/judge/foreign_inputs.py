@@ -1,4 +1,4 @@
-"""What the causes of a gap leave, told by inputs that none of them may depend on: then another law is at work.
+"""Whether inputs that no cause may depend on predict what the causes leave: then another law is at work.
 
 A remainder that follows a cause's own inputs is the shape of its law. One that follows other quantities of the same
 place, predicted for parts of the record that were not looked at, belongs to a law that the library does not have; the
@@ -25,7 +25,7 @@ OF_FAMILY: Mapping[str, tuple[str, ...]] = {"friction": ("direction", "velocity"
 
 @dataclass(frozen=True)
 class Foreign:
-    """What free laws take off a remainder, as mean squares per sample in squares of the floor.
+    """By how much free laws reduce a residual: mean squares per sample, in squares of the floor.
 
     Attributes:
         gap: what there is without any cause.
@@ -41,17 +41,17 @@ class Foreign:
 
     @property
     def size(self) -> float:
-        """Size of the part that only other quantities tell, over that of the gap."""
+        """Size of the part that only other quantities predict, over that of the gap."""
         return float(np.sqrt(max(self.own - self.other, 0.0) / self.gap))
 
     @property
     def share(self) -> float:
-        """Share of what own inputs leave above the floor that other quantities tell."""
+        """Share of what the cause's own inputs leave above the floor that other quantities predict."""
         return (self.own - self.other) / max(self.own - 1.0, 1e-9)
 
 
 def foreign_in(evidence: Evidence, attribution: Attribution, channel: Channel) -> Foreign | None:
-    """Return what other inputs tell of a remainder; None where a view does not tell the quantities of its place."""
+    """Return how well other inputs predict a residual; None where a view lacks the quantities of its place."""
     terms = [attribution.fit.terms[i] for i in attribution.causes if channel in attribution.fit.terms[i].channels]
     left = residual_after(evidence, attribution.fit, channel)
     if not terms or not left or not all(hasattr(evidence.views[r], "quantities") for r in left):

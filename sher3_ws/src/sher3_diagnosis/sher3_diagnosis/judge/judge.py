@@ -158,7 +158,7 @@ def _unexplained(
 
 
 def _reproduced(stage: ExactFinding, calibration: Calibration | None, costs: Costs) -> bool:
-    """Whether the causes of an exact stage are its causes."""
+    """Whether the causes named at an exact stage reproduce its error."""
     if calibration is None:
         return stage.closure.value >= REPRODUCED
     return answer_to_exact(reproduced(stage, calibration), costs) == LIBRARY

@@ -21,7 +21,7 @@ from sher3_diagnosis.thresholds import AGREEMENT
 
 @dataclass(frozen=True)
 class Share:
-    """One regime's share of what a cause takes off the loss of held-out runs, predicted and realised."""
+    """One regime's share of a cause's reduction of held-out loss, predicted and realised."""
 
     family: str
     regime: str
@@ -58,7 +58,7 @@ class Pattern:
 
 
 def pattern_of(evidence: Evidence, fit: Fit, index: int) -> Pattern:
-    """Compare where one cause of a fit says the gap is with where held-out runs lose it."""
+    """Compare where a cause predicts the gap with where held-out runs lose it, regime by regime."""
     sums: dict[tuple[str, str], Array] = defaultdict(lambda: np.zeros(2))
     for run in range(len(evidence.views)):
         for channel in fit.terms[index].channels & evidence.data.target[run].keys():

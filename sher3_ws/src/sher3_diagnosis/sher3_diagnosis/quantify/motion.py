@@ -1,4 +1,4 @@
-"""A fit on the samples in which no dry friction rests: at rest it holds whatever is needed, and tells no level.
+"""A fit on the samples in motion: a dry friction at rest takes any force up to its level and does not show it.
 
 What the law predicts there is its level or less, by a history that nobody recorded. Fitted along, such samples pull the
 level of a friction down, and its fall with the speed with it.
@@ -64,7 +64,7 @@ def in_motion(evidence: Evidence, found: Fit) -> InMotion | None:
 
 
 def rests_of(evidence: Evidence, found: Fit, index: int) -> Rests:
-    """Return where a cause holds anything up to its level; empty where it does so nowhere."""
+    """Return where a cause may take any force up to its level; empty where it may nowhere."""
     term, out = found.terms[index], {}
     for r, view in enumerate(evidence.views):
         level = term.effect.held(view, term.site, term.shape, found.of(index))

@@ -61,7 +61,7 @@ def least_widths(evidence: Evidence, fit: Fit, index: int) -> dict[str, float]:
 
 
 def hidden_share(evidence: Evidence, fit: Fit, index: int) -> float:
-    """Return the relative error of a cause's parameters that what its law leaves may hide."""
+    """Return the relative error of a cause's parameters that the residual of its law allows."""
     without = without_term(evidence, fit, index)  # what it leaves below the floor shows nowhere
     gaps = (gap_of(evidence, c, residual_after(evidence, without, c)) for c in fit.terms[index].channels)
     ratio = max((g.ratio for g in gaps if g is not None), default=1.0)

@@ -1,4 +1,4 @@
-"""What a cause leaves of a gap, and no less: where nothing recorded tells its law's state, only what is beyond it."""
+"""What a cause leaves of a gap: where the state of its law was not recorded, only what exceeds the law's level."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How much of the motion a randomised model covers, on windows that its remainder was not set on."""
+"""How much of the motion a randomised model covers, on windows that were not used to set its residual scatter."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ class Scatter(NamedTuple):
     width: float = 1.0
 
     def times(self, factor: float) -> Scatter:
-        """Return a wider or narrower scatter; below none at all the parameters vary less, from -1 on by nothing."""
+        """Return a scatter scaled by a factor; a negative one narrows the parameters too, and -1 leaves none."""
         more = max(factor, 0.0)
         return Scatter(more * self.speed, more * self.force, more * self.reading, min(1.0, 1.0 + factor))
 
@@ -184,6 +184,6 @@ def drawn_model(bench: Bench, ranges: Ranges, joints: Mapping[str, str], rng: np
 
 
 def force_scale(error: Array, period: float) -> float:
-    """Return a force that shows: any but zero would do for a linear joint, dry friction needs one that moves it."""
+    """Return a force for a trial run: any but zero for a linear joint, one that overcomes dry friction otherwise."""
     duration = error.shape[1] * period
     return max(PUSH, float(np.abs(error).max()) / duration**2)

@@ -1,4 +1,4 @@
-"""The motion of another machine that tells its constants apart best, among many within what it was seen to do."""
+"""The motion that tells the constants of another machine apart best, among many within its recorded reach."""
 
 from __future__ import annotations
 

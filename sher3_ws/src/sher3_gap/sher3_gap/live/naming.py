@@ -70,7 +70,7 @@ class Naming:
     pending: Future[Named | None] | None = None
 
     def look(self, stamp: int, gap: bool) -> Named | None:
-        """Return what is named, or None; a name stays until the gap is gone.
+        """Return the causes named now, or None; a name stays until the gap is gone.
 
         Args:
             stamp: now, ns.
@@ -110,7 +110,7 @@ class Naming:
 
 
 def pieces(run: RunSignals, parts: int = PIECES) -> list[RunSignals]:
-    """Return a run cut into parts of equal length, each under a name of its own: none repeats another."""
+    """Return a run cut into parts of equal length, each under its own name, so that none counts as a repeat."""
     edges = np.linspace(0, run.ticks, parts + 1).astype(int)
     return [_piece(run, k, a, b) for k, (a, b) in enumerate(pairwise(edges))]
 

@@ -44,7 +44,7 @@ class SherReporter(Reporter[SherEvidence]):
         return entry.purpose if entry else ""
 
     def isolability(self, parts: Sequence[SherEvidence]) -> Isolability:
-        """Return what the recorded topics can tell apart."""
+        """Return which effects the recorded topics can tell apart."""
         return isolability_of(parts[0].runs)
 
     def run_name(self, evidence: SherEvidence, run: int) -> str:

@@ -1,4 +1,4 @@
-"""What was recorded of a case: topics, runs, and what the topics can tell apart at all."""
+"""What was recorded of a case: topics, runs, and which effects the topics can tell apart."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def recorded_topics(runs: Sequence[RunSignals]) -> set[str]:
 
 
 def isolability_of(runs: Sequence[RunSignals]) -> Isolability:
-    """Return what the topics of these runs can tell apart."""
+    """Return which effects the topics of these runs can tell apart."""
     topics = recorded_topics(runs)
     found = structure(topics)
     return Isolability(sorted(topics), found.groups, found.invisible)

@@ -1,4 +1,4 @@
-"""What the recorded topics can tell apart at all: structural isolability, computed before anything is fitted.
+"""Structural isolability: which effects the recorded topics can tell apart, computed before anything is fitted.
 
 One DAE of the signal chain with one fault per effect, analysed by its Dulmage-Mendelsohn decomposition (see
 `overdetermined`). Effects in one group show in the same equations: only the *shape* of their signature (over speed,
@@ -100,7 +100,7 @@ def _analyse(topics: frozenset[str]) -> Structure:
 
 
 def structure(topics: Collection[str], known_load: bool = True) -> Structure:
-    """Analyse what the recorded topics can tell apart.
+    """Analyse which effects the recorded topics can tell apart.
 
     Args:
         topics: names relative to `/sher3`; those that no equation uses are ignored.

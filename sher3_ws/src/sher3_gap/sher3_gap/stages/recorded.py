@@ -1,4 +1,4 @@
-"""Whatever a run tells that the law of an unknown gap might depend on, with units and names."""
+"""All recorded quantities of a run that the law of an unknown gap might depend on, with units and names."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""`sher3 gap check`: logs held against what they said when they were good."""
+"""`sher3 gap check`: logs compared with a baseline."""

@@ -1,4 +1,4 @@
-"""Logs and what they say now, one by one on this machine or a cluster."""
+"""Logs diagnosed one by one, on this machine or a cluster."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`sher3 gap compare-simulators`: where two simulators that were told the same part."""
+"""`sher3 gap compare-simulators`: where two simulators differ that were given the same commands."""
 
 from __future__ import annotations
 

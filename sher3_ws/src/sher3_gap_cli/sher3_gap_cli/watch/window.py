@@ -28,7 +28,7 @@ class State(NamedTuple):
 
 
 class Command(NamedTuple):
-    """What the joints were told from a stamp on, s."""
+    """Command of the joints from a stamp on, s."""
 
     stamp: float
     values: tuple[float, ...]
@@ -64,7 +64,7 @@ class Window:
         return not self.states or since < 0.0 or since >= (1.0 - EARLY) * self.period
 
     def state(self, stamp: float, names: Sequence[str], position: Sequence[float], effort: Sequence[float]) -> None:
-        """Take joint states; of joints that the model has not nothing is kept, and without one of its own the state."""
+        """Take joint states; joints that the model lacks are ignored, and so is a state without any of its joints."""
         self.heard += 1
         if self.states and stamp < self.states[-1].stamp:  # the clock went back: another run
             self.states.clear()

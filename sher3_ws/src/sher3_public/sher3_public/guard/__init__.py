@@ -1,1 +1,1 @@
-"""A guard: what a new answer has that an older one of the same robot had not."""
+"""A guard: compares a new diagnosis of a robot with an older one."""

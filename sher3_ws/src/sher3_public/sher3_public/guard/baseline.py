@@ -1,4 +1,4 @@
-"""What a log said when it was good: the verdict, and the floor of every place, also of those without a gap."""
+"""A baseline entry: the verdict of a good log, and the floor of every place, with or without a gap."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class Baseline(BaseModel):
     logs: dict[str, Entry]
 
     def entry(self, log: str) -> Entry:
-        """Return what a log said; a single log stands for all. Raises InputError where the baseline has no such log."""
+        """Return the entry of a log; one entry serves all. Raises InputError where the baseline has no such log."""
         found = self.logs.get(log)
         if found is None and len(self.logs) == 1:
             return next(iter(self.logs.values()))
@@ -68,7 +68,7 @@ class Baseline(BaseModel):
 
 
 def entry_of(diagnosis: Diagnosis[Any]) -> Entry:
-    """Return what a diagnosis says, for comparison with another one."""
+    """Return a diagnosis as a baseline entry."""
     floors: dict[str, Floor] = {}
     for finding in diagnosis.findings:
         units: Any = finding.evidence.units

@@ -1,4 +1,4 @@
-"""What is worse than it was: a cause or a place that is new, a cause that grew beyond its interval, a higher floor."""
+"""What is worse than the baseline: a new cause or place, a cause that grew beyond its interval, a higher floor."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Worse(NamedTuple):
 
 
 def worse(baseline: Entry, now: Entry, allowed: float = ALLOWED) -> list[Worse]:
-    """Return what an answer has that the baseline had not; nothing where it is as good or better.
+    """Return what is worse than the baseline; nothing where the answer is as good or better.
 
     Args:
         baseline: what was said when it was good.

@@ -1,1 +1,1 @@
-"""Two simulators, or two versions of one, told the same: where they part, and by which setting or effect."""
+"""Two simulators, or versions of one, given the same commands: where they differ, and by which setting or effect."""

@@ -67,7 +67,7 @@ class Comparison:
 def compare_simulators(
     first: Any, second: Any, model: object = None, names: tuple[str, str] = ("first", "second")
 ) -> Comparison:
-    """Say where two simulators that were told the same part, and why.
+    """Say where two simulators differ that were given the same commands, and why.
 
     Args:
         first: table of the reference: `time` (n,), s; `ctrl` (or `reference`) and `qpos` (or `position`), (n, k); what

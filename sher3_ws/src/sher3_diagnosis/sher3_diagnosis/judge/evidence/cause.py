@@ -45,7 +45,7 @@ class CauseEvidence:
             None on a machine whose views do not tell them.
         place: of all quantities of its place.
         anything: of whatever was recorded anywhere, and its past.
-        spread: share that coefficients of their own for every excitation add.
+        spread: relative gain from fitting each excitation separately.
         scatter: how much more the coefficients differ between excitations than between repeats (F).
         lost: share lost in excitations left out of the fit.
         mismatch: between the regimes where the cause says the gap is and where it is: 0 to 1.

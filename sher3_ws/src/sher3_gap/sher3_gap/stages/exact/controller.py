@@ -1,4 +1,4 @@
-"""Causes in the host's control law: another position gain, told by computing the law again."""
+"""Causes in the host's control law: another position gain, found by computing the law again."""
 
 from __future__ import annotations
 

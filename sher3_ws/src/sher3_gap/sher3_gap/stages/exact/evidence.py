@@ -1,4 +1,4 @@
-"""Evidence for an exact stage, for discovery alone: what a law that nobody knows could do to a command.
+"""Evidence for an exact stage, for discovery alone: how an unknown law could change a command.
 
 The stage's error is computed to rounding, so that it has no floor of its own: a hundredth of the error counts as
 nothing, and no formula is asked to do better. What was passed on is looked at a few ticks earlier, too: the usual laws

@@ -10,7 +10,7 @@ from sher3_effects import library
 
 
 def exact_finding(where: Where, causes: list[Cause], closure: float) -> ExactFinding:
-    """Return a finding; what its causes leave of an exact stage is its floor, for nothing lies between the two."""
+    """Return a finding; the floor of an exact stage is what its causes leave, since it has no other."""
     left = Residual(gap=where.floor, floor=where.floor, unit=where.unit)
     return ExactFinding(where, causes, exact_interval(closure), left)
 
@@ -21,7 +21,7 @@ def exact_place(stage: str, actuator: str, gap: float, floor: float, regime: str
 
 
 def exact_interval(value: float) -> Interval:
-    """Return the interval of a closure: no floor is unsure, only rare ticks cannot be told."""
+    """Return the interval of a closure: the floor is exact, and only ticks without information widen it."""
     return Interval(value=value, low=value - EXACT_UNTOLD, high=min(1.0, value + EXACT_UNTOLD))
 
 

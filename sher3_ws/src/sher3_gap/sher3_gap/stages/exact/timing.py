@@ -1,4 +1,4 @@
-"""What the echo of the drives tells about the way of the commands: a constant latency, jitter, drops, one axis late.
+"""How commands reach the drives, from their echo: a constant latency, jitter, drops, one axis late.
 
 The stage is exact, so the latency is read off tick by tick instead of being fitted to noise. Energies are sums of
 squares of the echo's error with every axis scaled by its velocity limit.
@@ -196,7 +196,7 @@ def clockwork(ticks: Sequence[Array]) -> float:
 
 
 def demand_in_force(run: RunSignals, robot: Robot, timing: Timing | None) -> Demand | None:
-    """What the drives held just before each tick, told from the echo; None where commands arrive on time."""
+    """Demand in force at the drives just before each tick, from the echo; None where commands arrive on time."""
     if timing is None or run.command is None or run.echo is None or timing.energy < QUIET:
         return None
     whole = np.floor(timing.latency + 1e-6).astype(int)
