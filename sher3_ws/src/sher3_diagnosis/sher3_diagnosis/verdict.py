@@ -137,7 +137,10 @@ class Answer(_Model):
 
 
 class Place(_Model):
-    """A place with a gap and what one would bet on it, most probable first; `other` is what the answers leave of 1."""
+    """A place with a gap and what one would bet on it, most probable first; `other` is what the answers leave of 1.
+
+    `typicality` is the share of the labelled causes whose evidence is at least as unusual; None where nothing tells it.
+    """
 
     stage: str
     actuator: str
@@ -147,6 +150,7 @@ class Place(_Model):
     component: str | None = None
     answers: list[Answer]
     other: float = Field(default=0.0, ge=0.0, le=1.0)
+    typicality: float | None = Field(default=None, ge=0.0, le=1.0)
 
     @property
     def bet(self) -> Answer | None:

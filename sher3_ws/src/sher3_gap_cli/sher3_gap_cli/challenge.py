@@ -110,15 +110,15 @@ def calibrate(
     jobs: Annotated[int, typer.Option(min=1, help="Processes.")] = 1,
     in_force: Annotated[
         bool,
-        typer.Option("--in-force", help="Set nothing; judge cases that set no weight as verdicts are judged."),
+        typer.Option("--in-force", help="Set no weight: judge by those in force, as verdicts are judged."),
     ] = False,
     as_json: Json = False,
 ) -> None:
     """Set the probabilities of verdicts on labelled cases; print how they hold on each plant when it is left out."""
     from rich.console import Console
     from sher3_challenge.calibration.drawn import draw
-    from sher3_challenge.calibration.fit import calibrated
-    from sher3_challenge.calibration.held_out import GROUPS, by_plant, held_out, judged_by
+    from sher3_challenge.calibration.fit import calibrated, placed_among
+    from sher3_challenge.calibration.held_out import GROUPS, by_plant, groups, held_out, judged_by
     from sher3_challenge.calibration.observe import gathered
     from sher3_challenge.calibration.selective import curve
     from sher3_challenge.calibration.table import rates, written
@@ -133,14 +133,14 @@ def calibrate(
             names = [plant.name for plant in truth_plants(Console(stderr=True).log)]
             seen += [o for rows in draw(names, range(*parse_seeds(drawn)), room) for o in rows]
         if in_force:
-            found = calibration.in_force()
-            names = sorted({o.plant for o in seen})
-            left_out = {name: judged_by(found, [o for o in seen if o.plant == name]) for name in names}
-            columns = {name: rates(judgements) for name, judgements in left_out.items()}
+            rules = calibration.in_force()
+            found = placed_among(rules, seen)
+            judged = [{n: judged_by(rules, own) for n, own in groups(seen, of).items()} for of in GROUPS]
         else:
             found = calibrated(seen)
-            left_out = held_out(seen, by_plant)
-            columns = {n: rates(js) for of in GROUPS for n, js in held_out(seen, of).items()}
+            judged = [held_out(seen, of) for of in GROUPS]
+        left_out = judged[GROUPS.index(by_plant)]
+        columns = {name: rates(judgements) for group in judged for name, judgements in group.items()}
         if len(left_out) > 1:
             columns["all"] = rates([j for judgements in left_out.values() for j in judgements])
         if out is not None:

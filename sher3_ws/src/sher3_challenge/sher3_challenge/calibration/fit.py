@@ -12,6 +12,7 @@ from scipy.optimize import minimize, minimize_scalar
 from scipy.special import softmax
 from sher3_diagnosis.judge.calibration.calibration import Calibration, Provenance
 from sher3_diagnosis.judge.calibration.logistic import Logistic
+from sher3_diagnosis.judge.calibration.typical import Typical, distance
 from sher3_diagnosis.judge.costs import LIBRARY, NO_GAP, OUTSIDE
 from sher3_diagnosis.judge.evidence.scales import scaled_cause, scaled_exact, scaled_gap
 
@@ -19,6 +20,8 @@ from sher3_challenge.calibration.labels import answer_of, equal, known
 from sher3_challenge.calibration.observe import Observation
 from sher3_challenge.errors import ChallengeError
 
+QUANTILES = 41
+"""Distances that say how unusual evidence is: steps of 2.5 %."""
 COVERAGE = 0.97
 """Share of cases whose true effect the set of rivals is to hold."""
 SAME_DATA_CROSSING = 0.5
@@ -115,14 +118,16 @@ def calibrated(observations: Sequence[Observation]) -> Calibration:
     """Fit a calibration."""
     seen = examples_of(observations)
     plants = sorted({o.plant for o in observations})
+    cause = logistic(seen.causes, (LIBRARY, OUTSIDE, NO_GAP), READ, FOREIGN)
     return Calibration(
-        cause=logistic(seen.causes, (LIBRARY, OUTSIDE, NO_GAP), READ, FOREIGN),
+        cause=cause,
         gap=logistic([*seen.gaps, *ECHOES], (NO_GAP, OUTSIDE), ("power", "alone")),
         exact=logistic([*seen.exact, *PLAIN], (LIBRARY, OUTSIDE), ("missed",)),
         sharpness=sharpness([*seen.distances, *SWAPPED]),
         reach=max(conformal([d for d, _ in [*seen.distances, *SWAPPED]], COVERAGE), SAME_DATA_CROSSING),
         coverage=COVERAGE,
         same=SAME_DATA_CROSSING,
+        typical=typical(cause, seen.causes),
         provenance=tuple(
             Provenance(
                 plant=p,
@@ -132,6 +137,23 @@ def calibrated(observations: Sequence[Observation]) -> Calibration:
             )
             for p in plants
         ),
+    )
+
+
+def placed_among(calibration: Calibration, observations: Sequence[Observation]) -> Calibration:
+    """Return a calibration with its weights, that tells what is unusual by the causes of these observations."""
+    seen = examples_of(observations).causes
+    return calibration.model_copy(update={"typical": typical(calibration.cause, seen)})
+
+
+def typical(model: Logistic, examples: Sequence[Example]) -> Typical:
+    """Return where examples lie; a covariance is over those that have both inputs."""
+    x = np.array([model.scaled(e.numbers) for e in examples])
+    both = np.isfinite(x).T.astype(float) @ np.isfinite(x)
+    covariance = np.nan_to_num(x).T @ np.nan_to_num(x) / np.maximum(both, 1.0)
+    far = np.quantile([distance(row, covariance) for row in x], np.linspace(0.0, 1.0, QUANTILES))
+    return Typical(
+        covariance=tuple(map(tuple, covariance.tolist())), distances=tuple(far.tolist()), causes=len(examples)
     )
 
 

@@ -98,14 +98,19 @@ def middle(ends: tuple[float, float]) -> float:
 GROUPS: tuple[Group, ...] = (by_plant, by_shape, by_build)
 
 
+def groups(observations: Sequence[Observation], of: Group) -> dict[str, list[Observation]]:
+    """Return the observations by their group; those that belong to none are left out."""
+    names = sorted({name for o in observations if (name := of(o)) is not None})
+    return {name: [o for o in observations if of(o) == name] for name in names}
+
+
 def held_out(observations: Sequence[Observation], of: Group = by_plant) -> dict[str, list[Judgement]]:
     """Judge each group with a calibration fitted to all observations that are not of it; none where there is one."""
-    names = sorted({name for o in observations if (name := of(o)) is not None})
+    found = groups(observations, of)
     return {
-        name: judged_by(
-            calibrated([o for o in observations if of(o) != name]), [o for o in observations if of(o) == name]
-        )
-        for name in (names if len(names) > 1 else ())
+        name: judged_by(calibrated([o for o in observations if of(o) != name]), own)
+        for name, own in found.items()
+        if len(found) > 1
     }
 
 

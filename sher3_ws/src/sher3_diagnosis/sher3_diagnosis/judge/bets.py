@@ -51,7 +51,9 @@ def place_of(finding: Finding, items: Sequence[Judged], channel: Channel, where:
         _bet(finding, causes, choice, p, channel, quantified=p >= QUANTIFIED or p == best) for choice, p in listed
     ]
     outside = _plain(OUTSIDE, 1.0 - prod(1.0 - j.outside for j in causes))
-    return placed(where, [*answers, outside, _plain(NO_GAP, prod(j.no_gap for j in causes))])
+    told = [j.typicality for j in causes if j.typicality is not None]
+    nothing = _plain(NO_GAP, prod(j.no_gap for j in causes))
+    return placed(where, [*answers, outside, nothing], min(told, default=None))
 
 
 def touching(finding: Finding, items: Sequence[Judged], channel: Channel) -> list[Judged]:
@@ -69,14 +71,14 @@ def exact_place(stage: ExactFinding, known: float) -> Place:
     return placed(stage.where, answers)
 
 
-def placed(where: Where, answers: Iterable[Answer]) -> Place:
+def placed(where: Where, answers: Iterable[Answer], typicality: float | None = None) -> Place:
     """Return a place with the answers worth listing, most probable first; the best explanation always is."""
     ranked = sorted(answers, key=lambda a: -a.probability)
     best = next((a for a in ranked if a.causes), None)
     listed = [a for a in ranked if a.probability >= LISTED or a is best]
     other = 1.0 - sum(a.probability for a in listed)
     fields = where.model_dump(include={"stage", "actuator", "gap", "floor", "unit", "component"})
-    return Place(**fields, answers=listed, other=other if other > ROUNDING else 0.0)
+    return Place(**fields, answers=listed, other=other if other > ROUNDING else 0.0, typicality=typicality)
 
 
 def shares(causes: Sequence[Judged]) -> Iterator[tuple[Choice, float]]:

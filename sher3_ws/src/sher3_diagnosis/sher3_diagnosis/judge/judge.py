@@ -12,6 +12,7 @@ from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.finding import ExactFinding, Finding
 from sher3_diagnosis.judge.bets import exact_place, place_of
 from sher3_diagnosis.judge.calibration.calibration import Calibration, in_force
+from sher3_diagnosis.judge.calibration.typical import RARE
 from sher3_diagnosis.judge.causes import ordered, places_of
 from sher3_diagnosis.judge.costs import DEFAULT, LIBRARY, OUTSIDE, Costs
 from sher3_diagnosis.judge.next_experiment import next_experiment
@@ -23,6 +24,7 @@ from sher3_diagnosis.machine import Machine
 from sher3_diagnosis.quantify.closure import closure, residual_after
 from sher3_diagnosis.thresholds import REPRODUCED
 from sher3_diagnosis.verdict import Cause, Closure, Interval, Place, Residual, Status, Unexplained, Verdict, Where
+from sher3_diagnosis.words import place, share, words
 
 Gaps = dict[Channel, Gap]
 
@@ -45,7 +47,7 @@ def judge(
         "within_tolerance": [w for f in findings for w in machine.within(f)],
         "probabilities": {} if calibration is None else of_first(places),
         "costs": {} if calibration is None else costs.as_dict(),
-        "notes": notes,
+        "notes": [*notes, *_unusual(places)],
     }
     if not any(gaps) and not exact:
         return Verdict(status="no_gap", **told)
@@ -90,6 +92,16 @@ def _unlikely(findings: Sequence[Finding]) -> list[Place]:
     seen = [(f, c, w) for f, x in some for c, w in places_of(f, f.with_all.significant) if c == x]
     unique = {(id(f), c): (f, c, w) for f, c, w in seen}
     return _bets(list(unique.values()), [])
+
+
+def _unusual(places: Sequence[Place]) -> list[str]:
+    """Say where few of the labelled causes are as unusual as what was found, so that its odds are held back."""
+    return [
+        f"{words(p.stage)}, {place(p.actuator)}: {share(p.typicality)} of the labelled causes are as unusual, "
+        "so its odds are held back"
+        for p in places
+        if p.typicality is not None and p.typicality < RARE
+    ]
 
 
 def _probable(stage: ExactFinding, calibration: Calibration | None) -> list[Cause]:

@@ -10,6 +10,7 @@ import numpy as np
 
 from sher3_diagnosis.finding import ExactFinding
 from sher3_diagnosis.judge.calibration.calibration import Calibration
+from sher3_diagnosis.judge.calibration.typical import trust
 from sher3_diagnosis.judge.costs import LIBRARY, NO_GAP, OUTSIDE
 from sher3_diagnosis.judge.evidence.scales import scaled_cause, scaled_exact, scaled_gap
 from sher3_diagnosis.judge.items import Item
@@ -26,6 +27,7 @@ class Judged:
         outside: that the cause is none of the library.
         no_gap: that the item is no gap, or no cause, of its own.
         closure: of a cause; None of a gap without one.
+        typicality: of a cause, the share of the labelled ones that are at least as unusual; None where nothing tells.
     """
 
     item: Item
@@ -33,6 +35,7 @@ class Judged:
     outside: float
     no_gap: float
     closure: Interval | None = None
+    typicality: float | None = None
 
     @property
     def library(self) -> float:
@@ -55,11 +58,13 @@ def judged(item: Item, calibration: Calibration, closure: Interval | None = None
         return Judged(item, (), found[OUTSIDE], found[NO_GAP])
     if closure is not None and closure.value == 0.0:
         return Judged(item, (0.0,) * len(item.candidates), 0.0, 1.0, closure)
-    found = calibration.cause.probabilities(scaled_cause(item.numbers))
+    numbers = scaled_cause(item.numbers)
+    typicality = calibration.typicality(numbers)
+    found = calibration.cause.probabilities(numbers, trust(typicality))
     far = np.array([c.unlikeness for c in item.candidates])
     shares = np.exp(-calibration.sharpness * (far - far.min()))
     effects = found[LIBRARY] * shares / shares.sum()
-    return Judged(item, tuple(effects.tolist()), found[OUTSIDE], found[NO_GAP], closure)
+    return Judged(item, tuple(effects.tolist()), found[OUTSIDE], found[NO_GAP], closure, typicality)
 
 
 def reproduced(stage: ExactFinding, calibration: Calibration) -> float:

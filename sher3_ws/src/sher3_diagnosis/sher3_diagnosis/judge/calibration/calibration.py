@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import lru_cache
 from pathlib import Path
 from typing import Literal
@@ -10,6 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from sher3_common import read_text
 
 from sher3_diagnosis.judge.calibration.logistic import Logistic
+from sher3_diagnosis.judge.calibration.typical import Typical
 
 FILE = Path(__file__).with_name("calibration.json")
 
@@ -37,6 +39,7 @@ class Calibration(BaseModel):
         reach: unlikeness up to which a candidate is in the set of rivals; conformal, so that the true effect of a case
             like those it was set on is in the set with probability `coverage` at least; never less than `same`.
         same: unlikeness up to which another effect gives the same data.
+        typical: where the labelled causes lie, by which an unusual one is told; None in a file of before.
         provenance: the plants.
     """
 
@@ -50,7 +53,12 @@ class Calibration(BaseModel):
     reach: float
     coverage: float
     same: float
+    typical: Typical | None = None
     provenance: tuple[Provenance, ...]
+
+    def typicality(self, numbers: Mapping[str, float]) -> float | None:
+        """Return the share of the labelled causes that are at least as unusual as one with this scaled evidence."""
+        return None if self.typical is None else self.typical.typicality(self.cause, numbers)
 
     @classmethod
     def read(cls, path: Path) -> Calibration:

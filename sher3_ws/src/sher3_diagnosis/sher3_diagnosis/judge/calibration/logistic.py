@@ -34,10 +34,17 @@ class Logistic(BaseModel):
             raise ValueError("classes, inputs and weights of a logistic model differ in number")
         return self
 
-    def probabilities(self, numbers: Mapping[str, float]) -> dict[str, float]:
-        """Return class -> probability; they add up to one. A number that is not there counts as its middle."""
-        middles = zip(self.inputs, self.middle, strict=True)
-        x = (np.array([numbers.get(name, middle) for name, middle in middles]) - self.middle) / self.spread
-        score = np.array(self.weights) @ x + self.offset
+    def scaled(self, numbers: Mapping[str, float]) -> np.ndarray:
+        """Return (p,) the inputs centred and scaled; NaN of a number that is not there."""
+        return (np.array([numbers.get(name, np.nan) for name in self.inputs]) - self.middle) / self.spread
+
+    def probabilities(self, numbers: Mapping[str, float], trust: float = 1.0) -> dict[str, float]:
+        """Return class -> probability; they add up to one. A number that is not there counts as its middle.
+
+        Args:
+            numbers: input -> value.
+            trust: factor on the scores, so that with less of it odds are more even, in the same order.
+        """
+        score = trust * (np.array(self.weights) @ np.nan_to_num(self.scaled(numbers)) + self.offset)
         share = np.exp(score - score.max())
         return dict(zip(self.classes, (share / share.sum()).tolist(), strict=True))
