@@ -17,9 +17,9 @@ import argparse
 from collections import defaultdict
 
 import numpy as np
-from sher3_chain.axes.description import AxesDescription
 from sher3_chain.axes.machine import Axes
-from sher3_chain.axes.record import AxesRun
+from sher3_chain.joint.description import AxesDescription
+from sher3_chain.joint.record import AxesRun
 from sher3_diagnosis import diagnose
 from sher3_diagnosis.verdict import Verdict
 

@@ -20,7 +20,7 @@ from collections import Counter
 from pathlib import Path
 
 import numpy as np
-from sher3_chain.axes.signals import signals_of
+from sher3_chain.readings.signals import signals_of
 from sher3_diagnosis import diagnose
 from sher3_diagnosis.verdict import Verdict
 
@@ -69,7 +69,7 @@ def covered(drawn: Drawn, verdict: Verdict) -> list[bool]:
 
 def columns_of(drawn: Drawn) -> tuple[np.ndarray, np.ndarray]:
     """Return the dictionary (n, 7) and what it is to explain (n,): the force less the stated mass, or the error."""
-    axis = drawn.machine.description.axes[0]
+    axis = drawn.machine.described.axes[0]
     run = signals_of(drawn.run, axis, "run")
     q, v = run.smooth[:, 0], run.velocity[:, 0]
     a = run.filtered(run.acceleration)[:, 0]

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from sher3_chain.axes.description import AxesDescription
 from sher3_chain.axes.machine import Axes
-from sher3_chain.axes.record import AxesRun
+from sher3_chain.joint.description import AxesDescription
+from sher3_chain.joint.record import AxesRun
 from sher3_common.compiled import compiled
 
 DRIVE, FINE = 1e-3, 20

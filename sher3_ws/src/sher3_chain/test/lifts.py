@@ -1,7 +1,7 @@
 """A lift that carries a pendulum, for the tests: a sliding and a turning joint, with efforts worked out by hand."""
 
 import numpy as np
-from sher3_chain.axes.record import AxesRun
+from sher3_chain.joint.record import AxesRun
 from sher3_chain.manipulator.description import ManipulatorDescription
 from sher3_chain.manipulator.kind import KIND
 

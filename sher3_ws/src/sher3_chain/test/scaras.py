@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import numpy as np
-from sher3_chain.axes.record import AxesRun
+from sher3_chain.joint.record import AxesRun
 from sher3_chain.manipulator.description import ManipulatorDescription
 from sher3_chain.manipulator.kind import KIND
 

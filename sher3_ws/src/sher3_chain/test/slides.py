@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 
 import numpy as np
-from sher3_chain.axes.description import AxesDescription, Axis
 from sher3_chain.axes.machine import Axes
-from sher3_chain.axes.record import AxesRun
+from sher3_chain.joint.description import AxesDescription, Axis
+from sher3_chain.joint.record import AxesRun
 from sher3_diagnosis import diagnose
 
 PERIOD, MASS, KP, KD, COUNT = 0.002, 12.0, 6.0e4, 1.2e3, 1e-6

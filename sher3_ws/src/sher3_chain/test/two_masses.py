@@ -1,7 +1,7 @@
 """A motor and its load behind a gap with stiff flanks, or on a spring: simulated for the tests by contact forces."""
 
 import numpy as np
-from sher3_chain.axes.record import AxesRun
+from sher3_chain.joint.record import AxesRun
 from sher3_common.compiled import compiled
 from sher3_diagnosis import diagnose
 from slides import machine

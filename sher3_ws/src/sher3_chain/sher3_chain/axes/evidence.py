@@ -1,41 +1,37 @@
-"""Residuals and floors of one axis, in blocks that take the place of runs when nothing was repeated."""
+"""Residuals and floors of one axis."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
 from sher3_diagnosis.channel import Channel, Residual, Residuals
-from sher3_diagnosis.evidence import Evidence
-from sher3_diagnosis.fit.whitened import Whitened
 from sher3_machines.errors import MachineError
 from sher3_machines.thresholds import BLOCKS
 
-from sher3_chain.axes.description import Axis
 from sher3_chain.axes.floors import floors_of
 from sher3_chain.axes.identification.align import aligned
 from sher3_chain.axes.identification.identify import identify_mass, load_mass_of, share_of_inertia
-from sher3_chain.axes.readings.level import level_note, off, off_note
-from sher3_chain.axes.readings.scale import slip_of
-from sher3_chain.axes.readings.wrong import without_effort
-from sher3_chain.axes.record import AxesRun
-from sher3_chain.axes.signals import AxisSignals, signals_of
+from sher3_chain.axes.scale import slip_of
 from sher3_chain.axes.view import AxisView
+from sher3_chain.chain.evidence import ChainEvidence, in_blocks
 from sher3_chain.constants import ZERO, constants
-from sher3_chain.thresholds import MIN_BLOCK, NO_INERTIA
+from sher3_chain.joint.description import Axis
+from sher3_chain.joint.record import AxesRun
+from sher3_chain.readings.level import level_note, off, off_note
+from sher3_chain.readings.signals import AxisSignals, signals_of
+from sher3_chain.readings.wrong import without_effort
+from sher3_chain.thresholds import NO_INERTIA
 
 
 @dataclass(frozen=True, kw_only=True)
-class AxisEvidence(Evidence):
-    """The engine's evidence for one axis; a block of a record is a run.
+class AxisEvidence(ChainEvidence):
+    """The evidence for one axis.
 
     Nothing says where two encoders have their zeros, so that `counts` is empty and their difference is free.
 
     Attributes:
         axis: as described.
-        runs: records as imported.
-        records: views of the axis, one for each record; blocks of one record share theirs.
         mass: nominal or identified, kg or kg m^2; 0 where the force balance is not looked at.
         mass_interval: 95 %, of an identified mass.
         untold: why the force balance is not judged, where a mass could not be identified.
@@ -43,7 +39,6 @@ class AxisEvidence(Evidence):
     """
 
     axis: Axis
-    runs: Sequence[AxesRun]
     records: Sequence[AxisView]
     mass: float
     mass_interval: tuple[float, float] | None = None
@@ -76,11 +71,9 @@ def gather_axis(runs: Sequence[AxesRun], axis: Axis, repeats: bool) -> AxisEvide
     records = [AxisView(s, axis, mass, load_mass) for s in signals]
     found = [_judged(residuals_of(view), untold) for view in records]
     floors = floors_of(records, found, repeats)
-    per_record = -(-BLOCKS // len(records))
-    blocks = [(r, block) for r, x in enumerate(found) for block in blocks_of(x, per_record)]
-    data = Whitened([records[r] for r, _ in blocks], [b for _, b in blocks], [floors[r] for r, _ in blocks])
+    data = in_blocks(records, found, floors)
     return AxisEvidence(
-        excitations=[records[r].excitation for r, _ in blocks],
+        excitations=[view.excitation for view in data.views],
         data=data,
         nuisance=constants(data, ZERO, [Channel("transmission", axis.name)]),
         units=units_of(axis),
@@ -138,14 +131,3 @@ def residuals_of(view: AxisView) -> Residuals:
     if run.load is not None:
         out[Channel("transmission", axis.name)] = Residual(run.to_grid(run.load - run.motor), run.inner)
     return {channel: x for channel, x in out.items() if x.ok.sum() >= BLOCKS}
-
-
-def blocks_of(found: Residuals, number: int) -> list[Residuals]:
-    """Cut the residuals of a record into at most `number` blocks with about equal numbers of samples that count."""
-    if not found:
-        return []
-    counts = max(found.values(), key=lambda x: int(x.ok.sum())).ok
-    total = int(counts.sum())
-    number = max(1, min(number, total // MIN_BLOCK))
-    block = np.minimum(np.cumsum(counts) * number // (total + 1), number - 1)
-    return [{c: Residual(x.values, x.ok & (block == k)) for c, x in found.items()} for k in range(number)]

@@ -8,8 +8,8 @@ import numpy as np
 from sher3_diagnosis.channel import Array, Channel, Floors, Residual, Residuals
 from sher3_diagnosis.localise.floors import repeat_floors
 
-from sher3_chain.axes.signals import AxisSignals
 from sher3_chain.axes.view import AxisView
+from sher3_chain.readings.signals import AxisSignals
 
 GAUSSIAN = 1.4826
 """Standard deviation over the median of absolute values, of a normal distribution."""

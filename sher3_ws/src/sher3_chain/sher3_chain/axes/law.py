@@ -18,19 +18,19 @@ from sher3_diagnosis.attribute.rivals import Attribution
 from sher3_diagnosis.attribute.search import Left, Say, attribute
 from sher3_diagnosis.channel import Array, Channel, Residual
 from sher3_diagnosis.evidence import Evidence
-from sher3_diagnosis.fit.whitened import Whitened
 from sher3_diagnosis.quantify.polish import polished
 from sher3_effects.operators import held_lag
 from sher3_effects.view import StatedLaw
 from sher3_machines.thresholds import BLOCKS
 
-from sher3_chain.axes.description import Axis
-from sher3_chain.axes.evidence import AxisEvidence, blocks_of
+from sher3_chain.axes.evidence import AxisEvidence
 from sher3_chain.axes.floors import UNIFORM, foresight, innovation
-from sher3_chain.axes.record import AxesRun
-from sher3_chain.axes.signals import AxisSignals, signals_of
 from sher3_chain.axes.view import AxisView
+from sher3_chain.chain.evidence import in_blocks
 from sher3_chain.constants import INTEGRAL, constants
+from sher3_chain.joint.description import Axis
+from sher3_chain.joint.record import AxesRun
+from sher3_chain.readings.signals import AxisSignals, signals_of
 from sher3_chain.thresholds import LAW_ROUNDED
 
 STAGE = "controller"
@@ -95,11 +95,9 @@ def law_of_axis(runs: Sequence[AxesRun], axis: Axis) -> LawEvidence | None:
     channel = Channel(STAGE, axis.name)
     found = [{channel: residual_of(view)} for view in views]
     floors = [{channel: floor_of(view, x[channel])} for view, x in zip(views, found, strict=True)]
-    per_record = -(-BLOCKS // len(views))
-    blocks = [(r, block) for r, x in enumerate(found) for block in blocks_of(x, per_record)]
-    data = Whitened([views[r] for r, _ in blocks], [b for _, b in blocks], [floors[r] for r, _ in blocks])
+    data = in_blocks(views, found, floors)
     return LawEvidence(
-        excitations=[views[r].excitation for r, _ in blocks],
+        excitations=[view.excitation for view in data.views],
         data=data,
         nuisance=constants(data, INTEGRAL, [channel]) if axis.command_law.integral_gain else (),
         units={channel: unit_of_command(axis)},

@@ -19,11 +19,11 @@ from sher3_diagnosis.verdict import Cause, Parameter, Residual, Where
 from sher3_effects.limit.force_saturation import ForceSaturation
 from sher3_machines.thresholds import BLOCKS
 
-from sher3_chain.axes.description import Axis
 from sher3_chain.axes.floors import UNIFORM
-from sher3_chain.axes.readings.level import longest
-from sher3_chain.axes.record import AxesRun
-from sher3_chain.axes.signals import signals_of
+from sher3_chain.joint.description import Axis
+from sher3_chain.joint.record import AxesRun
+from sher3_chain.readings.level import longest
+from sher3_chain.readings.signals import signals_of
 from sher3_chain.thresholds import FLAT, LIMIT_UNCERTAINTY, LONGEST, PINNED
 
 EFFECT = ForceSaturation.id

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
-from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,60 +12,47 @@ from sher3_diagnosis.attribute.rivals import Attribution
 from sher3_diagnosis.attribute.search import Left, Say
 from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.finding import ExactFinding, Finding
-from sher3_diagnosis.judge.left_over import down_to_floor
-from sher3_diagnosis.machine import Machine, Policy
+from sher3_diagnosis.machine import Policy
 from sher3_diagnosis.verdict import Cause, Interval
 from sher3_effects import library, pages
 from sher3_effects.view import NominalAxis
 from sher3_machines.errors import MachineError
-from sher3_machines.intake.notes import told_once
 from sher3_machines.thresholds import BLOCKS
 
-from sher3_chain.axes.description import AxesDescription, Axis, Gravity
 from sher3_chain.axes.evidence import AxisEvidence, gather_axis, levels_of
 from sher3_chain.axes.identification.confounded_laws import dead_band_note, with_dead_band
 from sher3_chain.axes.identification.detection_limits import unseen_note
-from sher3_chain.axes.identification.friction_in_motion import requantified, with_unseen
 from sher3_chain.axes.identification.refine import refine_free
 from sher3_chain.axes.identification.search import causes_of_axis
 from sher3_chain.axes.law import causes_of_law, is_law, law_of_axis
 from sher3_chain.axes.limits import EFFECT as LIMIT
 from sher3_chain.axes.limits import limit_finding
 from sher3_chain.axes.power import least_seen
-from sher3_chain.axes.quantities.bounds import within_bounds
-from sher3_chain.axes.quantities.own_unit import in_own_unit, own_unit_note, renamed
-from sher3_chain.axes.readings.wrong import without_wrong, wrong_readings
-from sher3_chain.axes.record import AxesRun
 from sher3_chain.axes.replay import replay
-from sher3_chain.contrast.changes import change_notes, contrasted, of_runs
-from sher3_chain.contrast.conditions import Condition, conditions_of, reference_runs, told_together
+from sher3_chain.chain.machine import Chain
+from sher3_chain.joint.bounds import within_bounds
+from sher3_chain.joint.description import AxesDescription, Axis, Gravity
+from sher3_chain.joint.own_unit import in_own_unit, own_unit_note, renamed
+from sher3_chain.joint.record import AxesRun
+from sher3_chain.readings.wrong import without_wrong, wrong_readings
+from sher3_chain.search.changes import change_notes
+from sher3_chain.search.friction_in_motion import requantified, with_unseen
 
 if TYPE_CHECKING:
     from sher3_chain.axes.reporter import AxesReporter
 
-NO_REPEATS = (
-    "no repeats: floors are the residuals' innovations or the sensors' resolution, and intervals come from blocks of a "
-    "record: what differs from day to day is in neither"
-)
-
 
 @dataclass(frozen=True)
-class Axes(Machine[AxesRun, AxisEvidence]):
-    """Axes that move independently of each other.
+class Axes(Chain[AxisEvidence]):
+    """Axes that move independently of each other."""
 
-    A description of a few lines leaves several plain causes out, so that the search goes on down to the floor.
-
-    Attributes:
-        description: nominal constants of every axis, and what was recorded of it.
-    """
-
-    description: AxesDescription
+    described: AxesDescription
     policy = Policy(down_to_floor=True, free_laws=True)
 
     def library(self) -> Sequence[Effect]:
         """Return the pages for these kinds of axes, and that of the limit, which is read off without a fit."""
-        kinds = sorted({kind_of(axis) for axis in self.description.axes}, reverse=True)
-        any_axis = NominalAxis(np.inf, 0.0, 0.0, 0.0, weighed=any(axis.swings for axis in self.description.axes))
+        kinds = sorted({kind_of(axis) for axis in self.described.axes}, reverse=True)
+        any_axis = NominalAxis(np.inf, 0.0, 0.0, 0.0, weighed=any(axis.swings for axis in self.described.axes))
         known = [page.on(any_axis) for kind in kinds for page in pages(kind)]
         return [*known, *pages("law"), library()[LIMIT]]
 
@@ -78,26 +64,18 @@ class Axes(Machine[AxesRun, AxisEvidence]):
         nominal = NominalAxis(evidence.mass, axis.viscous, 0.0, 0.0, weighed=axis.swings)
         return [page.on(nominal) for page in pages(kind_of(axis), facts_of(axis))]
 
-    def audit(self, runs: Sequence[AxesRun]) -> list[str]:
-        """Return what was done to the data, and whether floors are known from repeats."""
-        notes = [note for run in runs for note in run.notes]
-        for run in runs:
-            notes += [said for axis in self.description.axes for said in wrong_readings(run, axis).values()]
-        notes = told_once(notes, [run.name for run in runs]) + told_together(self._conditions(runs))
-        return notes if self._repeats(runs) else [*notes, NO_REPEATS]
-
     def gather(self, runs: Sequence[AxesRun]) -> Sequence[AxisEvidence]:
         """Compute residuals and floors of every axis; raises MachineError where an unknown mass cannot be found."""
         parts: list[AxisEvidence] = []
-        for axis in self.description.axes:
+        for axis in self.described.axes:
             heard = [without_wrong(run, axis) for run in runs]
             if all("position" in run.signals[axis.name] for run in heard):
-                parts.append(gather_axis(heard, axis, self._repeats(runs)))
+                parts.append(gather_axis(heard, axis, self.repeated(runs)))
                 law = law_of_axis(heard, axis)
                 parts += [law] if law is not None else []
         if not parts:
             raise MachineError("no axis can be judged", value="every position is dead", remedy="connect the encoders")
-        limited = any(limit_finding(runs, axis) for axis in self.description.axes)
+        limited = any(limit_finding(runs, axis) for axis in self.described.axes)
         if not limited and not any(part.channels for part in parts):
             raise nothing_judged(parts, runs)
         return parts
@@ -112,19 +90,14 @@ class Axes(Machine[AxesRun, AxisEvidence]):
         return [limit for limit in found if limit is not None]
 
     def attribute(self, evidence: AxisEvidence, candidates: Candidates, left_over: Left, say: Say) -> Attribution:
-        """Choose the causes of one axis, and what changed between conditions; what it does at rest counts too."""
+        """Choose the causes of one axis, and what changed between conditions; a command has none."""
         if is_law(evidence):
             return causes_of_law(candidates, left_over, say)
-        conditions = self._conditions(evidence.runs)
-        if not conditions:
-            return causes_of_axis(evidence, candidates, left_over, say)
-        kept = reference_runs(conditions, [run.name for run in evidence.runs])
-        reference = of_runs(evidence, views_of(evidence, kept))
-        left = partial(down_to_floor, reference.channels, reference)
-        common = causes_of_axis(reference, Candidates(reference, candidates.effects), left, say)
-        say("contrasting conditions")
-        each = [(c, views_of(evidence, c.runs)) for c in conditions]
-        return contrasted(evidence, common, candidates.effects, each)
+        return super().attribute(evidence, candidates, left_over, say)
+
+    def causes(self, evidence: AxisEvidence, candidates: Candidates, left_over: Left, say: Say) -> Attribution:
+        """Choose the causes of one axis; what it does at rest counts too."""
+        return causes_of_axis(evidence, candidates, left_over, say)
 
     def refine(
         self, evidence: AxisEvidence, causes: list[Cause], attribution: Attribution
@@ -146,7 +119,7 @@ class Axes(Machine[AxesRun, AxisEvidence]):
         if is_law(finding.evidence):
             return law_notes(finding)
         again = replay(finding.evidence, finding.causes) if finding.significant else None
-        changes = change_notes(finding.attribution, self._conditions(finding.evidence.runs))
+        changes = change_notes(finding.attribution, self.conditions(finding.evidence.runs))
         untold = finding.evidence.untold
         changes += finding.evidence.notes
         nothing_found = not finding.significant and bool(finding.evidence.views)
@@ -157,7 +130,7 @@ class Axes(Machine[AxesRun, AxisEvidence]):
             *changes,
             *mass_notes(finding.evidence),
             *blind_spots(finding),
-            *carried_by_others(finding, self.description.axes),
+            *carried_by_others(finding, self.described.axes),
             *([] if finding.significant else unseen(finding.evidence)),
             *(least_seen(finding.evidence, self.effects(finding.evidence)) if nothing_found else []),
             *([again.note] if again else []),
@@ -173,12 +146,6 @@ class Axes(Machine[AxesRun, AxisEvidence]):
         """Return the closure of the position of the first axis that can be run again."""
         runs_again = (replay(f.evidence, f.causes) for f in findings if f.significant and not is_law(f.evidence))
         return next((again.closure for again in runs_again if again is not None), None)
-
-    def _conditions(self, runs: Sequence[AxesRun]) -> list[Condition]:
-        return conditions_of(self.description.conditions, [run.name for run in runs])
-
-    def _repeats(self, runs: Sequence[AxesRun]) -> bool:
-        return self.description.repeats and len(runs) > 1
 
 
 def nothing_judged(parts: Sequence[AxisEvidence], runs: Sequence[AxesRun]) -> MachineError:
@@ -206,11 +173,6 @@ def missing(part: AxisEvidence) -> str:
         f"the records are too short, {longest.ticks * longest.period:.3g} s at {1.0 / longest.period:.3g} Hz "
         "(is `time` in that unit? `override: true` corrects a header)"
     )
-
-
-def views_of(evidence: AxisEvidence, runs: Collection[str]) -> frozenset[int]:
-    """Return the identities of the views of some runs."""
-    return frozenset(id(v) for v, run in zip(evidence.records, evidence.runs, strict=True) if run.name in runs)
 
 
 def kind_of(axis: Axis) -> str:

@@ -14,8 +14,8 @@ from sher3_diagnosis.channel import Array
 from sher3_diagnosis.verdict import Cause
 from sher3_effects import pages
 
-from sher3_chain.axes.description import Axis
-from sher3_chain.axes.record import AxesRun
+from sher3_chain.joint.description import Axis
+from sher3_chain.joint.record import AxesRun
 
 STEP = 1.0e-3
 """Longest integration step, s."""

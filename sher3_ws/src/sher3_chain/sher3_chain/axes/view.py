@@ -13,9 +13,9 @@ from sher3_diagnosis.filter import EDGE, settled
 from sher3_effects.operators import dahl_turned
 from sher3_effects.view import NominalAxis
 
-from sher3_chain.axes.description import Axis
-from sher3_chain.axes.identification.noise import noise_of
-from sher3_chain.axes.signals import AxisSignals
+from sher3_chain.joint.description import Axis
+from sher3_chain.readings.noise import noise_of
+from sher3_chain.readings.signals import AxisSignals
 
 LEAD_OF_STROKE = 0.02
 """Share of the stroke that stands for the lead of a linear axis where it is not known. Effects search displacements in

@@ -21,11 +21,11 @@ from sher3_diagnosis.judge.left_over import down_to_floor
 from sher3_diagnosis.thresholds import NEEDED, PARSIMONY, RIVAL
 from sher3_diagnosis.tolerance import NUISANCE
 
-from sher3_chain.axes.identification.away_from_reversals import borne_out
-from sher3_chain.axes.identification.balance_at_rest import Bounded
-from sher3_chain.axes.identification.friction_in_motion import FRICTION, without_slow
 from sher3_chain.manipulator.evidence import ArmMotionEvidence, channel_of, channels_of, of_channel
 from sher3_chain.manipulator.readings.lateness import Late, TimedEffort, lateness
+from sher3_chain.search.away_from_reversals import borne_out
+from sher3_chain.search.bounded import Bounded
+from sher3_chain.search.friction_in_motion import FRICTION, without_slow
 from sher3_chain.thresholds import CAUSES_OF_JOINT, LEAST_CLOSURE
 
 TIMING, ON_LINK = "timing", "link"

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Literal
 
 from pydantic import Field, model_validator
-from sher3_machines.intake.fields import Clock
 
-from sher3_chain.axes.description import Axis, CommandLaw
-from sher3_chain.contrast.conditions import Tagged
+from sher3_chain.joint.description import Axis, ChainDescription, CommandLaw
 
 Row = tuple[float, ...]
 PER_RUN = "per_run"
@@ -53,29 +52,25 @@ class Joint(Axis):
         return self
 
 
-class ManipulatorDescription(Tagged):
+class ManipulatorDescription(ChainDescription):
     """A serial arm whose joints move together.
 
     Attributes:
         model: URDF or MJCF file with masses and inertias; joints of it that are not listed stay at rest at zero.
         inertias: `nominal`: those of the model are compared with the robot; `identified`: they are found from the data.
-        time: of the samples.
         joints: those recorded, in any order.
         coupling: motor travel = coupling * joint travel, one row for each joint of the list; without it every motor
             moves its own joint.
         effort_of: whether the efforts are those of the joints or of the motors behind the coupling.
-        repeats: whether the data files are repeats of one motion.
         gravity: at the base of the model, m/s^2; None: that of the model.
     """
 
     kind: Literal["manipulator"]
     model: str
     inertias: Literal["nominal", "identified"] = "nominal"
-    time: Clock
     joints: tuple[Joint, ...] = Field(min_length=1)
     coupling: tuple[Row, ...] | None = None
     effort_of: Literal["joints", "motors"] = "joints"
-    repeats: bool = False
     gravity: tuple[float, float, float] | None = None
 
     @model_validator(mode="after")
@@ -88,7 +83,7 @@ class ManipulatorDescription(Tagged):
         return self
 
     @property
-    def axes(self) -> tuple[Joint, ...]:
+    def chain(self) -> Sequence[Joint]:
         """The joints: they are recorded like axes."""
         return self.joints
 

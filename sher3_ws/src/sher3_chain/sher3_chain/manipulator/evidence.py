@@ -13,11 +13,10 @@ from sher3_diagnosis.fit.whitened import Whitened
 from sher3_machines.errors import MachineError
 from sher3_machines.thresholds import BLOCKS
 
-from sher3_chain.axes.evidence import blocks_of
-from sher3_chain.axes.quantities.own_unit import RECORDED
-from sher3_chain.axes.readings.slip_of_unit import Share
-from sher3_chain.axes.record import AxesRun
+from sher3_chain.chain.evidence import ChainEvidence, in_blocks
 from sher3_chain.constants import ZERO, constants
+from sher3_chain.joint.own_unit import RECORDED
+from sher3_chain.joint.record import AxesRun
 from sher3_chain.manipulator.description import PER_RUN, ManipulatorDescription
 from sher3_chain.manipulator.gains import share_of
 from sher3_chain.manipulator.identify import with_identified_inertias
@@ -28,16 +27,15 @@ from sher3_chain.manipulator.readings.slipped import slipped
 from sher3_chain.manipulator.readings.wrong import without_wrong_loads
 from sher3_chain.manipulator.signals import JointSignals, joint_signals
 from sher3_chain.manipulator.view import MotionView
+from sher3_chain.readings.slip_of_unit import Share
 
 
 @dataclass(frozen=True, kw_only=True)
-class ArmMotionEvidence(Evidence):
-    """The engine's evidence for an arm in motion; a block of a record is a run.
+class ArmMotionEvidence(ChainEvidence):
+    """The evidence for an arm in motion.
 
     Attributes:
         described: the arm.
-        runs: records as imported.
-        records: views of the arm, one for each record; blocks of one record share theirs.
         judged: joints whose force balance is looked at.
         shares: joint -> units of its recorded effort per newton metre, where its gain was found from the data.
         turned: joints whose effort was recorded with the opposite sign, and was turned.
@@ -46,7 +44,6 @@ class ArmMotionEvidence(Evidence):
     """
 
     described: ManipulatorDescription
-    runs: Sequence[AxesRun]
     records: Sequence[MotionView]
     judged: Sequence[str]
     shares: Mapping[str, Share] = field(default_factory=dict)
@@ -117,12 +114,10 @@ def gather_arm_motion(
     if not any(residuals):
         raise MachineError("no joint can be judged", value="0 joints", remedy="record efforts while the joints move")
     floors = floors_of(views, residuals, repeats)
-    per_record = -(-BLOCKS // len(views))
-    blocks = [(r, block) for r, x in enumerate(residuals) for block in blocks_of(x, per_record)]
     seen = tuple(j for j in judged if any(channel_of(j) in x for x in residuals))
-    data = Whitened([views[r] for r, _ in blocks], [b for _, b in blocks], [floors[r] for r, _ in blocks])
+    data = in_blocks(views, residuals, floors)
     return ArmMotionEvidence(
-        excitations=[views[r].excitation for r, _ in blocks],
+        excitations=[view.excitation for view in data.views],
         data=data,
         nuisance=constants(data, ZERO, [between(j) for j in judged]),
         units={

@@ -12,8 +12,8 @@ from collections.abc import Sequence
 import numpy as np
 from sher3_diagnosis.channel import Array
 
-from sher3_chain.axes.readings.slip_of_unit import Share, share_in
 from sher3_chain.manipulator.view import MotionView
+from sher3_chain.readings.slip_of_unit import Share, share_in
 
 DAHL_SHARE = 2.5e-3
 """Displacement over which dry friction builds up, in shares of the lead: the middle one that the effects search."""

@@ -11,18 +11,15 @@ from sher3_diagnosis.attribute.rivals import Attribution
 from sher3_diagnosis.attribute.search import Left, Say
 from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.finding import ExactFinding, Finding
-from sher3_diagnosis.machine import Machine, Policy
+from sher3_diagnosis.fit.fitting import Fit
+from sher3_diagnosis.machine import Policy
 from sher3_diagnosis.verdict import Cause
 from sher3_machines.intake.notes import told_once
 
-from sher3_chain.axes.identification.friction_in_motion import requantified
-from sher3_chain.axes.machine import NO_REPEATS
-from sher3_chain.axes.quantities.bounds import within_bounds
-from sher3_chain.axes.quantities.own_unit import RECORDED, in_own_unit
-from sher3_chain.axes.readings.wrong import wrong_readings
-from sher3_chain.axes.record import AxesRun
-from sher3_chain.contrast.changes import change_notes, contrasted, of_runs
-from sher3_chain.contrast.conditions import Condition, conditions_of, reference_runs, told_together
+from sher3_chain.chain.machine import Chain
+from sher3_chain.joint.bounds import within_bounds
+from sher3_chain.joint.own_unit import RECORDED, in_own_unit
+from sher3_chain.joint.record import AxesRun
 from sher3_chain.manipulator.causes import causes_of_arm, centred
 from sher3_chain.manipulator.confounding import GAIN, PAYLOAD, WEIGHT, confounding_notes, same_force
 from sher3_chain.manipulator.description import ManipulatorDescription
@@ -31,6 +28,9 @@ from sher3_chain.manipulator.library import of_joints
 from sher3_chain.manipulator.model import ArmModel
 from sher3_chain.manipulator.readings.lateness import LATE, late_efforts, with_closure
 from sher3_chain.manipulator.readings.wrong import level_notes
+from sher3_chain.readings.wrong import wrong_readings
+from sher3_chain.search.changes import change_notes
+from sher3_chain.search.friction_in_motion import requantified
 
 if TYPE_CHECKING:
     from sher3_chain.manipulator.report.reporter import ManipulatorReporter
@@ -43,11 +43,10 @@ IN_INERTIAS = (*IN_GAIN, WEIGHT)
 
 
 @dataclass(frozen=True)
-class Manipulator(Machine[AxesRun, ArmMotionEvidence]):
+class Manipulator(Chain[ArmMotionEvidence]):
     """A serial arm whose joints move together; its model says what force each of them needs.
 
     Attributes:
-        described: the arm.
         model: of its rigid bodies.
     """
 
@@ -71,14 +70,6 @@ class Manipulator(Machine[AxesRun, ArmMotionEvidence]):
         contained = IN_INERTIAS if self.described.inertias == "identified" else contained
         return [e for e in known if e.scales not in contained]
 
-    def audit(self, runs: Sequence[AxesRun]) -> list[str]:
-        """Return what was done to the data, which channels are dead, and whether floors are known from repeats."""
-        notes = [note for run in runs for note in run.notes]
-        for run in runs:
-            notes += [note for joint in self.described.joints for note in wrong_readings(run, joint).values()]
-        notes = told_once(notes, [run.name for run in runs]) + told_together(self._conditions(runs))
-        return notes if self.described.repeats and len(runs) > 1 else [*notes, NO_REPEATS]
-
     def gather(self, runs: Sequence[AxesRun]) -> Sequence[ArmMotionEvidence]:
         """Return the arm as one part; joints without an effort only move."""
         dead = {
@@ -95,20 +86,13 @@ class Manipulator(Machine[AxesRun, ArmMotionEvidence]):
         """Return the efforts that are late on an arm without any other gap."""
         return [] if LATE in without else [late for part in evidence for late in late_efforts(part)]
 
-    def attribute(self, evidence: ArmMotionEvidence, candidates: Candidates, left_over: Left, say: Say) -> Attribution:
-        """Choose the causes joint by joint, without and with a payload, and what changed between conditions."""
-        conditions = self._conditions(evidence.runs)
-        if not conditions:
-            return causes_of_arm(evidence, candidates, say)
-        kept = reference_runs(conditions, [run.name for run in evidence.runs])
-        reference = of_runs(evidence, views_of(evidence, kept))
-        common = causes_of_arm(reference, Candidates(reference, candidates.effects), say)
-        say("contrasting conditions")
-        each = [(c, views_of(evidence, c.runs)) for c in conditions]
-        return contrasted(evidence, common, candidates.effects, each, centred)
+    def causes(self, evidence: ArmMotionEvidence, candidates: Candidates, left_over: Left, say: Say) -> Attribution:
+        """Choose the causes joint by joint, without and with a payload."""
+        return causes_of_arm(evidence, candidates, say)
 
-    def _conditions(self, runs: Sequence[AxesRun]) -> list[Condition]:
-        return conditions_of(self.described.conditions, [run.name for run in runs])
+    def finished(self, candidates: Candidates, found: Fit) -> Fit:
+        """Return the fit of a change with the inertia of a payload about its own centre."""
+        return centred(candidates, found)
 
     def refine(
         self, evidence: ArmMotionEvidence, causes: list[Cause], attribution: Attribution
@@ -133,7 +117,7 @@ class Manipulator(Machine[AxesRun, ArmMotionEvidence]):
                 "inertias identified from the data: drive gain, weight and payload are in them, cannot be told apart "
                 "and are not looked for"
             )
-        notes += change_notes(finding.attribution, self._conditions(evidence.runs))
+        notes += change_notes(finding.attribution, self.conditions(evidence.runs))
         levels = [x for run in evidence.runs for x in level_notes(run, self.described.joints, evidence.judged)]
         notes += told_once(levels, [run.name for run in evidence.runs])
         return [*notes, *slip_notes(evidence), *gain_notes(evidence), *confounding_notes(evidence)]
@@ -143,11 +127,6 @@ class Manipulator(Machine[AxesRun, ArmMotionEvidence]):
         from sher3_chain.manipulator.report.reporter import ManipulatorReporter
 
         return ManipulatorReporter()
-
-
-def views_of(evidence: ArmMotionEvidence, runs: Collection[str]) -> frozenset[int]:
-    """Return the identities of the views of some runs."""
-    return frozenset(id(v) for v, run in zip(evidence.records, evidence.runs, strict=True) if run.name in runs)
 
 
 def gain_notes(evidence: ArmMotionEvidence) -> list[str]:

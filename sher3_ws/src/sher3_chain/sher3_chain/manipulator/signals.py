@@ -8,10 +8,10 @@ from typing import ClassVar
 import numpy as np
 from sher3_diagnosis.channel import Array
 
-from sher3_chain.axes.identification.noise import cut_off
-from sher3_chain.axes.record import AxesRun
-from sher3_chain.axes.signals import AxisSignals, signals_of
+from sher3_chain.joint.record import AxesRun
 from sher3_chain.manipulator.description import ManipulatorDescription
+from sher3_chain.readings.noise import cut_off
+from sher3_chain.readings.signals import AxisSignals, signals_of
 
 
 class JointSignals(AxisSignals):

@@ -14,13 +14,13 @@ from sher3_diagnosis.filter import settled
 from sher3_effects.operators import dahl_turned
 from sher3_effects.view import NominalAxis
 
-from sher3_chain.axes.readings.level import at_a_level, off
-from sher3_chain.axes.signals import AxisSignals
 from sher3_chain.axes.view import LEAD_OF_STROKE, SLIP, STILL, Loads
 from sher3_chain.manipulator.description import Joint
 from sher3_chain.manipulator.model import PARAMETERS, ArmModel
 from sher3_chain.manipulator.readings.encoders import crossing
 from sher3_chain.manipulator.signals import JointSignals
+from sher3_chain.readings.level import at_a_level, off
+from sher3_chain.readings.signals import AxisSignals
 
 AROUND_IMPACT = 2
 """Samples of the residual grid around one at which a gap is crossed: the filter smears the impact at its end."""

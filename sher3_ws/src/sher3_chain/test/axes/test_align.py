@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from sher3_chain.axes.quantities.own_unit import renamed
-from sher3_chain.axes.record import AxesRun
+from sher3_chain.joint.own_unit import renamed
+from sher3_chain.joint.record import AxesRun
 from sher3_diagnosis import diagnose
 from slides import columns, described, machine
 

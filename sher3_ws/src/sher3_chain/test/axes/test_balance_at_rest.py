@@ -5,7 +5,7 @@ import pytest
 from sher3_chain.axes.evidence import gather_axis
 from sher3_chain.axes.identification.balance_at_rest import DryFirst, rest_loss
 from sher3_chain.axes.machine import facts_of
-from sher3_chain.axes.record import AxesRun
+from sher3_chain.joint.record import AxesRun
 from sher3_chain.thresholds import REST_FLOORS, STATIC
 from sher3_diagnosis.attribute.candidates import Candidates
 from sher3_diagnosis.channel import Channel

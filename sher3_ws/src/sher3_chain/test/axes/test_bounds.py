@@ -9,8 +9,8 @@ from lifts import friction, motion, needed
 from lifts import machine as lift
 from sher3_chain.axes.evidence import gather_axis
 from sher3_chain.axes.machine import kind_of
-from sher3_chain.axes.quantities.bounds import least_of
-from sher3_chain.axes.record import AxesRun
+from sher3_chain.joint.bounds import least_of
+from sher3_chain.joint.record import AxesRun
 from sher3_diagnosis.effect import Effect
 from sher3_effects import pages
 from sher3_effects.compliance.unseen_compliance import ComplianceBehindMotor

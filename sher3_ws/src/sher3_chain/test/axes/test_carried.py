@@ -1,9 +1,9 @@
 """Two joints of one arm described as axes: each feels the other, which no cause of its own is."""
 
 import numpy as np
-from sher3_chain.axes.description import AxesDescription
 from sher3_chain.axes.machine import Axes
-from sher3_chain.axes.record import AxesRun
+from sher3_chain.joint.description import AxesDescription
+from sher3_chain.joint.record import AxesRun
 from sher3_diagnosis import diagnose
 from slides import columns
 

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from sher3_chain.axes.readings.level import at_a_level
-from sher3_chain.axes.record import AxesRun
-from sher3_chain.axes.signals import limited_by_reading
+from sher3_chain.joint.record import AxesRun
+from sher3_chain.readings.level import at_a_level
+from sher3_chain.readings.signals import limited_by_reading
 from sher3_diagnosis import diagnose
 from sher3_machines import MachineError
 from slides import MASS, PERIOD, columns, driven, machine

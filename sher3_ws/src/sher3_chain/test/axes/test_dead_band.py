@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from sher3_chain.axes.record import AxesRun
+from sher3_chain.joint.record import AxesRun
 from sher3_diagnosis import diagnose
 from slides import servo
 

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from sher3_chain.axes.description import AxesDescription
 from sher3_chain.axes.machine import Axes
-from sher3_chain.axes.record import AxesRun
+from sher3_chain.joint.description import AxesDescription
+from sher3_chain.joint.record import AxesRun
 from sher3_common.compiled import compiled
 from sher3_diagnosis import diagnose
 

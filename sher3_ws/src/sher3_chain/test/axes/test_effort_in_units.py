@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from sher3_chain.axes.readings.scale import commands_force, slip_of
-from sher3_chain.axes.record import AxesRun
-from sher3_chain.axes.signals import signals_of
+from sher3_chain.axes.scale import commands_force, slip_of
+from sher3_chain.joint.record import AxesRun
+from sher3_chain.readings.signals import signals_of
 from sher3_diagnosis import diagnose
 from sher3_machines import MachineError
 from slides import MASS, PERIOD, axis_of, columns, driven, machine

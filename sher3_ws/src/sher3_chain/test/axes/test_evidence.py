@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
-from sher3_chain.axes.evidence import blocks_of, gather_axis, residuals_of, units_of
-from sher3_chain.axes.record import AxesRun
-from sher3_chain.axes.signals import signals_of
+from sher3_chain.axes.evidence import gather_axis, residuals_of, units_of
 from sher3_chain.axes.view import AxisView
+from sher3_chain.chain.evidence import blocks_of
+from sher3_chain.joint.record import AxesRun
+from sher3_chain.readings.signals import signals_of
 from sher3_chain.thresholds import MIN_BLOCK
 from sher3_diagnosis.channel import Channel, Residual
 from sher3_machines.thresholds import BLOCKS

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from sher3_chain.axes.readings.wrong import stays_over, stuck, wrong_readings
+from sher3_chain.readings.wrong import stays_over, stuck, wrong_readings
 from sher3_diagnosis import diagnose
 from sher3_machines import MachineError
 from slides import axis_of, columns, driven, machine, run_of

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from sher3_chain.axes.readings.wrong import wrong_readings
-from sher3_chain.axes.record import AxesRun
+from sher3_chain.joint.record import AxesRun
+from sher3_chain.readings.wrong import wrong_readings
 from sher3_diagnosis import diagnose
 from sher3_machines import MachineError
 from slides import axis_of, columns, machine

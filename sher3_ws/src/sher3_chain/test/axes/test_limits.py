@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from sher3_chain.axes.limits import limit_finding, longest, needed_force, pinned_in
-from sher3_chain.axes.record import AxesRun
+from sher3_chain.joint.record import AxesRun
 from slides import axis_of, columns
 
 SIGNALS = {**columns("position", "reference"), **columns("command", "effort", unit="N")}

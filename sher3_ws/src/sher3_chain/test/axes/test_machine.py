@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
-from sher3_chain.axes.machine import NO_REPEATS, Axes, facts_of
-from sher3_chain.axes.record import AxesRun
+from sher3_chain.axes.machine import Axes, facts_of
+from sher3_chain.chain.machine import NO_REPEATS
+from sher3_chain.joint.record import AxesRun
 from sher3_diagnosis import diagnose
 from sher3_diagnosis.errors import UnknownEffect
 from slides import COUNT, MASS, PERIOD, axis_of, columns, described, driven, effects, machine, run_of, servo, verdict_of

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from sher3_chain.axes.identification.noise import cut_off, noise_of
-from sher3_chain.axes.record import AxesRun
+from sher3_chain.joint.record import AxesRun
+from sher3_chain.readings.noise import cut_off, noise_of
 from sher3_diagnosis import diagnose
 from slides import machine
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from scipy.signal import lfilter
-from sher3_chain.axes.record import AxesRun
+from sher3_chain.joint.record import AxesRun
 from sher3_diagnosis import diagnose
 from slides import effects, servo
 from two_masses import behind_gap, on_spring, slowly_stuck, verdict_of

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from sher3_chain.axes.quantities.units import check_units
-from sher3_chain.axes.record import axes_run
+from sher3_chain.joint.record import axes_run
+from sher3_chain.joint.units import check_units
 from sher3_machines import MachineError
 from slides import axis_of, columns, described
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from sher3_chain.axes.evidence import gather_axis
 from sher3_chain.axes.identification.refine import refine_free, scaled
-from sher3_chain.axes.record import AxesRun
 from sher3_chain.axes.replay import replay
 from sher3_chain.axes.simulate import Law, simulate
+from sher3_chain.joint.record import AxesRun
 from sher3_diagnosis.verdict import Cause, Interval, Parameter
 from slides import axis_of, columns
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from scipy.signal import lfilter
-from sher3_chain.axes.record import AxesRun
+from sher3_chain.joint.record import AxesRun
 from sher3_diagnosis import diagnose
 from slides import columns, machine, servo
 

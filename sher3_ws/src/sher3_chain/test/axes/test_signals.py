@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from sher3_chain.axes.record import AxesRun
-from sher3_chain.axes.signals import AxisSignals, held_mean, signals_of
+from sher3_chain.joint.record import AxesRun
+from sher3_chain.readings.signals import AxisSignals, held_mean, signals_of
 from sher3_diagnosis.filter import BANDWIDTH
 from slides import axis_of, columns
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from sher3_chain.axes.record import AxesRun
 from sher3_chain.axes.simulate import Law, law_of, simulate
+from sher3_chain.joint.record import AxesRun
 from sher3_diagnosis.verdict import Cause, Interval, Parameter
 from slides import axis_of, columns
 

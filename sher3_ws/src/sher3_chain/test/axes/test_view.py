@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from sher3_chain.axes.signals import AxisSignals
 from sher3_chain.axes.view import AxisView
+from sher3_chain.readings.signals import AxisSignals
 from slides import axis_of
 
 

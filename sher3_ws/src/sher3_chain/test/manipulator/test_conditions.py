@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from lifts import L, friction, machine, motion, needed, run_of
-from sher3_chain.axes.record import AxesRun
+from sher3_chain.joint.record import AxesRun
 from sher3_diagnosis import diagnose
 from sher3_machines import MachineError
 
@@ -114,7 +114,7 @@ def test_the_change_of_an_axis_beside_its_common_friction():
     runs = [record(driven(8.0, coulomb=5.0, offset=x)) for x in (0.0, 3.0)]
     runs = [type(r)(name, r.period, r.signals) for name, r in zip("ab", runs, strict=True)]
     axes = slide()
-    tagged = axes.description.model_copy(update={"conditions": {"a": {"posture": "flat"}, "b": {"posture": "tilted"}}})
+    tagged = axes.described.model_copy(update={"conditions": {"a": {"posture": "flat"}, "b": {"posture": "tilted"}}})
     verdict = diagnose(type(axes)(tagged), runs).verdict
     found = changes(verdict)
     assert set(found) == {("gravity_load", "slide")}
@@ -130,7 +130,7 @@ def test_two_encoders_with_a_zero_of_their_own_are_contrasted():
     t, noise = np.arange(8000) * 0.002, np.random.default_rng(0)
     position = 0.04 * np.sin(1.3 * t) + 0.015 * np.sin(4.1 * t)
     axes = slide(signals=columns("position", "reference", "load"), command_law={"kind": "position"}, mass=None)
-    tagged = axes.description.model_copy(update={"conditions": {"a": {"belt": "old"}, "b": {"belt": "new"}}})
+    tagged = axes.described.model_copy(update={"conditions": {"a": {"belt": "old"}, "b": {"belt": "new"}}})
     runs = []
     for name, scale in (("a", 1.0), ("b", 1.002)):
         load = scale * position + 3e-4 + noise.normal(0.0, 2e-6, len(t))

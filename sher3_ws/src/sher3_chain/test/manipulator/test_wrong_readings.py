@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from lifts import PERIOD, friction, machine, needed
-from sher3_chain.axes.record import AxesRun
+from sher3_chain.joint.record import AxesRun
 from sher3_diagnosis import diagnose
 
 JOINTS = ("lift", "swing")

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from scipy.signal import savgol_filter
-from sher3_chain.axes.description import Axis
 from sher3_chain.axes.machine import Axes
-from sher3_chain.axes.record import AxesRun
+from sher3_chain.joint.description import Axis
+from sher3_chain.joint.record import AxesRun
 from sher3_chain.manipulator.description import Joint
 from sher3_chain.manipulator.machine import Manipulator
 from sher3_diagnosis.channel import Array
@@ -69,7 +69,7 @@ def recorded(machine: object, runs: Sequence[Any], joints: Mapping[str, str], la
         raise ExportError(
             "records of this kind of machine are not run in MuJoCo", value=type(machine).__name__, remedy=remedy
         )
-    axes = machine.description.axes if isinstance(machine, Axes) else machine.described.axes
+    axes = machine.described.chain
     return [
         Recorded(run.period, {joints.get(axis.name, axis.name): track_of(run, axis, late) for axis in axes})
         for run in runs

@@ -66,7 +66,7 @@ def designed(machine: Any, runs: Sequence[Any], seed: int = 0) -> Excitation:
     if not isinstance(machine, Axes | Manipulator):
         remedy = "record what the verdict's `next_experiment` names"
         raise ExportError("motions are designed for axes and arms", value=type(machine).__name__, remedy=remedy)
-    described = machine.described.joints if isinstance(machine, Manipulator) else machine.description.axes
+    described = machine.described.chain
     names, slides = [j.name for j in described], [j.motion == "linear" for j in described]
     parts = [p for p in machine.gather(runs) if not is_law(p)]
     box = box_of([[v.run for v in p.records] for p in parts], names)

@@ -13,11 +13,11 @@ from dataclasses import replace
 import numpy as np
 from sher3_diagnosis.channel import Array
 
-from sher3_chain.axes.description import Axis
 from sher3_chain.axes.identification.identify import loss_of, mass_of
 from sher3_chain.axes.identification.unfiltered import unfiltered
-from sher3_chain.axes.signals import AxisSignals
 from sher3_chain.axes.view import AxisView
+from sher3_chain.joint.description import Axis
+from sher3_chain.readings.signals import AxisSignals
 from sher3_chain.thresholds import ALIGNED
 
 SHIFTS = (-1.0, -0.5, 0.0, 0.5, 1.0)

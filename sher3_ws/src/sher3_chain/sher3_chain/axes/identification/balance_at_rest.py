@@ -9,12 +9,12 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 
 import numpy as np
-from sher3_diagnosis.attribute.candidates import Candidates
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.fit.fitting import Fit, Term
 
 from sher3_chain.axes.evidence import AxisEvidence
 from sher3_chain.axes.view import AxisView
+from sher3_chain.search.bounded import Bounded
 from sher3_chain.thresholds import REST_FLOORS, STATIC
 
 
@@ -45,20 +45,6 @@ def _left(view: AxisView, fit: Fit, channel: Channel) -> Array:
             if channel in added:
                 left = left - added[channel][:, 0] @ fit.of(i)
     return left
-
-
-class Bounded(Candidates):
-    """Candidates of which a new cause may not push another one beyond what is physically possible.
-
-    Of what hides behind one encoder one cause is named: a load that rings looks like one that is thrown across a gap.
-    One law of dry friction holds an axis: two of them side by side have the loop of a play.
-    """
-
-    def possible(self, trial: Fit) -> bool:
-        """Return whether the new cause is possible, and all others still are."""
-        unseen = sum(t.effect.unseen for t in trial.terms)
-        dry = sum(t.effect.dry for t in trial.terms)
-        return unseen <= 1 and dry <= 1 and super().possible(trial) and trial.admissible
 
 
 class DryFirst(Bounded):

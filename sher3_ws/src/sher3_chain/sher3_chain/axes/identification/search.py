@@ -21,10 +21,11 @@ from sher3_diagnosis.fit.fitting import Fit, Term, fit
 from sher3_diagnosis.thresholds import NEEDED, PRICE, WORTH
 
 from sher3_chain.axes.evidence import AxisEvidence
-from sher3_chain.axes.identification.away_from_reversals import borne_out
-from sher3_chain.axes.identification.balance_at_rest import Bounded, DryFirst, rest_loss
+from sher3_chain.axes.identification.balance_at_rest import DryFirst, rest_loss
 from sher3_chain.axes.identification.confounded_laws import told_by_travel
 from sher3_chain.axes.view import AxisView
+from sher3_chain.search.away_from_reversals import borne_out
+from sher3_chain.search.bounded import Bounded
 
 POLISHES = 4
 """Rounds over the causes at most: the second lets the first cause see the polished last one."""

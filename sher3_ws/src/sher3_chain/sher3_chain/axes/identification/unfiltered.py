@@ -16,10 +16,10 @@ from typing import NamedTuple
 import numpy as np
 from sher3_diagnosis.channel import Array
 
-from sher3_chain.axes.description import Axis
 from sher3_chain.axes.identification.identify import loss_of
-from sher3_chain.axes.signals import AxisSignals
 from sher3_chain.axes.view import AxisView
+from sher3_chain.joint.description import Axis
+from sher3_chain.readings.signals import AxisSignals
 from sher3_chain.thresholds import ALIGNED
 
 CORNERS = np.geomspace(4.0, 90.0, 10)

@@ -15,12 +15,12 @@ from sher3_diagnosis.channel import Array, Mask
 from sher3_effects.operators import dahl
 from sher3_effects.timing.sensor_delay import SensorDelay, shifted
 
-from sher3_chain.axes.identification.noise import GAUSSIAN, noise_of
-from sher3_chain.axes.signals import AxisSignals
 from sher3_chain.axes.view import LEAD_OF_STROKE
 from sher3_chain.manipulator.description import Joint
 from sher3_chain.manipulator.model import ArmModel
 from sher3_chain.manipulator.signals import JointSignals
+from sher3_chain.readings.noise import GAUSSIAN, noise_of
+from sher3_chain.readings.signals import AxisSignals
 from sher3_chain.thresholds import ALIGNED, DELAYED
 
 NOISIER = 2.0

@@ -13,9 +13,9 @@ from sher3_diagnosis.channel import Array, Floors, Residuals
 from sher3_diagnosis.localise.floors import repeat_floors
 
 from sher3_chain.axes.floors import NOISE_SAMPLES, NOTHING, UNIFORM, foresight, innovation
-from sher3_chain.axes.identification.noise import noise_of
 from sher3_chain.manipulator.description import PER_RUN
 from sher3_chain.manipulator.view import MotionView
+from sher3_chain.readings.noise import noise_of
 
 POSTURES = 100
 """Postures of a record at which the inertia is reckoned: an rms over them is known to a few per cent."""

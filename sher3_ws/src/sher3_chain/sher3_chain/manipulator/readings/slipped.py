@@ -11,9 +11,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from sher3_diagnosis.channel import Array
 
-from sher3_chain.axes.readings.slip_of_unit import Share, share_in
 from sher3_chain.manipulator.gains import equations, friction_columns
 from sher3_chain.manipulator.view import MotionView
+from sher3_chain.readings.slip_of_unit import Share, share_in
 
 AT_JOINT = (0.0, 0.0, 0.0)
 """Centre about which the inertia of a payload is reckoned: its weight is what tells it here."""

@@ -9,10 +9,10 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from dataclasses import replace
 
-from sher3_chain.axes.readings.level import at_a_level, level_note, off, off_note
-from sher3_chain.axes.readings.wrong import wrong_readings
-from sher3_chain.axes.record import AxesRun
+from sher3_chain.joint.record import AxesRun
 from sher3_chain.manipulator.description import Joint, ManipulatorDescription
+from sher3_chain.readings.level import at_a_level, level_note, off, off_note
+from sher3_chain.readings.wrong import wrong_readings
 
 
 def level_notes(run: AxesRun, joints: Sequence[Joint], judged: Collection[str]) -> list[str]:

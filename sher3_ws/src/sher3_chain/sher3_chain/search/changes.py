@@ -21,7 +21,7 @@ from sher3_diagnosis.fit.term import again
 from sher3_diagnosis.fit.whitened import Whitened
 from sher3_diagnosis.thresholds import NEEDED, PARSIMONY, RIVAL
 
-from sher3_chain.contrast.conditions import Condition
+from sher3_chain.joint.conditions import Condition
 from sher3_chain.thresholds import CHANGES
 
 E = TypeVar("E", bound=Evidence)

@@ -7,7 +7,7 @@ from sher3_diagnosis.channel import Array
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.fields import VELOCITIES
 
-from sher3_chain.axes.description import Axis
+from sher3_chain.joint.description import Axis
 
 SLIPS = {"linear": (1e3, "mm recorded as m"), "rotary": (180.0 / np.pi, "deg recorded as rad")}
 """Motion -> factor of its usual wrong unit, and that slip in words."""

@@ -5,13 +5,15 @@ Lengths are in m, angles in rad, forces in N and torques in N m; the unit of eac
 
 from __future__ import annotations
 
+from abc import abstractmethod
+from collections.abc import Sequence
 from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 from sher3_machines.intake.fields import Clock, Column, Strict
 
-from sher3_chain.axes.quantities.own_unit import OWN_UNITS
-from sher3_chain.contrast.conditions import Tagged
+from sher3_chain.joint.conditions import Tagged
+from sher3_chain.joint.own_unit import OWN_UNITS
 
 
 class Signals(Strict):
@@ -166,19 +168,37 @@ class Axis(Strict):
         return "N" if self.motion == "linear" else "N*m"
 
 
-class AxesDescription(Tagged):
-    """A chain of axes, each moved by its own drive.
+class ChainDescription(Tagged):
+    """A chain of joints that were recorded together.
 
     Attributes:
         time: of the samples.
-        axes: in the order of the chain.
         repeats: whether the data files are repeats of one motion.
     """
 
-    kind: Literal["axes"]
     time: Clock
-    axes: tuple[Axis, ...] = Field(min_length=1)
     repeats: bool = False
+
+    @property
+    @abstractmethod
+    def chain(self) -> Sequence[Axis]:
+        """Every joint, in the order of the chain."""
+
+
+class AxesDescription(ChainDescription):
+    """A chain of axes, each moved by its own drive.
+
+    Attributes:
+        axes: in the order of the chain.
+    """
+
+    kind: Literal["axes"]
+    axes: tuple[Axis, ...] = Field(min_length=1)
+
+    @property
+    def chain(self) -> Sequence[Axis]:
+        """The axes."""
+        return self.axes
 
     @model_validator(mode="after")
     def _distinct(self) -> AxesDescription:

@@ -12,10 +12,10 @@ from itertools import pairwise
 import numpy as np
 from sher3_diagnosis.channel import Array, Mask
 
-from sher3_chain.axes.description import Axis
-from sher3_chain.axes.quantities.units import COUNTS_MOVED
-from sher3_chain.axes.readings.level import off
-from sher3_chain.axes.record import AxesRun
+from sher3_chain.joint.description import Axis
+from sher3_chain.joint.record import AxesRun
+from sher3_chain.joint.units import COUNTS_MOVED
+from sher3_chain.readings.level import off
 from sher3_chain.thresholds import ALIKE, DEAD, FOLLOWS, LONGEST, SCALED, STAYS
 
 ANSWERS = ("effort", "load")

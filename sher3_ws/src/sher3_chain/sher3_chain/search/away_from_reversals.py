@@ -13,7 +13,7 @@ from sher3_diagnosis.fit.term import again
 from sher3_diagnosis.judge.borne_out import kept
 from sher3_diagnosis.thresholds import NEEDED
 
-from sher3_chain.axes.identification.friction_in_motion import without_slow
+from sher3_chain.search.friction_in_motion import without_slow
 
 SHAPED = ("friction", "lost_motion", "compliance")
 """Families whose laws live at a reversal, or shape it."""

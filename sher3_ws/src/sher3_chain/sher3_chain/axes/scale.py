@@ -10,12 +10,12 @@ from collections.abc import Sequence
 import numpy as np
 from sher3_diagnosis.channel import Array
 
-from sher3_chain.axes.description import Axis, Gravity
 from sher3_chain.axes.identification.identify import DAHL_TRAVEL
-from sher3_chain.axes.quantities.own_unit import OWN_UNITS
-from sher3_chain.axes.readings.slip_of_unit import share_in
-from sher3_chain.axes.signals import AxisSignals, held_mean
 from sher3_chain.axes.view import AxisView
+from sher3_chain.joint.description import Axis, Gravity
+from sher3_chain.joint.own_unit import OWN_UNITS
+from sher3_chain.readings.signals import AxisSignals, held_mean
+from sher3_chain.readings.slip_of_unit import share_in
 from sher3_chain.thresholds import HEAVIEST, SLIPPED
 
 

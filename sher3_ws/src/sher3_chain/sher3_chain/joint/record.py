@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -20,9 +19,9 @@ from sher3_machines.intake.mending.stamps import even_stamps, missed_periods, mi
 from sher3_machines.intake.spelling import table_of
 from sher3_machines.intake.tables import Tables
 
-from sher3_chain.axes.description import Axis
-from sher3_chain.axes.quantities.units import check_units
-from sher3_chain.axes.readings.speed import integrated, is_speed
+from sher3_chain.joint.description import Axis, ChainDescription
+from sher3_chain.joint.speed import integrated, is_speed
+from sher3_chain.joint.units import check_units
 
 MIN_SAMPLES = 20
 """Samples a run must have: five blocks of the smallest size. Several short runs are judged together."""
@@ -66,20 +65,13 @@ class AxesRun:
     signals: dict[str, dict[str, Array]]
     notes: Sequence[str] = ()
 
-
-class Chain(Protocol):
-    """What the description of a machine says of the axes that were recorded."""
-
     @property
-    def time(self) -> Clock:
-        """The clock of the samples."""
-
-    @property
-    def axes(self) -> Sequence[Axis]:
-        """Every axis, with its signals."""
+    def ticks(self) -> int:
+        """Number of samples; every signal has as many."""
+        return next((len(x) for found in self.signals.values() for x in found.values()), 0)
 
 
-def axes_run(name: str, tables: Tables, machine: Chain) -> AxesRun:
+def axes_run(name: str, tables: Tables, machine: ChainDescription) -> AxesRun:
     """Bring one record onto a uniform clock.
 
     Raises:
@@ -88,7 +80,7 @@ def axes_run(name: str, tables: Tables, machine: Chain) -> AxesRun:
     raw: dict[str, dict[str, Stamped]] = {}
     tables, mended = _without_repeats(tables, machine, name)
     polled = bool(mended)
-    for axis in machine.axes:
+    for axis in machine.chain:
         raw[axis.name] = {
             which: _mended(column, tables, machine.time, name, (axis.name, which), mended)
             for which, column in _columns(axis).items()
@@ -100,7 +92,7 @@ def axes_run(name: str, tables: Tables, machine: Chain) -> AxesRun:
     signals = {
         a: {k: _onto(clock, t, x, polled and k in ENCODERS) for k, (t, x) in found.items()} for a, found in raw.items()
     }
-    for axis in machine.axes:
+    for axis in machine.chain:
         check_units(axis, signals[axis.name], name)
         mended += _turned(axis, signals[axis.name], name)
         mended += _signed(axis, clock, signals[axis.name], name)
@@ -134,12 +126,12 @@ def _mended(column: Column, tables: Tables, clock: Clock, run: str, of: tuple[st
     return stamps, x
 
 
-def _without_repeats(tables: Tables, machine: Chain, run: str) -> tuple[Tables, list[str]]:
+def _without_repeats(tables: Tables, machine: ChainDescription, run: str) -> tuple[Tables, list[str]]:
     """Return the tables without the rows that repeat their predecessor in all described columns, and a note for each.
 
     Where the clock is a rate each row has its place: those rows are interpolated.
     """
-    named = {find(c.column, tables, run) for axis in machine.axes for c in _columns(axis).values()}
+    named = {find(c.column, tables, run) for axis in machine.chain for c in _columns(axis).values()}
     out, notes = dict(tables), []
     for table in sorted({table_of(column) for column in named}):
         own = [tables[c] for c in named if table_of(c) == table and len(tables[c])]
@@ -302,9 +294,9 @@ def _onto(clock: Array, t: Array | None, x: Array, smooth: bool) -> Array:
     return np.asarray(CubicSpline(t, x)(clock) if smooth else np.interp(clock, t, x), dtype=float)
 
 
-def parts_of_record(name: str, tables: Tables, machine: Chain) -> tuple[dict[str, Tables], str]:
+def parts_of_record(name: str, tables: Tables, machine: ChainDescription) -> tuple[dict[str, Tables], str]:
     """Return the parts of a record whose clock has holes or jumps back, and a note; else the record itself."""
-    columns = [c for axis in machine.axes for c in _columns(axis).values()]
+    columns = [c for axis in machine.chain for c in _columns(axis).values()]
     one = len({table_of(c.column) for c in columns}) == 1
     clock = machine.time.column
     if clock is None or not one:

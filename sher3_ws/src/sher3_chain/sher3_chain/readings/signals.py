@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 from sher3_diagnosis.channel import Array, Mask
 from sher3_diagnosis.filter import BANDWIDTH, DECIMATED_RATE, EDGE, SHORT, low_pass
 
-from sher3_chain.axes.description import Axis
-from sher3_chain.axes.identification.noise import cut_off
-from sher3_chain.axes.readings.level import at_a_level, off
-from sher3_chain.axes.record import AxesRun
+from sher3_chain.joint.description import Axis
+from sher3_chain.joint.record import AxesRun
+from sher3_chain.readings.level import at_a_level, off
+from sher3_chain.readings.noise import cut_off
 
 NYQUIST_SHARE = 0.4
 """Cut-off over the Nyquist rate where a record is too slow for the engine's: two differentiations must survive it."""

@@ -1,1 +1,0 @@
-"""Units of an axis, and what its quantities may be."""

@@ -1,1 +1,0 @@
-"""Readings of an axis that are wrong in themselves: dead, flat, at a level, or in another scale."""

@@ -1,0 +1,41 @@
+"""What the kinds of chains share: how a file becomes runs, and how a case stores one."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TypeVar
+
+import numpy as np
+from sher3_diagnosis.channel import Array
+from sher3_machines.intake.kind import Kind
+from sher3_machines.intake.tables import Tables
+
+from sher3_chain.joint.record import AxesRun, ChainDescription, axes_run, parts_of_record
+
+D = TypeVar("D", bound=ChainDescription)
+
+
+class ChainKind(Kind[D, AxesRun]):
+    """Chains of joints; a case stores `period` and an array `JOINT/SIGNAL` for each signal."""
+
+    def read(self, name: str, tables: Tables, description: D) -> AxesRun:
+        """Bring a data file onto a uniform clock; raises MachineError."""
+        return axes_run(name, tables, description)
+
+    def parts(self, name: str, tables: Tables, description: D) -> tuple[dict[str, Tables], str]:
+        """Return the parts of a record whose clock has holes or jumps back; repeats stay whole."""
+        return ({name: tables}, "") if description.repeats else parts_of_record(name, tables, description)
+
+    def pack(self, run: AxesRun) -> Mapping[str, Array]:
+        """Return the period and every signal."""
+        signals = {f"{joint}/{k}": x for joint, found in run.signals.items() for k, x in found.items()}
+        return {"period": np.array([run.period]), **signals}
+
+    def unpack(self, name: str, arrays: Tables, notes: Sequence[str]) -> AxesRun:
+        """Return the run that a case stores; raises KeyError without a period."""
+        signals: dict[str, dict[str, Array]] = {}
+        for key, x in arrays.items():
+            if key != "period":
+                joint, signal = key.rsplit("/", 1)
+                signals.setdefault(joint, {})[signal] = x
+        return AxesRun(name, float(arrays["period"][0]), signals, notes)

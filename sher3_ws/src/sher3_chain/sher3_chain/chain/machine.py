@@ -1,0 +1,81 @@
+"""What every chain of joints does alike as a machine: its notes on the data, and causes under several conditions."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import TypeVar
+
+from sher3_diagnosis.attribute.candidates import Candidates
+from sher3_diagnosis.attribute.rivals import Attribution
+from sher3_diagnosis.attribute.search import Left, Say
+from sher3_diagnosis.fit.fitting import Fit
+from sher3_diagnosis.judge.left_over import down_to_floor
+from sher3_diagnosis.machine import Machine
+from sher3_machines.intake.notes import told_once
+
+from sher3_chain.chain.evidence import ChainEvidence
+from sher3_chain.joint.conditions import Condition, conditions_of, reference_runs, told_together
+from sher3_chain.joint.description import ChainDescription
+from sher3_chain.joint.record import AxesRun
+from sher3_chain.readings.wrong import wrong_readings
+from sher3_chain.search.changes import contrasted, of_runs
+
+E = TypeVar("E", bound=ChainEvidence)
+NO_REPEATS = (
+    "no repeats: floors are the residuals' innovations or the sensors' resolution, and intervals come from blocks of a "
+    "record: what differs from day to day is in neither"
+)
+
+
+@dataclass(frozen=True)
+class Chain(Machine[AxesRun, E]):
+    """Joints that were recorded together.
+
+    A description of a few lines leaves several plain causes out, so that the search goes on down to the floor.
+
+    Attributes:
+        described: nominal constants of every joint, and what was recorded of it.
+    """
+
+    described: ChainDescription
+
+    @abstractmethod
+    def causes(self, evidence: E, candidates: Candidates, left_over: Left, say: Say) -> Attribution:
+        """Choose the causes of one part, recorded under one condition."""
+
+    def finished(self, candidates: Candidates, found: Fit) -> Fit:
+        """Return the fit of a change between conditions, improved by what its search does not do; default as it is."""
+        return found
+
+    def audit(self, runs: Sequence[AxesRun]) -> list[str]:
+        """Return what was done to the data, which channels are wrong, and whether floors are known from repeats."""
+        notes = [note for run in runs for note in run.notes]
+        notes += [
+            note for run in runs for joint in self.described.chain for note in wrong_readings(run, joint).values()
+        ]
+        notes = told_once(notes, [run.name for run in runs]) + told_together(self.conditions(runs))
+        return notes if self.repeated(runs) else [*notes, NO_REPEATS]
+
+    def attribute(self, evidence: E, candidates: Candidates, left_over: Left, say: Say) -> Attribution:
+        """Choose the causes of one part, and what changed between the conditions of its runs."""
+        conditions = self.conditions(evidence.runs)
+        if not conditions:
+            return self.causes(evidence, candidates, left_over, say)
+        kept = reference_runs(conditions, [run.name for run in evidence.runs])
+        reference = of_runs(evidence, evidence.views_of(kept))
+        left = partial(down_to_floor, reference.channels, reference)
+        common = self.causes(reference, Candidates(reference, candidates.effects), left, say)
+        say("contrasting conditions")
+        each = [(c, evidence.views_of(c.runs)) for c in conditions]
+        return contrasted(evidence, common, candidates.effects, each, self.finished)
+
+    def conditions(self, runs: Sequence[AxesRun]) -> list[Condition]:
+        """Return the conditions that differ from that of the first run."""
+        return conditions_of(self.described.conditions, [run.name for run in runs])
+
+    def repeated(self, runs: Sequence[AxesRun]) -> bool:
+        """Return whether the runs are repeats of one motion."""
+        return self.described.repeats and len(runs) > 1

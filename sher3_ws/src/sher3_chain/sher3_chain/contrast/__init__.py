@@ -1,1 +1,0 @@
-"""Runs of one machine under several conditions: what changed between them, with everything common held common."""
