@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING, Any
 from sher3_diagnosis.attribute.candidates import Candidates
 from sher3_diagnosis.attribute.rivals import Attribution
 from sher3_diagnosis.attribute.search import Left, Say
+from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.finding import Finding
 from sher3_diagnosis.machine import Machine, Policy
 from sher3_diagnosis.verdict import Cause, Interval
 
 from sher3_static.readings import Readings
-from sher3_static.table import TableEvidence, evidence_of, zeros_in_words
+from sher3_static.table import TableEvidence, eaten, evidence_of, zeros_in_words
 
 if TYPE_CHECKING:
     from sher3_static.kind import TableKind
@@ -60,9 +61,15 @@ class StaticTest(Machine[Readings, TableEvidence]):
         return self.kind.attribute(evidence, candidates, left_over, say)
 
     def remarks(self, finding: Finding[TableEvidence]) -> list[str]:
-        """Return what the pages of the causes and the kind say, and how far the zeros of runs are apart."""
+        """Return what the kind and the pages of the causes say, how far zeros are apart, and what cannot be judged."""
         zeros = zeros_in_words(finding.evidence, finding.attribution.fit)
-        return [*self.kind.remarks(finding), *causes_in_words(finding), *zeros]
+        return [*self.kind.remarks(finding), *causes_in_words(finding), *zeros, *self.unjudged(finding).values()]
+
+    def unjudged(self, finding: Finding[TableEvidence]) -> dict[Channel, str]:
+        """Say where the scatter of the readings hides whatever is looked for."""
+        table = finding.evidence.table
+        why = "" if finding.significant else eaten(table)
+        return {table.channel: why} if why else {}
 
     def end_to_end(self, findings: Sequence[Finding[TableEvidence]], causes: Sequence[Cause]) -> Interval | None:
         """Return the closure at the end of the chain, where the table is of that end."""

@@ -13,8 +13,10 @@ from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import Fit, make_term
 from sher3_diagnosis.fit.whitened import Whitened
 from sher3_diagnosis.tolerance import NUISANCE
+from sher3_diagnosis.words import quantity
 
 from sher3_static.readings import Labels
+from sher3_static.thresholds import EATEN
 from sher3_static.view import Still
 
 PARTS = 4
@@ -33,6 +35,7 @@ class Table:
         view: what the effects ask of it.
         residual: (g, d) reading less what it should be.
         floor: (d,) standard deviation of a reading.
+        spread: (d,) standard deviation of what the readings should follow.
         part: (g,) label of the rows that are held out together.
         run: (g,) number of the run of each row.
         unit: SI unit of the first components.
@@ -49,6 +52,7 @@ class Table:
     view: Still
     residual: Array
     floor: Array
+    spread: Array
     part: Labels
     run: Labels
     unit: str
@@ -140,8 +144,16 @@ def zeros_in_words(evidence: TableEvidence, fit: Fit) -> list[str]:
     worst = int(np.argmax(apart / table.floor))
     if apart[worst] < APART * table.floor[worst]:
         return []
-    name, unit = evidence.component(table.channel, worst), evidence.unit(table.channel, worst)
+    name, by = evidence.component(table.channel, worst), quantity(apart[worst], evidence.unit(table.channel, worst))
     which = f" of {name}" if name else ""
-    return [
-        f"{table.name}: zeros{which} differ by {apart[worst]:.3g} {unit} from run to run: free in each, and no cause"
-    ]
+    return [f"{table.name}: zeros{which} differ by {by} from run to run: free in each, and no cause"]
+
+
+def eaten(table: Table) -> str:
+    """Return in words that the scatter of the readings hides what is looked for; nothing where it does not.
+
+    One component that tells is enough.
+    """
+    share = float(np.min(table.floor / np.maximum(table.spread, np.finfo(float).tiny)))
+    told = f"cannot be judged: readings of {table.name} scatter by {share:.2g} of what they should follow, and a cause"
+    return f"{told} would hide in it; a wider range, more repeats or a better reference would tell" * (share > EATEN)

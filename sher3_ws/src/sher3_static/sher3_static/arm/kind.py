@@ -107,6 +107,7 @@ class ArmKind(TableKind[ArmDescription]):
             view=view,
             residual=known.sight.error(view.pose, measured),
             floor=floor,
+            spread=known.sight.error(np.repeat(view.pose[:1], len(q), axis=0), measured).std(axis=0),
             part=np.arange(len(q)) % FOLDS,
             run=rows["run"],
             unit="m",

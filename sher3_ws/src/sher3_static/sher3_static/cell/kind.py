@@ -57,6 +57,7 @@ class CellKind(TableKind[CellDescription]):
             view=view,
             residual=(rows["reading"] - rows["applied"])[:, None],
             floor=np.array([floor]),
+            spread=np.std(rows["applied"], keepdims=True),
             part=np.arange(view.rows) % BLOCKS,
             run=rows["run"],
             unit=known.unit,

@@ -57,6 +57,7 @@ def axis_table(test: AxisTest, runs: Sequence[Readings]) -> Table:
         view=view,
         residual=rows["deviation"][:, None],
         floor=np.array([test.noise or scatter(test.name, rows, target)]),
+        spread=np.std(target, keepdims=True),
         part=parts_of(rows["cycle"]),
         run=rows["run"],
         unit=unit,

@@ -57,6 +57,7 @@ def circle_table(test: CircleTest, runs: Sequence[Readings]) -> Table:
         view=view,
         residual=(rows["radius"] - test.radius)[:, None],
         floor=np.array([test.noise or innovation(rows["radius"])]),
+        spread=np.array([test.radius]),
         part=quadrant + PARTS * (turning > 0.0),
         run=rows["run"],
         unit="m",

@@ -56,6 +56,7 @@ class SensorKind(TableKind[SensorDescription]):
             view=view,
             residual=view.reading - view.wrench(0),
             floor=floor,
+            spread=view.wrench(0).std(axis=0),
             part=np.arange(view.rows) % BLOCKS,
             run=rows["run"],
             unit="N",
