@@ -181,6 +181,10 @@ class Effect:
         """Return the shapes in which a plain law is fitted beside all others; default all of them."""
         return self.shapes(views, site)
 
+    def allowed(self, views: Sequence[Any], site: str, shape: Shape) -> bool:
+        """Return whether the runs can hold a shape that a finer search came to; default any."""
+        return True
+
     def bends(self, views: Sequence[Any], site: str, shape: Shape) -> list[Shape]:
         """Return shapes of the law with a bend that some machines have, near the best one without; default none."""
         return []

@@ -14,6 +14,7 @@ from typing import Generic, TypeVar
 from sher3_diagnosis.attribute.candidates import Candidates
 from sher3_diagnosis.attribute.rivals import Attribution
 from sher3_diagnosis.attribute.search import Left, Say, attribute
+from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.finding import ExactFinding, Finding
@@ -92,6 +93,13 @@ class Machine(ABC, Generic[R, E]):
     def remarks(self, finding: Finding[E]) -> list[str]:
         """Return notes on one part; default none."""
         return []
+
+    def unjudged(self, finding: Finding[E]) -> dict[Channel, str]:
+        """Return why channels of a part without a gap cannot be judged: their floor hides what is looked for.
+
+        Default none. Where there is any, no gap elsewhere does not make a verdict of no gap.
+        """
+        return {}
 
     def end_to_end(self, findings: Sequence[Finding[E]], causes: Sequence[Cause]) -> Interval | None:
         """Return the closure of the machine run again in its simulator, at the end of its chain; default none."""

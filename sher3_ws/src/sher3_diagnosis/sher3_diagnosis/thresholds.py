@@ -47,6 +47,10 @@ ZERO_COUNTS = 0.75
 """Mean difference of two encoders, in counts of the motor's, from which it is a gap: rounding alone moves a run's mean
 by up to half a count. Set by that argument. Measure: `sher3 gap challenge --kinds healthy`."""
 
+EATEN = 0.3
+"""Floor over signal from which an absence is no finding: less than three floors of anything would be seen. Set by that
+argument. Measure: `pytest sher3_ws/src/sher3_chain/test/axes/test_eaten_signals.py`."""
+
 # -- attribute: which effect? --------------------------------------------------------------------------------------
 
 MAX_CAUSES = 3

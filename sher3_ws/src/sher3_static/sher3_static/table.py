@@ -12,11 +12,11 @@ from sher3_diagnosis.effect import Effect, Shape, Signature
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import Fit, make_term
 from sher3_diagnosis.fit.whitened import Whitened
+from sher3_diagnosis.thresholds import EATEN
 from sher3_diagnosis.tolerance import NUISANCE
 from sher3_diagnosis.words import quantity
 
 from sher3_static.readings import Labels
-from sher3_static.thresholds import EATEN
 from sher3_static.view import Still
 
 PARTS = 4

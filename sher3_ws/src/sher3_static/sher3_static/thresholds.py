@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-EATEN = 0.3
-"""Scatter of a reading over the spread of what it should follow from which "no gap" is no finding: a third of the
-signal hides in it. Set by that argument. Measure: `pytest sher3_ws/src/sher3_static/test/test_eaten.py`."""
-
 FOLDS = 10
 """Folds of the postures, of which each is held out in turn. Set by custom.
 Measure: `pytest sher3_ws/src/sher3_static/test/arm`."""

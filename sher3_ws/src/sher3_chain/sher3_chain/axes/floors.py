@@ -7,12 +7,13 @@ from collections.abc import Sequence
 import numpy as np
 from sher3_diagnosis.channel import Array, Channel, Floors, Residual, Residuals
 from sher3_diagnosis.localise.floors import repeat_floors
+from sher3_diagnosis.thresholds import EATEN
 
+from sher3_chain.axes.foreseen import foreseen
 from sher3_chain.axes.view import AxisView
+from sher3_chain.readings.noise import GAUSSIAN
 from sher3_chain.readings.signals import AxisSignals
 
-GAUSSIAN = 1.4826
-"""Standard deviation over the median of absolute values, of a normal distribution."""
 BEND = np.sqrt(6.0)
 """Standard deviation of second differences of white noise over that of the noise: 1 + 4 + 1 under the root."""
 UNIFORM = np.sqrt(12.0)
@@ -37,9 +38,22 @@ def floors_of(records: Sequence[AxisView], found: Sequence[Residuals], repeats: 
     out = []
     for view, residuals in zip(records, found, strict=True):
         least = resolution_floors(view)
-        told = foresight(view.run)
-        out.append({c: np.maximum(pooled.get(c, innovation(x) / told), least[c]) for c, x in residuals.items()})
+        out.append({c: np.maximum(pooled.get(c, unforeseen(view, x, c)), least[c]) for c, x in residuals.items()})
     return out
+
+
+def unforeseen(view: AxisView, residual: Residual, channel: Channel) -> Array:
+    """Return the noise, (1,), of which as much cannot be foreseen as of a residual.
+
+    Where a straight line leaves more of a driven axis than `EATEN`, known inputs are asked as well. What they foresee
+    of the encoder's own noise, which two differences make alike from sample to sample, is noise all the same.
+    """
+    plain = innovation(residual) / foresight(view.run)
+    signal = np.sqrt(np.mean(residual.values[residual.ok] ** 2, axis=0))
+    if view.described.free or not (plain > EATEN * signal).any():
+        return plain
+    noise = resolution_floors(view, UNIFORM * view.noise)[channel]
+    return np.minimum(plain, np.maximum(foreseen(view.run, residual), noise))
 
 
 def foresight(run: AxisSignals) -> float:
@@ -52,10 +66,13 @@ def foresight(run: AxisSignals) -> float:
     return float(innovation(Residual(seen, np.ones(len(seen), dtype=bool)))[0] / seen.std())
 
 
-def resolution_floors(view: AxisView) -> Floors:
-    """Return what rounding alone makes: white noise of a count's variance through the filters of the residuals."""
+def resolution_floors(view: AxisView, least: float = 0.0) -> Floors:
+    """Return what rounding alone makes: white noise of a count's variance through the filters of the residuals.
+
+    The count, m or rad, is taken to be no smaller than `least`.
+    """
     run, axis = view.run, view.described
-    count = axis.encoder_resolution / UNIFORM
+    count = max(axis.encoder_resolution, least) / UNIFORM
     noise = np.random.default_rng(0).normal(size=(max(run.ticks, NOISE_SAMPLES), 1))
     bend = np.zeros_like(noise)
     bend[1:-1] = np.diff(noise, 2, axis=0) / run.period**2

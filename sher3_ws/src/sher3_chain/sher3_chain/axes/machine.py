@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 from sher3_diagnosis.attribute.candidates import Candidates
 from sher3_diagnosis.attribute.rivals import Attribution
 from sher3_diagnosis.attribute.search import Left, Say
+from sher3_diagnosis.channel import Array, Channel, Mask
 from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.finding import ExactFinding, Finding
 from sher3_diagnosis.machine import Policy
@@ -34,6 +36,7 @@ from sher3_chain.joint.bounds import within_bounds
 from sher3_chain.joint.description import AxesDescription, Axis, Gravity
 from sher3_chain.joint.own_unit import in_own_unit, own_unit_note, renamed
 from sher3_chain.joint.record import AxesRun
+from sher3_chain.power import unjudged
 from sher3_chain.readings.wrong import without_wrong, wrong_readings
 from sher3_chain.search.changes import change_notes
 from sher3_chain.search.friction_in_motion import requantified, with_unseen
@@ -136,6 +139,10 @@ class Axes(Chain[AxisEvidence]):
             *([again.note] if again else []),
         ]
 
+    def unjudged(self, finding: Finding[AxisEvidence]) -> dict[Channel, str]:
+        """Say where the floor of an axis without a gap eats its force, or what a servo was asked."""
+        return {} if is_law(finding.evidence) else unjudged(finding, partial(_signal, finding.evidence))
+
     def reporter(self) -> AxesReporter:
         """Return the part of this machine in a report."""
         from sher3_chain.axes.reporter import AxesReporter
@@ -146,6 +153,17 @@ class Axes(Chain[AxisEvidence]):
         """Return the closure of the position of the first axis that can be run again."""
         runs_again = (replay(f.evidence, f.causes) for f in findings if f.significant and not is_law(f.evidence))
         return next((again.closure for again in runs_again if again is not None), None)
+
+
+def _signal(evidence: AxisEvidence, r: int, site: str, ok: Mask) -> Array:
+    """Return the force of an axis, recorded or needed, or what a servo was asked beside its mean, (n,)."""
+    view = evidence.data.views[r]
+    run = view.run
+    if evidence.axis.servo:
+        asked = run.to_grid(run.reference)[ok, 0]
+        return np.asarray(asked - asked.mean())
+    given, needed = run.to_grid(run.effort)[ok, 0], view.inertial[ok, 0]
+    return np.maximum(np.abs(given), np.abs(needed))
 
 
 def nothing_judged(parts: Sequence[AxisEvidence], runs: Sequence[AxesRun]) -> MachineError:

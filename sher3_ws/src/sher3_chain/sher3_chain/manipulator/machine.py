@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from sher3_diagnosis.attribute.candidates import Candidates
 from sher3_diagnosis.attribute.rivals import Attribution
 from sher3_diagnosis.attribute.search import Left, Say
+from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.finding import ExactFinding, Finding
 from sher3_diagnosis.fit.fitting import Fit
@@ -28,6 +29,7 @@ from sher3_chain.manipulator.library import of_joints
 from sher3_chain.manipulator.model import ArmModel
 from sher3_chain.manipulator.readings.lateness import LATE, late_efforts, with_closure
 from sher3_chain.manipulator.readings.wrong import level_notes
+from sher3_chain.power import unjudged
 from sher3_chain.readings.wrong import wrong_readings
 from sher3_chain.search.changes import change_notes
 from sher3_chain.search.friction_in_motion import requantified
@@ -121,6 +123,11 @@ class Manipulator(Chain[ArmMotionEvidence]):
         levels = [x for run in evidence.runs for x in level_notes(run, self.described.joints, evidence.judged)]
         notes += told_once(levels, [run.name for run in evidence.runs])
         return [*notes, *slip_notes(evidence), *gain_notes(evidence), *confounding_notes(evidence)]
+
+    def unjudged(self, finding: Finding[ArmMotionEvidence]) -> dict[Channel, str]:
+        """Say where the floors of all joints eat their efforts."""
+        views = finding.evidence.data.views
+        return unjudged(finding, lambda r, site, ok: views[r].effort[ok, views[r].row(site)])
 
     def reporter(self) -> ManipulatorReporter:
         """Return the part of this machine in a report."""

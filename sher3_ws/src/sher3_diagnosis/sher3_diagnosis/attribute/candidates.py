@@ -66,7 +66,7 @@ class Candidates:
         found: Fit | None = None
         for _ in range(ROUNDS):
             before = found
-            for shape in shapes:
+            for shape in (s for s in shapes if effect.allowed(self.evidence.views, site, s)):
                 trial = fit(self.evidence.data, [*given, self.term(effect, site, shape)])
                 if self.possible(trial) and (found is None or cost(trial) < cost(found) - TIE):
                     found = trial

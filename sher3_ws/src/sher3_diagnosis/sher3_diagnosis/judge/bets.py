@@ -71,6 +71,11 @@ def exact_place(stage: ExactFinding, known: float) -> Place:
     return placed(stage.where, answers)
 
 
+def untold_place(where: Where) -> Place:
+    """Return the bets at a place that cannot be judged: nothing speaks for a gap, and nothing against it."""
+    return placed(where, [_plain(OUTSIDE, 0.5), _plain(NO_GAP, 0.5)])
+
+
 def placed(where: Where, answers: Iterable[Answer], typicality: float | None = None) -> Place:
     """Return a place with the answers worth listing, most probable first; the best explanation always is."""
     ranked = sorted(answers, key=lambda a: -a.probability)

@@ -10,7 +10,7 @@ import numpy as np
 from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.finding import ExactFinding, Finding
-from sher3_diagnosis.judge.bets import exact_place, place_of
+from sher3_diagnosis.judge.bets import exact_place, place_of, untold_place
 from sher3_diagnosis.judge.calibration.calibration import Calibration, in_force
 from sher3_diagnosis.judge.calibration.typical import RARE
 from sher3_diagnosis.judge.causes import ordered, places_of
@@ -50,7 +50,7 @@ def judge(
         "notes": [*notes, *_unusual(places)],
     }
     if not any(gaps) and not exact:
-        return Verdict(status="no_gap", **told)
+        return _hidden(machine, findings, told) or Verdict(status="no_gap", **told)
     causes = ordered(causes, list(findings))
     where = [f.where for f in exact] + [w for _, _, w in located]
     stage, residual = _first(findings, gaps, exact, where[0].gap)
@@ -72,6 +72,21 @@ def judge(
 
 
 Located = tuple[Finding, Channel, Where]
+
+
+def _hidden(machine: Machine, findings: Sequence[Finding], told: dict[str, Any]) -> Verdict | None:
+    """Return the verdict on parts of which no gap is no finding, since their floor hides one; None without any."""
+    why = [(f, machine.unjudged(f)) for f in findings]
+    hidden = [
+        (c, w, said[c]) for f, said in why for c, w in places_of(f, {g.channel: g for g in f.gaps if g.channel in said})
+    ]
+    if not hidden:
+        return None
+    channel, _, reason = hidden[0]
+    where = [w for _, w, _ in hidden]
+    unexplained = Unexplained(stage=channel.stage, actuator=channel.actuator, signature=reason)
+    told = {**told, "places": [untold_place(w) for w in where]}
+    return Verdict(status="outside_library", where=where, unexplained=unexplained, **told)
 
 
 def _located(findings: Sequence[Finding]) -> list[Located]:

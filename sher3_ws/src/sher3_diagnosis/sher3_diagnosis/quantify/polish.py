@@ -49,7 +49,7 @@ def _stepped(evidence: Evidence, current: Fit, index: int, change: dict[str, flo
     for name, by in change.items():
         room = LONGEST * abs(shape[name])
         shape[name] += share * min(max(by, -room), room)
-    if shape == term.shape:
+    if shape == term.shape or not term.effect.allowed(evidence.views, term.site, shape):
         return None
     terms = list(current.terms)
     terms[index] = make_term(evidence.data, term.effect, term.site, shape)

@@ -112,10 +112,15 @@ class ServoStiction(CoulombFriction):
         i = views[0].row(site)
         pairs = [(v.run.reference[:, i], v.run.motor[:, i]) for v in views if v.run.reference is not None]
         span = float(np.ptp(np.percentile(np.concatenate([r - q for r, q in pairs]), [0.5, 99.5])))
-        stroke = max(float(np.ptp(r)) for r, _ in pairs)
         late = [n * views[0].run.period for n in self.LATE]
-        forces = [s * span for s in self.SHARES if 0.0 < s * span < self.MOVES * stroke]
-        return [*({"force": f, "late": t} for f in forces for t in late), *self.plain_shapes(views, site)]
+        played: list[Shape] = [{"force": s * span, "late": t} for s in self.SHARES for t in late if span]
+        return [*(x for x in played if self.allowed(views, site, x)), *self.plain_shapes(views, site)]
+
+    def allowed(self, views: Sequence[AxisView], site: str, shape: Shape) -> bool:
+        """Return whether the reference breaks the axis loose; held throughout, its error is the reference itself."""
+        i = views[0].row(site)
+        stroke = max(float(np.ptp(v.run.reference[:, i])) for v in views if v.run.reference is not None)
+        return "displacement" in shape or shape["force"] < self.MOVES * stroke
 
     def plain_shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
         """Return displacements, m or rad, over which the error turns its sign: a force beside the others."""

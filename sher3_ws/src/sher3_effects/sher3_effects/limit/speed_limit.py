@@ -52,8 +52,8 @@ class SpeedLimit(Page):
         return [{"limit": s * top, "time_constant": t} for s in self.LEVELS for t in times if top > 0.0]
 
     def _held(self, views: Sequence[AxisView], row: int) -> bool:
-        """Return whether the axis spends much of its motion at one speed; one that follows a wave does not."""
-        speed = np.concatenate([np.abs(v.run.velocity[:, row]) for v in views])
+        """Return whether the axis spends much of its motion at one speed, sample by sample; on a wave it does not."""
+        speed = np.concatenate([np.abs(np.diff(v.run.motor[:, row])) / v.run.period for v in views])
         moving = speed[speed > self.MOVING * speed.max(initial=0.0)]
         return len(moving) > 0 and bool(np.mean(moving > self.AT_TOP * np.quantile(moving, 0.98)) > self.MUCH)
 

@@ -114,6 +114,10 @@ class BacklashBeforeEncoder(Page):
         """Return half widths, m or rad, and lags, s."""
         return [s for s in self.STICKS.shapes(views, site) if "displacement" not in s]
 
+    def allowed(self, views: Sequence[AxisView], site: str, shape: Shape) -> bool:
+        """Return whether the reference crosses the gap."""
+        return self.STICKS.allowed(views, site, shape)
+
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
         """Return minus the play of the lagged reference; nothing is left to fit."""
         return self.STICKS.signature(view, site, shape)

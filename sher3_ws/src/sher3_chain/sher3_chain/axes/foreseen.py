@@ -1,0 +1,54 @@
+"""What a predictor with inputs leaves of a residual: the innovation of a driven signal.
+
+A second difference foresees a signal that bends slowly. Of one that is driven faster, by steps of a reference or about
+a resonance, it leaves most, and a floor made of that hides the gap itself. Known inputs foresee such a signal: a
+residual is fitted to its own past, to that of the motion and to what was asked, on one half of the record, and told for
+the other (an ARX model: Ljung 1999).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from sher3_diagnosis.channel import Array, Residual
+
+from sher3_chain.readings.noise import GAUSSIAN
+from sher3_chain.readings.signals import AxisSignals
+
+Rows = NDArray[np.signedinteger]
+PAST = 4
+"""Samples of the residual grid that are looked back on: two resonances, or a lag and a delay."""
+ENOUGH = 5
+"""Samples for each number of the predictor at least."""
+
+
+def foreseen(run: AxisSignals, residual: Residual) -> float:
+    """Return the standard deviation of white noise that would leave as much as the predictor does; inf if too short.
+
+    Args:
+        run: whose motion and reference are the inputs.
+        residual: of one component, on its grid.
+    """
+    y, ok = residual.values[:, 0], residual.ok
+    past = [np.roll(y, k) for k in range(1, PAST + 1)]
+    inputs = [np.roll(run.smooth[run.grid, 0], k) for k in range(1, PAST + 1)]
+    if run.reference is not None:
+        asked = run.to_grid(run.reference)[:, 0]
+        inputs += [np.roll(asked, k) for k in range(PAST + 1)]
+    rows = np.flatnonzero(np.all([np.roll(ok, k) for k in range(PAST + 1)], axis=0))
+    rows = rows[rows >= PAST]
+    x = np.column_stack([*past, *inputs, np.ones_like(y)])
+    if len(rows) < 2 * ENOUGH * x.shape[1]:
+        return np.inf
+    noise = run.filtered(np.random.default_rng(0).normal(size=(run.ticks, 1)))[:: run.stride, 0]
+    halves = np.array_split(rows, 2)
+    return float(np.mean([_left(x, y, one, other, noise) for one, other in (halves, halves[::-1])]))
+
+
+def _left(x: Array, y: Array, told: Rows, judged: Rows, noise: Array) -> float:
+    """Return what a predictor fitted on some rows leaves of others, as noise (n,) of the same innovation has a size."""
+    size = np.linalg.norm(x[told], axis=0)
+    size[size == 0.0] = 1.0
+    beta = np.linalg.lstsq(x[told] / size, y[told], rcond=1e-9)[0] / size
+    gain = np.convolve(noise, np.concatenate([[1.0], -beta[:PAST]]), "valid").std() / noise.std()
+    return float(GAUSSIAN * np.median(np.abs(y[judged] - x[judged] @ beta)) / gain)
