@@ -20,7 +20,6 @@ from sher3_chain.joint.description import Axis
 from sher3_chain.joint.record import AxesRun
 from sher3_chain.readings.level import level_note, off, off_note
 from sher3_chain.readings.signals import AxisSignals, signals_of
-from sher3_chain.readings.wrong import without_effort
 from sher3_chain.thresholds import NO_INERTIA
 
 
@@ -51,7 +50,7 @@ def gather_axis(runs: Sequence[AxesRun], axis: Axis, repeats: bool) -> AxisEvide
     signals: Sequence[AxisSignals] = [signals_of(run, axis, "repeats" if repeats else run.name) for run in runs]
     slip = slip_of(signals, axis) or ""
     if slip:
-        runs = [without_effort(run, axis) for run in runs]
+        runs = [run.without(axis.name, ("effort",)) for run in runs]
         signals = [replace(s, effort=None) for s in signals]
     signals, notes = aligned(signals, axis)
     notes = [*levels_of(signals, axis), *notes]

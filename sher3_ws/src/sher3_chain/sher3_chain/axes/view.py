@@ -3,75 +3,47 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 from sher3_diagnosis.channel import Array, Channel, Mask
 from sher3_diagnosis.discover.feature import Quantities, Quantity
-from sher3_diagnosis.evidence import Motion
 from sher3_diagnosis.filter import EDGE, settled
 from sher3_effects.operators import dahl_turned
 from sher3_effects.view import NominalAxis
 
+from sher3_chain.chain.view import LEAD_OF_STROKE, SLIP, ChainView, Loads
 from sher3_chain.joint.description import Axis
 from sher3_chain.readings.noise import noise_of
 from sher3_chain.readings.signals import AxisSignals
 
-LEAD_OF_STROKE = 0.02
-"""Share of the stroke that stands for the lead of a linear axis where it is not known. Effects search displacements in
-shares of the lead; of a turning axis one turn stands for it."""
-SLIP = 1e-9
-"""Viscous coefficient in place of none, N/(m/s) or N m/(rad/s): effects take it as a scale."""
 SEEN = 5.0
 """Standard deviations of a noise that nothing passes by chance."""
 STIRRING = 0.01
 """Share of the travel above which a change is no noise: what a slow record moves by is not taken for one."""
-REFERENCE = 20.0
-"""Temperature, deg C, at which lengths are stated (ISO 1)."""
 SPREAD = 0.5
 """Periods of the cut-off by which the filter spreads a step."""
 PAST = (0.003, 0.03, 0.3)
 """Shares of a range over which a state forgets: what went before within a fine, a usual and a coarse stroke."""
 ENOUGH = 0.5
 """Share of the samples in motion that must be away from such reversals for the others to be left out."""
-STILL = 1e-12
-"""Top speed in place of none, m/s or rad/s: shares of the top speed are taken."""
 
 
-class Loads(NamedTuple):
-    """Nominal loads on the residual grid, (g, 1) each, N or N m.
-
-    Attributes:
-        gravity: weight on the axis.
-        contact_force: known force from outside, positive along the motion; zero where none was recorded.
-    """
-
-    gravity: Array
-    contact_force: Array
-
-
-class AxisView:
+class AxisView(ChainView):
     """A run of one axis with its nominal forces.
 
     Attributes:
-        run: signals of the axis.
         described: the axis as its description has it.
         mass: nominal mass, or the one identified, kg or kg m^2.
         load_mass: part of it that moves with the second encoder.
     """
 
     def __init__(self, run: AxisSignals, axis: Axis, mass: float, load_mass: float = 0.0) -> None:
-        self.run = run
+        super().__init__(run, [axis])
         self.described = axis
         self.mass = mass
         self.load_mass = load_mass
-        self._sliding: dict[float, Array] = {}
 
     # what the effects read
-
-    def row(self, site: str) -> int:
-        """Return the column of the axis: signals have one."""
-        return 0
 
     def axis(self, site: str) -> NominalAxis:
         """Return the nominal constants of the axis."""
@@ -81,7 +53,7 @@ class AxisView:
             self.mass,
             max(axis.viscous, SLIP),
             self.lead(site),
-            self.top,
+            float(self.tops[0]),
             travel,
             self.hangs,
             known,
@@ -103,13 +75,6 @@ class AxisView:
             return 2.0 * np.pi
         return LEAD_OF_STROKE * max(float(np.ptp(self.run.motor)), self.described.encoder_resolution)
 
-    def sliding(self, axis: int, displacement: float) -> Array:
-        """Return the Dahl state of the axis, -1..1, (n,): +1 after moving forward by a few `displacement`, m or rad."""
-        if displacement not in self._sliding:
-            path, pace = (np.ascontiguousarray(x[:, 0]) for x in (self.run.smooth, self.run.velocity))
-            self._sliding[displacement] = dahl_turned(path, pace, displacement, self.run.period)
-        return self._sliding[displacement]
-
     @cached_property
     def path(self) -> Loads:
         """Nominal weight along the motion, and the known force from outside."""
@@ -117,16 +82,6 @@ class AxisView:
         weight = law.constant + law.arm * np.sin(self.position - law.hanging)
         applied = self.run.applied
         return Loads(weight, np.zeros_like(weight) if applied is None else self.run.to_grid(applied))
-
-    @cached_property
-    def position(self) -> Array:
-        """Smoothed position on the residual grid, (g, 1)."""
-        return self.run.smooth[self.run.grid]
-
-    @cached_property
-    def velocity(self) -> Array:
-        """Velocity on the residual grid, (g, 1)."""
-        return self.run.velocity[self.run.grid]
 
     @cached_property
     def inertial(self) -> Array:
@@ -219,46 +174,6 @@ class AxisView:
 
     # what the engine reads
 
-    @property
-    def excitation(self) -> str:
-        """Name that repeats of the run share."""
-        return self.run.excitation
-
-    @property
-    def rate(self) -> float:
-        """Samples per second of the residual grid, Hz."""
-        return self.run.rate
-
-    @cached_property
-    def top(self) -> float:
-        """Largest velocity of the run, m/s or rad/s."""
-        return max(float(np.abs(self.run.velocity).max()), STILL)
-
-    @cached_property
-    def speed_share(self) -> Array:
-        """(g,) speed over the largest of the run."""
-        return np.abs(self.velocity[:, 0]) / self.top
-
-    @property
-    def loaded(self) -> Mask:
-        """(g,) True where a known force from outside acts."""
-        return np.abs(self.path.contact_force[:, 0]) > 0.0
-
-    @cached_property
-    def warmth(self) -> Array:
-        """(g,) temperature above the reference, K; zero where it was not recorded."""
-        warm = self.run.temperature
-        return np.zeros(len(self.run.grid)) if warm is None else self.run.to_grid(warm - REFERENCE)[:, 0]
-
-    @property
-    def temperature_known(self) -> bool:
-        """Whether the temperature was recorded."""
-        return self.run.temperature is not None
-
-    def motion(self, actuator: str) -> Motion | None:
-        """Return the motion of the axis."""
-        return Motion(self.position[:, 0], self.velocity[:, 0], self.top, self.described.lead)
-
     def inputs(self, actuator: str) -> Array:
         """Return (g, 3): position, velocity, and direction of the motion, 0 at rest."""
         velocity = self.velocity[:, 0]
@@ -292,11 +207,6 @@ class AxisView:
 
     # what discovery reads
 
-    @property
-    def step(self) -> float:
-        """Time between two samples of the record, s."""
-        return self.run.period
-
     def recorded(self, channel: Channel) -> Quantities:
         """Return what was recorded that the law of a gap might depend on; not the effort, which is the output."""
         run, unit = self.run, "rad" if self.described.motion == "rotary" else "m"
@@ -312,7 +222,3 @@ class AxisView:
             "load": Quantity(weight, newton, "the weight on the axis", "force"),
             "time": Quantity(run.stage_clock, "s", "the time since the run began", "clock"),
         }
-
-    def at_residuals(self, x: Array) -> Array:
-        """Low-pass values of the record and sample them on the residual grid."""
-        return self.run.to_grid(x)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -69,6 +69,11 @@ class AxesRun:
     def ticks(self) -> int:
         """Number of samples; every signal has as many."""
         return next((len(x) for found in self.signals.values() for x in found.values()), 0)
+
+    def without(self, joint: str, signals: Collection[str]) -> AxesRun:
+        """Return the run without some signals of a joint."""
+        kept = {k: x for k, x in self.signals[joint].items() if k not in signals}
+        return replace(self, signals={**self.signals, joint: kept})
 
 
 def axes_run(name: str, tables: Tables, machine: ChainDescription) -> AxesRun:

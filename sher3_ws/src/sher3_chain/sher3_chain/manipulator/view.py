@@ -9,12 +9,10 @@ import numpy as np
 from scipy.ndimage import maximum_filter1d
 from sher3_diagnosis.channel import Array, Channel, Mask
 from sher3_diagnosis.discover.feature import Quantities, Quantity
-from sher3_diagnosis.evidence import Motion
 from sher3_diagnosis.filter import settled
-from sher3_effects.operators import dahl_turned
 from sher3_effects.view import NominalAxis
 
-from sher3_chain.axes.view import LEAD_OF_STROKE, SLIP, STILL, Loads
+from sher3_chain.chain.view import LEAD_OF_STROKE, SLIP, ChainView, Loads
 from sher3_chain.manipulator.description import Joint
 from sher3_chain.manipulator.model import PARAMETERS, ArmModel
 from sher3_chain.manipulator.readings.encoders import crossing
@@ -30,18 +28,19 @@ DEVELOPED = 0.95
 """Share of its full size above which a soft dry friction of MuJoCo no longer depends on the exact speed."""
 
 
-class MotionView:
+class MotionView(ChainView):
     """A run of k joints with their nominal forces; on the side of the motors where a transmission couples them.
 
     Attributes:
-        run: signals of the joints; `links`: the same with the positions of the links.
-        joints: as described.
+        links: signals of the joints with the positions of the links.
         model: of the arm.
         coupling: motor travel = coupling * joint travel, (k, k).
         inertia: moved by each joint in the middle posture, (k,).
         shares: (k,) by which the model's forces are multiplied: 1, or units of the recorded effort per newton metre
             where the gain was found from the data.
     """
+
+    joints: Sequence[Joint]
 
     def __init__(
         self,
@@ -52,20 +51,14 @@ class MotionView:
         coupling: Array,
         shares: Array,
     ) -> None:
-        self.run = run
+        super().__init__(run, joints)
         self.links = links
-        self.joints = joints
         self.model = model
         self.coupling = coupling
         self.shares = shares
-        self._sliding: dict[tuple[int, float], Array] = {}
         self._payload: dict[tuple[str, tuple[float, ...]], dict[str, Array]] = {}
 
     # what the effects read
-
-    def row(self, site: str) -> int:
-        """Return the column of a joint."""
-        return self.model.names.index(site)
 
     def axis(self, site: str) -> NominalAxis:
         """Return the nominal constants of a joint."""
@@ -80,13 +73,6 @@ class MotionView:
         if stated is not None:
             return stated
         return LEAD_OF_STROKE * max(float(np.ptp(self.run.motor[:, row])), self.joints[row].encoder_resolution)
-
-    def sliding(self, axis: int, displacement: float) -> Array:
-        """Return the Dahl state of a joint, -1..1, (n,): +1 after moving forward by a few `displacement`, m or rad."""
-        if (axis, displacement) not in self._sliding:
-            x, v = (np.ascontiguousarray(y[:, axis]) for y in (self.run.smooth, self.run.velocity))
-            self._sliding[axis, displacement] = dahl_turned(x, v, displacement, self.run.period)
-        return self._sliding[axis, displacement]
 
     def payload(self, link: str, centre: tuple[float, float, float]) -> dict[str, Array]:
         """Return joint -> (g, 4) force: per kg at the joint of a link, and per kg m of its centre.
@@ -111,16 +97,6 @@ class MotionView:
         still = np.zeros_like(self._joint_position)
         weight = self._on_motors(self.model.needed(self._joint_position, still, still)[..., None])[..., 0] * self.shares
         return Loads(weight, np.zeros_like(weight))
-
-    @cached_property
-    def position(self) -> Array:
-        """Smoothed position on the residual grid, (g, k)."""
-        return self.run.smooth[self.run.grid]
-
-    @cached_property
-    def velocity(self) -> Array:
-        """Velocity on the residual grid, (g, k)."""
-        return self.run.velocity[self.run.grid]
 
     @cached_property
     def acceleration(self) -> Array:
@@ -241,46 +217,6 @@ class MotionView:
 
     # what the engine reads
 
-    @property
-    def excitation(self) -> str:
-        """Name that repeats of the run share."""
-        return self.run.excitation
-
-    @property
-    def rate(self) -> float:
-        """Samples per second of the residual grid, Hz."""
-        return self.run.rate
-
-    @cached_property
-    def tops(self) -> Array:
-        """Largest velocity of every joint, (k,)."""
-        return np.maximum(np.abs(self.run.velocity).max(axis=0), STILL)
-
-    @cached_property
-    def speed_share(self) -> Array:
-        """(g,) speed of the fastest joint over its largest of the run."""
-        return (np.abs(self.velocity) / self.tops).max(axis=1)
-
-    @property
-    def loaded(self) -> Mask:
-        """(g,) False: no load acts but the arm's own weight."""
-        return np.zeros(len(self.run.grid), dtype=bool)
-
-    @property
-    def warmth(self) -> Array:
-        """(g,) zero: temperatures are not recorded."""
-        return np.zeros(len(self.run.grid))
-
-    @property
-    def temperature_known(self) -> bool:
-        """False: temperatures are not recorded."""
-        return False
-
-    def motion(self, actuator: str) -> Motion | None:
-        """Return the motion of a joint."""
-        row = self.row(actuator)
-        return Motion(self.position[:, row], self.velocity[:, row], float(self.tops[row]), self.joints[row].lead)
-
     def inputs(self, actuator: str) -> Array:
         """Return (g, 5): position, velocity and direction of the joint, the force it needs, and its acceleration."""
         row = self.row(actuator)
@@ -290,11 +226,6 @@ class MotionView:
         return np.column_stack(own)
 
     # what discovery reads
-
-    @property
-    def step(self) -> float:
-        """Time between two samples of the record, s."""
-        return self.run.period
 
     def recorded(self, channel: Channel) -> Quantities:
         """Return what was recorded that the law of a gap of a joint might depend on; not the effort, the output."""
@@ -312,10 +243,6 @@ class MotionView:
             "load": Quantity(weight, newton, "the weight on the joint", "force"),
             "time": Quantity(run.stage_clock, "s", "the time since the run began", "clock"),
         }
-
-    def at_residuals(self, x: Array) -> Array:
-        """Low-pass values of the record and sample them on the residual grid."""
-        return self.run.to_grid(x)
 
 
 def point_inertia(centre: Array) -> Array:

@@ -6,7 +6,6 @@ A channel that is not connected must not become a cause. It is named and left ou
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -126,17 +125,7 @@ def stays(x: Array) -> list[tuple[int, int]]:
 
 def without_wrong(run: AxesRun, axis: Axis) -> AxesRun:
     """Return the run without the wrong signals of an axis."""
-    wrong = wrong_readings(run, axis)
-    if not wrong:
-        return run
-    kept = {k: x for k, x in run.signals[axis.name].items() if k not in wrong}
-    return AxesRun(run.name, run.period, {**run.signals, axis.name: kept}, run.notes)
-
-
-def without_effort(run: AxesRun, axis: Axis) -> AxesRun:
-    """Return the run without the effort of an axis."""
-    kept = {k: x for k, x in run.signals[axis.name].items() if k != "effort"}
-    return replace(run, signals={**run.signals, axis.name: kept})
+    return run.without(axis.name, wrong_readings(run, axis).keys())
 
 
 def _sentence(run: AxesRun, axis: Axis, signal: str, what: str, so: str) -> str:

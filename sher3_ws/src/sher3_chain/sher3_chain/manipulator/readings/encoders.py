@@ -15,7 +15,7 @@ from sher3_diagnosis.channel import Array, Mask
 from sher3_effects.operators import dahl
 from sher3_effects.timing.sensor_delay import SensorDelay, shifted
 
-from sher3_chain.axes.view import LEAD_OF_STROKE
+from sher3_chain.chain.view import LEAD_OF_STROKE
 from sher3_chain.manipulator.description import Joint
 from sher3_chain.manipulator.model import ArmModel
 from sher3_chain.manipulator.signals import JointSignals

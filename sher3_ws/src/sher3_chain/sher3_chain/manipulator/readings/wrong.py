@@ -7,7 +7,6 @@ lies flat at its largest reading its joint is not judged.
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from dataclasses import replace
 
 from sher3_chain.joint.record import AxesRun
 from sher3_chain.manipulator.description import Joint, ManipulatorDescription
@@ -28,8 +27,6 @@ def level_notes(run: AxesRun, joints: Sequence[Joint], judged: Collection[str]) 
 
 def without_wrong_loads(run: AxesRun, described: ManipulatorDescription) -> AxesRun:
     """Return the run without the second encoders that say nothing; efforts stay, their joints are not judged."""
-    signals = dict(run.signals)
     for joint in described.joints:
-        if "load" in wrong_readings(run, joint):
-            signals[joint.name] = {k: x for k, x in signals[joint.name].items() if k != "load"}
-    return replace(run, signals=signals)
+        run = run.without(joint.name, {"load"} & wrong_readings(run, joint).keys())
+    return run

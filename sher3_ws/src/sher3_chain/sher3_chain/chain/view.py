@@ -1,0 +1,135 @@
+"""A run of a chain of joints as the effects and the engine see it: its motion, and what was recorded beside it."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from sher3_diagnosis.channel import Array, Mask
+from sher3_diagnosis.evidence import Motion
+from sher3_effects.operators import dahl_turned
+
+from sher3_chain.joint.description import Axis
+from sher3_chain.readings.signals import AxisSignals
+
+LEAD_OF_STROKE = 0.02
+"""Share of the stroke that stands for the lead of a linear axis where it is not known. Effects search displacements in
+shares of the lead; of a turning axis one turn stands for it."""
+SLIP = 1e-9
+"""Viscous coefficient in place of none, N/(m/s) or N m/(rad/s): effects take it as a scale."""
+REFERENCE = 20.0
+"""Temperature, deg C, at which lengths are stated (ISO 1)."""
+STILL = 1e-12
+"""Top speed in place of none, m/s or rad/s: shares of the top speed are taken."""
+
+
+class Loads(NamedTuple):
+    """Nominal loads on the residual grid, (g, n) each, N or N m.
+
+    Attributes:
+        gravity: weight on every joint.
+        contact_force: known force from outside, positive along the motion; zero where none was recorded.
+    """
+
+    gravity: Array
+    contact_force: Array
+
+
+class ChainView(ABC):
+    """A run of n joints; signals have a column for each of them.
+
+    Attributes:
+        run: signals of the joints.
+        joints: as described.
+    """
+
+    def __init__(self, run: AxisSignals, joints: Sequence[Axis]) -> None:
+        self.run = run
+        self.joints = joints
+        self._rows = {joint.name: row for row, joint in enumerate(joints)}
+        self._sliding: dict[tuple[int, float], Array] = {}
+
+    # what the effects read
+
+    def row(self, site: str) -> int:
+        """Return the column of a joint."""
+        return self._rows[site]
+
+    def sliding(self, axis: int, displacement: float) -> Array:
+        """Return the Dahl state of a joint, -1..1, (n,): +1 after moving forward by a few `displacement`, m or rad."""
+        if (axis, displacement) not in self._sliding:
+            path, pace = (np.ascontiguousarray(x[:, axis]) for x in (self.run.smooth, self.run.velocity))
+            self._sliding[axis, displacement] = dahl_turned(path, pace, displacement, self.run.period)
+        return self._sliding[axis, displacement]
+
+    @cached_property
+    @abstractmethod
+    def path(self) -> Loads:
+        """Nominal weight on every joint along the motion, and known forces from outside."""
+
+    @cached_property
+    def position(self) -> Array:
+        """Smoothed position on the residual grid, (g, n)."""
+        return self.run.smooth[self.run.grid]
+
+    @cached_property
+    def velocity(self) -> Array:
+        """Velocity on the residual grid, (g, n)."""
+        return self.run.velocity[self.run.grid]
+
+    # what the engine reads
+
+    @property
+    def excitation(self) -> str:
+        """Name that repeats of the run share."""
+        return self.run.excitation
+
+    @property
+    def rate(self) -> float:
+        """Samples per second of the residual grid, Hz."""
+        return self.run.rate
+
+    @cached_property
+    def tops(self) -> Array:
+        """Largest velocity of every joint, (n,)."""
+        return np.maximum(np.abs(self.run.velocity).max(axis=0), STILL)
+
+    @cached_property
+    def speed_share(self) -> Array:
+        """(g,) speed of the fastest joint over its largest of the run."""
+        return (np.abs(self.velocity) / self.tops).max(axis=1)
+
+    @property
+    def loaded(self) -> Mask:
+        """(g,) True where a known force from outside acts."""
+        return np.asarray((self.path.contact_force != 0.0).any(axis=1))
+
+    @cached_property
+    def warmth(self) -> Array:
+        """(g,) temperature above the reference, K; zero where it was not recorded."""
+        warm = self.run.temperature
+        return np.zeros(len(self.run.grid)) if warm is None else self.run.to_grid(warm - REFERENCE)[:, 0]
+
+    @property
+    def temperature_known(self) -> bool:
+        """Whether the temperature was recorded."""
+        return self.run.temperature is not None
+
+    def motion(self, actuator: str) -> Motion | None:
+        """Return the motion of a joint."""
+        row = self.row(actuator)
+        return Motion(self.position[:, row], self.velocity[:, row], float(self.tops[row]), self.joints[row].lead)
+
+    # what discovery reads
+
+    @property
+    def step(self) -> float:
+        """Time between two samples of the record, s."""
+        return self.run.period
+
+    def at_residuals(self, x: Array) -> Array:
+        """Low-pass values of the record and sample them on the residual grid."""
+        return self.run.to_grid(x)
