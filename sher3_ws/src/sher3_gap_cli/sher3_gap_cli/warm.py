@@ -1,0 +1,42 @@
+"""Compile the laws of the diagnosis before they are asked for: a simulated case is diagnosed and thrown away.
+
+`make setup` runs it, `python -m sher3_gap_cli.warm` does after any other installation. The machine code stays in the
+user's cache; without this the first diagnosis compiles it.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+EFFECTS = [{"effect": "backlash", "actuator": "tilt", "parameters": {"width": 60e-6}}]
+"""Lost motion, since its laws are compiled and so are those of its rivals."""
+EXCITATIONS = ("sweep", "reversals")
+
+
+def warm_up() -> str:
+    """Diagnose a simulated robot with a fault; return the status, which depends on nothing but the sources."""
+    from sher3_bags import write_case
+    from sher3_description import load_robot
+    from sher3_effects.effects_file import effects_from_text
+    from sher3_gap import diagnose_case
+    from sher3_gap.excitation import excite
+    from sher3_gap.experiments.rehearsal import rehearse
+
+    robot = load_robot()
+    wanted = [(excite(label, robot), repeat) for label in EXCITATIONS for repeat in range(2)]
+    runs = rehearse(robot, wanted, effects_from_text(json.dumps(EFFECTS)))
+    with TemporaryDirectory() as folder:
+        case = Path(folder, "case")
+        write_case(case, runs, robot)
+        return str(diagnose_case(case).verdict.status)
+
+
+def main() -> None:
+    """Fill the cache of compiled code."""
+    warm_up()
+
+
+if __name__ == "__main__":
+    main()
