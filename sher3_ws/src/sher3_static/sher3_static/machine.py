@@ -61,9 +61,9 @@ class StaticTest(Machine[Readings, TableEvidence]):
         return self.kind.attribute(evidence, candidates, left_over, say)
 
     def remarks(self, finding: Finding[TableEvidence]) -> list[str]:
-        """Return what the kind and the pages of the causes say, how far zeros are apart, and what cannot be judged."""
+        """Return what the kind and the pages of the causes say, and how far the zeros of runs are apart."""
         zeros = zeros_in_words(finding.evidence, finding.attribution.fit)
-        return [*self.kind.remarks(finding), *causes_in_words(finding), *zeros, *self.unjudged(finding).values()]
+        return [*self.kind.remarks(finding), *causes_in_words(finding), *zeros]
 
     def unjudged(self, finding: Finding[TableEvidence]) -> dict[Channel, str]:
         """Say where the scatter of the readings hides whatever is looked for."""
