@@ -171,3 +171,30 @@ def test_da_vinci(tmp_path):
     assert len(loops) == 1
     widths = next(iter(loops.values())).parameters
     assert widths["width"].value < math.radians(4.3) and widths["width"].high > math.radians(3.3)
+
+
+DAMPER = """kind: axes
+name: banded friction damper with play
+time: {column: data, index: 0, unit: s}
+axes:
+  - name: device
+    motion: linear
+    signals:
+      position: {column: data, index: 1, unit: m, factor: 0.0254}
+      effort: {column: data, index: 2, unit: N, factor: 4448.22}
+    command_law: {kind: force}
+    mass: 10.0
+    encoder_resolution: 1.5e-6
+"""
+
+
+@pytest.mark.parametrize(("name", "kip"), [("0.5Hz35lb", 2.25), pytest.param("1Hz35lb", 2.25, marks=pytest.mark.slow)])
+def test_damper(name, kip, tmp_path):
+    """Play of 3.3 to 4.6 mm in series with dry friction, no viscous part; 2.25 kip at a tension of 35 lb."""
+    (tmp_path / "damper.yaml").write_text(DAMPER, encoding="utf-8")
+    data = [REAL / f"brfd_damper/dataset-1_{name}tension.json"]
+    verdict = verdict_with("damper", tmp_path / "damper.yaml", data, tmp_path)
+    assert verdict.status == "attributed" and [c.effect for c in verdict.causes] == ["rubbing_behind_gap"]
+    found = verdict.causes[0].parameters
+    assert found["width"].low < 4.6e-3 and found["width"].high > 3.3e-3
+    assert found["load_friction"].value == pytest.approx(kip * 4448.22, rel=0.1)
