@@ -89,7 +89,38 @@ def arm(folder):
     return arms.described().model_dump(mode="json", exclude_unset=True), {"x": data["joints"], "p": data["poses"]}
 
 
-KINDS = {f.__name__: f for f in (axes, servo, manipulator, load_cell, force_sensor, positioning, arm)}
+def target(folder):
+    """The same arm, of which a tracker sees one target."""
+    described, data = arm(folder)
+    del described["poses"]
+    return {**described, "positions": {"column": "p", "unit": "m"}}, {**data, "p": data["p"][:, :3, 3]}
+
+
+def cable(folder):
+    """The same arm, of which one cable from the base of the tracker is seen."""
+    described, data = target(folder)
+    described["lengths"] = described.pop("positions")
+    return described, {**data, "p": np.linalg.norm(data["p"], axis=1)}
+
+
+def weights(folder):
+    """A force sensor with a bias under weights at levers."""
+    described, _ = force_sensor(folder)
+    for name in ("orientation", "load"):
+        del described[name]
+    rng = np.random.default_rng(2)
+    lever, along = rng.uniform(-0.1, 0.1, (120, 3)), rng.normal(size=(120, 3))
+    force = rng.choice([0.0, 10.0, 20.0], 120)[:, None] * along / np.linalg.norm(along, axis=1, keepdims=True)
+    vectors = {name: {"column": name, "unit": unit} for name, unit in (("direction", "1"), ("lever", "m"))}
+    described["applied"] = {"weight": {"column": "weight", "unit": "N"}, **vectors}
+    bias = np.array([1.0, 0.0, 0.5, 0.0, 0.1, 0.0])
+    noise = bias + rng.normal(0.0, np.repeat([0.02, 0.002], 3), (120, 6))
+    read = {"f": force + noise[:, :3], "t": np.cross(lever, force) + noise[:, 3:]}
+    return described, {**read, "weight": np.linalg.norm(force, axis=1), "direction": along, "lever": lever}
+
+
+TABLES = (load_cell, force_sensor, weights, positioning, arm, target, cable)
+KINDS = {f.__name__: f for f in (axes, servo, manipulator, *TABLES)}
 
 
 def written(kind: str, folder: Path) -> tuple[Path, Path]:

@@ -6,9 +6,11 @@ import pytest
 from kinds_of_cases import KINDS, written
 from sher3_effects.registry import VARIABLE
 from sher3_gap_cli.app import app
-from sher3_machines import open_case
+from sher3_machines import kinds, open_case
 from typer.testing import CliRunner
 
+SENSORS = ("force_sensor", "weights")
+"""Kinds of case of a sensor that the simulated robot has, too."""
 FORMULAS = ("axes", "manipulator")
 """Kinds with a force balance, of which a formula is found."""
 
@@ -32,6 +34,10 @@ def adds_up(verdict):
     assert len(verdict["places"]) >= len(verdict["where"])
     for place in verdict["places"]:
         assert sum(a["probability"] for a in place["answers"]) + place["other"] == pytest.approx(1.0, abs=1e-6)
+
+
+def test_every_kind_has_a_case(tmp_path):
+    assert {KINDS[name](tmp_path)[0]["kind"] for name in KINDS} == set(kinds())
 
 
 @pytest.fixture(scope="module", params=list(KINDS))
@@ -64,7 +70,7 @@ def test_a_verdict_is_exported_and_an_experiment_proposed_or_refused_in_a_senten
     verdict = folder / "verdict.json"
     assert answered("export", verdict, "--out", folder / "causes.yaml")
     applied = call("apply", verdict, "-o", folder / "effects.yaml")
-    assert "sher3 gap export" in applied.output or kind == "force_sensor"  # the simulated robot has one, too
+    assert "sher3 gap export" in applied.output or kind in SENSORS  # the simulated robot has one, too
     checked = call("export", verdict, "--to", "mjcf", "--check", path, "--out", folder / "model.xml")
     assert (checked.exit_code == 0) == (kind in FORMULAS), checked.output
     call("experiment", verdict, path, "-o", folder / "motion.csv")
