@@ -19,6 +19,13 @@ def test_what_is_drawn_stays_within_the_budgets():
     assert sum(one.reason != "ENABLED" for one in result.found) > 25
 
 
+@pytest.mark.slow
+@pytest.mark.timeout(1800)
+def test_two_hundred_draws_stay_within_the_budgets():
+    result = search(200, seed=2)
+    assert len(result.found) == 200 and not result.missed, result.as_text()
+
+
 def test_a_trial_sees_the_travel_of_a_leg_that_runs_while_the_robot_brakes():
     """2 mm/s for 18 ms without a watch would be 36 um; a drive's EMCY stops the robot first."""
     runs = Fault("delta_1.power", Shape("power", "creep", "speed"), 1.0, 9)

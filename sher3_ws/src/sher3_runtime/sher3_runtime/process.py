@@ -243,5 +243,6 @@ class Barrier:
     def _spin(self, executor: Executor, awaited: str) -> None:
         executor.spin_once(0.002)
         if time.monotonic() > self._deadline:
-            remedy = "check that nothing filters UDP on the loopback interface"
+            load = f"{os.getloadavg()[0]:.1f} on {os.cpu_count()} processors"
+            remedy = f"end what else keeps the computer busy (load {load}), or see that nothing filters UDP on loopback"
             raise NotStarted(f"waited in vain for {awaited}", remedy=remedy)

@@ -116,7 +116,7 @@ LINES = (
 
 def _encoder(name: str, quick: bool = False) -> Iterator[Row]:
     """Yield the faults of one encoder of an axis; the other one is its witness."""
-    yield Row(name, "stuck", quiet=STILL, quick=quick)
+    yield Row(name, "stuck", reasons=("ENCODER_FROZEN",), quiet=STILL, quick=quick)
     yield Row(name, "garbage")
     yield Row(name, "wrong", {"offset": 1e-3})
     yield Row(name, "wrong", {"scale": 0.5})

@@ -1,9 +1,9 @@
 """How often a robot stops of which nothing is broken: healthy running in stepped time.
 
 The force sensor is tared first. Of four sessions three have a surgeon drawn from a seed (reach, hold, dither, turn,
-release, press again, 0.1 to 6 N) in the regime `free`, and one the standard excitations on the bench. The mocks are
-strict, the plant has run-to-run scatter, its temperature goes up and down, and force sensor and structure drift with
-it. Whatever stops the robot without anybody asking for it is a false trip.
+release, press again, tremble at up to 12 Hz, 0.05 to 6 N) in the regime `free`, and one the standard excitations on the
+bench. The mocks are strict, the plant has run-to-run scatter, its temperature goes up and down, and force sensor and
+structure drift with it. Whatever stops the robot without anybody asking for it is a false trip.
 """
 
 from __future__ import annotations

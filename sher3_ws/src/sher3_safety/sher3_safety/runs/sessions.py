@@ -13,8 +13,9 @@ from sher3_gap.excitation import catalogue, excite
 Array = NDArray[np.float64]
 SESSION = 60.0
 """Length of one session, s."""
-WEAKEST, STRONGEST = 0.1, 6.0
-"""Forces of a hand, N: what it feels, and what a hand that is in a hurry pushes with."""
+WEAKEST, STRONGEST, TREMOR = 0.05, 6.0, 12.0
+"""Forces of a hand, N: less than what moves the robot, and what a hand that is in a hurry pushes with; the fastest
+tremor, Hz."""
 ACROSS, TORQUE = 2.5, 0.012
 """Most that it pushes across the tool, N, and turns it, N m: more saturates the moment of the force sensor."""
 BETWEEN = 1.5
@@ -38,7 +39,7 @@ def surgeon(seed: int) -> Script:
         length, ramp, pedal = draw.uniform(0.5, 2.0), draw.uniform(0.02, 0.5), draw.uniform(0.4, 1.0)
         push = {"duration": length, "ramp": ramp, "pedal": pedal}
         wrench = np.concatenate([force, torque])
-        sine = {"dither": (0.3 * wrench * draw.uniform(0.0, 1.0, 6)).tolist(), "frequency": draw.uniform(0.5, 8.0)}
+        sine = {"dither": (0.3 * wrench * draw.uniform(0.0, 1.0, 6)).tolist(), "frequency": draw.uniform(0.5, TREMOR)}
         steps += [
             {"name": "push", "wrench": wrench.tolist(), **push, **sine},
             {"name": "back", "wrench": (-wrench).tolist(), **push},

@@ -21,6 +21,8 @@ from sher3_safety.rows.row import IDLE, LIMIT, MOVING, PAUSED, State
 
 ONSETS, LASTS = 60, 0.3
 """Largest onset of a later fault [ticks]: the braking time and more; duration of a fault [s]."""
+SHAKES = 1e-5
+"""Largest jitter of an encoder [m, rad]: more than its own check lets pass of a leg, 7 um."""
 STATES = {Regime.NEAR_TISSUE: (IDLE, MOVING, PAUSED), Regime.FREE: (IDLE, MOVING, LIMIT, PAUSED)}
 LEG, ROLL, TILT = (2e-3, 12.2e-3), (0.03, 0.3), (9e-4, 9e-3)
 """Limits of the drives near tissue and free [m/s, rad/s]."""
@@ -46,6 +48,10 @@ WITH_AXIS = (
     Shape("load_encoder", "drift", "rate"),
     Shape("motor_encoder", "drift", "rate"),
     Shape("encoders", "drift", "rate"),
+    Shape("load_encoder", "jitter", "size"),
+    Shape("encoders", "jitter", "size"),
+    Shape("power", "wrong", "scale", -1.0),
+    Shape("power", "wrong", "scale", 1.02),
 )
 OF_ONE = (Shape("demand", "wrong", "code", float(0x8611)), Shape("", "off"), Shape("up", "late"), Shape("up", "off"))
 WHOLE = (Shape("pedal", "off"), Shape("bus", "off"), Shape("bus.up", "late"), Shape("force_sensor", "off"))
@@ -63,7 +69,8 @@ class Fault:
     def request(self, regime: Regime, period: float) -> FaultRequest:
         """Return what is sent on `mock/fault`."""
         cap = CAPS.get(self.component.partition(".")[0], LEG)[regime is Regime.FREE]
-        value = self.shape.value if self.shape.size not in ("speed", "rate") else self.share * cap
+        drawn_sizes = {"speed": self.share * cap, "rate": self.share * cap, "size": abs(self.share) * SHAKES}
+        value = drawn_sizes.get(self.shape.size, self.shape.value)
         parameters = {self.shape.size: value} if self.shape.size else {}
         return make_request(component=self.component, fault=self.shape.kind, start=self.onset * period, duration=LASTS,
                             parameters=parameters)  # fmt: skip
