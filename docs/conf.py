@@ -5,7 +5,9 @@ sources before the others are read, so they cannot lag behind. Those under `gene
 pages where the repository is shown, and `tests/documentation/test_generated.py` compares them with the sources.
 """
 
+import functools
 import inspect
+import logging
 import os
 import sys
 from pathlib import Path
@@ -18,6 +20,11 @@ os.environ["COLUMNS"] = "100"
 from generators import write_pages  # noqa: E402
 from generators.docstrings import to_restructured_text  # noqa: E402
 from sphinx.domains.python import PythonDomain  # noqa: E402
+
+# Who asks for the source of a class has Python parse its whole module again, and autodoc asks some thirty thousand
+# times. Nor does anybody read what Sphinx would say for debugging.
+inspect.findsource = functools.cache(inspect.findsource)
+logging.getLogger("sphinx").setLevel(logging.INFO)
 
 project = "SHER 3.0"
 author = "the SHER3 authors"
@@ -38,6 +45,8 @@ autodoc_typehints = "signature"
 autodoc_member_order = "bysource"
 autodoc_default_options = {"members": True, "show-inheritance": True}
 autodoc_preserve_defaults = True
+autodoc_use_type_comments = False
+smartquotes = False
 napoleon_numpy_docstring = False
 napoleon_use_ivar = True
 napoleon_custom_sections = [("Class attributes", "params_style")]
@@ -50,6 +59,7 @@ default_role = "code"
 html_theme = "furo"
 html_title = "SHER 3.0"
 html_static_path = ["static"]
+html_search_scorer = str(HERE / "search_order.js")
 html_css_files = ["site.css"]
 html_show_copyright = False
 html_show_sourcelink = False

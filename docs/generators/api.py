@@ -12,17 +12,16 @@ INDEX = """Python reference
 From the docstrings, one page a folder. A package's first page tells what its room is for;
 :doc:`the architecture </reference/architecture>` tells who may import whom.
 
-.. toctree::
-   :maxdepth: 1
-
 """
+ORPHAN = ":orphan:\n\n"
+"""Of a page that is in no menu: a hundred of them in the menu of each page would be a fifth of the build."""
 
 
 def pages() -> dict[str, str]:
     """Return the text of every page by its file name, the index among them."""
     folders = {name: modules for package in _packages() for name, modules in _folders(package).items()}
     texts = {f"{name}.rst": _page(name, modules) for name, modules in folders.items()}
-    return {"index.rst": INDEX + "".join(f"   {name}\n" for name in sorted(folders))} | texts
+    return {"index.rst": INDEX + "".join(f"* :doc:`{name}`\n" for name in sorted(folders))} | texts
 
 
 def _packages() -> list[Path]:
@@ -49,7 +48,7 @@ def _faces(init: Path) -> set[str]:
 
 def _page(name: str, modules: list[str]) -> str:
     # The face of a folder re-exports; its members stand where they are defined.
-    text = f"{name}\n{'=' * len(name)}\n\n.. automodule:: {name}\n   :no-members:\n\n"
+    text = f"{ORPHAN}{name}\n{'=' * len(name)}\n\n.. automodule:: {name}\n   :no-members:\n\n"
     for module in modules:
         title = module.removeprefix(f"{name}.")
         text += f"{title}\n{'-' * len(title)}\n\n.. automodule:: {module}\n\n"

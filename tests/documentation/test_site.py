@@ -88,3 +88,4 @@ def test_the_search_works_from_a_file(site):
     assert "searchindex.js" in (site / "search.html").read_text()
     assert (site / "searchindex.js").read_text().startswith("Search.setIndex(")
     assert "backlash" in (site / "searchindex.js").read_text()
+    assert "How-to pages first" in (site / "_static" / "searchtools.js").read_text()
