@@ -24,10 +24,10 @@ from sher3_effects.view import StatedLaw
 from sher3_machines.thresholds import BLOCKS
 
 from sher3_chain.axes.evidence import AxisEvidence
-from sher3_chain.axes.floors import UNIFORM, foresight, innovation
 from sher3_chain.axes.view import AxisView
 from sher3_chain.chain.evidence import in_blocks
 from sher3_chain.constants import INTEGRAL, constants
+from sher3_chain.floors.innovation import UNIFORM, foresight, innovation
 from sher3_chain.joint.description import Axis
 from sher3_chain.joint.record import AxesRun
 from sher3_chain.readings.signals import AxisSignals, signals_of

@@ -19,7 +19,7 @@ from sher3_diagnosis.verdict import Cause, Parameter, Residual, Where
 from sher3_effects.limit.force_saturation import ForceSaturation
 from sher3_machines.thresholds import BLOCKS
 
-from sher3_chain.axes.floors import UNIFORM
+from sher3_chain.floors.innovation import UNIFORM
 from sher3_chain.joint.description import Axis
 from sher3_chain.joint.record import AxesRun
 from sher3_chain.readings.level import longest

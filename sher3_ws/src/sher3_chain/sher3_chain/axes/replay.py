@@ -11,8 +11,8 @@ from sher3_diagnosis.verdict import Cause, Interval
 from sher3_machines.thresholds import BLOCKS
 
 from sher3_chain.axes.evidence import AxisEvidence
-from sher3_chain.axes.floors import UNIFORM
 from sher3_chain.axes.simulate import Law, law_of, simulate, simulated
+from sher3_chain.floors.innovation import UNIFORM
 
 
 @dataclass(frozen=True)

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 from sher3_chain.axes.evidence import residuals_of
-from sher3_chain.axes.floors import floors_of, innovation, resolution_floors
+from sher3_chain.axes.floors import floors_of, resolution_floors
 from sher3_chain.axes.view import AxisView
+from sher3_chain.floors.innovation import innovation
 from sher3_chain.readings.signals import AxisSignals
 from sher3_diagnosis.channel import Channel, Residual
 from slides import axis_of, columns

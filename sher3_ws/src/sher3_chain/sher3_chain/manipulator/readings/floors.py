@@ -9,10 +9,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from sher3_diagnosis.channel import Array, Floors, Residuals
-from sher3_diagnosis.localise.floors import repeat_floors
+from sher3_diagnosis.channel import Array, Channel, Floors, Residuals
 
-from sher3_chain.axes.floors import NOISE_SAMPLES, NOTHING, UNIFORM, foresight, innovation
+from sher3_chain.floors.innovation import NOISE_SAMPLES, NOTHING, UNIFORM, chain_floors, plain_innovation
 from sher3_chain.manipulator.description import PER_RUN
 from sher3_chain.manipulator.view import MotionView
 from sher3_chain.readings.noise import noise_of
@@ -22,28 +21,19 @@ POSTURES = 100
 
 
 def floors_of(views: Sequence[MotionView], found: Sequence[Residuals], repeats: bool) -> list[Floors]:
-    """Return the floor per record and channel.
+    """Return the floor per record and channel of an arm; `repeats` of one motion, or not."""
+    return chain_floors(views, found, repeats, resolution_floors, plain_innovation)
 
-    Args:
-        views: records of the arm.
-        found: residuals of each record.
-        repeats: whether the records are repeats of one motion.
-    """
-    pooled = repeat_floors([view.excitation for view in views], found) if repeats else {}
-    out = []
-    for view, residuals in zip(views, found, strict=True):
-        floors: Floors = {}
-        told, coarse = foresight(view.run), coarseness(view)
-        for channel, x in residuals.items():
-            row = view.row(channel.actuator)
-            joint = view.joints[row]
-            step = 0.0 if joint.gain == PER_RUN else joint.effort_resolution  # stated in a unit that is gone
-            least = float(np.hypot(step / UNIFORM, coarse[row]))
-            if channel.stage == "transmission":
-                least = np.sqrt(2.0) * joint.encoder_resolution / UNIFORM
-            floors[channel] = np.maximum(pooled.get(channel, innovation(x) / told), max(least, NOTHING))
-        out.append(floors)
-    return out
+
+def resolution_floors(view: MotionView) -> Floors:
+    """Return what counts of efforts and encoders make of every joint's balance, and of its encoders' difference."""
+    floors: Floors = {}
+    for joint, coarse in zip(view.joints, coarseness(view), strict=True):
+        step = 0.0 if joint.gain == PER_RUN else joint.effort_resolution  # stated in a unit that is gone
+        force, count = float(np.hypot(step / UNIFORM, coarse)), np.sqrt(2.0) * joint.encoder_resolution / UNIFORM
+        floors[Channel("motor_mechanics", joint.name)] = np.array([max(force, NOTHING)])
+        floors[Channel("transmission", joint.name)] = np.array([max(count, NOTHING)])
+    return floors
 
 
 def coarseness(view: MotionView) -> Array:

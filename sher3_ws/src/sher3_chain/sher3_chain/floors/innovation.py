@@ -1,0 +1,81 @@
+"""Floors between repeats where there are any, else what no model could foresee, and never below the least there is."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import lru_cache
+from typing import TypeVar
+
+import numpy as np
+from sher3_diagnosis.channel import Array, Channel, Floors, Residual, Residuals
+from sher3_diagnosis.filter import low_pass
+from sher3_diagnosis.localise.floors import repeat_floors
+
+from sher3_chain.chain.view import ChainView
+from sher3_chain.readings.noise import GAUSSIAN
+from sher3_chain.readings.signals import AxisSignals
+
+V = TypeVar("V", bound=ChainView)
+BEND = np.sqrt(6.0)
+"""Standard deviation of second differences of white noise over that of the noise: 1 + 4 + 1 under the root."""
+UNIFORM = np.sqrt(12.0)
+"""Width of a uniform distribution over its standard deviation: a count over the error of rounding to it."""
+NOISE_SAMPLES = 400
+"""Samples of simulated noise at least, so that its filtered power is known to a few per cent."""
+ON_GRID = 20
+"""Samples of the residual grid at least, where a record is so short that it has hardly any."""
+NOTHING = 1e-12
+"""Floor in place of none, N or N m."""
+
+
+def chain_floors(
+    records: Sequence[V],
+    found: Sequence[Residuals],
+    repeats: bool,
+    least: Callable[[V], Floors],
+    unforeseen: Callable[[V, Residual, Channel], Array],
+) -> list[Floors]:
+    """Return the floor per record and channel.
+
+    Args:
+        records: views of a chain.
+        found: residuals of each record.
+        repeats: whether the records are repeats of one motion.
+        least: floors that the readings' own resolution makes.
+        unforeseen: what cannot be foreseen of a residual.
+    """
+    pooled = repeat_floors([view.excitation for view in records], found) if repeats else {}
+    out = []
+    for view, residuals in zip(records, found, strict=True):
+        rounded = least(view)
+        out.append({c: np.maximum(pooled.get(c, unforeseen(view, x, c)), rounded[c]) for c, x in residuals.items()})
+    return out
+
+
+def plain_innovation(view: ChainView, residual: Residual, channel: Channel) -> Array:
+    """Return the noise, (1,), of which a straight line leaves as much as of a residual."""
+    return innovation(residual) / foresight(view.run)
+
+
+def foresight(run: AxisSignals) -> float:
+    """Return the innovation of white noise after the filter of the residuals over its standard deviation, 0.7 to 1.
+
+    The filter makes neighbours alike, so that a part of what is noise could be foreseen from them.
+    """
+    return _of_clock(run.ticks, run.stride, run.period, run.bandwidth)
+
+
+@lru_cache(maxsize=64)
+def _of_clock(ticks: int, stride: int, period: float, bandwidth: float) -> float:
+    noise = np.random.default_rng(0).normal(size=(max(ticks, NOISE_SAMPLES, ON_GRID * stride), 1))
+    seen = low_pass(noise, period, bandwidth)[::stride]
+    return float(innovation(Residual(seen, np.ones(len(seen), dtype=bool)))[0] / seen.std())
+
+
+def innovation(residual: Residual) -> Array:
+    """Return what neighbouring samples of a residual differ by beyond a straight line, (d,): what cannot be foreseen.
+
+    The median leaves reversals and steps out.
+    """
+    bend = np.diff(residual.values[residual.ok], 2, axis=0)
+    return GAUSSIAN * np.median(np.abs(bend), axis=0) / BEND
