@@ -122,7 +122,7 @@ class Axes(Chain[AxisEvidence]):
         if is_law(finding.evidence):
             return law_notes(finding)
         again = replay(finding.evidence, finding.causes) if finding.significant else None
-        changes = change_notes(finding.attribution, self.conditions(finding.evidence.runs))
+        changes = change_notes(finding.evidence, finding.attribution, self.parted(finding.evidence))
         untold = finding.evidence.untold
         changes += finding.evidence.notes
         nothing_found = not finding.significant and bool(finding.evidence.views)

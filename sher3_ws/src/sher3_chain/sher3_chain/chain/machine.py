@@ -69,8 +69,11 @@ class Chain(Machine[AxesRun, E]):
         left = partial(down_to_floor, reference.channels, reference)
         common = self.causes(reference, Candidates(reference, candidates.effects), left, say)
         say("contrasting conditions")
-        each = [(c, evidence.views_of(c.runs)) for c in conditions]
-        return contrasted(evidence, common, candidates.effects, each, self.finished)
+        return contrasted(evidence, common, candidates.effects, self.parted(evidence), self.finished)
+
+    def parted(self, evidence: E) -> list[tuple[Condition, frozenset[int]]]:
+        """Return every condition with the identities of the views of its runs."""
+        return [(c, evidence.views_of(c.runs)) for c in self.conditions(evidence.runs)]
 
     def conditions(self, runs: Sequence[AxesRun]) -> list[Condition]:
         """Return the conditions that differ from that of the first run."""

@@ -119,7 +119,7 @@ class Manipulator(Chain[ArmMotionEvidence]):
                 "inertias identified from the data: drive gain, weight and payload are in them, cannot be told apart "
                 "and are not looked for"
             )
-        notes += change_notes(finding.attribution, self.conditions(evidence.runs))
+        notes += change_notes(evidence, finding.attribution, self.parted(evidence))
         levels = [x for run in evidence.runs for x in level_notes(run, self.described.joints, evidence.judged)]
         notes += told_once(levels, [run.name for run in evidence.runs])
         return [*notes, *slip_notes(evidence), *gain_notes(evidence), *confounding_notes(evidence)]

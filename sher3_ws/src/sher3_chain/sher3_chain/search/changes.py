@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
+import numpy as np
 from sher3_diagnosis.attribute.candidates import Candidates, complexity, cost
 from sher3_diagnosis.attribute.rivals import Attribution, without_term
 from sher3_diagnosis.channel import Array, Channel
@@ -78,6 +79,10 @@ class Changed(Effect):
         together = coefficients + self.common.coefficients if self.common else coefficients
         return self.of.admissible(shape, together)
 
+    def allowed(self, views: Sequence[Any], site: str, shape: Shape) -> bool:
+        """Return whether the runs can hold a shape of the effect."""
+        return self.of.allowed(views, site, shape)
+
     def unit(self, name: str, site: str, rotary: bool) -> str:
         """Return the unit of a parameter of the effect."""
         return self.of.unit(name, site, rotary)
@@ -121,7 +126,7 @@ def contrasted(
         finish: improves the fit of a change.
     """
     kept = list(again(evidence.data, common.fit.terms))
-    current, rivals = fit(evidence.data, kept), [_again(evidence, kept, i, common) for i in range(len(kept))]
+    current, rivals = fit(evidence.data, kept), [_again(evidence, kept, i, common.rivals) for i in range(len(kept))]
     for _ in range(CHANGES):
         trials = [t for c, views in conditions for t in _trials(evidence, current, effects, c, views, finish)]
         if not trials:
@@ -134,8 +139,9 @@ def contrasted(
         rivals.append(tuple(t for t in trials if t.total < best.total + margin and _other(t.terms[-1], best.terms[-1])))
         current = best
     explained = tuple(without_term(evidence, current, i).total - current.total for i in range(len(current.terms)))
-    ranking = (*common.ranking, *((),) * (len(current.terms) - len(common.ranking)))
-    return Attribution(current, tuple(rivals), explained, ranking, common.nuisance)
+    ranking = [_again(evidence, kept, i, common.ranking) for i in range(len(kept))]
+    none = ((),) * (len(current.terms) - len(kept))
+    return Attribution(current, tuple(rivals), explained, (*ranking, *none), common.nuisance)
 
 
 def _unless_common(evidence: Evidence, current: Fit, change: Fit) -> Fit:
@@ -151,16 +157,16 @@ def _unless_common(evidence: Evidence, current: Fit, change: Fit) -> Fit:
     return shared if shared is not None and shared.total <= change.total + NEEDED else change
 
 
-def _explained(evidence: Evidence, found: Fit) -> float:
-    """Return the loss that all causes explain where the last one shows."""
-    null, shown = evidence.null().loss, found.terms[-1].channels
+def _explained(evidence: Evidence, found: Fit, index: int = -1) -> float:
+    """Return the loss that all causes explain where one of them shows; default the last."""
+    null, shown = evidence.null().loss, found.terms[index].channels
     return sum(null[key] - loss for key, loss in found.loss.items() if key[1] in shown)
 
 
-def _again(evidence: Evidence, kept: Sequence[Term], index: int, common: Attribution) -> tuple[Fit, ...]:
-    """Fit the rivals of a common cause to all runs."""
+def _again(evidence: Evidence, kept: Sequence[Term], index: int, found: Sequence[Sequence[Fit]]) -> tuple[Fit, ...]:
+    """Fit what was found in the place of a common cause to all runs; a search that found no cause has nothing there."""
     others = [t for j, t in enumerate(kept) if j != index]
-    own = [f.terms[-1] for f in common.rivals[index]]
+    own = [f.terms[-1] for f in found[index]] if index < len(found) else []
     return tuple(fit(evidence.data, [*others, make_term(evidence.data, t.effect, t.site, t.shape)]) for t in own)
 
 
@@ -191,16 +197,59 @@ def _other(a: Term, b: Term) -> bool:
     return a.effect.id != b.effect.id
 
 
-def change_notes(attribution: Attribution, conditions: Sequence[Condition]) -> list[str]:
-    """Return in words what changed under each condition."""
-    if not conditions:
-        return []
+def change_notes(
+    evidence: Evidence, attribution: Attribution, conditions: Sequence[tuple[Condition, frozenset[int]]]
+) -> list[str]:
+    """Return in words what changed under each condition, or the least change of each cause that would have shown.
+
+    Args:
+        evidence: of all runs.
+        attribution: of the causes and changes.
+        conditions: each with the identities of the views of its runs.
+    """
     out = []
-    for condition in conditions:
+    for condition, views in conditions:
         of = [i for i, t in enumerate(attribution.fit.terms) if t.effect.condition == str(condition)]
-        said = [_in_words(attribution.fit, i) for i in of] or ["nothing changed that the library knows"]
+        said = [_in_words(attribution.fit, i) for i in of] or [_unchanged(evidence, attribution, views)]
         out.append(f"{condition} against {condition.reference}, all else held common: {'; '.join(said)}")
     return out
+
+
+def _unchanged(evidence: Evidence, attribution: Attribution, views: frozenset[int]) -> str:
+    """Return that nothing changed, where that was looked at, and from which size on it would have shown."""
+    stages = sorted({c.stage.replace("_", " ") for c in evidence.channels})
+    least = [said for i in attribution.causes if (said := _least_change(evidence, attribution.fit, i, views))]
+    power = f"; would have shown: {', '.join(least)}" if least else ""
+    return f"nothing changed that the library knows in {' and '.join(stages)}{power}"
+
+
+def _least_change(evidence: Evidence, found: Fit, index: int, views: frozenset[int]) -> str:
+    """Return the change of a cause's sizes, all by one share, that would be worth its price under a condition.
+
+    What the causes common to all runs take up of it does not show.
+    """
+    term, own = found.terms[index], found.of(index)
+    keys = [(r, c) for r, run in enumerate(term.columns) for c in run]
+    if not term.width or not keys:
+        return ""
+    acts = [id(evidence.views[r]) in views for r, _ in keys]
+    change = np.concatenate([on * (term.columns[r][c] @ own) for on, (r, c) in zip(acts, keys, strict=True)])
+    common = [
+        np.concatenate([t.columns[r].get(c, np.zeros((len(term.columns[r][c]), t.width))) for r, c in keys])
+        for t in found.terms
+        if t.width
+    ]
+    x = np.hstack(common)
+    left = change - x @ np.linalg.lstsq(x, change, rcond=None)[0]
+    needed = NEEDED * complexity(term) + PARSIMONY * _explained(evidence, found, index)
+    share = float(np.sqrt(needed / max(float(left @ left), np.finfo(float).tiny)))
+    zero, moved = (term.effect.parameters(term.shape, own * (1.0 + s)) for s in (0.0, share))
+    name = next((n for n in moved if moved[n] != zero[n]), None)
+    if name is None:
+        return ""
+    unit = term.effect.unit(name, term.site, term.site in evidence.rotary)
+    size = f"{abs(moved[name] - zero[name]):.2g}" + (f" {unit}" if unit != "1" else "")
+    return f"{term.effect.id} on {term.site}, {name} by {size}"
 
 
 def _in_words(found: Fit, index: int) -> str:

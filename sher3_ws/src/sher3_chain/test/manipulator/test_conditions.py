@@ -1,5 +1,7 @@
 """The lift under several conditions: what changed is named, what is common is held common."""
 
+import re
+
 import numpy as np
 import pytest
 from lifts import L, friction, machine, motion, needed, run_of
@@ -72,6 +74,17 @@ def test_nothing_changed_is_said(tmp_path):
     verdict = diagnose(arm, [recorded("a", 0.0), recorded("b", 0.7)]).verdict
     assert not changes(verdict)
     assert any("day Friday against Monday, all else held common: nothing changed" in n for n in verdict.notes)
+
+
+@pytest.mark.parametrize("joint", [0, 1])
+def test_a_change_of_the_size_that_would_have_shown_is_seen(tmp_path, joint):
+    arm = machine(tmp_path / "lift.urdf", conditions={"a": {"day": "Monday"}, "b": {"day": "Friday"}})
+    alike, name = diagnose(arm, [recorded("a", 0.0), recorded("b", 0.7)]).verdict, ("lift", "swing")[joint]
+    said = next(n for n in alike.notes if "would have shown" in n)
+    size = float(re.search(rf"coulomb_friction on {name}, force by (\S+) N", said)[1])
+    more = np.array([8.0, 0.5]) + 1.2 * size * np.eye(2)[joint]  # what is read of it is filtered
+    found = changes(diagnose(arm, [recorded("a", 0.0), recorded("b", 0.7, coulomb=tuple(more))]).verdict)
+    assert ("coulomb_friction", name) in found and found["coulomb_friction", name].parameters["force"].value > 0.0
 
 
 def test_what_the_short_reference_left_out_is_no_change(tmp_path):
