@@ -167,6 +167,14 @@ def test_the_folders_of_a_package_import_in_no_circle(package):
     assert not circles(arrows)
 
 
+@pytest.mark.parametrize(("one", "other"), [("axes", "manipulator"), ("manipulator", "axes")])
+def test_axes_and_arms_do_not_know_each_other(one, other):
+    """What both need of a joint stands below them, once."""
+    files = [path for path in FILES if package_of(path) == "sher3_chain" and room_of(path) == one]
+    assert len(files) > 10
+    assert not [path.name for path in files if other in rooms_imported(path)]
+
+
 def room_of(path: Path) -> str:
     """Return the folder of a package in which a file lies, or the file's own name when it lies in none."""
     return path.relative_to(SOURCES / package_of(path)).with_suffix("").parts[1]
