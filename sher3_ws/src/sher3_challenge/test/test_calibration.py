@@ -5,8 +5,18 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from sher3_challenge.calibration.fit import Example, calibrated, conformal, logistic, sharpness, weights
-from sher3_challenge.calibration.held_out import held_out, judged_by
+from sher3_challenge.calibration.fit import (
+    Example,
+    calibrated,
+    conformal,
+    ends,
+    logistic,
+    placed_among,
+    sharpness,
+    updated,
+    weights,
+)
+from sher3_challenge.calibration.held_out import by_build, by_shape, groups, held_out, judged_by
 from sher3_challenge.calibration.labels import answer_of, same_data
 from sher3_challenge.calibration.observe import Observation, labelled, truth_of
 from sher3_challenge.calibration.table import rates, written
@@ -214,7 +224,9 @@ def test_a_calibration_survives_its_file(tmp_path):
     path = tmp_path / "calibration.json"
     path.write_text(found.model_dump_json(by_alias=True))
     assert Calibration.read(path) == found
-    assert [p.model_dump() for p in found.provenance] == [{"plant": "a", "cases": 24, "causes": 18, "gaps": 12}]
+    assert [p.model_dump(exclude_none=True) for p in found.provenance] == [
+        {"plant": "a", "cases": 24, "causes": 18, "gaps": 12}
+    ]
 
 
 def test_the_diagram_is_a_picture(tmp_path):
@@ -239,3 +251,36 @@ def test_labels_are_found_beside_the_runs_and_where_a_challenge_keeps_them(tmp_p
     assert [c.name for c in labelled(tmp_path)] == ["case_1", "own"]
     assert truth_of(tmp_path / "cases/case_1")["status"] == "attributed"
     assert truth_of(tmp_path / "cases/case_1")["effects"][0]["family"] == "x"
+
+
+def test_the_provenance_says_how_imperfect_the_robots_were():
+    shown = [
+        replace(o, truth={**o.truth, "level": {"built": b, "shape": 0.1 * b}})
+        for o, b in zip(plants("a"), (1, 2, 3), strict=False)
+    ]
+    assert ends(shown, "a", "built") == (1, min(3, len(shown))) and ends(plants("a"), "a", "shape") is None
+
+
+def test_groups_of_levels_leave_out_what_has_none():
+    level = {"built": 0.5, "shape": 0.05}
+    known, unknown = replace(seen(), truth={**seen().truth, "level": level}), seen()
+    assert {n: len(g) for n, g in groups([known, unknown], by_shape).items()} == {"bent laws": 1}
+    assert {n: len(g) for n, g in groups([known, unknown], by_build).items()} == {"built well": 1}
+
+
+def test_few_cases_hardly_move_the_weights_of_before_and_many_do():
+    before = logistic([Example("a", {"x": float(x)}, y) for x, y in ((0, "r"), (1, "o"))] * 200, ("r", "o"), ("x",))
+    turned = [Example("a", {"x": float(x)}, y) for x, y in ((0, "o"), (0, "o"), (0, "r"), (1, "o"))]
+    told = [logistic(turned * n, ("r", "o"), ("x",), before=before).probabilities({"x": 0.0})["r"] for n in (1, 5, 200)]
+    start = before.probabilities({"x": 0.0})["r"]
+    assert start > told[0] > told[1] > told[2] and told[2] == pytest.approx(1 / 3, abs=0.05)
+
+
+def test_a_calibration_that_is_updated_keeps_what_it_was_set_on():
+    before = calibrated(plants("a"))
+    found = updated(before, plants("b"))
+    assert [p.plant for p in found.provenance] == ["a", "b"]
+    assert (found.exact, found.sharpness, found.reach) == (before.exact, before.sharpness, before.reach)
+    assert found.cause.middle == before.cause.middle and found.cause != before.cause
+    same = placed_among(before, plants("b"))
+    assert same.cause == before.cause and same.typical is not None

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 import tempfile
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -100,7 +101,10 @@ def calibrate(
         typer.Argument(metavar="[PLANT=]FOLDER...", help="Labelled cases of each plant, or as labels name it."),
     ] = None,
     drawn: Annotated[
-        str | None, typer.Option(help="Range A:B of seeds of cases drawn on all plants in turn; no bags are written.")
+        str | None, typer.Option(help="Range A:B of seeds of cases drawn on the plants in turn; no bags are written.")
+    ] = None,
+    plant: Annotated[
+        list[str] | None, typer.Option(help="Truth plant of drawn cases; repeat to deal several. All where not given.")
     ] = None,
     out: Annotated[Path | None, typer.Option("--out", "-o", help="File for the calibration.")] = None,
     kept: Annotated[
@@ -112,12 +116,15 @@ def calibrate(
         bool,
         typer.Option("--in-force", help="Set no weight: judge by those in force, as verdicts are judged."),
     ] = False,
+    update: Annotated[
+        bool, typer.Option("--update", help="Expect the weights in force, and move them as far as the cases ask for.")
+    ] = False,
     as_json: Json = False,
 ) -> None:
     """Set the probabilities of verdicts on labelled cases; print how they hold on each plant when it is left out."""
     from rich.console import Console
     from sher3_challenge.calibration.drawn import draw
-    from sher3_challenge.calibration.fit import calibrated, placed_among
+    from sher3_challenge.calibration.fit import calibrated, placed_among, updated
     from sher3_challenge.calibration.held_out import GROUPS, by_plant, groups, held_out, judged_by
     from sher3_challenge.calibration.observe import gathered
     from sher3_challenge.calibration.selective import curve
@@ -130,15 +137,16 @@ def calibrate(
         room = kept or Path(scratch)
         seen = gathered(plants_of(folders or []), room, jobs)
         if drawn is not None:
-            names = [plant.name for plant in truth_plants(Console(stderr=True).log)]
+            names = plant or [known.name for known in truth_plants(Console(stderr=True).log)]
             seen += [o for rows in draw(names, range(*parse_seeds(drawn)), room) for o in rows]
         if in_force:
             rules = calibration.in_force()
             found = placed_among(rules, seen)
             judged = [{n: judged_by(rules, own) for n, own in groups(seen, of).items()} for of in GROUPS]
         else:
-            found = calibrated(seen)
-            judged = [held_out(seen, of) for of in GROUPS]
+            fitted = partial(updated, calibration.in_force()) if update else calibrated
+            found = fitted(seen)
+            judged = [held_out(seen, of, fitted) for of in GROUPS]
         left_out = judged[GROUPS.index(by_plant)]
         columns = {name: rates(judgements) for group in judged for name, judgements in group.items()}
         if len(left_out) > 1:

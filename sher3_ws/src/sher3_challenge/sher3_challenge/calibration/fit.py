@@ -114,10 +114,22 @@ def examples_of(observations: Sequence[Observation]) -> Examples:
     return out
 
 
+def updated(before: Calibration, observations: Sequence[Observation]) -> Calibration:
+    """Return a calibration whose weights are expected to be those of before, and are set on observations beside them.
+
+    What few cases cannot set is kept: exact stages, sharpness and reach.
+    """
+    seen = examples_of(observations)
+    cause = logistic(seen.causes, before.cause.classes, before.cause.inputs, FOREIGN, before.cause)
+    gap = logistic([*seen.gaps, *ECHOES], before.gap.classes, before.gap.inputs, before=before.gap)
+    told = (*before.provenance, *provenance(observations, seen))
+    found = {"cause": cause, "gap": gap, "typical": typical(cause, seen.causes), "provenance": told}
+    return before.model_copy(update=found)
+
+
 def calibrated(observations: Sequence[Observation]) -> Calibration:
     """Fit a calibration."""
     seen = examples_of(observations)
-    plants = sorted({o.plant for o in observations})
     cause = logistic(seen.causes, (LIBRARY, OUTSIDE, NO_GAP), READ, FOREIGN)
     return Calibration(
         cause=cause,
@@ -128,16 +140,30 @@ def calibrated(observations: Sequence[Observation]) -> Calibration:
         coverage=COVERAGE,
         same=SAME_DATA_CROSSING,
         typical=typical(cause, seen.causes),
-        provenance=tuple(
-            Provenance(
-                plant=p,
-                cases=len({o.case for o in observations if o.plant == p}),
-                causes=sum(e.plant == p for e in seen.causes),
-                gaps=sum(e.plant == p for e in seen.gaps),
-            )
-            for p in plants
-        ),
+        provenance=provenance(observations, seen),
     )
+
+
+def provenance(observations: Sequence[Observation], seen: Examples) -> tuple[Provenance, ...]:
+    """Return where observations and their examples came from, plant by plant."""
+    plants = sorted({o.plant for o in observations})
+    return tuple(
+        Provenance(
+            plant=p,
+            cases=len({o.case for o in observations if o.plant == p}),
+            causes=sum(e.plant == p for e in seen.causes),
+            gaps=sum(e.plant == p for e in seen.gaps),
+            built=ends(observations, p, "built"),
+            shape=ends(observations, p, "shape"),
+        )
+        for p in plants
+    )
+
+
+def ends(observations: Sequence[Observation], plant: str, name: str) -> tuple[float, float] | None:
+    """Return the least and the largest level of a plant's robots; None where its labels do not say."""
+    told = [o.truth["level"][name] for o in observations if o.plant == plant and "level" in o.truth]
+    return (min(told), max(told)) if told else None
 
 
 def placed_among(calibration: Calibration, observations: Sequence[Observation]) -> Calibration:
@@ -162,13 +188,15 @@ def logistic(
     classes: Sequence[str],
     inputs: Sequence[str],
     share: Mapping[str, float] = MappingProxyType({}),
+    before: Logistic | None = None,
 ) -> Logistic:
     """Fit a logistic model with a ridge in which every plant has the same weight.
 
     The first class is the one that the inputs speak against, the second the one they speak for: weights of the other
     sign are none, so that chance in one plant's cases cannot turn evidence round on the next. An input of `LAST` speaks
     against the last class alone. A number that an example lacks is at its middle, where it tells nothing. `share` is
-    the weight of an answer's examples, 1 where it names none.
+    the weight of an answer's examples, 1 where it names none. With a model of before, of the same classes and inputs,
+    the scale of the inputs is its own, and its weights are expected instead of none.
     """
     x = np.array([[e.numbers.get(name, math.nan) for name in inputs] for e in examples], dtype=float)
     x = x.reshape(len(examples), len(inputs))
@@ -177,24 +205,27 @@ def logistic(
         raise ChallengeError("cases of one kind only", value=len(examples), limit=2, remedy="healthy and foreign ones")
     known = np.isfinite(x)
     count = np.maximum(known.sum(axis=0), 1)
-    middle = np.where(known, x, 0.0).sum(axis=0) / count
+    middle = np.where(known, x, 0.0).sum(axis=0) / count if before is None else np.array(before.middle)
     z = np.where(known, x - middle, 0.0)
-    spread = np.maximum(np.sqrt((z**2).sum(axis=0) / count), 1e-9)
+    spread = np.maximum(np.sqrt((z**2).sum(axis=0) / count), 1e-9) if before is None else np.array(before.spread)
     z, shares = z / spread, weights(examples, share) / len(examples)
     shape, ridge, even = (len(classes), len(inputs) + 1), RIDGE / len(examples), EVEN / len(examples)
+    expected = np.zeros(shape) if before is None else np.column_stack([before.weights, before.offset])
+
+    held = np.hstack([np.full((shape[0], shape[1] - 1), ridge), np.full((shape[0], 1), even)])
 
     def loss(flat: np.ndarray) -> tuple[float, np.ndarray]:
         w = flat.reshape(shape)
         score = z @ w[:, :-1].T + w[:, -1]
         share = softmax(score, axis=1)
         error = shares[:, None] * (share - y)
-        slope = np.hstack([error.T @ z + 2.0 * ridge * w[:, :-1], error.sum(axis=0)[:, None] + 2.0 * even * w[:, -1:]])
+        off = w - expected
+        slope = np.hstack([error.T @ z, error.sum(axis=0)[:, None]]) + 2.0 * held * off
         likely = float(np.sum(shares * np.log(np.sum(share * y, axis=1) + 1e-300)))
-        held = ridge * float(np.sum(w[:, :-1] ** 2)) + even * float(np.sum(w[:, -1] ** 2))
-        return held - likely, slope.ravel()
+        return float(np.sum(held * off**2)) - likely, slope.ravel()
 
     bounds = [b for k in range(len(classes)) for b in [*(_bound(n, k, len(classes)) for n in inputs), (None, None)]]
-    found = minimize(loss, np.zeros(shape).ravel(), jac=True, bounds=bounds, method="L-BFGS-B").x.reshape(shape)
+    found = minimize(loss, expected.ravel(), jac=True, bounds=bounds, method="L-BFGS-B").x.reshape(shape)
     return Logistic(
         classes=tuple(classes),
         inputs=tuple(inputs),

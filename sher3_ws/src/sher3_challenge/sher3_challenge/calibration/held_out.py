@@ -104,11 +104,16 @@ def groups(observations: Sequence[Observation], of: Group) -> dict[str, list[Obs
     return {name: [o for o in observations if of(o) == name] for name in names}
 
 
-def held_out(observations: Sequence[Observation], of: Group = by_plant) -> dict[str, list[Judgement]]:
+Fit = Callable[[Sequence[Observation]], Calibration]
+
+
+def held_out(
+    observations: Sequence[Observation], of: Group = by_plant, fit: Fit = calibrated
+) -> dict[str, list[Judgement]]:
     """Judge each group with a calibration fitted to all observations that are not of it; none where there is one."""
     found = groups(observations, of)
     return {
-        name: judged_by(calibrated([o for o in observations if of(o) != name]), own)
+        name: judged_by(fit([o for o in observations if of(o) != name]), own)
         for name, own in found.items()
         if len(found) > 1
     }

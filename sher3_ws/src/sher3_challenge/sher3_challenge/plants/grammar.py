@@ -31,6 +31,10 @@ SLIDES = 1e-3
 """Speed of a slider from which its direction is told [m/s]."""
 
 
+MOST = 4.0
+"""Size at which a law ends: one that feeds on itself must not run away."""
+
+
 class Foreign(NamedTuple):
     """A law of the grammar as numbers, which compiled code takes as they are.
 
@@ -82,7 +86,7 @@ def foreign(law: Foreign, q: Array, v: Array, f: Array, memory: Array, period: f
         x *= math.tanh(v[law.on] / law.slides)
     elif law.carrier == EFFORT:
         x *= f[law.on] / law.effort
-    return law.gain * x
+    return law.gain * min(MOST, max(-MOST, x))
 
 
 @compiled

@@ -74,7 +74,7 @@ def sticky_region(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"force": site.scaled(x, "force")}
 
 
-@add("outside", "motor_mechanics", ("all",), 1.0, 0.05, 8.0, company=("torque_constant",))
+@add("outside", "motor_mechanics", ("all",), 1.0, 0.05, 2.0, company=("torque_constant",))
 def supply_sag(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """All drives lose force when they work hard together."""
     rig.truth.host.sag[0] = x

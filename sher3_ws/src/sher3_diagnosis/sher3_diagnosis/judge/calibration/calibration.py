@@ -17,7 +17,14 @@ FILE = Path(__file__).with_name("calibration.json")
 
 
 class Provenance(BaseModel):
-    """Where the cases of one plant came from."""
+    """Where the cases of one plant came from, and what its labels say of how imperfect its robots are.
+
+    Attributes:
+        plant: its name.
+        cases, causes, gaps: how many.
+        built: least and largest factor on deviations as built; None where labels do not say.
+        shape: least and largest share of an effect's power by which its law is not its page's.
+    """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
@@ -25,6 +32,8 @@ class Provenance(BaseModel):
     cases: int
     causes: int
     gaps: int
+    built: tuple[float, float] | None = None
+    shape: tuple[float, float] | None = None
 
 
 class Calibration(BaseModel):
