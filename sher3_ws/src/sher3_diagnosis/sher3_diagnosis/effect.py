@@ -106,7 +106,7 @@ class Effect:
             revolution, "load" a second encoder behind the transmission, "temperature" of the axis, "mass" its mass,
             "drive" the force it is driven with, "forces" what the motion needs of it: mass, weight or a model of the
             user's, "orientation" how a sensor is turned, "alone" that its only encoder is at the motor, "behind" that
-            it is at the load.
+            it is at the load, "applied" a known force on the axis from outside.
         inputs: quantities the law may depend on, of `INPUTS`; none for an error that is constant.
         units: parameter -> SI unit on a linear axis.
         bent_from: share of what a law with a bend explains that the one without must leave for the bend to be named.

@@ -14,7 +14,7 @@ EVERY = [pytest.param(page, id=f"{kind}-{page.id}") for kind in KINDS for page i
 ROBOT_PAGES = [pytest.param(page, id=page.id) for page in library().values()]
 CONSTANT = {"force_bias"}
 """Effects whose law depends on nothing."""
-FACTS = {"lead", "load", "temperature", "mass", "drive", "forces", "alone", "behind", "orientation"}
+FACTS = {"applied", "lead", "load", "temperature", "mass", "drive", "forces", "alone", "behind", "orientation"}
 RELATIONS = {"", "load_encoder", "both_encoders", "force_sensor"}
 
 
@@ -32,6 +32,7 @@ def test_the_data_sheet_is_complete(page):
         "drive",
         "forces",
         "alone",
+        "applied",
         "behind",
         "orientation",
     }

@@ -206,6 +206,7 @@ def facts_of(axis: Axis) -> set[str]:
         "alone": axis.signals.load is None and axis.encoder_at == "motor",
         "behind": axis.signals.load is None and axis.encoder_at == "load",
         "temperature": axis.signals.temperature is not None,
+        "applied": axis.signals.applied is not None,
         "mass": isinstance(axis.mass, float),
         "drive": not axis.free,
         "forces": isinstance(axis.mass, float) or axis.gravity != Gravity() or axis.signals.nominal_effort is not None,

@@ -38,17 +38,21 @@ class GearLoss(Page):
     DISPLACEMENT = 2.5e-3
     """Over which the direction reverses, in motor revolutions: the middle one of Coulomb friction."""
 
+    def carried(self, view: AxisView, row: int) -> Array:
+        """Return what loads the contact, (g,): the force that the joint carries."""
+        return np.abs(view.inertial[:, row])
+
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
         """Return without (0) and with (1) friction that is there without load, and the mean load."""
         row = views[0].row(site)
-        load = float(np.mean(np.concatenate([np.abs(v.inertial[:, row]) for v in views])))
+        load = float(np.mean(np.concatenate([self.carried(v, row) for v in views])))
         return [{"dry": 0.0, "load": load}, {"dry": 1.0, "load": load}]
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
         """Return the direction times the force that the joint carries, and the direction alone."""
         row = view.row(site)
         z = view.run.to_grid(view.sliding(row, self.DISPLACEMENT * view.lead(site))[:, None])[:, 0]
-        lost = z * np.abs(view.inertial[:, row])
+        lost = z * self.carried(view, row)
         return Signature({Channel(self.stage, site): column(lost, z) if shape["dry"] else column(lost)})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
@@ -59,3 +63,26 @@ class GearLoss(Page):
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
         """Return whether less than all of the load is lost, and friction resists."""
         return bool(0.0 < coefficients[0] < 1.0 and (not shape["dry"] or coefficients[1] > 0.0))
+
+
+class LossUnderLoad(GearLoss):
+    """The same on one axis under a known force from outside: a seal under pressure, a nut or a guide under a load."""
+
+    kinds, needs = ("axis",), ("applied",)
+    inputs = ("direction", "load")
+    explanation = (
+        "A seal, a nut or a guide rubs the more the heavier it is pressed: the step at a reversal grows with the known "
+        "force on the axis."
+    )
+    LEAST = 0.1
+    """Share by which the load must differ over the records, at least: else it is a dry friction."""
+
+    def carried(self, view: AxisView, row: int) -> Array:
+        """Return the size of the known force from outside, (g,)."""
+        return np.abs(view.path.contact_force[:, row])
+
+    def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
+        """Return those of every joint where the load differs."""
+        row = views[0].row(site)
+        load = np.concatenate([self.carried(v, row) for v in views])
+        return super().shapes(views, site) if load.std() > self.LEAST * load.mean() > 0.0 else []
