@@ -198,3 +198,32 @@ def test_damper(name, kip, tmp_path):
     found = verdict.causes[0].parameters
     assert found["width"].low < 4.6e-3 and found["width"].high > 3.3e-3
     assert found["load_friction"].value == pytest.approx(kip * 4448.22, rel=0.1)
+
+
+CYLINDER = """kind: axes
+name: pneumatic cylinder of 25 mm bore, pulled and pushed under set pressure
+time: {column: c0, unit: ms}
+axes:
+  - name: rod
+    motion: linear
+    signals:
+      position: {column: c4, unit: mm}
+      effort: {column: c6, unit: N}
+      applied: {column: c5, unit: bar, factor: -4.909e-4}
+    command_law: {kind: force}
+    mass: 0.1
+    encoder_resolution: 8.0e-6
+"""
+
+
+@pytest.mark.slow
+def test_seals(tmp_path):
+    """Half loops grow from 7.0 to 12.3 N between 1 and 7 bar; the force is 6.1 % below pressure times area."""
+    (tmp_path / "cylinder.yaml").write_text(CYLINDER, encoding="utf-8")
+    data = [REAL / f"pneumatic_seals/O-ring257_{bar}bar.csv" for bar in (1, 3, 5, 7)]
+    verdict = verdict_with("seals", tmp_path / "cylinder.yaml", data, tmp_path)
+    found = values(verdict)
+    assert verdict.status == "attributed"
+    assert {c.effect for c in verdict.causes} == {"gear_loss", "torque_constant"}
+    assert found["torque_constant", "rod", "relative"] == pytest.approx(-0.061, abs=0.005)
+    assert found["gear_loss", "rod", "share"] > 0.0
