@@ -1,0 +1,226 @@
+"""Ten drawn arms with a structural fault each, and the published examples, beside mujoco.sysid: needs `sher3[sysid]`.
+
+Both get the same log of the same faulty arm and the healthy model. mujoco.sysid fits what a user would give it: mass of
+each link, damping, dry friction, armature and spring of each joint and the gain of each drive. The diagnosis is given
+nothing. Another motion, not seen by either, tells what each corrected model is worth.
+"""
+
+from __future__ import annotations
+
+import argparse
+import inspect
+import os
+import sys
+import time
+from collections.abc import Callable
+from contextlib import redirect_stdout
+from io import StringIO
+from pathlib import Path
+from typing import NamedTuple
+
+import mujoco
+import numpy as np
+import sher3.gap as gap
+from numpy.typing import NDArray
+from sher3_public.errors import InputError
+
+sys.path.append(str(Path(__file__).parents[1] / "sher3_ws/src/sher3_machines/test"))
+
+from drawn_arms import NOISE, drawn_xml
+
+os.environ.setdefault("ABSL_LOGGING_VERBOSITY", "-1")
+
+Array = NDArray[np.float64]
+FIRST = 1200
+"""First seed: none of the tests'."""
+SECONDS, HELD_OUT = 8.0, 9000
+"""Length of a motion, s, and what is added to a seed for the one held out."""
+SURE = 3.0
+"""Standard errors by which a parameter must move to be read as a finding of a fit."""
+FAULTS = ("viscous", "coulomb", "stribeck", "cogging", "late command", "load friction", "spring", "rotor", "payload", "gain")
+"""What is hidden in arms 0 to 9, at a drawn joint; MuJoCo has no field for the third to the sixth."""
+
+
+class Log(NamedTuple):
+    """A motion: stamps (n,), controls (n, k), positions (n, k) with noise and forces of the drives (n, k)."""
+
+    time: Array
+    ctrl: Array
+    qpos: Array
+    force: Array
+
+
+class Hidden(NamedTuple):
+    """A fault: what it is, the joint it is at, and its size as a share of what is drawn."""
+
+    kind: str
+    joint: int
+    size: float
+
+
+def faulty(xml: str, fault: Hidden) -> mujoco.MjModel:
+    """Return the arm with what its file can say of the fault."""
+    spec = mujoco.MjSpec.from_string(xml)
+    joint, scale = spec.joints[fault.joint], 0.5**fault.joint
+    if fault.kind == "viscous":
+        joint.damping[0] += 2.0 * fault.size * scale
+    elif fault.kind == "coulomb":
+        joint.frictionloss += 1.0 * fault.size * scale
+    elif fault.kind == "spring":
+        joint.stiffness[0] += 6.0 * fault.size * scale
+    elif fault.kind == "rotor":
+        joint.armature += 0.1 * fault.size * scale
+    elif fault.kind == "payload":
+        tip = spec.bodies[-1]
+        tip.add_geom(type=mujoco.mjtGeom.mjGEOM_SPHERE, size=[0.01, 0, 0], pos=[0.25, 0, 0], mass=fault.size * 0.5,
+                     contype=0, conaffinity=0)
+    elif fault.kind == "gain":
+        drive = spec.actuators[fault.joint]
+        drive.gainprm[0] *= 1.0 - 0.2 * fault.size
+        drive.biasprm[1:3] *= 1.0 - 0.2 * fault.size
+    return spec.compile()
+
+
+def unsaid(fault: Hidden, q: float, v: float, need: float) -> float:
+    """Return the force on the joint that no field of MuJoCo says, N m."""
+    scale, sign = 0.5**fault.joint, np.tanh(v / 0.01)
+    laws = {
+        "stribeck": -fault.size * scale * (0.5 + np.exp(-abs(v) / 0.1)) * sign,
+        "cogging": fault.size * scale * 1.0 * np.sin(12.0 * q),
+        "load friction": -0.2 * fault.size * abs(need) * sign,
+    }
+    return float(laws.get(fault.kind, 0.0))
+
+
+def moved(model: mujoco.MjModel, seed: int, fault: Hidden | None = None) -> Log:
+    """Run a model along drawn sines; its position servos follow."""
+    rng, k, data = np.random.default_rng(seed), model.nu, mujoco.MjData(model)
+    pace, phase = rng.uniform(0.15, 0.9, (k, 3)), rng.uniform(0.0, 2.0 * np.pi, (k, 3))
+    late = 12 if fault is not None and fault.kind == "late command" else 0
+    steps = round(SECONDS / model.opt.timestep)
+    stamps = np.arange(steps) * model.opt.timestep
+    asked = 0.35 * np.sin(2.0 * np.pi * pace[None] * stamps[:, None, None] + phase).sum(axis=2)
+    ctrl = asked * np.minimum(1.0, stamps)[:, None] * model.actuator_gear[:, 0]
+    place = fault.joint if fault is not None else 0
+    rows = []
+    for i in range(steps):
+        data.ctrl[:] = ctrl[i]
+        data.ctrl[place] = ctrl[max(0, i - late), place]
+        mujoco.mj_forward(model, data)
+        rows.append([*data.qpos, *data.actuator_force])
+        if fault is not None:
+            data.qfrc_applied[place] = unsaid(fault, data.qpos[place], data.qvel[place], data.qfrc_actuator[place])
+        mujoco.mj_step(model, data)
+    table = np.array(rows)
+    noise = NOISE * rng.standard_normal((steps, k))
+    return Log(stamps, ctrl, table[:, :k] + noise, table[:, k:])
+
+
+def put(joint: mujoco.MjsJoint, what: str, value: float) -> None:
+    """Set a number of a joint; damping and stiffness are polynomials, whose first coefficient it is."""
+    if np.ndim(getattr(joint, what)):
+        getattr(joint, what)[0] = value
+    else:
+        setattr(joint, what, value)
+
+
+def fitted(xml: str, log: Log) -> tuple[mujoco.MjModel, list[str]]:
+    """Return the model as mujoco.sysid fits it, and the parameters that moved by more than three standard errors."""
+    from mujoco import sysid
+
+    spec = mujoco.MjSpec.from_string(xml)
+    for joint in spec.joints:
+        spec.add_sensor(name=f"{joint.name}_pos", type=mujoco.mjtSensor.mjSENS_JOINTPOS,
+                        objtype=mujoco.mjtObj.mjOBJ_JOINT, objname=joint.name)
+    for i, (body, drive) in enumerate(zip(spec.bodies[1:], spec.actuators, strict=True)):
+        body.name, drive.name = f"link{i}", f"drive{i}"
+        spec.add_sensor(name=f"drive{i}_force", type=mujoco.mjtSensor.mjSENS_ACTUATORFRC,
+                        objtype=mujoco.mjtObj.mjOBJ_ACTUATOR, objname=drive.name)
+    model = spec.compile()
+    params = sysid.ParameterDict()
+
+    def add(name: str, nominal: float, low: float, high: float, setter: Callable[..., None]) -> None:
+        params.add(sysid.Parameter(name, nominal=nominal, min_value=low, max_value=high, modifier=setter))
+
+    for i, joint in enumerate(spec.joints):
+        for what, most in (("damping", 10.0), ("frictionloss", 5.0), ("armature", 1.0), ("stiffness", 30.0)):
+            value = float(np.ravel(getattr(joint, what))[0])
+            add(f"{joint.name} {what}", value, 0.0, most, lambda s, p, i=i, what=what: put(s.joints[i], what, p.value[0]))
+        mass = float(spec.bodies[i + 1].geoms[0].mass)
+        add(f"link{i} mass", mass, 0.2 * mass, 5.0 * mass, lambda s, p, i=i: setattr(s.bodies[i + 1].geoms[0], "mass", p.value[0]))
+        kp, kv = spec.actuators[i].gainprm[0], -spec.actuators[i].biasprm[2]
+
+        def gain(s, p, i=i, kp=kp, kv=kv):
+            s.actuators[i].gainprm[0] = kp * p.value[0]
+            s.actuators[i].biasprm[1:3] = [-kp * p.value[0], -kv * p.value[0]]
+
+        add(f"{joint.name} gain", 1.0, 0.3, 2.0, gain)
+    start = sysid.create_initial_state(model, log.qpos[0], np.zeros(model.nv))
+    later = log.time + model.opt.timestep  # its rollouts give readings of the start of a step the stamp of its end
+    series = sysid.TimeSeries.from_control_names(log.time, log.ctrl, model), sysid.TimeSeries.from_names(later, np.hstack([log.qpos, log.force]), model)
+    sequences = sysid.ModelSequences("arm", spec, "motion", start, *series)
+    residual = sysid.build_residual_fn(models_sequences=[sequences])
+    before = params.as_vector().copy()
+    params.move_off_bounds()
+    with redirect_stdout(StringIO()):  # it prints a line for each step, verbose or not
+        found, result = sysid.optimize(params, residual, verbose=False, x_scale="jac", max_iters=50)
+    jac, x = np.asarray(result.jac), found.as_vector()
+    left = np.concatenate([np.ravel(r) for r in residual(x, found)[0]])
+    error = np.sqrt(np.abs(np.diag(np.linalg.pinv(jac.T @ jac))) * (left @ left) / max(1, len(left) - len(x)))
+    names = list(params.parameters)
+    told = [n for n, a, b, e in zip(names, before, x, error, strict=True) if abs(b - a) > SURE * e and abs(b - a) > 1e-3 * max(abs(a), 1e-2)]
+    done = sysid.apply_param_modifiers(found, spec)
+    return (done if isinstance(done, mujoco.MjModel) else done.compile()), told
+
+
+def rolled(model: mujoco.MjModel, log: Log) -> float:
+    """Return the rms of what a model does on the controls of a log against what was measured, rad."""
+    data, left = mujoco.MjData(model), []
+    for ctrl, qpos in zip(log.ctrl, log.qpos, strict=True):
+        data.ctrl[:] = ctrl
+        left.append(data.qpos[: model.nu] - qpos)
+        mujoco.mj_step(model, data)
+    return float(np.sqrt(np.mean(np.square(left))))
+
+
+def lines(function: Callable[..., object]) -> int:
+    return len(inspect.getsource(function).splitlines())
+
+
+def arm(seed: int, kind: str) -> str:
+    """Return a row of the table."""
+    rng = np.random.default_rng(seed)
+    xml = drawn_xml(rng, servo=True, joints=3)
+    fault = Hidden(kind, int(rng.integers(3)) if kind != "payload" else 2, float(rng.uniform(0.4, 1.0)))
+    nominal, real = mujoco.MjModel.from_xml_string(xml), faulty(xml, fault)
+    seen, other = moved(real, seed, fault), moved(real, seed + HELD_OUT, fault)
+    untuned = rolled(nominal, other)
+    began = time.perf_counter()
+    theirs, moved_parameters = fitted(xml, seen)
+    seconds = time.perf_counter() - began
+    began = time.perf_counter()
+    answer = gap.diagnose(xml, {"time": seen.time, "ctrl": seen.ctrl, "qpos": seen.qpos, "actuator_force": seen.force})
+    own_seconds = time.perf_counter() - began
+    try:
+        ours = f"{rolled(mujoco.MjModel.from_xml_string(answer.corrected().text), other) / untuned:.2f}"
+    except (InputError, ValueError) as error:
+        ours = type(error).__name__
+    place = nominal.joint(fault.joint).name
+    return (
+        f"| {seed}: {kind}, {place} | {len(moved_parameters)} of {6 * 3} moved | {rolled(theirs, other) / untuned:.2f} | {seconds:.0f} s "
+        f"| {answer.headline} | {ours} | {own_seconds:.1f} s |"
+    )
+
+
+def main() -> None:
+    """Print the table, one row for each arm."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--arms", type=int, default=len(FAULTS))
+    count = parser.parse_args().arms
+    print("| hidden | mujoco.sysid says | its error held out | | says here | error held out | |\n|---|---|---|---|---|---|---|")
+    for i in range(count):
+        print(arm(FIRST + i, FAULTS[i % len(FAULTS)]), flush=True)
+
+
+if __name__ == "__main__":
+    main()
