@@ -24,7 +24,7 @@ import sher3.gap as gap
 from numpy.typing import NDArray
 from sher3_public.errors import InputError
 
-sys.path.append(str(Path(__file__).parents[1] / "sher3_ws/src/sher3_machines/test"))
+sys.path.append(str(Path(__file__).parents[1] / "sher3_ws/src/sher3_chain/test"))
 
 from drawn_arms import NOISE, drawn_xml
 
@@ -37,7 +37,18 @@ SECONDS, HELD_OUT = 8.0, 9000
 """Length of a motion, s, and what is added to a seed for the one held out."""
 SURE = 3.0
 """Standard errors by which a parameter must move to be read as a finding of a fit."""
-FAULTS = ("viscous", "coulomb", "stribeck", "cogging", "late command", "load friction", "spring", "rotor", "payload", "gain")
+FAULTS = (
+    "viscous",
+    "coulomb",
+    "stribeck",
+    "cogging",
+    "late command",
+    "load friction",
+    "spring",
+    "rotor",
+    "payload",
+    "gain",
+)
 """What is hidden in arms 0 to 9, at a drawn joint; MuJoCo has no field for the third to the sixth."""
 
 
@@ -72,8 +83,14 @@ def faulty(xml: str, fault: Hidden) -> mujoco.MjModel:
         joint.armature += 0.1 * fault.size * scale
     elif fault.kind == "payload":
         tip = spec.bodies[-1]
-        tip.add_geom(type=mujoco.mjtGeom.mjGEOM_SPHERE, size=[0.01, 0, 0], pos=[0.25, 0, 0], mass=fault.size * 0.5,
-                     contype=0, conaffinity=0)
+        tip.add_geom(
+            type=mujoco.mjtGeom.mjGEOM_SPHERE,
+            size=[0.01, 0, 0],
+            pos=[0.25, 0, 0],
+            mass=fault.size * 0.5,
+            contype=0,
+            conaffinity=0,
+        )
     elif fault.kind == "gain":
         drive = spec.actuators[fault.joint]
         drive.gainprm[0] *= 1.0 - 0.2 * fault.size
@@ -130,12 +147,20 @@ def fitted(xml: str, log: Log) -> tuple[mujoco.MjModel, list[str]]:
 
     spec = mujoco.MjSpec.from_string(xml)
     for joint in spec.joints:
-        spec.add_sensor(name=f"{joint.name}_pos", type=mujoco.mjtSensor.mjSENS_JOINTPOS,
-                        objtype=mujoco.mjtObj.mjOBJ_JOINT, objname=joint.name)
+        spec.add_sensor(
+            name=f"{joint.name}_pos",
+            type=mujoco.mjtSensor.mjSENS_JOINTPOS,
+            objtype=mujoco.mjtObj.mjOBJ_JOINT,
+            objname=joint.name,
+        )
     for i, (body, drive) in enumerate(zip(spec.bodies[1:], spec.actuators, strict=True)):
         body.name, drive.name = f"link{i}", f"drive{i}"
-        spec.add_sensor(name=f"drive{i}_force", type=mujoco.mjtSensor.mjSENS_ACTUATORFRC,
-                        objtype=mujoco.mjtObj.mjOBJ_ACTUATOR, objname=drive.name)
+        spec.add_sensor(
+            name=f"drive{i}_force",
+            type=mujoco.mjtSensor.mjSENS_ACTUATORFRC,
+            objtype=mujoco.mjtObj.mjOBJ_ACTUATOR,
+            objname=drive.name,
+        )
     model = spec.compile()
     params = sysid.ParameterDict()
 
@@ -145,9 +170,21 @@ def fitted(xml: str, log: Log) -> tuple[mujoco.MjModel, list[str]]:
     for i, joint in enumerate(spec.joints):
         for what, most in (("damping", 10.0), ("frictionloss", 5.0), ("armature", 1.0), ("stiffness", 30.0)):
             value = float(np.ravel(getattr(joint, what))[0])
-            add(f"{joint.name} {what}", value, 0.0, most, lambda s, p, i=i, what=what: put(s.joints[i], what, p.value[0]))
+            add(
+                f"{joint.name} {what}",
+                value,
+                0.0,
+                most,
+                lambda s, p, i=i, what=what: put(s.joints[i], what, p.value[0]),
+            )
         mass = float(spec.bodies[i + 1].geoms[0].mass)
-        add(f"link{i} mass", mass, 0.2 * mass, 5.0 * mass, lambda s, p, i=i: setattr(s.bodies[i + 1].geoms[0], "mass", p.value[0]))
+        add(
+            f"link{i} mass",
+            mass,
+            0.2 * mass,
+            5.0 * mass,
+            lambda s, p, i=i: setattr(s.bodies[i + 1].geoms[0], "mass", p.value[0]),
+        )
         kp, kv = spec.actuators[i].gainprm[0], -spec.actuators[i].biasprm[2]
 
         def gain(s, p, i=i, kp=kp, kv=kv):
@@ -157,7 +194,10 @@ def fitted(xml: str, log: Log) -> tuple[mujoco.MjModel, list[str]]:
         add(f"{joint.name} gain", 1.0, 0.3, 2.0, gain)
     start = sysid.create_initial_state(model, log.qpos[0], np.zeros(model.nv))
     later = log.time + model.opt.timestep  # its rollouts give readings of the start of a step the stamp of its end
-    series = sysid.TimeSeries.from_control_names(log.time, log.ctrl, model), sysid.TimeSeries.from_names(later, np.hstack([log.qpos, log.force]), model)
+    series = (
+        sysid.TimeSeries.from_control_names(log.time, log.ctrl, model),
+        sysid.TimeSeries.from_names(later, np.hstack([log.qpos, log.force]), model),
+    )
     sequences = sysid.ModelSequences("arm", spec, "motion", start, *series)
     residual = sysid.build_residual_fn(models_sequences=[sequences])
     before = params.as_vector().copy()
@@ -168,7 +208,11 @@ def fitted(xml: str, log: Log) -> tuple[mujoco.MjModel, list[str]]:
     left = np.concatenate([np.ravel(r) for r in residual(x, found)[0]])
     error = np.sqrt(np.abs(np.diag(np.linalg.pinv(jac.T @ jac))) * (left @ left) / max(1, len(left) - len(x)))
     names = list(params.parameters)
-    told = [n for n, a, b, e in zip(names, before, x, error, strict=True) if abs(b - a) > SURE * e and abs(b - a) > 1e-3 * max(abs(a), 1e-2)]
+    told = [
+        n
+        for n, a, b, e in zip(names, before, x, error, strict=True)
+        if abs(b - a) > SURE * e and abs(b - a) > 1e-3 * max(abs(a), 1e-2)
+    ]
     done = sysid.apply_param_modifiers(found, spec)
     return (done if isinstance(done, mujoco.MjModel) else done.compile()), told
 
@@ -217,7 +261,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--arms", type=int, default=len(FAULTS))
     count = parser.parse_args().arms
-    print("| hidden | mujoco.sysid says | its error held out | | says here | error held out | |\n|---|---|---|---|---|---|---|")
+    print(
+        "| hidden | mujoco.sysid says | its error held out | | says here | error held out | |\n|---|---|---|---|---|---|---|"
+    )
     for i in range(count):
         print(arm(FIRST + i, FAULTS[i % len(FAULTS)]), flush=True)
 

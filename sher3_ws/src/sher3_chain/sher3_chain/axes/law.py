@@ -188,13 +188,20 @@ def _solved(x: Array, y: Array) -> Array:
 
 
 def excess(signals: Sequence[AxisSignals], axis: Axis, way: Way) -> float:
-    """Return the power of command less stated law over its floor, a mean over the records."""
+    """Return the power of command less stated law over its floor, a mean over the records.
+
+    Gains of its parts and what a late reference changes are no matter of the way in which the encoder is read, and are
+    taken off.
+    """
     powers = []
     for run in signals:
         view = LawView(run, axis, way)
         left = residual_of(view)
         if left.ok.any():
-            powers.append(float(np.mean((left.values[left.ok] / floor_of(view, left)) ** 2)))
+            free = np.column_stack([view.stated.parts, _lateness(run)])
+            x, y = run.to_grid(free)[left.ok], left.values[left.ok, 0]
+            rest = y - x @ np.linalg.lstsq(x, y, rcond=None)[0]
+            powers.append(float(np.mean((rest / floor_of(view, left)) ** 2)))
     return float(np.mean(powers)) if powers else 0.0
 
 
@@ -218,6 +225,13 @@ def left_by(run: AxisSignals, parts: Array) -> Array:
     size = np.linalg.norm(x[free], axis=0)
     left = command - x / np.where(size > 0.0, size, 1.0) @ _solved(x[free], command[free])
     return np.array([np.median(np.abs(left[free])), np.median(np.abs(np.diff(left, 2)[free[2:]]))])
+
+
+def _lateness(run: AxisSignals) -> Array:
+    """Return what a short delay of the reference changes, but for its size, (n, 2)."""
+    assert run.reference is not None
+    speed = np.gradient(run.reference[:, 0])
+    return np.column_stack([speed, np.gradient(speed)])
 
 
 def stated_law(run: AxisSignals, axis: Axis, way: Way) -> StatedLaw:

@@ -13,8 +13,10 @@ from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.finding import ExactFinding, Finding
 from sher3_diagnosis.fit.fitting import Fit
+from sher3_diagnosis.localise.gaps import localise
 from sher3_diagnosis.machine import Policy
 from sher3_diagnosis.verdict import Cause
+from sher3_effects import pages
 from sher3_machines.intake.notes import told_once
 
 from sher3_chain.chain.machine import Chain
@@ -29,6 +31,7 @@ from sher3_chain.manipulator.library import of_joints
 from sher3_chain.manipulator.model import ArmModel
 from sher3_chain.manipulator.readings.lateness import LATE, late_efforts, with_closure
 from sher3_chain.manipulator.readings.wrong import level_notes
+from sher3_chain.manipulator.servo_laws import laws_of_servos, reproduced
 from sher3_chain.power import unjudged
 from sher3_chain.readings.wrong import wrong_readings
 from sher3_chain.search.changes import change_notes
@@ -57,8 +60,9 @@ class Manipulator(Chain[ArmMotionEvidence]):
     policy = Policy(down_to_floor=True)
 
     def library(self) -> Sequence[Effect]:
-        """Return the pages of an axis and those of a joint of an arm."""
-        return of_joints()
+        """Return the pages of an axis and those of a joint of an arm, and those of a servo's law."""
+        own = of_joints()
+        return [*own, *(e for e in pages("law") if e.id not in {x.id for x in own})]
 
     def effects(self, evidence: ArmMotionEvidence) -> Sequence[Effect]:
         """Return the pages that the recorded signals can show."""
@@ -85,8 +89,12 @@ class Manipulator(Chain[ArmMotionEvidence]):
     def exact(
         self, runs: Sequence[AxesRun], evidence: Sequence[ArmMotionEvidence], without: Collection[str]
     ) -> list[ExactFinding]:
-        """Return the efforts that are late on an arm without any other gap."""
-        return [] if LATE in without else [late for part in evidence for late in late_efforts(part)]
+        """Return what departs from a servo's law, and the efforts that are late on an arm without any other gap."""
+        laws = [x for part in evidence for x in laws_of_servos(runs, self.described, part.judged, without)]
+        if any(gap.significant for part in evidence for gap in localise(part)):
+            return [law for law in laws if reproduced(law)]
+        late = [] if LATE in without else [x for part in evidence for x in late_efforts(part)]
+        return [*laws, *late]
 
     def causes(self, evidence: ArmMotionEvidence, candidates: Candidates, left_over: Left, say: Say) -> Attribution:
         """Choose the causes joint by joint, without and with a payload."""

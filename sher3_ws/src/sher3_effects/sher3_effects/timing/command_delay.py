@@ -61,12 +61,13 @@ class ServoDelay(CommandDelay):
 
 
 class DelayOfLaw(CommandDelay):
-    """The recorded command is that of the stated law some time ago."""
+    """The recorded command is that of the stated law some time ago, or of the reference some time ago."""
 
     kinds = ("law",)
-    explanation = "The recorded command is the stated law's, a fixed time late."
+    explanation = "The recorded command is the stated law's, or that for the reference, a fixed time late."
     siblings = {"controller_gain": "right in time, and too large or too small"}
-    units = {"delay": "s"}
+    units = {"delay": "s", "reference_delay": "s"}
+    discrete = frozenset({"of_reference"})
     PERIODS = (1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0)
     """Delays that are tried, in periods of the record: nobody states the moment of a command within one."""
     finer = {"delay": (0.85, 0.92, 0.97, 1.03, 1.08, 1.2)}
@@ -80,18 +81,23 @@ class DelayOfLaw(CommandDelay):
         return channel.stage
 
     def shapes(self, views: Sequence[LawView], site: str) -> list[Shape]:
-        """Return delays, s."""
-        return [{"delay": n * views[0].run.period} for n in self.PERIODS]
+        """Return delays, s, of all of the law or of its reference alone."""
+        return [{"delay": n * views[0].run.period, "of_reference": k} for n in self.PERIODS for k in (0.0, 1.0)]
 
     def signature(self, view: LawView, site: str, shape: Shape) -> Signature:
-        """Return the law of a while ago less the law; nothing is left to fit."""
-        clock, law = view.run.stage_clock, view.stated.command
-        late = np.interp(clock - shape["delay"], clock, law)
-        return Signature({}, {self.channels(site)[0]: view.run.to_grid((late - law)[:, None])})
+        """Return the law of a while ago less the law, or what the reference of a while ago changes in it."""
+        clock, law = view.run.stage_clock, view.stated
+        if shape["of_reference"]:
+            asked = view.run.reference[:, 0]
+            error = np.interp(clock - shape["delay"], clock, asked) - asked
+            late = law.clipped(law.parts.sum(axis=1) + law.gain * error)
+        else:
+            late = np.interp(clock - shape["delay"], clock, law.command)
+        return Signature({}, {self.channels(site)[0]: view.run.to_grid((late - law.command)[:, None])})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Return the delay."""
-        return {"delay": shape["delay"]}
+        return {"reference_delay" if shape["of_reference"] else "delay": shape["delay"]}
 
 
 @dataclass(frozen=True)

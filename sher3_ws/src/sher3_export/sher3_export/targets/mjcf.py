@@ -195,8 +195,9 @@ class Mjcf(XmlTarget):
         return field(joint, "springref", math.degrees(change.value) if degrees else change.value)
 
     def body(self, place: str) -> Element | None:
-        """Return the body of a name, or the body that a joint of that name moves."""
-        found = next((x for x in elements(self.root, "body") if x.get("name") == place), None)
+        """Return the body of a name, or the body that a joint of that name moves; one without a name by its number."""
+        named = {x.get("name", f"body{n}"): x for n, x in enumerate(elements(self.root, "body"), start=1)}
+        found = named.get(place)
         return parents(self.root)[self.joints[place]] if found is None and place in self.joints else found
 
     def _payload(self, change: Change, body: Element) -> str:
