@@ -6,6 +6,7 @@ import time
 import numpy as np
 import pytest
 from sher3_gap_cli.watch.judged import OK, STALE, WARN, judged, of_actuators
+from sher3_gap_cli.watch.trajectory import Point, set_points
 from sher3_gap_cli.watch.window import Window
 
 ARM = (
@@ -46,6 +47,26 @@ def test_commands_hold_until_the_next_and_the_window_begins_with_the_first():
     taken = window.taken()
     assert taken.effort is None and len(taken.time) == 151
     assert (taken.command[:50] == [1.0, 2.0]).all() and (taken.command[50:] == [3.0, 4.0]).all()
+
+
+def test_points_of_a_trajectory_are_joined_by_lines_or_cubics():
+    after, lines = set_points([Point(1.0, [2.0])], before=[0.0], period=0.25)
+    assert after.tolist() == [0.0, 0.25, 0.5, 0.75, 1.0] and lines[:, 0] == pytest.approx([0.0, 0.5, 1.0, 1.5, 2.0])
+    _, cubic = set_points([Point(1.0, [2.0], [0.0])], before=[0.0], period=0.25)
+    assert cubic[:, 0] == pytest.approx([2.0 * (3.0 * s**2 - 2.0 * s**3) for s in after])
+
+
+def test_a_trajectory_takes_the_place_of_what_was_planned_and_begins_where_the_last_one_is():
+    window = Window(["a", "b"], seconds=2.0, rate=10.0)
+    window.trajectory(0.0, ["a"], [Point(0.0, [0.0]), Point(10.0, [10.0])])
+    window.trajectory(1.0, ["b"], [Point(1.0, [5.0])])
+    for k in range(21):
+        window.state(0.1 * k, ["a", "b"], [0.0, 0.0], [])
+    command = window.taken().command
+    assert command[:10, 0] == pytest.approx(np.arange(10) * 0.1) and (command[:10, 1] == 0.0).all()
+    assert command[10:, 0] == pytest.approx(0.9) and command[-1, 1] == pytest.approx(5.0)
+    window.trajectory(3.0, ["c"], [Point(1.0, [5.0])])
+    assert window.strange == 1
 
 
 def test_strange_messages_are_counted_and_a_clock_that_goes_back_begins_anew():

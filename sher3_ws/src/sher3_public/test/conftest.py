@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 import sher3.gap as gap
 
-sys.path.append(str(Path(__file__).parents[2] / "sher3_chain" / "test"))
+for room in ("sher3_chain", "sher3_machines"):
+    sys.path.append(str(Path(__file__).parents[2] / room / "test"))
 
 from drawn_arms import drawn_xml, logged
 

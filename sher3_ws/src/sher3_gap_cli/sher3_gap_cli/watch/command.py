@@ -21,6 +21,7 @@ class Kind(str, Enum):
 
     joint_state = "JointState"
     array = "Float64MultiArray"
+    trajectory = "JointTrajectory"
 
 
 def watch(

@@ -16,8 +16,10 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray
+from trajectory_msgs.msg import JointTrajectory
 
 from sher3_gap_cli.watch.judged import STALE, Status, judged, yielding
+from sher3_gap_cli.watch.trajectory import Point
 from sher3_gap_cli.watch.window import Window
 
 DEPTH = 100
@@ -39,7 +41,7 @@ class WatchNode(Node):
         window: of the joints of the model.
         every: seconds from one diagnosis to the next.
         states, command: topics; no command: empty.
-        kind: type of the command, `JointState` or `Float64MultiArray`.
+        kind: type of the command, `JointState`, `Float64MultiArray` or `JointTrajectory`.
         reliable: whether messages must arrive; sensors' topics are often best effort.
         say: gets what is new.
     """
@@ -57,9 +59,11 @@ class WatchNode(Node):
         quality = QoSProfile(depth=DEPTH, reliability=wanted)
         self.heard = [(self._subscription(JointState, states, quality), self._state)]
         if command:
-            taken = {"JointState": (JointState, self._told), "Float64MultiArray": (Float64MultiArray, self._array)}[
-                kind
-            ]
+            taken = {
+                "JointState": (JointState, self._told),
+                "Float64MultiArray": (Float64MultiArray, self._array),
+                "JointTrajectory": (JointTrajectory, self._trajectory),
+            }[kind]
             self.heard.append((self._subscription(taken[0], command, quality), taken[1]))
         self.publisher = self.create_publisher(DiagnosticArray, "/diagnostics", 10)
         self.published = 0.0
@@ -92,6 +96,14 @@ class WatchNode(Node):
         message = deserialize_message(data, Float64MultiArray)
         stamp = self.get_clock().now().nanoseconds * 1e-9
         self.window.command(stamp, (), message.data)
+
+    def _trajectory(self, data: bytes) -> None:
+        message = deserialize_message(data, JointTrajectory)
+        start = _seconds(message.header.stamp) or self.get_clock().now().nanoseconds * 1e-9  # no stamp: at once
+        points = [
+            Point(_seconds(p.time_from_start), p.positions, p.velocities, p.accelerations) for p in message.points
+        ]
+        self.window.trajectory(start, message.joint_names, points)
 
     def _tick(self) -> None:
         if self.running is not None and self.running.ready():

@@ -10,6 +10,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sher3_gap_cli.watch.trajectory import Point, set_points
+
 Array = NDArray[np.float64]
 SHORTEST = 0.5
 """Share of the window from which it is diagnosed: a robot that has only just begun says little."""
@@ -81,15 +83,35 @@ class Window:
         while self.states[0].stamp < stamp - self.seconds:
             self.states.popleft()
 
-    def command(self, stamp: float, names: Sequence[str], values: Sequence[float]) -> None:
-        """Take a command from `stamp` on; without names it is in the order of the model."""
+    def command(self, stamp: float, names: Sequence[str], values: Sequence[float], now: float | None = None) -> None:
+        """Take a command from `stamp` on; without names it is in the order of the model. It may lie ahead of `now`."""
         known: Mapping[str, float] = dict(zip(names or self.joints, values, strict=False))
         if not set(self.joints) <= set(known):
             self.strange += 1
             return
         self.commands.append(Command(stamp, tuple(known[name] for name in self.joints)))
-        while len(self.commands) > 1 and self.commands[1].stamp < stamp - self.seconds:
+        oldest = (stamp if now is None else now) - self.seconds
+        while len(self.commands) > 1 and self.commands[1].stamp < oldest:
             self.commands.popleft()
+
+    def trajectory(self, stamp: float, names: Sequence[str], points: Sequence[Point]) -> None:
+        """Take a trajectory that starts at `stamp`; it takes the place of what was planned beyond. None: it stops."""
+        while self.commands and self.commands[-1].stamp >= stamp:
+            self.commands.pop()
+        known = dict(zip(self.joints, self._last(), strict=True))
+        if not points or not set(names) <= set(known) or any(len(p.position) != len(names) for p in points):
+            self.strange += bool(points)
+            return
+        after, values = set_points(points, [known[name] for name in names], self.period)
+        for late, row in zip(after.tolist(), values.tolist(), strict=True):
+            told = {**known, **dict(zip(names, row, strict=True))}
+            self.command(stamp + late, self.joints, [told[name] for name in self.joints], now=stamp)
+
+    def _last(self) -> Sequence[float]:
+        """Return the set-point in force, the measured place before the first one, zeros before anything was heard."""
+        if self.commands:
+            return self.commands[-1].values
+        return self.states[-1].position if self.states else [0.0] * len(self.joints)
 
     def taken(self) -> Taken | None:
         """Return the window; None while it is shorter than half of what is kept."""
