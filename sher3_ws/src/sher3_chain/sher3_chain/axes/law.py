@@ -157,8 +157,11 @@ def best_way(signals: Sequence[AxisSignals], axis: Axis) -> Way:
         step = float(np.sqrt(step))
         best = least([Way(best.speed * f, shift) for f in (1.0, step, 1.0 / step) for shift in SHIFTS])
     quiet = _within(best if noise(best) < PLAIN * noise(plain) else plain)
-    stated = min((Way(speed, 0) for speed in (LAST, TWO, CENTRAL)), key=lambda way: excess(signals, axis, way))
-    return stated if excess(signals, axis, stated) < PLAIN * excess(signals, axis, quiet) else quiet
+    found = {way: excess(signals, axis, way) for way in (quiet, *(Way(speed, 0) for speed in (LAST, TWO, CENTRAL)))}
+    freest = min(x.freed for x in found.values())
+    stated = min((way for way, x in found.items() if x.freed <= ALIKE * freest), key=lambda way: found[way].stated)
+    better = any(a < PLAIN * b for a, b in zip(found[stated], found[quiet], strict=True))
+    return stated if better else quiet
 
 
 def backwards(signals: Sequence[AxisSignals], axis: Axis, way: Way) -> bool:
@@ -187,12 +190,21 @@ def _solved(x: Array, y: Array) -> Array:
     return np.asarray(np.linalg.lstsq(x.T @ x, x.T @ y, rcond=None)[0])
 
 
-def excess(signals: Sequence[AxisSignals], axis: Axis, way: Way) -> float:
-    """Return the power of command less stated law over its floor, a mean over the records.
+class Excess(NamedTuple):
+    """Power of command less law over its floor, a mean over the records.
 
-    Gains of its parts and what a late reference changes are no matter of the way in which the encoder is read, and are
-    taken off.
+    Attributes:
+        stated: of the law as it is stated.
+        freed: of the law with gains of its own for its parts and a reference that may be a little late: neither is a
+            matter of the way in which the encoder is read.
     """
+
+    stated: float
+    freed: float
+
+
+def excess(signals: Sequence[AxisSignals], axis: Axis, way: Way) -> Excess:
+    """Return what a way leaves of a command, over the floor."""
     powers = []
     for run in signals:
         view = LawView(run, axis, way)
@@ -201,8 +213,8 @@ def excess(signals: Sequence[AxisSignals], axis: Axis, way: Way) -> float:
             free = np.column_stack([view.stated.parts, _lateness(run)])
             x, y = run.to_grid(free)[left.ok], left.values[left.ok, 0]
             rest = y - x @ np.linalg.lstsq(x, y, rcond=None)[0]
-            powers.append(float(np.mean((rest / floor_of(view, left)) ** 2)))
-    return float(np.mean(powers)) if powers else 0.0
+            powers.append(np.mean((np.array([y, rest]) / floor_of(view, left)) ** 2, axis=1))
+    return Excess(*np.mean(powers, axis=0).tolist()) if powers else Excess(0.0, 0.0)
 
 
 def _within(way: Way) -> Way:
