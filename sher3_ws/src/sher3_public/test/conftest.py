@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 import sher3.gap as gap
 
-for room in ("sher3_chain", "sher3_machines"):
-    sys.path.append(str(Path(__file__).parents[2] / room / "test"))
+sys.path.extend(str(Path(__file__).parents[2] / room / "test") for room in ("sher3_chain", "sher3_machines"))
 
 from drawn_arms import drawn_xml, logged
 

@@ -1,4 +1,4 @@
-"""Points of a trajectory as set-points at the rate of a window, as ros2_control's joint_trajectory_controller makes them.
+"""Points of a trajectory as set-points, joined as joint_trajectory_controller of ros2_controllers joins them.
 
 Between two points positions alone are joined by lines, positions with velocities by cubic polynomials, and those with
 accelerations as well by quintic ones (trajectory representation, documentation of ros2_controllers).
