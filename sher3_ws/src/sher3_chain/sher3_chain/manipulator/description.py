@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import Literal
 
 from pydantic import Field, model_validator
@@ -86,6 +86,13 @@ class ManipulatorDescription(ChainDescription):
     def chain(self) -> Sequence[Joint]:
         """The joints: they are recorded like axes."""
         return self.joints
+
+    def servos(self, judged: Collection[str]) -> dict[str, float]:
+        """Return joint -> gain of the joints whose servo has a stated law and whose effort was measured."""
+        if self.coupling is not None:
+            return {}
+        known = [j for j in self.joints if j.name in judged and j.follows and j.signals.effort is not None]
+        return {j.name: j.gain for j in known if isinstance(j.gain, float)}
 
     def named_files(self) -> tuple[str, ...]:
         """Return the file of the model."""

@@ -31,11 +31,11 @@ from sher3_chain.manipulator.library import of_joints
 from sher3_chain.manipulator.model import ArmModel
 from sher3_chain.manipulator.readings.lateness import LATE, late_efforts, with_closure
 from sher3_chain.manipulator.readings.wrong import level_notes
-from sher3_chain.manipulator.servo_laws import laws_of_servos, reproduced
 from sher3_chain.power import unjudged
 from sher3_chain.readings.wrong import wrong_readings
 from sher3_chain.search.changes import change_notes
 from sher3_chain.search.friction_in_motion import requantified
+from sher3_chain.servo.laws import laws_of_servos, reproduced
 
 if TYPE_CHECKING:
     from sher3_chain.manipulator.report.reporter import ManipulatorReporter
@@ -90,7 +90,8 @@ class Manipulator(Chain[ArmMotionEvidence]):
         self, runs: Sequence[AxesRun], evidence: Sequence[ArmMotionEvidence], without: Collection[str]
     ) -> list[ExactFinding]:
         """Return what departs from a servo's law, and the efforts that are late on an arm without any other gap."""
-        laws = [x for part in evidence for x in laws_of_servos(runs, self.described, part.judged, without)]
+        judged = {name for part in evidence for name in part.judged}
+        laws = laws_of_servos(runs, self.described, self.described.servos(judged), without)
         if any(gap.significant for part in evidence for gap in localise(part)):
             return [law for law in laws if reproduced(law)]
         late = [] if LATE in without else [x for part in evidence for x in late_efforts(part)]

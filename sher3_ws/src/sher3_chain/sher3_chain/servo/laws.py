@@ -6,7 +6,7 @@ its reference is another question, and a late or weak servo answers it alone.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 
 from sher3_diagnosis.finding import ExactFinding, Finding
@@ -20,23 +20,29 @@ from sher3_diagnosis.verdict import Interval, Residual
 from sher3_chain.axes.evidence import AxisEvidence
 from sher3_chain.axes.law import law_of_axis
 from sher3_chain.axes.machine import Axes
-from sher3_chain.joint.description import AxesDescription
+from sher3_chain.joint.description import AxesDescription, Axis, ChainDescription
 from sher3_chain.joint.record import AxesRun
-from sher3_chain.manipulator.description import Joint, ManipulatorDescription
 
 
 def laws_of_servos(
-    runs: Sequence[AxesRun], described: ManipulatorDescription, judged: Collection[str], without: Collection[str]
+    runs: Sequence[AxesRun],
+    described: ChainDescription,
+    gains: Mapping[str, float],
+    without: Collection[str],
 ) -> list[ExactFinding]:
-    """Return what departs from the law of its servo, joint by joint; a joint whose effort follows it gives nothing."""
-    if described.coupling is not None:
-        return []
-    joints = [j for j in described.joints if j.name in judged and j.follows and j.signals.effort is not None]
-    known = [commanded(j) for j in joints if isinstance(j.gain, float)]
+    """Return what departs from the law of its servo, joint by joint; a joint whose effort follows it gives nothing.
+
+    Args:
+        runs: records.
+        described: the machine.
+        gains: joint -> N or N m per unit of its measured effort, of the joints whose servo has a stated law.
+        without: ids of effects that are left out.
+    """
+    known = [commanded(axis) for axis in described.chain if axis.name in gains]
     if not known:
         return []
     axes = Axes(AxesDescription(kind="axes", name=described.name, time=described.time, axes=tuple(known)))
-    each = ((j, law_of_axis([with_command(run, j) for run in runs], j)) for j in known)
+    each = ((j, law_of_axis([with_command(run, j.name, gains[j.name]) for run in runs], j)) for j in known)
     found = (find(axes, law, without, lambda _: None) for _, law in each if law is not None)
     return [exact_of(finding) for finding in found if finding.significant]
 
@@ -46,17 +52,17 @@ def reproduced(found: ExactFinding) -> bool:
     return found.closure.value >= REPRODUCED
 
 
-def commanded(joint: Joint) -> Joint:
+def commanded(axis: Axis) -> Axis:
     """Return a joint whose effort is the command that its law is to give."""
-    signals = joint.signals.model_copy(update={"command": joint.signals.effort})
-    return joint.model_copy(update={"signals": signals})
+    signals = axis.signals.model_copy(update={"command": axis.signals.effort})
+    return axis.model_copy(update={"signals": signals})
 
 
-def with_command(run: AxesRun, joint: Joint) -> AxesRun:
+def with_command(run: AxesRun, joint: str, gain: float) -> AxesRun:
     """Return a run in which the effort of a joint, N or N m, stands as its command."""
-    signals = dict(run.signals[joint.name])
-    signals["command"] = signals["effort"] * float(joint.gain)
-    return replace(run, signals={**run.signals, joint.name: signals})
+    signals = dict(run.signals[joint])
+    signals["command"] = signals["effort"] * gain
+    return replace(run, signals={**run.signals, joint: signals})
 
 
 def exact_of(finding: Finding[AxisEvidence]) -> ExactFinding:

@@ -1,0 +1,1 @@
+"""Servos of joints: what they give against what their law asks for."""
