@@ -105,7 +105,7 @@ def _forces() -> Iterator[Row]:
 def _blinded() -> Iterator[Row]:
     """Yield an encoder that jitters as the hand leaves a sensor that stays: nothing can be compared then."""
     for size in (1e-6, 2e-6, 5e-6):
-        yield Row("force_sensor", "held", reasons=DOUBTFUL, states=(FIRM,), lets_go=True, duration=0.4, slow=True,
+        yield Row("force_sensor", "held", reasons=DOUBTFUL, states=(LIGHT,), lets_go=True, duration=0.4,
                   beside=Row(f"{AXIS}.encoders", "jitter", {"size": size}, duration=0.4), budget=100e-6, why=BLIND,
                   quick=size == 2e-6)  # fmt: skip
     yield Row(f"{AXIS}.load_encoder", "jitter", {"size": 2e-6}, reasons=DOUBTFUL, slow=True, duration=0.4,
