@@ -61,6 +61,11 @@ def verdict(status, **more):
             verdict("outside_library", unexplained=LEFT),
             "No effect of the library explains the gap in transmission, tilt.",
         ),
+        (
+            verdict("outside_library", causes=[FRICTION], unexplained=LEFT),
+            "Coulomb friction on delta 2, 300 mN: 98 % of the gap; no effect of the library explains the rest in "
+            "transmission, tilt.",
+        ),
     ],
 )
 def test_the_headline_is_the_answer(answer, text):

@@ -37,6 +37,9 @@ def headline(verdict: Verdict, rests: Mapping[str, str] = MappingProxyType({})) 
         return _sentence(f"{listed(open_ones or names)}: these runs cannot tell.")
     left = verdict.unexplained
     where = "" if left is None else f" in {lower(left.stage)}, {place(left.actuator)}"
+    if verdict.causes:
+        rest = f"no effect of the library explains the rest{where}"
+        return _sentence(f"{_finding(verdict)}: {_share(verdict)}; {rest}.")
     return f"No effect of the library explains the gap{where}."
 
 
