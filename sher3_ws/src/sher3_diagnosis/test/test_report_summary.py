@@ -113,6 +113,13 @@ def test_a_parameter_that_may_be_zero_is_not_told():
     assert headline(verdict("attributed", causes=[cause])) == "Tool offset on delta 2, -9.9 mm: 98 % of the gap."
 
 
+def test_a_size_known_to_no_decade_is_not_told():
+    force = FRICTION.parameters["force"]
+    wide = Parameter(value=27.8e-9, low=80e-12, high=9.6e-6, unit="m")
+    cause = FRICTION.model_copy(update={"parameters": {"displacement": wide, "force": force}})
+    assert cause_text(cause) == "Coulomb friction on delta 2, force 300 mN (250 mN … 350 mN)"
+
+
 def test_a_choice_is_told_by_its_word():
     """A scale that is of the whole sensor is not on "axis -1"."""
     axis = Parameter(value=-1.0, unit="1", means="all")

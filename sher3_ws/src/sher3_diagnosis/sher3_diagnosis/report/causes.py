@@ -110,7 +110,7 @@ def _interval(p: Parameter, choice: bool) -> str:
     """Return a parameter's interval, and whether it holds zero; of a choice that it is one."""
     if choice:
         return "a choice"
-    return range_text(p.low, p.high, p.unit) + ("" if significant(p) else ", not told from zero")
+    return range_text(p.low, p.high, p.unit) + ("" if significant(p) else ", size not told")
 
 
 def _term_of(cause: Cause, diagnosis: Diagnosis) -> tuple[Finding, int] | None:

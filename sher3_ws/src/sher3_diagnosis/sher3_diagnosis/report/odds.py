@@ -82,11 +82,16 @@ def sized(cause: Cause) -> str:
     return f"{name_of(cause)}, {size}"
 
 
+DECADES = 100.0
+"""Largest over smallest size of an interval from which a value, known to a factor of ten at best, is not told."""
+
+
 def significant(parameter: Parameter) -> bool:
-    """Return whether a parameter differs from zero: its interval does not hold it, or it has none."""
+    """Return whether a size is told: its interval holds no zero and spans less than two decades, or it has none."""
     if parameter.low is None or parameter.high is None:
         return True
-    return not parameter.low <= 0.0 <= parameter.high
+    near, far = sorted((abs(parameter.low), abs(parameter.high)))
+    return parameter.low * parameter.high > 0.0 and far < DECADES * near
 
 
 def _spoken(first: Place, named: bool) -> list[Answer]:

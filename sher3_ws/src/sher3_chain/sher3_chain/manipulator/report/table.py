@@ -63,6 +63,6 @@ def cell(cause: Cause) -> str:
     if p is not None:
         text += f" {p.means or quantity(p.value, p.unit)}"
         text += "" if p.low is None else f" ({range_text(p.low, p.high, p.unit)})"
-        text += "" if significant(p) else ", not told from zero"
+        text += "" if significant(p) else ", size not told"
     text += f" in {cause.condition}" if cause.condition else ""
     return text + (f" or {', '.join(words(r).lower() for r in cause.rivals)}" if cause.rivals else "")
