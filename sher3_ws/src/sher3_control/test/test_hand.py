@@ -241,6 +241,24 @@ def test_while_a_leg_strays_the_law_does_not_go_far(detector):
     assert detector.look(0).unit == "s"
 
 
+@pytest.mark.parametrize(("felt", "objects"), [(5.0, False), (0.0, True)])
+def test_a_firm_hand_that_makes_legs_stray_moves_the_tip_by_itself(detector, felt, objects):
+    """5 N that arrive at once make legs stray while the law takes the tip 5 mm/s * 40 ms = 200 um along."""
+    q, speed, objected = np.zeros(5), np.zeros(5), False
+    for tick in range(430):
+        pushed, before = tick >= 400, speed.copy()
+        command = np.array([5e-3, 5e-3, 5e-3, 0.0, 0.0]) * pushed
+        speed[:3] += 0.5 * (command - speed)[:3] * (tick > 400)  # a leg follows what it was told a tick before
+        q[:3] += speed[:3] * TICK * 1e-9
+        shown = q + np.array([1e-5 * (tick // 4 % 2), 0.0, 0.0, 0.0, 0.0]) * (tick > 396)
+        effort = drives_hold(tuple(shown), hand_of(felt * pushed))
+        effort[:3] += 10.5 * (speed - before)[:3] / (TICK * 1e-9) + 60.0 * speed[:3]
+        told = command * (tick > 400)
+        detector.feed(tick * TICK, sense(shown, hand_of(5.0 * pushed)), tuple(shown), effort, tuple(told))
+        objected |= detector.check(tick * TICK) is not None
+    assert objected is objects
+
+
 def test_numbers_that_are_none_are_not_judged(detector):
     feel(detector, 1.0, 0.0, 0.0)
     detector.feed(10**10, (np.nan,) * 6, (0.0,) * 5, (0.0,) * 5, STILL)
