@@ -21,7 +21,8 @@ PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
 BASE, EXTRAS = PYPROJECT["project"]["dependencies"], PYPROJECT["project"]["optional-dependencies"]
 ROBOT, CLUSTER = EXTRAS["robot"], EXTRAS["cluster"]
 """What the diagnosis needs is the base; then what the graph and a cluster of computers need besides."""
-ROS_KEYS = {"rclpy", "std_msgs", "std_srvs", "sensor_msgs", "geometry_msgs", "diagnostic_msgs", "rcl_interfaces"}
+INTERFACES = {"std_msgs", "std_srvs", "sensor_msgs", "geometry_msgs", "diagnostic_msgs", "trajectory_msgs"}
+ROS_KEYS = INTERFACES | {"rclpy", "rcl_interfaces"}
 
 
 def manifest(package: str) -> ElementTree.Element:

@@ -10,7 +10,7 @@ from documentation.expected import tolerance, unlike
 from documentation.pages import Block, Unit, blocks, pages, shown_output, spans, units
 from documentation.terminal import Terminal
 
-NOT_RUN = 26
+NOT_RUN = 28
 """Blocks that cannot be run here, at most. Each says why, where the reader sees it."""
 
 

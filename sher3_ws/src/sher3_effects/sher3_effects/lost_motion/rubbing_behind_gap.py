@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from sher3_diagnosis.channel import Array, Channel
@@ -23,7 +23,7 @@ class RubbingBehindGap(Page):
     inputs = ("direction",)
     kinds, needs = ("axis",), ("drive",)
     dry = True
-    extends = ("coulomb_friction",)
+    extends = ("coulomb_friction", "presliding_friction")
     told_by = ("width",)
     best = Best("reversals", "reversals of several amplitudes show a travel that needs no force")
     leaves_out = "how its level varies over the stroke"
@@ -58,6 +58,10 @@ class RubbingBehindGap(Page):
         travel = max(v.axis(site).travel for v in views)
         seen = self.COUNTS * views[0].axis(site).seen
         return bool(seen < shape["width"] and shape["width"] + 2.0 * shape["reach"] < self.MOST * travel)
+
+    def limits(self, shape: Shape) -> Mapping[str, tuple[float, float]]:
+        """Return between what the gap lies: within the travel over which its friction builds up it is not told."""
+        return {**self.bounds, "width": (shape["reach"], np.inf)}
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
         """Return one column: what the follower is behind, beyond the gap."""
