@@ -111,7 +111,8 @@ class HandDetector(PlainDetector):
             self.follow(stamp, self._felt, held, moved)
         else:
             self._last = stamp
-            self._count(held * np.repeat(sizes(held) * (1.0, 0.0) > FIRM, GROUPS), span, moved)
+            firm = sizes(held) * (1.0, 0.0) > FIRM
+            self._count(held * np.repeat(firm, GROUPS), span, moved)
             self._miss(span * bool(moved.any()))
 
     def follow(self, stamp: int, felt: Array, held: Array, moved: Array = NOWHERE) -> None:
