@@ -25,7 +25,7 @@ from sher3_public.errors import InputError
 
 sys.path.append(str(Path(__file__).parents[1] / "sher3_ws/src/sher3_chain/test"))
 
-from drawn_arms import NOISE, drawn_xml
+from drawn_arms import NOISE, asked, drawn_xml, served
 
 os.environ.setdefault("ABSL_LOGGING_VERBOSITY", "-1")
 
@@ -34,6 +34,8 @@ FIRST = 1200
 """First seed: none of the tests'."""
 SECONDS, HELD_OUT = 8.0, 9000
 """Length of a motion, s, and what is added to a seed for the one held out."""
+LATE = 12
+"""Steps by which a late control acts."""
 NUMBERS = 6
 """Numbers of a joint that mujoco.sysid is given to fit."""
 SURE = 3.0
@@ -110,28 +112,17 @@ def unsaid(fault: Hidden, q: float, v: float, need: float) -> float:
     return float(laws.get(fault.kind, 0.0))
 
 
-def moved(model: mujoco.MjModel, seed: int, fault: Hidden | None = None) -> Log:
-    """Run a model along drawn sines; its position servos follow."""
-    rng, k, data = np.random.default_rng(seed), model.nu, mujoco.MjData(model)
-    pace, phase = rng.uniform(0.15, 0.9, (k, 3)), rng.uniform(0.0, 2.0 * np.pi, (k, 3))
-    late = 12 if fault is not None and fault.kind == "late command" else 0
-    steps = round(SECONDS / model.opt.timestep)
-    stamps = np.arange(steps) * model.opt.timestep
-    asked = 0.35 * np.sin(2.0 * np.pi * pace[None] * stamps[:, None, None] + phase).sum(axis=2)
-    ctrl = asked * np.minimum(1.0, stamps)[:, None] * model.actuator_gear[:, 0]
-    place = fault.joint if fault is not None else 0
-    rows = []
-    for i in range(steps):
-        data.ctrl[:] = ctrl[i]
-        data.ctrl[place] = ctrl[max(0, i - late), place]
-        mujoco.mj_forward(model, data)
-        rows.append([*data.qpos, *data.actuator_force])
-        if fault is not None:
-            data.qfrc_applied[place] = unsaid(fault, data.qpos[place], data.qvel[place], data.qfrc_actuator[place])
-        mujoco.mj_step(model, data)
-    table = np.array(rows)
-    noise = NOISE * rng.standard_normal((steps, k))
-    return Log(stamps, ctrl, table[:, :k] + noise, table[:, k:])
+def moved(model: mujoco.MjModel, seed: int, fault: Hidden) -> Log:
+    """Run a faulty arm along drawn sines; its position servos follow."""
+    rng, place = np.random.default_rng(seed), fault.joint
+    stamps = np.arange(round(SECONDS / model.opt.timestep)) * model.opt.timestep
+    ctrl = asked(rng, stamps, model.nu) * model.actuator_gear[:, 0]
+
+    def push(data: mujoco.MjData) -> float:
+        return unsaid(fault, data.qpos[place], data.qvel[place], data.qfrc_actuator[place])
+
+    qpos, force = served(model, ctrl, place, LATE if fault.kind == "late command" else 0, push)
+    return Log(stamps, ctrl, qpos + NOISE * rng.standard_normal(qpos.shape), force)
 
 
 def put(joint: mujoco.MjsJoint, what: str, value: float) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import mujoco
@@ -65,18 +66,46 @@ def _drive(rng: np.random.Generator, i: int, servo: bool) -> str:
     return f'<position joint="{NAMES[i]}" kp="{kp:.4g}" kv="{rng.uniform(0.03, 0.06) * kp:.4g}" gear="{gear}"/>'
 
 
+def asked(rng: np.random.Generator, stamps: NDArray[np.float64], k: int) -> NDArray[np.float64]:
+    """Return places (n, k) along drawn sines, rad, which begin at zero."""
+    pace, phase = rng.uniform(0.15, 0.9, (k, 3)), rng.uniform(0.0, 2.0 * np.pi, (k, 3))
+    sines = 0.35 * np.sin(2.0 * np.pi * pace * stamps[:, None, None] + phase).sum(axis=2)
+    return np.asarray(sines * np.minimum(1.0, stamps)[:, None])
+
+
+def served(
+    model: mujoco.MjModel,
+    ctrl: NDArray[np.float64],
+    place: int = 0,
+    late: int = 0,
+    push: Callable[[mujoco.MjData], float] = lambda _: 0.0,
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return positions and forces of the drives, (n, k) each, of servos that follow controls (n, k).
+
+    The servo at `place` follows some steps late, and its joint is pushed besides, N m.
+    """
+    data, rows = mujoco.MjData(model), []
+    for i, now in enumerate(ctrl):
+        data.ctrl[:] = now
+        data.ctrl[place] = ctrl[max(0, i - late), place]
+        mujoco.mj_forward(model, data)
+        rows.append([data.qpos.copy(), data.actuator_force.copy()])
+        data.qfrc_applied[place] = push(data)
+        mujoco.mj_step(model, data)
+    table = np.array(rows)
+    return table[:, 0], table[:, 1]
+
+
 def logged(xml: str, seed: int) -> Logged:
     """Run a model along drawn sines and return its log; motors are driven by a PD law outside the model."""
     model = mujoco.MjModel.from_xml_string(xml)
     data, rng, k = mujoco.MjData(model), np.random.default_rng(seed), model.nu
     gear = model.actuator_gear[:, 0]
     servo = model.actuator_biastype[0] == mujoco.mjtBias.mjBIAS_AFFINE
-    pace, phase = rng.uniform(0.15, 0.9, (k, 3)), rng.uniform(0.0, 2.0 * np.pi, (k, 3))
     stiff = 300.0 * 0.5 ** np.arange(k)
     rows = []
-    for _ in range(round(SECONDS / model.opt.timestep)):
-        asked = 0.35 * np.sin(2.0 * np.pi * pace * data.time + phase).sum(axis=1) * min(1.0, data.time)
-        data.ctrl[:] = asked * gear if servo else (stiff * (asked - data.qpos) - 0.05 * stiff * data.qvel) / gear
+    for place in asked(rng, np.arange(round(SECONDS / model.opt.timestep)) * model.opt.timestep, k):
+        data.ctrl[:] = place * gear if servo else (stiff * (place - data.qpos) - 0.05 * stiff * data.qvel) / gear
         mujoco.mj_forward(model, data)
         rows.append([data.time, *data.ctrl, *data.qpos, *data.qvel, *data.actuator_force])
         mujoco.mj_step(model, data)

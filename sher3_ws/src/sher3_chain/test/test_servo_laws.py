@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 import sher3.gap as gap
-from drawn_arms import NOISE, drawn_xml
+from drawn_arms import NOISE, drawn_xml, served
 
 SEED, SECONDS, PLACE = 41, 8.0, 1
 
@@ -18,23 +18,14 @@ def logged(share: float = 1.0, late: int = 0) -> gap.Answer:
     spec = mujoco.MjSpec.from_string(xml)
     spec.actuators[PLACE].gainprm[0] *= share
     spec.actuators[PLACE].biasprm[1:3] *= share
-    model = spec.compile()
-    data, rng = mujoco.MjData(model), np.random.default_rng(SEED)
-    steps = round(SECONDS / model.opt.timestep)
-    stamps = np.arange(steps) * model.opt.timestep
+    model, rng = spec.compile(), np.random.default_rng(SEED)
+    stamps = np.arange(round(SECONDS / model.opt.timestep)) * model.opt.timestep
     pace, phase = rng.uniform(0.2, 0.8, (3, 2)), rng.uniform(0.0, 2.0 * np.pi, (3, 2))
     asked = 0.3 * np.sin(2.0 * np.pi * pace * stamps[:, None, None] + phase).sum(axis=2)
     ctrl = asked * np.minimum(1.0, stamps)[:, None] * nominal.actuator_gear[:, 0]
-    rows = []
-    for i in range(steps):
-        data.ctrl[:] = ctrl[i]
-        data.ctrl[PLACE] = ctrl[max(0, i - late), PLACE]
-        mujoco.mj_forward(model, data)
-        rows.append([*data.qpos, *data.actuator_force])
-        mujoco.mj_step(model, data)
-    table = np.array(rows)
-    qpos = table[:, :3] + NOISE * rng.standard_normal((steps, 3))
-    return gap.diagnose(xml, {"time": stamps, "ctrl": ctrl, "qpos": qpos, "actuator_force": table[:, 3:]})
+    qpos, force = served(model, ctrl, PLACE, late)
+    qpos = qpos + NOISE * rng.standard_normal(qpos.shape)
+    return gap.diagnose(xml, {"time": stamps, "ctrl": ctrl, "qpos": qpos, "actuator_force": force})
 
 
 def test_a_servo_as_modelled_has_no_gap():

@@ -10,6 +10,7 @@ from sher3_diagnosis.attribute.rivals import Attribution
 from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.localise.gaps import Gap
+from sher3_diagnosis.thresholds import REPRODUCED
 from sher3_diagnosis.verdict import Cause, Imitation, Interval, Residual, Verdict, Where
 
 if TYPE_CHECKING:
@@ -37,6 +38,11 @@ class ExactFinding:
     residual: Residual
     note: str = ""
     evidence: Callable[[], Evidence] | None = None
+
+    @property
+    def closed(self) -> bool:
+        """Whether its causes reproduce its error."""
+        return self.closure.value >= REPRODUCED
 
 
 @dataclass(frozen=True)

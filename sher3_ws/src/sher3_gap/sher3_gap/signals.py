@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from sher3_diagnosis.channel import Array
 from sher3_diagnosis.filter import DECIMATED_RATE, EDGE, low_pass
+from sher3_effects.operators import second_difference
 
 RAMP_LIMIT = 0.25
 """Longest time from an unloaded tip to a stated plateau over which the load is taken as unknown, s."""
@@ -149,9 +150,7 @@ class RunSignals:
     @cached_property
     def acceleration(self) -> Array:
         """Second difference of the motor position, not smoothed, (n, axes)."""
-        out = np.zeros_like(self.motor)
-        out[1:-1] = np.diff(self.motor, 2, axis=0) / self.period**2
-        return out
+        return second_difference(self.motor, self.period)
 
     @cached_property
     def smooth_load(self) -> Array | None:

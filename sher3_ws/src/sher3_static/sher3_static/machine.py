@@ -84,7 +84,6 @@ class StaticTest(Machine[Readings, TableEvidence]):
 
 def causes_in_words(finding: Finding[TableEvidence]) -> list[str]:
     """Return what the pages of the causes say of their parameters on this machine."""
-    fit, view = finding.attribution.fit, finding.evidence.table.view
-    terms = [(fit.terms[i], fit.of(i)) for i in finding.attribution.causes]
-    told = [t.effect.in_words(view, t.effect.parameters(t.shape, found)) for t, found in terms]
+    view = finding.evidence.table.view
+    told = [t.effect.in_words(view, t.effect.parameters(t.shape, found)) for t, found in finding.attribution.told]
     return [note for note in told if note]

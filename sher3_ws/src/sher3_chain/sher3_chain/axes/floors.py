@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from sher3_diagnosis.channel import Array, Channel, Floors, Residual, Residuals
 from sher3_diagnosis.thresholds import EATEN
+from sher3_effects.operators import second_difference
 
 from sher3_chain.axes.view import AxisView
 from sher3_chain.floors.foreseen import foreseen
@@ -40,8 +41,7 @@ def resolution_floors(view: AxisView, least: float = 0.0) -> Floors:
     run, axis = view.run, view.described
     count = max(axis.encoder_resolution, least) / UNIFORM
     noise = np.random.default_rng(0).normal(size=(max(run.ticks, NOISE_SAMPLES), 1))
-    bend = np.zeros_like(noise)
-    bend[1:-1] = np.diff(noise, 2, axis=0) / run.period**2
+    bend = second_difference(noise, run.period)
     effort = axis.effort_resolution / UNIFORM * float(run.filtered(noise).std())
     inertia = view.mass * count * float(run.filtered(bend).std())
     force = count if axis.servo else max(float(np.hypot(effort, inertia)), NOTHING)

@@ -8,7 +8,7 @@ import numpy as np
 from sher3_diagnosis.channel import Array, Channel, Mask
 from sher3_diagnosis.discover.feature import Quantities, Quantity
 from sher3_diagnosis.filter import EDGE, settled
-from sher3_effects.operators import dahl_turned
+from sher3_effects.operators import dahl_turned, second_difference
 from sher3_effects.view import NominalAxis
 
 from sher3_chain.chain.view import LEAD_OF_STROKE, SLIP, ChainView, Loads
@@ -98,9 +98,7 @@ class AxisView(ChainView):
         run = self.run
         if run.load is None:
             return np.zeros((len(run.grid), 1))
-        bend = np.zeros_like(run.motor)
-        bend[1:-1] = np.diff(run.load, 2, axis=0) / run.period**2
-        return np.asarray(run.to_grid(bend) - run.to_grid(run.acceleration))
+        return np.asarray(run.to_grid(second_difference(run.load, run.period)) - run.to_grid(run.acceleration))
 
     # which samples can be judged
 

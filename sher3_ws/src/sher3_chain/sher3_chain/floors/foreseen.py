@@ -11,8 +11,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 from sher3_diagnosis.channel import Array, Residual
+from sher3_diagnosis.localise.floors import GAUSSIAN
 
-from sher3_chain.readings.noise import GAUSSIAN
 from sher3_chain.readings.signals import AxisSignals
 
 Rows = NDArray[np.signedinteger]

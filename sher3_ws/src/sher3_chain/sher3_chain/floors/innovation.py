@@ -9,15 +9,12 @@ from typing import TypeVar
 import numpy as np
 from sher3_diagnosis.channel import Array, Channel, Floors, Residual, Residuals
 from sher3_diagnosis.filter import low_pass
-from sher3_diagnosis.localise.floors import repeat_floors
+from sher3_diagnosis.localise.floors import noise_of_bends, repeat_floors
 
 from sher3_chain.chain.view import ChainView
-from sher3_chain.readings.noise import GAUSSIAN
 from sher3_chain.readings.signals import AxisSignals
 
 V = TypeVar("V", bound=ChainView)
-BEND = np.sqrt(6.0)
-"""Standard deviation of second differences of white noise over that of the noise: 1 + 4 + 1 under the root."""
 UNIFORM = np.sqrt(12.0)
 """Width of a uniform distribution over its standard deviation: a count over the error of rounding to it."""
 NOISE_SAMPLES = 400
@@ -73,9 +70,5 @@ def _of_clock(ticks: int, stride: int, period: float, bandwidth: float) -> float
 
 
 def innovation(residual: Residual) -> Array:
-    """Return what neighbouring samples of a residual differ by beyond a straight line, (d,): what cannot be foreseen.
-
-    The median leaves reversals and steps out.
-    """
-    bend = np.diff(residual.values[residual.ok], 2, axis=0)
-    return GAUSSIAN * np.median(np.abs(bend), axis=0) / BEND
+    """Return what samples of a residual differ by beyond a straight line, (d,): what cannot be foreseen."""
+    return noise_of_bends(np.diff(residual.values[residual.ok], 2, axis=0))

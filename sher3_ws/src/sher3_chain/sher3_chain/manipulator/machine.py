@@ -35,7 +35,7 @@ from sher3_chain.power import unjudged
 from sher3_chain.readings.wrong import wrong_readings
 from sher3_chain.search.changes import change_notes
 from sher3_chain.search.friction_in_motion import requantified
-from sher3_chain.servo.laws import laws_of_servos, reproduced
+from sher3_chain.servo.laws import laws_of_servos
 
 if TYPE_CHECKING:
     from sher3_chain.manipulator.report.reporter import ManipulatorReporter
@@ -93,7 +93,7 @@ class Manipulator(Chain[ArmMotionEvidence]):
         judged = {name for part in evidence for name in part.judged}
         laws = laws_of_servos(runs, self.described, self.described.servos(judged), without)
         if any(gap.significant for part in evidence for gap in localise(part)):
-            return [law for law in laws if reproduced(law)]
+            return [law for law in laws if law.closed]
         late = [] if LATE in without else [x for part in evidence for x in late_efforts(part)]
         return [*laws, *late]
 
@@ -111,8 +111,7 @@ class Manipulator(Chain[ArmMotionEvidence]):
         """Fit friction again away from reversals; give forces of a joint with unknown gain in the recorded unit."""
         causes = requantified(evidence, attribution, causes)
         causes = within_bounds(causes, attribution.told, self.effects(evidence))
-        terms = [attribution.fit.terms[i] for i in attribution.causes]
-        causes = [with_closure(cause, term.shape) for cause, term in zip(causes, terms, strict=True)]
+        causes = [with_closure(cause, term.shape) for cause, (term, _) in zip(causes, attribution.told, strict=True)]
         return evidence, [with_hidden(in_own_unit(c, RECORDED)) if c.actuator in evidence.shares else c for c in causes]
 
     def remarks(self, finding: Finding[ArmMotionEvidence]) -> list[str]:

@@ -11,13 +11,12 @@ import numpy as np
 from scipy.special import binom
 from sher3_diagnosis.channel import Array
 from sher3_diagnosis.filter import low_pass
+from sher3_diagnosis.localise.floors import GAUSSIAN
 
 from sher3_chain.thresholds import NOISE_SHARE, SLOWEST_CUT
 
 ORDER = 5
 """Difference of the position that leaves its noise alone: what moves slowly against the samples is gone in it."""
-GAUSSIAN = 1.4826
-"""Standard deviation over the median of absolute values, of a normal distribution."""
 TOP = 0.85
 """Share of the Nyquist frequency from which nothing of the motion is left."""
 SHORTEST = 64

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from sher3_diagnosis.channel import Array, Mask
 from sher3_diagnosis.filter import BANDWIDTH, DECIMATED_RATE, EDGE, SHORT, low_pass
+from sher3_effects.operators import second_difference
 
 from sher3_chain.joint.description import Axis
 from sher3_chain.joint.record import AxesRun
@@ -114,9 +115,7 @@ class AxisSignals:
     @cached_property
     def acceleration(self) -> Array:
         """Second difference of the position, not smoothed, (n, 1)."""
-        out = np.zeros_like(self.motor)
-        out[1:-1] = np.diff(self.motor, 2, axis=0) / self.period**2
-        return out
+        return second_difference(self.motor, self.period)
 
     def filtered(self, x: Array) -> Array:
         """Return an (n, ...) signal after the low-pass; n may differ from the run's."""

@@ -14,7 +14,6 @@ from sher3_diagnosis.flow import find
 from sher3_diagnosis.judge.causes import places_of
 from sher3_diagnosis.localise.gaps import component_rms
 from sher3_diagnosis.quantify.closure import closure, residual_after
-from sher3_diagnosis.thresholds import REPRODUCED
 from sher3_diagnosis.verdict import Interval, Residual
 
 from sher3_chain.axes.evidence import AxisEvidence
@@ -45,11 +44,6 @@ def laws_of_servos(
     each = ((j, law_of_axis([with_command(run, j.name, gains[j.name]) for run in runs], j)) for j in known)
     found = (find(axes, law, without, lambda _: None) for _, law in each if law is not None)
     return [exact_of(finding) for finding in found if finding.significant]
-
-
-def reproduced(found: ExactFinding) -> bool:
-    """Return whether the causes of a law make its command."""
-    return found.closure.value >= REPRODUCED
 
 
 def commanded(axis: Axis) -> Axis:

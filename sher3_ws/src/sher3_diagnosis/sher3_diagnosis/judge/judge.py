@@ -22,7 +22,6 @@ from sher3_diagnosis.judge.status import answer_to_exact, combined, status_of
 from sher3_diagnosis.localise.gaps import Gap, component_rms
 from sher3_diagnosis.machine import Machine
 from sher3_diagnosis.quantify.closure import closure, residual_after
-from sher3_diagnosis.thresholds import REPRODUCED
 from sher3_diagnosis.verdict import Cause, Closure, Interval, Place, Residual, Status, Unexplained, Verdict, Where
 from sher3_diagnosis.words import place, share, words
 
@@ -187,7 +186,7 @@ def _unexplained(
 def _reproduced(stage: ExactFinding, calibration: Calibration | None, costs: Costs) -> bool:
     """Whether the causes named at an exact stage reproduce its error."""
     if calibration is None:
-        return stage.closure.value >= REPRODUCED
+        return stage.closed
     return answer_to_exact(reproduced(stage, calibration), costs) == LIBRARY
 
 

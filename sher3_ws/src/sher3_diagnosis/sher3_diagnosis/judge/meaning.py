@@ -86,7 +86,7 @@ def impossible(evidence: Evidence, term: Term, cause: Cause) -> bool:
     if term.effect.family == LOST:
         travel = _travel(evidence, term.site)
         wide = [n for n in cause.parameters if term.effect.units.get(n) == "m"]
-        limits |= {n: (max(0.0, limits[n][0]), travel) if n in limits else (0.0, travel) for n in wide}
+        limits |= {n: (max(0.0, limits.get(n, (0.0, travel))[0]), travel) for n in wide}
     return any(_outside(cause.parameters[n], *limit) for n, limit in limits.items() if n in cause.parameters)
 
 

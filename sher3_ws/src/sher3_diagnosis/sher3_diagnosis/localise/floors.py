@@ -14,8 +14,20 @@ import numpy as np
 
 from sher3_diagnosis.channel import Array, Channel, Floors, Residual, Residuals
 
+GAUSSIAN = 1.4826
+"""Standard deviation over the median of absolute values, of a normal distribution."""
+BEND = np.sqrt(6.0)
+"""Standard deviation of second differences of white noise over that of the noise: 1 + 4 + 1 under the root."""
 ENOUGH = 50
 """Samples shared by pairs of repeats below which they tell no floor."""
+
+
+def noise_of_bends(bends: Array) -> Array:
+    """Return the standard deviation (...) of the white noise that second differences (n, ...) of a signal are made of.
+
+    The median leaves reversals and steps out.
+    """
+    return np.asarray(GAUSSIAN * np.median(np.abs(bends), axis=0) / BEND)
 
 
 def repeat_floors(excitations: Sequence[str], residuals: Sequence[Residuals]) -> Floors:

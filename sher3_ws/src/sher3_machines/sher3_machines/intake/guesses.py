@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from sher3_diagnosis.channel import Array
+from sher3_diagnosis.localise.floors import noise_of_bends
 
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.fields import TIME_UNITS, UNITS
@@ -147,7 +148,7 @@ def scatter(x: Array) -> float:
     """
     if len(x) < FEWEST_STEPS:
         return 0.0
-    bend = 1.4826 * float(np.median(np.abs(np.diff(x, 2)))) / float(np.sqrt(6.0))
+    bend = float(noise_of_bends(np.diff(x, 2)))
     still = 0.1 * travel(x)
     return bend if bend > still else float(np.clip(bend, 1e-6 * travel(x), 1e-4 * travel(x)))
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from sher3_diagnosis.channel import Array, Channel, Mask
+from sher3_diagnosis.localise.floors import noise_of_bends
 from sher3_effects import pages
 
 from sher3_static.positioning.axis import RESOLVED
@@ -90,4 +91,4 @@ def away_from_poles(angle: Array) -> Mask:
 def innovation(radius: Array) -> float:
     """Return the standard deviation of a radius from its second differences, which smooth errors hardly have."""
     second = np.diff(radius, 2)
-    return max(RESOLVED, float(1.4826 * np.median(np.abs(second - np.median(second))) / np.sqrt(6.0)))
+    return max(RESOLVED, float(noise_of_bends(second - np.median(second))))

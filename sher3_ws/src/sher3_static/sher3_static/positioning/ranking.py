@@ -50,8 +50,7 @@ def ranking(table: Table, attribution: Attribution) -> list[str]:
 def contributions(table: Table, attribution: Attribution) -> list[tuple[str, str, Array]]:
     """Return each cause with its site and what it adds to every row, (g,), m or rad."""
     out = []
-    for i in attribution.causes:
-        term = attribution.fit.terms[i]
+    for term, found in attribution.told:
         columns = term.effect.signature(table.view, term.site, term.shape).columns[table.channel]
-        out.append((term.effect.id, term.site, columns[:, 0] @ attribution.fit.of(i)))
+        out.append((term.effect.id, term.site, columns[:, 0] @ found))
     return out

@@ -15,6 +15,7 @@ from sher3_diagnosis.channel import Array
 from sher3_diagnosis.fit.fitting import solve
 from sher3_diagnosis.quantify.jackknife import standard_error
 from sher3_diagnosis.thresholds import JACKKNIFE
+from sher3_effects.operators import second_difference
 from sher3_machines.errors import MachineError
 from sher3_machines.thresholds import BLOCKS
 
@@ -79,9 +80,7 @@ def noise_share(views: Sequence[AxisView], acceleration: Array) -> float:
     for view in views:
         run = view.run
         white = np.random.default_rng(0).normal(size=(run.ticks, 1))
-        bend = np.zeros_like(white)
-        bend[1:-1] = np.diff(white, 2, axis=0) / run.period**2
-        false.append(float(np.mean(run.to_grid(view.noise * bend) ** 2)))
+        false.append(float(np.mean(run.to_grid(view.noise * second_difference(white, run.period)) ** 2)))
     return min(NOISE_SHARE, float(np.mean(false)) / power) if power else 0.0
 
 

@@ -12,6 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 from sher3_diagnosis.channel import Array, Mask
+from sher3_diagnosis.localise.floors import GAUSSIAN
 from sher3_effects.operators import dahl
 from sher3_effects.timing.sensor_delay import SensorDelay, shifted
 
@@ -19,7 +20,7 @@ from sher3_chain.chain.view import LEAD_OF_STROKE
 from sher3_chain.manipulator.description import Joint
 from sher3_chain.manipulator.model import ArmModel
 from sher3_chain.manipulator.signals import JointSignals
-from sher3_chain.readings.noise import GAUSSIAN, noise_of
+from sher3_chain.readings.noise import noise_of
 from sher3_chain.readings.signals import AxisSignals
 from sher3_chain.thresholds import ALIGNED, DELAYED
 

@@ -16,7 +16,6 @@ from sher3_diagnosis.channel import Array, Channel, Mask
 from sher3_diagnosis.effect import Measured, Shape, Signature
 from sher3_diagnosis.filter import BANDWIDTH, EDGE, low_pass
 from sher3_diagnosis.finding import ExactFinding
-from sher3_diagnosis.localise.gaps import localise
 from sher3_diagnosis.quantify.closure import interval_of
 from sher3_diagnosis.quantify.jackknife import standard_error
 from sher3_diagnosis.thresholds import JACKKNIFE
@@ -120,9 +119,7 @@ def with_closure(cause: Cause, shape: Shape) -> Cause:
 
 
 def late_efforts(evidence: ArmMotionEvidence) -> list[ExactFinding]:
-    """Return the efforts that are late on an arm without any other gap; none on an arm with one."""
-    if any(gap.significant for gap in localise(evidence)):
-        return []
+    """Return the efforts that are late on an arm without any other gap."""
     found = ((joint, lateness(evidence, joint)) for joint in evidence.judged)
     return [_finding(evidence, joint, late) for joint, late in found if late is not None and late.sure]
 

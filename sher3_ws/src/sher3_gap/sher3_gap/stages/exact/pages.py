@@ -21,7 +21,7 @@ def with_pages(finding: ExactFinding, gathered: Callable[[], Evidence], without:
     """Return the finding with the user's page that reproduces its stage, where its own causes do not."""
     stage = finding.where.stage
     pages = [p for p in library().values() if isinstance(p, FoundPage) and p.stage == stage and p.id not in without]
-    if not pages or finding.closure.value >= REPRODUCED:
+    if not pages or finding.closed:
         return finding
     evidence = gathered()
     candidates, shown = Candidates(evidence, pages), {c.actuator for c in evidence.channels}
