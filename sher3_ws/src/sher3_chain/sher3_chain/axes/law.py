@@ -44,6 +44,8 @@ PLAIN = 0.3
 """Share of the noise of a plain way that a low-pass must leave at most: it has a number that is fitted, and smooths."""
 ALIKE = 1.2
 """Noise over the least up to which two ways are alike: a median over thousands of samples is known to some per cent."""
+AT_FLOOR = 1.0
+"""Power over the floor up to which a plain way leaves nothing that another could explain: no other is tried."""
 FINER = 9
 """Halvings of the step between two of them."""
 SHIFTS = (0, 1, 2, 3, 4, 6, 8, 12, 16, 24)
@@ -150,6 +152,10 @@ def best_way(signals: Sequence[AxisSignals], axis: Axis) -> Way:
 
     if not axis.command_law.velocity_gain:
         return _within(least([Way(LAST, shift) for shift in SHIFTS]))
+    found = {way: excess(signals, axis, way) for way in (Way(speed, 0) for speed in (LAST, TWO, CENTRAL))}
+    plainest = min(found, key=lambda way: found[way].stated)
+    if found[plainest].stated <= AT_FLOOR:
+        return plainest
     plain = least([Way(speed, shift) for speed in (LAST, TWO, CENTRAL) for shift in SHIFTS])
     best = least([Way(speed, shift) for speed in LAGS for shift in SHIFTS])
     step = LAGS[1] / LAGS[0]
@@ -157,7 +163,7 @@ def best_way(signals: Sequence[AxisSignals], axis: Axis) -> Way:
         step = float(np.sqrt(step))
         best = least([Way(best.speed * f, shift) for f in (1.0, step, 1.0 / step) for shift in SHIFTS])
     quiet = _within(best if noise(best) < PLAIN * noise(plain) else plain)
-    found = {way: excess(signals, axis, way) for way in (quiet, *(Way(speed, 0) for speed in (LAST, TWO, CENTRAL)))}
+    found[quiet] = excess(signals, axis, quiet)
     freest = min(x.freed for x in found.values())
     stated = min((way for way, x in found.items() if x.freed <= ALIKE * freest), key=lambda way: found[way].stated)
     better = any(a < PLAIN * b for a, b in zip(found[stated], found[quiet], strict=True))
