@@ -17,10 +17,9 @@ from numpy.typing import NDArray
 from sher3_common.compiled import compiled
 from sher3_common.vectors import Vector
 from sher3_kinematics import RobotKinematics
-from sher3_kinematics.arrays import unpack
-from sher3_kinematics.kernel import tip_jacobian_into
 
 from sher3_control.errors import SettingsError
+from sher3_control.motion.pose import tip_twist_sample
 from sher3_control.settings import MotionSettings
 
 Array = NDArray[np.float64]
@@ -82,14 +81,9 @@ def cap_factor(parameters: Array, q: tuple[float, ...], velocity: tuple[float, .
         velocity: of the actuators (5,).
         cap: tip speed [m/s] and turning [rad/s].
     """
-    jacobian = np.empty((6, 5))
-    tip_jacobian_into(unpack(parameters), np.array(q), jacobian)
-    squares = np.zeros(2)
+    twist, squares = tip_twist_sample(parameters, q, velocity), np.zeros(2)
     for row in range(6):
-        x = 0.0
-        for k in range(5):
-            x += jacobian[row, k] * velocity[k]
-        squares[row // 3] += x * x
+        squares[row // 3] += twist[row] * twist[row]
     factor = 1.0
     for part in range(2):
         speed = math.sqrt(squares[part])
