@@ -19,7 +19,7 @@ from sher3_static.arm.description import Joint
 from sher3_static.arm.kind import KIND, KnownArm
 from sher3_static.arm.kinematics import Arm, arm_from_table, postures
 from sher3_static.arm.sight import PoseSight
-from sher3_static.machine import StaticTest
+from sher3_static.kind import StaticTest
 from sher3_static.readings import Readings
 
 TARGET = 20.0

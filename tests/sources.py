@@ -26,10 +26,14 @@ def imports(path: Path) -> set[str]:
 
 
 @cache
-def modules(path: Path) -> set[str]:
-    """Return the same as dotted names; of `from a.b import c` both `a.b` and `a.b.c`, which may be a module too."""
+def modules(path: Path, types: bool = False) -> set[str]:
+    """Return the same as dotted names; of `from a.b import c` both `a.b` and `a.b.c`, which may be a module too.
+
+    With `types`, also what only the type checker sees.
+    """
     names = set()
-    for node in _walk(ast.parse(path.read_text())):
+    tree = ast.parse(path.read_text())
+    for node in ast.walk(tree) if types else _walk(tree):
         if isinstance(node, ast.Import):
             names |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:

@@ -8,7 +8,7 @@ from fnmatch import fnmatch
 from pathlib import Path
 
 import pytest
-from sources import FILES, PACKAGES, ROOT, SOURCES, imports, modules, package_of, reached
+from sources import FILE_OF, FILES, PACKAGES, ROOT, SOURCES, imports, modules, package_of, reached
 
 ROS = {
     "rclpy",
@@ -165,6 +165,13 @@ def test_the_folders_of_a_package_import_in_no_circle(package):
         if package_of(path) == package and room_of(path) != "__init__":
             arrows.setdefault(room_of(path), set()).update(rooms_imported(path) - {room_of(path)})
     assert not circles(arrows)
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_the_files_of_a_package_import_in_no_circle(package):
+    """Not even for a type, and not inside a function; faces (`__init__`) may name all below them."""
+    own = {name: path for name, path in FILE_OF.items() if package_of(path) == package and path.name != "__init__.py"}
+    assert not circles({name: (modules(path, types=True) & set(own)) - {name} for name, path in own.items()})
 
 
 @pytest.mark.parametrize(("one", "other"), [("axes", "manipulator"), ("manipulator", "axes")])

@@ -1,10 +1,10 @@
-"""What was found: on one part of a machine by fitting, and in one exact stage without a fit."""
+"""What was found: on one part of a machine by fitting, with its odds, and in one exact stage without a fit."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Generic, TypeVar
+from typing import Generic, TypeVar
 
 from sher3_diagnosis.attribute.rivals import Attribution
 from sher3_diagnosis.channel import Channel
@@ -13,10 +13,74 @@ from sher3_diagnosis.localise.gaps import Gap
 from sher3_diagnosis.thresholds import REPRODUCED
 from sher3_diagnosis.verdict import Cause, Imitation, Interval, Residual, Verdict, Where
 
-if TYPE_CHECKING:
-    from sher3_diagnosis.judge.probabilities import Judged
-
 E = TypeVar("E", bound=Evidence)
+
+OUTSIDE, NO_GAP, LIBRARY = "outside_library", "no_gap", "library"
+"""The answers that a probability is given to."""
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """An effect at a site that may be a cause, and how far it is from explaining as much as the one named.
+
+    Attributes:
+        effect, site, family: of the effect; `contains`: the simpler effects that it contains.
+        unlikeness: 0 of the cause itself; below 1 nearly the same data.
+    """
+
+    effect: str
+    site: str
+    family: str
+    contains: tuple[str, ...]
+    unlikeness: float
+
+
+@dataclass(frozen=True)
+class Item:
+    """One cause or one gap, with its evidence.
+
+    Attributes:
+        channel: where it shows most.
+        index: of the cause's term in its fit; None for a gap without a cause.
+        numbers: the evidence by name.
+        candidates: of a cause, the effects that may stand in its place, itself first.
+    """
+
+    channel: Channel
+    index: int | None
+    numbers: Mapping[str, float]
+    candidates: Sequence[Candidate] = ()
+
+
+@dataclass(frozen=True)
+class Judged:
+    """An item with its probabilities, which add up to one.
+
+    Attributes:
+        item: what was judged.
+        effects: per candidate of the item, the probability that it is the cause.
+        outside: that the cause is none of the library.
+        no_gap: that the item is no gap, or no cause, of its own.
+        closure: of a cause; None of a gap without one.
+        typicality: of a cause, the share of the labelled ones that are at least as unusual; None where nothing tells.
+    """
+
+    item: Item
+    effects: Sequence[float]
+    outside: float
+    no_gap: float
+    closure: Interval | None = None
+    typicality: float | None = None
+
+    @property
+    def library(self) -> float:
+        """Probability that the true effect is among the candidates."""
+        return float(sum(self.effects))
+
+    @property
+    def odds(self) -> dict[str, float]:
+        """Probabilities of library, outside and no gap."""
+        return {LIBRARY: self.library, OUTSIDE: self.outside, NO_GAP: self.no_gap}
 
 
 @dataclass(frozen=True)

@@ -2,11 +2,10 @@
 
 import pytest
 from sher3_diagnosis.channel import Channel
-from sher3_diagnosis.finding import ExactFinding
+from sher3_diagnosis.finding import Candidate, ExactFinding, Item, Judged
 from sher3_diagnosis.flow import diagnose
 from sher3_diagnosis.judge.bets import NONE, exact_place, placed, shares
-from sher3_diagnosis.judge.items import Candidate, Item
-from sher3_diagnosis.judge.probabilities import Judged, of_first
+from sher3_diagnosis.judge.probabilities import of_first
 from sher3_diagnosis.machine import Policy
 from sher3_diagnosis.report.odds import odds, places_of_bets
 from sher3_diagnosis.verdict import Answer, Cause, Interval, Residual, Verdict, Where

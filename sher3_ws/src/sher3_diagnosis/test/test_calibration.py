@@ -5,12 +5,12 @@ import math
 import pytest
 from pydantic import ValidationError
 from sher3_diagnosis.channel import Channel
+from sher3_diagnosis.finding import Candidate, Item, Judged
 from sher3_diagnosis.judge.calibration.calibration import in_force
 from sher3_diagnosis.judge.calibration.logistic import Logistic
 from sher3_diagnosis.judge.costs import DEFAULT
 from sher3_diagnosis.judge.evidence.scales import scaled_cause, scaled_exact, scaled_gap
-from sher3_diagnosis.judge.items import Candidate, Item
-from sher3_diagnosis.judge.probabilities import Judged, judged
+from sher3_diagnosis.judge.probabilities import judged
 from sher3_diagnosis.judge.status import answer_to, combined, crosses
 from sher3_diagnosis.verdict import Interval
 

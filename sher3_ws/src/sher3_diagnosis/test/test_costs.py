@@ -4,9 +4,8 @@ import itertools
 
 import pytest
 from sher3_diagnosis.channel import Channel
-from sher3_diagnosis.judge.costs import DEFAULT, LIBRARY, NO_GAP, OUTSIDE, Costs, CostsError
-from sher3_diagnosis.judge.items import Candidate, Item
-from sher3_diagnosis.judge.probabilities import Judged
+from sher3_diagnosis.finding import LIBRARY, NO_GAP, OUTSIDE, Candidate, Item, Judged
+from sher3_diagnosis.judge.costs import DEFAULT, Costs, CostsError
 from sher3_diagnosis.judge.status import answer_to, answer_to_exact, status_of
 from sher3_diagnosis.verdict import Interval
 

@@ -22,7 +22,6 @@ from types import ModuleType
 from sher3_common import FileError
 from sher3_sim.effect import PlantEffect
 
-import sher3_effects
 from sher3_effects.page import Page
 
 VARIABLE = "SHER3_LIBRARY"
@@ -96,7 +95,7 @@ def add_library(paths: Sequence[Path], trust: bool = False) -> None:
 
 @lru_cache(maxsize=8)
 def _pages(named: str) -> tuple[Page, ...]:
-    own = [x for x in pkgutil.walk_packages(sher3_effects.__path__, f"{sher3_effects.__name__}.") if not x.ispkg]
+    own = [x for x in pkgutil.walk_packages([str(Path(__file__).parent)], f"{__package__}.") if not x.ispkg]
     found = [page for x in own for page in _defined_in(importlib.import_module(x.name))]
     files = [file for path in named.split(os.pathsep) if path for file in _files(Path(path))]
     return (*found, *(page for file in files for page in _pages_of(file)))

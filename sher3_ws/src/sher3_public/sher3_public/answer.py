@@ -92,7 +92,8 @@ class Answer:
     def _repr_html_(self) -> str:
         from sher3_public.showing import html_of
 
-        return html_of(self)
+        lists = {"causes": [cause_text(cause) for cause in self.causes], "places": self.where()}
+        return html_of(self.diagnosis, self.headline, lists, {"guessed": self.guessed, "notes": self.notes})
 
     def plot(self) -> Figure:
         """Return a figure of the largest gaps: what the model leaves unexplained, before and after the causes."""

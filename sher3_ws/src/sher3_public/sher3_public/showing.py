@@ -1,9 +1,10 @@
-"""The answer as a person sees it: a figure, and the HTML of a notebook."""
+"""A diagnosis as a person sees it: a figure, and the HTML of a notebook."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from html import escape
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from matplotlib import rc_context
@@ -13,12 +14,8 @@ from sher3_diagnosis.diagnosis import Diagnosis
 from sher3_diagnosis.finding import Finding
 from sher3_diagnosis.quantify.closure import residual_after
 from sher3_diagnosis.report.drawing import STYLE
-from sher3_diagnosis.report.summary import cause_text
 from sher3_diagnosis.report.traces import traces
 from sher3_diagnosis.words import place, words
-
-if TYPE_CHECKING:
-    from sher3_public.answer import Answer
 
 MOST = 4
 """Places that a figure shows at most."""
@@ -56,25 +53,21 @@ def _draw(axes: Any, finding: Finding[Any], channel: Channel) -> None:
     axes.set_ylabel(evidence.units[channel].replace("*", "·") if isinstance(evidence.units, dict) else "")
 
 
-def html_of(answer: Answer) -> str:
-    """Return the answer as HTML: headline, causes, the first picture, and what was guessed."""
-    rows = "".join(f"<li>{escape(cause_text(cause))}</li>" for cause in answer.causes)
-    places = "".join(f"<li>{escape(text)}</li>" for text in answer.where())
+def html_of(
+    diagnosis: Diagnosis[Any], headline: str, lists: Mapping[str, Sequence[str]], folded: Mapping[str, Sequence[str]]
+) -> str:
+    """Return a diagnosis as HTML: headline, lists under their titles, the first picture, and lists that are folded."""
     with rc_context(STYLE):
-        drawn = traces(answer.diagnosis, answer.diagnosis.machine.reporter())[:1]
-    picture = "".join(f"<figure>{trace.svg}</figure>" for trace in drawn)
-    guesses = "".join(f"<li>{escape(text)}</li>" for text in answer.guessed)
-    notes = "".join(f"<li>{escape(text)}</li>" for text in answer.notes)
-    return (
-        f"<div><p><b>{escape(answer.headline)}</b></p>"
-        + (f"<p>causes</p><ul>{rows}</ul>" if rows else "")
-        + (f"<p>places</p><ul>{places}</ul>" if places else "")
-        + picture
-        + (
-            f"<details><summary>guessed ({len(answer.guessed)})</summary><ul>{guesses}</ul></details>"
-            if guesses
-            else ""
-        )
-        + (f"<details><summary>notes ({len(answer.notes)})</summary><ul>{notes}</ul></details>" if notes else "")
-        + "</div>"
-    )
+        drawn = traces(diagnosis, diagnosis.machine.reporter())[:1]
+    shown = [f"<p>{escape(title)}</p>{_items(texts)}" for title, texts in lists.items() if texts]
+    shown += [f"<figure>{trace.svg}</figure>" for trace in drawn]
+    shown += [
+        f"<details><summary>{escape(title)} ({len(texts)})</summary>{_items(texts)}</details>"
+        for title, texts in folded.items()
+        if texts
+    ]
+    return f"<div><p><b>{escape(headline)}</b></p>{''.join(shown)}</div>"
+
+
+def _items(texts: Sequence[str]) -> str:
+    return "<ul>" + "".join(f"<li>{escape(text)}</li>" for text in texts) + "</ul>"

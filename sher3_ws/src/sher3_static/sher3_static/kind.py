@@ -1,28 +1,28 @@
-"""What a kind of table gives: what a user writes, how its columns are read, and the tables they make."""
+"""A kind of table: what a user writes, how its columns are read, the tables they make, and the machine of them."""
 
 from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any, TypeVar
 
 from sher3_diagnosis.attribute.candidates import Candidates
 from sher3_diagnosis.attribute.rivals import Attribution
 from sher3_diagnosis.attribute.search import Left, Say, attribute
-from sher3_diagnosis.channel import Array
+from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.finding import Finding
-from sher3_diagnosis.machine import Policy
-from sher3_diagnosis.verdict import Interval
+from sher3_diagnosis.machine import Machine, Policy
+from sher3_diagnosis.verdict import Cause, Interval
 from sher3_effects import pages
 from sher3_machines.intake.fields import Description
 from sher3_machines.intake.kind import Kind
 from sher3_machines.intake.tables import Tables
 
-from sher3_static.machine import StaticTest
 from sher3_static.readings import Readings
-from sher3_static.reporter import Words
-from sher3_static.table import Table, TableEvidence
+from sher3_static.reporter import TableReporter, Words
+from sher3_static.table import Table, TableEvidence, eaten, evidence_of, zeros_in_words
 
 D = TypeVar("D", bound=Description)
 
@@ -80,3 +80,67 @@ class TableKind(Kind[D, Readings]):
     def unpack(self, name: str, arrays: Tables, notes: Sequence[str]) -> Readings:
         """Return the readings that a case stores; raises KeyError where a column is missing."""
         return Readings(name, {**{column: arrays[column] for column in self.stored}, **arrays}, notes)
+
+
+@dataclass(frozen=True)
+class StaticTest(Machine[Readings, TableEvidence]):
+    """Tables of readings of one machine, each judged by itself.
+
+    Attributes:
+        kind: which tables they are.
+        known: what the kind knows of the machine.
+    """
+
+    kind: TableKind[Any]
+    known: Any
+
+    @property
+    def policy(self) -> Policy:  # type: ignore[override]
+        """What the judgement may lean on."""
+        return self.kind.policy
+
+    def library(self) -> Sequence[Effect]:
+        """Return every page for tables of this kind."""
+        return self.kind.library()
+
+    def effects(self, evidence: TableEvidence) -> Sequence[Effect]:
+        """Return the pages of one table."""
+        return evidence.table.pages
+
+    def audit(self, runs: Sequence[Readings]) -> list[str]:
+        """Return what was done to the data."""
+        return [note for run in runs for note in run.notes]
+
+    def gather(self, runs: Sequence[Readings]) -> Sequence[TableEvidence]:
+        """Return every table as a part; raises MachineError where nothing tells what repeats."""
+        return [evidence_of(table) for table in self.kind.tables(self.known, runs)]
+
+    def attribute(self, evidence: TableEvidence, candidates: Candidates, left_over: Left, say: Say) -> Attribution:
+        """Search for causes as the kind does."""
+        return self.kind.attribute(evidence, candidates, left_over, say)
+
+    def remarks(self, finding: Finding[TableEvidence]) -> list[str]:
+        """Return what the kind and the pages of the causes say, and how far the zeros of runs are apart."""
+        zeros = zeros_in_words(finding.evidence, finding.attribution.fit)
+        return [*self.kind.remarks(finding), *causes_in_words(finding), *zeros]
+
+    def unjudged(self, finding: Finding[TableEvidence]) -> dict[Channel, str]:
+        """Say where the scatter of the readings hides whatever is looked for."""
+        table = finding.evidence.table
+        why = "" if finding.significant else eaten(table)
+        return {table.channel: why} if why else {}
+
+    def end_to_end(self, findings: Sequence[Finding[TableEvidence]], causes: Sequence[Cause]) -> Interval | None:
+        """Return the closure at the end of the chain, where the table is of that end."""
+        return self.kind.end_to_end(findings)
+
+    def reporter(self) -> TableReporter:
+        """Return the part of this kind in a report."""
+        return TableReporter(self.kind.words)
+
+
+def causes_in_words(finding: Finding[TableEvidence]) -> list[str]:
+    """Return what the pages of the causes say of their parameters on this machine."""
+    view = finding.evidence.table.view
+    told = [t.effect.in_words(view, t.effect.parameters(t.shape, found)) for t, found in finding.attribution.told]
+    return [note for note in told if note]

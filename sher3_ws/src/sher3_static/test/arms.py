@@ -5,7 +5,7 @@ from scipy.spatial.transform import Rotation
 from sher3_static.arm.description import ArmDescription
 from sher3_static.arm.kind import KIND
 from sher3_static.arm.kinematics import postures, transform
-from sher3_static.machine import StaticTest
+from sher3_static.kind import StaticTest
 from sher3_static.readings import Readings
 
 HALF = np.pi / 2

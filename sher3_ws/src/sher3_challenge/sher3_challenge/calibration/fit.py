@@ -10,10 +10,10 @@ from types import MappingProxyType
 import numpy as np
 from scipy.optimize import minimize, minimize_scalar
 from scipy.special import softmax
+from sher3_diagnosis.finding import LIBRARY, NO_GAP, OUTSIDE
 from sher3_diagnosis.judge.calibration.calibration import Calibration, Provenance
 from sher3_diagnosis.judge.calibration.logistic import Logistic
 from sher3_diagnosis.judge.calibration.typical import Typical, distance
-from sher3_diagnosis.judge.costs import LIBRARY, NO_GAP, OUTSIDE
 from sher3_diagnosis.judge.evidence.scales import scaled_cause, scaled_exact, scaled_gap
 
 from sher3_challenge.calibration.labels import answer_of, equal, known

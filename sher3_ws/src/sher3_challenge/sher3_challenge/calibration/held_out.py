@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from sher3_diagnosis.channel import Channel
+from sher3_diagnosis.finding import LIBRARY, Candidate, Item, Judged
 from sher3_diagnosis.judge.calibration.calibration import Calibration
-from sher3_diagnosis.judge.costs import DEFAULT, LIBRARY, Costs
+from sher3_diagnosis.judge.costs import DEFAULT, Costs
 from sher3_diagnosis.judge.evidence.scales import scaled_exact
-from sher3_diagnosis.judge.items import Candidate, Item
-from sher3_diagnosis.judge.probabilities import Judged, judged
+from sher3_diagnosis.judge.probabilities import judged
 from sher3_diagnosis.judge.status import answer_to, answer_to_exact, status_of
 from sher3_diagnosis.verdict import Interval
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from sher3_diagnosis.judge.costs import LIBRARY, NO_GAP, OUTSIDE
+from sher3_diagnosis.finding import LIBRARY, NO_GAP, OUTSIDE
 from sher3_diagnosis.thresholds import RIVAL
 from sher3_effects import library
 

@@ -10,9 +10,9 @@ from typing import Any
 
 from sher3_common import read_text, read_yaml
 from sher3_description import Robot
-from sher3_diagnosis.finding import ExactFinding, Finding
+from sher3_diagnosis.finding import ExactFinding, Finding, Item
 from sher3_diagnosis.flow import find
-from sher3_diagnosis.judge.items import Item, items_of
+from sher3_diagnosis.judge.items import items_of
 from sher3_gap.evidence import SherEvidence
 from sher3_gap.signals import RunSignals
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from sher3_diagnosis.attribute.candidates import Candidates
 from sher3_diagnosis.channel import AT_TIP, Array
@@ -11,11 +10,23 @@ from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import Fit, Term, fit
 from sher3_diagnosis.thresholds import NEEDED, RIVAL
 
-if TYPE_CHECKING:
-    from sher3_diagnosis.quantify.motion import InMotion
-
 RANKED = 6
 """Effects kept in the ranking of a cause, and tried in pairs."""
+
+
+@dataclass(frozen=True)
+class InMotion:
+    """A fit where nothing rests.
+
+    Attributes:
+        evidence: without the samples at rest.
+        fit: of the same terms, to that evidence.
+        whole: the same laws and coefficients on all samples, with the loss of the fit to them.
+    """
+
+    evidence: Evidence
+    fit: Fit
+    whole: Fit
 
 
 @dataclass(frozen=True)

@@ -11,10 +11,8 @@ from itertools import product
 from math import prod
 
 from sher3_diagnosis.channel import Channel
-from sher3_diagnosis.finding import ExactFinding, Finding
+from sher3_diagnosis.finding import NO_GAP, OUTSIDE, ExactFinding, Finding, Judged
 from sher3_diagnosis.fit.fitting import Fit, Term, fit
-from sher3_diagnosis.judge.costs import NO_GAP, OUTSIDE
-from sher3_diagnosis.judge.probabilities import Judged
 from sher3_diagnosis.localise.gaps import component_rms
 from sher3_diagnosis.quantify.closure import closure, residual_after
 from sher3_diagnosis.verdict import Answer, Cause, Place, Residual, Where

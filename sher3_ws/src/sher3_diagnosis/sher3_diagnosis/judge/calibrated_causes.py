@@ -7,12 +7,12 @@ from dataclasses import replace
 
 from sher3_diagnosis.attribute.rivals import Attribution
 from sher3_diagnosis.channel import Channel
-from sher3_diagnosis.finding import Finding
+from sher3_diagnosis.finding import LIBRARY, OUTSIDE, Finding, Item, Judged
 from sher3_diagnosis.fit.fitting import fit
 from sher3_diagnosis.judge.calibration.calibration import Calibration
-from sher3_diagnosis.judge.costs import LIBRARY, OUTSIDE, Costs
-from sher3_diagnosis.judge.items import Item, items_of
-from sher3_diagnosis.judge.probabilities import Judged, judged
+from sher3_diagnosis.judge.costs import Costs
+from sher3_diagnosis.judge.items import items_of
+from sher3_diagnosis.judge.probabilities import judged
 from sher3_diagnosis.judge.status import answer_to
 from sher3_diagnosis.verdict import Cause, Imitation, Interval
 

@@ -8,8 +8,10 @@ from dataclasses import asdict, dataclass, fields
 
 from sher3_common.errors import Sher3Error
 
-OUTSIDE, NO_GAP, LIBRARY = "outside_library", "no_gap", "library"
+from sher3_diagnosis.finding import LIBRARY, NO_GAP, OUTSIDE
+
 ANSWERS = (OUTSIDE, LIBRARY, NO_GAP)
+"""In this order where two cost the same."""
 
 
 class CostsError(Sher3Error):

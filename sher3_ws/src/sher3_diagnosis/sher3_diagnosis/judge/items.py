@@ -3,49 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 from sher3_diagnosis.attribute.rivals import Attribution, unlikeness, without_term
 from sher3_diagnosis.channel import AT_TIP, Channel
-from sher3_diagnosis.finding import Finding
+from sher3_diagnosis.finding import Candidate, Finding, Item
 from sher3_diagnosis.fit.fitting import Term
 from sher3_diagnosis.judge.evidence.cause import cause_evidence, shown_at
 from sher3_diagnosis.judge.evidence.scales import LEAST_SHARE
 from sher3_diagnosis.thresholds import COVERED
-
-
-@dataclass(frozen=True)
-class Candidate:
-    """An effect at a site that may be a cause, and how far it is from explaining as much as the one named.
-
-    Attributes:
-        effect, site, family: of the effect; `contains`: the simpler effects that it contains.
-        unlikeness: 0 of the cause itself; below 1 nearly the same data.
-    """
-
-    effect: str
-    site: str
-    family: str
-    contains: tuple[str, ...]
-    unlikeness: float
-
-
-@dataclass(frozen=True)
-class Item:
-    """One cause or one gap, with its evidence.
-
-    Attributes:
-        channel: where it shows most.
-        index: of the cause's term in its fit; None for a gap without a cause.
-        numbers: the evidence by name.
-        candidates: of a cause, the effects that may stand in its place, itself first.
-    """
-
-    channel: Channel
-    index: int | None
-    numbers: Mapping[str, float]
-    candidates: Sequence[Candidate] = ()
 
 
 def items_of(finding: Finding) -> list[Item]:

@@ -9,12 +9,12 @@ import numpy as np
 
 from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.effect import Effect
-from sher3_diagnosis.finding import ExactFinding, Finding
+from sher3_diagnosis.finding import LIBRARY, OUTSIDE, ExactFinding, Finding
 from sher3_diagnosis.judge.bets import exact_place, place_of, untold_place
 from sher3_diagnosis.judge.calibration.calibration import Calibration, in_force
 from sher3_diagnosis.judge.calibration.typical import RARE
 from sher3_diagnosis.judge.causes import ordered, places_of
-from sher3_diagnosis.judge.costs import DEFAULT, LIBRARY, OUTSIDE, Costs
+from sher3_diagnosis.judge.costs import DEFAULT, Costs
 from sher3_diagnosis.judge.next_experiment import next_experiment
 from sher3_diagnosis.judge.probabilities import of_first, reproduced
 from sher3_diagnosis.judge.remainder import remainder

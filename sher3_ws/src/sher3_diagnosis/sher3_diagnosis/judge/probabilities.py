@@ -4,48 +4,14 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
-from sher3_diagnosis.finding import ExactFinding
+from sher3_diagnosis.finding import LIBRARY, NO_GAP, OUTSIDE, ExactFinding, Item, Judged
 from sher3_diagnosis.judge.calibration.calibration import Calibration
 from sher3_diagnosis.judge.calibration.typical import trust
-from sher3_diagnosis.judge.costs import LIBRARY, NO_GAP, OUTSIDE
 from sher3_diagnosis.judge.evidence.scales import scaled_cause, scaled_exact, scaled_gap
-from sher3_diagnosis.judge.items import Item
 from sher3_diagnosis.verdict import Interval, Place
-
-
-@dataclass(frozen=True)
-class Judged:
-    """An item with its probabilities, which add up to one.
-
-    Attributes:
-        item: what was judged.
-        effects: per candidate of the item, the probability that it is the cause.
-        outside: that the cause is none of the library.
-        no_gap: that the item is no gap, or no cause, of its own.
-        closure: of a cause; None of a gap without one.
-        typicality: of a cause, the share of the labelled ones that are at least as unusual; None where nothing tells.
-    """
-
-    item: Item
-    effects: Sequence[float]
-    outside: float
-    no_gap: float
-    closure: Interval | None = None
-    typicality: float | None = None
-
-    @property
-    def library(self) -> float:
-        """Probability that the true effect is among the candidates."""
-        return float(sum(self.effects))
-
-    @property
-    def odds(self) -> dict[str, float]:
-        """Probabilities of library, outside and no gap."""
-        return {LIBRARY: self.library, OUTSIDE: self.outside, NO_GAP: self.no_gap}
 
 
 def judged(item: Item, calibration: Calibration, closure: Interval | None = None) -> Judged:

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 
-from sher3_diagnosis.judge.costs import LIBRARY, NO_GAP, OUTSIDE, Costs
-from sher3_diagnosis.judge.items import Item
-from sher3_diagnosis.judge.probabilities import Judged
+from sher3_diagnosis.finding import LIBRARY, NO_GAP, OUTSIDE, Item, Judged
+from sher3_diagnosis.judge.costs import Costs
 from sher3_diagnosis.thresholds import COVERED
 from sher3_diagnosis.verdict import Status
 

@@ -6,10 +6,11 @@ level of a friction down, and its fall with the speed with it.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
+from sher3_diagnosis.attribute.rivals import InMotion
 from sher3_diagnosis.channel import Channel, Mask
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import Fit, fit
@@ -22,21 +23,6 @@ LEAST = 0.3
 
 Rests = dict[tuple[int, Channel], Mask]
 """Per run and channel, the samples that count at which a friction rests, (N,)."""
-
-
-@dataclass(frozen=True)
-class InMotion:
-    """A fit where nothing rests.
-
-    Attributes:
-        evidence: without the samples at rest.
-        fit: of the same terms, to that evidence.
-        whole: the same laws and coefficients on all samples, with the loss of the fit to them.
-    """
-
-    evidence: Evidence
-    fit: Fit
-    whole: Fit
 
 
 def in_motion(evidence: Evidence, found: Fit) -> InMotion | None:

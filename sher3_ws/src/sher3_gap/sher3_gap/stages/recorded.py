@@ -2,24 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from sher3_description import ACTUATORS
 from sher3_description.contract import REFERENCE_TEMPERATURE
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.discover.feature import Quantities, Quantity
+from sher3_effects.view import RobotView
 
 from sher3_gap.signals import RunSignals
 from sher3_gap.stages.units import ROTARY_AXES
 
-if TYPE_CHECKING:
-    from sher3_gap.stages.view import SherView
-
 AXES = "xyz"
 
 
-def recorded_at(view: SherView, channel: Channel) -> Quantities:
+def recorded_at(view: RobotView, channel: Channel) -> Quantities:
     """Return the quantities for a channel: name -> values at every tick.
 
     The own ones of an actuator have plain names, those of others the actuator's before a point. The reported effort is
@@ -28,7 +24,7 @@ def recorded_at(view: SherView, channel: Channel) -> Quantities:
     return _of_axis(view, channel) if channel.actuator in ACTUATORS else _of_tip(view)
 
 
-def _of_axis(view: SherView, channel: Channel) -> dict[str, Quantity]:
+def _of_axis(view: RobotView, channel: Channel) -> dict[str, Quantity]:
     place = channel.actuator
     out = motion_of(view.run, place, "", True)
     i, run = ACTUATORS.index(place), view.run
@@ -81,7 +77,7 @@ def shared_by_all(run: RunSignals) -> dict[str, Quantity]:
     return out
 
 
-def _of_tip(view: SherView) -> dict[str, Quantity]:
+def _of_tip(view: RobotView) -> dict[str, Quantity]:
     """Return postures, loads and motion of the tip; directions of the tool are those of its axes in the base frame."""
     run, path = view.run, view.path
     out = shared_by_all(run)
@@ -106,7 +102,7 @@ def _of_tip(view: SherView) -> dict[str, Quantity]:
     return out
 
 
-def _ticks(view: SherView, x: Array) -> Array:
+def _ticks(view: RobotView, x: Array) -> Array:
     """Bring (g, k) values of the residual grid to every tick, (n, k)."""
     clock = view.run.stage_clock
     return np.stack([np.interp(clock, clock[view.run.grid], c) for c in x.T], axis=1)
