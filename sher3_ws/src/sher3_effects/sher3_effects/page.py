@@ -37,6 +37,7 @@ CONSTANTS: Mapping[str, str] = {
     "compliance": "displacement of the load per force",
     "spring": "stiffness of a spring that pulls to one position",
     "rest": "position at which that spring is relaxed",
+    "link": "relative change of mass and inertia of a link",
     "payload": "mass of a body on a link",
     "payload_x": "its centre along x of the joint of the link",
     "payload_y": "its centre along y",

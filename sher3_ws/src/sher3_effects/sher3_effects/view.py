@@ -161,6 +161,9 @@ class ArmMotionView(AxisView, Protocol):
             centre: at which its inertia is reckoned, m, in the frame of the link's joint.
         """
 
+    def link(self, link: str) -> dict[str, Array]:
+        """Return joint -> (g,) force that a link, as its model has it, needs of every joint."""
+
 
 class RobotView(AxisView, Protocol):
     """A run of the robot with its geometry: what an effect between the encoders and the tip needs."""

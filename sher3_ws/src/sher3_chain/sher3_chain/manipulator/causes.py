@@ -30,6 +30,8 @@ from sher3_chain.thresholds import CAUSES_OF_JOINT, LEAST_CLOSURE
 
 TIMING, ON_LINK = "timing", "link"
 """Family of what is late, and the kind of place that a payload sits on."""
+CENTRE = ("x", "y", "z")
+"""Parameters of the centre of a payload."""
 HEAVIEST = 2.0
 """Mass of a payload over that of the whole arm at most: what is heavier is no body on a link."""
 CENTRE_ROUNDS = 3
@@ -158,13 +160,12 @@ def spent(found: Fit) -> float:
 
 def _payload(evidence: ArmMotionEvidence, candidates: Candidates) -> Fit | None:
     """Return the fit of a payload at the link that needs it most, beside plain friction; None where none is needed."""
-    page = next((e for e in candidates.effects if ON_LINK in e.places), None)
-    if page is None:
-        return None
+    pages = [e for e in candidates.effects if ON_LINK in e.places]
     rubbing = [(e, j) for j in evidence.judged for e in _plain(candidates)]
     plain = [*evidence.nuisance, *(candidates.term(e, j, _middle(e, evidence, j)) for e, j in rubbing)]
     base, null = fit(evidence.data, plain), evidence.null().total
-    trials = [t for link in evidence.places["link"] if (t := _at(evidence, candidates, page, link, plain)) is not None]
+    places = [(page, link) for page in pages for link in evidence.places["link"]]
+    trials = [t for page, link in places if (t := _at(evidence, candidates, page, link, plain)) is not None]
     if not trials:
         return None
     best = min(trials, key=cost)
@@ -211,17 +212,17 @@ def _at(
     if not possible(trial):  # friction that is not there may fit below zero
         return None
     found = centred(candidates, trial)
-    arm, carried = evidence.records[0].model.mass, page.parameters({}, found.of(len(plain)))["mass"]
-    return found if not arm or carried < HEAVIEST * arm else None
+    arm, values = evidence.records[0].model.mass, page.parameters({}, found.of(len(plain)))
+    return found if not arm or values.get("mass", 0.0) < HEAVIEST * arm else None
 
 
 def centred(candidates: Candidates, found: Fit) -> Fit:
-    """Return a fit with the inertia of its last term, where that is a payload, about the centre of the round before."""
+    """Return a fit with the inertia of its last term, where that has a centre, about the centre of the round before."""
     last = len(found.terms) - 1
     page, link = found.terms[last].effect, found.terms[last].site
-    for _ in range(CENTRE_ROUNDS if ON_LINK in page.places else 0):
+    for _ in range(CENTRE_ROUNDS if set(CENTRE) <= page.units.keys() else 0):
         values = page.parameters({}, found.of(last))
-        shape = {name: round(values[name], 4) for name in "xyz"}
+        shape = {name: round(values[name], 4) for name in CENTRE}
         trial = fit(candidates.evidence.data, [*found.terms[:last], candidates.term(page, link, shape)])
         if not possible(trial):
             break

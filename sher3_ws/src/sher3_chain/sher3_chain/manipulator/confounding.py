@@ -67,11 +67,11 @@ def confounded_in(evidence: ArmMotionEvidence, joint: str) -> list[frozenset[str
 
 def _columns(evidence: ArmMotionEvidence, view: MotionView, joint: str) -> dict[str, Array]:
     row, ok = view.row(joint), view.in_motion(view.row(joint))
-    last = evidence.places["link"][-1]
+    carried = view.payload(evidence.places["link"][-1], (0.0, 0.0, 0.0)).get(joint, np.zeros((len(ok), 1)))
     out = {
         GAIN: view.rigid[ok, row][:, None],
         WEIGHT: view.path.gravity[ok, row][:, None] / (view.shares[row] or 1.0),
-        PAYLOAD: view.payload(last, (0.0, 0.0, 0.0))[joint][ok] / (view.shares[row] or 1.0),
+        PAYLOAD: carried[ok] / (view.shares[row] or 1.0),
         "constant force": np.ones((int(ok.sum()), 1)),
         "rotor inertia": view.acceleration[ok, row][:, None],
         "viscous friction": view.velocity[ok, row][:, None],

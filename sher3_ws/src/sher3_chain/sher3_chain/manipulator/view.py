@@ -24,6 +24,8 @@ AROUND_IMPACT = 2
 """Samples of the residual grid around one at which a gap is crossed: the filter smears the impact at its end."""
 LINKS_OF_PAYLOAD = 4
 """Leading inertial parameters of a body that a payload changes linearly: its mass, and mass times centre."""
+ROUNDED = 1e-9
+"""Force on a joint over that on the joint that feels most, below which it is what rounding leaves of nothing."""
 DEVELOPED = 0.95
 """Share of its full size above which a soft dry friction of MuJoCo no longer depends on the exact speed."""
 
@@ -83,13 +85,28 @@ class MotionView(ChainView):
                 joint; the inertia of a point there is quadratic in it and goes with the mass.
         """
         if (link, centre) not in self._payload:
-            first = PARAMETERS * self.model.links.index(link)
-            columns = self.regressor_of_joints[..., first : first + PARAMETERS]
+            columns = self.regressor_of_joints[..., self._parameters_of(link)]
             out = columns[..., :LINKS_OF_PAYLOAD].copy()
             out[..., 0] += columns[..., LINKS_OF_PAYLOAD:] @ point_inertia(np.array(centre))
-            forces = self._on_motors(out) * self.shares[:, None]
-            self._payload[link, centre] = dict(zip(self.model.names, np.moveaxis(forces, 1, 0), strict=True))
+            self._payload[link, centre] = self._of_joints(out)
         return self._payload[link, centre]
+
+    def link(self, link: str) -> dict[str, Array]:
+        """Return joint -> (g,) force that a link, as its model has it, needs of every joint."""
+        own = self._parameters_of(link)
+        need = self._of_joints(self.regressor_of_joints[..., own] @ self.model.inertial[own, None])
+        return {joint: force[:, 0] for joint, force in need.items()}
+
+    def _parameters_of(self, link: str) -> slice:
+        """Return where the inertial parameters of a link are."""
+        first = PARAMETERS * self.model.links.index(link)
+        return slice(first, first + PARAMETERS)
+
+    def _of_joints(self, forces: Array) -> dict[str, Array]:
+        """Return joint -> (g, p) of forces on the joints (g, k, p), as the motors feel them; those that feel any."""
+        felt = self._on_motors(forces) * self.shares[:, None]
+        most = np.abs(felt).max(axis=(0, 2))
+        return {name: felt[:, row] for row, name in enumerate(self.model.names) if most[row] > ROUNDED * most.max()}
 
     @cached_property
     def path(self) -> Loads:

@@ -47,6 +47,7 @@ class Isaac(Target):
         ),
         "compliance": "an actuator has no spring behind it",
         **dict.fromkeys(("spring", "rest"), "an actuator has no spring beside it"),
+        "link": "the mass of a link belongs to the asset: the event randomize_rigid_body_mass scales it",
         **dict.fromkeys(("payload", "payload_x", "payload_y", "payload_z"), "a payload belongs to the asset"),
         "ratio": "the load encoder is no part of the actuator",
         **dict.fromkeys(("shift_x", "shift_y", "shift_z"), "the place of a joint belongs to the asset"),

@@ -22,6 +22,8 @@ LEAST = 1e-4
 cannot cross a gap."""
 DUST = 1e-9
 """Mass and inertia of the motor's own body beside its armature, kg and kg m^2: MuJoCo refuses none at all."""
+WATER = 1000.0
+"""MuJoCo's own density of a geom that states none, kg/m^3."""
 PLACE = ("pos", "quat", "euler", "axisangle", "xyaxes", "zaxis")
 """Attributes of a body that place it in its parent."""
 SPARE = 2
@@ -52,6 +54,7 @@ class Mjcf(XmlTarget):
         "compliance": "a body of the motor's own and a second joint",
         "spring": "stiffness",
         "rest": "springref",
+        "link": "inertial, or mass or density of the geoms",
         **dict.fromkeys(("payload", "payload_x", "payload_y", "payload_z"), "a body of its own"),
         **dict.fromkeys(("shift_x", "shift_y", "shift_z"), "pos of the body"),
     }
@@ -87,6 +90,7 @@ class Mjcf(XmlTarget):
             "compliance": self._compliance,
             "spring": lambda change, joint: self._add(joint, "stiffness", change.value),
             "rest": self._rest,
+            "link": self._link,
             "payload": self._payload,
             "payload_x": self._centre,
             "payload_y": self._centre,
@@ -110,8 +114,9 @@ class Mjcf(XmlTarget):
         return gains[0] if gains else 0.0
 
     def place(self, change: Change) -> Element | None:
-        """Return the joint of a change, or the body of a payload."""
-        return self.body(change.joint) if change.constant.startswith("payload") else self.joints.get(change.joint)
+        """Return the joint of a change, or the body of a link and of a payload."""
+        on_link = change.constant == "link" or change.constant.startswith("payload")
+        return self.body(change.joint) if on_link else self.joints.get(change.joint)
 
     def _add(self, joint: Element, attribute: str, change: float) -> str:
         total = self._inherited(joint, attribute) + change
@@ -199,6 +204,22 @@ class Mjcf(XmlTarget):
         named = {x.get("name", f"body{n}"): x for n, x in enumerate(elements(self.root, "body"), start=1)}
         found = named.get(place)
         return parents(self.root)[self.joints[place]] if found is None and place in self.joints else found
+
+    def _link(self, change: Change, body: Element) -> str:
+        """A link is its body with all that is fixed to it; mass and inertia of each keep their centre."""
+        scale, compiler = 1.0 + change.value, self.root.find("compiler")
+        shapes = compiler is not None and compiler.get("inertiafromgeom") == "true"
+        for part in together(body):
+            own = None if shapes else part.find("inertial")
+            if own is not None:
+                for name in ("mass", "diaginertia", "fullinertia"):
+                    if name in own.attrib:
+                        own.set(name, written(*(scale * x for x in numbers(own.get(name), "0"))))
+            for geom in part.findall("geom") if own is None else []:
+                stated = geom.get("mass") or self._class_value(geom, "mass")
+                name = "density" if stated is None else "mass"
+                geom.set(name, written(scale * self._inherited(geom, name, WATER)))
+        return ""
 
     def _payload(self, change: Change, body: Element) -> str:
         """A body of its own with the mass of a point, at the joint of the link until its centre is known."""
@@ -321,6 +342,12 @@ class Mjcf(XmlTarget):
                 return stated
             found = above[found]
         return None
+
+
+def together(body: Element) -> list[Element]:
+    """Return a body and those below it that no joint parts from it."""
+    below = [x for x in body.findall("body") if x.find("joint") is None and x.find("freejoint") is None]
+    return [body, *(part for x in below for part in together(x))]
 
 
 def moved(body: Element, change: Change) -> str:

@@ -48,7 +48,19 @@ class Ros2Control(Target):
         "limit": "min and max of the command interface `effort`",
     }
     refuses: ClassVar[Mapping[str, str]] = dict.fromkeys(
-        ("weight", "arm", "hanging", "payload", "payload_x", "payload_y", "payload_z", "shift_x", "shift_y", "shift_z"),
+        (
+            "weight",
+            "arm",
+            "hanging",
+            "link",
+            "payload",
+            "payload_x",
+            "payload_y",
+            "payload_z",
+            "shift_x",
+            "shift_y",
+            "shift_z",
+        ),
         LINK,
     )
 

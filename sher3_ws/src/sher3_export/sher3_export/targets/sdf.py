@@ -43,6 +43,7 @@ class Sdf(XmlTarget):
         "zero": "an SDF joint has no offset of its zero; turn the pose of its child by hand",
         "backlash": "an SDF joint has no play; add a joint by hand or export to mjcf",
         "compliance": SPRING,
+        "link": "the inertial element of a link is no part of a joint; scale its mass and inertia by hand",
         **dict.fromkeys(("payload", "payload_x", "payload_y", "payload_z"), PAYLOAD),
         "ratio": "the load encoder is no part of the joint",
         "shift_x": "the pose of the child link belongs to the model's tree; shift it by hand",

@@ -27,6 +27,7 @@ class Urdf(XmlTarget):
         "coulomb": "friction",
         "viscous": "damping",
         "limit": "effort",
+        "link": "mass and inertia",
         **dict.fromkeys(("zero", "shift_x", "shift_y", "shift_z"), "origin"),
     }
     refuses: ClassVar[Mapping[str, str]] = {
@@ -61,11 +62,17 @@ class Urdf(XmlTarget):
             "coulomb": lambda change, joint: self._dynamics(joint, "friction", change.value),
             "viscous": lambda change, joint: self._dynamics(joint, "damping", change.value),
             "limit": lambda change, joint: field(child(joint, "limit"), "effort", change.value),
+            "link": self._link,
             "zero": self._zero,
             "shift_x": self._shift,
             "shift_y": self._shift,
             "shift_z": self._shift,
         }
+
+    def place(self, change: Change) -> Element | None:
+        """Return the joint of a change, or the link that is heavier."""
+        links = {x.get("name"): x for x in self.root.findall("link")}
+        return links.get(change.joint) if change.constant == "link" else super().place(change)
 
     def nominal(self) -> dict[str, dict[str, float]]:
         """Return friction and damping of joints; a URDF knows no rotor."""
@@ -74,6 +81,22 @@ class Urdf(XmlTarget):
             name: {c: 0.0 if x is None else number(x.get(self.fields[c])) for c in ("coulomb", "viscous")}
             for name, x in said.items()
         }
+
+    def _link(self, change: Change, link: Element) -> str:
+        """A link is one with all that fixed joints hold to it; mass and inertia of each keep their centre."""
+        for part in self._together(link):
+            for tag in ("inertial/mass", "inertial/inertia"):
+                values = part.find(tag)
+                for name in () if values is None else values.attrib:
+                    values.set(name, written((1.0 + change.value) * number(values.get(name))))
+        return ""
+
+    def _together(self, link: Element) -> list[Element]:
+        """Return a link and those that fixed joints hold to it."""
+        links = {x.get("name"): x for x in self.root.findall("link")}
+        fixed = [x for x in self.root.findall("joint") if x.get("type") == "fixed"]
+        below = [child(x, "child").get("link") for x in fixed if child(x, "parent").get("link") == link.get("name")]
+        return [link, *(part for name in below if name in links for part in self._together(links[name]))]
 
     def _dynamics(self, joint: Element, attribute: str, change: float) -> str:
         add(child(joint, "dynamics"), attribute, change)

@@ -12,7 +12,7 @@ from sher3_diagnosis.words import place, quantity, range_text, words
 
 OTHER = "other"
 HEADS: Mapping[str, Sequence[str]] = {
-    "inertia": ("inertia", "payload"),
+    "inertia": ("inertia", "link", "payload"),
     "weight": ("weight", "offset", "arm"),
     "Coulomb": ("coulomb", "static", "load_loss", "friction"),
     "viscous": ("viscous",),

@@ -1,0 +1,53 @@
+"""Link mass: a link of an arm that is heavier or lighter than its model says."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+import numpy as np
+from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.effect import Best, Shape, Signature
+
+from sher3_effects.page import Page
+from sher3_effects.view import ArmMotionView
+
+
+class LinkMass(Page):
+    """All inertial parameters of a link are off by one share: F = share * (force that the modelled link needs).
+
+    A link whose mass was typed in wrongly, or computed from a wrong density, keeps its centre and its shape.
+    """
+
+    id, family, stage = "link_mass", "inertia", "motor_mechanics"
+    inputs = ("acceleration", "weight")
+    scales = "payload"
+    kinds, places = ("joint",), ("link",)
+    best = Best("steps", "accelerations separate mass from weight")
+    explanation = (
+        "A link is heavier or lighter than its model says: its weight and inertia, on every joint that carries it."
+    )
+    siblings = {
+        "payload_mass": "only heavier, with a centre of its own",
+        "torque_constant": "all forces of one joint are scaled, those of the other joints are right",
+        "rotor_inertia": "one joint alone, and no weight",
+    }
+    units = {"relative": "1"}
+    on_axis = {"relative": "link"}
+    bounds: ClassVar[dict[str, tuple[float, float]]] = {"relative": (-1.0, np.inf)}
+
+    def channels(self, site: str) -> tuple[Channel, ...]:
+        """Return the link: which joints carry it only the view knows."""
+        return (Channel(self.stage, site),)
+
+    def signature(self, view: Any, site: str, shape: Shape) -> Signature:
+        """Return one column on every joint that carries the link: the force that the link as modelled needs."""
+        arm: ArmMotionView = view
+        return Signature({Channel(self.stage, joint): x[:, None, None] for joint, x in arm.link(site).items()})
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Return the share by which mass and inertia are off."""
+        return {"relative": float(coefficients[0])}
+
+    def admissible(self, shape: Shape, coefficients: Array) -> bool:
+        """Return whether some of the link is left."""
+        return bool(coefficients[0] > -1.0)
