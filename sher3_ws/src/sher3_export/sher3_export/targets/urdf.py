@@ -85,10 +85,9 @@ class Urdf(XmlTarget):
     def _link(self, change: Change, link: Element) -> str:
         """A link is one with all that fixed joints hold to it; mass and inertia of each keep their centre."""
         for part in self._together(link):
-            for tag in ("inertial/mass", "inertial/inertia"):
-                values = part.find(tag)
-                for name in () if values is None else values.attrib:
-                    values.set(name, written((1.0 + change.value) * number(values.get(name))))
+            for values in (*part.findall("inertial/mass"), *part.findall("inertial/inertia")):
+                for name, value in list(values.attrib.items()):
+                    values.set(name, written((1.0 + change.value) * number(value)))
         return ""
 
     def _together(self, link: Element) -> list[Element]:
