@@ -6,6 +6,7 @@ a few values. Every fit is then a small least-squares problem whose held-out los
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, ClassVar, NamedTuple
@@ -107,12 +108,14 @@ class Effect:
             "drive" the force it is driven with, "forces" what the motion needs of it: mass, weight or a model of the
             user's, "orientation" how a sensor is turned, "alone" that its only encoder is at the motor, "behind" that
             it is at the load, "applied" a known force on the axis from outside.
+        seen_at: (stage, place) of the channels in which it must show to be looked for; "" is its own stage or its site.
         inputs: quantities the law may depend on, of `INPUTS`; none for an error that is constant.
         units: parameter -> SI unit on a linear axis.
         bent_from: share of what a law with a bend explains that the one without must leave for the bend to be named.
         discrete: parameters that are a choice (a source, a member, a number of periods) and have no interval.
         choices: parameter of `discrete` -> value -> what it means, in a word.
         bounds: parameter -> smallest and largest value that is physically possible.
+        above: what its first coefficient must exceed: a friction resists, a gain keeps its sign.
         told_by: parameters that must differ from zero for the effect to be told from a simpler one that it extends.
         siblings: effect id -> what tells it from this one.
         extends: ids of simpler effects that this one contains; it must explain markedly more than they do.
@@ -144,12 +147,14 @@ class Effect:
     places: ClassVar[tuple[str, ...]] = ("axis",)
     kinds: ClassVar[tuple[str, ...]] = ("robot",)
     needs: ClassVar[tuple[str, ...]] = ()
+    seen_at: ClassVar[tuple[tuple[str, str], ...]] = (("", ""),)
     inputs: ClassVar[tuple[str, ...]] = ()
     units: ClassVar[Mapping[str, str]] = {}
     bent_from: ClassVar[float] = RIVAL
     discrete: ClassVar[frozenset[str]] = frozenset()
     choices: ClassVar[Mapping[str, Mapping[float, str]]] = {}
     bounds: ClassVar[Mapping[str, tuple[float, float]]] = {}
+    above: ClassVar[float] = -math.inf
     told_by: ClassVar[tuple[str, ...]] = ()
     siblings: ClassVar[Mapping[str, str]] = {}
     extends: ClassVar[tuple[str, ...]] = ()
@@ -171,7 +176,7 @@ class Effect:
 
     def channels(self, site: str) -> tuple[Channel, ...]:
         """Return the channels in which the effect must show to be looked for at a site."""
-        return (Channel(self.stage, site),)
+        return tuple(Channel(stage or self.stage, place or site) for stage, place in self.seen_at)
 
     def shapes(self, views: Sequence[Any], site: str) -> list[Shape]:
         """Return the shapes to search over; empty when the runs cannot show the effect. Default: one without values."""
@@ -215,8 +220,8 @@ class Effect:
         return ""
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether a fit is physically possible; default always."""
-        return True
+        """Return whether a fit is physically possible; default where its first coefficient is large enough."""
+        return self.above == -math.inf or bool(coefficients[0] > self.above)
 
     def limits(self, shape: Shape) -> Mapping[str, tuple[float, float]]:
         """Return parameter -> smallest and largest value that may be in its interval; default the bounds."""

@@ -21,6 +21,7 @@ class BehindMotor(Page):
     """
 
     kinds = ("axis",)
+    seen_at = (("motor_mechanics", ""),)
     needs: ClassVar[tuple[str, ...]] = ("alone", "drive")
     unseen = True
     on_axis: ClassVar[Mapping[str, str]] = {}
@@ -33,10 +34,6 @@ class BehindMotor(Page):
     def on(self, axis: NominalAxis) -> BehindMotor:
         """Return the page with the mass of the axis."""
         return type(self)(axis.mass)
-
-    def channels(self, site: str) -> tuple[Channel, ...]:
-        """Return the force balance."""
-        return (Channel("motor_mechanics", site),)
 
     def stage_at(self, channel: Channel) -> str:
         """Return the transmission: the effect is there, though the effort shows it."""

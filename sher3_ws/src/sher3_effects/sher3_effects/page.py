@@ -15,6 +15,10 @@ from sher3_effects.view import NominalAxis
 Values = Mapping[str, float]
 """Fitted parameters by name, SI units."""
 
+TIP_POSE = (("mechanism", "tip"), ("structure", "tip"))
+"""Where the pose of the tip is seen, free and loaded: see `Effect.seen_at`."""
+NOWHERE: tuple[tuple[str, str], ...] = ()
+"""Of an exact stage, which is judged without residuals."""
 
 CONSTANTS: Mapping[str, str] = {
     "coulomb": "friction in motion",
@@ -79,12 +83,14 @@ class Page(Effect):
         breaks: which relation of the signal chain the effect breaks, where that is not the one named like its stage:
             "load_encoder", "both_encoders" or "force_sensor", the readings.
         on_axis: fitted parameter -> constant of `CONSTANTS` that it sets, beyond the nominal one.
+        computed: the parameter of an effect of an exact stage, which is computed there and not fitted; else "".
     """
 
     plant: ClassVar[type[PlantEffect] | None] = None
     source: ClassVar[Path | None] = None
     breaks: ClassVar[str] = ""
     on_axis: ClassVar[Mapping[str, str]] = {}
+    computed: ClassVar[str] = ""
 
     def on(self, axis: NominalAxis) -> Page:
         """Return the page with what it must know of the axis it is looked for on; default as it is."""

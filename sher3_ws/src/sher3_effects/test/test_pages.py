@@ -3,8 +3,9 @@
 import subprocess
 import sys
 
+import numpy as np
 import pytest
-from sher3_diagnosis.channel import STAGES
+from sher3_diagnosis.channel import STAGES, Channel
 from sher3_diagnosis.effect import INPUTS, KINDS, ROTARY
 from sher3_effects import library, load_effects, pages, plants, save_effects
 from sher3_sim.effect import REVOLUTE, SITES
@@ -24,18 +25,7 @@ def test_the_data_sheet_is_complete(page):
     assert page.explanation.endswith(".") and page.best.why
     assert set(page.kinds) <= set(KINDS) and page.places
     assert set(page.inputs) <= set(INPUTS) and (page.inputs or page.id in CONSTANT or page.kinds == ("arm",))
-    assert set(page.needs) <= {
-        "lead",
-        "load",
-        "temperature",
-        "mass",
-        "drive",
-        "forces",
-        "alone",
-        "applied",
-        "behind",
-        "orientation",
-    }
+    assert set(page.needs) <= FACTS
     assert page.breaks in RELATIONS
     assert set(page.extends) <= KNOWN
     assert type(page).__doc__
@@ -46,6 +36,26 @@ def test_siblings_exist_and_say_what_differs(page):
     assert page.siblings and page.siblings.keys() <= KNOWN
     assert page.id not in page.siblings
     assert all(why and not why.endswith(".") for why in page.siblings.values())
+
+
+def test_a_page_is_seen_at_its_own_stage_and_site_where_it_says_nothing_else():
+    own, tip, none = (library()[name] for name in ("coulomb_friction", "tool_offset", "axis_skew"))
+    assert own.channels("roll") == (Channel("motor_mechanics", "roll"),)
+    assert tip.channels("tip") == (Channel("mechanism", "tip"), Channel("structure", "tip"))
+    assert none.channels("roll") == ()
+
+
+def test_the_first_coefficient_exceeds_what_the_page_says():
+    resists, free = library()["coulomb_friction"], library()["force_bias"]
+    assert [resists.admissible({}, np.array([x])) for x in (-1.0, 0.0, 1.0)] == [False, False, True]
+    assert free.admissible({}, np.array([-1.0]))
+
+
+def test_a_computed_parameter_belongs_to_one_page_of_an_exact_stage():
+    computed = {page.computed: page for page in library().values() if page.computed}
+    assert sorted(computed) == ["delay", "probability", "relative", "sigma", "skew"]
+    assert sum(bool(page.computed) for page in library().values()) == len(computed)
+    assert {page.stage for page in computed.values()} == {"transport", "controller"}
 
 
 @pytest.mark.parametrize("page", ROBOT_PAGES)

@@ -17,9 +17,7 @@ NEVER_BELOW_ZERO = frozenset(
         *("frequency", "inertia", "mass", "load_mass", "load_friction", "limit"),
     }
 )
-"""Parameters of any effect that have no sign; a mass beside a stated one may be less, see `SIGNED`."""
-SIGNED = frozenset({("payload_mass", "mass"), ("tool_gravity", "mass")})
-"""What is added to a stated value, which its page bounds by that."""
+"""Parameters that have no sign, unless the bounds of a page say otherwise."""
 FRICTION = "friction"
 """Family whose forces resist."""
 
@@ -48,17 +46,17 @@ def within_bounds(
 
 def least_of(effect: Effect, name: str) -> float | None:
     """Return the smallest value of a parameter that is physically possible; None where it may have any sign."""
-    return effect.bounds[name][0] if name in effect.bounds else _least(effect.id, effect.family, name)
+    return effect.bounds[name][0] if name in effect.bounds else _least(effect.family, name)
 
 
-def _least(effect: str, family: str, name: str) -> float | None:
+def _least(family: str, name: str) -> float | None:
     resists = family == FRICTION and name in ("force", "share")
-    return 0.0 if (name in NEVER_BELOW_ZERO and (effect, name) not in SIGNED) or resists else None
+    return 0.0 if name in NEVER_BELOW_ZERO or resists else None
 
 
 def _cut(cause: Cause, name: str, p: Parameter, stated: dict, linear: bool) -> Parameter:
     """Return a parameter with its interval within bounds; that of a change between conditions may have any sign."""
-    low, high = stated.get(cause.effect, {}).get(name, (_least(cause.effect, cause.family, name), None))
+    low, high = stated.get(cause.effect, {}).get(name, (_least(cause.family, name), None))
     if cause.condition is not None or p.low is None or p.high is None:
         return p
     least = p.low if low is None or p.low > low else (low if linear or low != 0.0 else p.value**2 / p.high)

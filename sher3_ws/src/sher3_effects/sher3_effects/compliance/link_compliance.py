@@ -22,6 +22,8 @@ class LinkCompliance(Page):
 
     id, family, stage = "link_compliance", "compliance", "structure"
     inputs = ("load", "posture")
+    seen_at = (("structure", "tip"), ("mechanism", "tip"))
+    above = 0.0
     best = Best("loads", "known loads in several postures separate springs")
     places = ("tip", "leg")
     units = {"a": "m/N^b", "own_weight": "1"}
@@ -31,10 +33,6 @@ class LinkCompliance(Page):
         "small forces than at large ones."
     )
     siblings = {"structural_compliance": "in proportion to the force"}
-
-    def channels(self, site: str) -> tuple[Channel, ...]:
-        """Return the tip, loaded and, where the links carry the platform's weight, free."""
-        return (Channel("structure", "tip"), Channel("mechanism", "tip"))
 
     def shapes(self, views: Sequence[RobotView], site: str) -> list[Shape]:
         """Whether the links carry the weight of the platform (1) or that is calibrated away (0)."""
@@ -57,10 +55,6 @@ class LinkCompliance(Page):
         delta = robot.delta
         fraction = values["a"] / (delta.spring_factor * delta.link_compliance.a)
         return [Part(self.id, actuator, {"fraction": fraction, "own_weight": values["own_weight"]})]
-
-    def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Links give way."""
-        return bool(coefficients[0] > 0.0)
 
 
 def link_deflection(view: RobotView, legs: Sequence[int], own_weight: bool) -> Array:

@@ -25,6 +25,7 @@ class StructuralCompliance(Page):
 
     id, family, stage = "structural_compliance", "compliance", "structure"
     inputs = ("load", "posture")
+    seen_at = (("structure", "tip"),)
     best = Best("loads", "known loads in several postures separate springs")
     places = ("tip",)
     explanation = (
@@ -40,10 +41,6 @@ class StructuralCompliance(Page):
     finer = FINER
     LUMPED = (_ARM.along_x, 1.0 / _ARM.pitch, 1.0 / _ARM.yaw)
     """Along x, about y, about z, of the deflection table less the delta's own share [m/N, rad/(N m), rad/(N m)]."""
-
-    def channels(self, site: str) -> tuple[Channel, ...]:
-        """Return the loaded tip."""
-        return (Channel("structure", "tip"),)
 
     def shapes(self, views: Sequence[RobotView], site: str) -> list[Shape]:
         """The paper's ratios, or three free springs."""

@@ -6,13 +6,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.channel import Array
 from sher3_diagnosis.effect import Best, Shape, Signature
 from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.operators import oscillator
-from sher3_effects.page import Page
+from sher3_effects.page import TIP_POSE, Page
 from sher3_effects.view import RobotView
 
 
@@ -21,6 +21,7 @@ class StructuralVibration(Page):
 
     id, family, stage = "structural_vibration", "compliance", "structure"
     inputs = ("acceleration",)
+    seen_at = TIP_POSE
     best = Best("loads", "known loads in several postures separate springs")
     places = ("tip",)
     leaves_out = "further modes"
@@ -34,10 +35,6 @@ class StructuralVibration(Page):
 
     ONE_MODE = 0.5
     """Second principal value of the matrix over the first from which it is no single mode: half way to two alike."""
-
-    def channels(self, site: str) -> tuple[Channel, ...]:
-        """Return the tip, free and loaded."""
-        return (Channel("mechanism", "tip"), Channel("structure", "tip"))
 
     def shapes(self, views: Sequence[RobotView], site: str) -> list[Shape]:
         """Frequency, damping, and whether each axis swings by itself (0) or one mode in one direction (1)."""

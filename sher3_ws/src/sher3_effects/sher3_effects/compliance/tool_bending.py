@@ -21,6 +21,8 @@ class ToolBending(Page):
 
     id, family, stage = "tool_bending", "compliance", "structure"
     inputs = ("load", "posture")
+    seen_at = (("structure", "tip"),)
+    above = 0.0
     best = Best("loads", "known loads in several postures separate springs")
     places = ("tip",)
     explanation = (
@@ -30,10 +32,6 @@ class ToolBending(Page):
     siblings = {"structural_compliance": "a force along the tool moves the tip too"}
     units = {"slope": "rad/N", "stiffens": "N"}
     finer = FINER
-
-    def channels(self, site: str) -> tuple[Channel, ...]:
-        """Return the loaded tip."""
-        return (Channel("structure", "tip"),)
 
     def bends(self, views: Sequence[AxisView], site: str, shape: Shape) -> list[Shape]:
         """Return the same of a tool that stiffens."""
@@ -53,10 +51,6 @@ class ToolBending(Page):
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Compliance across the tool and slope per force; the force that halves them where the tool stiffens."""
         return {"compliance": float(coefficients[0]), "slope": float(coefficients[1]), **shape}
-
-    def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """The tool gives way."""
-        return bool(coefficients[0] > 0.0)
 
 
 @dataclass(frozen=True)

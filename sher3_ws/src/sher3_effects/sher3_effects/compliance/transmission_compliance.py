@@ -25,6 +25,7 @@ class TransmissionCompliance(Page):
 
     id, family, stage = "transmission_compliance", "compliance", "transmission"
     inputs = ("force", "weight", "load", "acceleration")
+    above = 0.0
     needs = ("load",)
     best = Best("loads", "known loads in several postures separate springs")
     leaves_out = "how it hardens, and that it grows with the free length of a screw"
@@ -72,10 +73,6 @@ class TransmissionCompliance(Page):
         """Stiffness and its inverse."""
         c = float(coefficients[0])
         return {"stiffness": 1.0 / c if c else 0.0, "compliance": c}
-
-    def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """A spring."""
-        return bool(coefficients[0] > 0.0)
 
 
 def needed(view: AxisView, site: str, share: float) -> Array:

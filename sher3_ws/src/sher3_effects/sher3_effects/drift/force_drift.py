@@ -22,16 +22,13 @@ class ForceDrift(Page):
 
     id, family, stage = "force_drift", "drift", "sensing"
     inputs = ("temperature",)
+    seen_at = (("sensing", "force_sensor"),)
     breaks = "force_sensor"
     best = Best("postures", "the same postures again at another temperature separate drift from offset")
     places = ("force_sensor",)
     explanation = "The force sensor's zero moves with the temperature: nothing at 22 deg C, more the warmer it gets."
     siblings = {"force_bias": "does not change with temperature"}
     units = {"coefficient": "N/K", "tx": "N*m/K", "ty": "N*m/K", "tz": "N*m/K"}
-
-    def channels(self, site: str) -> tuple[Channel, ...]:
-        """Return the reading of the force sensor."""
-        return (Channel("sensing", "force_sensor"),)
 
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
         """Nothing to search; impossible without a temperature."""
@@ -88,10 +85,7 @@ class CellDrift(SensorDrift):
     kinds, places = ("cell",), ("load_cell",)
     explanation = "The zero of the load cell wanders during the test, under every force alike."
     units = {"over_test": "N"}
-
-    def channels(self, site: str) -> tuple[Channel, ...]:
-        """Return the reading of the cell."""
-        return (Channel(self.stage, site),)
+    seen_at = (("", ""),)
 
     def signature(self, view: Any, site: str, shape: Shape) -> Signature:
         """Return one column: the share of the test that has passed, or of the warming."""

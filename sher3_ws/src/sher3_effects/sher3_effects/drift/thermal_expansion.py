@@ -14,7 +14,7 @@ from sher3_sim.effect import SLIDERS, PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.drift.warmth import warm, warming
-from sher3_effects.page import Page, Tolerated
+from sher3_effects.page import TIP_POSE, Page, Tolerated
 from sher3_effects.table_view import TableView
 from sher3_effects.view import RobotView
 
@@ -24,6 +24,7 @@ class ThermalExpansion(Page):
 
     id, family, stage = "thermal_expansion", "drift", "mechanism"
     inputs = ("temperature", "posture", "position")
+    seen_at = TIP_POSE
     best = Best("postures", "the same postures again at another temperature separate drift from offset")
     places = ("tip",)
     discrete = frozenset({"part"})
@@ -35,10 +36,6 @@ class ThermalExpansion(Page):
         "tool_offset": "does not change with temperature",
         "link_length_error": "does not change with temperature",
     }
-
-    def channels(self, site: str) -> tuple[Channel, ...]:
-        """Return the tip, free and loaded."""
-        return (Channel("mechanism", "tip"), Channel("structure", "tip"))
 
     def shapes(self, views: Sequence[RobotView], site: str) -> list[Shape]:
         """What grows: 0 everything, 1 the links, 2 the arm, 3 the slider travel."""

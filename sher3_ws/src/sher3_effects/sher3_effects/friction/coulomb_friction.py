@@ -24,6 +24,7 @@ class CoulombFriction(DryFriction):
 
     id, family, stage = "coulomb_friction", "friction", "motor_mechanics"
     inputs = ("direction",)
+    above = 0.0
     dry = True
     settles = True
     best = Best("reversals", "reversals of several amplitudes and speeds separate friction laws")
@@ -61,10 +62,6 @@ class CoulombFriction(DryFriction):
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Force and displacement."""
         return {"force": float(coefficients[0]), "displacement": shape["displacement"]}
-
-    def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Friction resists."""
-        return bool(coefficients[0] > 0.0)
 
 
 class CoulombOnAxis(CoulombFriction):

@@ -22,6 +22,7 @@ class PreslidingFriction(DryFriction):
 
     id, family, stage = "presliding_friction", "friction", "motor_mechanics"
     inputs = ("direction",)
+    above = 0.0
     kinds: ClassVar[tuple[str, ...]] = ("robot",)
     on_axis = {"force": "coulomb"}
     dry = True
@@ -55,10 +56,6 @@ class PreslidingFriction(DryFriction):
         """Force, displacement and the initial stiffness they give."""
         force = float(coefficients[0])
         return {"force": force, "displacement": shape["displacement"], "stiffness": force / shape["displacement"]}
-
-    def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Friction resists."""
-        return bool(coefficients[0] > 0.0)
 
 
 class PreslidingOnAxis(PreslidingFriction):

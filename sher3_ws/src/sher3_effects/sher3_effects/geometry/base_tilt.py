@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.channel import Array
 from sher3_diagnosis.effect import Best, Shape, Signature
 from sher3_sim.effect import PlantEffect
 from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.geometry.drawing import radians, shift
-from sher3_effects.page import Page
+from sher3_effects.page import TIP_POSE, Page
 from sher3_effects.view import RobotView
 
 
@@ -20,6 +20,7 @@ class BaseTilt(Page):
 
     id, family, stage = "base_tilt", "geometry", "mechanism"
     inputs = ("posture",)
+    seen_at = TIP_POSE
     best = Best("postures", "well-spread postures separate geometric errors")
     places = ("tip",)
     explanation = (
@@ -28,10 +29,6 @@ class BaseTilt(Page):
     )
     siblings = {"rail_tilt": "one rail only, the orientation stays", "tool_offset": "turns with the tool"}
     units = {"angle": "rad"}
-
-    def channels(self, site: str) -> tuple[Channel, ...]:
-        """Return the tip, free and loaded."""
-        return (Channel("mechanism", "tip"), Channel("structure", "tip"))
 
     def signature(self, view: RobotView, site: str, shape: Shape) -> Signature:
         """Two columns: about x and about y."""

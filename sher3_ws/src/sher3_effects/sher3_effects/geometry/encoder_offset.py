@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.channel import Array
 from sher3_diagnosis.effect import Best, Shape, Signature
 from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
-from sher3_effects.page import Page
+from sher3_effects.page import TIP_POSE, Page
 from sher3_effects.view import ArmView, RobotView
 
 
@@ -18,6 +18,7 @@ class EncoderOffset(Page):
 
     id, family, stage = "encoder_offset", "geometry", "mechanism"
     inputs = ("posture",)
+    seen_at = TIP_POSE
     breaks = "both_encoders"
     best = Best("postures", "well-spread postures separate geometric errors")
     explanation = (
@@ -28,10 +29,6 @@ class EncoderOffset(Page):
         "tool_offset": "constant in the tool frame",
         "link_length_error": "along the leg instead of along the rail",
     }
-
-    def channels(self, site: str) -> tuple[Channel, ...]:
-        """Return the tip, free and loaded."""
-        return (Channel("mechanism", "tip"), Channel("structure", "tip"))
 
     def signature(self, view: RobotView, site: str, shape: Shape) -> Signature:
         """One column: minus the axis' Jacobian column."""
@@ -55,10 +52,7 @@ class JointOffset(Page):
     units = {"offset": "rad"}
     on_axis = {"offset": "zero"}
     plain = True
-
-    def channels(self, site: str) -> tuple[Channel, ...]:
-        """Return the pose of the measured body."""
-        return (Channel(self.stage, "tip"),)
+    seen_at = (("", "tip"),)
 
     def signature(self, view: ArmView, site: str, shape: Shape) -> Signature:
         """Return one column: minus the turn of everything behind the joint, per rad."""

@@ -8,13 +8,13 @@ from dataclasses import dataclass
 
 import numpy as np
 from sher3_description import Robot
-from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.channel import Array
 from sher3_diagnosis.effect import Best, Shape, Signature
 from sher3_sim.effect import PlantEffect
 from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.geometry.drawing import metres, shift
-from sher3_effects.page import Page, Tolerated
+from sher3_effects.page import TIP_POSE, Page, Tolerated
 from sher3_effects.view import ArmView, RobotView
 
 
@@ -23,6 +23,7 @@ class LinkLengthError(Page):
 
     id, family, stage = "link_length_error", "geometry", "mechanism"
     inputs = ("posture",)
+    seen_at = TIP_POSE
     best = Best("postures", "well-spread postures separate geometric errors")
     places = ("leg",)
     explanation = (
@@ -35,10 +36,6 @@ class LinkLengthError(Page):
         "tool_offset": "turns with the tool",
     }
     units = {"length": "m"}
-
-    def channels(self, site: str) -> tuple[Channel, ...]:
-        """Return the tip, free and loaded."""
-        return (Channel("mechanism", "tip"), Channel("structure", "tip"))
 
     def shapes(self, views: Sequence[RobotView], site: str) -> list[Shape]:
         """Both links alike (0), or one longer than the other as well (1), which turns the platform."""
@@ -72,10 +69,7 @@ class JointPlace(Page):
     siblings = {"encoder_offset": "a turn about the joint's axis", "rail_tilt": "a turn across the joint's axis"}
     units = {"x": "m", "y": "m", "z": "m"}
     on_axis = {"x": "shift_x", "y": "shift_y", "z": "shift_z"}
-
-    def channels(self, site: str) -> tuple[Channel, ...]:
-        """Return the pose of the measured body."""
-        return (Channel(self.stage, "tip"),)
+    seen_at = (("", "tip"),)
 
     def signature(self, view: ArmView, site: str, shape: Shape) -> Signature:
         """Return three columns: shifts along the axes of the joint frame, per m."""

@@ -8,13 +8,13 @@ from dataclasses import dataclass
 
 import numpy as np
 from sher3_description import ACTUATORS, Robot
-from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.channel import Array
 from sher3_diagnosis.effect import Best, Shape, Signature
 from sher3_sim.effect import SLIDERS, PlantEffect
 from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.geometry.drawing import direction, metres, shift
-from sher3_effects.page import Page, Part, Tolerated, Values
+from sher3_effects.page import TIP_POSE, Page, Part, Tolerated, Values
 from sher3_effects.view import RobotView
 
 
@@ -23,6 +23,7 @@ class PlatformGeometryError(Page):
 
     id, family, stage = "platform_geometry_error", "geometry", "mechanism"
     inputs = ("posture",)
+    seen_at = TIP_POSE
     best = Best("postures", "well-spread postures separate geometric errors")
     places = ("leg", "tip")
     explanation = (
@@ -31,10 +32,6 @@ class PlatformGeometryError(Page):
     )
     siblings = {"link_length_error": "along the leg", "rail_tilt": "grows with the height of the slider"}
     units = {"x": "m", "y": "m", "difference": "m", "radius": "m"}
-
-    def channels(self, site: str) -> tuple[Channel, ...]:
-        """Return the tip, free and loaded."""
-        return (Channel("mechanism", "tip"), Channel("structure", "tip"))
 
     def shapes(self, views: Sequence[RobotView], site: str) -> list[Shape]:
         """Which of the leg's two balls: both (0), the first (1), the second (2), both but not quite alike (3)."""

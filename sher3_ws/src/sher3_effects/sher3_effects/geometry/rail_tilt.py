@@ -8,13 +8,13 @@ from dataclasses import dataclass
 
 import numpy as np
 from sher3_description import ACTUATORS, Robot
-from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.channel import Array
 from sher3_diagnosis.effect import Best, Shape, Signature
 from sher3_sim.effect import PlantEffect
 from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.geometry.drawing import radians, shift
-from sher3_effects.page import Page, Part, Tolerated, Values
+from sher3_effects.page import TIP_POSE, Page, Part, Tolerated, Values
 from sher3_effects.view import ArmView, RobotView
 
 
@@ -23,15 +23,12 @@ class RailTilt(Page):
 
     id, family, stage = "rail_tilt", "geometry", "mechanism"
     inputs = ("position", "posture")
+    seen_at = TIP_POSE
     best = Best("postures", "well-spread postures separate geometric errors")
     places = ("leg",)
     explanation = "A rail leans: the tip error grows in proportion to the height of that slider."
     siblings = {"base_tilt": "the whole robot leans", "platform_geometry_error": "does not grow with height"}
     units = {"x": "rad", "y": "rad"}
-
-    def channels(self, site: str) -> tuple[Channel, ...]:
-        """Return the tip, free and loaded."""
-        return (Channel("mechanism", "tip"), Channel("structure", "tip"))
 
     def signature(self, view: RobotView, site: str, shape: Shape) -> Signature:
         """Two columns: leaning along x and along y of the base."""
@@ -60,10 +57,7 @@ class JointTilt(Page):
     explanation = "The axis of one joint does not point where the drawing says."
     siblings = {"encoder_offset": "a turn about the joint's own axis", "link_length_error": "a shift, not a turn"}
     units = {"tilt_1": "rad", "tilt_2": "rad"}
-
-    def channels(self, site: str) -> tuple[Channel, ...]:
-        """Return the pose of the measured body."""
-        return (Channel(self.stage, "tip"),)
+    seen_at = (("", "tip"),)
 
     def signature(self, view: ArmView, site: str, shape: Shape) -> Signature:
         """Return two columns: turns about two directions across the axis, per rad."""

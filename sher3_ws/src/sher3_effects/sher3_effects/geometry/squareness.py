@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.channel import Array
 from sher3_diagnosis.effect import Best, Shape, Signature, column
 
 from sher3_effects.page import Page
@@ -20,10 +20,6 @@ class Squareness(Page):
     best = Best("postures", "circles in both directions separate geometry from lost motion")
     explanation = "The axes of a plane are not at right angles: a circle becomes an ellipse along the diagonals."
     siblings = {"lead_error": "an ellipse along the axes", "backlash": "a step at the poles"}
-
-    def channels(self, site: str) -> tuple[Channel, ...]:
-        """Return the radius of the plane."""
-        return (Channel(self.stage, site),)
 
     def signature(self, view: CircleView, site: str, shape: Shape) -> Signature:
         """Return one column: the change of the radius per rad beyond a right angle."""

@@ -8,14 +8,14 @@ from dataclasses import dataclass
 
 import numpy as np
 from sher3_description import Robot
-from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.channel import Array
 from sher3_diagnosis.effect import Best, Shape, Signature
 from sher3_sim.effect import PlantEffect
 from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.geometry.drawing import metres, shift
 from sher3_effects.geometry.encoder_offset import EncoderOffset
-from sher3_effects.page import Page, Part, Tolerated, Values
+from sher3_effects.page import TIP_POSE, Page, Part, Tolerated, Values
 from sher3_effects.view import RobotView
 
 
@@ -24,6 +24,7 @@ class TiltLinkageError(Page):
 
     id, family, stage = "tilt_linkage_error", "geometry", "mechanism"
     inputs = ("position", "posture")
+    seen_at = TIP_POSE
     best = Best("postures", "well-spread postures separate geometric errors")
     places = ("tilt",)
     explanation = (
@@ -36,10 +37,6 @@ class TiltLinkageError(Page):
     }
     units = {"length": "m", "member": "1"}
     MEMBERS = ("crank", "coupler", "offset")
-
-    def channels(self, site: str) -> tuple[Channel, ...]:
-        """Return the tip, free and loaded."""
-        return (Channel("mechanism", "tip"), Channel("structure", "tip"))
 
     def shapes(self, views: Sequence[RobotView], site: str) -> list[Shape]:
         """Which member (0 crank, 1 coupler, 2 offset), and where the slider's zero is.

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 from sher3_description import Robot
-from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.channel import Array
 from sher3_diagnosis.effect import Best, Shape, Signature
 from sher3_sim.effect import PlantEffect
 from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.geometry.drawing import metres, shift
-from sher3_effects.page import Page, Tolerated
+from sher3_effects.page import TIP_POSE, Page, Tolerated
 from sher3_effects.view import RobotView
 
 
@@ -22,6 +22,7 @@ class ToolOffset(Page):
 
     id, family, stage = "tool_offset", "geometry", "mechanism"
     inputs = ("posture",)
+    seen_at = TIP_POSE
     best = Best("postures", "well-spread postures separate geometric errors")
     places = ("tip",)
     explanation = (
@@ -33,10 +34,6 @@ class ToolOffset(Page):
         "base_tilt": "constant in the base, the orientation is off too",
     }
     units = {"x": "m", "y": "m", "z": "m"}
-
-    def channels(self, site: str) -> tuple[Channel, ...]:
-        """Return the tip, free and loaded."""
-        return (Channel("mechanism", "tip"), Channel("structure", "tip"))
 
     def signature(self, view: RobotView, site: str, shape: Shape) -> Signature:
         """Three columns: the axes of the tool frame."""

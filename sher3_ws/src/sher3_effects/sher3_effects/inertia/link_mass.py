@@ -34,10 +34,7 @@ class LinkMass(Page):
     units = {"relative": "1"}
     on_axis = {"relative": "link"}
     bounds: ClassVar[dict[str, tuple[float, float]]] = {"relative": (-1.0, np.inf)}
-
-    def channels(self, site: str) -> tuple[Channel, ...]:
-        """Return the link: which joints carry it only the view knows."""
-        return (Channel(self.stage, site),)
+    above = -1.0
 
     def signature(self, view: Any, site: str, shape: Shape) -> Signature:
         """Return one column on every joint that carries the link: the force that the link as modelled needs."""
@@ -47,7 +44,3 @@ class LinkMass(Page):
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Return the share by which mass and inertia are off."""
         return {"relative": float(coefficients[0])}
-
-    def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether some of the link is left."""
-        return bool(coefficients[0] > -1.0)

@@ -29,6 +29,8 @@ class PayloadMass(Page):
     places: ClassVar[tuple[str, ...]] = ("axis", "tip")
     explanation = "Extra mass: more force in proportion to acceleration, and more weight where the axis carries it."
     siblings = {"gravity_load": "weight without inertia", "torque_constant": "all forces are scaled"}
+    bounds = {"mass": (-np.inf, np.inf)}
+    """What is added to a stated mass may be less than nothing."""
 
     def channels(self, site: str) -> tuple[Channel, ...]:
         """A tip mass shows on every axis."""

@@ -14,6 +14,7 @@ class RotorInertia(Page):
 
     id, family, stage = "rotor_inertia", "inertia", "motor_mechanics"
     inputs = ("acceleration",)
+    above = 0.0
     kinds = ("joint",)
     shown_by = ("lost_motion", "compliance")  # a rotor that moves otherwise than its link is told from it
     best = Best("steps", "accelerations separate mass from weight")
@@ -36,7 +37,3 @@ class RotorInertia(Page):
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Return the inertia beyond that of the model."""
         return {"inertia": float(coefficients[0])}
-
-    def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether inertia is added."""
-        return bool(coefficients[0] > 0.0)

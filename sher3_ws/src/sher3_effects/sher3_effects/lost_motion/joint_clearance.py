@@ -7,14 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 from sher3_description.contract import GRAVITY
-from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.channel import Array
 from sher3_diagnosis.effect import Best, Shape, Signature
 from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 from sher3_sim.tip import CONTACT_FORCE
 
 from sher3_effects.operators import play
-from sher3_effects.page import Page
+from sher3_effects.page import TIP_POSE, Page
 from sher3_effects.view import RobotView
 
 REST_FORCE = 0.2
@@ -29,6 +29,7 @@ class JointClearance(Page):
 
     id, family, stage = "joint_clearance", "lost_motion", "mechanism"
     inputs = ("direction", "load", "posture")
+    seen_at = TIP_POSE
     best = Best("loads", "known loads at rest separate a fixed gap from a spring")
     leaves_out = "the elasticity of its contact"
     places = ("leg", "tilt")
@@ -47,10 +48,6 @@ class JointClearance(Page):
     finer = {"reach": (0.84, 1.19)}
     WIDEST = 2.0
     """Jump over the travel that crosses the gap beyond which it is no gap: a rigid one has 1, a soft one less."""
-
-    def channels(self, site: str) -> tuple[Channel, ...]:
-        """Return the tip, free and loaded."""
-        return (Channel("mechanism", "tip"), Channel("structure", "tip"))
 
     def shapes(self, views: Sequence[RobotView], site: str) -> list[Shape]:
         """What decides the side: 0 the direction of the slider, 1 the force on it, 2 that on each link of the leg.

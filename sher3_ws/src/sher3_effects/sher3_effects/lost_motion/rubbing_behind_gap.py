@@ -21,6 +21,7 @@ class RubbingBehindGap(Page):
 
     id, family, stage = "rubbing_behind_gap", "lost_motion", "motor_mechanics"
     inputs = ("direction",)
+    above = 0.0
     kinds, needs = ("axis",), ("drive",)
     dry = True
     extends = ("coulomb_friction", "presliding_friction")
@@ -73,7 +74,3 @@ class RubbingBehindGap(Page):
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Return the gap, the friction behind it, and the travel over which that builds up."""
         return {"width": shape["width"], "load_friction": float(coefficients[0]), "reach": shape["reach"]}
-
-    def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether what is behind the gap resists."""
-        return bool(coefficients[0] > 0.0)

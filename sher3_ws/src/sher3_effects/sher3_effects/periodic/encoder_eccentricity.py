@@ -21,15 +21,12 @@ class EncoderEccentricity(Page):
 
     id, family, stage = "encoder_eccentricity", "periodic", "sensing"
     inputs = ("position",)
+    seen_at = (("transmission", ""),)
     breaks = "load_encoder"
     best = Best("sweep", "constant speeds over several revolutions separate periods")
     leaves_out = "further harmonics"
     explanation = "The load encoder's reading swings once per lead while the load, and the tip, run smoothly."
     siblings = {"transmission_ripple": "the load itself moves, and the tip with it"}
-
-    def channels(self, site: str) -> tuple[Channel, ...]:
-        """Return the difference of the two encoders."""
-        return (Channel("transmission", site),)
 
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
         """Once per lead, alone (0) or with a second harmonic (2)."""

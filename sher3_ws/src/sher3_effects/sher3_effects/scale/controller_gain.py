@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.channel import Array
 from sher3_diagnosis.effect import Best, Shape, Signature, column
 from sher3_sim.effect import EVERYWHERE, PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
-from sher3_effects.page import Page
+from sher3_effects.page import NOWHERE, Page
 from sher3_effects.view import LawView
 
 
@@ -20,21 +20,21 @@ class ControllerGain(Page):
 
     id, family, stage = "controller_gain", "scale", "controller"
     inputs = ("command", "position")
+    seen_at, computed = NOWHERE, "relative"
     best = Best("sweep", "long constant-speed strokes separate ratios from offsets")
     explanation = (
         "The recorded commands are not what the host's law gives for the recorded inputs: its gain is another."
     )
     siblings = {"command_delay": "the command is right and arrives late"}
 
-    def channels(self, site: str) -> tuple[Channel, ...]:
-        """Return none: the exact stage is judged without residuals."""
-        return ()
-
 
 class GainOfLaw(ControllerGain):
     """command = (1 + relative) times the stated law, or times one of its parts."""
 
     kinds = ("law",)
+    seen_at = (("", ""),)
+    above = -1.0
+    """Relative change at which nothing of a gain is left: what answers the other way round is no gain."""
     discrete = frozenset({"part"})
     siblings = {
         "command_delay": "the command is right and arrives late",
@@ -43,12 +43,6 @@ class GainOfLaw(ControllerGain):
     explanation = "The recorded command is the stated law with another gain, of all of it or of one part."
     PARTS = ("position", "velocity", "integral")
     """Parts of a law, in the order of its columns."""
-    LEAST = -1.0
-    """Relative change at which nothing of a gain is left."""
-
-    def channels(self, site: str) -> tuple[Channel, ...]:
-        """Return the command less the law."""
-        return (Channel(self.stage, site),)
 
     def shapes(self, views: Sequence[LawView], site: str) -> list[Shape]:
         """Return all of the law (-1), or one of its parts where there are several."""
@@ -67,10 +61,6 @@ class GainOfLaw(ControllerGain):
         """Return the relative change, named after its part."""
         part = int(shape["part"])
         return {"relative" if part < 0 else f"{self.PARTS[part]}_relative": float(coefficients[0])}
-
-    def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether something of the gain is left: what answers the other way round is no gain."""
-        return bool(coefficients[0] > self.LEAST)
 
 
 @dataclass(frozen=True)

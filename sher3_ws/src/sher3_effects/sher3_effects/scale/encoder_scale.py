@@ -22,6 +22,7 @@ class EncoderScale(Page):
 
     id, family, stage = "encoder_scale", "scale", "sensing"
     inputs = ("position",)
+    seen_at = (("transmission", ""),)
     breaks = "load_encoder"
     best = Best("sweep", "long constant-speed strokes separate ratios from offsets")
     leaves_out = "how the error of the scale varies from one millimetre to the next"
@@ -30,10 +31,6 @@ class EncoderScale(Page):
         "that the load is where the motor says."
     )
     siblings = {"lead_error": "the tip follows the load encoder"}
-
-    def channels(self, site: str) -> tuple[Channel, ...]:
-        """Return the difference of the two encoders."""
-        return (Channel("transmission", site),)
 
     def bends(self, views: Sequence[RobotView], site: str, shape: Shape) -> list[Shape]:
         """Return the scale that varies along the travel."""

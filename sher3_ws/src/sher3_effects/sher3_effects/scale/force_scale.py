@@ -27,6 +27,8 @@ class ForceScale(Page):
     inputs = ("load",)
     breaks = "force_sensor"
     kinds = ("robot", "sensor")
+    seen_at = (("sensing", "force_sensor"),)
+    above = -1.0
     best = Best("sweep", "long constant-speed strokes separate ratios from offsets")
     places = ("force_sensor",)
     discrete = frozenset({"axis"})
@@ -35,10 +37,6 @@ class ForceScale(Page):
         "The force sensor's reading is off by a constant ratio: nothing without load, more the larger the load."
     )
     siblings = {"force_crosstalk": "a load on one axis shows on another", "force_bias": "does not depend on the load"}
-
-    def channels(self, site: str) -> tuple[Channel, ...]:
-        """Return the reading of the force sensor."""
-        return (Channel("sensing", "force_sensor"),)
 
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
         """Forces and moments (-1), forces only (-2), one component (0..5)."""
@@ -56,10 +54,6 @@ class ForceScale(Page):
         limit = (robot.tolerances.force_matrix, "1")
         return [Tolerated({"axis": float(i)}, {f"force sensor matrix, {n}": limit}) for i, n in enumerate(COMPONENTS)]
 
-    def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """A gain keeps its sign."""
-        return bool(coefficients[0] > -1.0)
-
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Ratio error and the axis it is of."""
         return {"relative": float(coefficients[0]), "axis": shape["axis"]}
@@ -70,6 +64,7 @@ class CellScale(Page):
 
     id, family, stage, best = ForceScale.id, ForceScale.family, ForceScale.stage, ForceScale.best
     kinds, places, inputs = ("cell",), ("load_cell",), ForceScale.inputs
+    above = -1.0
     units = {"relative": "1"}
     explanation = "The load cell reads too much or too little in proportion to the force."
     siblings = {
@@ -80,10 +75,6 @@ class CellScale(Page):
     def signature(self, view: CellView, site: str, shape: Shape) -> Signature:
         """Return one column: the known force."""
         return Signature({Channel(self.stage, site): column(view.applied)})
-
-    def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """A sensitivity keeps its sign."""
-        return bool(coefficients[0] > -1.0)
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Return the ratio error."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.channel import Array
 from sher3_diagnosis.effect import Best, Shape, Signature, column
 
 from sher3_effects.page import Page
@@ -20,10 +20,6 @@ class ScaleMismatch(Page):
     best = Best("postures", "circles in both directions separate geometry from lost motion")
     explanation = "One axis of a plane moves further than the other: a circle becomes an ellipse along the axes."
     siblings = {"rail_tilt": "an ellipse along the diagonals", "backlash": "a step at the poles"}
-
-    def channels(self, site: str) -> tuple[Channel, ...]:
-        """Return the radius of the plane."""
-        return (Channel(self.stage, site),)
 
     def signature(self, view: CircleView, site: str, shape: Shape) -> Signature:
         """Return one column: the change of the radius per unit of difference."""

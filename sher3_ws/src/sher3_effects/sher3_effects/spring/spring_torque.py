@@ -20,6 +20,7 @@ class SpringTorque(Page):
 
     id, family, stage = "spring_torque", "spring", "motor_mechanics"
     inputs = ("position",)
+    above = 0.0
     kinds: ClassVar[tuple[str, ...]] = ("joint",)
     best = Best("sweep", "long constant-speed strokes separate ratios from offsets")
     extends: ClassVar[tuple[str, ...]] = ("gravity_load",)
@@ -44,10 +45,6 @@ class SpringTorque(Page):
         """Return the stiffness, and the position at which the spring is relaxed."""
         stiffness, at_zero = map(float, coefficients)
         return {"stiffness": stiffness, "rest": -at_zero / stiffness if stiffness else 0.0}
-
-    def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether the spring pulls back."""
-        return bool(coefficients[0] > 0.0)
 
 
 class SpringOnAxis(SpringTorque):

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.effect import Best
 from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
-from sher3_effects.page import Page
+from sher3_effects.page import NOWHERE, Page
 
 
 class AxisSkew(Page):
@@ -17,13 +16,10 @@ class AxisSkew(Page):
 
     id, family, stage = "axis_skew", "timing", "transport"
     inputs = ("command",)
+    seen_at, computed = NOWHERE, "skew"
     best = Best("steps", "steps of several amplitudes show a dead time as an onset and a lag as a slope")
     explanation = "One drive acts later than the others by a constant: a straight line in space becomes a hook."
     siblings = {"drive_lag": "the echo is on time, the force is late"}
-
-    def channels(self, site: str) -> tuple[Channel, ...]:
-        """Return none: the exact stage is judged without residuals."""
-        return ()
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from sher3_diagnosis.effect import Best, Shape, Signature
 from sher3_sim.effect import EVERYWHERE, PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
-from sher3_effects.page import Page
+from sher3_effects.page import NOWHERE, Page
 from sher3_effects.view import AxisView, LawView
 
 
@@ -20,29 +20,23 @@ class CommandDelay(Page):
 
     id, family, stage = "command_delay", "timing", "transport"
     inputs = ("command",)
+    seen_at, computed = NOWHERE, "delay"
     best = Best("steps", "steps of several amplitudes show a dead time as an onset and a lag as a slope")
     explanation = "A constant dead time between the host's command and the drives' demand, the same on every axis."
     siblings = {"drive_lag": "the echo is on time, the force is late"}
-
-    def channels(self, site: str) -> tuple[Channel, ...]:
-        """Return none: the exact stage is judged without residuals."""
-        return ()
 
 
 class ServoDelay(CommandDelay):
     """A position servo that follows its reference a dead time late."""
 
     kinds = ("servo",)
+    seen_at = (("motor_mechanics", ""),)
     on_axis = {"delay": "delay"}
     explanation = "The axis follows its reference a fixed time late."
     siblings = {"drive_lag": "the reference is smoothed as well as late"}
     PERIODS = (0.25, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0)
     """Dead times that are tried, in periods of the record."""
     finer = {"delay": (0.8, 0.9, 0.95, 1.05, 1.1, 1.25)}
-
-    def channels(self, site: str) -> tuple[Channel, ...]:
-        """Return the tracking error of the servo."""
-        return (Channel("motor_mechanics", site),)
 
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
         """Return dead times, s."""
@@ -64,6 +58,7 @@ class DelayOfLaw(CommandDelay):
     """The recorded command is that of the stated law some time ago, or of the reference some time ago."""
 
     kinds = ("law",)
+    seen_at = (("controller", ""),)
     explanation = "The recorded command is the stated law's, or that for the reference, a fixed time late."
     siblings = {"controller_gain": "right in time, and too large or too small"}
     units = {"delay": "s", "reference_delay": "s"}
@@ -71,10 +66,6 @@ class DelayOfLaw(CommandDelay):
     PERIODS = (1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0)
     """Delays that are tried, in periods of the record: nobody states the moment of a command within one."""
     finer = {"delay": (0.85, 0.92, 0.97, 1.03, 1.08, 1.2)}
-
-    def channels(self, site: str) -> tuple[Channel, ...]:
-        """Return the command less the law."""
-        return (Channel("controller", site),)
 
     def stage_at(self, channel: Channel) -> str:
         """Return the controller."""

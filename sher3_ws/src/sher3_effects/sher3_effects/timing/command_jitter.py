@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.effect import Best
 from sher3_sim.effect import EVERYWHERE, PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
-from sher3_effects.page import Page
+from sher3_effects.page import NOWHERE, Page
 
 
 class CommandJitter(Page):
@@ -17,15 +16,12 @@ class CommandJitter(Page):
 
     id, family, stage = "command_jitter", "timing", "transport"
     inputs = ("command",)
+    seen_at, computed = NOWHERE, "sigma"
     best = Best("steps", "steps of several amplitudes show a dead time as an onset and a lag as a slope")
     explanation = (
         "The time a command takes varies from tick to tick; the drives hold the old one a little longer or shorter."
     )
     siblings = {"drive_lag": "the echo is on time, the force is late"}
-
-    def channels(self, site: str) -> tuple[Channel, ...]:
-        """Return none: the exact stage is judged without residuals."""
-        return ()
 
 
 @dataclass(frozen=True)

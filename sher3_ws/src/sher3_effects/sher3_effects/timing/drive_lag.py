@@ -93,6 +93,7 @@ class ServoLag(DriveLag):
     """
 
     kinds = ("servo",)
+    seen_at = (("motor_mechanics", ""),)
     plain = True
     on_axis = {"time_constant": "lag"}
     explanation = "The axis follows its reference late, like a filter of first order, or of second with a damping."
@@ -115,10 +116,6 @@ class ServoLag(DriveLag):
         "damping": (0.8, 0.9, 1.1),
         "delay": (0.7, 0.85, 1.2, 1.4),
     }
-
-    def channels(self, site: str) -> tuple[Channel, ...]:
-        """Return the tracking error of the servo."""
-        return (Channel("motor_mechanics", site),)
 
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
         """Return time constants, s, and for a filter of second order its damping."""

@@ -22,6 +22,7 @@ class SensorDelay(Page):
     id, family, stage = "sensor_delay", "timing", "sensing"
     inputs = ("velocity", "force")
     kinds = ("axis", "servo")
+    seen_at = (("transmission", ""), ("motor_mechanics", ""))
     best = Best("sweep", "several speeds tell a lag in time from one in travel")
     explanation = (
         "One reading comes a fixed time after the others: two encoders differ in proportion to the speed, whatever the "
@@ -47,10 +48,6 @@ class SensorDelay(Page):
     """The same in periods of the cut-off: what a noisy encoder does to the moment of a reversal."""
     LONGEST = 0.25
     """Delay, s, beyond which two recordings are not of the same moment at all."""
-
-    def channels(self, site: str) -> tuple[Channel, ...]:
-        """Return the difference of the encoders, and the force balance."""
-        return (Channel("transmission", site), Channel("motor_mechanics", site))
 
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
         """Return delays of the load encoder (0) and of the effort (1), s, and the least that is one."""

@@ -23,14 +23,11 @@ class ForceBias(Page):
     id, family, stage = "force_bias", "wrench", "sensing"
     breaks = "force_sensor"
     kinds = ("robot", "sensor")
+    seen_at = (("sensing", "force_sensor"),)
     best = Best("loads", "known loads in several orientations separate bias, weight and cross-talk")
     places = ("force_sensor",)
     explanation = "The force sensor is off by a constant in its own frame, in every pose and under every load."
     siblings = {"tool_gravity": "turns with roll and tilt", "force_drift": "grows with temperature"}
-
-    def channels(self, site: str) -> tuple[Channel, ...]:
-        """Return the reading of the force sensor."""
-        return (Channel("sensing", "force_sensor"),)
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
         """Six columns of ones."""

@@ -23,6 +23,7 @@ class ForceCrosstalk(Page):
     id, family, stage = "force_crosstalk", "wrench", "sensing"
     kinds: ClassVar[tuple[str, ...]] = ("robot",)
     inputs = ("load",)
+    seen_at = (("sensing", "force_sensor"),)
     breaks = "force_sensor"
     best = Best("loads", "known loads in several orientations separate bias, weight and cross-talk")
     places = ("force_sensor",)
@@ -36,10 +37,6 @@ class ForceCrosstalk(Page):
     EVERY = FORCES + tuple((j, i) for j in range(6) for i in range(6) if i != j and max(i, j) > 2)
     """Pairs (source, target) of forces, then those with moments."""
     units = {"coefficient": "1", "source": "1", "target": "1", **dict.fromkeys(PAIRS, "1")}
-
-    def channels(self, site: str) -> tuple[Channel, ...]:
-        """Return the reading of the force sensor."""
-        return (Channel("sensing", "force_sensor"),)
 
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
         """A pair (source, target), every pair of forces (-1), or every pair of forces and moments (-2)."""

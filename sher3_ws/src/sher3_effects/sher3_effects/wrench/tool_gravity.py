@@ -22,6 +22,7 @@ class ToolGravity(Page):
 
     id, family, stage = "tool_gravity", "wrench", "sensing"
     inputs = ("posture",)
+    seen_at = (("sensing", "force_sensor"),)
     breaks = "force_sensor"
     best = Best("loads", "known loads in several orientations separate bias, weight and cross-talk")
     places = ("force_sensor",)
@@ -30,10 +31,6 @@ class ToolGravity(Page):
     )
     siblings = {"force_bias": "does not turn", "cable_drag": "turns, but lags behind the motion"}
     units = {"com_x": "kg*m", "com_y": "kg*m", "com_z": "kg*m"}
-
-    def channels(self, site: str) -> tuple[Channel, ...]:
-        """Return the reading of the force sensor."""
-        return (Channel("sensing", "force_sensor"),)
 
     def shapes(self, views: Sequence[RobotView], site: str) -> list[Shape]:
         """At the nominal centre of mass, or with a first moment of its own."""

@@ -10,10 +10,9 @@ from sher3_diagnosis.channel import Array
 from sher3_diagnosis.finding import ExactFinding
 from sher3_diagnosis.thresholds import REPRODUCED, SAME_GAIN
 from sher3_diagnosis.verdict import Cause, Parameter
-from sher3_effects.scale.controller_gain import ControllerGain
 
 from sher3_gap.signals import RunSignals
-from sher3_gap.stages.exact.findings import exact_cause, exact_finding, exact_place
+from sher3_gap.stages.exact.findings import computed_cause, exact_finding, exact_place, page_of
 from sher3_gap.stages.exact.law import EXACT, controller_error, host_law
 
 NOT_CLAMPED = 0.999
@@ -34,7 +33,7 @@ def controller_finding(runs: Sequence[RunSignals], robot: Robot, without: Collec
         return None
     gains = {i: gain_error(judged, robot, i) for i in bad}
     closure = 1.0 - float(_left(judged, robot, gains)[bad].sum() / energy[bad].sum())
-    causes = _causes(gains, closure) if closure > REPRODUCED and ControllerGain.id not in without else []
+    causes = _causes(gains, closure) if closure > REPRODUCED and page_of("relative").id not in without else []
     gap = float(np.median(top) * np.sqrt(energy[bad].mean() / samples))
     where = exact_place("controller", _site(bad), gap, EXACT * float(np.median(top)), "position modes")
     return exact_finding(where, causes, closure if causes else 0.0)
@@ -62,7 +61,7 @@ def _causes(gains: Mapping[int, float], closure: float) -> list[Cause]:
     mean = float(values.mean())
     alike = np.ptp(values) < SAME_GAIN[0] + SAME_GAIN[1] * abs(mean)
     sites = [(_site(list(gains)), mean)] if alike or len(gains) == 1 else [(ACTUATORS[i], d) for i, d in gains.items()]
-    return [exact_cause(ControllerGain.id, site, closure, relative=_relative(value)) for site, value in sites]
+    return [computed_cause("relative", _relative(value), site, closure) for site, value in sites]
 
 
 def _relative(value: float) -> Parameter:

@@ -46,4 +46,4 @@ def _cause(page: FoundPage, site: str, best: Fit, closure: float) -> Cause:
     for name, value in page.parameters(term.shape, best.of(last)).items():
         low, high = (value - wide[name], value + wide[name]) if name in wide else (None, None)
         found[name] = Parameter(value=value, low=low, high=high, unit=page.unit(name, site, False))
-    return exact_cause(page.id, site, closure, **found)
+    return exact_cause(page, site, closure, **found)

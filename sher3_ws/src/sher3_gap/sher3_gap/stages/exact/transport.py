@@ -10,13 +10,9 @@ from sher3_diagnosis.channel import Array
 from sher3_diagnosis.finding import ExactFinding
 from sher3_diagnosis.thresholds import SKEW
 from sher3_diagnosis.verdict import Cause, Parameter
-from sher3_effects.timing.axis_skew import AxisSkew
-from sher3_effects.timing.command_delay import CommandDelay
-from sher3_effects.timing.command_jitter import CommandJitter
-from sher3_effects.timing.dropped_commands import DroppedCommands
 
 from sher3_gap.signals import RunSignals
-from sher3_gap.stages.exact.findings import exact_cause, exact_finding, exact_place
+from sher3_gap.stages.exact.findings import computed_cause, exact_finding, exact_place, page_of
 from sher3_gap.stages.exact.lateness import Lateness, delayed, dropping, held_beside_jitter, jittering
 from sher3_gap.stages.exact.law import EXACT, ROUNDING
 from sher3_gap.stages.exact.timing import Timing
@@ -60,14 +56,14 @@ def _constant_causes(late: Lateness, without: Collection[str]) -> tuple[list[Cau
     """Causes that make every command of an axis late by the same time, and their closure."""
     causes: list[Cause] = []
     closure = 0.0
-    if delayed(late) and CommandDelay.id not in without:
+    if delayed(late) and page_of("delay").id not in without:
         closure = late.constant
-        causes.append(exact_cause(CommandDelay.id, "all", late.constant, delay=late.seconds(late.held)))
-    if late.odd and (late.constant > late.random_share or dropping(late)) and AxisSkew.id not in without:
+        causes.append(computed_cause("delay", late.seconds(late.held), "all", late.constant))
+    if late.odd and (late.constant > late.random_share or dropping(late)) and page_of("skew").id not in without:
         closure = max(closure, late.constant)
         for i in late.odd:
             skew = late.seconds(late.timing.latency[i] - late.usual)
-            causes.append(exact_cause(AxisSkew.id, ACTUATORS[i], late.constant, skew=skew))
+            causes.append(computed_cause("skew", skew, ACTUATORS[i], late.constant))
     return causes, closure
 
 
@@ -80,14 +76,14 @@ def _random_causes(late: Lateness) -> list[Cause]:
     if held_beside_jitter(late):
         squares = float(np.sum(late.rest**2)) / float(np.sum(t.samples**2))
         return [
-            exact_cause(DroppedCommands.id, late.site, (1.0 - squares) * late.per_tick, probability=_probability(t)),
-            exact_cause(CommandJitter.id, late.site, squares * late.per_tick, sigma=_sigma(late, late.rest)),
+            computed_cause("probability", _probability(t), late.site, (1.0 - squares) * late.per_tick),
+            computed_cause("sigma", _sigma(late, late.rest), late.site, squares * late.per_tick),
         ]
     if dropping(late):
-        return [exact_cause(DroppedCommands.id, late.site, late.per_tick, probability=_probability(t))]
+        return [computed_cause("probability", _probability(t), late.site, late.per_tick)]
     if jittering(late):
         share = late.per_tick if late.jittery else late.random_share
-        return [exact_cause(CommandJitter.id, late.site, share, sigma=_sigma(late, t.samples))]
+        return [computed_cause("sigma", _sigma(late, t.samples), late.site, share)]
     return []
 
 
