@@ -81,12 +81,12 @@ def _scaled(term: Term, coefficients: Array, factor: float) -> dict[str, float]:
 
 
 def impossible(evidence: Evidence, term: Term, cause: Cause) -> bool:
-    """Return whether an end of an interval lies where no value can."""
+    """Return whether an end of an interval lies where no value can; a gap is not negative unless its page says so."""
     limits = dict(term.effect.limits(term.shape))
     if term.effect.family == LOST:
         travel = _travel(evidence, term.site)
         wide = [n for n in cause.parameters if term.effect.units.get(n) == "m"]
-        limits |= {n: (max(0.0, limits.get(n, (0.0, travel))[0]), travel) for n in wide}
+        limits |= {n: (limits.get(n, (0.0, travel))[0], travel) for n in wide}
     return any(_outside(cause.parameters[n], *limit) for n, limit in limits.items() if n in cause.parameters)
 
 

@@ -209,6 +209,7 @@ class TableReversal(Page):
     explanation = "The table stops at another place when it comes from the other side."
     siblings = {"transmission_hysteresis": "the lag builds up over a stroke much longer than itself"}
     units = {"width": "m"}
+    bounds: ClassVar[Mapping[str, tuple[float, float]]] = {"width": (-np.inf, np.inf)}
 
     def shapes(self, views: Sequence[Any], site: str) -> list[Shape]:
         """Return one shape, where the targets were reached from both sides."""

@@ -73,6 +73,40 @@ def test_each_error_is_found_with_its_size(errors, effect, parameter, value):
     assert found(verdict)[effect][parameter] == pytest.approx(value, rel=0.15)
 
 
+def test_a_mirrored_table_has_the_same_causes_with_the_other_sign():
+    """Overshoot instead of lost motion: many controllers take off more than the gap, and some references count back."""
+    errors = {"scale": 40e-6, "reversal": 6e-6, "drift": 5e-6}
+    for seed in range(3):
+        data = table(**errors, seed=seed)
+        mirrored = {**data, "reading": 2.0 * data["target"] - data["reading"]}
+        one, other = found(verdict_of(data)), found(verdict_of(mirrored))
+        assert set(one) == set(other) == {"lead_error", "backlash", "position_drift"}
+        for effect, values in one.items():
+            assert [-x for x in values.values()] == pytest.approx(list(other[effect].values()), rel=1e-6)
+
+
+def test_a_bent_guide_is_a_map_and_no_lead_error():
+    """Its line through the ends has a slope of its own, which no lead has: the map departs from the best line."""
+    for seed in range(5):
+        data = table(seed=seed)
+        bent = 40e-6 * np.random.default_rng(seed).normal(size=len(TARGETS)).cumsum() / len(TARGETS)
+        bent -= np.polyval(np.polyfit(TARGETS, bent, 1), TARGETS)
+        data["reading"] = data["reading"] + np.interp(data["target"], TARGETS, bent)
+        causes = found(verdict_of(data))
+        assert list(causes) == ["position_error_map"]
+        assert causes["position_error_map"]["range"] == pytest.approx(np.ptp(bent), abs=1.5e-6)
+
+
+def test_a_drift_that_settles_is_a_drift():
+    data = table()
+    settling = 12e-6 * -np.expm1(-np.linspace(0.0, 5.0, len(data["target"])))
+    data["reading"] = data["reading"] + settling
+    (cause,) = verdict_of(data).causes
+    assert cause.effect == "position_drift"
+    assert cause.parameters["over_test"].value == pytest.approx(12e-6, rel=0.05)
+    assert cause.parameters["settling"].value == pytest.approx(0.2, rel=0.15)
+
+
 def test_a_screw_grows_from_its_fixed_bearing():
     """Held at 0: the middle of the travel wanders too, which is no drift of its own. Targets count from the middle."""
     data = table(growth=11e-6)
