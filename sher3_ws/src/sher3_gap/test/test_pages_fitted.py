@@ -100,3 +100,15 @@ def test_a_vibration_in_one_direction_is_one_mode_and_polished():
 def test_a_force_limit_is_found_whether_it_shows_between_ticks_or_at_them(limit):
     """A demand that steps lifts the force at once; below 5 N it has left the limit again when it is reported."""
     assert polished_on_steps("force_saturation", "tilt", limit=limit)["limit"] == pytest.approx(limit, rel=0.08)
+
+
+def test_a_load_that_swings_on_its_transmission_is_told_by_mass_spring_and_frequency():
+    """Three tenths of the roll's mass on 278 N m/rad swing at 34.25 Hz against the motor, which feels the spring.
+
+    Forces are held over a tick in the simulator, which the law takes for 0.02 more of damping.
+    """
+    truth = {"compliance": 3.6e-3, "load_share": 0.3, "frequency": 34.25}
+    found = polished_on_steps("transmission_compliance", "roll", **truth, damping=0.05)
+    for name, value in truth.items():
+        assert found[name] == pytest.approx(value, rel=0.05), found
+    assert found["damping"] == pytest.approx(0.05, abs=0.03)

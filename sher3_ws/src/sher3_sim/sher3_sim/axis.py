@@ -41,6 +41,7 @@ AXIS_STATE = np.dtype(
     [
         *((name, "f8") for name in ("position", "velocity", "integral", "force", "demand", "echo")),
         *((name, "f8") for name in ("bristle", "cable", "base", "hysteresis", "load", "effort_load")),
+        *((name, "f8") for name in ("given", "giving", "pace")),
         ("disturbance", "f8"),
         ("found_inputs", "f8", len(AXIS_QUANTITIES)),
         ("found_last", "f8", (AXIS_TERMS, MOST_FACTORS)),

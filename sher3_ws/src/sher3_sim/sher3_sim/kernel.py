@@ -17,7 +17,7 @@ from sher3_sim.found import BODY_QUANTITIES, BODY_TERMS, SENSOR, add_body
 from sher3_sim.looking import asked, begin_at_rest, look_at_axes, sent
 from sher3_sim.noise import DISTURBANCE, DROP, EFFORT, FORCE, JITTER, TRACKER, normal, uniform
 from sher3_sim.tip import cross, quaternion, true_tip
-from sher3_sim.transmission import encode_load, place, to_count, transmit
+from sher3_sim.transmission import encode_load, felt, place, to_count, transmit
 
 Array = np.ndarray
 
@@ -226,7 +226,7 @@ def step(
             kept = math.exp(-b.period / a.disturbance_time)
             fresh = math.sqrt(1.0 - kept * kept) * a.disturbance * normal(s.seed, DISTURBANCE + i, s.tick)
             x.disturbance = kept * x.disturbance + fresh
-        advance(a, x, maps[i], s.load[i] + x.disturbance, s.tick * b.period, b.period, substeps)
+        advance(a, x, maps[i], felt(a, x, s.load[i], b.period) + x.disturbance, s.tick * b.period, b.period, substeps)
         transmit(a, x, s.load[i], b.period)
     s.tick += 1
     read_sensors(axis, b, p, state, s, r)

@@ -40,6 +40,8 @@ AXIS = np.dtype(
         *((name, "f8") for name in ("lead_error", "ripple_amplitude", "ripple_periods", "ripple_phase")),
         *((name, "f8") for name in ("ripple_base_amplitude", "ripple_base_phase")),
         *((name, "f8") for name in ("backlash", "hysteresis", "hysteresis_displacement", "compliance")),
+        # load behind the compliance: its mass [kg], and how it swings [Hz, 1]; 0 Hz: too fast to be seen
+        *((name, "f8") for name in ("load_mass", "swing_frequency", "swing_damping")),
         # mechanism: clearance of the leg's joints [m], growth of the slide [1/K]
         *((name, "f8") for name in ("clearance", "expansion")),
         # run-to-run: start against q_ref(0), random force [N] and its correlation time [s]

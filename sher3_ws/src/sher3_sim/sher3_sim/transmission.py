@@ -1,7 +1,7 @@
 """From motor to load and from both to their encoder readings, one axis, at the ticks (compiled).
 
-Nothing here needs integration. Lead error, ripple and compliance are functions of motor position and load. Hysteresis
-and play depend only on the path, which is monotone within a tick.
+Nothing here needs integration. Lead error and ripple are functions of motor position. A compliance follows the load and
+what its mass needs, held over a tick. Hysteresis and play depend only on the path, which is monotone within a tick.
 """
 
 from __future__ import annotations
@@ -11,15 +11,16 @@ from typing import Any
 
 import numpy as np
 from sher3_common.compiled import compiled
+from sher3_common.laws import swing_map
 
 from sher3_sim.axis import TWO_PI, bristle_step
 from sher3_sim.found import POSITION, TRANSMISSION, VELOCITY, total
 
 
 @compiled
-def elastic_output(a: Any, motor: float, load: float) -> float:
-    """Return the position [m or rad] behind lead error, ripple and compliance, before lost motion."""
-    out = motor * (1.0 + a.lead_error) - a.compliance * load
+def geared(a: Any, motor: float) -> float:
+    """Return the position [m or rad] behind lead error and ripple."""
+    out = motor * (1.0 + a.lead_error)
     if a.ripple_amplitude != 0.0 or a.ripple_base_amplitude != 0.0:
         out += a.ripple_amplitude * math.sin(TWO_PI * a.ripple_periods * motor / a.lead + a.ripple_phase)
         out += a.ripple_base_amplitude * math.sin(TWO_PI * motor / a.lead + a.ripple_base_phase)
@@ -27,9 +28,35 @@ def elastic_output(a: Any, motor: float, load: float) -> float:
 
 
 @compiled
+def give_way(a: Any, s: Any, load: float, period: float) -> float:
+    """Advance the spring of the transmission by a tick and return how far it gives [m or rad].
+
+    It carries weight and contact, and what the load's mass needs to follow the motor; on a slow spring that mass
+    swings: d'' + 2 z w d' + w^2 d = w^2 compliance force.
+    """
+    wanted = a.compliance * (load + a.load_mass * (s.velocity - s.pace) / period)
+    s.pace = s.velocity
+    if a.swing_frequency == 0.0:
+        s.given = wanted
+        return wanted
+    a11, a12, a21, a22 = swing_map(a.swing_frequency, a.swing_damping, period)
+    off = s.given - wanted
+    s.given, s.giving = wanted + a11 * off + a12 * s.giving, a21 * off + a22 * s.giving
+    return s.given
+
+
+@compiled
+def felt(a: Any, s: Any, load: float, period: float) -> float:
+    """Return the force [N or N m] that the motor feels of its load: where that swings, of the spring in mid-tick."""
+    if a.swing_frequency == 0.0 or a.compliance == 0.0:
+        return load
+    return (s.given + 0.5 * period * s.giving) / a.compliance
+
+
+@compiled
 def transmit(a: Any, s: Any, load: float, period: float) -> None:
     """Move the load with the motor: hysteresis is a bristle and backlash a play; both depend on the path so far."""
-    base = elastic_output(a, s.position, load)
+    base = geared(a, s.position) - give_way(a, s, load, period)
     if a.found_any:
         s.found_inputs[POSITION], s.found_inputs[VELOCITY] = s.position, s.velocity
         base += total(a.found, TRANSMISSION, s.found_inputs, s.found_last, s.found_memory, period)
@@ -72,12 +99,12 @@ def place(a: Any, s: Any, reading: float) -> None:
     flank = 0.0
     if a.backlash > 0.0:
         flank = math.copysign(0.5 * a.backlash, s.effort_load)
-    motor = load
+    motor, give = load, a.compliance * s.effort_load
     for _ in range(30):
-        motor += load + flank - elastic_output(a, motor, s.effort_load)
+        motor += load + flank + give - geared(a, motor)
     s.position, s.load = motor, load
-    s.base = elastic_output(a, motor, s.effort_load)
-    s.velocity = 0.0
+    s.base = geared(a, motor) - give
+    s.velocity, s.pace, s.given, s.giving = 0.0, 0.0, give, 0.0
 
 
 @compiled
@@ -94,8 +121,10 @@ def follow(a: Any, s: Any, motor: Any, load: Any, period: float) -> Any:
     out = np.empty(len(motor))
     for k in range(len(motor)):
         s.position = motor[k]
+        s.velocity = (motor[k] - motor[k - 1]) / period if k else 0.0
         if k == 0:
-            s.base = elastic_output(a, motor[0], load[0])
+            s.given = a.compliance * load[0]
+            s.base = geared(a, motor[0]) - s.given
             s.load = s.base - math.copysign(0.5 * a.backlash, load[0])
         transmit(a, s, load[k], period)
         out[k] = encode_load(a, s.load)

@@ -18,6 +18,10 @@ from sher3_effects.view import AxisView
 
 SLOPES = {"stiffness": "N/m", "compliance": "m/N", "knee": "N", "stiffness_beyond": "N/m"}
 """Units of a spring of two slopes."""
+MOST_DAMPED = 0.95
+"""Damping beyond which nothing rings."""
+PLANT_NAMES = {"load_mass": "load_share", "frequency": "frequency", "damping": "damping"}
+"""Part of the shape -> parameter of the plant that it is."""
 
 
 class TransmissionCompliance(Page):
@@ -39,6 +43,7 @@ class TransmissionCompliance(Page):
     }
     units = {"stiffness": "N/m"}
     on_axis = {"compliance": "compliance"}
+    polished = ("load_mass", "frequency", "damping")
 
     FREQUENCIES = (8.0, 11.0, 14.0, 17.0, 20.0, 24.0, 28.0, 34.0, 40.0, 50.0)
 
@@ -60,28 +65,42 @@ class TransmissionCompliance(Page):
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
         """One column: minus the force on the spring, ringing; the motor feels the load's mass move against it."""
-        run, force = view.run, needed(view, site, shape["load_mass"])[:, None]
+        run = view.run
         mass = shape["load_mass"] * view.axis(site).mass
         if not shape["frequency"]:
-            return Signature({Channel(self.stage, site): column(-run.to_grid(force[:, 0]))})
-        bend = oscillator(force, shape["frequency"], shape["damping"], run.period)[:, 0]
+            return Signature({Channel(self.stage, site): column(-run.to_grid(needed(view, site, shape["load_mass"])))})
+        force = (weighed(view, site) + mass * held(run.acceleration[:, view.row(site)]))[:, None]
+        bend = oscillator(force, shape["frequency"], min(shape["damping"], MOST_DAMPED), run.period)[:, 0]
         back = mass * np.gradient(np.gradient(bend, run.period), run.period)
         motor = Channel("motor_mechanics", site)
         return Signature({Channel(self.stage, site): column(-run.to_grid(bend)), motor: column(-run.to_grid(back))})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Stiffness and its inverse."""
+        """Stiffness and its inverse; the share of the axis' mass that the spring carries, and how it swings."""
         c = float(coefficients[0])
-        return {"stiffness": 1.0 / c if c else 0.0, "compliance": c}
+        carried = {PLANT_NAMES[k]: float(shape[k]) for k in PLANT_NAMES if shape.get(k)}
+        return {"stiffness": 1.0 / c if c else 0.0, "compliance": c, **carried}
 
 
 def needed(view: AxisView, site: str, share: float) -> Array:
     """Return the force (n,) that a load needs: weight, known loads, and a share of the axis' mass that it moves."""
-    axis, run = view.row(site), view.run
-    clock = run.stage_clock
-    pull = np.interp(clock, clock[run.grid], view.path.gravity[:, axis] - view.path.contact_force[:, axis])
-    mass = share * view.axis(site).mass
-    return np.asarray(pull + mass * np.gradient(run.velocity[:, axis], run.period))
+    mass, velocity = share * view.axis(site).mass, view.run.velocity[:, view.row(site)]
+    return weighed(view, site) + mass * np.gradient(velocity, view.run.period)
+
+
+def weighed(view: AxisView, site: str) -> Array:
+    """Return weight and known loads (n,) on an axis."""
+    axis, clock = view.row(site), view.run.stage_clock
+    return np.interp(clock, clock[view.run.grid], view.path.gravity[:, axis] - view.path.contact_force[:, axis])
+
+
+def held(acceleration: Array) -> Array:
+    """Return the mean over the tick to come (n,) of an acceleration read at the ticks.
+
+    A swing is driven by what the motor does, not by what is left of it behind a filter: one that is late by a tick, or
+    smaller, is taken for another frequency.
+    """
+    return 0.5 * (acceleration + np.append(acceleration[1:], acceleration[-1]))
 
 
 class ComplianceOnAxis(TransmissionCompliance):
@@ -98,8 +117,6 @@ class ComplianceOnAxis(TransmissionCompliance):
     bent_from = BENT_FROM
     DAMPINGS = (0.03, 0.1, 0.3)
     """Of a load that rings behind the motor, whose mass and spring nobody knows."""
-    MOST_DAMPED = 0.95
-    """Damping beyond which nothing rings."""
     OF_LOAD = 2.0
     """Value of the shape `recorded` for the force that the mass of the load needs."""
 
@@ -151,7 +168,7 @@ class ComplianceOnAxis(TransmissionCompliance):
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
         """Return whether it is a spring whose load resists."""
         if "ringing" in shape:
-            return shape["damping"] < self.MOST_DAMPED
+            return shape["damping"] < MOST_DAMPED
         if "knee" in shape:
             return bool((coefficients[:2] > 0.0).all() and is_told(shape))
         return bool(coefficients[0] > 0.0 and (coefficients[1:] >= 0.0).all())
@@ -162,7 +179,7 @@ class ComplianceOnAxis(TransmissionCompliance):
         if "ringing" in shape:
             pace = 2.0 * np.pi * shape["frequency"]
             shaken = np.gradient(run.velocity[:, [row]], run.period, axis=0) / pace**2
-            swing = oscillator(-shaken, shape["frequency"], min(shape["damping"], self.MOST_DAMPED), run.period)
+            swing = oscillator(-shaken, shape["frequency"], min(shape["damping"], MOST_DAMPED), run.period)
             return Signature({}, {Channel(self.stage, site): run.to_grid(swing)})
         if not shape.get("recorded") and "knee" not in shape:
             return super().signature(view, site, shape)
@@ -227,10 +244,20 @@ class ComplianceOfJoint(TransmissionCompliance):
 
 @dataclass(frozen=True)
 class TransmissionComplianceInPlant(PlantEffect, page=TransmissionCompliance):
-    """Screw, bearing or flexspline give way under the load they carry, weight and contact; too stiff to swing."""
+    """Screw, bearing or flexspline give way under what they carry: weight, contact, and the inertia of the load."""
 
     compliance: float = parameter("m/N", 1e-6, 0.0, 1e-4, "displacement of the load per force it carries")
+    load_share: float = parameter("1", 0.0, 0.0, 0.95, "share of the axis' mass that the spring carries")
+    frequency: float = parameter(
+        "Hz", 0.0, 0.0, 100.0, "at which that mass swings; 0 where it swings too fast to be seen"
+    )
+    damping: float = parameter("1", 0.1, 0.0, 0.95, "share of critical damping of the swing")
 
     def apply(self, p: PlantParameters) -> None:
-        """Soften the transmission."""
-        p.axis["compliance"][self.rows] += self.compliance
+        """Soften the transmission and put a part of the mass behind it."""
+        axis, rows = p.axis, self.rows
+        axis["compliance"][rows] += self.compliance
+        axis["load_mass"][rows] = self.load_share * axis["mass"][rows]
+        axis["swing_frequency"][rows], axis["swing_damping"][rows] = self.frequency, self.damping
+        if self.frequency:  # the spring is what the motor feels of it
+            axis["mass"][rows] -= axis["load_mass"][rows]
