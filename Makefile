@@ -1,7 +1,13 @@
 # Every target does its own set-up: a virtual environment with the pinned dependencies and this project in it.
 VENV ?= .venv
 BIN := $(VENV)/bin
+INSTALLED := $(VENV)/.installed
 READY := $(VENV)/.ready
+
+# Two targets at a time: kernels are compiled beside typed messages and the checks of `make lint`.
+MAKEFLAGS += --jobs=2
+# Byte code is kept: the sources are parsed once, not at each start of a command or a worker of the tests.
+export PYTHONDONTWRITEBYTECODE =
 
 .PHONY: demo test test-slow docs bench bench-all lint setup messages clean
 
@@ -17,7 +23,7 @@ test: $(READY) lint  ## lint, types and every test but the slow ones
 test-slow: $(READY)  ## colcon build and test of the workspace, a sealed challenge end to end
 	$(BIN)/pytest -m slow
 
-lint: $(READY)
+lint: $(INSTALLED)
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy $(wildcard sher3_ws/src/sher3_*/sher3_*)
@@ -34,17 +40,28 @@ bench-all: $(READY)  ## everything that any page quotes a speed of: hours
 
 setup: $(READY)
 
-messages: $(READY)  ## typed messages once more, where the set-up could not build them; needs a C compiler
+messages: $(INSTALLED)  ## typed messages once more, where the set-up could not build them; needs a C compiler
 	tools/build-messages $(VENV)
 
 # No download address here or in requirements.txt: pip's own configuration says where from; the hashes say what.
-$(READY): requirements.txt pyproject.toml tools/find-python
+# `requirements.txt` names everything there is to install, so pip need not look for more; byte code is made by two.
+$(INSTALLED): requirements.txt pyproject.toml tools/find-python
 	test -x $(BIN)/python || "$$(tools/find-python)" -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements.txt
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile --no-deps --require-hashes -r requirements.txt
+	-$(BIN)/python -m compileall -qq -j 2 $(VENV)/lib
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation -e .
+	touch $@
+
+$(VENV)/.kernels: $(INSTALLED)
 	$(BIN)/python -m sher3_bringup.processes.warm
 	$(BIN)/python -m sher3_gap_cli.warm
+	touch $@
+
+$(VENV)/.messages: $(INSTALLED)
 	tools/build-messages $(VENV) || echo "live topics of these types are left out; everything else works"
+	touch $@
+
+$(READY): $(VENV)/.kernels $(VENV)/.messages
 	touch $@
 
 clean:

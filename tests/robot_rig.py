@@ -16,4 +16,4 @@ class RobotRig(SteppedRobot):
     def play(self, script: Script) -> None:
         """Let a scripted surgeon play a script to its end."""
         self.graph.add(script_node, script)
-        self.graph.step(round(script.duration / ROBOT.control_period))
+        self.graph.step(round(script.duration * 1e9 / self.graph.clock.period_ns))

@@ -13,8 +13,9 @@ FOREVER = ("sher3 up", "sher3 gap monitor", "sher3 gap watch", "sher3 record")
 ENDS = re.compile(r"--(duration|seconds)\b")
 NEEDS_ROBOT = ("sher3 teleop", "sher3 fault", "sher3 record", "sher3 gap monitor", "sher3 gap excite")
 """Commands that talk to a running robot, unless one of the options of `ALONE` is given."""
-ALONE = re.compile(r"--(simulate|print|help)\b")
-
+GRAPH = ("sher3 up", "sher3 demo", "sher3 view", "sher3 state", "sher3 foxglove", "sher3 replay", "sher3 gap watch")
+"""Commands that begin a graph or talk to one, beside those of `NEEDS_ROBOT`."""
+ALONE = re.compile(r"--(simulate|print|help|urdf|html)\b")
 
 VARIABLES = re.compile(r"^(?:[A-Z]\w*=\S+\s+)+")
 """Variables set in front of a command."""
@@ -43,6 +44,12 @@ class Command:
     def forever(self) -> bool:
         """Whether it runs until Ctrl-C."""
         return self.bare.startswith(FOREVER) and not ENDS.search(self.line)
+
+    @property
+    def in_wall_time(self) -> bool:
+        """Whether work beside it may hold it up: it talks to a graph, or it measures."""
+        talks = self.bare.startswith((*GRAPH, *NEEDS_ROBOT)) and not ALONE.search(self.line)
+        return talks or "bench/" in self.line
 
     @property
     def needs_robot(self) -> bool:

@@ -14,14 +14,19 @@ NOT_RUN = 28
 """Blocks that cannot be run here, at most. Each says why, where the reader sees it."""
 
 
+def marks(slow: bool, lines: list[Command]) -> list[pytest.MarkDecorator]:
+    """Commands that nothing can hold up run beside all other tests."""
+    held_up = any(command.in_wall_time for command in lines)
+    found = [pytest.mark.slow, pytest.mark.timeout(1800)] if slow else []
+    return [*found, pytest.mark.graph, pytest.mark.flaky(reruns=2)] if held_up else found
+
+
 def cases() -> list[object]:
-    slow = [pytest.mark.slow, pytest.mark.timeout(1800)]
-    return [pytest.param(unit, marks=slow if unit.slow else [], id=unit.name) for unit in units("sh")]
+    shown = [(unit, [c for b in unit.blocks if not b.file for c in commands(b)]) for unit in units("sh")]
+    return [pytest.param(unit, marks=marks(unit.slow, lines), id=unit.name) for unit, lines in shown]
 
 
-@pytest.mark.graph
 @pytest.mark.parametrize("unit", cases())
-@pytest.mark.flaky(reruns=2)
 def test_commands_of_a_page(unit: Unit, terminal, inputs):
     """Each ends with exit code 0, or with the one that stands beside it."""
     inputs.put(terminal.folder, "\n".join(_shown(block) for block in unit.blocks))
@@ -61,17 +66,10 @@ def tables() -> list[str]:
 SLOW_IN_TABLES = ("sher3 benchtop", "sher3 design", "sher3 paper", "sher3 gap", "sher3 safety --", "sher3 demo")
 
 
-@pytest.mark.graph
 @pytest.mark.parametrize(
     "line",
-    [
-        pytest.param(
-            line, marks=[pytest.mark.slow, pytest.mark.timeout(1800)] if line.startswith(SLOW_IN_TABLES) else []
-        )
-        for line in tables()
-    ],
+    [pytest.param(line, marks=marks(line.startswith(SLOW_IN_TABLES), [Command(line)])) for line in tables()],
 )
-@pytest.mark.flaky(reruns=2)
 def test_commands_in_tables(line, terminal, inputs):
     inputs.put(terminal.folder, line)
     terminal.run(Command(line))
@@ -93,6 +91,12 @@ def test_commands_in_the_text_exist_with_their_options(command_tree):
         known = {option for p in command_tree[name].params for option in [*p.opts, *p.secondary_opts]} | {"--help"}
         used = {word.split("=")[0] for word in said if re.fullmatch(r"--?[a-z][\w-]*(=.*)?", word)}
         assert used <= known, f"{here} has {sorted(used - known)}"
+
+
+def test_what_talks_to_a_graph_runs_alone(command_tree):
+    """A command with an option `--domain` talks to a graph, whatever its name."""
+    talks = {name for name, command in command_tree.items() if any("--domain" in p.opts for p in command.params)}
+    assert talks and all(Command(name).in_wall_time for name in talks)
 
 
 def test_what_is_not_run_says_why():
