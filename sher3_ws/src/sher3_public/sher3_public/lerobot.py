@@ -7,9 +7,9 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from sher3_machines.intake.fields import UNITS
 from sher3_machines.intake.guesses import reach
 from sher3_machines.intake.readers.lerobot import DataSet, read_data_set
+from sher3_machines.intake.units import UNITS
 
 from sher3_public.answer import Answer
 from sher3_public.cases import case_of_arrays, case_of_tables

@@ -16,6 +16,7 @@ from sher3_machines.intake.mending.parts import LONGEST_HOLE, cut
 from sher3_machines.intake.mending.readings import glitches, known_readings
 from sher3_machines.intake.mending.repeats import filled, fresh_readings, fresh_rows, goes_smoothly, hold_of
 from sher3_machines.intake.mending.stamps import even_stamps, missed_periods, missing_note
+from sher3_machines.intake.mending.wraps import TURN, joined, wrapped_over
 from sher3_machines.intake.spelling import table_of
 from sher3_machines.intake.tables import Tables
 
@@ -42,8 +43,6 @@ steps.
 """
 OTHERS = ("reference", "load")
 """Places that follow the position, in its sense or turned."""
-WRAP = 0.1
-"""Share of a turn by which a jump between two samples may differ from a whole turn that was wrapped."""
 
 Stamped = tuple[Array | None, Array]
 """Stamps in s, where there are any, and the samples."""
@@ -83,6 +82,7 @@ def axes_run(name: str, tables: Tables, machine: ChainDescription) -> AxesRun:
         MachineError: a column is missing, values are not finite, stamps run backwards or have holes, a unit slips.
     """
     raw: dict[str, dict[str, Stamped]] = {}
+    over: dict[str, float] = {}
     tables, mended = _without_repeats(tables, machine, name)
     polled = bool(mended)
     for axis in machine.chain:
@@ -90,7 +90,8 @@ def axes_run(name: str, tables: Tables, machine: ChainDescription) -> AxesRun:
             which: _mended(column, tables, machine.time, name, (axis.name, which), mended)
             for which, column in _columns(axis).items()
         }
-        mended += _unwrap(axis, raw[axis.name], name)
+        over[axis.name], joints = _unwrap(axis, raw[axis.name], name)
+        mended += joints
         mended += _without_glitches(axis, raw[axis.name], name)
         _check_velocity(axis, raw[axis.name]["position"], tables, machine.time, name)
     clock, period, notes = _clock([s for a in raw.values() for s in a.values()], machine.time, name, polled)
@@ -98,7 +99,7 @@ def axes_run(name: str, tables: Tables, machine: ChainDescription) -> AxesRun:
         a: {k: _onto(clock, t, x, polled and k in ENCODERS) for k, (t, x) in found.items()} for a, found in raw.items()
     }
     for axis in machine.chain:
-        check_units(axis, signals[axis.name], name)
+        check_units(axis, signals[axis.name], name, over[axis.name])
         mended += _turned(axis, signals[axis.name], name)
         mended += _signed(axis, clock, signals[axis.name], name)
     return AxesRun(name, period, signals, [*dict.fromkeys(mended), *notes])
@@ -200,17 +201,23 @@ def _without_glitches(axis: Axis, raw: dict[str, Stamped], run: str) -> list[str
     return notes
 
 
-def _unwrap(axis: Axis, raw: dict[str, Stamped], run: str) -> list[str]:
-    """Join the turns of angles that were recorded within one turn; return a note for each such signal."""
-    notes = []
-    for which in POSITIONS if axis.motion == "rotary" else ():
-        if which in raw:
-            stamps, x = raw[which]
-            jumps = np.abs(np.abs(np.diff(x)) - 2.0 * np.pi) < WRAP * 2.0 * np.pi
-            if jumps.any():
-                raw[which] = stamps, np.unwrap(x)
-                notes.append(f"{run}: {axis.name}.{which} wraps {int(jumps.sum())} times within a turn; turns joined")
-    return notes
+def _unwrap(axis: Axis, raw: dict[str, Stamped], run: str) -> tuple[float, list[str]]:
+    """Join places whose counter starts again; return the range of the position's, 0 for none, and a note for each.
+
+    A reference that jumps back may have been told to: it is joined over the range of the encoder that follows it.
+    """
+    notes, rotary = [], axis.motion == "rotary"
+    over = {which: wrapped_over(raw[which][1], axis.encoder_resolution, rotary) for which in POSITIONS if which in raw}
+    if over.get("reference") != TURN:
+        over["reference"] = over["position"]
+    for which in raw.keys() & over.keys():
+        stamps, x = raw[which]
+        x, wraps = joined(x, over[which]) if over[which] else (x, 0)
+        if wraps:
+            raw[which] = stamps, x
+            within = "a turn" if over[which] == TURN else f"{over[which]:.6g} {axis.unit_of_position}"
+            notes.append(f"{run}: {axis.name}.{which} wraps {wraps} times within {within}; joined")
+    return over["position"], sorted(notes)
 
 
 def _check_velocity(axis: Axis, position: Stamped, tables: Tables, clock: Clock, run: str) -> None:

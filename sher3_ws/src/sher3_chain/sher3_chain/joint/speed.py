@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 from sher3_diagnosis.channel import Array
-from sher3_machines.intake.columns import IN_HEADER, find, spelled
+from sher3_machines.intake.columns import IN_HEADER, find
 from sher3_machines.intake.fields import VELOCITIES, Clock, Column
 from sher3_machines.intake.tables import Tables
+from sher3_machines.intake.units import spelled
 
 
 def is_speed(column: Column, tables: Tables, run: str) -> bool:

@@ -23,8 +23,14 @@ COUNTS_MOVED = 100.0
 """Travel in counts from which two signals of one axis can be compared in size."""
 
 
-def check_units(axis: Axis, signals: dict[str, Array], run: str) -> None:
+def check_units(axis: Axis, signals: dict[str, Array], run: str, over: float = 0.0) -> None:
     """Refuse positions recorded in another unit than stated.
+
+    Args:
+        axis: as described.
+        signals: of it, SI units.
+        run: name, for messages.
+        over: range within which the position was recorded before its wraps were joined; 0: there were none.
 
     They leave the axis' range, or are 1000 (mm for m) or 57.3 (deg for rad) times another position of the axis.
 
@@ -32,7 +38,8 @@ def check_units(axis: Axis, signals: dict[str, Array], run: str) -> None:
         MachineError: a unit slips.
     """
     position = signals["position"]
-    _check_range(axis, position, run)
+    if not 0.0 < over <= 2.0 * FURTHEST[axis.motion] or axis.range is not None:  # else it lay within as recorded
+        _check_range(axis, position, run)
     moves = np.ptp(position) > COUNTS_MOVED * axis.encoder_resolution
     for other in ("reference", "load"):
         if moves and other in signals and np.ptp(signals[other]) > 0.0:

@@ -88,3 +88,17 @@ def test_a_motor_that_counts_may_make_many_turns():
     signals["position"] = {"column": "q", "unit": "rad"}
     with pytest.raises(MachineError, match="likely deg recorded as rad; value 117"):
         check_units(axis_of(motion="rotary", signals=signals), found, "run")
+
+
+def test_a_motor_whose_field_starts_again_at_25_radians_may_make_many_turns():
+    """Of 100 rad in a field of +-12.5 nothing lies beyond what an angle may be; 100 rad as recorded are degrees."""
+    path = 50.0 * np.sin(np.arange(0.0, 12.0, 0.01))
+    field = (path + 12.5) % 25.0 - 12.5
+    signals = {k: {"column": k, "unit": "rad"} for k in ("position", "reference")}
+    motor = described(motion="rotary", signals=signals, command_law={"kind": "position"}, mass=None)
+    table = {"t": 0.01 * np.arange(len(path)), "position": field, "reference": field}
+    run = axes_run("run", table, motor)
+    assert run.signals["slide"]["position"] == pytest.approx(path, abs=1e-9)
+    assert "within 25 rad; joined" in run.notes[0]
+    with pytest.raises(MachineError, match="deg recorded as rad"):
+        axes_run("run", {**table, "position": path, "reference": path}, motor)

@@ -9,9 +9,10 @@ import numpy as np
 from sher3_diagnosis.channel import Array
 
 from sher3_machines.errors import MachineError
-from sher3_machines.intake.fields import UNITS, Clock, Column
-from sher3_machines.intake.spelling import spelled, table_of
+from sher3_machines.intake.fields import Clock, Column
+from sher3_machines.intake.spelling import table_of
 from sher3_machines.intake.tables import Tables
+from sher3_machines.intake.units import UNITS, spelled
 
 IN_HEADER = re.compile(r"(?P<name>.*?)\s*[\[(](?P<unit>[^\])]+)[\])]")
 """A column's header with its unit: `q [mm]`, `current (A)`."""

@@ -13,7 +13,7 @@ from sher3_common import dump_yaml
 from sher3_diagnosis.channel import Array
 
 from sher3_machines.errors import MachineError
-from sher3_machines.intake.fields import TIME_UNITS, UNITS, VELOCITIES
+from sher3_machines.intake.fields import TIME_UNITS, VELOCITIES
 from sher3_machines.intake.guesses import (
     clock_of,
     count_of,
@@ -28,6 +28,7 @@ from sher3_machines.intake.runs import longest
 from sher3_machines.intake.speeds import told_by_speed
 from sher3_machines.intake.spelling import bare, table_of
 from sher3_machines.intake.tables import SAMPLES, Tables
+from sher3_machines.intake.units import UNITS
 
 SIGNALS = ("position", "reference", "command", "effort", "load", "applied", "temperature", "velocity")
 """Signals of an axis that a draft looks for, in the order they are written."""

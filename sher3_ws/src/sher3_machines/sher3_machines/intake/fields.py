@@ -2,56 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from typing import Literal
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import BaseModel, ConfigDict, Field, field_validator, model_validator
 
-UNITS: Mapping[str, float] = {
-    "m": 1.0,
-    "cm": 1e-2,
-    "mm": 1e-3,
-    "um": 1e-6,
-    "nm": 1e-9,
-    "rad": 1.0,
-    "mrad": 1e-3,
-    "deg": math.pi / 180.0,
-    "arcmin": math.pi / 180.0 / 60.0,
-    "arcsec": math.pi / 180.0 / 3600.0,
-    "rev": 2.0 * math.pi,
-    "m/s": 1.0,
-    "mm/s": 1e-3,
-    "rad/s": 1.0,
-    "deg/s": math.pi / 180.0,
-    "rpm": math.pi / 30.0,
-    "N": 1.0,
-    "kN": 1e3,
-    "N*m": 1.0,
-    "mN*m": 1e-3,
-    "Pa": 1.0,
-    "kPa": 1e3,
-    "bar": 1e5,
-    "MPa": 1e6,
-    "kg": 1.0,
-    "V": 1.0,
-    "mV": 1e-3,
-    "A": 1.0,
-    "mA": 1e-3,
-    "%": 1.0,
-    "1": 1.0,
-    "count": 1.0,
-    "degC": 1.0,
-    "s": 1.0,
-    "ms": 1e-3,
-    "us": 1e-6,
-    "ns": 1e-9,
-    "min": 60.0,
-    "h": 3600.0,
-}
-"""Unit -> factor to SI; a percentage stays one, of a rated value that nobody stated."""
+from sher3_machines.intake.units import UNITS, spelled
 
-VELOCITIES = ("m/s", "mm/s", "rad/s", "deg/s", "rpm")
+VELOCITIES = ("m/s", "cm/s", "mm/s", "rad/s", "deg/s", "rev/s", "rpm")
 """Units of a velocity: a place that was recorded as one is its integral."""
 TIME_UNITS: Mapping[str, float] = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0, "h": 3600.0}
 """Units of a clock -> s."""
@@ -105,6 +63,12 @@ class Column(Strict):
     override: bool = False
     signed_by: str | None = None
     plus: tuple[Column, ...] = ()
+
+    @field_validator("unit", mode="before")
+    @classmethod
+    def _spelled(cls, unit: object) -> object:
+        """Take a unit as people write it, such as `N m` or `Nm`."""
+        return spelled(unit) if isinstance(unit, str) else unit
 
     @model_validator(mode="after")
     def _known(self) -> Column:

@@ -7,10 +7,11 @@ from sher3_diagnosis.channel import Array
 from sher3_diagnosis.localise.floors import noise_of_bends
 
 from sher3_machines.errors import MachineError
-from sher3_machines.intake.fields import TIME_UNITS, UNITS
+from sher3_machines.intake.fields import TIME_UNITS
 from sher3_machines.intake.names import bare_and_unit, counts_samples, tells_time
 from sher3_machines.intake.spelling import bare
 from sher3_machines.intake.tables import Tables
+from sher3_machines.intake.units import UNITS
 
 TOO_FAR = 40.0
 """Position beyond which the unit is hardly rad or m: more than six turns."""

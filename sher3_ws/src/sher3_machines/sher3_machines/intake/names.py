@@ -10,8 +10,8 @@ import re
 from dataclasses import dataclass
 
 from sher3_machines.intake.columns import IN_HEADER
-from sher3_machines.intake.fields import UNITS
-from sher3_machines.intake.spelling import PARTING, bare, spelled
+from sher3_machines.intake.spelling import PARTING, bare
+from sher3_machines.intake.units import UNITS, spelled
 
 
 def vocabulary(text: str) -> frozenset[str]:

@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 from sher3_diagnosis.channel import Array
 
-from sher3_machines.intake.fields import TIME_UNITS, UNITS
+from sher3_machines.intake.fields import TIME_UNITS
 from sher3_machines.intake.mending.motion import AGREES, likely_unit, speed_ratio
 from sher3_machines.intake.tables import SAMPLES, Tables
+from sher3_machines.intake.units import UNITS
 
 
 def told_by_speed(

@@ -141,7 +141,7 @@ def test_degrees_are_named(tmp_path):
     [
         ({"encoder_resolution": 0.0}, "encoder_resolution"),
         ({"motion": "round"}, "motion"),
-        ({"signals": {"position": {"column": "q", "unit": "inch"}}}, "inch"),
+        ({"signals": {"position": {"column": "q", "unit": "furlong"}}}, "furlong"),
         ({"signals": {"position": {"column": "q", "unit": "m"}}}, "needs its recorded reference"),
         ({"mass": -1.0}, "mass"),
     ],

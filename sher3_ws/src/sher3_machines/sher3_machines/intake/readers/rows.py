@@ -7,9 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 from sher3_diagnosis.channel import Array
 
-from sher3_machines.intake.fields import TIME_UNITS, UNITS
+from sher3_machines.intake.fields import TIME_UNITS
 from sher3_machines.intake.readers.cells import value_of
-from sher3_machines.intake.spelling import spelled
+from sher3_machines.intake.units import UNITS, spelled
 
 MOST_TITLES = 50
 """Lines of text above a table at most."""
