@@ -23,7 +23,7 @@ from sher3_machines.intake.guesses import (
     time_unit,
     travel,
 )
-from sher3_machines.intake.names import DERIVED, DRIVING, MEASURED, POSITION, counts_samples, named, words_of
+from sher3_machines.intake.names import ASKED, DERIVED, DRIVING, MEASURED, POSITION, counts_samples, named, words_of
 from sher3_machines.intake.runs import longest
 from sher3_machines.intake.speeds import told_by_speed
 from sher3_machines.intake.spelling import bare, table_of
@@ -46,6 +46,8 @@ MOST_GEARED = 1e5
 """Ratio beyond which two columns are not two encoders of one axis."""
 FOLLOWS = 0.9
 """Correlation of two encoders below which one does not move with the other: a held axis."""
+TOLD = {"command", "commanded", "cmd", "action"}
+"""Words for what a drive is told, whether a place or a force."""
 LISTED = 12
 """Columns that a sentence lists at most."""
 
@@ -187,10 +189,13 @@ def together(placed: Mapping[Place, tuple[str, str]]) -> tuple[dict[str, dict[st
     return groups, list(dict.fromkeys(left))
 
 
-def _rank(place: Place, table: str) -> tuple[bool, bool, bool]:
-    """Return what orders columns for one signal: in the table, measured, not made of another; the least comes first."""
+def _rank(place: Place, table: str) -> tuple[bool, bool, bool, bool]:
+    """Return what orders columns for one signal, the least first: in the table, measured, not made of another, and of
+    what is asked for a place.
+    """
     words = set(words_of(bare(place[0])))
-    return bool(table) and table_of(place[0]) != table, not words & MEASURED, bool(words & DERIVED)
+    vague = bool(words & ASKED) and not words & POSITION
+    return bool(table) and table_of(place[0]) != table, not words & MEASURED, bool(words & DERIVED), vague
 
 
 def _home(axis: str, groups: Mapping[str, Any]) -> str | None:
@@ -212,24 +217,30 @@ def _unit_of(place: Place, x: Array) -> tuple[str, float, str]:
     return position_unit(what.unit, x, bool(set(what.axis.split("_")) & CARTESIAN))
 
 
-def with_duty(label: str, signals: Mapping[str, Place], tables: Tables, guesses: list[str]) -> Mapping[str, Place]:
-    """Return the signals of an axis with a `load` that is no place as its effort: what a servo reports of its drive.
+def by_motion(label: str, signals: Mapping[str, Place], tables: Tables, guesses: list[str]) -> Mapping[str, Place]:
+    """Return the signals of an axis without places that do not move with it: they are what a drive reports or is told.
 
-    A load encoder moves with the position; a duty does not, and its name has no unit of a place.
+    A `load` without the unit of a place is then a duty, and a `command` that names no place a force.
     """
-    place = signals.get("load")
-    if place is None or "effort" in signals or named(place[0]).unit is not None or ratio_of(signals, tables):
-        return signals
-    if set(words_of(bare(place[0]))) & (POSITION | DRIVING):
-        return signals
-    guesses.append(f"{label}: {place[0]!r} is an effort and no encoder, because it does not move with the position")
-    return {**{k: p for k, p in signals.items() if k != "load"}, "effort": place}
+    out = dict(signals)
+    for signal, force, words in (("load", "effort", "an effort and no encoder"), ("reference", "command", "a command")):
+        place = out.get(signal)
+        said = set(words_of(bare(place[0]))) if place is not None else set()
+        if place is None or named(place[0]).unit is not None or said & (POSITION | DRIVING):
+            continue
+        told = signal == "load" or (said & TOLD and "effort" in out)
+        if not told or ratio_of(out, tables, signal):
+            continue
+        del out[signal]
+        words += "" if out.setdefault(force, place) == place else ", and not used"
+        guesses.append(f"{label}: {place[0]!r} is {words}, because it does not move with the position")
+    return out
 
 
 def _axis(axis: str, signals: Mapping[str, Place], tables: Tables, period: float, guesses: list[str]) -> dict[str, Any]:
     label = re.sub(r"\W+", "_", axis) or "axis"
     label = f"joint{label}" if label[0].isdigit() else label
-    signals = with_duty(label, signals, tables, guesses)
+    signals = by_motion(label, signals, tables, guesses)
     x = values_of(signals["position"], tables)
     unit, factor, why = _unit_of(signals["position"], x)
     guesses.append(f"{label}: position in {unit}, because {why}")
@@ -280,16 +291,16 @@ def _column(name: str, index: int | None, unit: str | None, factor: float) -> di
     return found
 
 
-def ratio_of(signals: Mapping[str, Place], tables: Tables) -> float:
-    """Return how far the position moves per unit of the load; 0 where the load does not move with it."""
-    x, load = (values_of(signals[k], tables) for k in ("position", "load"))
-    if not travel(load):
+def ratio_of(signals: Mapping[str, Place], tables: Tables, other: str = "load") -> float:
+    """Return how far the position moves per unit of another place; 0 where that does not move with it."""
+    x, y = (values_of(signals[k], tables) for k in ("position", other))
+    if not travel(y):
         return 0.0
-    if len(x) != len(load):
-        return travel(x) / travel(load)
-    about = load - np.median(load)
-    if abs(np.corrcoef(x, load)[0, 1]) < FOLLOWS:
+    if len(x) != len(y):
+        return travel(x) / travel(y)
+    if abs(np.corrcoef(x, y)[0, 1]) < FOLLOWS:
         return 0.0
+    about = y - np.median(y)
     return float(abs(about @ (x - np.median(x))) / (about @ about))
 
 

@@ -10,6 +10,7 @@ import re
 from dataclasses import dataclass
 
 from sher3_machines.intake.columns import IN_HEADER
+from sher3_machines.intake.fields import VELOCITIES
 from sher3_machines.intake.spelling import PARTING, bare
 from sher3_machines.intake.units import UNITS, spelled
 
@@ -111,6 +112,8 @@ def named(column: str) -> Named:
     if unit == "degC" or set(words) & TEMPERATURE:
         return Named("temperature", "_".join(w for w in rest if w not in TEMPERATURE), unit or "degC")
     signal = _signal(set(used) | (set(words) & SECOND), {w for w in table if w in ASKED | COMMAND})
+    if signal == "position" and unit in VELOCITIES:
+        signal = "velocity"
     if signal == "reference" and unit in DRIVES and not set(words) & POSITION:
         signal = "command"
     rest = rest or [w for w in table if w not in WORDS and w not in PLAIN and w not in SECOND] or table

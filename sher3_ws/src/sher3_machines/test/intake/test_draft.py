@@ -110,3 +110,24 @@ def test_a_tracker_is_the_load_of_a_wheel_and_the_place_of_what_has_no_other(tmp
         "position",
         "reference",
     }
+
+
+def columns_of(tmp_path, header, *columns):
+    """Signal -> column of the one axis that a draft finds."""
+    (tmp_path / "a.yaml").write_text(written(tmp_path, header, *columns).text, encoding="utf-8")
+    (axis,) = load_description(tmp_path / "a.yaml").axes
+    return {signal: getattr(axis.signals, signal).column for signal in axis.signals.model_dump(exclude_none=True)}
+
+
+def test_what_a_drive_is_told_or_reports_is_no_place(tmp_path):
+    """Names say `command` and `load`; that neither moves with the position says torque and duty."""
+    q, (torque, duty) = np.sin(3.0 * TIME), np.random.default_rng(1).normal(size=(2, len(TIME)))
+    found = columns_of(tmp_path, "time,pos,position_cmd,command_raw,torque,load", TIME, q, q, torque, torque, duty)
+    assert found == {"position": "pos", "reference": "position_cmd", "effort": "torque"}
+    found = columns_of(tmp_path, "time,pos,command_raw,torque", TIME, q, torque, torque)
+    assert found == {"position": "pos", "command": "command_raw", "effort": "torque"}
+
+
+def test_a_measured_speed_is_no_place(tmp_path):
+    found = columns_of(tmp_path, "time_s,angle_deg,feedback_deg_s", TIME, 40.0 * np.sin(TIME), 40.0 * np.cos(TIME))
+    assert found["position"] == "angle_deg"
