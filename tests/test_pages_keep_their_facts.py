@@ -15,13 +15,6 @@ PAGES = Path(sher3_effects.__file__).parent
 GAP = {f"sher3_{room}" for room in ("diagnosis", "machines", "chain", "static", "gap", "gap_cli", "export", "public")}
 """Packages that find and pass on effects; those that hold truths and scores of answers say which effect there is."""
 
-IMPORTS = {
-    "sher3_chain/axes/identification/detection_limits.py": 2,
-    "sher3_chain/axes/limits.py": 1,
-    "sher3_chain/manipulator/readings/encoders.py": 1,
-    "sher3_chain/manipulator/readings/lateness.py": 1,
-}
-"""Modules that still import pages, and how many: a number may only become smaller."""
 WORDS = {
     "sher3_export/targets/isaac.py": 1,
     "sher3_export/targets/isaaclab.py": 1,
@@ -60,7 +53,7 @@ def counted(count) -> dict[str, int]:
 
 
 def test_no_module_outside_imports_a_page():
-    assert counted(imports_of_pages) == IMPORTS, "move the fact onto the page and ask the page; lower what is less now"
+    assert not counted(imports_of_pages), "move the fact onto the page and ask the page"
 
 
 def test_no_module_outside_names_an_effect():

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from sher3_effects.page import Page as Page
     from sher3_effects.page import Part as Part
     from sher3_effects.registry import add_library as add_library
+    from sher3_effects.registry import computed as computed
     from sher3_effects.registry import every as every
     from sher3_effects.registry import library as library
     from sher3_effects.registry import pages as pages
@@ -25,7 +26,7 @@ __getattr__, __dir__ = lazy(
     {
         "effects_file": ("load_effects", "save_effects"),
         "page": ("Page", "Part"),
-        "registry": ("add_library", "every", "library", "pages", "plants"),
+        "registry": ("add_library", "computed", "every", "library", "pages", "plants"),
         "simulated": ("to_effects",),
     },
 )

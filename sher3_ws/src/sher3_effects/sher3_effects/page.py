@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import ClassVar, NamedTuple
 
@@ -10,7 +10,7 @@ from sher3_description import Robot
 from sher3_diagnosis.effect import ROTARY, Effect, Shape
 from sher3_sim.effect import Parameter, PlantEffect
 
-from sher3_effects.view import NominalAxis
+from sher3_effects.view import AxisView, NominalAxis
 
 Values = Mapping[str, float]
 """Fitted parameters by name, SI units."""
@@ -73,6 +73,22 @@ class Tolerated(NamedTuple):
     limits: Mapping[str, tuple[float, str]]
 
 
+class Hidden(NamedTuple):
+    """A load behind the only encoder of an axis, of which nobody says how heavy it is.
+
+    Attributes:
+        mass: that is put behind the effect, kg or kg m^2.
+        step: one count of the encoder, m or rad.
+        units: of position and of force, as they are printed.
+        shows: whether the effect would be seen in a shape.
+    """
+
+    mass: float
+    step: float
+    units: tuple[str, str]
+    shows: Callable[[Shape], bool]
+
+
 class Page(Effect):
     """One effect in a file of its own.
 
@@ -83,7 +99,7 @@ class Page(Effect):
         breaks: which relation of the signal chain the effect breaks, where that is not the one named like its stage:
             "load_encoder", "both_encoders" or "force_sensor", the readings.
         on_axis: fitted parameter -> constant of `CONSTANTS` that it sets, beyond the nominal one.
-        computed: the parameter of an effect of an exact stage, which is computed there and not fitted; else "".
+        computed: the parameter that is read off a record without a fit, as in an exact stage; "" where there is none.
     """
 
     plant: ClassVar[type[PlantEffect] | None] = None
@@ -95,6 +111,14 @@ class Page(Effect):
     def on(self, axis: NominalAxis) -> Page:
         """Return the page with what it must know of the axis it is looked for on; default as it is."""
         return self
+
+    def told(self) -> Page:
+        """Return the form of which nothing is fitted, for a computed parameter; default the page itself."""
+        return self
+
+    def least_shown(self, views: Sequence[AxisView], site: str, hidden: Hidden) -> str:
+        """Return in words how little of the effect one encoder would show; default nothing."""
+        return ""
 
     def tolerated(self, robot: Robot, site: str) -> Sequence[Tolerated]:
         """Return how the effect may show at a site of a healthy robot, from its table of tolerances; default not."""

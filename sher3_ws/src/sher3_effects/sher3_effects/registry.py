@@ -48,6 +48,11 @@ def every() -> Mapping[str, Page]:
     return {i: found[i] for i in sorted(found)}
 
 
+def computed(parameter: str) -> Page:
+    """Return the page of the effect of which a parameter is read off a record, see `Page.computed`."""
+    return next(page for page in every().values() if page.computed == parameter)
+
+
 def plants() -> Mapping[str, type[PlantEffect]]:
     """Return the effects' forms in the plant by effect id, in alphabetical order."""
     return {e.id: e.plant for e in pages("robot") if e.plant is not None}

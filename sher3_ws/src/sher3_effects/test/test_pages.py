@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from sher3_diagnosis.channel import STAGES, Channel
 from sher3_diagnosis.effect import INPUTS, KINDS, ROTARY
-from sher3_effects import library, load_effects, pages, plants, save_effects
+from sher3_effects import computed, every, library, load_effects, pages, plants, save_effects
 from sher3_sim.effect import REVOLUTE, SITES
 
 KNOWN = {page.id for kind in KINDS for page in pages(kind)}
@@ -51,11 +51,11 @@ def test_the_first_coefficient_exceeds_what_the_page_says():
     assert free.admissible({}, np.array([-1.0]))
 
 
-def test_a_computed_parameter_belongs_to_one_page_of_an_exact_stage():
-    computed = {page.computed: page for page in library().values() if page.computed}
-    assert sorted(computed) == ["delay", "probability", "relative", "sigma", "skew"]
-    assert sum(bool(page.computed) for page in library().values()) == len(computed)
-    assert {page.stage for page in computed.values()} == {"transport", "controller"}
+def test_a_computed_parameter_belongs_to_one_effect():
+    names = ["delay", "effort_delay", "limit", "probability", "relative", "sigma", "skew"]
+    assert sorted(page.computed for page in every().values() if page.computed) == names
+    assert [computed(name).id for name in names[:3]] == ["command_delay", "sensor_delay", "force_saturation"]
+    assert not computed("effort_delay").told().shapes([], "axis") and computed("limit").told().id == "force_saturation"
 
 
 @pytest.mark.parametrize("page", ROBOT_PAGES)

@@ -16,7 +16,7 @@ from sher3_diagnosis.finding import ExactFinding
 from sher3_diagnosis.quantify.closure import interval_of
 from sher3_diagnosis.thresholds import MIN_RUNS
 from sher3_diagnosis.verdict import Cause, Parameter, Residual, Where
-from sher3_effects.limit.force_saturation import ForceSaturation
+from sher3_effects import computed
 from sher3_machines.thresholds import BLOCKS
 
 from sher3_chain.floors.innovation import UNIFORM
@@ -26,8 +26,8 @@ from sher3_chain.readings.level import longest
 from sher3_chain.readings.signals import signals_of
 from sher3_chain.thresholds import FLAT, LIMIT_UNCERTAINTY, LONGEST, PINNED
 
-EFFECT = ForceSaturation.id
-"""Id of the effect that a limit is."""
+LIMIT = "limit"
+"""Parameter that this finding gives, see `Page.computed`."""
 FLOOR_DEVIATIONS = 2.0
 """Floors in the half width of a limit's interval: about 95 % of a normal spread."""
 ON_THE_WAY = 50
@@ -94,16 +94,17 @@ def _finding(axis: Axis, found: Sequence[Pinned]) -> ExactFinding:
     half = max(FLOOR_DEVIATIONS * floor, LIMIT_UNCERTAINTY * level)
     low, high = (level - half, level + half) if len(losses) >= MIN_RUNS else (None, None)
     closure = interval_of(losses)
+    page = computed(LIMIT)
     cause = Cause(
-        effect=EFFECT,
-        family="limit",
-        stage="drive",
+        effect=page.id,
+        family=page.family,
+        stage=page.stage,
         actuator=axis.name,
-        parameters={"limit": Parameter(value=level, low=low, high=high, unit=unit)},
+        parameters={LIMIT: Parameter(value=level, low=low, high=high, unit=unit)},
         closure=closure,
     )
     where = Where(
-        stage="drive",
+        stage=page.stage,
         actuator=axis.name,
         gap=gap,
         floor=floor,

@@ -16,7 +16,7 @@ from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.finding import ExactFinding, Finding
 from sher3_diagnosis.machine import Policy
 from sher3_diagnosis.verdict import Cause, Interval
-from sher3_effects import library, pages
+from sher3_effects import computed, pages
 from sher3_effects.view import NominalAxis
 from sher3_machines.errors import MachineError
 from sher3_machines.thresholds import BLOCKS
@@ -27,8 +27,7 @@ from sher3_chain.axes.identification.detection_limits import unseen_note
 from sher3_chain.axes.identification.refine import refine_free
 from sher3_chain.axes.identification.search import causes_of_axis
 from sher3_chain.axes.law import causes_of_law, is_law, law_of_axis
-from sher3_chain.axes.limits import EFFECT as LIMIT
-from sher3_chain.axes.limits import limit_finding
+from sher3_chain.axes.limits import LIMIT, limit_finding
 from sher3_chain.axes.power import least_seen
 from sher3_chain.axes.replay import replay
 from sher3_chain.chain.machine import Chain
@@ -57,7 +56,7 @@ class Axes(Chain[AxisEvidence]):
         kinds = sorted({kind_of(axis) for axis in self.described.axes}, reverse=True)
         any_axis = NominalAxis(np.inf, 0.0, 0.0, 0.0, weighed=any(axis.swings for axis in self.described.axes))
         known = [page.on(any_axis) for kind in kinds for page in pages(kind)]
-        return [*known, *pages("law"), library()[LIMIT]]
+        return [*known, *pages("law"), computed(LIMIT)]
 
     def effects(self, evidence: AxisEvidence) -> Sequence[Effect]:
         """Return the pages that can show in what was recorded of an axis."""
@@ -87,7 +86,7 @@ class Axes(Chain[AxisEvidence]):
         self, runs: Sequence[AxesRun], evidence: Sequence[AxisEvidence], without: Collection[str]
     ) -> list[ExactFinding]:
         """Look for drives at their limit."""
-        if LIMIT in without:
+        if computed(LIMIT).id in without:
             return []
         found = (limit_finding(part.runs, part.axis) for part in evidence if not is_law(part))
         return [limit for limit in found if limit is not None]

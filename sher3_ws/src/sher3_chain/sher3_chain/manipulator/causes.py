@@ -20,9 +20,10 @@ from sher3_diagnosis.fit.fitting import Fit, Term, fit, make_term
 from sher3_diagnosis.judge.left_over import down_to_floor
 from sher3_diagnosis.thresholds import NEEDED, PARSIMONY, RIVAL
 from sher3_diagnosis.tolerance import NUISANCE
+from sher3_effects import computed
 
 from sher3_chain.manipulator.evidence import ArmMotionEvidence, channel_of, channels_of, of_channel
-from sher3_chain.manipulator.readings.lateness import Late, TimedEffort, lateness
+from sher3_chain.manipulator.readings.lateness import LATE, Late, lateness
 from sher3_chain.search.away_from_reversals import borne_out
 from sher3_chain.search.bounded import Bounded
 from sher3_chain.search.friction_in_motion import FRICTION, without_slow
@@ -136,7 +137,8 @@ def _beside_delay(own: Evidence, late: Late | None, effects: Sequence[Effect], s
     if late is None or not late.sure or len(others) == len(effects):
         return found
     site = own.places["axis"][0]
-    trials = [make_term(own.data, TimedEffort(), site, shape) for shape in late.shapes]
+    page = computed(LATE).told()
+    trials = [make_term(own.data, page, site, shape) for shape in late.shapes]
     best = min(trials, key=lambda term: fit(own.data, [*found.fit.terms, term]).total)
     beside = _searched(replace(own, nuisance=(best,)), others, say)
     return beside if beside.fit.admissible and _worth(own, site, found.fit, beside.fit) > NEEDED else found

@@ -16,7 +16,7 @@ from sher3_diagnosis.fit.fitting import Fit
 from sher3_diagnosis.localise.gaps import localise
 from sher3_diagnosis.machine import Policy
 from sher3_diagnosis.verdict import Cause
-from sher3_effects import pages
+from sher3_effects import computed, pages
 from sher3_machines.intake.notes import told_once
 
 from sher3_chain.chain.machine import Chain
@@ -94,7 +94,7 @@ class Manipulator(Chain[ArmMotionEvidence]):
         laws = laws_of_servos(runs, self.described, self.described.servos(judged), without)
         if any(gap.significant for part in evidence for gap in localise(part)):
             return [law for law in laws if law.closed]
-        late = [] if LATE in without else [x for part in evidence for x in late_efforts(part)]
+        late = [] if computed(LATE).id in without else [x for part in evidence for x in late_efforts(part)]
         return [*laws, *late]
 
     def causes(self, evidence: ArmMotionEvidence, candidates: Candidates, left_over: Left, say: Say) -> Attribution:

@@ -12,6 +12,7 @@ from sher3_diagnosis.effect import Best, Shape, Signature, column
 from sher3_effects.behind_motor import BehindMotor
 from sher3_effects.compliance.transmission_compliance import TransmissionCompliance
 from sher3_effects.operators import oscillator, second_difference
+from sher3_effects.page import Hidden
 from sher3_effects.view import AxisView
 
 
@@ -51,6 +52,15 @@ class ComplianceBehindMotor(BehindMotor):
         shaken = np.gradient(run.velocity[:, [view.row(site)]], run.period, axis=0) / pace**2
         lag = oscillator(-shaken, shape["frequency"], min(shape["damping"], self.MOST_DAMPED), run.period)
         return Signature({self.channels(site)[0]: column(run.to_grid(second_difference(lag, run.period))[:, 0])})
+
+    def least_shown(self, views: Sequence[AxisView], site: str, hidden: Hidden) -> str:
+        """Return the stiffest spring."""
+        shapes = [s for s in self.shapes(views, site) if s["damping"] == self.DAMPINGS[1]]
+        paces = [s["frequency"] for s in shapes if hidden.shows(s)]
+        if not paces:
+            return "no spring would show"
+        stiffness, (position, force) = hidden.mass * (2.0 * np.pi * max(paces)) ** 2, hidden.units
+        return f"a spring below {stiffness:.2g} {force}/{position} ({max(paces):.2g} Hz) would show"
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Return frequency and damping, the mass of the load and the stiffness of its spring."""

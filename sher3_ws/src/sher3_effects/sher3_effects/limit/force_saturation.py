@@ -28,6 +28,7 @@ class ForceSaturation(Page):
     best = Best("steps", "large and small steps separate limits from lags")
     leaves_out = "that the bend towards the limit is no parabola"
     on_axis = {"limit": "limit"}
+    computed = "limit"
     explanation = "The reported force stops rising at a level below the drive's limit; below it the drive behaves."
     siblings = {"drive_lag": "late at every level"}
     finer = {"limit": (0.9, 0.94, 0.97, 0.985, 0.993, 1.007, 1.015, 1.03, 1.06, 1.1), "knee": (0.5, 0.75, 1.3, 1.8)}

@@ -13,7 +13,7 @@ from sher3_effects.behind_motor import BehindMotor
 from sher3_effects.friction.coulomb_friction import ServoStiction
 from sher3_effects.lost_motion.backlash import Backlash
 from sher3_effects.operators import flight, play, second_difference
-from sher3_effects.page import Page
+from sher3_effects.page import Hidden, Page
 from sher3_effects.view import AxisView
 
 
@@ -58,6 +58,11 @@ class BacklashBehindMotor(BehindMotor):
         resting: list[Shape] = [{"width": w} for w in widths]
         return [*resting, *({**x, "braking": b * usual} for x in resting for b in self.BRAKING if usual)]
 
+    def least_shown(self, views: Sequence[AxisView], site: str, hidden: Hidden) -> str:
+        """Return the smallest play of a load that rests in its gap."""
+        widths = [s["width"] for s in self.shapes(views, site) if "braking" not in s and hidden.shows(s)]
+        return f"play above {min(widths):.2g} {hidden.units[0]} would show" if widths else "no play would show"
+
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
         """Return what the load's mass adds, and for one that rests in the gap what its friction adds."""
         run, path = view.run, np.ascontiguousarray(view.run.smooth[:, view.row(site)])
@@ -99,8 +104,11 @@ class BacklashBeforeEncoder(Page):
     siblings = {"coulomb_friction": "the same readings under one load; a gap is gone under a weight"}
     units: ClassVar[Mapping[str, str]] = {"width": "m", "late": "s"}
     finer = ServoStiction.finer
+    indistinct = (ServoStiction.id,)
     STICKS = ServoStiction()
     """The page whose law gives the same readings."""
+    TRIED = 16
+    """Widths that are tried for the smallest one that would show."""
 
     def channels(self, site: str) -> tuple[Channel, ...]:
         """Return the tracking error."""
@@ -117,6 +125,14 @@ class BacklashBeforeEncoder(Page):
     def allowed(self, views: Sequence[AxisView], site: str, shape: Shape) -> bool:
         """Return whether the reference crosses the gap."""
         return self.STICKS.allowed(views, site, shape)
+
+    def least_shown(self, views: Sequence[AxisView], site: str, hidden: Hidden) -> str:
+        """Return the smallest play, between a count and the travel."""
+        count, travel = hidden.step, max(v.axis(site).travel for v in views)
+        widths = np.geomspace(count, max(travel, 2.0 * count), self.TRIED)
+        seen = [w for w in widths if hidden.shows({"force": 0.5 * float(w), "late": 0.0})]
+        least = f"play before it above {min(seen):.2g} {hidden.units[0]}" if seen else "no play before it"
+        return f"{least} would show"
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
         """Return minus the play of the lagged reference; nothing is left to fit."""

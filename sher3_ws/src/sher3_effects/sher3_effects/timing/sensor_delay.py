@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import ClassVar
 
 import numpy as np
 from sher3_diagnosis.channel import Array, Channel
-from sher3_diagnosis.effect import Best, Shape, Signature, column
+from sher3_diagnosis.effect import Best, Measured, Shape, Signature, column
 
+from sher3_effects.delay import LONGEST_DELAY, shifted
 from sher3_effects.page import Page
 from sher3_effects.view import AxisView
 
@@ -21,8 +23,9 @@ class SensorDelay(Page):
 
     id, family, stage = "sensor_delay", "timing", "sensing"
     inputs = ("velocity", "force")
-    kinds = ("axis", "servo")
+    kinds: ClassVar[tuple[str, ...]] = ("axis", "servo")
     seen_at = (("transmission", ""), ("motor_mechanics", ""))
+    computed = "effort_delay"
     best = Best("sweep", "several speeds tell a lag in time from one in travel")
     explanation = (
         "One reading comes a fixed time after the others: two encoders differ in proportion to the speed, whatever the "
@@ -46,13 +49,11 @@ class SensorDelay(Page):
     """The same, that is one: what is less is the shape of a friction at a reversal."""
     UNSEEN = 0.1
     """The same in periods of the cut-off: what a noisy encoder does to the moment of a reversal."""
-    LONGEST = 0.25
-    """Delay, s, beyond which two recordings are not of the same moment at all."""
 
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
         """Return delays of the load encoder (0) and of the effort (1), s, and the least that is one."""
         row, run = views[0].row(site), views[0].run
-        late = [s * n * run.period for n in self.PERIODS for s in (1.0, -1.0) if n * run.period <= self.LONGEST]
+        late = [s * n * run.period for n in self.PERIODS for s in (1.0, -1.0) if n * run.period <= LONGEST_DELAY]
         which = [float(k) for k, x in enumerate((run.load, run.effort)) if x is not None and np.any(x[:, row])]
         unsaid = run.UNSTATED * max(self.UNSAID * run.period, self.UNSEEN / run.bandwidth)
         least = run.UNSTATED * self.LEAST * run.period
@@ -92,7 +93,34 @@ class SensorDelay(Page):
         whole = abs(shape["delay"] + float(coefficients[0]))
         return bool(self.REST[0] < coefficients[0] / shape["delay"] < self.REST[1] and whole >= shape["least"])
 
+    def told(self) -> Page:
+        """Return the form of an effort whose delay is told by its shape."""
+        return TimedEffort()
 
-def shifted(x: Array, clock: Array, delay: float) -> Array:
-    """Return x (n,) as it was `delay` ago, s; its ends stay as they are."""
-    return np.interp(clock - delay, clock, x)
+
+class TimedEffort(SensorDelay):
+    """A late effort whose moment is known by its shape: nothing of it is fitted."""
+
+    kinds = ()
+    finer = {}
+
+    def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
+        """Return none: the delay is not searched."""
+        return []
+
+    def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
+        """Return what a late effort leaves."""
+        found = super().signature(view, site, {**shape, "of_effort": 1.0})
+        return Signature({}, found.fixed)
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Return the delay."""
+        return {"effort_delay": shape["delay"]}
+
+    def measured(self, views: Sequence[AxisView], site: str, shape: Shape) -> dict[str, Measured]:
+        """Return what is told of the delay, with its standard error."""
+        return {"effort_delay": Measured(shape["told"], shape["error"])}
+
+    def admissible(self, shape: Shape, coefficients: Array) -> bool:
+        """Return True: what the delay is was settled before."""
+        return True

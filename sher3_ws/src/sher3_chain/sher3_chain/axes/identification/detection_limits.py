@@ -8,6 +8,7 @@ rule, and most of it worth a cause, it would have been seen.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -17,63 +18,44 @@ from sher3_diagnosis.fit.fitting import Fit
 from sher3_diagnosis.localise.gaps import gap_of
 from sher3_diagnosis.quantify.closure import residual_after
 from sher3_diagnosis.thresholds import WORTH
-from sher3_effects.compliance.unseen_compliance import ComplianceBehindMotor
-from sher3_effects.lost_motion.unseen_backlash import BacklashBeforeEncoder, BacklashBehindMotor
+from sher3_effects import pages
+from sher3_effects.page import Hidden
+from sher3_effects.registry import ONE_ENCODER
+from sher3_effects.view import NominalAxis
 
 from sher3_chain.axes.evidence import AxisEvidence
 
 BEHIND = 0.5
 """Share of mass and friction that is put behind the gap: nobody says how much is there. Set by that argument."""
-TRIED = 16
-"""Widths that are tried before an encoder, from a count to all of the travel."""
 
 
 def unseen_note(evidence: AxisEvidence, after: Fit) -> str:
     """Return what one encoder cannot show of this axis, in words."""
-    axis, named = evidence.axis, {t.effect.id for t in after.terms}
-    unit = axis.unit_of_position
+    axis = evidence.axis
     if axis.encoder_at == "load":
         if not axis.servo:
             return f"{axis.name}: one encoder, at the load: play before it moves the motor alone and is not looked for"
-        least = _least_before(evidence, after)
-        said = f"play before it above {least:.2g} {unit} would show" if least else "no play before it would show"
-        told = named & {BacklashBeforeEncoder.id, BacklashBeforeEncoder.STICKS.id}
-        return "" if told else f"{axis.name}: one encoder, at the load: {said}"
+        return _said(f"{axis.name}: one encoder, at the load: ", evidence, after, {"behind"})
     if axis.servo or axis.free:
         return f"{axis.name}: one encoder and no effort: play and springs behind it are not in the data"
     if evidence.mass <= 0.0 or any(view.run.effort is None for view in evidence.records):
         return f"{axis.name}: one encoder and no force balance: play and springs behind it are not in the data"
-    seen = [_play(evidence, after)] if BacklashBehindMotor.id not in named else []
-    seen += [_spring(evidence, after)] if ComplianceBehindMotor.id not in named else []
-    return f"{axis.name}: one encoder: with half of the mass behind it {' and '.join(seen)}" if seen else ""
+    return _said(f"{axis.name}: one encoder: with half of the mass behind it ", evidence, after, {"alone", "drive"})
 
 
-def _least_before(evidence: AxisEvidence, after: Fit) -> float:
-    """Return the smallest play before the encoder of a servo that would show, m or rad; 0 where none would."""
-    page, axis = BacklashBeforeEncoder(), evidence.axis
-    count, travel = axis.encoder_resolution, max(v.axis(axis.name).travel for v in evidence.records)
-    widths = np.geomspace(count, max(travel, 2.0 * count), TRIED)
-    shown = [w for w in widths if shows(evidence, after, page, {"force": 0.5 * float(w), "late": 0.0})]
-    return float(min(shown, default=0.0))
-
-
-def _play(evidence: AxisEvidence, after: Fit) -> str:
-    page, axis = BacklashBehindMotor(evidence.mass), evidence.axis
-    shapes = [s for s in page.shapes(evidence.records, axis.name) if "braking" not in s]
-    widths = [s["width"] for s in shapes if shows(evidence, after, page, s)]
-    return f"play above {min(widths):.2g} {axis.unit_of_position} would show" if widths else "no play would show"
-
-
-def _spring(evidence: AxisEvidence, after: Fit) -> str:
-    page, axis = ComplianceBehindMotor(evidence.mass), evidence.axis
-    shapes = [s for s in page.shapes(evidence.records, axis.name) if s["damping"] == page.DAMPINGS[1]]
-    paces = [s["frequency"] for s in shapes if shows(evidence, after, page, s)]
-    if not paces:
-        return "no spring would show"
-    stiffness = BEHIND * evidence.mass * (2.0 * np.pi * max(paces)) ** 2
-    return (
-        f"a spring below {stiffness:.2g} {axis.unit_of_force}/{axis.unit_of_position} ({max(paces):.2g} Hz) would show"
-    )
+def _said(head: str, evidence: AxisEvidence, after: Fit, facts: set[str]) -> str:
+    """Return what the pages say that need to know of a single encoder, where nothing like them was named."""
+    axis, named = evidence.axis, {t.effect.id for t in after.terms}
+    units, mass = (axis.unit_of_position, axis.unit_of_force), BEHIND * evidence.mass
+    nominal = NominalAxis(evidence.mass, axis.viscous, 0.0, 0.0)
+    found = [p.on(nominal) for p in pages("servo" if axis.servo else "axis", facts) if ONE_ENCODER & set(p.needs)]
+    said = [
+        page.least_shown(evidence.records, axis.name, Hidden(mass, axis.encoder_resolution, units, seen))
+        for page in found
+        if not named & {page.id, *page.indistinct}
+        for seen in [partial(shows, evidence, after, page)]
+    ]
+    return head + " and ".join(said) if said else ""
 
 
 def shows(evidence: AxisEvidence, after: Fit, page: Effect, shape: Shape) -> bool:

@@ -13,8 +13,8 @@ from dataclasses import replace
 import numpy as np
 from sher3_diagnosis.channel import Array, Mask
 from sher3_diagnosis.localise.floors import GAUSSIAN
+from sher3_effects.delay import LONGEST_DELAY, shifted
 from sher3_effects.operators import dahl
-from sher3_effects.timing.sensor_delay import SensorDelay, shifted
 
 from sher3_chain.chain.view import LEAD_OF_STROKE
 from sher3_chain.manipulator.description import Joint
@@ -79,7 +79,7 @@ def lateness_of_load(run: AxisSignals, row: int) -> float:
         float(np.sum((y - c @ s[0]) ** 2)) for c, s in ((x / length, all_of_it), (x[:, 1:] / length[1:], without))
     )
     delay = -float(all_of_it[0][0] / length[0])
-    return delay if left < DELAYED * before and abs(delay) < SensorDelay.LONGEST else 0.0
+    return delay if left < DELAYED * before and abs(delay) < LONGEST_DELAY else 0.0
 
 
 def crossing(run: AxisSignals, row: int) -> Mask:

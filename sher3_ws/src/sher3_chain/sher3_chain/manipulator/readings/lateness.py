@@ -13,23 +13,23 @@ from typing import NamedTuple
 
 import numpy as np
 from sher3_diagnosis.channel import Array, Channel, Mask
-from sher3_diagnosis.effect import Measured, Shape, Signature
+from sher3_diagnosis.effect import Shape
 from sher3_diagnosis.filter import BANDWIDTH, EDGE, low_pass
 from sher3_diagnosis.finding import ExactFinding
 from sher3_diagnosis.quantify.closure import interval_of
 from sher3_diagnosis.quantify.jackknife import standard_error
 from sher3_diagnosis.thresholds import JACKKNIFE
 from sher3_diagnosis.verdict import Cause, Interval, Parameter, Residual, Where
-from sher3_effects.timing.sensor_delay import SensorDelay
-from sher3_effects.view import AxisView
+from sher3_effects import computed
+from sher3_effects.delay import LONGEST_DELAY
 from sher3_machines.thresholds import BLOCKS
 
 from sher3_chain.manipulator.evidence import ArmMotionEvidence, channel_of
 from sher3_chain.manipulator.gains import friction_columns
 from sher3_chain.manipulator.view import MotionView
 
-LATE = SensorDelay.id
-"""Effect that these findings are of."""
+LATE = "effort_delay"
+"""Parameter that these findings give, see `Page.computed`."""
 WITHIN_PERIOD = 0.5
 """Periods of the record within which nobody states when an effort was taken."""
 SLOWER = 5.0
@@ -43,33 +43,6 @@ IDEAL = 0.015
 WITHIN = (0.0, -1.0, -0.5, 0.5, 1.0)
 """Shares of the half width by which the delay that is taken off may differ from the one told: a dry friction, whose
 step is many floors high, turns at a moment."""
-
-
-class TimedEffort(SensorDelay):
-    """A late effort whose moment is known by its shape: nothing of it is fitted."""
-
-    finer = {}
-
-    def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
-        """Return none: the delay is not searched."""
-        return []
-
-    def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
-        """Return what a late effort leaves."""
-        found = super().signature(view, site, {**shape, "of_effort": 1.0})
-        return Signature({}, found.fixed)
-
-    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the delay."""
-        return {"effort_delay": shape["delay"]}
-
-    def measured(self, views: Sequence[AxisView], site: str, shape: Shape) -> dict[str, Measured]:
-        """Return what is told of the delay, with its standard error."""
-        return {"effort_delay": Measured(shape["told"], shape["error"])}
-
-    def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return True: what the delay is was settled before."""
-        return True
 
 
 class Late(NamedTuple):
@@ -103,11 +76,11 @@ class Late(NamedTuple):
     @property
     def sure(self) -> bool:
         """Whether the delay exceeds the stated timing uncertainty."""
-        return self.unstated + SURE * self.half < abs(self.delay) < SensorDelay.LONGEST
+        return self.unstated + SURE * self.half < abs(self.delay) < LONGEST_DELAY
 
 
 def with_closure(cause: Cause, shape: Shape) -> Cause:
-    """Return the cause that a `TimedEffort` is, with the share of the delay's own part that taking it off leaves not.
+    """Return the cause of an effort whose delay is told, with the share of its part that taking it off closes.
 
     Its channel need not show a gap: the delay is then below the floor.
     """
@@ -187,16 +160,17 @@ def _finding(evidence: ArmMotionEvidence, joint: str, late: Late) -> ExactFindin
     losses = np.column_stack([(late.each / block) ** 2, left**2, np.ones(BLOCKS)])
     closure, unit = interval_of(losses), evidence.unit(channel_of(joint), 0)
     low, high = late.delay - late.half, late.delay + late.half
+    page = computed(LATE)
     cause = Cause(
-        effect=SensorDelay.id,
-        family=SensorDelay.family,
-        stage=SensorDelay.stage,
+        effect=page.id,
+        family=page.family,
+        stage=page.stage,
         actuator=joint,
-        parameters={"effort_delay": Parameter(value=late.delay, low=low, high=high, unit="s")},
+        parameters={LATE: Parameter(value=late.delay, low=low, high=high, unit="s")},
         closure=closure,
     )
     where = Where(
-        stage=SensorDelay.stage,
+        stage=page.stage,
         actuator=joint,
         gap=gap,
         floor=floor,

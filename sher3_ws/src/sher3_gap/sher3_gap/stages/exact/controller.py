@@ -10,9 +10,10 @@ from sher3_diagnosis.channel import Array
 from sher3_diagnosis.finding import ExactFinding
 from sher3_diagnosis.thresholds import REPRODUCED, SAME_GAIN
 from sher3_diagnosis.verdict import Cause, Parameter
+from sher3_effects import computed
 
 from sher3_gap.signals import RunSignals
-from sher3_gap.stages.exact.findings import computed_cause, exact_finding, exact_place, page_of
+from sher3_gap.stages.exact.findings import computed_cause, exact_finding, exact_place
 from sher3_gap.stages.exact.law import EXACT, controller_error, host_law
 
 NOT_CLAMPED = 0.999
@@ -33,7 +34,7 @@ def controller_finding(runs: Sequence[RunSignals], robot: Robot, without: Collec
         return None
     gains = {i: gain_error(judged, robot, i) for i in bad}
     closure = 1.0 - float(_left(judged, robot, gains)[bad].sum() / energy[bad].sum())
-    causes = _causes(gains, closure) if closure > REPRODUCED and page_of("relative").id not in without else []
+    causes = _causes(gains, closure) if closure > REPRODUCED and computed("relative").id not in without else []
     gap = float(np.median(top) * np.sqrt(energy[bad].mean() / samples))
     where = exact_place("controller", _site(bad), gap, EXACT * float(np.median(top)), "position modes")
     return exact_finding(where, causes, closure if causes else 0.0)

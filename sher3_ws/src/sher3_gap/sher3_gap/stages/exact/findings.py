@@ -6,7 +6,7 @@ import numpy as np
 from sher3_diagnosis.finding import ExactFinding
 from sher3_diagnosis.thresholds import EXACT_UNTOLD
 from sher3_diagnosis.verdict import Cause, Interval, Parameter, Residual, Where
-from sher3_effects import Page, library
+from sher3_effects import Page, computed
 
 
 def exact_finding(where: Where, causes: list[Cause], closure: float) -> ExactFinding:
@@ -25,14 +25,9 @@ def exact_interval(value: float) -> Interval:
     return Interval(value=value, low=value - EXACT_UNTOLD, high=min(1.0, value + EXACT_UNTOLD))
 
 
-def page_of(parameter: str) -> Page:
-    """Return the page of the effect whose computed parameter this is, see `Page.computed`."""
-    return next(page for page in library().values() if page.computed == parameter)
-
-
 def computed_cause(parameter: str, value: Parameter, actuator: str, closure: float) -> Cause:
     """Return the cause that a computed parameter stands for."""
-    return exact_cause(page_of(parameter), actuator, closure, **{parameter: value})
+    return exact_cause(computed(parameter), actuator, closure, **{parameter: value})
 
 
 def exact_cause(page: Page, actuator: str, closure: float, **parameters: Parameter) -> Cause:

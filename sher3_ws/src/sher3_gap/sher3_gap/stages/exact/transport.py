@@ -10,9 +10,10 @@ from sher3_diagnosis.channel import Array
 from sher3_diagnosis.finding import ExactFinding
 from sher3_diagnosis.thresholds import SKEW
 from sher3_diagnosis.verdict import Cause, Parameter
+from sher3_effects import computed
 
 from sher3_gap.signals import RunSignals
-from sher3_gap.stages.exact.findings import computed_cause, exact_finding, exact_place, page_of
+from sher3_gap.stages.exact.findings import computed_cause, exact_finding, exact_place
 from sher3_gap.stages.exact.lateness import Lateness, delayed, dropping, held_beside_jitter, jittering
 from sher3_gap.stages.exact.law import EXACT, ROUNDING
 from sher3_gap.stages.exact.timing import Timing
@@ -56,10 +57,10 @@ def _constant_causes(late: Lateness, without: Collection[str]) -> tuple[list[Cau
     """Causes that make every command of an axis late by the same time, and their closure."""
     causes: list[Cause] = []
     closure = 0.0
-    if delayed(late) and page_of("delay").id not in without:
+    if delayed(late) and computed("delay").id not in without:
         closure = late.constant
         causes.append(computed_cause("delay", late.seconds(late.held), "all", late.constant))
-    if late.odd and (late.constant > late.random_share or dropping(late)) and page_of("skew").id not in without:
+    if late.odd and (late.constant > late.random_share or dropping(late)) and computed("skew").id not in without:
         closure = max(closure, late.constant)
         for i in late.odd:
             skew = late.seconds(late.timing.latency[i] - late.usual)
