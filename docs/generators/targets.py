@@ -17,8 +17,8 @@ fields are those of MuJoCo 4.0, URDF 1.0, SDF 1.9, Isaac Lab 3.0 (`isaaclab`) an
 the schema of ros2_control in ROS 2 Jazzy. `yaml` takes all constants with their intervals. What a target has no field
 for is printed by the export and stands in a comment on top of the file, with its reason.
 
-Periods (cogging, ripple, eccentricity) and friction over position are no constant of a joint and are listed for every
-target.
+Ripple, eccentricity, cogging per turn of a motor whose gear is not known, and friction over position are no constant of
+a joint and are listed for every target. A `dcmotor` without input needs MuJoCo 4.0 and takes no control.
 
 """
 SHOWN = [name for name in TARGETS if name != "yaml"]

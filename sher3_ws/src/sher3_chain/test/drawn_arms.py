@@ -89,7 +89,7 @@ def served(
         data.ctrl[:] = now
         data.ctrl[place] = ctrl[max(0, i - late), place]
         mujoco.mj_forward(model, data)
-        rows.append([data.qpos.copy(), data.actuator_force.copy()])
+        rows.append([data.qpos.copy(), data.actuator_force[: model.nu].copy()])
         data.qfrc_applied[place] = push(data)
         mujoco.mj_step(model, data)
     table = np.array(rows)

@@ -164,6 +164,9 @@ class ArmMotionView(AxisView, Protocol):
     def link(self, link: str) -> dict[str, Array]:
         """Return joint -> (g,) force that a link, as its model has it, needs of every joint."""
 
+    def orders(self, joint: str, count: int) -> list[float]:
+        """Return at most `count` periods per turn that stand out in what the model leaves of a joint's effort."""
+
 
 class RobotView(AxisView, Protocol):
     """A run of the robot with its geometry: what an effect between the encoders and the tip needs."""

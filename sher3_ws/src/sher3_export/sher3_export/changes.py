@@ -9,7 +9,7 @@ from sher3_diagnosis.verdict import Cause, Parameter
 from sher3_effects import pages
 from sher3_effects.page import CONSTANTS
 
-KINDS = ("axis", "servo", "joint", "arm", "table", "robot")
+KINDS = ("axis", "servo", "joint", "arm", "table", "law", "robot")
 """Kinds of machine whose pages say which constant a parameter sets."""
 NO_FORCE = ("A", "V", "%", "count", "eu")
 """How the units begin of forces that nobody made newtons."""

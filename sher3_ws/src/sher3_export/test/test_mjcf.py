@@ -35,14 +35,10 @@ def test_friction_and_damping_add_to_what_default_classes_say():
 
 def test_what_mujoco_cannot_express_is_listed_and_stands_in_the_file():
     done, model = written(
-        cause("stribeck_friction", force=4.0, static=7.0, stribeck_velocity=0.01), cause("cogging", amplitude=1.0)
+        cause("coulomb_friction", force=4.0), cause("gear_loss", share=0.1), cause("transmission_ripple", amplitude=1.0)
     )
     assert model.dof_frictionloss[0] == pytest.approx(5.0)
-    assert {(x.effect, x.constant) for x in done.untold} == {
-        ("stribeck_friction", "static"),
-        ("stribeck_friction", "stribeck"),
-        ("cogging", ""),
-    }
+    assert {(x.effect, x.constant) for x in done.untold} == {("gear_loss", "load_loss"), ("transmission_ripple", "")}
     assert all(str(x).replace("--", "- -") in done.text for x in done.untold)
 
 

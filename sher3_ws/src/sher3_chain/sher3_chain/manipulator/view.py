@@ -15,6 +15,7 @@ from sher3_effects.view import NominalAxis
 from sher3_chain.chain.view import LEAD_OF_STROKE, SLIP, ChainView, Loads
 from sher3_chain.manipulator.description import Joint
 from sher3_chain.manipulator.model import PARAMETERS, ArmModel
+from sher3_chain.manipulator.orders import orders_in
 from sher3_chain.manipulator.readings.encoders import crossing
 from sher3_chain.manipulator.signals import JointSignals
 from sher3_chain.readings.level import at_a_level, off
@@ -96,6 +97,18 @@ class MotionView(ChainView):
         own = self._parameters_of(link)
         need = self._of_joints(self.regressor_of_joints[..., own] @ self.model.inertial[own, None])
         return {joint: force[:, 0] for joint, force in need.items()}
+
+    def orders(self, joint: str, count: int) -> list[float]:
+        """Return the periods per turn that stand out in what the model leaves of a joint's effort, the strongest first.
+
+        Args:
+            joint: whose effort is looked at.
+            count: of them at most.
+        """
+        row = self.row(joint)
+        ok = self.in_motion(row)
+        left = self.effort[:, row] - self.inertial[:, row]
+        return orders_in(left[ok], self.position[ok, row], self.velocity[ok, row], count)
 
     def _parameters_of(self, link: str) -> slice:
         """Return where the inertial parameters of a link are."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any, ClassVar
 
 import numpy as np
 from sher3_diagnosis.channel import Array, Channel
@@ -14,7 +15,7 @@ from sher3_sim.parameters import PlantParameters
 from sher3_effects.page import Page
 from sher3_effects.periodic.phase import phase_at_zero
 from sher3_effects.periodic.teeth import orders_of
-from sher3_effects.view import AxisView
+from sher3_effects.view import ArmMotionView, AxisView
 
 
 class Cogging(Page):
@@ -22,7 +23,7 @@ class Cogging(Page):
 
     id, family, stage = "cogging", "periodic", "motor_mechanics"
     inputs = ("position",)
-    needs = ("lead",)
+    needs: ClassVar[tuple[str, ...]] = ("lead",)
     discrete = frozenset({"periods_per_rev"})
     best = Best("sweep", "constant speeds over several revolutions separate periods")
     leaves_out = "further harmonics"
@@ -63,6 +64,35 @@ class CoggingOnAxis(Cogging):
 
     kinds = ("axis",)
     bends = Page.bends
+
+
+class CoggingOnJoint(Cogging):
+    """The same on a joint of an arm, whose gear nobody states: F = A sin(n q + phase), n as the efforts show it."""
+
+    kinds, needs = ("joint",), ()
+    bends = Page.bends
+    discrete = frozenset({"periods_per_turn"})
+    finer: ClassVar[dict[str, tuple[float, ...]]] = {"periods_per_turn": (0.98, 0.993, 1.007, 1.02)}
+    units = {"amplitude": "N", "phase": "rad"}
+    on_axis = {"amplitude": "cogging", "periods_per_turn": "cogging_periods", "phase": "cogging_phase"}
+    COUNT = 3
+    """Orders that are tried; each is then searched more finely."""
+
+    def shapes(self, views: Sequence[Any], site: str) -> list[Shape]:
+        """Return the orders that stand out in the record with the longest travel."""
+        longest: ArmMotionView = max(views, key=lambda v: float(np.ptp(v.run.smooth[:, v.row(site)])))
+        return [{"periods_per_turn": n} for n in longest.orders(site, self.COUNT)]
+
+    def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
+        """Return the quadratures."""
+        turn = shape["periods_per_turn"] * view.run.smooth[:, view.row(site)]
+        waves = (view.run.to_grid(wave(turn)[:, None])[:, 0] for wave in (np.sin, np.cos))
+        return Signature({Channel(self.stage, site): column(*waves)})
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Return amplitude, periods per turn of the joint (per 2 pi m of one that slides) and phase."""
+        amplitude, phase = np.hypot(*coefficients), np.arctan2(coefficients[1], coefficients[0])
+        return {"amplitude": float(amplitude), "periods_per_turn": shape["periods_per_turn"], "phase": float(phase)}
 
 
 @dataclass(frozen=True)

@@ -36,6 +36,7 @@ class GainOfLaw(ControllerGain):
     above = -1.0
     """Relative change at which nothing of a gain is left: what answers the other way round is no gain."""
     discrete = frozenset({"part"})
+    on_axis = {"relative": "servo", "position_relative": "servo_position", "velocity_relative": "servo_velocity"}
     siblings = {
         "command_delay": "the command is right and arrives late",
         "command_deadband": "small errors do nothing, large ones are answered less by a constant",

@@ -62,6 +62,7 @@ class DelayOfLaw(CommandDelay):
     explanation = "The recorded command is the stated law's, or that for the reference, a fixed time late."
     siblings = {"controller_gain": "right in time, and too large or too small"}
     units = {"delay": "s", "reference_delay": "s"}
+    on_axis = {"reference_delay": "servo_delay"}
     discrete = frozenset({"of_reference"})
     PERIODS = (1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0)
     """Delays that are tried, in periods of the record: nobody states the moment of a command within one."""

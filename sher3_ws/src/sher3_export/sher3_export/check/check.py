@@ -23,7 +23,7 @@ from sher3_export.targets.mjcf import Mjcf
 from sher3_export.writing import Exported, export
 from sher3_export.xml_file import read_xml, write_xml
 
-LATE = ("delay", "lag", "limit")
+LATE = ("delay", "lag", "limit", "servo", "servo_position", "servo_velocity", "servo_delay")
 """Constants that act between command and force."""
 
 

@@ -61,7 +61,12 @@ def prepared(root: Element, period: float, tracks: Mapping[str, Track]) -> Eleme
     for block in root.findall("actuator"):
         for x in [x for x in block if x.get("joint") in forced and is_servo(x)]:
             block.remove(x)
-    driven = {x.get("joint") for block in root.findall("actuator") for x in block if x.get("gainprm") != "0"}
+    driven = {
+        x.get("joint")
+        for block in root.findall("actuator")
+        for x in block
+        if x.get("gainprm") != "0" and x.get("input") != "none"
+    }
     for joint in tracks:
         if joint not in driven:
             SubElement(actuators, "motor", {"joint": joint, "ctrllimited": "false"})

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import ClassVar
 
 from sher3_export.changes import Change
+from sher3_export.targets.isaac import DELAYS
 from sher3_export.targets.target import Target
 
 STEP = 0.005
@@ -50,7 +51,7 @@ class Configuration(Target):
         if change.constant not in self.fields:
             return self.refuses.get(change.constant, f"{self.name} has no field for it")
         group, ranges = self.groups.setdefault(change.joint, {}), self.ranges.setdefault(change.joint, {})
-        if change.constant == "delay":
+        if change.constant in DELAYS:
             shortest, longest = self.delays
             group |= {shortest: math.floor(change.value / STEP), longest: math.ceil(change.value / STEP)}
             return ""

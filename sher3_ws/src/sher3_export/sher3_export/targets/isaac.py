@@ -25,6 +25,8 @@ FIELDS: Mapping[str, str] = {
     "limit": "effort_limit_sim",
 }
 """Constant -> field that takes it."""
+DELAYS = ("delay", "servo_delay")
+"""Constants that a group counts in physics steps: it gives a command, or a reference, so many of them late."""
 DRIVE = "an actuator configuration states its gains; multiply stiffness and damping by one plus this"
 
 
@@ -32,13 +34,14 @@ class Isaac(Target):
     """Actuator groups as YAML: `group: {class, joint_names_expr, field: value}`; values add to the nominal ones."""
 
     name = "isaac"
-    fields: ClassVar[Mapping[str, str]] = {**FIELDS, "delay": "min_delay, max_delay"}
+    fields: ClassVar[Mapping[str, str]] = {**FIELDS, **dict.fromkeys(DELAYS, "min_delay, max_delay")}
     refuses: ClassVar[Mapping[str, str]] = {
         "load_loss": "friction does not follow the load here; that of the mean load was written",
         "stribeck": "static and sliding friction are stated, the speed between them is not",
         "offset": "an actuator has no constant force",
         "weight": "a share of the weight without its inertia belongs to the asset, not to an actuator",
-        "drive": DRIVE,
+        **dict.fromkeys(("drive", "servo", "servo_position", "servo_velocity"), DRIVE),
+        **dict.fromkeys(("cogging", "cogging_periods", "cogging_phase"), "an actuator has no force over its angle"),
         "lag": "an actuator of this kind has no first-order lag",
         "zero": "the zero of a joint belongs to the asset",
         "backlash": "an actuator has no play",
@@ -60,12 +63,12 @@ class Isaac(Target):
         """Write a change into the group of its joint; return why it cannot be written, or nothing."""
         if change.over_stiffness:
             return "given in units of the servo's stiffness, which is not known here"
-        if change.constant not in (*FIELDS, "delay"):
+        if change.constant not in self.fields:
             return self.refuses.get(change.constant, "actuator configurations have no field for it")
         group = self.groups.setdefault(
             change.joint, {"class": "isaaclab.actuators.IdealPDActuatorCfg", "joint_names_expr": [change.joint]}
         )
-        if change.constant == "delay":
+        if change.constant in DELAYS:
             steps = {"min_delay": math.floor(change.value / STEP), "max_delay": math.ceil(change.value / STEP)}
             group |= {"class": "isaaclab.actuators.DelayedPDActuatorCfg", **steps}
             return ""

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from typing import ClassVar
 
 from sher3_export.targets.configuration import Configuration
-from sher3_export.targets.isaac import Isaac
+from sher3_export.targets.isaac import DELAYS, Isaac
 
 
 class IsaacLab(Configuration):
@@ -30,7 +30,7 @@ class IsaacLab(Configuration):
         "viscous": "viscous_friction",
         "inertia": "armature",
         "limit": "actuator_effort_limit",
-        "delay": "min_delay, max_delay",
+        **dict.fromkeys(DELAYS, "min_delay, max_delay"),
     }
     refuses = Isaac.refuses
 

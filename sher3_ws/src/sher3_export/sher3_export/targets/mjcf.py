@@ -9,6 +9,8 @@ from typing import ClassVar
 from xml.etree.ElementTree import Element, SubElement
 
 from sher3_export.changes import Change
+from sher3_export.targets import mjcf_motor
+from sher3_export.targets.mjcf_body import moved, together
 from sher3_export.targets.target import XmlTarget, field
 from sher3_export.xml_file import elements, number, numbers, parents, written
 
@@ -30,6 +32,8 @@ SPARE = 2
 """Samples of a delayed actuator beyond delay over time step."""
 LAG = "filterexact"
 """Dynamics of an actuator that is a first-order lag; the time constants of two of them add."""
+SERVOS = ("position", "intvelocity")
+"""Elements whose control is a place, with gains kp and kv."""
 ACTUATORS = ("motor", "position", "velocity", "intvelocity", "general", "damper", "dcmotor", "pid")
 """Elements under <actuator> that may drive a joint."""
 
@@ -41,15 +45,21 @@ class Mjcf(XmlTarget):
     suffix = "xml"
     fields: ClassVar[Mapping[str, str]] = {
         "coulomb": "frictionloss",
+        **dict.fromkeys(("static", "stribeck"), "dcmotor without input, lugre"),
         "viscous": "damping",
         "inertia": "armature",
         "offset": "actuator without control",
         "weight": "gravcomp, for the last joint",
         "drive": "gear, or kp and kv",
         "delay": "delay, nsample",
+        "servo": "kp and kv",
+        "servo_position": "kp",
+        "servo_velocity": "kv",
+        "servo_delay": "delay, nsample",
         "lag": "filterexact, timeconst",
         "limit": "forcerange",
         "zero": "ref",
+        **dict.fromkeys(mjcf_motor.COGGING, "dcmotor without input, cogging"),
         "backlash": "a body of the motor's own and a second joint",
         "compliance": "a body of the motor's own and a second joint",
         "spring": "stiffness",
@@ -63,10 +73,12 @@ class Mjcf(XmlTarget):
             ("arm", "hanging"), "a weight at an arm is mass and centre of a link, which the verdict does not give"
         ),
         "load_loss": "friction does not follow the load here; that of the mean load was written",
-        "static": "MuJoCo's frictionloss is the same at rest and in motion; only the sliding level was written",
-        "stribeck": "MuJoCo's frictionloss does not depend on speed",
         "ratio": "the load encoder is no part of the joint",
     }
+
+    def __init__(self, root: Element) -> None:
+        super().__init__(root)
+        self._sliding: dict[tuple[str, str], float] = {}
 
     def all_joints(self) -> Sequence[Element]:
         """Return hinges and slides of the bodies."""
@@ -75,14 +87,22 @@ class Mjcf(XmlTarget):
     @property
     def writers(self) -> Mapping[str, Callable[[Change, Element], str]]:
         """Return what writes each constant."""
+        cogging = dict.fromkeys(mjcf_motor.COGGING, lambda change, joint: mjcf_motor.cogging(self.root, change))
         return {
-            "coulomb": lambda change, joint: self._add(joint, "frictionloss", change.value),
+            **cogging,
+            "coulomb": self._coulomb,
+            "static": self._static,
+            "stribeck": lambda change, joint: mjcf_motor.falling(self.root, change),
             "viscous": lambda change, joint: self._add(joint, "damping", change.value),
             "inertia": lambda change, joint: self._add(joint, "armature", change.value),
             "offset": self._offset,
             "weight": self._weight,
             "drive": self._drive,
-            "delay": self._delay,
+            "delay": lambda change, joint: self._delay(change, self._actuators(change.joint)),
+            "servo": lambda change, joint: self._gains(change, ("kp", "kv")),
+            "servo_position": lambda change, joint: self._gains(change, ("kp",)),
+            "servo_velocity": lambda change, joint: self._gains(change, ("kv",)),
+            "servo_delay": lambda change, joint: self._delay(change, self._servos(change.joint)),
             "lag": self._lag,
             "limit": self._limit,
             "zero": self._zero,
@@ -145,27 +165,53 @@ class Mjcf(XmlTarget):
             part.set("gravcomp", written(number(part.get("gravcomp")) - change.value))
         return ""
 
+    def _coulomb(self, change: Change, joint: Element) -> str:
+        self._sliding[change.joint, change.effect] = change.value
+        return self._add(joint, "frictionloss", change.value)
+
+    def _static(self, change: Change, joint: Element) -> str:
+        """Friction at rest takes that in motion of the same cause along into its own law."""
+        sliding = self._sliding.get((change.joint, change.effect), 0.0)
+        if reason := mjcf_motor.at_rest(self.root, change, sliding, self._step):
+            return reason
+        return self._add(joint, "frictionloss", -sliding)
+
     def _drive(self, change: Change, joint: Element) -> str:
         actuators = self._actuators(change.joint)
         for actuator in actuators:
-            if actuator.tag in ("position", "velocity", "intvelocity"):
-                for gain in ("kp", "kv") if actuator.tag != "velocity" else ("kv",):
-                    default = 0.0 if gain == "kv" and actuator.tag != "velocity" else 1.0
-                    actuator.set(gain, written(self._inherited(actuator, gain, default) * (1.0 + change.value)))
+            if actuator.tag in SERVOS:
+                self._scale(actuator, change, ("kp", "kv"))
+            elif actuator.tag == "velocity":
+                self._scale(actuator, change, ("kv",))
             else:
                 gear = numbers(actuator.get("gear") or self._class_value(actuator, "gear"), "1")
                 actuator.set("gear", written(gear[0] * (1.0 + change.value), *gear[1:]))
         return self._needs(actuators)
 
-    def _delay(self, change: Change, joint: Element) -> str:
-        actuators = self._actuators(change.joint)
-        option = self.root.find("option")
-        step = number(None if option is None else option.get("timestep"), STEP)
+    def _gains(self, change: Change, gains: Sequence[str]) -> str:
+        servos = self._servos(change.joint)
+        for servo in servos:
+            self._scale(servo, change, gains)
+        return self._needs(servos)
+
+    def _scale(self, actuator: Element, change: Change, gains: Sequence[str]) -> None:
+        """Multiply gains of an actuator; of a <position> kp is one and kv is none where they are not stated."""
+        for gain in gains:
+            default = 0.0 if gain == "kv" and actuator.tag in SERVOS else 1.0
+            actuator.set(gain, written(self._inherited(actuator, gain, default) * (1.0 + change.value)))
+
+    def _delay(self, change: Change, actuators: Sequence[Element]) -> str:
         for actuator in actuators:
             delay = self._inherited(actuator, "delay") + change.value
             actuator.set("delay", written(delay))
-            actuator.set("nsample", str(math.ceil(delay / step) + SPARE))
+            actuator.set("nsample", str(math.ceil(delay / self._step) + SPARE))
         return self._needs(actuators)
+
+    @property
+    def _step(self) -> float:
+        """Time step of the model, s."""
+        option = self.root.find("option")
+        return number(None if option is None else option.get("timestep"), STEP)
 
     def _lag(self, change: Change, joint: Element) -> str:
         """A first-order lag is an activation: `timeconst` of a position servo, a filter on any other force."""
@@ -267,12 +313,10 @@ class Mjcf(XmlTarget):
     def _compliance(self, change: Change, joint: Element) -> str:
         if change.value <= 0.0:
             return "no spring has a compliance of zero or less"
-        option = self.root.find("option")
-        step = number(None if option is None else option.get("timestep"), STEP)
         standing = self.joints.get(f"{change.joint}_spring")
         before = 0.0 if standing is None else 1.0 / number(standing.get("stiffness"))
         stiffness = 1.0 / (before + change.value)  # springs one behind the other
-        law = {"stiffness": written(stiffness), "damping": written(step * stiffness)}
+        law = {"stiffness": written(stiffness), "damping": written(self._step * stiffness)}
         if standing is None:
             self._second(change, joint, "spring", law)
         else:
@@ -295,9 +339,9 @@ class Mjcf(XmlTarget):
         world[list(world).index(load)] = body
         SubElement(body, "inertial", {"pos": "0 0 0", "mass": written(DUST), "diaginertia": written(*[DUST] * 3)})
         before = [x for x in load.findall("joint")]
-        for moved in before[: before.index(joint) + 1]:
-            load.remove(moved)
-            body.append(moved)
+        for held in before[: before.index(joint) + 1]:
+            load.remove(held)
+            body.append(held)
         same: dict[str, str] = {
             str(name): joint.attrib[name] for name in ("type", "axis", "pos", "class") if name in joint.attrib
         }
@@ -310,11 +354,14 @@ class Mjcf(XmlTarget):
             x
             for block in self.root.findall("actuator")
             for x in block
-            if x.get("joint") == joint and x.tag in ACTUATORS and x.get("gainprm") != "0"
+            if x.get("joint") == joint and x.tag in ACTUATORS and x.get("gainprm") != "0" and x.get("input") != "none"
         ]
 
+    def _servos(self, joint: str) -> list[Element]:
+        return [x for x in self._actuators(joint) if x.tag in SERVOS]
+
     def _needs(self, actuators: Sequence[Element]) -> str:
-        return "" if actuators else "the model has no actuator on this joint"
+        return "" if actuators else "the model has no such actuator on this joint"
 
     def _degrees(self) -> bool:
         compiler = self.root.find("compiler")
@@ -342,17 +389,3 @@ class Mjcf(XmlTarget):
                 return stated
             found = above[found]
         return None
-
-
-def together(body: Element) -> list[Element]:
-    """Return a body and those below it that no joint parts from it."""
-    below = [x for x in body.findall("body") if x.find("joint") is None and x.find("freejoint") is None]
-    return [body, *(part for x in below for part in together(x))]
-
-
-def moved(body: Element, change: Change) -> str:
-    """Move a body along the axis that the constant of a change ends with; return nothing: it could be written."""
-    place = numbers(body.get("pos"), "0 0 0")
-    place["xyz".index(change.constant[-1])] += change.value
-    body.set("pos", written(*place))
-    return ""

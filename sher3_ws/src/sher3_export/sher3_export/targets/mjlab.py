@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from typing import ClassVar
 
 from sher3_export.targets.configuration import Configuration
+from sher3_export.targets.isaac import DELAYS
 from sher3_export.targets.mjcf import Mjcf
 
 MODEL = "it stands in the MJCF that mjlab loads: write it there with --to mjcf"
@@ -18,7 +19,7 @@ FIELDS: Mapping[str, str] = {
     "coulomb": "frictionloss",
     "viscous": "viscous_damping",
     "inertia": "armature",
-    "delay": "delay_min_lag, delay_max_lag",
+    **dict.fromkeys(DELAYS, "delay_min_lag, delay_max_lag"),
 }
 """Constant -> field that takes it."""
 

@@ -11,15 +11,12 @@ from typing import Any
 import numpy as np
 
 from sher3_chain.manipulator.mjcf.bodies import SLIDE
+from sher3_chain.manipulator.mjcf.passive import AFFINE, FIXED, NONE, at_joint, is_passive
 
 EULER, IMPLICIT, IMPLICIT_FAST = 0, 2, 3
 """MuJoCo's numbers of integrators (mjtIntegrator)."""
 EULER_DAMP = 1 << 15
 """Flag that switches the implicit damping of Euler's method off (mjDSBL_EULERDAMP)."""
-FIXED, AFFINE, NONE = 0, 1, 0
-"""MuJoCo's numbers of an actuator's laws: fixed gain, affine bias, no bias, no dynamics."""
-JOINT, JOINT_IN_PARENT = 0, 1
-"""MuJoCo's numbers of transmissions that end at a joint (mjtTrn)."""
 
 
 @dataclass(frozen=True)
@@ -27,7 +24,8 @@ class Drive:
     """An actuator on one joint.
 
     Attributes:
-        name, number: of the actuator.
+        name: of the actuator.
+        number: of its control.
         gear: joint force per force of the actuator.
         servo: whether its control is a place, else a force.
         factor: what turns the control into a place, m or rad, or into the joint's force, N or N m.
@@ -90,17 +88,14 @@ def _driven(source: Any, joint: int) -> Driven:
 
 def _drive(source: Any, joint: int) -> tuple[Drive | None, str]:
     """Return the actuator of a joint, or why its force is not known from its control."""
-    at_joint = [
-        i
-        for i in range(source.nu)
-        if source.actuator_trntype[i] in (JOINT, JOINT_IN_PARENT) and source.actuator_trnid[i][0] == joint
-    ]
-    if not at_joint:
+    driving = [i for i in at_joint(source, joint) if not is_passive(source, i)]
+    if not driving:
         return None, "the model has no actuator on it"
-    if len(at_joint) > 1:
-        return None, f"the model has {len(at_joint)} actuators on it"
-    i = at_joint[0]
+    if len(driving) > 1:
+        return None, f"the model has {len(driving)} actuators on it"
+    i = driving[0]
     name, gear = source.actuator(i).name or f"actuator{i}", float(source.actuator_gear[i][0])
+    control = int(getattr(source, "actuator_ctrladr", range(source.nu))[i])
     if source.actuator_dyntype[i] != NONE:
         return None, f"actuator {name} has dynamics of its own"
     if source.actuator_gaintype[i] != FIXED or source.actuator_biastype[i] not in (NONE, AFFINE) or not gear:
@@ -109,13 +104,13 @@ def _drive(source: Any, joint: int) -> tuple[Drive | None, str]:
     offset, place, speed = (float(x) for x in source.actuator_biasprm[i][:3])
     limit = _limit(source, i, joint, gear)
     if source.actuator_biastype[i] == NONE or (not place and not speed and not offset):
-        return Drive(name, i, gear, False, gain * gear, limit=limit), ""
+        return Drive(name, control, gear, False, gain * gear, limit=limit), ""
     if not place or not gain or offset:
         return (
             None,
             f"actuator {name} is no servo of places: its force is {gain:g} u {offset:+g} {place:+g} q {speed:+g} v",
         )
-    return Drive(name, i, gear, True, -gain / (place * gear), -place * gear**2, -speed * gear**2, limit), ""
+    return Drive(name, control, gear, True, -gain / (place * gear), -place * gear**2, -speed * gear**2, limit), ""
 
 
 def _limit(source: Any, actuator: int, joint: int, gear: float) -> float | None:

@@ -1,4 +1,6 @@
-"""Forces of an MJCF model beside its rigid bodies, as MuJoCo computes them: springs, gravity compensation, losses."""
+"""Forces of an MJCF model beside its rigid bodies, as MuJoCo computes them: springs, gravity compensation, losses,
+and actuators that no control reaches.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +11,7 @@ from typing import Any
 import numpy as np
 from sher3_diagnosis.channel import Array
 
+from sher3_chain.manipulator.mjcf.passive import MOTOR, Passive
 from sher3_chain.manipulator.mjcf.reading import mujoco
 
 
@@ -38,19 +41,21 @@ class Losses:
         joints = [self._model.joint(name) for name in names]
         self._places = np.array([int(j.qposadr[0]) for j in joints])
         self._rows = np.array([int(j.dofadr[0]) for j in joints])
+        bias = api.mjtBias.__members__.get(MOTOR)
+        self._passive = Passive(self._model, [j.id for j in joints], None if bias is None else int(bias))
         self.full = np.array([float(self._model.dof_frictionloss[row]) for row in self._rows])
         for joint in joints:
             if joint.name in stated:
                 self._model.dof_damping[joint.dofadr[0]] = 0.0
 
     def at_rest(self, q: Array) -> Array:
-        """Return the force that springs and gravity compensation leave to the drives at positions q (n, k), (n, k)."""
+        """Return the force that springs, gravity compensation and cogging leave to the drives at q (n, k), (n, k)."""
         still = np.zeros_like(q)
-        return -self._forces(q, still, still)[0]
+        return -self._forces(q, still, still)[0] - self._passive.force(q, still)
 
     def in_motion(self, q: Array, v: Array) -> Array:
         """Return the force that damping and drag need at positions and velocities (n, k), (n, k)."""
-        return -self._forces(q, v, np.zeros_like(q))[0] - self.at_rest(q)
+        return -self._forces(q, v, np.zeros_like(q))[0] - self._passive.force(q, v) - self.at_rest(q)
 
     def dry(self, q: Array, v: Array, a: Array) -> Array:
         """Return the force that dry friction needs at positions, velocities and accelerations (n, k), (n, k)."""

@@ -1,0 +1,40 @@
+"""Periods per turn of a joint that stand out in a force over its angle."""
+
+from __future__ import annotations
+
+import numpy as np
+from sher3_diagnosis.channel import Array
+from sher3_diagnosis.filter import BANDWIDTH
+
+LEAST = 2.0
+"""Periods within the travel from which a wave is told from what else follows the position: a spring, a cable, a weight.
+"""
+FINE = 4.0
+"""Orders that are tried within the width of a peak, which is one period more or less over the travel."""
+MOST = 2000
+"""Orders that are tried at most."""
+
+
+def orders_in(force: Array, position: Array, speed: Array, count: int) -> list[float]:
+    """Return the periods per turn, or per 2 pi m, whose waves take most of a force, the strongest of each peak first.
+
+    A constant, the position, the speed and its sign are taken off before: whatever a joint has beside a wave.
+
+    Args:
+        force: (n,) N m or N.
+        position: (n,) of the joint, m or rad.
+        speed: (n,) of the joint, m/s or rad/s.
+        count: of orders that are returned at most.
+    """
+    travel = float(np.ptp(position)) if len(position) else 0.0
+    quick = float(np.median(np.abs(speed))) if len(speed) else 0.0
+    if travel <= 0.0 or quick <= 0.0:
+        return []
+    turn, top = 2.0 * np.pi / travel, 2.0 * np.pi * BANDWIDTH / quick
+    orders = np.arange(LEAST * turn, top, turn / FINE)[:MOST]
+    plain = np.column_stack([np.ones_like(position), position, speed, np.sign(speed)])
+    left = force - plain @ np.linalg.lstsq(plain, force, rcond=None)[0]
+    power = np.array([np.abs(np.exp(-1j * n * position) @ left) for n in orders])
+    inner = np.r_[-np.inf, power, -np.inf]
+    peaks = np.flatnonzero((inner[1:-1] >= inner[:-2]) & (inner[1:-1] >= inner[2:]))
+    return [float(orders[i]) for i in peaks[np.argsort(-power[peaks])][:count]]

@@ -1,0 +1,71 @@
+"""Servos and passive motors in a MuJoCo model: read back by MuJoCo, and by how the model then moves."""
+
+import mujoco
+import numpy as np
+import pytest
+from sher3_export import export
+from sher3_export.xml_file import parse_xml
+from verdicts import cause, verdict
+
+MODEL = """<mujoco><option timestep="0.001" gravity="0 0 0"/><worldbody><body name="b">
+<joint name="slide" type="hinge" axis="0 0 1" frictionloss="1"/>
+<inertial pos="0 0 0" mass="2" diaginertia="1 1 1"/></body></worldbody>
+<actuator><position name="p" joint="slide" kp="200" kv="10"/></actuator></mujoco>"""
+STRIBECK = cause("stribeck_friction", force=2.0, static=5.0, stribeck_velocity=0.1)
+
+
+def written(*causes):
+    done = export(verdict(*causes), "mjcf", parse_xml(MODEL, "mujoco"))
+    return done, mujoco.MjModel.from_xml_string(done.text)
+
+
+def given(model, q, v):
+    """Force of all actuators on the joint, its servo at rest, N m."""
+    data = mujoco.MjData(model)
+    data.qpos[0], data.qvel[0], data.ctrl[0] = q, v, q
+    mujoco.mj_forward(model, data)
+    return float(data.qfrc_actuator[0]) + 10.0 * v
+
+
+def test_a_cogging_takes_no_control_and_is_the_force_that_the_drive_then_needs():
+    done, model = written(cause("cogging", amplitude=0.5, periods_per_turn=12.0, phase=0.3))
+    assert not done.untold and model.nu == 1
+    for q in (0.0, 0.1, 0.37):
+        assert given(model, q, 0.0) == pytest.approx(-0.5 * np.sin(12.0 * q + 0.3))
+
+
+def test_friction_at_rest_moves_with_that_in_motion_into_lugre_s_law():
+    done, model = written(STRIBECK)
+    assert not done.untold and model.nu == 1 and model.dof_frictionloss[0] == pytest.approx(1.0)
+    data, broke = mujoco.MjData(model), 0.0
+    for k in range(8000):
+        data.ctrl[0] = data.qpos[0] + 10.0 * data.qvel[0] / 200.0  # the servo gives nothing
+        data.qfrc_applied[0] = k * 1e-3
+        mujoco.mj_step(model, data)
+        if data.qvel[0] > 0.02:
+            broke = float(data.qfrc_applied[0])
+            break
+    assert broke == pytest.approx(1.0 + 5.0, abs=0.2)
+    data.qvel[0] = 1.0
+    for _ in range(200):
+        data.ctrl[0] = data.qpos[0] + 10.0 * data.qvel[0] / 200.0
+        data.qfrc_applied[0] = 3.0
+        mujoco.mj_step(model, data)
+    assert float(data.qfrc_actuator[0]) == pytest.approx(-2.0, abs=0.05)
+
+
+def test_gains_and_the_reference_of_a_servo():
+    done, model = written(
+        cause("controller_gain", relative=-0.1, unit="1"), cause("command_delay", reference_delay=0.024, unit="s")
+    )
+    assert not done.untold
+    assert model.actuator_gainprm[0][0] == pytest.approx(180.0) and model.actuator_biasprm[0][2] == pytest.approx(-9.0)
+    assert model.actuator_delay[0] == pytest.approx(0.024)
+    _, model = written(cause("controller_gain", velocity_relative=0.5, unit="1"))
+    assert model.actuator_gainprm[0][0] == pytest.approx(200.0) and model.actuator_biasprm[0][2] == pytest.approx(-15.0)
+
+
+def test_a_motor_has_no_gains_of_a_servo():
+    model = MODEL.replace('<position name="p" joint="slide" kp="200" kv="10"/>', '<motor joint="slide"/>')
+    done = export(verdict(cause("controller_gain", relative=-0.1)), "mjcf", parse_xml(model, "mujoco"))
+    assert not done.applied and "no such actuator" in done.untold[0].reason
