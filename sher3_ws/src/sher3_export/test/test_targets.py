@@ -1,7 +1,9 @@
 """URDF, SDF, Isaac and plain YAML: what is written, and what is said to be missing."""
 
+import json
 import sys
 from functools import partial
+from pathlib import Path
 from types import ModuleType
 
 import pinocchio
@@ -83,30 +85,35 @@ def test_every_constant_is_written_or_refused_with_a_reason_by_every_target(name
         assert set(target(parse_xml(model, target.root_tag)).writers) == set(target.fields)
 
 
+FIELDS = json.loads((Path(__file__).parent / "fields.json").read_text())
+"""Fields of the classes of Isaac Lab and mjlab, read off their wheels by `tools/library_fields.py`."""
+
+
 class Group:
-    """Stands for the class of a library: it takes the fields that the library documents and no other."""
+    """Stands for the class of a library: it takes the fields that the library has, those that must be given among them.
+
+    The libraries themselves import their simulators and a GPU's tool kit.
+    """
 
     def __init__(self, known, **given):
-        assert set(given) <= set(known.split()), set(given) - set(known.split())
+        assert set(given) <= set(known), set(given) - set(known)
+        assert not {name for name, needed in known.items() if needed} - set(given)
         self.__dict__.update(given)
 
 
-ISAACLAB = (
-    "joint_names_expr actuator_effort_limit actuator_velocity_limit joint_effort_limit stiffness damping armature "
-    "friction dynamic_friction viscous_friction"
-)
-MJLAB = (
-    "target_names_expr transmission_type command_field armature velocity_limit frictionloss viscous_damping "
-    "delay_min_lag delay_max_lag delay_hold_prob delay_update_period delay_per_env_phase"
-)
 LIBRARIES = {
-    "isaaclab.actuators": {
-        "IdealPDActuatorCfg": partial(Group, ISAACLAB),
-        "DelayedPDActuatorCfg": partial(Group, f"{ISAACLAB} min_delay max_delay"),
-    },
-    "mjlab.actuator": {"XmlActuatorCfg": partial(Group, MJLAB)},
+    found["module"]: {name: partial(Group, known) for name, known in found["classes"].items()}
+    for found in FIELDS.values()
 }
-"""Fields of Isaac Lab 3.0.0 and mjlab 1.6.0, as their wheels have them."""
+
+
+@pytest.mark.parametrize("name", ["isaaclab", "mjlab"])
+def test_the_version_that_is_named_is_the_one_whose_fields_are_known(name):
+    library, version = TARGETS[name].version.rsplit(" ", 1)
+    assert FIELDS[name]["version"].startswith(version) and library.replace(" ", "").lower() == name
+    assert FIELDS[name]["licence"] in ("BSD-3-Clause", "Apache-2.0")
+    written = {field for text in TARGETS[name].fields.values() for field in text.split(", ")}
+    assert written <= set(FIELDS[name]["classes"][TARGETS[name].delayed])
 
 
 def loaded(text, monkeypatch):
