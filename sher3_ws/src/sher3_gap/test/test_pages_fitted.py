@@ -112,3 +112,18 @@ def test_a_load_that_swings_on_its_transmission_is_told_by_mass_spring_and_frequ
     for name, value in truth.items():
         assert found[name] == pytest.approx(value, rel=0.05), found
     assert found["damping"] == pytest.approx(0.05, abs=0.03)
+
+
+def test_balls_of_every_leg_are_one_error_of_the_platform():
+    """No leg alone explains a platform that was bored wrong: each leg's x and y are told within 3 µm."""
+    page = library()["platform_geometry_error"]
+    moved = {"delta_1": (3e-5, -1e-5), "delta_2": (-2e-5, 2e-5), "delta_3": (1e-5, 3e-5)}
+    effects = [page.plant(leg, x=x, y=y) for leg, (x, y) in moved.items()]
+    runs = rehearse(ROBOT, [(excite(x, ROBOT), 0) for x in ("sweep", "postures")], effects, seed=1, scatter=QUIET)
+    evidence = gather(signals(runs), ROBOT)
+    fits = [Candidates(evidence, [page]).best(page, site) for site in ("tip", *moved)]
+    assert min(fits, key=lambda f: f.total) is fits[0]
+    told = page.to_simulator("tip", page.parameters(fits[0].terms[0].shape, fits[0].of(0)), ROBOT)
+    assert {p.actuator: (p.parameters["x"], p.parameters["y"]) for p in told} == {
+        leg: pytest.approx(x_y, abs=3e-6) for leg, x_y in moved.items()
+    }

@@ -17,9 +17,14 @@ from sher3_effects.geometry.drawing import direction, metres, shift
 from sher3_effects.page import TIP_POSE, Page, Part, Tolerated, Values
 from sher3_effects.view import RobotView
 
+OF_A_LEG = ("x", "y", "difference")
+OF_EVERY_LEG = tuple(f"{name}_{k}" for k in range(1, 4) for name in OF_A_LEG)
+BOTH_UNLIKE = 3.0
+"""Value of `ball` for both balls of a leg, not quite alike."""
+
 
 class PlatformGeometryError(Page):
-    """Ball joints of one leg (or all, radially) displaced by x, y in {b}: they shift the leg's anchor."""
+    """Ball joints of one leg displaced by x, y in {b}: they shift the leg's anchor. Or of all, each by its own."""
 
     id, family, stage = "platform_geometry_error", "geometry", "mechanism"
     inputs = ("posture",)
@@ -31,7 +36,13 @@ class PlatformGeometryError(Page):
         "the position of the platform, not with roll or tilt."
     )
     siblings = {"link_length_error": "along the leg", "rail_tilt": "grows with the height of the slider"}
-    units = {"x": "m", "y": "m", "difference": "m", "radius": "m"}
+    units = dict.fromkeys((*OF_A_LEG, "radius", *OF_EVERY_LEG), "m")
+    EVERY = 4.0
+    """Value of `ball` for the balls of every leg at once."""
+
+    def bends(self, views: Sequence[RobotView], site: str, shape: Shape) -> list[Shape]:
+        """Return the balls of all legs, each off by its own: a platform bored wrong has more than one wrong hole."""
+        return [{"ball": self.EVERY}] if site == "tip" else []
 
     def shapes(self, views: Sequence[RobotView], site: str) -> list[Shape]:
         """Which of the leg's two balls: both (0), the first (1), the second (2), both but not quite alike (3)."""
@@ -42,19 +53,27 @@ class PlatformGeometryError(Page):
 
         A ball displaced by d changes what its link spans by u . d, u the link's direction.
         """
+        if shape["ball"] == self.EVERY:
+            legs = [self._of_leg(view, row, BOTH_UNLIKE) for row in range(len(SLIDERS))]
+            return Signature(view.at_tip(-np.concatenate(legs, axis=2)))
         azimuth = view.robot.delta.leg_azimuth
         span = view.links[:, :3]
         if site == "tip":
             outward = np.repeat([[np.cos(a), np.sin(a), 0.0] for a in azimuth], 2, axis=0)
             change = np.einsum("gij,gkj,jk->gi", view.link_changes, span, outward)[:, :, None]
         else:
-            first = 2 * view.row(site)
-            links = {1: (first,), 2: (first + 1,)}.get(int(shape["ball"]), (first, first + 1))
-            change = sum(view.link_changes[:, :, [j]] * span[:, None, :2, j] for j in links)
-            if shape["ball"] == 3.0:
-                apart = view.link_changes[:, :, [first]] - view.link_changes[:, :, [first + 1]]
-                change = np.concatenate([change, apart], axis=2)
+            change = self._of_leg(view, view.row(site), shape["ball"])
         return Signature(view.at_tip(-change))
+
+    def _of_leg(self, view: RobotView, row: int, ball: float) -> Array:
+        """Return the change of the pose (g, 6, 2 or 3) per metre of x, y of a leg's balls, and of their difference."""
+        first = 2 * row
+        links = {1: (first,), 2: (first + 1,)}.get(int(ball), (first, first + 1))
+        change = sum(view.link_changes[:, :, [j]] * view.links[:, :3][:, None, :2, j] for j in links)
+        if ball != BOTH_UNLIKE:
+            return np.asarray(change)
+        apart = view.link_changes[:, :, [first]] - view.link_changes[:, :, [first + 1]]
+        return np.concatenate([change, apart], axis=2)
 
     def tolerated(self, robot: Robot, site: str) -> Sequence[Tolerated]:
         """Return both balls of both ends of the leg, sideways."""
@@ -65,18 +84,25 @@ class PlatformGeometryError(Page):
         return [Tolerated({"ball": b}, limits) for b, limits in names.items()]
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Offsets of the platform's joint."""
-        names = ("radius",) if len(coefficients) == 1 else ("x", "y", "difference")
+        """Offsets of the platform's joint, or of those of every leg."""
+        names = {1: ("radius",), len(OF_EVERY_LEG): OF_EVERY_LEG}.get(len(coefficients), OF_A_LEG)
         return {n: float(c) for n, c in zip(names, coefficients, strict=False)}
 
     def to_simulator(self, actuator: str, values: Values, robot: Robot) -> list[Part]:
-        """Return radial and tangential offsets of one leg, or the same radius on all three."""
+        """Return radial and tangential offsets of one leg or of each, or the same radius on all three."""
         if "radius" in values:
             return [Part(self.id, leg, {"x": values["radius"], "y": 0.0}) for leg in SLIDERS]
-        azimuth = robot.delta.leg_azimuth[ACTUATORS.index(actuator)]
+        if "x_1" in values:
+            each = {leg: (values[f"x_{k}"], values[f"y_{k}"]) for k, leg in enumerate(SLIDERS, 1)}
+        else:
+            each = {actuator: (values["x"], values["y"])}
+        return [self._turned(robot, leg, *moved) for leg, moved in each.items()]
+
+    def _turned(self, robot: Robot, leg: str, x: float, y: float) -> Part:
+        """Return the offsets of a leg, radial and tangential."""
+        azimuth = robot.delta.leg_azimuth[ACTUATORS.index(leg)]
         c, s = math.cos(azimuth), math.sin(azimuth)
-        x, y = values["x"], values["y"]
-        return [Part(self.id, actuator, {"x": c * x + s * y, "y": c * y - s * x})]
+        return Part(self.id, leg, {"x": c * x + s * y, "y": c * y - s * x})
 
 
 @dataclass(frozen=True)
