@@ -82,15 +82,6 @@ def earlier(ticks):
     return extra
 
 
-def test_a_host_that_reads_late_is_told_with_its_ticks():
-    evidence = exact_evidence(commanded(earlier(3)), ROBOT, "controller")
-    assert evidence.channels == [Channel("controller", "tilt")]  # the others do what they are asked to
-    found = discover_at(evidence, evidence.channels[0])
-    assert [str(t.feature) for t in found.terms] == ["itself(reading.change_3)"]
-    (value,) = (t.coefficient for t in found.terms)
-    assert value.value == pytest.approx(ROBOT.position_gain, rel=1e-6) and value.unit == "1/s"
-
-
 def test_what_comes_by_chance_has_no_formula():
     def by_chance(_, load):
         return 1e-4 * np.random.default_rng(int(1e12 * abs(load[5, 0]))).normal(size=load.shape)
@@ -117,11 +108,27 @@ def test_discovery_asks_the_stage_that_is_named():
     assert whole.channel == Channel("controller", "tilt")
 
 
-def test_a_saved_formula_is_found_again(tmp_path, monkeypatch):
+@pytest.fixture(scope="module")
+def late():
+    """Runs of a host that reads late, and the formula of it."""
+    finding, gathered = asked(commanded(earlier(3)))
+    evidence = gathered()
+    assert evidence.channels == [Channel("controller", "tilt")]  # the others do what they are asked to
+    return finding, gathered, discover_at(evidence, evidence.channels[0])
+
+
+def test_a_host_that_reads_late_is_told_with_its_ticks(late):
+    *_, found = late
+    assert [str(t.feature) for t in found.terms] == ["itself(reading.change_3)"]
+    (value,) = (t.coefficient for t in found.terms)
+    assert value.value == pytest.approx(ROBOT.position_gain, rel=1e-6) and value.unit == "1/s"
+
+
+def test_a_saved_formula_is_found_again(late, tmp_path, monkeypatch):
     monkeypatch.setenv(VARIABLE, "")
-    finding, gathered = asked(commanded(earlier(4)))
+    finding, gathered, found = late
     assert finding.causes == [] and with_pages(finding, gathered) is finding
-    save_found(discover_at(gathered(), Channel("controller", "tilt")), "old_reading", tmp_path / "old.yaml")
+    save_found(found, "old_reading", tmp_path / "old.yaml")
     add_library([tmp_path / "old.yaml"])
     again = with_pages(finding, gathered)
     (cause,) = again.causes
@@ -131,10 +138,10 @@ def test_a_saved_formula_is_found_again(tmp_path, monkeypatch):
     assert with_pages(finding, gathered, without=["old_reading"]) is finding
 
 
-def test_a_page_that_does_not_reproduce_the_stage_is_no_cause(tmp_path, monkeypatch):
+def test_a_page_that_does_not_reproduce_the_stage_is_no_cause(late, tmp_path, monkeypatch):
     monkeypatch.setenv(VARIABLE, "")
-    _, gathered = asked(commanded(earlier(4)))
-    save_found(discover_at(gathered(), Channel("controller", "tilt")), "old_reading", tmp_path / "old.yaml")
+    *_, found = late
+    save_found(found, "old_reading", tmp_path / "old.yaml")
     add_library([tmp_path / "old.yaml"])
     other, of_other = asked(commanded(lambda reference, _: 0.02 * np.abs(reference)))
     assert with_pages(other, of_other) is other

@@ -12,6 +12,7 @@ import numpy as np
 from sher3_diagnosis.channel import Array
 from sher3_diagnosis.discover.columns import Columns
 from sher3_diagnosis.discover.feature import Factor, Feature
+from sher3_diagnosis.fit.threads import one_thread
 
 REACHES = (1e-3, 3e-2, 0.3)
 """Displacements over which the direction is remembered, shares of the range of a position."""
@@ -46,7 +47,8 @@ def predicted(columns: Columns, component: int, folds: Sequence[Sequence[int]]) 
     for fold in folds:
         train = [r for r in range(len(x)) if r not in fold]
         trees = HistGradientBoostingRegressor(max_iter=TREES, learning_rate=0.12, random_state=0)
-        trees.fit(np.vstack([x[r] for r in train]), np.concatenate([y[r] for r in train]))
-        for r in fold:
-            out[r] = trees.predict(x[r])
+        with one_thread():
+            trees.fit(np.vstack([x[r] for r in train]), np.concatenate([y[r] for r in train]))
+            for r in fold:
+                out[r] = trees.predict(x[r])
     return out

@@ -7,12 +7,12 @@ the shape of the law; one that only other inputs take away is another law.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from contextlib import AbstractContextManager
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sher3_diagnosis.channel import Array
+from sher3_diagnosis.fit.threads import one_thread
 
 FOLDS = 3
 """Groups of runs, each predicted from the others."""
@@ -47,7 +47,7 @@ def loss_left(groups: Sequence[Array], signal: Array, run: NDArray[np.int64]) ->
     given = np.zeros((len(signal), 0))
     for group in groups:
         given = np.hstack([given, group])
-        with _one_thread():
+        with one_thread():
             predicted = np.column_stack([_crossed(given, y, run) for y in left.T])
         gain = float(np.sum(left**2) - np.sum((left - predicted) ** 2)) / len(signal)
         if gain > 0.0:
@@ -102,14 +102,6 @@ def _told(column: Array, y: Array) -> float:
     cell = np.searchsorted(edges, column)
     count = np.bincount(cell, minlength=BINS)
     return float(np.sum(np.bincount(cell, y, minlength=BINS) ** 2 / np.maximum(count, 1)))
-
-
-def _one_thread() -> AbstractContextManager[object]:
-    """Hold the compiled libraries to one thread: on so few samples more of them only wait for each other."""
-    import sklearn.ensemble  # noqa: F401  its threads are there to be held once it is loaded
-    from threadpoolctl import threadpool_limits
-
-    return threadpool_limits(limits=1)
 
 
 def _trees(inputs: Array, y: Array, new: Array) -> Array:
