@@ -12,15 +12,14 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 from sher3_diagnosis.channel import Array
-from sher3_diagnosis.filter import DECIMATED_RATE, EDGE, low_pass
-from sher3_effects.operators import second_difference
+from sher3_effects.motion import FilteredRun
 
 RAMP_LIMIT = 0.25
 """Longest time from an unloaded tip to a stated plateau over which the load is taken as unknown, s."""
 
 
 @dataclass(frozen=True)
-class RunSignals:
+class RunSignals(FilteredRun):
     """Signals of one run; (n, axes) float64 in SI units, None where the stream was not recorded.
 
     Attributes:
@@ -68,34 +67,17 @@ class RunSignals:
     held: NDArray[np.bool_] | None = None
 
     @property
-    def ticks(self) -> int:
-        """Number of ticks."""
-        return len(self.motor)
-
-    @property
     def axes(self) -> int:
         """Number of actuators."""
         return self.motor.shape[1]
 
     @cached_property
-    def stride(self) -> int:
-        """Ticks per sample of the residual grid."""
-        return max(1, round(1.0 / (DECIMATED_RATE * self.period)))
-
-    @cached_property
-    def grid(self) -> NDArray[np.int64]:
-        """Ticks of the residual grid, (g,)."""
-        return np.arange(0, self.ticks, self.stride)
-
-    @cached_property
     def inner(self) -> NDArray[np.bool_]:
-        """(g,) False within `EDGE` of either end and of a lost tick."""
-        edge = EDGE / self.period
-        inner = (self.grid >= edge) & (self.grid < self.ticks - edge)
+        """(g,) False where the ends of the filter, or a lost tick, spoil a sample."""
         if self.lost is None:
-            return inner
+            return self.between_ends()
         near = np.flatnonzero(self.lost)
-        return inner & (np.abs(self.grid[:, None] - near).min(axis=1) > edge)
+        return self.between_ends() & (np.abs(self.grid[:, None] - near).min(axis=1) > self.edge)
 
     @cached_property
     def pieces(self) -> NDArray[np.int64]:
@@ -138,25 +120,6 @@ class RunSignals:
         return self.contact_known[self.grid]
 
     @cached_property
-    def smooth(self) -> Array:
-        """Motor position after the low-pass, (n, axes)."""
-        return low_pass(self.motor, self.period)
-
-    @cached_property
-    def velocity(self) -> Array:
-        """Motor velocity from the smoothed position, (n, axes)."""
-        return np.gradient(self.smooth, self.period, axis=0)
-
-    @cached_property
-    def acceleration(self) -> Array:
-        """Second difference of the motor position, not smoothed, (n, axes)."""
-        return second_difference(self.motor, self.period)
-
-    @cached_property
     def smooth_load(self) -> Array | None:
         """Load encoder position after the low-pass, (n, axes)."""
-        return None if self.load is None else low_pass(self.load, self.period)
-
-    def to_grid(self, x: Array) -> Array:
-        """Low-pass an (n, ...) signal and sample it on the residual grid -> (g, ...)."""
-        return low_pass(x, self.period)[self.grid]
+        return None if self.load is None else self.filtered(self.load)

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from sher3_diagnosis.channel import Array, Mask
 from sher3_diagnosis.evidence import Motion
+from sher3_effects.motion import GridView
 from sher3_effects.operators import dahl_turned
 
 from sher3_chain.joint.description import Axis
@@ -38,7 +39,7 @@ class Loads(NamedTuple):
     contact_force: Array
 
 
-class ChainView(ABC):
+class ChainView(GridView, ABC):
     """A run of n joints; signals have a column for each of them.
 
     Attributes:
@@ -70,22 +71,7 @@ class ChainView(ABC):
     def path(self) -> Loads:
         """Nominal weight on every joint along the motion, and known forces from outside."""
 
-    @cached_property
-    def position(self) -> Array:
-        """Smoothed position on the residual grid, (g, n)."""
-        return self.run.smooth[self.run.grid]
-
-    @cached_property
-    def velocity(self) -> Array:
-        """Velocity on the residual grid, (g, n)."""
-        return self.run.velocity[self.run.grid]
-
     # what the engine reads
-
-    @property
-    def excitation(self) -> str:
-        """Name that repeats of the run share."""
-        return self.run.excitation
 
     @property
     def rate(self) -> float:
@@ -113,23 +99,9 @@ class ChainView(ABC):
         warm = self.run.temperature
         return np.zeros(len(self.run.grid)) if warm is None else self.run.to_grid(warm - REFERENCE)[:, 0]
 
-    @property
-    def temperature_known(self) -> bool:
-        """Whether the temperature was recorded."""
-        return self.run.temperature is not None
-
     def motion(self, actuator: str) -> Motion | None:
         """Return the motion of a joint."""
         row = self.row(actuator)
         return Motion(self.position[:, row], self.velocity[:, row], float(self.tops[row]), self.joints[row].lead)
 
     # what discovery reads
-
-    @property
-    def step(self) -> float:
-        """Time between two samples of the record, s."""
-        return self.run.period
-
-    def at_residuals(self, x: Array) -> Array:
-        """Low-pass values of the record and sample them on the residual grid."""
-        return self.run.to_grid(x)

@@ -7,10 +7,9 @@ from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 from sher3_diagnosis.channel import Array, Mask
-from sher3_diagnosis.filter import BANDWIDTH, DECIMATED_RATE, EDGE, SHORT, low_pass
-from sher3_effects.operators import second_difference
+from sher3_diagnosis.filter import BANDWIDTH
+from sher3_effects.motion import FilteredRun
 
 from sher3_chain.joint.description import Axis
 from sher3_chain.joint.record import AxesRun
@@ -22,7 +21,7 @@ NYQUIST_SHARE = 0.4
 
 
 @dataclass(frozen=True)
-class AxisSignals:
+class AxisSignals(FilteredRun):
     """Signals of one axis, (n, 1) each in SI units; None where a signal was not recorded.
 
     The second index is the axis, so that the laws of the effects read one axis and a robot's five alike.
@@ -59,71 +58,15 @@ class AxisSignals:
     bandwidth: float = BANDWIDTH
     limited: Mask | None = None
 
-    @property
-    def ticks(self) -> int:
-        """Number of samples."""
-        return len(self.motor)
-
     @cached_property
     def stage_clock(self) -> Array:
         """Time since the first sample, (n,), s."""
         return self.period * np.arange(self.ticks, dtype=np.float64)
 
     @cached_property
-    def stride(self) -> int:
-        """Samples of the record per sample of the residual grid: 2.5 grid samples per period of the cut-off."""
-        if self.ticks < SHORT:
-            return 1
-        return max(1, round(BANDWIDTH / self.bandwidth / (DECIMATED_RATE * self.period)))
-
-    @property
-    def rate(self) -> float:
-        """Samples per second of the residual grid, Hz."""
-        return 1.0 / (self.stride * self.period)
-
-    @cached_property
-    def grid(self) -> NDArray[np.int64]:
-        """Samples of the record that are on the residual grid, (g,)."""
-        return np.arange(0, self.ticks, self.stride)
-
-    @property
-    def edge(self) -> float:
-        """Samples at each end of the record, and at each side of a step, that the filter spoils."""
-        short = self.ticks < SHORT  # too short for the filter: only the differences lose their ends
-        return 2.0 if short else EDGE * BANDWIDTH / self.bandwidth / self.period
-
-    @cached_property
-    def inner(self) -> Mask:
-        """(g,) False where the ends of the filter spoil a sample."""
-        return (self.grid >= self.edge) & (self.grid < self.ticks - self.edge)
-
-    @cached_property
     def loaded_ok(self) -> Mask:
         """(g,) True where the load on the axis is known: everywhere, since none acts."""
         return np.ones(len(self.grid), dtype=bool)
-
-    @cached_property
-    def smooth(self) -> Array:
-        """Position after the low-pass, (n, 1)."""
-        return self.filtered(self.motor)
-
-    @cached_property
-    def velocity(self) -> Array:
-        """Velocity from the smoothed position, (n, 1)."""
-        return np.gradient(self.smooth, self.period, axis=0)
-
-    @cached_property
-    def acceleration(self) -> Array:
-        """Second difference of the position, not smoothed, (n, 1)."""
-        return second_difference(self.motor, self.period)
-
-    def filtered(self, x: Array) -> Array:
-        """Return an (n, ...) signal after the low-pass; n may differ from the run's."""
-        return low_pass(x, self.period, self.bandwidth)
-
-    def to_grid(self, x: Array) -> Array:
-        """Low-pass an (n, ...) signal and sample it on the residual grid -> (g, ...)."""
-        return self.filtered(x)[self.grid]
 
 
 def signals_of(run: AxesRun, axis: Axis, excitation: str) -> AxisSignals:

@@ -11,6 +11,7 @@ from sher3_diagnosis.channel import Array, Channel, Mask
 from sher3_diagnosis.discover.feature import Quantities
 from sher3_diagnosis.evidence import Motion
 from sher3_diagnosis.filter import DECIMATED_RATE
+from sher3_effects.motion import GridView
 from sher3_effects.operators import dahl
 from sher3_effects.view import NominalAxis
 
@@ -21,7 +22,7 @@ from sher3_gap.stages.recorded import recorded_at
 from sher3_gap.stages.residuals import drive_law
 
 
-class SherView:
+class SherView(GridView):
     """A run of the robot with its kinematics and the features that several effects share."""
 
     def __init__(self, run: RunSignals, robot: Robot, geometry: Geometry) -> None:
@@ -34,16 +35,6 @@ class SherView:
     def path(self) -> Path:
         """Kinematics on the residual grid."""
         return self.geometry.path(self.run)
-
-    @cached_property
-    def velocity(self) -> Array:
-        """Motor velocity on the residual grid, (g, 5)."""
-        return self.run.velocity[self.run.grid]
-
-    @cached_property
-    def position(self) -> Array:
-        """Smoothed motor position on the residual grid, (g, 5)."""
-        return self.run.smooth[self.run.grid]
 
     @cached_property
     def inertial(self) -> Array:
@@ -119,11 +110,6 @@ class SherView:
     # what the engine reads
 
     @property
-    def excitation(self) -> str:
-        """Name of the run's excitation."""
-        return self.run.excitation
-
-    @property
     def rate(self) -> float:
         """Samples per second of the residual grid, Hz."""
         return DECIMATED_RATE
@@ -132,11 +118,6 @@ class SherView:
     def loaded(self) -> Mask:
         """(g,) True where a known load acts on the tip."""
         return self.path.loaded
-
-    @property
-    def temperature_known(self) -> bool:
-        """Whether the temperature was recorded."""
-        return self.run.temperature is not None
 
     @cached_property
     def speed_share(self) -> Array:
@@ -173,18 +154,9 @@ class SherView:
 
     # what discovery reads
 
-    @property
-    def step(self) -> float:
-        """Time between two ticks, s."""
-        return self.run.period
-
     def recorded(self, channel: Channel) -> Quantities:
         """Return what was recorded that the law of a gap in a channel might depend on, at every tick."""
         return recorded_at(self, channel)
-
-    def at_residuals(self, x: Array) -> Array:
-        """Low-pass values of the ticks and sample them on the residual grid."""
-        return self.run.to_grid(x)
 
     def quantities(self, site: str) -> dict[str, Array]:
         """Return what a place feels of the quantities that laws may depend on."""
