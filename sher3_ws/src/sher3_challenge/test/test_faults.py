@@ -11,6 +11,7 @@ from sher3_bags import read_case
 from sher3_challenge.cases.calibrate import residual_keys
 from sher3_challenge.errors import ChallengeError
 from sher3_challenge.oracle.oracle import excess, stage_residuals
+from sher3_challenge.plants.declared import DECLARED
 from sher3_challenge.plants.grammar import CATALOGUE
 from sher3_challenge.plants.kinds import Fault, FaultError
 from sher3_challenge.plants.plant import Climate, RunPlan
@@ -45,6 +46,12 @@ SHAKEN = {"structural_vibration", "warm_winding"}
 def test_every_effect_of_the_contract_has_a_fault_and_many_have_none(truth):
     assert set(truth.effects) == set(IDS.split()) and len(truth.effects) == 44
     assert len(truth.outside) >= 12 and all(kind.effect == "outside_library" for kind in truth.outside.values())
+
+
+def test_what_several_plants_have_is_declared_once():
+    """But for the clearance of ball joints, which the lumped plant has on the delta alone."""
+    own = {name for plant in PLANTS.values() for name in plant.library} - set(DECLARED)
+    assert own == {"joint_clearance"}
 
 
 @cache

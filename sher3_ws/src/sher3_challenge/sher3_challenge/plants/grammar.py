@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 from sher3_description import ACTUATORS
 
 from sher3_challenge.plants.compiled import compiled
-from sher3_challenge.plants.kinds import ANGULAR, FORCE_SENSOR, TIP, Apply, Catalogue, Kind, Site
+from sher3_challenge.plants.declared import FORCE_SENSOR, TIP
+from sher3_challenge.plants.kinds import ANGULAR, Apply, Catalogue, Kind, Site
 
 Array = NDArray[np.floating[Any]]
 

@@ -15,9 +15,7 @@ from numpy.typing import NDArray
 from sher3_common import Sher3Error
 from sher3_description import ACTUATORS
 
-DELTAS = ACTUATORS[:3]
-SLIDERS = (*DELTAS, "tilt")
-TIP, FORCE_SENSOR, ALL = ("tip",), ("force_sensor",), ("all",)
+from sher3_challenge.plants.declared import DECLARED
 
 ANGULAR = {"length": 31.4, "force": 0.025, "stiffness": 8e-4, "compliance": 1256.0, "speed": 98.0, "inertia": 2e-3}
 """What one unit of a slider becomes on the roll axis, by ratio of encoder steps, rated forces and speed limits."""
@@ -130,7 +128,13 @@ class Fault:
 
 
 class Catalogue(dict[str, Kind]):
-    """Kinds of faults by name, filled by its decorator."""
+    """Kinds of faults by name, filled by its decorators."""
+
+    def known(self, apply: Apply) -> Apply:
+        """Register the decorated function as the kind that is declared under its name."""
+        name = apply.__name__
+        self[name] = Kind(name=name, apply=apply, **DECLARED[name]._asdict())
+        return apply
 
     def add(
         self, family: str, stage: str, places: tuple[str, ...], start: float, least: float, most: float,

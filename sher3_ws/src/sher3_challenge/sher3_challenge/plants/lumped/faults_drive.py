@@ -4,45 +4,45 @@ from __future__ import annotations
 
 import math
 
-from sher3_description import ACTUATORS
 from sher3_description.contract import GRAVITY
 
-from sher3_challenge.plants.kinds import ALL, DELTAS, SLIDERS, Catalogue, Site
+from sher3_challenge.plants.declared import DELTAS
+from sher3_challenge.plants.kinds import Catalogue, Site
 from sher3_challenge.plants.lumped.rig import Rig
 
 CATALOGUE = Catalogue()
-add = CATALOGUE.add
+known = CATALOGUE.known
 
 
-@add("timing", "transport", ALL, 1e-3, 5e-5, 8e-3, company=("command_jitter",))
+@known
 def command_delay(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """Every command arrives later."""
     rig.delay += x
     return {"delay": x}
 
 
-@add("timing", "transport", ALL, 3e-4, 2e-5, 1.5e-3, company=("command_delay",))
+@known
 def command_jitter(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """Commands arrive late by a half-normal time."""
     rig.jitter = x
     return {"sigma": x}
 
 
-@add("timing", "transport", ALL, 0.02, 0.004, 0.3)
+@known
 def dropped_commands(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """Some commands never arrive."""
     rig.loss = x
     return {"probability": x}
 
 
-@add("timing", "transport", ACTUATORS, 1e-3, 5e-5, 6e-3, company=("command_delay",))
+@known
 def axis_skew(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """Commands of one axis arrive later than those of the others."""
     rig.delay[site.index] += x
     return {"skew": x}
 
 
-@add("timing", "drive", ACTUATORS, 1e-3, 5e-5, 8e-3)
+@known
 def drive_lag(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """A first-order lag of the force (three of four) or of the demand."""
     lag = rig.truth.drive.current_lag if site.rng.random() < 0.75 else rig.truth.drive.demand_lag
@@ -50,7 +50,7 @@ def drive_lag(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"time_constant": x}
 
 
-@add("scale", "controller", (*ACTUATORS, "all"), 0.1, 0.01, 0.6)
+@known
 def controller_gain(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The host works with another position gain."""
     relative = site.sign() * x
@@ -58,7 +58,7 @@ def controller_gain(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"relative": relative}
 
 
-@add("scale", "motor_mechanics", ACTUATORS, 0.05, 0.002, 0.5)
+@known
 def torque_constant(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """Real force over reported effort is not 1."""
     relative = site.sign() * x
@@ -66,7 +66,7 @@ def torque_constant(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"relative": relative}
 
 
-@add("scale", "transmission", ACTUATORS, 5e-4, 1e-5, 0.02)
+@known
 def lead_error(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The load travels more or less than the motor."""
     relative = site.sign() * x
@@ -74,7 +74,7 @@ def lead_error(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"relative": relative}
 
 
-@add("limit", "drive", ACTUATORS, 0.3, 0.02, 1.35)
+@known
 def force_saturation(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The force ends early: at 12 N / (1 + x), more on roll, whose accelerations are larger."""
     limit = site.scaled(12.0, "force") / (1 + x)
@@ -82,7 +82,7 @@ def force_saturation(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"limit": limit}
 
 
-@add("limit", "drive", ACTUATORS, 8e-5, 4e-6, 1.5e-3)
+@known
 def velocity_deadband(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """Small demands do nothing; in a third of the cases the larger ones are shortened too."""
     width = site.scaled(x, "speed")
@@ -91,10 +91,7 @@ def velocity_deadband(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"width": width}
 
 
-FRICTION_COMPANY = ("coulomb_friction", "presliding_friction")
-
-
-@add("friction", "motor_mechanics", ACTUATORS, 0.3, 0.01, 8.0, company=("presliding_friction",))
+@known
 def coulomb_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """Friction of one level."""
     force = site.scaled(x, "force")
@@ -103,7 +100,7 @@ def coulomb_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"force": force}
 
 
-@add("friction", "motor_mechanics", ACTUATORS, 0.4, 0.01, 8.0, company=FRICTION_COMPANY)
+@known
 def stribeck_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """Friction that falls with speed."""
     static, level = site.scaled(x, "force"), site.rng.uniform(0.1, 0.4)
@@ -114,7 +111,7 @@ def stribeck_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"static": static, "force": level * static, "velocity": velocity}
 
 
-@add("friction", "motor_mechanics", ACTUATORS, 60.0, 2.0, 1500.0)
+@known
 def viscous_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """More drag in proportion to speed."""
     extra = site.scaled(x, "stiffness")
@@ -122,7 +119,7 @@ def viscous_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"extra": extra}
 
 
-@add("friction", "motor_mechanics", ACTUATORS, 0.3, 0.01, 8.0, company=("coulomb_friction",))
+@known
 def presliding_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """Friction that takes tens of micrometres to build up."""
     force, reach = site.scaled(x, "force"), site.scaled(site.rng.uniform(25e-6, 110e-6), "length")
@@ -132,7 +129,7 @@ def presliding_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"force": force, "displacement": reach}
 
 
-@add("friction", "motor_mechanics", ACTUATORS, 0.4, 0.01, 8.0, company=FRICTION_COMPANY)
+@known
 def position_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """Friction that waxes and wanes along the stroke, down to none."""
     amplitude, period = site.scaled(x, "force"), site.scaled(site.rng.uniform(0.8e-3, 2.6e-3), "length")
@@ -142,7 +139,7 @@ def position_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"force": amplitude / 2, "amplitude": amplitude / 2, "period": period}
 
 
-@add("friction", "motor_mechanics", ACTUATORS, 0.5, 0.01, 8.0, company=FRICTION_COMPANY)
+@known
 def friction_drift(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """Friction after standing, which runs in within seconds."""
     force, constant = site.scaled(x, "force"), site.rng.uniform(0.8, 3.0)
@@ -151,7 +148,7 @@ def friction_drift(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"force": force, "time_constant": constant}
 
 
-@add("inertia", "motor_mechanics", ACTUATORS, 0.2, 0.01, 10.0, company=("gravity_load",))
+@known
 def payload_mass(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """Mass on an axis; on the vertical rails its weight too, of a mass on the slider or on the platform."""
     mass = site.scaled(x, "inertia")
@@ -164,7 +161,7 @@ def payload_mass(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"mass": mass}
 
 
-@add("inertia", "motor_mechanics", SLIDERS, 0.05, 0.002, 3.0, company=("payload_mass",))
+@known
 def gravity_load(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """Weight without inertia, in the pattern of the axis's own gravity."""
     mass = site.sign() * x
@@ -173,7 +170,7 @@ def gravity_load(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"mass": mass}
 
 
-@add("periodic", "motor_mechanics", ACTUATORS, 0.3, 0.01, 8.0)
+@known
 def cogging(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """Force in phase with the motor's poles."""
     amplitude, order = site.scaled(x, "force"), float(site.rng.choice([2, 3, 4, 6, 7, 8]))
@@ -183,7 +180,7 @@ def cogging(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"amplitude": amplitude, "periods_per_rev": order}
 
 
-@add("periodic", "transmission", ACTUATORS, 2e-6, 5e-8, 5e-5)
+@known
 def transmission_ripple(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The load runs ahead and behind with the motor's turn."""
     amplitude, order = site.scaled(x, "length"), float(site.rng.choice([1, 2, 3, 4]))
@@ -193,7 +190,7 @@ def transmission_ripple(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"amplitude": amplitude, "periods_per_rev": order}
 
 
-@add("lost_motion", "transmission", ACTUATORS, 3e-6, 1e-7, 1e-4, company=("coulomb_friction", "presliding_friction"))
+@known
 def backlash(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """A gap with soft flanks."""
     width = site.scaled(x, "length")
@@ -201,7 +198,7 @@ def backlash(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"width": width}
 
 
-@add("lost_motion", "transmission", ACTUATORS, 2e-6, 1e-7, 1e-4, company=("coulomb_friction", "presliding_friction"))
+@known
 def transmission_hysteresis(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """Lost motion that builds up gradually after a reversal."""
     half, reach = site.scaled(x, "length"), site.scaled(site.rng.uniform(40e-6, 200e-6), "length")
@@ -210,7 +207,7 @@ def transmission_hysteresis(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"width": 2 * half, "displacement": reach}
 
 
-@add("compliance", "transmission", ACTUATORS, 1e-6, 5e-8, 1.2e-5, company=("backlash",))
+@known
 def transmission_compliance(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """A screw that gives way, more where its free length is longer, with the load's mass behind it."""
     compliance = site.scaled(x, "compliance")
@@ -220,7 +217,7 @@ def transmission_compliance(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"compliance": compliance, "stiffness": 1 / compliance}
 
 
-@add("wrench", "motor_mechanics", ACTUATORS, 0.3, 0.01, 8.0)
+@known
 def cable_drag_axis(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """A cable pulls an axis back, with hysteresis over a long stroke; `x` is its force one millimetre away."""
     force, stroke = site.scaled(x, "force"), site.scaled(1e-3, "length")

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from sher3_description import ACTUATORS
 
-from sher3_challenge.plants.kinds import FORCE_SENSOR, SLIDERS, TIP, Catalogue, Site
+from sher3_challenge.plants.declared import FORCE_SENSOR, SLIDERS, TIP
+from sher3_challenge.plants.kinds import Catalogue, Site
 from sher3_challenge.plants.lumped.rig import Rig
 
 CATALOGUE = Catalogue()

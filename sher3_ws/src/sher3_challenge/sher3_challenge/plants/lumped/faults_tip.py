@@ -5,18 +5,18 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from sher3_description import ACTUATORS
 
-from sher3_challenge.plants.kinds import DELTAS, FORCE_SENSOR, TIP, Catalogue, Site
+from sher3_challenge.plants.declared import DELTAS
+from sher3_challenge.plants.kinds import Catalogue, Site
 from sher3_challenge.plants.lumped.rig import Rig
 from sher3_challenge.plants.lumped.tip import OUTER_HINGE
 
 CATALOGUE = Catalogue()
 add = CATALOGUE.add
-ENCODER = ("transmission",)
+known = CATALOGUE.known
 
 
-@add("scale", "sensing", ACTUATORS, 5e-4, 1e-5, 0.02, also=ENCODER)
+@known
 def encoder_scale(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The load encoder's ratio is off."""
     relative = site.sign() * x
@@ -24,7 +24,7 @@ def encoder_scale(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"relative": relative}
 
 
-@add("periodic", "sensing", ACTUATORS, 2e-6, 5e-8, 5e-5, also=ENCODER)
+@known
 def encoder_eccentricity(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The load encoder errs once per revolution; the load does not move."""
     amplitude = site.scaled(x, "length")
@@ -41,7 +41,7 @@ def joint_clearance(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"clearance": x}
 
 
-@add("compliance", "structure", TIP, 0.1, 0.005, 3.0)
+@known
 def structural_compliance(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The structure turns about P and, in part, about a hinge on the arm; `x` is the fraction of the measured one."""
     share, arm = 0.3, rig.truth.geometry.arm[1]
@@ -51,7 +51,7 @@ def structural_compliance(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"fraction": x}
 
 
-@add("compliance", "structure", TIP, 0.3, 0.01, 5.0)
+@known
 def link_compliance(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The six links give way by their published law; `x` is the fraction of it."""
     delta = rig.robot.delta
@@ -59,14 +59,14 @@ def link_compliance(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"fraction": x}
 
 
-@add("compliance", "structure", TIP, 1e-5, 5e-7, 4e-4)
+@known
 def tool_bending(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The tool bends across its axis."""
     rig.truth.geometry.bending[0] = x
     return {"compliance": x}
 
 
-@add("compliance", "structure", TIP, 0.5, 0.02, 6.0, also=("mechanism",))
+@known
 def structural_vibration(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """A mode of the structure rings when the tip accelerates, in y or z."""
     frequency, damping = site.rng.uniform(8.0, 22.0), site.rng.uniform(0.02, 0.08)
@@ -74,7 +74,7 @@ def structural_vibration(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"frequency": frequency, "damping": damping, "gain": x}
 
 
-@add("geometry", "mechanism", DELTAS, 5e-6, 2e-7, 3e-4)
+@known
 def link_length_error(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """Both links of a leg are longer or shorter."""
     length = site.sign() * x
@@ -82,7 +82,7 @@ def link_length_error(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"length": length}
 
 
-@add("geometry", "mechanism", DELTAS, 8e-6, 2e-7, 4e-4)
+@known
 def platform_geometry_error(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The balls of a leg on the platform sit elsewhere in its plane, the two not quite alike."""
     angle, unlike = site.rng.uniform(0, 2 * math.pi), site.rng.uniform(-0.15, 0.15)
@@ -93,7 +93,7 @@ def platform_geometry_error(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"x": offset[0], "y": offset[1]}
 
 
-@add("geometry", "mechanism", DELTAS, 2e-3, 5e-5, 5e-2)
+@known
 def rail_tilt(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """A rail leans."""
     angle = site.rng.uniform(0, 2 * math.pi)
@@ -104,7 +104,7 @@ def rail_tilt(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"x": lean[0], "y": lean[1], "angle": x}
 
 
-@add("geometry", "mechanism", TIP, 4e-5, 1e-6, 2e-3)
+@known
 def base_tilt(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The base leans against the tracker."""
     angle = site.rng.uniform(0, 2 * math.pi)
@@ -113,7 +113,7 @@ def base_tilt(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"x": lean[0], "y": lean[1], "angle": x}
 
 
-@add("geometry", "mechanism", ("tilt",), 3e-5, 1e-6, 2e-3)
+@known
 def tilt_linkage_error(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """Crank, coupler or offset of the tilt linkage differs; the axis is homed at zero tilt."""
     which, length = int(site.rng.integers(3)), site.sign() * x
@@ -124,7 +124,7 @@ def tilt_linkage_error(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {("crank", "coupler", "offset")[which]: length, "length": length}
 
 
-@add("geometry", "mechanism", TIP, 6e-6, 2e-7, 4e-4)
+@known
 def tool_offset(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The tool's tip is elsewhere."""
     offset = x * site.direction()
@@ -132,7 +132,7 @@ def tool_offset(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return dict(zip("xyz", offset.tolist(), strict=True))
 
 
-@add("geometry", "mechanism", ACTUATORS, 8e-6, 2e-7, 4e-4)
+@known
 def encoder_offset(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The axis was homed wrongly: both encoders read too much or too little."""
     offset = site.sign() * site.scaled(x, "length")
@@ -140,14 +140,14 @@ def encoder_offset(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"offset": offset}
 
 
-@add("drift", "mechanism", TIP, 3e-5, 2e-6, 3e-3)
+@known
 def thermal_expansion(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The structure grows with its temperature."""
     rig.truth.geometry.expansion[0] = x
     return {"coefficient": x}
 
 
-@add("drift", "sensing", FORCE_SENSOR, 0.005, 2e-4, 0.5, company=("force_bias",))
+@known
 def force_drift(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The force sensor's zero moves with temperature."""
     drift = x * site.direction()
@@ -155,7 +155,7 @@ def force_drift(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return dict(zip(("fx", "fy", "fz"), drift.tolist(), strict=True))
 
 
-@add("wrench", "sensing", FORCE_SENSOR, 0.01, 4e-4, 1.0)
+@known
 def force_bias(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The force sensor's zero is off."""
     bias = x * site.direction()
@@ -164,7 +164,7 @@ def force_bias(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return dict(zip(("fx", "fy", "fz"), bias.tolist(), strict=True))
 
 
-@add("wrench", "sensing", FORCE_SENSOR, 0.002, 5e-5, 0.1)
+@known
 def tool_gravity(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The tool on the sensor is heavier or lighter than its data."""
     mass = site.sign() * min(x, 0.015) if x > 0.015 else site.sign() * x
@@ -172,7 +172,7 @@ def tool_gravity(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"mass": mass}
 
 
-@add("scale", "sensing", FORCE_SENSOR, 0.03, 1e-3, 0.4)
+@known
 def force_scale(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The force sensor's gain is off."""
     relative = site.sign() * x
@@ -180,7 +180,7 @@ def force_scale(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"relative": relative}
 
 
-@add("wrench", "sensing", FORCE_SENSOR, 0.03, 1e-3, 0.4)
+@known
 def force_crosstalk(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """A force along one axis of the sensor shows on another."""
     row, column = site.rng.choice(3, 2, replace=False)
@@ -189,7 +189,7 @@ def force_crosstalk(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"coefficient": coefficient}
 
 
-@add("wrench", "sensing", FORCE_SENSOR, 0.03, 1e-3, 1.0)
+@known
 def cable_drag_sensor(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """A cable pulls at the sensor as roll and tilt turn, with hysteresis in roll; `x` is N per rad."""
     rig.truth.sensors.cable_force[:] = x, 0.7 * x, 0.08 * x, 0.05

@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import math
 
-from sher3_description import ACTUATORS
-
-from sher3_challenge.plants.kinds import DELTAS, SLIDERS, Catalogue, Site
+from sher3_challenge.plants.declared import DELTAS
+from sher3_challenge.plants.kinds import Catalogue, Site
 from sher3_challenge.plants.mujoco.axes.laws import Film, Grease, Guide, Poles
 from sher3_challenge.plants.mujoco.axes.parts import ELEMENTS, Axis, Bristle
 from sher3_challenge.plants.mujoco.axes.wheels import Eccentric
 from sher3_challenge.plants.mujoco.rig import Rig
 
 CATALOGUE = Catalogue()
-add = CATALOGUE.add
-FRICTION_COMPANY = ("coulomb_friction", "presliding_friction")
+known = CATALOGUE.known
 
 
 def bristles(force: float, reach: float) -> tuple[Bristle, ...]:
@@ -32,7 +30,7 @@ def axis_of(rig: Rig, site: Site) -> Axis:
     return rig.axes[site.index]
 
 
-@add("scale", "motor_mechanics", ACTUATORS, 0.05, 0.002, 0.5)
+@known
 def torque_constant(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """Real force over reported effort is not one."""
     relative = site.sign() * x
@@ -40,7 +38,7 @@ def torque_constant(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"relative": relative}
 
 
-@add("scale", "transmission", ACTUATORS, 5e-4, 1e-5, 0.02)
+@known
 def lead_error(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The load travels more or less than the motor."""
     relative = site.sign() * x
@@ -48,7 +46,7 @@ def lead_error(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"relative": relative}
 
 
-@add("friction", "motor_mechanics", ACTUATORS, 0.3, 0.01, 8.0, company=("presliding_friction",))
+@known
 def coulomb_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """MuJoCo's dry friction on the motor's joint."""
     force = site.scaled(x, "force")
@@ -56,7 +54,7 @@ def coulomb_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"force": force}
 
 
-@add("friction", "motor_mechanics", ACTUATORS, 0.4, 0.01, 8.0, company=FRICTION_COMPANY)
+@known
 def stribeck_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """Dry friction less what the film carries, which falls with the square of speed and not as a Gaussian."""
     static, level = site.scaled(x, "force"), float(site.rng.uniform(0.1, 0.4))
@@ -68,7 +66,7 @@ def stribeck_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"static": static, "force": level * static, "velocity": velocity}
 
 
-@add("friction", "motor_mechanics", ACTUATORS, 60.0, 2.0, 1500.0)
+@known
 def viscous_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """More damping of the motor's joint."""
     extra = site.scaled(x, "stiffness")
@@ -76,7 +74,7 @@ def viscous_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"extra": extra}
 
 
-@add("friction", "motor_mechanics", ACTUATORS, 0.3, 0.01, 8.0, company=("coulomb_friction",))
+@known
 def presliding_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """Springs that drag light bodies over rough ground: straight flanks with two corners, no exponential."""
     force, reach = site.scaled(x, "force"), site.scaled(float(site.rng.uniform(25e-6, 110e-6)), "length")
@@ -84,7 +82,7 @@ def presliding_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"force": force, "displacement": reach}
 
 
-@add("friction", "motor_mechanics", ACTUATORS, 0.4, 0.01, 8.0, company=FRICTION_COMPANY)
+@known
 def position_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """Friction along a wavy guide with crests narrower than its hollows."""
     force, period = site.scaled(x, "force"), site.scaled(float(site.rng.uniform(0.8e-3, 2.6e-3)), "length")
@@ -93,7 +91,7 @@ def position_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"force": guide.mean, "amplitude": guide.mean, "period": period}
 
 
-@add("friction", "motor_mechanics", ACTUATORS, 0.5, 0.01, 8.0, company=FRICTION_COMPANY)
+@known
 def friction_drift(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """Grease that runs in at two rates."""
     force, time = site.scaled(x, "force"), float(site.rng.uniform(0.8, 3.0))
@@ -101,7 +99,7 @@ def friction_drift(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"force": force, "time_constant": time}
 
 
-@add("inertia", "motor_mechanics", ACTUATORS, 0.2, 0.01, 10.0, company=("gravity_load",))
+@known
 def payload_mass(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """A body on the slider, which MuJoCo's gravity pulls down the vertical rails; or a mass on the platform."""
     mass, axis = site.scaled(x, "inertia"), axis_of(rig, site)
@@ -113,7 +111,7 @@ def payload_mass(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"mass": mass}
 
 
-@add("inertia", "motor_mechanics", SLIDERS, 0.05, 0.002, 3.0, company=("payload_mass",))
+@known
 def gravity_load(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """Weight without inertia, in the pattern of the axis's own."""
     mass = site.sign() * x
@@ -122,7 +120,7 @@ def gravity_load(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"mass": mass}
 
 
-@add("periodic", "motor_mechanics", ACTUATORS, 0.3, 0.01, 8.0)
+@known
 def cogging(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """Force of the motor's poles, with a third harmonic."""
     amplitude, order = site.scaled(x, "force"), float(site.rng.choice([2, 3, 4, 6, 7, 8]))
@@ -131,7 +129,7 @@ def cogging(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"amplitude": amplitude, "periods_per_rev": order}
 
 
-@add("periodic", "transmission", ACTUATORS, 2e-6, 5e-8, 5e-5)
+@known
 def transmission_ripple(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """An eccentric wheel between motor and load."""
     amplitude, order = site.scaled(x, "length"), float(site.rng.choice([1, 2, 3, 4]))
@@ -140,7 +138,7 @@ def transmission_ripple(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"amplitude": amplitude, "periods_per_rev": order}
 
 
-@add("lost_motion", "transmission", ACTUATORS, 3e-6, 1e-7, 1e-4, company=FRICTION_COMPANY)
+@known
 def backlash(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The load's guide is pushed from one side of a gap to the other, against MuJoCo's own soft contact."""
     width = site.scaled(x, "length")
@@ -148,7 +146,7 @@ def backlash(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"width": width}
 
 
-@add("lost_motion", "transmission", ACTUATORS, 2e-6, 1e-7, 1e-4, company=FRICTION_COMPANY)
+@known
 def transmission_hysteresis(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """Friction in the nut winds the transmission up: the load stays back by what its bristles are bent."""
     half, reach = site.scaled(x, "length"), site.scaled(float(site.rng.uniform(40e-6, 200e-6)), "length")
@@ -157,7 +155,7 @@ def transmission_hysteresis(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"width": 2 * half, "displacement": reach}
 
 
-@add("compliance", "transmission", ACTUATORS, 1e-6, 5e-8, 1.2e-5, company=("backlash",))
+@known
 def transmission_compliance(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """A spring between motor and load, which carries its share of the mass and swings on it."""
     compliance, axis = site.scaled(x, "compliance"), axis_of(rig, site)
@@ -165,7 +163,7 @@ def transmission_compliance(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"compliance": compliance, "stiffness": 1 / compliance}
 
 
-@add("wrench", "motor_mechanics", ACTUATORS, 0.3, 0.01, 8.0)
+@known
 def cable_drag_axis(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """A tendon pulls an axis back and drags bodies over rough ground; `x` is its pull one millimetre away."""
     force, stroke = site.scaled(x, "force"), site.scaled(1e-3, "length")

@@ -5,40 +5,37 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from sher3_description import ACTUATORS
-
-from sher3_challenge.plants.kinds import ALL, Catalogue, Site
+from sher3_challenge.plants.kinds import Catalogue, Site
 from sher3_challenge.plants.mujoco.axes.parts import Drive
 from sher3_challenge.plants.mujoco.axes.wheels import Eccentric
 from sher3_challenge.plants.mujoco.rig import Rig
 
 CATALOGUE = Catalogue()
-add = CATALOGUE.add
-ENCODER = ("transmission",)
+known = CATALOGUE.known
 
 
-@add("timing", "transport", ALL, 1e-3, 5e-5, 8e-3, company=("command_jitter",))
+@known
 def command_delay(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """Every command arrives later."""
     rig.host.delay = rig.host.delay + x
     return {"delay": x}
 
 
-@add("timing", "transport", ALL, 3e-4, 2e-5, 1.5e-3, company=("command_delay",))
+@known
 def command_jitter(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """Commands arrive late by a half-normal time."""
     rig.host.jitter = x
     return {"sigma": x}
 
 
-@add("timing", "transport", ALL, 0.02, 0.004, 0.3)
+@known
 def dropped_commands(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """Some commands never arrive; the drive holds the one before."""
     rig.host.loss = x
     return {"probability": x}
 
 
-@add("timing", "transport", ACTUATORS, 1e-3, 5e-5, 6e-3, company=("command_delay",))
+@known
 def axis_skew(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """Commands of one axis arrive later than those of the others."""
     rig.host.delay = rig.host.delay.copy()
@@ -46,7 +43,7 @@ def axis_skew(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"skew": x}
 
 
-@add("timing", "drive", ACTUATORS, 1e-3, 5e-5, 8e-3)
+@known
 def drive_lag(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The force follows through two poles that together delay slow changes by `x`."""
     axis = rig.axes[site.index]
@@ -54,7 +51,7 @@ def drive_lag(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"time_constant": x}
 
 
-@add("scale", "controller", (*ACTUATORS, "all"), 0.1, 0.01, 0.6)
+@known
 def controller_gain(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The host works with another position gain."""
     relative = site.sign() * x
@@ -63,7 +60,7 @@ def controller_gain(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"relative": relative}
 
 
-@add("limit", "drive", ACTUATORS, 0.3, 0.02, 1.35)
+@known
 def force_saturation(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The force ends at 12 N / (1 + x), 0.3 N m / (1 + x) on roll."""
     limit = site.scaled(12.0, "force") / (1 + x)
@@ -72,7 +69,7 @@ def force_saturation(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"limit": limit}
 
 
-@add("limit", "drive", ACTUATORS, 8e-5, 4e-6, 1.5e-3)
+@known
 def velocity_deadband(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """Demands below a width do nothing."""
     width = site.scaled(x, "speed")
@@ -80,7 +77,7 @@ def velocity_deadband(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"width": width}
 
 
-@add("scale", "sensing", ACTUATORS, 5e-4, 1e-5, 0.02, also=ENCODER)
+@known
 def encoder_scale(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The load encoder's ratio is off."""
     relative = site.sign() * x
@@ -89,7 +86,7 @@ def encoder_scale(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"relative": relative}
 
 
-@add("periodic", "sensing", ACTUATORS, 2e-6, 5e-8, 5e-5, also=ENCODER)
+@known
 def encoder_eccentricity(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The encoder's disc turns off its centre; the load does not move."""
     amplitude, lead = site.scaled(x, "length"), rig.axes[site.index].lead
@@ -97,7 +94,7 @@ def encoder_eccentricity(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"amplitude": amplitude}
 
 
-@add("geometry", "mechanism", ACTUATORS, 8e-6, 2e-7, 4e-4)
+@known
 def encoder_offset(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The axis was homed wrongly: both encoders read too much or too little."""
     offset = site.sign() * site.scaled(x, "length")

@@ -8,7 +8,8 @@ from dataclasses import replace
 from sher3_description import ACTUATORS
 from sher3_description.contract import GRAVITY
 
-from sher3_challenge.plants.kinds import SLIDERS, TIP, Catalogue, Site
+from sher3_challenge.plants.declared import SLIDERS, TIP
+from sher3_challenge.plants.kinds import Catalogue, Site
 from sher3_challenge.plants.mujoco.axes.laws import Magnet
 from sher3_challenge.plants.mujoco.axes.mjcf import SPACING, body, tendon
 from sher3_challenge.plants.mujoco.axes.parts import Drive, Rider

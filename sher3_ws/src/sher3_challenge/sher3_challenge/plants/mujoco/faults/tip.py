@@ -6,13 +6,15 @@ import math
 
 import numpy as np
 
-from sher3_challenge.plants.kinds import DELTAS, FORCE_SENSOR, TIP, Catalogue, Site
+from sher3_challenge.plants.declared import DELTAS
+from sher3_challenge.plants.kinds import Catalogue, Site
 from sher3_challenge.plants.mujoco.faults.axis import bristles
 from sher3_challenge.plants.mujoco.rig import Rig, Spring
 from sher3_challenge.plants.mujoco.tip import ALONG_X, PITCH, YAW
 
 CATALOGUE = Catalogue()
 add = CATALOGUE.add
+known = CATALOGUE.known
 RUBBING = 0.015
 """Friction of a spring of the structure, as a share of what one newton at its usual lever does."""
 
@@ -24,7 +26,7 @@ def joint_clearance(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"clearance": x}
 
 
-@add("compliance", "structure", TIP, 0.1, 0.005, 3.0)
+@known
 def structural_compliance(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """Springs at P that carry a mass and rub; `x` is the fraction of the measured compliance."""
     springs = (
@@ -35,14 +37,14 @@ def structural_compliance(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"fraction": x}
 
 
-@add("compliance", "structure", TIP, 0.3, 0.01, 5.0)
+@known
 def link_compliance(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The six links give way by their published law, seated by a preload; `x` is the fraction of it."""
     rig.yielding.links += x
     return {"fraction": x}
 
 
-@add("compliance", "structure", TIP, 1e-5, 5e-7, 4e-4)
+@known
 def tool_bending(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The tool bends across its axis, on a mass that swings."""
     rig.yielding.springs += (Spring("across_x", x, 60.0, rub=RUBBING), Spring("across_y", x, 60.0, rub=RUBBING))
@@ -50,7 +52,7 @@ def tool_bending(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"compliance": x}
 
 
-@add("compliance", "structure", TIP, 0.5, 0.02, 6.0, also=("mechanism",))
+@known
 def structural_vibration(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """A mass on a spring rings, and rubs, when the tip accelerates in y or z."""
     frequency, damping = float(site.rng.uniform(8.0, 22.0)), float(site.rng.uniform(0.02, 0.08))
@@ -60,7 +62,7 @@ def structural_vibration(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"frequency": frequency, "damping": damping, "amplitude": x}
 
 
-@add("geometry", "mechanism", DELTAS, 5e-6, 2e-7, 3e-4)
+@known
 def link_length_error(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """Both links of a leg are longer or shorter, not quite alike."""
     length, unlike = site.sign() * x, float(site.rng.uniform(-0.1, 0.1))
@@ -69,7 +71,7 @@ def link_length_error(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"length": length}
 
 
-@add("geometry", "mechanism", DELTAS, 8e-6, 2e-7, 4e-4)
+@known
 def platform_geometry_error(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The balls of a leg on the platform are displaced together in its plane."""
     angle = float(site.rng.uniform(0, 2 * math.pi))
@@ -78,7 +80,7 @@ def platform_geometry_error(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"x": offset[0], "y": offset[1]}
 
 
-@add("geometry", "mechanism", DELTAS, 2e-3, 5e-5, 5e-2)
+@known
 def rail_tilt(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """A rail leans; its scale goes with it."""
     angle = float(site.rng.uniform(0, 2 * math.pi))
@@ -88,7 +90,7 @@ def rail_tilt(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"x": lean[0], "y": lean[1], "angle": x}
 
 
-@add("geometry", "mechanism", TIP, 4e-5, 1e-6, 2e-3)
+@known
 def base_tilt(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The base leans against the tracker."""
     angle = float(site.rng.uniform(0, 2 * math.pi))
@@ -97,7 +99,7 @@ def base_tilt(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"x": lean[0], "y": lean[1], "angle": x}
 
 
-@add("geometry", "mechanism", ("tilt",), 3e-5, 1e-6, 2e-3)
+@known
 def tilt_linkage_error(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """Crank, coupler or offset of the tilt linkage differs; the axis is homed at zero tilt."""
     which, length = int(site.rng.integers(3)), site.sign() * x
@@ -105,7 +107,7 @@ def tilt_linkage_error(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {("crank", "coupler", "offset")[which]: length, "length": length}
 
 
-@add("geometry", "mechanism", TIP, 6e-6, 2e-7, 4e-4)
+@known
 def tool_offset(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The tool's tip is elsewhere."""
     offset = x * site.direction()
@@ -113,14 +115,14 @@ def tool_offset(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return dict(zip("xyz", offset.tolist(), strict=True))
 
 
-@add("drift", "mechanism", TIP, 3e-5, 2e-6, 3e-3)
+@known
 def thermal_expansion(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The structure grows with its temperature, some seconds behind the thermometer."""
     rig.mechanism.expansion += x
     return {"coefficient": x}
 
 
-@add("drift", "sensing", FORCE_SENSOR, 0.005, 2e-4, 0.5, company=("force_bias",))
+@known
 def force_drift(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The force sensor's zero moves with temperature."""
     drift = x * site.direction()
@@ -128,7 +130,7 @@ def force_drift(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return dict(zip(("fx", "fy", "fz"), drift.tolist(), strict=True))
 
 
-@add("wrench", "sensing", FORCE_SENSOR, 0.01, 4e-4, 1.0)
+@known
 def force_bias(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The force sensor's zero is off, of forces and moments."""
     bias = x * site.direction()
@@ -136,7 +138,7 @@ def force_bias(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return dict(zip(("fx", "fy", "fz"), bias.tolist(), strict=True))
 
 
-@add("wrench", "sensing", FORCE_SENSOR, 0.002, 5e-5, 0.1)
+@known
 def tool_gravity(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The tool on the sensor is heavier or lighter than its data."""
     mass = site.sign() * min(x, 0.015) if x > 0.015 else site.sign() * x
@@ -144,7 +146,7 @@ def tool_gravity(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"mass": mass}
 
 
-@add("scale", "sensing", FORCE_SENSOR, 0.03, 1e-3, 0.4)
+@known
 def force_scale(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The force sensor's gain is off."""
     relative = site.sign() * x
@@ -152,7 +154,7 @@ def force_scale(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"relative": relative}
 
 
-@add("wrench", "sensing", FORCE_SENSOR, 0.03, 1e-3, 0.4)
+@known
 def force_crosstalk(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """A force along one axis of the sensor shows on another."""
     row, column = site.rng.choice(3, 2, replace=False)
@@ -162,7 +164,7 @@ def force_crosstalk(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"coefficient": coefficient}
 
 
-@add("wrench", "sensing", FORCE_SENSOR, 0.03, 1e-3, 1.0)
+@known
 def cable_drag_sensor(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """A cable pulls at the sensor as roll and tilt turn, and drags in roll; `x` is N per rad."""
     rig.sensor.cable = np.array([x, 0.7 * x])

@@ -5,54 +5,53 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from sher3_description import ACTUATORS
 from sher3_description.contract import GRAVITY
 
-from sher3_challenge.plants.kinds import ALL, DELTAS, SLIDERS, Catalogue, Site
+from sher3_challenge.plants.declared import DELTAS
+from sher3_challenge.plants.kinds import Catalogue, Site
 from sher3_challenge.plants.tables.curves import CURVE, ring, teeth, wobble
 from sher3_challenge.plants.tables.plant import Rig
 
 CATALOGUE = Catalogue()
-add = CATALOGUE.add
-LOST = ("coulomb_friction", "presliding_friction")
+known = CATALOGUE.known
 
 
-@add("timing", "transport", ALL, 1e-3, 5e-5, 8e-3, company=("command_jitter",))
+@known
 def command_delay(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """Every command arrives later, by a time that wavers by two per cent."""
     rig.transport.delay += x
     return {"delay": x}
 
 
-@add("timing", "transport", ALL, 3e-4, 2e-5, 1.5e-3, company=("command_delay",))
+@known
 def command_jitter(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """Commands are late as on a busy bus: seldom punctual, sometimes very late; `sigma` is the rms."""
     rig.transport.lateness = x
     return {"sigma": x}
 
 
-@add("timing", "transport", ALL, 0.02, 0.004, 0.3)
+@known
 def dropped_commands(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """Some commands never arrive, often a few in a row."""
     rig.transport.loss = x
     return {"probability": x}
 
 
-@add("timing", "transport", ACTUATORS, 1e-3, 5e-5, 6e-3, company=("command_delay",))
+@known
 def axis_skew(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """Commands of one axis arrive later than those of the others."""
     rig.transport.delay[site.index] += x
     return {"skew": x}
 
 
-@add("timing", "drive", ACTUATORS, 1e-3, 5e-5, 8e-3)
+@known
 def drive_lag(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The force comes late, behind two equal poles; `time_constant` is their sum."""
     rig.truth.drive.lag[site.rows] += x
     return {"time_constant": x}
 
 
-@add("scale", "controller", (*ACTUATORS, "all"), 0.1, 0.01, 0.6)
+@known
 def controller_gain(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The host works with another position gain."""
     relative = site.sign() * x
@@ -60,7 +59,7 @@ def controller_gain(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"relative": relative}
 
 
-@add("scale", "motor_mechanics", ACTUATORS, 0.05, 0.002, 0.5)
+@known
 def torque_constant(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """Real force over reported effort is not 1, and bends: less at large forces than at small ones."""
     relative, bend = site.sign() * x, site.rng.uniform(0.5, 1.0)
@@ -69,7 +68,7 @@ def torque_constant(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"relative": relative}
 
 
-@add("scale", "transmission", ACTUATORS, 5e-4, 1e-5, 0.02)
+@known
 def lead_error(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The load travels more or less than the motor, and not evenly along the stroke."""
     relative = site.sign() * x
@@ -79,7 +78,7 @@ def lead_error(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"relative": relative}
 
 
-@add("limit", "drive", ACTUATORS, 0.3, 0.02, 1.35)
+@known
 def force_saturation(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The force bends from 80 % of its limit on and ends there: at 12 N / (1 + x), more on roll."""
     limit = site.scaled(12.0, "force") / (1 + x)
@@ -88,7 +87,7 @@ def force_saturation(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"limit": limit}
 
 
-@add("limit", "drive", ACTUATORS, 8e-5, 4e-6, 1.5e-3)
+@known
 def velocity_deadband(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """Small demands do nothing, with a rounded edge."""
     width = site.scaled(x, "speed")
@@ -96,7 +95,7 @@ def velocity_deadband(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"width": width}
 
 
-@add("inertia", "motor_mechanics", ACTUATORS, 0.2, 0.01, 10.0, company=("gravity_load",))
+@known
 def payload_mass(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """Mass on an elastic mount; on the vertical rails its weight too."""
     mass, frequency = site.scaled(x, "inertia"), site.rng.uniform(35.0, 60.0)
@@ -108,7 +107,7 @@ def payload_mass(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"mass": mass}
 
 
-@add("inertia", "motor_mechanics", SLIDERS, 0.05, 0.002, 3.0, company=("payload_mass",))
+@known
 def gravity_load(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """Weight without inertia, near the pattern of the axis's own gravity: its centre is not quite the same."""
     mass = site.sign() * x
@@ -117,7 +116,7 @@ def gravity_load(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"mass": mass}
 
 
-@add("periodic", "motor_mechanics", ACTUATORS, 0.3, 0.01, 8.0)
+@known
 def cogging(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """Force in phase with the motor's poles, every one a little different."""
     amplitude, order = site.scaled(x, "force"), float(site.rng.choice([2, 3, 4, 6, 7, 8]))
@@ -126,7 +125,7 @@ def cogging(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"amplitude": amplitude, "periods_per_rev": order}
 
 
-@add("periodic", "transmission", ACTUATORS, 2e-6, 5e-8, 5e-5)
+@known
 def transmission_ripple(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The load runs ahead and behind with the motor's turn, as a gear's test record shows it."""
     amplitude, order = site.scaled(x, "length"), float(site.rng.choice([1, 2, 3, 4]))
@@ -135,7 +134,7 @@ def transmission_ripple(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"amplitude": amplitude, "periods_per_rev": order}
 
 
-@add("lost_motion", "transmission", ACTUATORS, 3e-6, 1e-7, 1e-4, company=LOST)
+@known
 def backlash(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """A gap with elastic, damped flanks; behind it a light carriage with friction of its own.
 
@@ -149,7 +148,7 @@ def backlash(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"width": width}
 
 
-@add("lost_motion", "transmission", ACTUATORS, 2e-6, 1e-7, 1e-4, company=LOST)
+@known
 def transmission_hysteresis(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """Lost motion that builds up after a reversal along a measured loop."""
     half, reach = site.scaled(x, "length"), site.scaled(site.rng.uniform(25e-6, 120e-6), "length")
@@ -158,7 +157,7 @@ def transmission_hysteresis(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"width": 2 * half, "displacement": reach}
 
 
-@add("compliance", "transmission", ACTUATORS, 1e-6, 5e-8, 1.2e-5, company=("backlash",))
+@known
 def transmission_compliance(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """A screw that winds up and stiffens with its force, three tenths of the mass behind it."""
     compliance = site.scaled(x, "compliance")
@@ -168,7 +167,7 @@ def transmission_compliance(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"compliance": compliance, "stiffness": 1 / compliance}
 
 
-@add("wrench", "motor_mechanics", ACTUATORS, 0.3, 0.01, 8.0)
+@known
 def cable_drag_axis(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """A cable pulls an axis back, harder the more it is bent, with hysteresis; `x` is its force a millimetre away."""
     force, stroke = site.scaled(x, "force"), site.scaled(1e-3, "length")

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from sher3_description import ACTUATORS
 
 from sher3_challenge.plants.kinds import Catalogue, Site
 from sher3_challenge.plants.plant import Array
@@ -14,8 +13,7 @@ from sher3_challenge.plants.tables.parameters import PLACES, SPEEDS
 from sher3_challenge.plants.tables.plant import Rig
 
 CATALOGUE = Catalogue()
-add = CATALOGUE.add
-COMPANY = ("coulomb_friction", "presliding_friction")
+known = CATALOGUE.known
 UNEVEN = 0.18
 """Rms over place by which a level of friction differs from its mean; the two directions differ by as much again."""
 
@@ -33,7 +31,7 @@ def patches(rng: np.random.Generator) -> Array:
     return np.asarray(1 + UNEVEN * along + sides)[:, None, :]
 
 
-@add("friction", "motor_mechanics", ACTUATORS, 0.3, 0.01, 8.0, company=("presliding_friction",))
+@known
 def coulomb_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """Friction of one level on the average."""
     force = site.scaled(x, "force")
@@ -42,7 +40,7 @@ def coulomb_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"force": force}
 
 
-@add("friction", "motor_mechanics", ACTUATORS, 0.4, 0.01, 8.0, company=COMPANY)
+@known
 def stribeck_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """Friction that falls with speed, with a longer tail than a bell curve has."""
     static, share = site.scaled(x, "force"), site.rng.uniform(0.1, 0.4)
@@ -53,7 +51,7 @@ def stribeck_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"static": static, "force": share * static, "velocity": velocity}
 
 
-@add("friction", "motor_mechanics", ACTUATORS, 60.0, 2.0, 1500.0)
+@known
 def viscous_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """More drag with speed, less than in proportion as a grease that shears."""
     extra = site.scaled(x, "stiffness")
@@ -63,7 +61,7 @@ def viscous_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"extra": extra}
 
 
-@add("friction", "motor_mechanics", ACTUATORS, 0.3, 0.01, 8.0, company=("coulomb_friction",))
+@known
 def presliding_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """Friction that takes tens of micrometres to build up, along a measured loop."""
     force, reach = site.scaled(x, "force"), site.scaled(site.rng.uniform(20e-6, 80e-6), "length")
@@ -72,7 +70,7 @@ def presliding_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"force": force, "displacement": reach}
 
 
-@add("friction", "motor_mechanics", ACTUATORS, 0.4, 0.01, 8.0, company=COMPANY)
+@known
 def position_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """Friction with narrow peaks along the stroke, one a period, of unlike height; next to none between them."""
     mean, period = site.scaled(x, "force") / 2, site.scaled(site.rng.uniform(0.8e-3, 2.6e-3), "length")
@@ -86,7 +84,7 @@ def position_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"force": mean, "amplitude": float(amplitude), "period": period}
 
 
-@add("friction", "motor_mechanics", ACTUATORS, 0.5, 0.01, 8.0, company=COMPANY)
+@known
 def friction_drift(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """Friction after standing, which runs in within seconds: fast at first, with a long end."""
     force, constant = site.scaled(x, "force"), site.rng.uniform(0.8, 3.0)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from sher3_description import ACTUATORS
 
-from sher3_challenge.plants.kinds import DELTAS, FORCE_SENSOR, TIP, Catalogue, Site
+from sher3_challenge.plants.declared import DELTAS
+from sher3_challenge.plants.kinds import Catalogue, Site
 from sher3_challenge.plants.tables.curves import CURVE, RING, ring, wobble
 from sher3_challenge.plants.tables.mechanism import angle_table
 from sher3_challenge.plants.tables.plant import Rig
@@ -15,10 +15,10 @@ from sher3_challenge.plants.tables.robot import SPRINGS
 
 CATALOGUE = Catalogue()
 add = CATALOGUE.add
-ENCODER = ("transmission",)
+known = CATALOGUE.known
 
 
-@add("scale", "sensing", ACTUATORS, 5e-4, 1e-5, 0.02, also=ENCODER)
+@known
 def encoder_scale(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The load encoder's ratio is off."""
     relative = site.sign() * x
@@ -26,7 +26,7 @@ def encoder_scale(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"relative": relative}
 
 
-@add("periodic", "sensing", ACTUATORS, 2e-6, 5e-8, 5e-5, also=ENCODER)
+@known
 def encoder_eccentricity(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The load encoder errs once per revolution, on a disc that is not quite round; the load does not move."""
     amplitude, turn = site.scaled(x, "length"), 2 * math.pi * np.arange(RING) / RING
@@ -48,28 +48,28 @@ def joint_clearance(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"clearance": x}
 
 
-@add("compliance", "structure", TIP, 0.1, 0.005, 3.0)
+@known
 def structural_compliance(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The arm turns about the platform and bends; `x` is the fraction of the published compliance."""
     rig.truth.tip.spring[:] += x * SPRINGS
     return {"fraction": x}
 
 
-@add("compliance", "structure", TIP, 0.3, 0.01, 5.0)
+@known
 def link_compliance(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The six links give way by their published law, sampled, no two alike; `x` is the mean fraction of it."""
     rig.truth.tip.link_law[:] = x * (1 + 0.12 * site.rng.standard_normal(6))
     return {"fraction": x}
 
 
-@add("compliance", "structure", TIP, 1e-5, 5e-7, 4e-4)
+@known
 def tool_bending(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The tool bends across its axis and hardens."""
     rig.truth.tip.bending[0] = x
     return {"compliance": x}
 
 
-@add("compliance", "structure", TIP, 0.5, 0.02, 6.0, also=("mechanism",))
+@known
 def structural_vibration(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """A mode of the structure rings when the tip accelerates, and a second, higher one a little."""
     frequency, damping = site.rng.uniform(8.0, 22.0), site.rng.uniform(0.02, 0.08)
@@ -80,7 +80,7 @@ def structural_vibration(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"frequency": frequency, "damping": damping, "gain": x}
 
 
-@add("geometry", "mechanism", DELTAS, 5e-6, 2e-7, 3e-4)
+@known
 def link_length_error(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """Both links of a leg are longer or shorter."""
     length = site.sign() * x
@@ -88,7 +88,7 @@ def link_length_error(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"length": length}
 
 
-@add("geometry", "mechanism", DELTAS, 8e-6, 2e-7, 4e-4)
+@known
 def platform_geometry_error(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The balls of a leg on the platform sit elsewhere in its plane, and a little out of it."""
     angle = site.rng.uniform(0, 2 * math.pi)
@@ -97,7 +97,7 @@ def platform_geometry_error(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"x": offset[0], "y": offset[1]}
 
 
-@add("geometry", "mechanism", DELTAS, 2e-3, 5e-5, 5e-2)
+@known
 def rail_tilt(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """A rail leans, and is not quite straight."""
     angle, g = site.rng.uniform(0, 2 * math.pi), rig.truth.mechanism
@@ -108,7 +108,7 @@ def rail_tilt(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"x": lean[0], "y": lean[1], "angle": x}
 
 
-@add("geometry", "mechanism", TIP, 4e-5, 1e-6, 2e-3)
+@known
 def base_tilt(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The base leans against the tracker."""
     angle = site.rng.uniform(0, 2 * math.pi)
@@ -117,7 +117,7 @@ def base_tilt(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"x": lean[0], "y": lean[1], "angle": x}
 
 
-@add("geometry", "mechanism", ("tilt",), 3e-5, 1e-6, 2e-3)
+@known
 def tilt_linkage_error(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """Crank, coupler or offset of the tilt linkage differs; the axis is homed at zero tilt."""
     which, length = int(site.rng.integers(3)), site.sign() * x
@@ -127,7 +127,7 @@ def tilt_linkage_error(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {("crank", "coupler", "offset")[which]: length, "length": length}
 
 
-@add("geometry", "mechanism", TIP, 6e-6, 2e-7, 4e-4)
+@known
 def tool_offset(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The tool's tip is elsewhere."""
     offset = x * site.direction()
@@ -135,7 +135,7 @@ def tool_offset(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return dict(zip("xyz", offset.tolist(), strict=True))
 
 
-@add("geometry", "mechanism", ACTUATORS, 8e-6, 2e-7, 4e-4)
+@known
 def encoder_offset(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The axis was homed wrongly: both encoders read too much or too little."""
     offset = site.sign() * site.scaled(x, "length")
@@ -143,14 +143,14 @@ def encoder_offset(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"offset": offset}
 
 
-@add("drift", "mechanism", TIP, 3e-5, 2e-6, 3e-3)
+@known
 def thermal_expansion(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The structure grows with its temperature, which lags behind the thermometer."""
     rig.truth.tip.expansion[0] += x
     return {"coefficient": x}
 
 
-@add("drift", "sensing", FORCE_SENSOR, 0.005, 2e-4, 0.5, company=("force_bias",))
+@known
 def force_drift(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The force sensor's zero moves with its body's temperature."""
     drift = x * site.direction()
@@ -158,7 +158,7 @@ def force_drift(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return dict(zip(("fx", "fy", "fz"), drift.tolist(), strict=True))
 
 
-@add("wrench", "sensing", FORCE_SENSOR, 0.01, 4e-4, 1.0)
+@known
 def force_bias(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The force sensor's zero is off."""
     bias = x * site.direction()
@@ -167,7 +167,7 @@ def force_bias(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return dict(zip(("fx", "fy", "fz"), bias.tolist(), strict=True))
 
 
-@add("wrench", "sensing", FORCE_SENSOR, 0.002, 5e-5, 0.1)
+@known
 def tool_gravity(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The tool on the sensor is heavier or lighter than its data, and its centre elsewhere by a millimetre's part."""
     mass = site.sign() * min(x, 0.015) if x > 0.015 else site.sign() * x
@@ -176,7 +176,7 @@ def tool_gravity(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"mass": mass}
 
 
-@add("scale", "sensing", FORCE_SENSOR, 0.03, 1e-3, 0.4)
+@known
 def force_scale(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The force sensor's gain is off, on no two channels quite alike."""
     relative = site.sign() * x
@@ -184,7 +184,7 @@ def force_scale(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"relative": relative}
 
 
-@add("wrench", "sensing", FORCE_SENSOR, 0.03, 1e-3, 0.4)
+@known
 def force_crosstalk(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """A force along one axis of the sensor shows on another, less in proportion at large forces."""
     row, column = site.rng.choice(3, 2, replace=False)
@@ -194,7 +194,7 @@ def force_crosstalk(rig: Rig, site: Site, x: float) -> dict[str, float]:
     return {"coefficient": coefficient}
 
 
-@add("wrench", "sensing", FORCE_SENSOR, 0.03, 1e-3, 1.0)
+@known
 def cable_drag_sensor(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """A cable pulls at the sensor as roll and tilt turn, the harder the more it is bent; `x` is N per rad."""
     s, u = rig.truth.sensor, np.linspace(-1.0, 1.0, CURVE)
