@@ -20,6 +20,7 @@ from sher3_machines.intake.mending.wraps import TURN, joined, wrapped_over
 from sher3_machines.intake.spelling import table_of
 from sher3_machines.intake.tables import Tables
 
+from sher3_chain.joint.counted import with_counted_clock
 from sher3_chain.joint.description import Axis, ChainDescription
 from sher3_chain.joint.speed import integrated, is_speed
 from sher3_chain.joint.units import check_units
@@ -83,7 +84,9 @@ def axes_run(name: str, tables: Tables, machine: ChainDescription) -> AxesRun:
     """
     raw: dict[str, dict[str, Stamped]] = {}
     over: dict[str, float] = {}
+    tables, counted = with_counted_clock(tables, machine, name)
     tables, mended = _without_repeats(tables, machine, name)
+    mended = counted + mended
     polled = bool(mended)
     for axis in machine.chain:
         raw[axis.name] = {

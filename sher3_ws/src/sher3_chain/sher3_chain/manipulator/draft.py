@@ -19,7 +19,7 @@ from sher3_chain.manipulator.mjcf.joint import OWN_EFFORT, drive_joint
 TORQUES = EFFORT - frozenset(("iq", "strom", "amps"))
 """Words of an effort that is a force or a torque where its name has no unit."""
 FORCES = ("N", "kN", "N*m", "mN*m")
-OF_JOINT = ("position", "reference", "effort", "command", "load")
+OF_JOINT = ("position", "velocity", "reference", "effort", "command", "load")
 """Signals of a joint that a draft keeps: an arm is judged by its forces."""
 OF_AXIS = re.compile(r": (driven by|mass is not|a position servo|undriven)")
 """Guesses on single axes that an arm has no use for."""
@@ -118,6 +118,8 @@ def _joint(axis: Mapping[str, Any], joint: str, slides: bool, guesses: list[str]
         signals["position"]["unit"] = "m"
     out = {"name": joint, "motion": "linear" if slides else "rotary", "signals": signals}
     out["encoder_resolution"] = axis["encoder_resolution"]
+    if slides and "velocity" in signals and signals["velocity"]["unit"] == "rad/s":
+        signals["velocity"]["unit"] = "m/s"
     if "reference" in signals:
         signals["reference"]["unit"] = signals["position"]["unit"]
     effort = signals.get("effort") or signals.get("command")

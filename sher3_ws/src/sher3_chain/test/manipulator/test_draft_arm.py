@@ -32,6 +32,15 @@ def test_a_drafted_arm_is_diagnosed(tmp_path):
     assert not any("mass is not known" in guess or "driven by" in guess for guess in found.guesses)
 
 
+def test_matrices_are_the_joints_of_an_arm(tmp_path):
+    """Names in the plural, a row for each sample: nothing is left out, speeds are kept for the clock."""
+    (tmp_path / "lift.urdf").write_text(URDF)
+    np.savez(tmp_path / "a.npz", times=TIME, positions=Q, velocities=V, torques=EFFORT)
+    found = draft_arm(tmp_path / "a.npz", tmp_path / "lift.urdf")
+    assert not any("not used" in guess for guess in found.guesses)
+    assert found.text.count("column: torques") == found.text.count("column: velocities") == 2
+
+
 def test_a_current_has_an_unknown_gain(tmp_path):
     found = drafted(tmp_path, ["t", "lift_pos", "swing_pos", "lift_current", "swing_torque_Nm"])
     assert found.text.count("gain: unknown") == 1

@@ -25,8 +25,8 @@ POSITION = vocabulary(
     "stroke gap hub verschiebung schrittzähler steps schritte"
 )
 VELOCITY = vocabulary("velocity velocities vel speed qd dq omega qdot qvel gyro drehzahl geschwindigkeit rate")
-EFFORT = vocabulary("effort torque tau force iq trq moment drehmoment strom kraft amps qfrc")
-CURRENT = vocabulary("current curr cur i")
+EFFORT = vocabulary("effort efforts torque torques tau taus force iq trq moment drehmoment strom kraft amps qfrc")
+CURRENT = vocabulary("current currents curr cur i")
 """A current is an effort, but the current position is the measured one."""
 COMMAND = vocabulary("control ctrl u voltage volt spannung pwm duty vir valve ventil")
 ASKED = vocabulary(

@@ -1,0 +1,65 @@
+"""A clock whose stamps jitter though its samples are even: recorded speeds say how many periods lie between two rows.
+
+A logger stamps a sample when it comes to it, often by half a period and more too late or too early, and loses some. A
+place that was differentiated twice turns that into accelerations far beyond those of the motion. What a joint moved
+from row to row over its speed is the time that passed for it: where that is a whole number of periods at nearly every
+row, it is the clock.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from sher3_diagnosis.channel import Array
+
+MOVING = 0.05
+"""Mean square of the speed, over its mean, from which it tells the time between two rows."""
+FEWEST = 100
+"""Rows in motion below which nothing is said."""
+NEAR = 0.25
+"""Periods by which what passed may be off a whole number."""
+MOST = 0.9
+"""Share of the rows in motion that must be near one."""
+CLEARER = 0.5
+"""What whole numbers leave of the time that passed, over what the stamps leave, below which they are the clock."""
+SURE = 0.15
+"""Standard deviation of what passed, in periods, up to which a slow row is counted too: three of them are no half."""
+LONGEST = 20.0
+"""Periods between two rows beyond which the stamps are believed: a mean of two speeds tells no such time."""
+
+
+def counted_stamps(t: Array, x: Array, v: Array) -> Array | None:
+    """Return stamps (n,) that the motion counts, or None where it does not, or they are as good as they are.
+
+    Rows between which no time passed have one stamp; those between which nothing moved are a period apart.
+
+    Args:
+        t: stamps (n,), s, that grow.
+        x: places (n, k), m or rad.
+        v: their speeds (n, k).
+    """
+    if len(t) <= FEWEST or not (np.diff(t) > 0.0).all():
+        return None
+    mean = 0.5 * (v[1:] + v[:-1])
+    usual = np.mean(mean**2, axis=0)
+    if not usual.all():
+        return None
+    square = np.sum(mean**2 / usual, axis=1)
+    passed = np.sum(np.diff(x, axis=0) * mean / usual, axis=1) / np.maximum(square, np.finfo(float).tiny)
+    hole = np.diff(t) > LONGEST * np.median(np.diff(t))
+    moving = (square > MOVING * square.mean()) & ~hole
+    period = float(np.median(passed[moving])) if moving.sum() >= FEWEST else 0.0
+    if not period > 0.0:
+        return None
+    counts = np.maximum(np.round(passed / period), 0.0)
+    off, by_stamps = np.abs(passed - period * counts), np.abs(passed - np.diff(t))
+    if np.mean(off[moving] < NEAR * period) < MOST or rms(off[moving]) > CLEARER * rms(by_stamps[moving]):
+        return None
+    noise = rms((off * np.sqrt(square))[moving])
+    counts = np.where(noise < SURE * period * np.sqrt(square), counts, 1.0)
+    period = float(np.diff(t)[~hole].sum() / counts[~hole].sum())  # the whole takes as long as the stamps say
+    return np.asarray(t[0] + np.concatenate([[0.0], np.cumsum(np.where(hole, np.diff(t), period * counts))]))
+
+
+def rms(x: Array) -> float:
+    """Return the root mean square."""
+    return float(np.sqrt(np.mean(x**2)))
