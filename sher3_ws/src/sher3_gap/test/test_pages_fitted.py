@@ -114,6 +114,18 @@ def test_a_load_that_swings_on_its_transmission_is_told_by_mass_spring_and_frequ
     assert found["damping"] == pytest.approx(0.05, abs=0.03)
 
 
+def test_a_cable_beside_the_origin_of_the_sensor_turns_it_as_well(evidence):
+    """Its torques are columns of their own; stiffness and drag are those of the forces alone."""
+    page, shape = library()["cable_drag"], {"stroke": 0.25, "lever": 1.0}
+    assert page.bends(evidence.views, "force_sensor", {"stroke": 0.25}) == [shape]
+    columns = page.signature(evidence.views[0], "force_sensor", shape).columns
+    (values,) = columns.values()
+    assert values.shape[1:] == (6, 24) and np.abs(values).max(axis=0).any(axis=1).all()
+    coefficients = np.zeros((4, 6))  # by roll, by tilt, and dragged by either; forces, then torques
+    coefficients[0, 1], coefficients[3, 2], coefficients[:, 3:] = 0.05, -0.01, 9.0
+    assert page.parameters(shape, coefficients.ravel()) == {"stiffness": 0.05, "force": 0.01}
+
+
 def test_balls_of_every_leg_are_one_error_of_the_platform():
     """No leg alone explains a platform that was bored wrong: each leg's x and y are told within 3 µm."""
     page = library()["platform_geometry_error"]

@@ -24,6 +24,7 @@ AT_SENSOR = 6
 class CableDrag(Page):
     """On an axis: k q + k0 + hysteresis over a long stroke; on the force sensor: the same of roll and tilt (as
     angles), per component. A cable on an axis may pull the harder the more it is bent: `stiffness` is then the mean.
+    One that is not held at the sensor's origin turns it as well (`lever`): torques follow the same.
 
     On an axis a cable pulls back and drags: k and the hysteresis have no sign. Its pull at rest k0 may have either, and
     so has each component at the force sensor: it depends on which way the cable hangs.
@@ -61,8 +62,8 @@ class CableDrag(Page):
         return [{"stroke": 0.0}, {"stroke": 0.25}, {"stroke": 1.0}]
 
     def bends(self, views: Sequence[RobotView], site: str, shape: Shape) -> list[Shape]:
-        """Return the cable on an axis that hardens."""
-        return [] if site == "force_sensor" else over_travel(views, site, shape)
+        """Return the cable on an axis that hardens; at the sensor, one that pulls beside its origin."""
+        return [{**shape, "lever": 1.0}] if site == "force_sensor" else over_travel(views, site, shape)
 
     def signature(self, view: RobotView, site: str, shape: Shape) -> Signature:
         """Offset, stiffness and, with a stroke, hysteresis; of a cable that hardens square and cube of the place."""
@@ -86,16 +87,18 @@ class CableDrag(Page):
                 view.run.to_grid(view.sliding(axis, shape["stroke"] * view.robot.actuators[axis].lead))
                 for axis in (3, 4)
             ]
-        columns = np.zeros((len(drives[0]), 6, 3 * len(drives)))
+        pulled = _pulled(shape)
+        columns = np.zeros((len(drives[0]), 6, pulled * len(drives)))
         for j, drive in enumerate(drives):
-            columns[:, [0, 1, 2], [3 * j, 3 * j + 1, 3 * j + 2]] = drive[:, None]
+            columns[:, range(pulled), range(pulled * j, pulled * (j + 1))] = drive[:, None]
         return Signature({Channel("sensing", "force_sensor"): columns})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Stiffness and force of the hysteresis; the largest component, in N per rad, on the force sensor."""
         if len(coefficients) >= AT_SENSOR:
-            out = {"stiffness": float(np.abs(coefficients[:6]).max())}
-            return out if len(coefficients) == 6 else {**out, "force": float(np.abs(coefficients[6:]).max())}
+            forces = np.abs(coefficients.reshape(-1, _pulled(shape))[:, :3])
+            out = {"stiffness": float(forces[:2].max())}
+            return {**out, "force": float(forces[2:].max())} if shape["stroke"] else out
         preload, stiffness, *rest = map(float, coefficients)
         out = {"preload": preload, "stiffness": stiffness}
         return {**out, "force": rest[0]} if shape["stroke"] else out
@@ -121,6 +124,11 @@ class CableDrag(Page):
     def to_simulator(self, actuator: str, values: Values, robot: Robot) -> list[Part]:
         """Return spring and drag, which turns over the plant's own stroke; the plant's cable has no preload."""
         return [Part(self.id, actuator, {name: values.get(name, 0.0) for name in ("stiffness", "force")})]
+
+
+def _pulled(shape: Shape) -> int:
+    """Return the number of components of the force sensor that a cable pulls at: forces, and torques with a lever."""
+    return 6 if "lever" in shape else 3
 
 
 @dataclass(frozen=True)
