@@ -13,6 +13,7 @@ from sher3_chain.manipulator.mjcf.joint import drive_joint
 from sher3_machines.intake.guesses import count_of, scatter
 from sher3_machines.intake.tables import Tables
 
+from sher3_public import plausible
 from sher3_public.errors import InputError
 from sher3_public.models import Source
 from sher3_public.records import Array, Arrays
@@ -56,13 +57,18 @@ def described(source: Source, runs: Sequence[Arrays], stated: Stated) -> Describ
     """Describe the joints of an arm.
 
     Raises:
-        InputError: the arrays do not fit the joints of the model.
+        InputError: the arrays do not fit the joints of the model, or cannot be what they would be taken for.
     """
+    plausible.stamps(runs[0].time)
     guesses: list[str] = []
     names = joints_of(source, runs[0].position.shape[1], stated.joints, guesses)
     drives = source.bodies.drives
     controls = [control_of(name, i, len(names), runs[0].control, drives, source) for i, name in enumerate(names)]
     joints = [_joint(name, i, source, runs, stated, controls[i] is not None) for i, name in enumerate(names)]
+    for place, (name, column) in enumerate(zip(names, controls, strict=True)):
+        drive = drives[name].drive if name in drives else None
+        if drive is not None and column is not None and runs[0].control is not None and runs[0].effort is None:
+            plausible.control_of(name, runs[0].control[:, column], runs[0].position[:, place], drive)
     own = simulated(joints, names, controls, runs, drives, stated.simulated, guesses)
     for joint in joints:
         if joint["name"] in drives:
@@ -70,6 +76,9 @@ def described(source: Source, runs: Sequence[Arrays], stated: Stated) -> Describ
         elif "command" in joint["signals"]:
             joint["signals"].pop("command")
             guesses.append(f"{joint['name']}: its control is not used, because the model has no drives")
+    if runs[0].control is not None:
+        unheard = [n for n, c in zip(names, controls, strict=True) if c is None and n in drives]
+        guesses += [f"{n}: its control is not used, because {drives[n].reason}" for n in unheard if drives[n].reason]
     left = [name for name in source.bodies.joints if name not in names]
     if left:
         guesses.append(f"joints that were not recorded stay at zero: {', '.join(left)}")
@@ -136,6 +145,7 @@ def _joint(
 
 def resolution(x: Array) -> float:
     """Return the count of an encoder, rad or m: its smallest step, else its scatter."""
+    x = x[np.isfinite(x)]
     return float(f"{max(count_of(x) or scatter(x), LEAST_RESOLUTION):.6g}")
 
 

@@ -6,6 +6,7 @@ from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
 from numpy.typing import ArrayLike
+from sher3_machines.errors import MachineError
 
 from sher3_public.answer import Answer
 from sher3_public.cases import Case, case_of_arrays, case_of_description, case_of_tables
@@ -13,6 +14,8 @@ from sher3_public.describing import Stated
 from sher3_public.errors import InputError
 from sher3_public.records import arrays_of, columns_of, is_several, is_table
 
+UNUSED = "is not used"
+"""Words of a guess by which a signal plays no part."""
 Runs = ArrayLike | Sequence[ArrayLike] | None
 
 
@@ -62,7 +65,13 @@ def diagnose(
         UnknownEffect: an id in `without` is no effect.
     """
     stated = Stated(tuple(joints), gain, resolution, simulated)
-    return Answer.of(_case(model, time, (control, position, effort, load), stated, rate, tags), tuple(without))
+    case = _case(model, time, (control, position, effort, load), stated, rate, tags)
+    try:
+        return Answer.of(case, tuple(without))
+    except MachineError as error:
+        why = [guess for guess in case.guesses if UNUSED in guess]
+        error.remedy = "; ".join([*([error.remedy] if error.remedy else []), *why])
+        raise
 
 
 def _case(

@@ -69,5 +69,5 @@ def _check_range(axis: Axis, position: Array, run: str) -> None:
         f"{run}: {axis.name}.position leaves the range of the axis{likely}",
         value=f"{worst:.4g}",
         limit=f"{lowest:g} .. {highest:g}",
-        remedy="correct the unit in the description, or state the axis' range",
+        remedy="convert it, correct the unit in the description, or state the axis' range",
     )

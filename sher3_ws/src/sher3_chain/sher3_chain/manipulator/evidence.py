@@ -112,7 +112,7 @@ def gather_arm_motion(
     views = seen_by(model, factors)
     residuals = [_residuals(view, judged) for view in views]
     if not any(residuals):
-        raise MachineError("no joint can be judged", value="0 joints", remedy="record efforts while the joints move")
+        raise not_judged(judged, signals)
     floors = floors_of(views, residuals, repeats)
     seen = tuple(j for j in judged if any(channel_of(j) in x for x in residuals))
     data = in_blocks(views, residuals, floors)
@@ -135,6 +135,21 @@ def gather_arm_motion(
         slips=slips,
         scales=scales,
     )
+
+
+def not_judged(judged: Sequence[str], signals: Sequence[JointSignals]) -> MachineError:
+    """Return the error of an arm without a joint that can be judged: no force is known, or too little motion."""
+    if not judged:
+        remedy = "record efforts, or give a model whose actuators say what force a control is"
+        return MachineError(
+            "no joint can be judged: none has a force that is known and a position that moves",
+            value="0 joints",
+            remedy=remedy,
+        )
+    ticks = max(s.ticks for s in signals)
+    remedy = "record efforts while the joints move, for some seconds"
+    value = f"{len(judged)} joints, {ticks} samples"
+    return MachineError("no joint can be judged: too little of the record is motion", value=value, remedy=remedy)
 
 
 def _put_right(

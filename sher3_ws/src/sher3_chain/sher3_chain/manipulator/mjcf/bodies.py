@@ -11,6 +11,11 @@ from sher3_machines.errors import MachineError
 
 SLIDE, HINGE = 2, 3
 """MuJoCo's numbers for the kinds of joint that are read (mjtJoint)."""
+REMEDIES = {
+    0: "take its freejoint out where the robot is bolted down or hangs in a stand; one that walks is not judged",
+    1: "write a ball joint as three hinges, or take it out where it is at rest",
+}
+"""Number of another kind -> what to do about it."""
 
 
 def model_from_mjcf(source: Any, label: str) -> pin.Model:
@@ -48,11 +53,11 @@ def _add(model: pin.Model, source: Any, joint: int, parent: int, pose: pin.SE3, 
     kinds = {SLIDE: pin.JointModelPrismaticUnaligned, HINGE: pin.JointModelRevoluteUnaligned}
     kind, name = int(source.jnt_type[joint]), source.joint(joint).name or f"joint{joint}"
     if kind not in kinds:
-        raise MachineError(
-            f"{label}: joint {name} neither turns nor slides", value=f"mjtJoint {kind}", remedy="fix the arm's base"
-        )
+        value = "a free joint" if kind == 0 else "a ball joint"
+        raise MachineError(f"{label}: joint {name} neither turns nor slides", value=value, remedy=REMEDIES[kind])
     anchor = pin.SE3(np.eye(3), np.array(source.jnt_pos[joint]))
     made = model.addJoint(parent, kinds[kind](np.array(source.jnt_axis[joint])), pose * anchor, name)
+    model.addJointFrame(made)  # by which Pinocchio finds a joint that is kept where others are locked
     return made, anchor.inverse()
 
 

@@ -19,6 +19,10 @@ EULER_DAMP = 1 << 15
 """Flag that switches the implicit damping of Euler's method off (mjDSBL_EULERDAMP)."""
 
 
+TENDON, WRAPPED_JOINT = 3, 1
+"""MuJoCo's numbers of a transmission by a tendon (mjtTrn), and of a joint in a tendon (mjtWrap)."""
+
+
 @dataclass(frozen=True)
 class Drive:
     """An actuator on one joint.
@@ -88,6 +92,8 @@ def _driven(source: Any, joint: int) -> Driven:
 
 def _drive(source: Any, joint: int) -> tuple[Drive | None, str]:
     """Return the actuator of a joint, or why its force is not known from its control."""
+    if through := by_tendon(source, joint):
+        return None, f"actuator {through} moves it by a tendon"
     driving = [i for i in at_joint(source, joint) if not is_passive(source, i)]
     if not driving:
         return None, "the model has no actuator on it"
@@ -111,6 +117,18 @@ def _drive(source: Any, joint: int) -> tuple[Drive | None, str]:
             f"actuator {name} is no servo of places: its force is {gain:g} u {offset:+g} {place:+g} q {speed:+g} v",
         )
     return Drive(name, control, gear, True, -gain / (place * gear), -place * gear**2, -speed * gear**2, limit), ""
+
+
+def by_tendon(source: Any, joint: int) -> str:
+    """Return the name of an actuator that pulls at a joint by a fixed tendon; empty where none does."""
+    for i in range(getattr(source, "nactuator", source.nu)):
+        if source.actuator_trntype[i] == TENDON:
+            tendon = source.actuator_trnid[i][0]
+            first, count = source.tendon_adr[tendon], source.tendon_num[tendon]
+            ends = source.wrap_objid[first : first + count][source.wrap_type[first : first + count] == WRAPPED_JOINT]
+            if joint in ends:
+                return source.actuator(i).name or f"actuator{i}"
+    return ""
 
 
 def _limit(source: Any, actuator: int, joint: int, gear: float) -> float | None:

@@ -1,0 +1,102 @@
+"""What people give at their first try: answered, or refused with what to do."""
+
+import mujoco
+import numpy as np
+import pytest
+import sher3.gap as gap
+from sher3_machines.errors import MachineError
+from sher3_public.errors import InputError
+
+ARM = """<mujoco><option timestep="0.002" integrator="implicitfast"/><worldbody><body pos="0 0 0.5">
+<joint name="shoulder" axis="0 1 0" damping="0.5" armature="0.02"/>
+<geom type="capsule" fromto="0 0 0 0.4 0 0" size="0.03" mass="2"/><body pos="0.4 0 0">
+<joint name="elbow" axis="0 1 0" damping="0.2" armature="0.01"/>
+<geom type="capsule" fromto="0 0 0 0.3 0 0" size="0.025" mass="1"/></body></body></worldbody>{rest}</mujoco>"""
+SERVOS = '<position joint="shoulder" kp="400" kv="20"/><position joint="elbow" kp="200" kv="8"/>'
+MODEL = ARM.format(rest=f"<actuator>{SERVOS}</actuator>")
+MOTORS = ARM.format(rest='<actuator><motor joint="shoulder"/><motor joint="elbow"/></actuator>')
+TENDON = ARM.format(
+    rest='<tendon><fixed name="belt"><joint joint="shoulder" coef="1"/><joint joint="elbow" coef="1"/></fixed></tendon>'
+    '<actuator><position joint="shoulder" kp="400"/><position name="pull" tendon="belt" kp="200"/></actuator>',
+)
+
+
+@pytest.fixture(scope="module")
+def log():
+    """Stamps (n,), controls and positions (n, 2) of an arm whose elbow has 1.2 N m more dry friction."""
+    robot, rows = mujoco.MjModel.from_xml_string(MODEL), []
+    robot.dof_frictionloss[1] += 1.2
+    data = mujoco.MjData(robot)
+    for _ in range(6000):
+        t = data.time
+        data.ctrl[:] = [0.6 * np.sin(1.7 * t) + 0.3 * np.sin(4.1 * t), 0.7 * np.sin(2.3 * t) + 0.2 * np.sin(5.3 * t)]
+        mujoco.mj_forward(robot, data)
+        rows.append([t, *data.ctrl, *data.qpos])
+        mujoco.mj_step(robot, data)
+    time, control, position = np.split(np.array(rows), [1, 3], axis=1)
+    return time[:, 0], control, position + 1e-5 * np.random.default_rng(1).normal(size=position.shape)
+
+
+def named(answer):
+    return {(c.effect, c.actuator) for c in answer.causes}
+
+
+def test_positions_that_come_at_every_fifth_stamp(log):
+    time, control, position = log
+    sparse = np.where(np.arange(len(time))[:, None] % 5 == 0, position, np.nan)
+    assert named(gap.diagnose(MODEL, time, control, sparse)) == {("coulomb_friction", "elbow")}
+
+
+def test_one_joint_alone_of_a_model_in_mjcf(log):
+    """The shoulder is taken to be at rest: the elbow is judged, and the answer says what was assumed."""
+    time, control, position = log
+    still = gap.diagnose(MODEL, time, control[:, 1], position[:, 1], joints=["elbow"])
+    assert ("coulomb_friction", "elbow") in named(still)
+    assert any("stay at zero: shoulder" in guess for guess in still.guessed)
+
+
+NOTHING = ARM.format(rest="")
+ON_A_BASE = '<body pos="0 0 0.5"><{joint}/><geom size=".1" mass="5"/><body>'
+
+
+def on(joint):
+    """The arm on a body with a joint of its own."""
+    text = MODEL.replace('<body pos="0 0 0.5">', ON_A_BASE.format(joint=joint), 1)
+    return text.replace("</worldbody>", "</body></worldbody>")
+
+
+@pytest.mark.parametrize(
+    ("model", "words"),
+    [
+        (NOTHING, "its control is not used, because the model has no actuator on it"),
+        (TENDON, "actuator pull moves it by a tendon"),
+        (on("freejoint"), "take its freejoint out"),
+        (on('joint type="ball"'), "three hinges"),
+    ],
+    ids=["no actuators", "tendon", "free base", "ball joint"],
+)
+def test_a_model_that_cannot_be_judged_is_refused_with_the_reason(log, model, words):
+    with pytest.raises(MachineError) as caught:
+        gap.diagnose(model, *log)
+    assert words in str(caught.value)
+
+
+def test_units_that_cannot_be(log):
+    time, control, position = log
+    with pytest.raises(InputError, match="in ms by 1000"):
+        gap.diagnose(MODEL, 1e3 * time, control, position)
+    with pytest.raises(MachineError, match="likely deg recorded as rad"):
+        gap.diagnose(MODEL, time, np.degrees(control), np.degrees(position))
+
+
+def test_a_control_that_is_no_place_and_one_that_is_no_force(log):
+    time, control, position = log
+    with pytest.raises(InputError, match="give it as effort="):
+        gap.diagnose(MODEL, time, 300.0 * (control - position) + 5.0 * np.sin(7.0 * time)[:, None], position)
+    with pytest.raises(InputError, match="a model with position actuators"):
+        gap.diagnose(MOTORS, time, control, position)
+
+
+def test_a_record_that_is_too_short(log):
+    with pytest.raises(MachineError, match="too little of the record is motion"):
+        gap.diagnose(MODEL, *(x[:50] for x in log))
