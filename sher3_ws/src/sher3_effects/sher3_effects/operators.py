@@ -254,3 +254,28 @@ def _follow(x: Array, keep: float) -> Array:
         out[k] = y + x[0]
         y = (1.0 - keep) * (x[k] - x[0]) + keep * y
     return out
+
+
+@compiled
+def limited_lag(error: Array, start: float, gains: Array, time_constant: float, period: float) -> Array:
+    """Force (n,) of a PI law on a velocity error (n,), ended at a limit, behind a first-order lag.
+
+    Args:
+        error: (n,) its mean over the interval that ends at each tick.
+        start: the force at rest before the first tick.
+        gains: proportional, integral, limit; the integrator rests while the limit holds and the error drives it on.
+        time_constant: of the lag, s.
+        period: of the ticks, s.
+    """
+    proportional, integral, limit = gains
+    kept = math.exp(-period / time_constant)
+    out = np.empty_like(error)
+    force, rest = start, start
+    for k in range(len(error)):
+        wanted = proportional * error[k] + rest
+        given = min(max(wanted, -limit), limit)
+        if given == wanted or error[k] * wanted < 0.0:
+            rest += integral * error[k] * period
+        force = given + (force - given) * kept
+        out[k] = force
+    return out

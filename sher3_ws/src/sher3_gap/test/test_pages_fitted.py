@@ -52,6 +52,7 @@ RECOVERED = [
     ("force_bias", "force_sensor", {"fx": 0.2}),
     ("force_crosstalk", "force_sensor", {"xz": 0.05}),
     ("drive_lag", "delta_1", {"time_constant": 6e-3}),
+    ("drive_lag", "tilt", {"time_constant": 10.5e-3}),  # so late that the loop swings up to the drive's limit
     ("encoder_eccentricity", "delta_3", {"amplitude": 1e-5}),
     ("joint_clearance", "tilt", {"clearance": 4e-5}),
     ("link_compliance", "tip", {"fraction": 0.8, "own_weight": 1.0}),

@@ -12,13 +12,16 @@ from sher3_diagnosis.effect import Best, Shape, Signature, column
 from sher3_sim.effect import EVERYWHERE, PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
-from sher3_effects.operators import first_order, held_lag, oscillator
+from sher3_effects.operators import first_order, held_lag, limited_lag, oscillator
 from sher3_effects.page import Page
 from sher3_effects.view import AxisView, RobotView
 
 
 class DriveLag(Page):
-    """effort = lag of the PI law, of first order or with a second pole that takes a share of its time."""
+    """effort = lag of the PI law, of first order or with a second pole that takes a share of its time.
+
+    A loop that is late enough swings up to its own limit: what the limit takes off is part of the law.
+    """
 
     id, family, stage = "drive_lag", "timing", "drive"
     inputs = ("command", "force")
@@ -63,8 +66,20 @@ class DriveLag(Page):
             if second:
                 before = np.concatenate([force[:1], force[:-1]])
                 force = first_order(before, 0.5 * (before + force), force, second, run.period)
-            lagged = force - law
+            lagged = force - law + self._ended(view, axis, time)
         return Signature({}, {Channel(self.stage, site): run.to_grid(lagged)[:, None]})
+
+    def _ended(self, view: RobotView, axis: int, time: float) -> Array:
+        """Return what the drive's own limit adds to a late force (n,): nothing where it is never reached."""
+        run, drive = view.run, view.robot.actuators[axis].drive
+        assert run.echo is not None
+        error = run.echo[:, axis] - np.diff(run.motor[:, axis], prepend=run.motor[0, axis]) / run.period
+        start = float(run.effort[0, axis])
+        ended, free = (
+            limited_lag(error, start, np.array([drive.kp, drive.ki, limit]), time, run.period)
+            for limit in (drive.limit, np.inf)
+        )
+        return ended - free
 
     def _between(self, view: RobotView, axis: int, kp: float) -> tuple[Array, Array]:
         """Return the law (n,) behind the step of the tick before, and its mean over the interval.
