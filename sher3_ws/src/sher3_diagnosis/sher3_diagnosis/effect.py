@@ -110,6 +110,7 @@ class Effect:
             it is at the load, "applied" a known force on the axis from outside.
         seen_at: (stage, place) of the channels in which it must show to be looked for; "" is its own stage or its site.
         inputs: quantities the law may depend on, of `INPUTS`; none for an error that is constant.
+        gives: parameters by name: those that its shape has are the shape's, the others its coefficients in their order.
         units: parameter -> SI unit on a linear axis.
         bent_from: share of what a law with a bend explains that the one without must leave for the bend to be named.
         discrete: parameters that are a choice (a source, a member, a number of periods) and have no interval.
@@ -149,6 +150,7 @@ class Effect:
     needs: ClassVar[tuple[str, ...]] = ()
     seen_at: ClassVar[tuple[tuple[str, str], ...]] = (("", ""),)
     inputs: ClassVar[tuple[str, ...]] = ()
+    gives: ClassVar[tuple[str, ...]] = ()
     units: ClassVar[Mapping[str, str]] = {}
     bent_from: ClassVar[float] = RIVAL
     discrete: ClassVar[frozenset[str]] = frozenset()
@@ -208,8 +210,9 @@ class Effect:
         raise NotImplementedError
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the physical parameters of a fit, SI units; default the values of the shape."""
-        return dict(shape)
+        """Return the physical parameters of a fit, SI units; default those that it `gives`, else the shape's values."""
+        found = iter(coefficients)
+        return {name: shape[name] if name in shape else float(next(found)) for name in self.gives or shape}
 
     def measured(self, views: Sequence[Any], site: str, shape: Shape) -> Mapping[str, Measured]:
         """Return parameters that other means than the fit tell better, by name; default none."""

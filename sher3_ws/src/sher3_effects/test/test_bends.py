@@ -178,4 +178,4 @@ def test_a_cable_on_an_axis_pulls_the_harder_the_more_it_is_bent():
     assert CableDrag().admissible(shape, found)
     assert not CableDrag().admissible(shape, np.array([0.0, 6500.0, 0.0, -5.0]))
     assert not CableDrag().admissible(shape, np.array([0.0, 6500.0, -9.0, 1.0]))
-    assert not CableDrag().bends([along(x)], "force_sensor", {"stroke": 0.0})
+    assert CableDrag().bends([along(x)], "force_sensor", {"stroke": 0.0}) == [{"stroke": 0.0, "lever": 1.0}]

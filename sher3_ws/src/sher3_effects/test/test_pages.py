@@ -51,6 +51,13 @@ def test_the_first_coefficient_exceeds_what_the_page_says():
     assert free.admissible({}, np.array([-1.0]))
 
 
+def test_parameters_are_those_of_the_shape_and_coefficients_in_order():
+    drifts, limited = library()["friction_drift"], library()["force_saturation"]
+    found = drifts.parameters({"time_constant": 2.0}, np.array([0.5, 0.1]))
+    assert found == {"force": 0.5, "drift": 0.1, "time_constant": 2.0}
+    assert limited.parameters({"limit": 9.0, "knee": 0.2}, np.zeros(0)) == {"limit": 9.0}
+
+
 def test_a_computed_parameter_belongs_to_one_effect():
     names = ["delay", "effort_delay", "limit", "probability", "relative", "sigma", "skew"]
     assert sorted(page.computed for page in every().values() if page.computed) == names

@@ -26,6 +26,7 @@ class LinkCompliance(Page):
     above = 0.0
     best = Best("loads", "known loads in several postures separate springs")
     places = ("tip", "leg")
+    gives = ("a", "own_weight")
     units = {"a": "m/N^b", "own_weight": "1"}
     discrete = frozenset({"own_weight"})
     explanation = (
@@ -45,10 +46,6 @@ class LinkCompliance(Page):
         legs = (0, 1, 2) if site == "tip" else (int(site[-1]) - 1,)
         out = link_deflection(view, legs, bool(shape["own_weight"]))[:, :, None]
         return Signature(view.at_tip(out) if shape["own_weight"] else {Channel("structure", "tip"): out})
-
-    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Coefficient a of the law, and whether the platform's own weight counts."""
-        return {"a": float(coefficients[0]), "own_weight": shape["own_weight"]}
 
     def to_simulator(self, actuator: str, values: Values, robot: Robot) -> list[Part]:
         """Return the coefficient as a fraction of the paper's law with pre-loading springs."""

@@ -25,6 +25,7 @@ class ThermalExpansion(Page):
     id, family, stage = "thermal_expansion", "drift", "mechanism"
     inputs = ("temperature", "posture", "position")
     seen_at = TIP_POSE
+    gives = ("coefficient", "part")
     best = Best("postures", "the same postures again at another temperature separate drift from offset")
     places = ("tip",)
     discrete = frozenset({"part"})
@@ -64,10 +65,6 @@ class ThermalExpansion(Page):
     def tolerated(self, robot: Robot, site: str) -> Sequence[Tolerated]:
         """Return the growth of everything."""
         return (Tolerated({"part": 0.0}, {"expansion": (robot.tolerances.expansion, "1/K")}),)
-
-    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Coefficient of expansion and what grows."""
-        return {"coefficient": float(coefficients[0]), "part": shape["part"]}
 
 
 class TableExpansion(Page):

@@ -24,6 +24,7 @@ class CoulombFriction(DryFriction):
 
     id, family, stage = "coulomb_friction", "friction", "motor_mechanics"
     inputs = ("direction",)
+    gives = ("force", "displacement")
     above = 0.0
     dry = True
     settles = True
@@ -58,10 +59,6 @@ class CoulombFriction(DryFriction):
         axis = robot.actuators[ACTUATORS.index(site)]
         limit, unit = robot.tolerances.friction * axis.drive.rated, self.unit("force", site, site == "roll")
         return (Tolerated({"displacement": self.DISPLACEMENTS[1] * axis.lead}, {f"friction of {site}": (limit, unit)}),)
-
-    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Force and displacement."""
-        return {"force": float(coefficients[0]), "displacement": shape["displacement"]}
 
 
 class CoulombOnAxis(CoulombFriction):

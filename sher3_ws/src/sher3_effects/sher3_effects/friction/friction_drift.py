@@ -33,6 +33,7 @@ class FrictionDrift(DryFriction):
         "temperature."
     )
     siblings = {"coulomb_friction": "the same step in every run"}
+    gives = ("force", "drift", "time_constant")
     units = {"drift": "N"}
     TIMES = (0.5, 1.0, 2.0, 4.0, 10.0, 60.0, 300.0)
     finer = {"time_constant": (0.7, 0.85, 1.2, 1.4), "displacement": (0.4,)}
@@ -60,14 +61,6 @@ class FrictionDrift(DryFriction):
                 -(run.stage_clock + run.session_time * (shape["time_constant"] > 20.0)) / shape["time_constant"]
             )
         return Signature({Channel(self.stage, site): column(run.to_grid(z), run.to_grid(z * change))})
-
-    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Constant part, drift (per kelvin where the time constant is 0) and time constant."""
-        return {
-            "force": float(coefficients[0]),
-            "drift": float(coefficients[1]),
-            "time_constant": shape["time_constant"],
-        }
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
         """Return whether the change is a marked one, and friction resists from its beginning to its end."""

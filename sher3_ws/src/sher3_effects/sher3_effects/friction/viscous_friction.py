@@ -20,6 +20,7 @@ class ViscousFriction(Page):
 
     id, family, stage = "viscous_friction", "friction", "motor_mechanics"
     inputs = ("velocity",)
+    gives = ("extra",)
     best = Best("reversals", "reversals of several amplitudes and speeds separate friction laws")
     leaves_out = "that a lubricant thins with speed and warmth"
     explanation = (
@@ -41,10 +42,6 @@ class ViscousFriction(Page):
         limit = robot.tolerances.viscous * robot.actuators[ACTUATORS.index(site)].viscous
         unit = self.unit("extra", site, site == "roll")
         return (Tolerated({}, {f"viscous coefficient of {site}": (limit, unit)}),)
-
-    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Coefficient over the nominal one."""
-        return {"extra": float(coefficients[0])}
 
 
 class ViscousOnAxis(ViscousFriction):

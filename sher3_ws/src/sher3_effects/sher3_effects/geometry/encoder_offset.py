@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from sher3_diagnosis.channel import Array
 from sher3_diagnosis.effect import Best, Shape, Signature
 from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
@@ -19,6 +18,7 @@ class EncoderOffset(Page):
     id, family, stage = "encoder_offset", "geometry", "mechanism"
     inputs = ("posture",)
     seen_at = TIP_POSE
+    gives = ("offset",)
     breaks = "both_encoders"
     best = Best("postures", "well-spread postures separate geometric errors")
     explanation = (
@@ -34,10 +34,6 @@ class EncoderOffset(Page):
         """One column: minus the axis' Jacobian column."""
         return Signature(view.at_tip(-view.path.jacobian[:, :, [view.row(site)]]))
 
-    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Offset of the readings."""
-        return {"offset": float(coefficients[0])}
-
 
 class JointOffset(Page):
     """A joint whose encoder reads too much by a constant, rad: the arm then turns less by as much."""
@@ -49,6 +45,7 @@ class JointOffset(Page):
         "link_length_error": "the error does not turn with the joint",
         "rail_tilt": "about an axis across the joint's",
     }
+    gives = ("offset",)
     units = {"offset": "rad"}
     on_axis = {"offset": "zero"}
     plain = True
@@ -58,10 +55,6 @@ class JointOffset(Page):
         """Return one column: minus the turn of everything behind the joint, per rad."""
         j = view.row(site)
         return Signature({self.channels(site)[0]: -view.turned(view.postures.axes[:, j], view.place(site))[:, :, None]})
-
-    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the offset of the reading, rad."""
-        return {"offset": float(coefficients[0])}
 
 
 @dataclass(frozen=True)

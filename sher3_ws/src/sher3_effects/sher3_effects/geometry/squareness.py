@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from sher3_diagnosis.channel import Array
 from sher3_diagnosis.effect import Best, Shape, Signature, column
 
 from sher3_effects.page import Page
@@ -16,6 +15,7 @@ class Squareness(Page):
     id, family, stage = "squareness", "geometry", "mechanism"
     kinds, places = ("circle",), ("plane",)
     inputs = ("posture",)
+    gives = ("angle",)
     units = {"angle": "rad"}
     best = Best("postures", "circles in both directions separate geometry from lost motion")
     explanation = "The axes of a plane are not at right angles: a circle becomes an ellipse along the diagonals."
@@ -24,7 +24,3 @@ class Squareness(Page):
     def signature(self, view: CircleView, site: str, shape: Shape) -> Signature:
         """Return one column: the change of the radius per rad beyond a right angle."""
         return Signature({self.channels(site)[0]: column(-0.5 * view.radius * np.sin(2.0 * view.angle))})
-
-    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the angle between the axes less a right angle."""
-        return {"angle": float(coefficients[0])}

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, ClassVar
 
 import numpy as np
-from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.effect import Best, Shape, Signature
 
 from sher3_effects.page import Page
@@ -31,6 +31,7 @@ class LinkMass(Page):
         "torque_constant": "all forces of one joint are scaled, those of the other joints are right",
         "rotor_inertia": "one joint alone, and no weight",
     }
+    gives = ("relative",)
     units = {"relative": "1"}
     on_axis = {"relative": "link"}
     bounds: ClassVar[dict[str, tuple[float, float]]] = {"relative": (-1.0, np.inf)}
@@ -40,7 +41,3 @@ class LinkMass(Page):
         """Return one column on every joint that carries the link: the force that the link as modelled needs."""
         arm: ArmMotionView = view
         return Signature({Channel(self.stage, joint): x[:, None, None] for joint, x in arm.link(site).items()})
-
-    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the share by which mass and inertia are off."""
-        return {"relative": float(coefficients[0])}

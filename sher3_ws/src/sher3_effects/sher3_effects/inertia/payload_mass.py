@@ -24,6 +24,7 @@ class PayloadMass(Page):
 
     id, family, stage = "payload_mass", "inertia", "motor_mechanics"
     inputs = ("acceleration", "weight")
+    gives = ("mass",)
     scales = "payload"
     best = Best("steps", "accelerations separate mass from weight")
     places: ClassVar[tuple[str, ...]] = ("axis", "tip")
@@ -60,10 +61,6 @@ class PayloadMass(Page):
             return ()
         limit = robot.tolerances.mass * robot.actuators[ACTUATORS.index(site)].mass
         return (Tolerated({"weight": 0.0}, {f"mass of {site}": (limit, self.unit("mass", site, site == "roll"))}),)
-
-    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Extra mass (inertia on roll)."""
-        return {"mass": float(coefficients[0])}
 
     def unlikely(self, shape: Shape, coefficients: Array) -> bool:
         """A payload adds mass; where some is missing it is the weight that is off."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.effect import Best, Shape, Signature, column
 
 from sher3_effects.page import Page
@@ -25,6 +25,7 @@ class RotorInertia(Page):
         "payload_mass": "weight as well, and forces on the other joints",
         "viscous_friction": "follows the speed",
     }
+    gives = ("inertia",)
     units = {"inertia": "kg"}
     on_axis = {"inertia": "inertia"}
 
@@ -33,7 +34,3 @@ class RotorInertia(Page):
         return Signature(
             {Channel(self.stage, site): column(view.run.to_grid(view.run.acceleration)[:, view.row(site)])}
         )
-
-    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the inertia beyond that of the model."""
-        return {"inertia": float(coefficients[0])}

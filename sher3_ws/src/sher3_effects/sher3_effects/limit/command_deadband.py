@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.effect import Best, Shape, Signature
 
 from sher3_effects.page import Page
@@ -24,6 +24,7 @@ class CommandDeadband(Page):
         "controller_gain": "small and large errors are answered less in proportion",
         "coulomb_friction": "the command answers, and the axis does not; without a recorded command the same readings",
     }
+    gives = ("width",)
     units = {"width": "m"}
     discrete = frozenset({"soft"})
     QUANTILES = (0.05, 0.15, 0.3, 0.45, 0.6, 0.75, 0.88)
@@ -44,7 +45,3 @@ class CommandDeadband(Page):
             unseen = np.where(np.abs(law.error) < width, law.error, 0.0)
         changed = law.clipped(law.parts.sum(axis=1) - law.gain * unseen) - law.command
         return Signature({}, {Channel(self.stage, site): view.run.to_grid(changed[:, None])})
-
-    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return half the width of the zone."""
-        return {"width": shape["width"]}

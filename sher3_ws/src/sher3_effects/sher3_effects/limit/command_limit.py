@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.effect import Best, Shape, Signature
 
 from sher3_effects.page import Page
@@ -21,6 +21,7 @@ class CommandLimit(Page):
     best = Best("steps", "large and small steps separate limits from gains")
     explanation = "The command stops rising at a level that nobody stated; below it the law holds."
     siblings = {"controller_gain": "small commands are too small as well"}
+    gives = ("limit",)
     units = {"limit": "1"}
     NEAR = (0.9, 0.97, 1.0, 1.03, 1.1)
     """Limits that are tried, over the largest command that was recorded."""
@@ -36,7 +37,3 @@ class CommandLimit(Page):
         law = view.stated.command
         lost = np.clip(law, -shape["limit"], shape["limit"]) - law
         return Signature({}, {Channel(self.stage, site): view.run.to_grid(lost[:, None])})
-
-    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the limit, in the unit of the command."""
-        return {"limit": shape["limit"]}

@@ -25,6 +25,7 @@ class ForceSaturation(Page):
 
     id, family, stage = "force_saturation", "limit", "drive"
     inputs = ("force", "command")
+    gives = ("limit",)
     best = Best("steps", "large and small steps separate limits from lags")
     leaves_out = "that the bend towards the limit is no parabola"
     on_axis = {"limit": "limit"}
@@ -77,10 +78,6 @@ class ForceSaturation(Page):
         lost = frozen_integral(run.effort[:, axis], law, step, load, ahead, constants, knee)
         clamped = bent(law - robot.drive.ki * lost, limit, knee)
         return Signature({}, {Channel(self.stage, site): run.to_grid(clamped - law)[:, None]})
-
-    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Limit."""
-        return {"limit": shape["limit"]}
 
     def measured(self, views: Sequence[RobotView], site: str, shape: Shape) -> Mapping[str, Measured]:
         """Return the force that is reported while it ends at a hard limit: noise makes no difference to its mean."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.effect import Best, Shape, Signature
 
 from sher3_effects.operators import rate_limited
@@ -27,6 +27,7 @@ class SpeedLimit(Page):
         "velocity, the supply, or the back-EMF of the motor."
     )
     siblings = {"drive_lag": "a larger step is answered faster", "command_delay": "the whole reference comes late"}
+    gives = ("limit", "time_constant")
     units = {"limit": "m/s", "time_constant": "s"}
     bounds = {"limit": (0.0, np.inf), "time_constant": (0.0, np.inf)}
     LEVELS = (0.7, 0.8, 0.9, 0.97, 1.0, 1.05)
@@ -66,7 +67,3 @@ class SpeedLimit(Page):
             asked, float(view.run.motor[0, row]), shape["limit"], shape["time_constant"], view.run.period
         )
         return Signature({}, {Channel(self.stage, site): view.run.to_grid((asked - path)[:, None])})
-
-    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the top speed, and the time constant near the reference."""
-        return {"limit": shape["limit"], "time_constant": shape["time_constant"]}

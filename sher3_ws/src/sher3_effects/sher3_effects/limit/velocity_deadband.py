@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.effect import Best, Shape, Signature
 from sher3_sim.effect import EVERYWHERE, PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
@@ -20,6 +20,7 @@ class VelocityDeadband(Page):
 
     id, family, stage = "velocity_deadband", "limit", "drive"
     inputs = ("command",)
+    gives = ("width",)
     best = Best("steps", "large and small steps separate limits from lags")
     leaves_out = "its rounded edge"
     explanation = "Small velocity demands do nothing: the drive echoes them but its force behaves as if they were zero."
@@ -45,10 +46,6 @@ class VelocityDeadband(Page):
         change = seen - demand
         force = drive.kp * change + drive.ki * np.cumsum(change) * run.period
         return Signature({}, {Channel(self.stage, site): run.to_grid(force)[:, None]})
-
-    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Width."""
-        return {"width": shape["width"]}
 
 
 @dataclass(frozen=True)

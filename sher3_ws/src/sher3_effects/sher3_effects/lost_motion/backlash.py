@@ -208,6 +208,7 @@ class TableReversal(Page):
     inputs, on_axis = Backlash.inputs, Backlash.on_axis
     explanation = "The table stops at another place when it comes from the other side."
     siblings = {"transmission_hysteresis": "the lag builds up over a stroke much longer than itself"}
+    gives = ("width",)
     units = {"width": "m"}
     bounds: ClassVar[Mapping[str, tuple[float, float]]] = {"width": (-np.inf, np.inf)}
 
@@ -218,10 +219,6 @@ class TableReversal(Page):
     def signature(self, view: Any, site: str, shape: Shape) -> Signature:
         """Return one column: minus half the direction of approach of a `TableView`."""
         return Signature({Channel(self.stage, site): column(-0.5 * view.direction)})
-
-    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the width, of which a table stops half short on either side; negative where it overshoots."""
-        return {"width": float(coefficients[0])}
 
 
 class CircleReversal(TableReversal):

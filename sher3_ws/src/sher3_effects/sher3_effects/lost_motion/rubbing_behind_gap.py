@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.effect import Best, Shape, Signature, column
 
 from sher3_effects.operators import play
@@ -35,6 +35,7 @@ class RubbingBehindGap(Page):
         "presliding_friction": "the force builds up from the reversal on, without a travel that needs none",
         "backlash": "a mass is behind the gap too, and strikes at its end",
     }
+    gives = ("width", "load_friction", "reach")
     units = {"width": "m", "load_friction": "N", "reach": "m"}
     bounds = {"width": (0.0, np.inf), "load_friction": (0.0, np.inf), "reach": (0.0, np.inf)}
     WIDTHS = (0.01, 0.02, 0.04, 0.07, 0.1, 0.15, 0.25)
@@ -70,7 +71,3 @@ class RubbingBehindGap(Page):
         behind = -play(path, shape["width"] + 2.0 * reach)
         z = np.sign(behind) * np.maximum(np.abs(behind) - 0.5 * shape["width"], 0.0) / reach
         return Signature({Channel(self.stage, site): column(view.run.to_grid(z[:, None])[:, 0])})
-
-    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the gap, the friction behind it, and the travel over which that builds up."""
-        return {"width": shape["width"], "load_friction": float(coefficients[0]), "reach": shape["reach"]}

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from sher3_description import Robot
-from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.effect import Best, Shape, Signature, column
 from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
@@ -28,6 +28,7 @@ class ForceScale(Page):
     breaks = "force_sensor"
     kinds = ("robot", "sensor")
     seen_at = (("sensing", "force_sensor"),)
+    gives = ("relative", "axis")
     above = -1.0
     best = Best("sweep", "long constant-speed strokes separate ratios from offsets")
     places = ("force_sensor",)
@@ -54,10 +55,6 @@ class ForceScale(Page):
         limit = (robot.tolerances.force_matrix, "1")
         return [Tolerated({"axis": float(i)}, {f"force sensor matrix, {n}": limit}) for i, n in enumerate(COMPONENTS)]
 
-    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Ratio error and the axis it is of."""
-        return {"relative": float(coefficients[0]), "axis": shape["axis"]}
-
 
 class CellScale(Page):
     """The sensitivity of a load cell: reading = (1 + relative) * force."""
@@ -65,6 +62,7 @@ class CellScale(Page):
     id, family, stage, best = ForceScale.id, ForceScale.family, ForceScale.stage, ForceScale.best
     kinds, places, inputs = ("cell",), ("load_cell",), ForceScale.inputs
     above = -1.0
+    gives = ("relative",)
     units = {"relative": "1"}
     explanation = "The load cell reads too much or too little in proportion to the force."
     siblings = {
@@ -75,10 +73,6 @@ class CellScale(Page):
     def signature(self, view: CellView, site: str, shape: Shape) -> Signature:
         """Return one column: the known force."""
         return Signature({Channel(self.stage, site): column(view.applied)})
-
-    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the ratio error."""
-        return {"relative": float(coefficients[0])}
 
 
 @dataclass(frozen=True)

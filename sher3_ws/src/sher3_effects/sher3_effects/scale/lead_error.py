@@ -72,6 +72,7 @@ class TableScale(Page):
 
     id, family, stage, best = LeadError.id, LeadError.family, LeadError.stage, LeadError.best
     kinds, inputs = ("table",), LeadError.inputs
+    gives = ("relative",)
     on_axis = LeadError.on_axis
     explanation = "The table moves too far or too little in proportion to its travel, at every temperature."
     siblings = {"thermal_expansion": "grows with temperature"}
@@ -79,10 +80,6 @@ class TableScale(Page):
     def signature(self, view: TableView, site: str, shape: Shape) -> Signature:
         """Return one column: the target."""
         return Signature({Channel(self.stage, site): column(view.target)})
-
-    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the ratio error."""
-        return {"relative": float(coefficients[0])}
 
 
 @dataclass(frozen=True)

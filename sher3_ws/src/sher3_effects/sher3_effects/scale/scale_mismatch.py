@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from sher3_diagnosis.channel import Array
 from sher3_diagnosis.effect import Best, Shape, Signature, column
 
 from sher3_effects.page import Page
@@ -16,6 +15,7 @@ class ScaleMismatch(Page):
     id, family, stage = "scale_mismatch", "scale", "mechanism"
     kinds, places = ("circle",), ("plane",)
     inputs = ("posture",)
+    gives = ("relative",)
     units = {"relative": "1"}
     best = Best("postures", "circles in both directions separate geometry from lost motion")
     explanation = "One axis of a plane moves further than the other: a circle becomes an ellipse along the axes."
@@ -24,7 +24,3 @@ class ScaleMismatch(Page):
     def signature(self, view: CircleView, site: str, shape: Shape) -> Signature:
         """Return one column: the change of the radius per unit of difference."""
         return Signature({self.channels(site)[0]: column(0.5 * view.radius * np.cos(2.0 * view.angle))})
-
-    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the scale of the first axis less that of the second."""
-        return {"relative": float(coefficients[0])}

@@ -31,6 +31,7 @@ class ServoDelay(CommandDelay):
 
     kinds = ("servo",)
     seen_at = (("motor_mechanics", ""),)
+    gives = ("delay",)
     on_axis = {"delay": "delay"}
     explanation = "The axis follows its reference a fixed time late."
     siblings = {"drive_lag": "the reference is smoothed as well as late"}
@@ -48,10 +49,6 @@ class ServoDelay(CommandDelay):
         clock, reference = view.run.stage_clock, view.run.reference[:, view.row(site)]
         late = np.interp(clock - shape["delay"], clock, reference)
         return Signature({}, {self.channels(site)[0]: view.run.to_grid((reference - late)[:, None])})
-
-    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the dead time."""
-        return {"delay": shape["delay"]}
 
 
 class DelayOfLaw(CommandDelay):

@@ -25,6 +25,7 @@ class DriveLag(Page):
 
     id, family, stage = "drive_lag", "timing", "drive"
     inputs = ("command", "force")
+    gives = ("time_constant",)
     best = Best("steps", "steps of several amplitudes show a dead time as an onset and a lag as a slope")
     leaves_out = "how its current loop rings"
     explanation = (
@@ -94,10 +95,6 @@ class DriveLag(Page):
         speed = np.gradient(motor, run.period)
         middle[1:] = 0.5 * (start[1:] + law[1:]) + kp * (0.5 * (speed[:-1] + speed[1:]) - np.diff(motor) / run.period)
         return start, middle
-
-    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Time constant, of both poles together."""
-        return {"time_constant": shape["time_constant"]}
 
 
 class ServoLag(DriveLag):

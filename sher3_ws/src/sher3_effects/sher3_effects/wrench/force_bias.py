@@ -51,6 +51,7 @@ class CellBias(Page):
 
     id, family, stage, best = ForceBias.id, ForceBias.family, ForceBias.stage, ForceBias.best
     kinds, places = ("cell",), ("load_cell",)
+    gives = ("force",)
     units = {"force": "N"}
     explanation = "The load cell reads a constant at no force."
     siblings = {"force_scale": "grows with the force", "force_drift": "wanders during the test"}
@@ -58,10 +59,6 @@ class CellBias(Page):
     def signature(self, view: CellView, site: str, shape: Shape) -> Signature:
         """Return one column: one."""
         return Signature({Channel(self.stage, site): column(np.ones(len(view.applied)))})
-
-    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the zero."""
-        return {"force": float(coefficients[0])}
 
 
 @dataclass(frozen=True)

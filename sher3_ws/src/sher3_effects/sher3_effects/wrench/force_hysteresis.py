@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.effect import Best, Shape, Signature, column
 
 from sher3_effects.cell_view import CellView
@@ -18,6 +18,7 @@ class ForceHysteresis(Page):
     id, family, stage = "force_hysteresis", "lost_motion", "sensing"
     kinds, places = ("cell",), ("load_cell",)
     inputs = ("load", "direction")
+    gives = ("loop",)
     units = {"loop": "N"}
     best = Best("loads", "the same forces with growing and with falling load")
     explanation = (
@@ -32,7 +33,3 @@ class ForceHysteresis(Page):
     def signature(self, view: CellView, site: str, shape: Shape) -> Signature:
         """Return one column: a bow over the range, when unloading."""
         return Signature({Channel(self.stage, site): column(4.0 * view.share * (1.0 - view.share) * view.unloading)})
-
-    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return by how much more the cell reads in the middle of the range when unloaded."""
-        return {"loop": float(coefficients[0])}
