@@ -46,7 +46,7 @@ def advertise_on_demand(node: Node, name: str) -> OnDemand:
         UnknownTopic: the name is not in the table.
     """
     publish, port = advertise(node, name), ports(node)
-    count: Callable[[], int] = port.publishers[name].get_subscription_count
+    count: Callable[[], int] = port.listeners(name)
     if (composition := port.composition) is not None:
         offers, outside, beside = composition.offers(name), count, composition.beside(name)
 

@@ -19,6 +19,7 @@ from sher3_description.topics import TOPICS, Qos, Topic
 from sher3_runtime.clock import Clock
 from sher3_runtime.composed.composition import Composition, composing
 from sher3_runtime.composed.turn import Turn
+from sher3_runtime.post import Box, Post
 from sher3_runtime.tick import Tick
 from sher3_runtime.timing import Statistics
 
@@ -63,6 +64,7 @@ class Subscribed:
 
 
 _clocks: WeakKeyDictionary[Context, Clock] = WeakKeyDictionary()
+_posts: WeakKeyDictionary[Context, Post] = WeakKeyDictionary()
 
 
 class UnknownTopic(Sher3Error):
@@ -72,6 +74,11 @@ class UnknownTopic(Sher3Error):
 def use_clock(context: Context, clock: Clock) -> None:
     """Make `clock` the time of every node of `context` created from now on."""
     _clocks[context] = clock
+
+
+def use_post(context: Context, post: Post) -> None:
+    """Let every node of `context` created from now on send and receive by `post`; `SHER3_EXECUTOR=default` does not."""
+    _posts[context] = post
 
 
 def clock_of(node: Node) -> Clock:
@@ -96,11 +103,15 @@ class Ports:
     Attributes:
         composition: The nodes that share the process with this one; None for a node alone.
         turn: Then, the right to run this node's code.
+        post: What carries its samples instead of the middleware; None without one.
+        boxes: Its queues there, by the pointers of its subscriptions.
     """
 
     def __init__(self, node: Node) -> None:
         self.composition: Composition | None = composing() if raw_mode() else None
         self.turn: Turn | None = None if self.composition is None else self.composition.turn()
+        self.post = _posts.get(node.context) if raw_mode() else None
+        self.boxes: dict[int, Box] = {}
         self.name = node.get_name()
         self.clock = clock_of(node)
         self.statistics = Statistics()
@@ -118,12 +129,42 @@ class Ports:
     def leave(self, node: Node, name: str, subscription: Any) -> None:
         """Take a subscription off the middleware: its samples come from within the process."""
         pointer = subscription.handle.pointer
+        if self.post is not None and (box := self.boxes.pop(pointer, None)) is not None:
+            self.post.leave(name, box)
         self.polled.discard(pointer)
         self.deliveries.pop(pointer, None)
         self.subscribed.pop(pointer, None)
         self.subscriptions.pop(name, None)
         self.received.pop(name, None)
         node.destroy_subscription(subscription)
+
+    def open_box(self, name: str, subscription: Any, deliver: Callable[[bytes], None] | None, depth: int) -> None:
+        """Let the samples of a subscription come by the post, where there is one."""
+        if self.post is not None:
+            self.boxes[subscription.handle.pointer] = self.post.box(name, depth, deliver)
+
+    def taker(self, subscription: Any, kind: Any) -> Callable[[], bytes | None]:
+        """Return what takes the bytes of a sample that waits, or None."""
+        if (box := self.boxes.get(subscription.handle.pointer)) is not None:
+            return box.take
+        take = subscription.handle.take_message
+
+        def take_bytes() -> bytes | None:
+            taken = take(kind, True)
+            return None if taken is None else taken[0]
+
+        return take_bytes
+
+    def sender(self, topic: Topic, publisher: Any) -> Callable[[bytes], None]:
+        """Return what sends bytes: by the post, or by the middleware."""
+        if self.post is not None:
+            return self.post.sender(topic.name, topic.qos.durability == "transient_local")
+        # The handle's own method: rclpy's wrapper would enter the handle's context at each call.
+        return publisher.handle.publish_raw
+
+    def listeners(self, name: str) -> Callable[[], int]:
+        """Return what tells how many subscriptions a topic has that this node publishes."""
+        return self.publishers[name].get_subscription_count if self.post is None else self.post.listeners(name)
 
 
 def ports(node: Node) -> Ports:

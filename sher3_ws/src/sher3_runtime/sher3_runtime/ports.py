@@ -38,6 +38,7 @@ from sher3_runtime.port import qos_profile as qos_profile
 from sher3_runtime.port import raw_mode as raw_mode
 from sher3_runtime.port import statistics_of as statistics_of
 from sher3_runtime.port import use_clock as use_clock
+from sher3_runtime.port import use_post as use_post
 from sher3_runtime.tick import Tick
 from sher3_runtime.timing import Histogram, Trace
 
@@ -111,6 +112,7 @@ def subscribe(
     )
     port.subscriptions[name] = subscription
     port.deliveries[subscription.handle.pointer] = deliver
+    port.open_box(name, subscription, deliver, profile.depth)
     return port.subscribed.setdefault(subscription.handle.pointer, subscribed)
 
 
@@ -166,8 +168,7 @@ def advertise(node: Node, name: str) -> Publish:
     sent[name] = 0
     encode = codec(topic.type, topic.frame, ACTUATORS).encode
     raw, composition = raw_mode(), port.composition
-    # The handle's own method: rclpy's wrapper would enter the handle's context at each call.
-    send = publisher.handle.publish_raw if raw else publisher.publish
+    send = port.sender(topic, publisher) if raw else publisher.publish
     if composition is not None:
         return _publish_inside(port, topic, composition, encode, send, trace)
 
@@ -192,14 +193,14 @@ def _publish_inside(
 ) -> Publish:
     """Return `publish(sample)` for a node that shares its process."""
     name, now, sent = topic.name, port.clock.now, port.sent
-    stepped, publisher = port.clock.stepped, port.publishers[name]
+    stepped, listeners = port.clock.stepped, port.listeners(name)
 
     def send_outside(data: bytes) -> None:
         sent[name] += 1
         send(data)
 
     # In stepped time all that is sent is counted, so nothing may be left out.
-    listens = (lambda: 1) if stepped else publisher.get_subscription_count
+    listens = (lambda: 1) if stepped else listeners
     publish = composition.publisher(topic, as_sent(topic.type), encode, send_outside, listens, now)
     if trace is None:
         return publish
@@ -262,12 +263,13 @@ def _asks(node: Node, topic: Topic, depth: int) -> tuple[Callable[[], list[Any]]
     )
     port.subscriptions[name] = subscription
     port.polled.add(subscription.handle.pointer)
-    decode, take = codec(topic.type, topic.frame, ACTUATORS).decode, subscription.handle.take_message
+    port.open_box(name, subscription, None, depth)
+    decode, take = codec(topic.type, topic.frame, ACTUATORS).decode, port.taker(subscription, kind)
 
     def ask() -> list[Any]:
         found: list[bytes] = []
-        while len(found) < depth and (taken := take(kind, True)) is not None:
-            found.append(taken[0])
+        while len(found) < depth and (data := take()) is not None:
+            found.append(data)
         return _decoded(port, name, decode, found) if found else []
 
     return ask, partial(port.leave, node, name, subscription)
@@ -319,6 +321,7 @@ def subscribe_raw(node: Node, name: str, callback: Callable[[bytes], None], dept
     kind = message_class(topic.type)
     subscription = node.create_subscription(kind, topic.full_name, deliver, profile, raw=True, event_callbacks=events)
     port.subscriptions[name] = subscription
+    port.open_box(name, subscription, deliver, profile.depth)
 
 
 def advertise_raw(node: Node, name: str, depth: int | None = None) -> Callable[[bytes], None]:
@@ -340,10 +343,11 @@ def advertise_raw(node: Node, name: str, depth: int | None = None) -> Callable[[
     publisher = node.create_publisher(kind, topic.full_name, profile, event_callbacks=events)
     port.publishers[name] = publisher
     port.sent[name] = 0
+    send = port.sender(topic, publisher)
 
     def publish(data: bytes) -> None:
         port.sent[name] += 1
-        publisher.handle.publish_raw(data)
+        send(data)
 
     return publish
 

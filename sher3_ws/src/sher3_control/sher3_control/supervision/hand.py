@@ -29,7 +29,10 @@ CALM = 0.02
 """Time [s] for which nothing counts after a leg strayed from its command: it comes back with kp/ki of its drive."""
 FIRM = 2.0
 """Force [N] that the drives feel for certain also while a leg strays: a hand of 5 N that arrives within 34 ms makes
-legs stray for 50 ms, in which the law moves the tip by 70 um. Beside an encoder that jitters by 5 um they feel less."""
+legs stray for 50 ms, in which the law moves the tip by 70 um. No more of it counts, so that it takes five ticks in one
+direction: what they hold against an encoder that jitters is more, and goes to and fro."""
+TAKES_UP = 0.25
+"""Share of the settling time in which drives take up weights and nothing is a hand: four times their kp/ki."""
 NOWHERE = np.zeros(6)
 GROUPS = (LEGS, AXES - LEGS)
 """Numbers of channels of force and of torque."""
@@ -72,8 +75,9 @@ class HandDetector(PlainDetector):
     def begin(self) -> None:
         """Forget what was felt: the drives have just got their power, or are about to."""
         self._felt: Array | None = None
-        self._since, self._astray, self._settled, self._blind = -1, -1, False, 0.0
+        self._since, self._astray, self._begun, self._settled, self._blind = -1, -1, False, False, 0.0
         self._quick, self._slow = np.zeros((len(self._lags) - 1, AXES)), np.zeros(AXES)
+        self._sum = np.zeros(AXES)
         self._both, self._hand, self._alone = np.zeros((len(self._lags), 2)), np.zeros(AXES), NOWHERE
         self._found = self._nothing
 
@@ -112,7 +116,7 @@ class HandDetector(PlainDetector):
         else:
             self._last = stamp
             firm = sizes(held) * (1.0, 0.0) > FIRM
-            self._count(held * np.repeat(firm, GROUPS), span, moved)
+            self._count(_at_most(FIRM, held) * np.repeat(firm, GROUPS), span, moved)
             self._miss(span * bool(moved.any()))
 
     def follow(self, stamp: int, felt: Array, held: Array, moved: Array = NOWHERE) -> None:
@@ -123,46 +127,49 @@ class HandDetector(PlainDetector):
         total, settings = felt + held, self._settings
         step, self._last = min(settings.hand_gap, seconds(stamp - self._last)), stamp
         if self._since < 0:
-            self._since, self._slow, self._hand = stamp, total, -held
-        known = seconds(stamp - self._since) - 0.5 * settings.hand_settling
-        settled = known >= 0.5 * settings.hand_settling
+            self._since, self._slow = stamp, total
+        begun = seconds(stamp - self._since)
+        known, settled = begun - 0.5 * settings.hand_settling, begun >= settings.hand_settling
+        self._begun = begun > TAKES_UP * settings.hand_settling
         # The mean of the second half of the settling time, in which a grip counts little, then with a memory.
         size = settings.hand_memory if settled else max(step, known)
         calm = total if settled else _at_most(GRIP * settings.hand_level, total)
         self._slow = self._slow + step / size * (calm - self._slow)
         self._quick = self._quick + np.minimum(1.0, step / self._lags[:-1]) * (calm - self._quick)
-        both = np.minimum(sizes(felt), sizes(self._quick[0] - felt))
+        self._sum = self._sum + min(1.0, step / self._lags[0, 0]) * (total - self._sum)
+        both = np.minimum(sizes(felt), sizes(self._sum - felt))
         self._both = np.maximum(both, np.exp(-step / self._lags) * self._both)
         if settled:
-            self._compare(step, held, moved)
+            self._compare(step)
         else:
-            self._settle(step, known, held)
+            self._settle()
+        self._count(held, step, moved)
 
-    def _settle(self, step: float, known: float, held: Array) -> None:
-        """Judge the sum itself in the second half of the settling time, more coarsely: no mean of it is known yet."""
-        self._quick = self._quick * (known > 0.0)
-        self._hand = self._hand + min(1.0, step / max(step, known)) * (-held - self._hand)
+    def _settle(self) -> None:
+        """Judge the sum itself, more coarsely, since no mean of it is known yet: nobody held the tool at enabling."""
+        self._quick = self._quick * self._begun
         limits = self._limits[:-1] + self._settings.hand_level + self._settings.hand_share * self._both[:-1]
         self._tell(sizes(self._quick), limits)
 
-    def _compare(self, step: float, held: Array, moved: Array) -> None:
+    def _compare(self, step: float) -> None:
         """Judge the sum as a change against its mean, and that mean."""
         if not self._settled:
             self._quick, self._settled = np.tile(self._slow, (len(self._quick), 1)), True
         doubt = sizes(np.vstack([self._quick - self._slow, self._slow]))
         self._tell(doubt, self._limits + self._settings.hand_share * self._both)
-        self._count(held, step, moved)
         self._blind = max(0.0, self._blind - step)
 
     def _count(self, held: Array, step: float, moved: Array) -> None:
         """Add up the travel that the law makes while the drives feel nobody; a hand that they feel ends it.
 
+        Just after enabling they feel weights, and none of it is a hand.
         What they felt counts as twice the least hand at most, so that a firm one is forgotten as soon as a light one.
         """
         settings = self._settings
         hand = self._hand + min(1.0, step / settings.hand_notice) * (-held - self._hand)
         self._hand = _at_most(2.0 * settings.hand_least, hand)
-        self._alone = NOWHERE if (sizes(hand) > settings.hand_least).any() else self._alone + moved
+        felt = (sizes(hand) > settings.hand_least).any()
+        self._alone = NOWHERE if self._begun and felt else self._alone + moved
         travel = float(np.linalg.norm(self._alone.reshape(2, 3), axis=1).sum())
         if travel / settings.hand_travel > self._found.value / self._found.limit:
             self._found = self._found._replace(value=1e6 * travel, limit=1e6 * settings.hand_travel, unit="um")

@@ -72,7 +72,7 @@ def run_session(folder: Path, seed: int) -> list[str]:
     robot = load_robot()
     regime = "free" if seed % EVERY else "bench"
     control = ControlSettings.from_robot(robot, {"motion": {"regime": regime}})
-    with Graph(period=robot.control_period) as graph:
+    with Graph(period=robot.control_period, middleware=False) as graph:
         rig = SteppedRobot(
             graph,
             _climate(),

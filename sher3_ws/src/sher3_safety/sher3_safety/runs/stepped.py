@@ -303,7 +303,7 @@ def _run_all(
 def _run_some(bag: str, cells: Sequence[Cell], robot: Robot, folder: Path, seed: int, composed: bool) -> int:
     """Run cells on a new robot until one is beyond recovery; return how many were run."""
     metadata = RunMetadata(excitation="faults", origin="plant", seed=seed)
-    with Graph(period=robot.control_period) as graph:
+    with Graph(period=robot.control_period, middleware=False) as graph:
         run = MatrixRun(graph, robot, seed, composed)
         with recorded(graph, bag, robot=robot, root=folder, metadata=metadata):
             run.start()

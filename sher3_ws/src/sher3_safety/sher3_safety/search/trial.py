@@ -38,7 +38,7 @@ def try_all(draws: Sequence[Draw], robot: Robot, seed: int) -> Iterator[Found]:
     """Try draws of one regime, with a new robot where one cannot be recovered."""
     left = list(draws)
     while left:
-        with Graph(period=robot.control_period) as graph:
+        with Graph(period=robot.control_period, middleware=False) as graph:
             run = MatrixRun(graph, robot, seed, regime=left[0].regime.value)
             ready = run.start()
             while ready and left:
