@@ -12,6 +12,7 @@ from sher3_effects.operators import second_difference
 from sher3_chain.axes.view import AxisView
 from sher3_chain.floors.foreseen import foreseen
 from sher3_chain.floors.innovation import NOISE_SAMPLES, NOTHING, UNIFORM, chain_floors, plain_innovation
+from sher3_chain.readings.signals import AxisSignals
 
 
 def floors_of(records: Sequence[AxisView], found: Sequence[Residuals], repeats: bool) -> list[Floors]:
@@ -22,12 +23,12 @@ def floors_of(records: Sequence[AxisView], found: Sequence[Residuals], repeats: 
 def unforeseen(view: AxisView, residual: Residual, channel: Channel) -> Array:
     """Return the noise, (1,), of which as much cannot be foreseen as of a residual.
 
-    Where a straight line leaves more of a driven axis than `EATEN`, known inputs are asked as well. What they foresee
-    of the encoder's own noise, which two differences make alike from sample to sample, is noise all the same.
+    Where a straight line leaves more than `EATEN`, the past of the motion and known inputs are asked as well. What they
+    foresee of the encoder's own noise, which two differences make alike from sample to sample, is noise all the same.
     """
     plain = plain_innovation(view, residual, channel)
     signal = np.sqrt(np.mean(residual.values[residual.ok] ** 2, axis=0))
-    if view.described.free or not (plain > EATEN * signal).any():
+    if not (plain > EATEN * signal).any():
         return plain
     noise = resolution_floors(view, UNIFORM * view.noise)[channel]
     return np.minimum(plain, np.maximum(foreseen(view.run, residual), noise))
@@ -42,10 +43,16 @@ def resolution_floors(view: AxisView, least: float = 0.0) -> Floors:
     count = max(axis.encoder_resolution, least) / UNIFORM
     noise = np.random.default_rng(0).normal(size=(max(run.ticks, NOISE_SAMPLES), 1))
     bend = second_difference(noise, run.period)
-    effort = axis.effort_resolution / UNIFORM * float(run.filtered(noise).std())
-    inertia = view.mass * count * float(run.filtered(bend).std())
+    effort = axis.effort_resolution / UNIFORM * _inside(run, noise)
+    inertia = view.mass * count * _inside(run, bend)
     force = count if axis.servo else max(float(np.hypot(effort, inertia)), NOTHING)
     return {
         Channel("motor_mechanics", axis.name): np.array([max(force, NOTHING)]),
         Channel("transmission", axis.name): np.array([np.sqrt(2.0) * count]),
     }
+
+
+def _inside(run: AxisSignals, noise: Array) -> float:
+    """Return the standard deviation of noise (n, 1) behind the filter of a run, without the ends that it spoils."""
+    end = min(int(run.edge), len(noise) // 4)
+    return float(run.filtered(noise)[end : len(noise) - end].std())

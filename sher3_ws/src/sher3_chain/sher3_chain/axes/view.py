@@ -77,9 +77,12 @@ class AxisView(ChainView):
 
     @cached_property
     def path(self) -> Loads:
-        """Nominal weight along the motion, and the known force from outside."""
+        """Nominal weight along the motion, and the known force from outside.
+
+        The sine goes through the filter as the acceleration does: that of a filtered angle is another one.
+        """
         law = self.described.gravity
-        weight = law.constant + law.arm * np.sin(self.position - law.hanging)
+        weight = self.run.to_grid(law.constant + law.arm * np.sin(self.run.motor - law.hanging))
         applied = self.run.applied
         return Loads(weight, np.zeros_like(weight) if applied is None else self.run.to_grid(applied))
 
@@ -134,11 +137,13 @@ class AxisView(ChainView):
 
     @cached_property
     def release(self) -> int:
-        """Sample of the record at which the stretch of motion with the largest travel begins."""
-        edges = np.flatnonzero(np.diff(np.concatenate([[0], self.moving.astype(int), [0]])))
-        q = self.position[:, 0]
-        travel = [abs(q[min(b, len(q) - 1)] - q[a]) for a, b in zip(edges[::2], edges[1::2], strict=True)]
-        return int(self.run.grid[edges[::2][int(np.argmax(travel))]]) if travel else 0
+        """Sample of the record at which the motion in one direction with the largest travel begins."""
+        way = np.sign(self.velocity[:, 0]) * self.moving
+        turns = np.flatnonzero(np.diff(np.concatenate([[0.0], way, [0.0]])))
+        if not len(turns):
+            return 0
+        travel = np.abs(np.diff(self.position[np.minimum(turns, len(way) - 1), 0]))
+        return int(self.run.grid[turns[int(np.argmax(travel * np.abs(way[turns[:-1]])))]])
 
     @cached_property
     def in_motion(self) -> Mask:

@@ -12,6 +12,7 @@ from scipy.special import binom
 from sher3_diagnosis.channel import Array
 from sher3_diagnosis.filter import low_pass
 from sher3_diagnosis.localise.floors import GAUSSIAN
+from sher3_diagnosis.thresholds import EATEN
 
 from sher3_chain.thresholds import NOISE_SHARE, SLOWEST_CUT
 
@@ -50,23 +51,38 @@ def noise_at_the_top(position: Array) -> float:
     return float(np.sqrt(np.mean(power[int(TOP * len(power)) :])))
 
 
-def cut_off(position: Array, period: float, most: float) -> float:
+def cut_off(position: Array, period: float, most: float, free: bool = False) -> float:
     """Return the highest cut-off, Hz, at which noise is a small share of the acceleration; at most `most`.
+
+    Of a body that nothing drives hardly anything but its weight accelerates it, which is known or fitted: what is
+    judged is the rest, and noise is to be a small share of that.
 
     Args:
         position: as recorded, (n,).
         period: of its samples, s.
         most: cut-off without noise, Hz.
+        free: whether nothing drives the axis.
     """
     noise = noise_of(position, period)
     white = noise * np.random.default_rng(0).normal(size=len(position))
-    cut = most
+    cut, told = most, most  # at no cut-off is there an acceleration to be told: none is worth the samples it costs
     while cut > SLOWEST_CUT:
-        power, false = (float(np.var(_acceleration(x, period, cut))) for x in (position, white))
-        if false <= NOISE_SHARE * power:
-            return cut
+        found, false = (_acceleration(x, period, cut) for x in (position, white))
+        if np.var(false) <= NOISE_SHARE * np.var(found):
+            told = cut if told == most else told
+            if not free or np.var(false) <= EATEN**2 * np.var(_without_weight(found, position, period, cut)):
+                return cut
         cut *= STEP
-    return most  # at no cut-off is there an acceleration to be told: none is worth the samples it costs
+    return told
+
+
+def _without_weight(acceleration: Array, position: Array, period: float, cut: float) -> Array:
+    """Return what a weight at an arm, a spring and a constant leave of a filtered acceleration."""
+    q = position[1:-1]
+    near = np.column_stack([low_pass(x, period, cut) for x in (np.sin(q), np.cos(q), q)])
+    end = (len(near) - len(acceleration)) // 2
+    x = np.column_stack([near[end : len(near) - end], np.ones(len(acceleration))])
+    return np.asarray(acceleration - x @ np.linalg.lstsq(x, acceleration, rcond=None)[0])
 
 
 def _acceleration(x: Array, period: float, cut: float) -> Array:

@@ -92,7 +92,9 @@ def signals_of(run: AxesRun, axis: Axis, excitation: str) -> AxisSignals:
         applied=found.get("applied"),
         temperature=found.get("temperature"),
         limited=None if axis.servo or axis.free else limited_by_reading(run.signals[axis.name]),
-        bandwidth=most if axis.servo or axis.mass is None else cut_off(found["position"][:, 0], run.period, most),
+        bandwidth=most
+        if axis.servo or axis.mass is None
+        else cut_off(found["position"][:, 0], run.period, most, axis.free),
     )
 
 

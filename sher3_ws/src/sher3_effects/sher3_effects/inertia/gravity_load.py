@@ -93,12 +93,16 @@ class GravityOnAxis(GravityLoad):
         return [{**shape, "constant": 3.0}] if shape["constant"] == 2.0 else []
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
-        """Return one column; for a weight at an arm sine and cosine of the position, and for a force beside it one."""
+        """Return one column; for a weight at an arm sine and cosine of the position, and for a force beside it one.
+
+        They are filtered as forces are: the sine of a filtered angle is not the filtered sine.
+        """
         if shape["constant"] < 2.0:
             return super().signature(view, site, shape)
-        q = view.position[:, view.row(site)]
-        beside = [np.ones_like(q)] if shape["constant"] == 3.0 else []
-        return Signature({Channel(self.stage, site): column(np.sin(q), np.cos(q), *beside)})
+        q = view.run.motor[:, view.row(site)]
+        arm = view.run.to_grid(np.column_stack([np.sin(q), np.cos(q)]))
+        beside = [np.ones(len(arm))] if shape["constant"] == 3.0 else []
+        return Signature({Channel(self.stage, site): column(*arm.T, *beside)})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Return the largest weight, the position at which the axis hangs down, and a force beside it."""

@@ -176,7 +176,8 @@ def _equations(view: AxisView) -> tuple[Array, Array]:
     y = run.to_grid(run.effort)[:, 0] - view.inertial[:, 0]
     q = view.position[:, 0]
     spring = q - q.mean() if view.described.motion == "linear" else np.zeros_like(q)
-    by_place = (np.sin(q), np.cos(q)) if view.hangs else (spring, np.zeros_like(q))
+    arm = run.to_grid(np.column_stack([np.sin(run.motor[:, 0]), np.cos(run.motor[:, 0])]))
+    by_place = arm.T if view.hangs else (spring, np.zeros_like(q))
     one = np.ones(len(y))
     behind = np.zeros_like(one) if view.load_mass else view.behind[:, 0]
     x = np.column_stack([run.to_grid(run.acceleration)[:, 0], view.velocity[:, 0], direction, one, *by_place, behind])

@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.optimize import minimize
 from sher3_diagnosis.channel import Array
-from sher3_diagnosis.verdict import Cause
+from sher3_diagnosis.verdict import Cause, Parameter
 
 from sher3_chain.axes.evidence import AxisEvidence
 from sher3_chain.axes.simulate import law_of, simulate, simulated
@@ -55,7 +55,17 @@ def refine_free(evidence: AxisEvidence, causes: list[Cause]) -> tuple[AxisEviden
     if best.fun >= loss(start):
         return evidence, causes
     mass, refined = changed(best.x)
-    return replace(evidence, mass=mass), refined
+    told = all(_holds(causes[i].parameters[n], refined[i].parameters[n].value) for i, n in names)
+    return (replace(evidence, mass=mass), refined) if told else (evidence, causes)
+
+
+def _holds(parameter: Parameter, value: float) -> bool:
+    """Return whether a value lies in the interval of a parameter.
+
+    A motion that begins where it is unstable may be run again with any friction: it then fits other numbers as well.
+    """
+    low, high = parameter.low, parameter.high
+    return (low is None or value >= low) and (high is None or value <= high)
 
 
 def _loss(evidence: AxisEvidence, mass: float, causes: Sequence[Cause]) -> float:
