@@ -85,7 +85,7 @@ def find(machine: Machine[R, E], evidence: E, without: Collection[str], say: Say
     refined, causes = machine.refine(evidence, causes_of(evidence, attribution), attribution)
     remains = partial(left_over, significant, evidence)
     while not machine.policy.calibrated:
-        fewer = without_empty(candidates, attribution, causes)
+        fewer = without_empty(candidates, attribution, causes, machine.policy.carried)
         fewer = significant_causes(evidence, attribution, remains) if fewer is attribution else fewer
         if fewer is attribution:
             break

@@ -37,11 +37,14 @@ class Policy:
             plain causes out; otherwise a known cause may leave a share, since laws are idealisations.
         calibrated: causes and gaps are weighed by the calibration, which was set on machines of this kind.
         free_laws: what causes leave must not follow quantities that none of them depends on.
+        carried: an effect whose size may be zero stays in the fit without a name. For machines of which every part has
+            a small error of its own; otherwise it is left out.
     """
 
     down_to_floor: bool = False
     calibrated: bool = False
     free_laws: bool = False
+    carried: bool = False
 
 
 class Machine(ABC, Generic[R, E]):

@@ -81,3 +81,19 @@ def test_a_law_that_is_no_more_than_a_simpler_one_becomes_that_one_and_others_go
     assert [t.effect.id for t in plain.fit.terms] == ["direction"]
     none = without_empty(candidates, plain, [cause(size=(-1.0, 2.0))])
     assert none.fit.terms == () and none.rivals == ()
+
+
+def test_what_has_no_size_may_stay_in_the_fit_without_a_name():
+    """Where every part has a small error of its own: nothing of the fit changes, and the others keep their sizes."""
+    evidence = evidence_of(case(6.0))
+    second = Column("second", "friction", "one")
+    candidates = Candidates(evidence, [DIRECTION, second])
+    terms = [make_term(evidence.data, effect, "axis", {}) for effect in (DIRECTION, second)]
+    found = with_rivals(candidates, fit(evidence.data, terms))
+    told = [cause(size=(1.0, 2.0)), cause(size=(-1.0, 2.0))]
+    kept = without_empty(candidates, found, told, carried=True)
+    assert [kept.fit.terms[i].effect for i in kept.causes] == [DIRECTION]
+    assert kept.nuisance == 1 and kept.fit.total == pytest.approx(found.fit.total)
+    assert kept.explained == (found.explained[1], found.explained[0])
+    gone = without_empty(candidates, found, told)
+    assert [t.effect for t in gone.fit.terms] == [DIRECTION]

@@ -111,7 +111,7 @@ class PlainFirst(Bounded):
         first = next((f for f in own if f.terms[-1].effect.id in best.effect.extends), None)
         if first is None:
             return found
-        plain = [f.terms[-1] for f in own if f is not first and not f.terms[-1].effect.extends]
+        plain = [f.terms[-1] for f in own if f is not first and f.terms[-1].effect.plain]
         pairs = [fit(self.evidence.data, [*first.terms, term]) for term in plain]
         cheaper = any(pair.admissible and spent(pair) <= spent(found[0]) for pair in pairs)
         return [first, *(f for f in found if f is not first)] if cheaper else found

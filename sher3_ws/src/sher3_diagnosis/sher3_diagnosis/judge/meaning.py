@@ -28,10 +28,18 @@ ALIKE = 1e-9
 """Relative difference of two numbers that are the same but for rounding."""
 
 
-def without_empty(candidates: Candidates, attribution: Attribution, causes: Sequence[Cause]) -> Attribution:
+def without_empty(
+    candidates: Candidates, attribution: Attribution, causes: Sequence[Cause], carried: bool = False
+) -> Attribution:
     """Return the attribution without the causes that say nothing, or the same where each says something.
 
     Of one place the cause that explains least goes first: what it leaves may give the others their size.
+
+    Args:
+        candidates: the evidence and the effects.
+        attribution: of the evidence.
+        causes: of the attribution, with their sizes.
+        carried: whether one that only has no size stays in the fit without a name.
     """
     evidence, empty = candidates.evidence, dict[str, int]()
     for i, cause in zip(attribution.causes, causes, strict=True):
@@ -39,6 +47,12 @@ def without_empty(candidates: Candidates, attribution: Attribution, causes: Sequ
         if says_nothing(evidence, attribution.fit, i, cause):
             least = empty.setdefault(site, i)
             empty[site] = i if worth < attribution.explained[least] else least
+    at = dict(zip(attribution.causes, causes, strict=True))
+    small = [
+        i for i in empty.values() if carried and of_no_size(attribution.fit.terms[i], attribution.fit.of(i), at[i])
+    ]
+    if small:
+        return _unnamed(evidence, attribution, small)
     for i in sorted(empty.values(), reverse=True):
         attribution = _simpler(candidates, attribution, i)
     return attribution
@@ -104,6 +118,23 @@ def _outside(p: Parameter, least: float, most: float) -> bool:
 def _holds_zero(p: Parameter) -> bool:
     assert p.low is not None and p.high is not None
     return p.low <= 0.0 <= p.high
+
+
+def _unnamed(evidence: Evidence, attribution: Attribution, indices: Sequence[int]) -> Attribution:
+    """Return the attribution with some of its causes among the terms that are none."""
+    order = [*range(attribution.nuisance), *indices, *(i for i in attribution.causes if i not in indices)]
+
+    def put(x: tuple) -> tuple:
+        return tuple(x[i] for i in order) if x else x
+
+    return replace(
+        attribution,
+        fit=fit(evidence.data, [attribution.fit.terms[i] for i in order]),
+        rivals=put(attribution.rivals),
+        explained=put(attribution.explained),
+        ranking=put(attribution.ranking),
+        nuisance=attribution.nuisance + len(indices),
+    )
 
 
 def _simpler(candidates: Candidates, attribution: Attribution, index: int) -> Attribution:

@@ -29,7 +29,17 @@ class CableTorque(Page):
         "gravity_load": "follows the sine of the posture, or is constant",
         "position_friction": "the sign follows the direction of motion",
     }
-    units = {"middle": "m", "half_travel": "m", "constant": "N", "linear": "N", "square": "N", "cubic": "N"}
+    units = {
+        "span": "N",
+        "middle": "m",
+        "half_travel": "m",
+        "constant": "N",
+        "linear": "N",
+        "square": "N",
+        "cubic": "N",
+    }
+    ALONG = np.linspace(-1.0, 1.0, 101)
+    """Share of the travel at which the force is looked at for its span."""
 
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
         """Return the middle and half of the travel over all runs."""
@@ -42,6 +52,7 @@ class CableTorque(Page):
         return Signature({Channel(self.stage, site): column(np.ones_like(x), x, x**2, x**3)})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the travel and the force of each power at its end."""
+        """Return by how much the force differs over the travel, the travel, and the force of each power at its end."""
         names = ("constant", "linear", "square", "cubic")
-        return {**shape, **{name: float(c) for name, c in zip(names, coefficients, strict=True)}}
+        span = float(np.ptp(np.polynomial.polynomial.polyval(self.ALONG, coefficients)))
+        return {"span": span, **shape, **{name: float(c) for name, c in zip(names, coefficients, strict=True)}}

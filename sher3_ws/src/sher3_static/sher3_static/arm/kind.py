@@ -62,7 +62,7 @@ class ArmKind(TableKind[ArmDescription]):
     name, description = "arm", ArmDescription
     stored = ("joints",)
     written_for = ("arm",)
-    policy = Policy()
+    policy = Policy(carried=True)
     words = Words(
         rows="{n} postures, measured from outside",
         whole="All postures",
@@ -147,7 +147,11 @@ class ArmKind(TableKind[ArmDescription]):
             count = len(after.terms) - len(evidence.nuisance)
             labels.append(f"with {' and '.join(e.id for e in layer)} ({count} in all)")
         notes += [f"{label}: {errors_in_words(evidence, fit)}" for label, fit in zip(labels, steps, strict=True)]
-        return notes + ([worst_postures(evidence, finding.attribution.fit)] if finding.left else [])
+        found, first = finding.attribution, len(evidence.nuisance)
+        small = [f"{t.effect.id} of {t.site}" for t in found.fit.terms[first : found.nuisance]]
+        if small:
+            notes.append(f"fitted and not named, since their size may be zero: {', '.join(small)}")
+        return notes + ([worst_postures(evidence, found.fit)] if finding.left else [])
 
     def end_to_end(self, findings: Sequence[Finding[TableEvidence]]) -> Interval | None:
         """Return the closure of the measured pose, which is the end of the chain."""
