@@ -53,10 +53,16 @@ def test_preambles_headers_in_comments_and_blank_lines(tmp_path):
     assert found["q"].tolist() == [1.5, 2.5]
 
 
-@pytest.mark.parametrize(("text", "said"), [("", "no rows"), ("t,q,q\n1,2,3\n", "'q' is there twice")])
-def test_tables_that_are_none_say_why(tmp_path, text, said):
-    with pytest.raises(MachineError, match=said):
-        tables(tmp_path, text)
+def test_a_table_that_is_none_says_why(tmp_path):
+    with pytest.raises(MachineError, match="no rows"):
+        tables(tmp_path, "")
+
+
+def test_a_logger_may_write_the_stamps_of_each_channel(tmp_path):
+    """Stamps that are written again are one column; another one of the same name is told apart."""
+    found = tables(tmp_path, "t,q,t,q\n0.0,1.5,0.0,7.0\n0.1,2.5,0.1,8.0\n0.2,3.5,0.2,9.0\n")
+    assert list(found) == ["t", "q", "q.2"]
+    assert found["q"].tolist() == [1.5, 2.5, 3.5] and found["q.2"].tolist() == [7.0, 8.0, 9.0]
 
 
 def test_a_missing_column_names_its_neighbours():

@@ -31,8 +31,7 @@ def columns_of(rows: Rows, comma: bool, names: Sequence[str] = ()) -> dict[str, 
         comma: whether a comma is the decimal mark.
         names: of the columns, where they stand outside of the rows and the rows have no header.
 
-    Raises:
-        ValueError: two columns of numbers have one name.
+    Of columns of one name the second is `NAME.2`; loggers write the stamps of each channel again: those are left out.
     """
     rows = rows[_titles(rows, comma) :]
     if all(value_of(cell, comma) is not None for cell in rows[0]):
@@ -41,11 +40,13 @@ def columns_of(rows: Rows, comma: bool, names: Sequence[str] = ()) -> dict[str, 
         header, rows = [cell.strip() for cell in rows[0]], rows[1:]
     if rows and _are_units(rows[0]):
         header, rows = _with_units(header, rows[0]), rows[1:]
-    if len(set(header)) < len(header):
-        twice = next(name for name in header if header.count(name) > 1)
-        raise ValueError(f"column {twice!r} is there twice")
-    found = {name: _column([r[i] if i < len(r) else "" for r in rows], comma) for i, name in enumerate(header)}
-    return {name: x for name, x in found.items() if x is not None}
+    out: dict[str, Array] = {}
+    for i, name in enumerate(header):
+        x = _column([row[i] if i < len(row) else "" for row in rows], comma)
+        same = [known for known in out if known == name or known.startswith(f"{name}.")] if name in header[:i] else []
+        if x is not None and not any(np.array_equal(out[known], x, equal_nan=True) for known in same):
+            out[f"{name}.{len(same) + 1}" if same else name] = x
+    return out
 
 
 def usual_row(rows: int) -> int:
