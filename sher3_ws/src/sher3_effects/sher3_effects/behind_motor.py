@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import ClassVar
 
 import numpy as np
-from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.channel import Array
 from sher3_diagnosis.effect import Shape
 
 from sher3_effects.page import Page
@@ -34,10 +34,6 @@ class BehindMotor(Page):
     def on(self, axis: NominalAxis) -> BehindMotor:
         """Return the page with the mass of the axis."""
         return type(self)(axis.mass)
-
-    def stage_at(self, channel: Channel) -> str:
-        """Return the transmission: the effect is there, though the effort shows it."""
-        return self.stage
 
     def weighs(self, views: Sequence[AxisView], site: str) -> bool:
         """Return whether there is a force balance to look at: a mass, and an effort in every run."""

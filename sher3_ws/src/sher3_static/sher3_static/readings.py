@@ -86,10 +86,10 @@ def scatter_beyond(columns: Array, reading: Array) -> tuple[Array, int]:
 
 
 def one_hot(labels: Labels) -> Array:
-    """Return a column for each label (g,), counted from zero, that is one in its rows."""
+    """Return indicator columns (g, k) of labels 0 .. k - 1: 1 in the rows of a label, else 0."""
     return np.eye(int(labels.max()) + 1)[labels.astype(int)]
 
 
 def same(*conditions: Array) -> Array:
-    """Return a column for each combination of conditions, (g,) each, that is one in its rows."""
+    """Return indicator columns (g, k), one for each combination of conditions (g,) that occurs."""
     return one_hot(np.unique(np.column_stack(conditions), axis=0, return_inverse=True)[1].ravel())

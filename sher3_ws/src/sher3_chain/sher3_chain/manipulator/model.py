@@ -9,14 +9,13 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 
 import numpy as np
 import pinocchio as pin
 from sher3_diagnosis.channel import Array
 from sher3_machines.errors import MachineError
 
-from sher3_chain.manipulator.bodies import Bodies, read_bodies, slides
+from sher3_chain.manipulator.bodies import Bodies, slides
 from sher3_chain.manipulator.mjcf.losses import Losses
 
 PARAMETERS = 10
@@ -118,27 +117,20 @@ class ArmModel:
         return np.asarray(pin.neutral(self.pinocchio))
 
 
-def load_model(
-    path: Path, names: Sequence[str], gravity: tuple[float, float, float] | None, stated: Collection[str] = ()
+def arm_model(
+    bodies: Bodies, names: Sequence[str], gravity: tuple[float, float, float] | None, stated: Collection[str] = ()
 ) -> ArmModel:
-    """Read a URDF or MJCF file and lock the joints that were not recorded.
+    """Return a model whose joints are locked but for the recorded ones.
 
     Args:
-        path: of the file.
+        bodies: of the URDF or MJCF file.
         names: of the recorded joints.
         gravity: in place of the model's, m/s^2.
         stated: joints whose damping is known from elsewhere; that of an MJCF file does not count.
 
     Raises:
-        MachineError: the file cannot be read, has no such joint, or a joint of it neither turns nor slides.
+        MachineError: the model has no such joint, a joint of it neither turns nor slides, or it states no masses.
     """
-    return arm_model(read_bodies(path), names, gravity, stated)
-
-
-def arm_model(
-    bodies: Bodies, names: Sequence[str], gravity: tuple[float, float, float] | None, stated: Collection[str] = ()
-) -> ArmModel:
-    """Return a model whose joints are locked but for the recorded ones; arguments and errors as of `load_model`."""
     path, model, source = bodies.label, bodies.pinocchio, bodies.mujoco
     missing = [n for n in names if not model.existJointName(n)]
     if missing:

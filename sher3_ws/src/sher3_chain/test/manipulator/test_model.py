@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 from lifts import M1, M2, MJCF, URDF, L, described, motion, needed
+from sher3_chain.manipulator.bodies import read_bodies
 from sher3_chain.manipulator.kind import KIND
-from sher3_chain.manipulator.model import load_model
+from sher3_chain.manipulator.model import arm_model
 from sher3_machines import MachineError
 
 
@@ -31,7 +32,7 @@ def test_kinds_links_and_inertias(model):
 def test_a_joint_that_was_not_recorded_is_locked(tmp_path):
     path = tmp_path / "lift.urdf"
     path.write_text(URDF)
-    alone = load_model(path, ["swing"], None)
+    alone = arm_model(read_bodies(path), ["swing"], None)
     assert alone.names == ("swing",) and alone.inertia_matrix(np.zeros(1))[0] == pytest.approx([0.01 + M2 * L**2])
 
 

@@ -74,7 +74,6 @@ class Recipe:
     repeated: tuple[str, str]
     singles: tuple[str, ...]
     tracker: bool = False
-    constant_climate: bool = True
     one_posture: bool = True
 
 

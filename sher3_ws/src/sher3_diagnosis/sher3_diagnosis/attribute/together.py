@@ -72,7 +72,7 @@ def worth_of(term: Term, explained: float, left: float) -> float:
 
 
 def pruned(evidence: Evidence, current: Fit, left_over: Left, relative: bool) -> Fit:
-    """Drop a cause whose removal costs nothing; of equals, the one that was chosen last. One cause is kept.
+    """Drop causes whose removal costs nothing, among equals the last chosen first; at least one cause is kept.
 
     Args:
         evidence: that the fit is of.

@@ -78,10 +78,10 @@ def _left_most(diagnosis: Findings) -> Channel | None:
 
 
 def _discover_exactly(evidence: Evidence, place: Channel, say: Say) -> Discovery:
-    """Find a formula for the error of an exact stage: of one axis, or where all have it of the one that shows it most.
+    """Find a formula for the error of an exact stage on one axis; where all have it, on the axis that shows it most.
 
-    How much one shows is told by the share of its ticks that are off: sizes of axes that turn and slide cannot be
-    compared.
+    That axis has the largest share of ticks that are off: the sizes of an error cannot be compared between axes that
+    turn and axes that slide.
     """
     if place in evidence.channels:
         return discover_at(evidence, place, say)

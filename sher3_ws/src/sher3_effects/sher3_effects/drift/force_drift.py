@@ -85,7 +85,6 @@ class CellDrift(SensorDrift):
     kinds, places = ("cell",), ("load_cell",)
     explanation = "The zero of the load cell wanders during the test, under every force alike."
     units = {"over_test": "N"}
-    seen_at = (("", ""),)
 
     def signature(self, view: Any, site: str, shape: Shape) -> Signature:
         """Return one column: the share of the test that has passed, or of the warming."""

@@ -241,10 +241,6 @@ class CircleReversal(TableReversal):
         across = view.across(site)
         return Signature({self.channels(site)[0]: column(-0.5 * view.moving(site) * across)})
 
-    def stage_at(self, channel: Channel) -> str:
-        """Return the transmission: the lost motion is there, though the radius shows it."""
-        return self.stage
-
 
 @dataclass(frozen=True)
 class BacklashInPlant(PlantEffect, page=Backlash):

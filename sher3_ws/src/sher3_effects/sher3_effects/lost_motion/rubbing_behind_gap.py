@@ -45,7 +45,7 @@ class RubbingBehindGap(Page):
     MOST = 0.5
     """Share of the travel that gap and reach may take: beyond it nothing slides."""
     COUNTS = 4.0
-    """Counts, or deviations of the encoder's noise, that a gap must have to be one."""
+    """Smallest width of a gap, in counts or standard deviations of the encoder's noise."""
     finer = {"width": (0.7, 0.85, 0.93, 1.07, 1.2, 1.4), "reach": (0.5, 0.7, 1.4, 2.0)}
 
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:

@@ -39,7 +39,7 @@ class BacklashBehindMotor(BehindMotor):
     WIDTHS = tuple(np.geomspace(3e-4, 0.1, 12))
     """In shares of the travel."""
     COUNTS = 4.0
-    """Counts, or deviations of the encoder's noise, that a gap must have to be one."""
+    """Smallest width of a gap, in counts or standard deviations of the encoder's noise."""
     BRAKING = (0.05, 0.2, 0.6, 1.5)
     """What brakes a load that flies across the gap, over the rms acceleration of the motor."""
     finer: ClassVar[Mapping[str, tuple[float, ...]]] = {
@@ -113,10 +113,6 @@ class BacklashBeforeEncoder(Page):
     def channels(self, site: str) -> tuple[Channel, ...]:
         """Return the tracking error."""
         return self.STICKS.channels(site)
-
-    def stage_at(self, channel: Channel) -> str:
-        """Return the transmission: the gap is there, though the tracking error shows it."""
-        return self.stage
 
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
         """Return half widths, m or rad, and lags, s."""

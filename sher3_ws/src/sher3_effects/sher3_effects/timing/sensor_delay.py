@@ -46,12 +46,12 @@ class SensorDelay(Page):
     UNSAID = 2.0
     """Delay of an effort, in periods, from which it is searched where nobody states its moment within one period."""
     LEAST = 1.0
-    """The same, that is one: what is less is the shape of a friction at a reversal."""
+    """Smallest delay of such an effort, in periods: less is the shape of a friction at a reversal."""
     UNSEEN = 0.1
-    """The same in periods of the cut-off: what a noisy encoder does to the moment of a reversal."""
+    """The same in periods of the cut-off: by so much a noisy encoder shifts the moment of a reversal."""
 
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
-        """Return delays of the load encoder (0) and of the effort (1), s, and the least that is one."""
+        """Return delays of the load encoder (0) and of the effort (1), s, and the smallest that counts as a delay."""
         row, run = views[0].row(site), views[0].run
         late = [s * n * run.period for n in self.PERIODS for s in (1.0, -1.0) if n * run.period <= LONGEST_DELAY]
         which = [float(k) for k, x in enumerate((run.load, run.effort)) if x is not None and np.any(x[:, row])]
@@ -94,7 +94,7 @@ class SensorDelay(Page):
         return bool(self.REST[0] < coefficients[0] / shape["delay"] < self.REST[1] and whole >= shape["least"])
 
     def told(self) -> Page:
-        """Return the form of an effort whose delay is told by its shape."""
+        """Return the form for an effort whose delay was estimated before: nothing of it is fitted."""
         return TimedEffort()
 
 

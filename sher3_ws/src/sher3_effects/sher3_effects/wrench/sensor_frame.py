@@ -35,7 +35,7 @@ class SensorFrame(Page):
         return plain + [{"frame": float(k), "rx": t[0], "ry": t[1], "rz": t[2]} for k, t in small]
 
     def signature(self, view: SensorView, site: str, shape: Shape) -> Signature:
-        """Return the change by the turn, and three columns: what it is off by about the axes of that frame, per rad."""
+        """Return what the turn changes, and three columns: the change per rad of a further turn about each axis."""
         from scipy.spatial.transform import Rotation  # slow to import, and not needed before a case is read
 
         turn = Rotation.from_rotvec([shape.get(name, 0.0) for name in ("rx", "ry", "rz")])
@@ -63,4 +63,4 @@ class SensorFrame(Page):
     FURTHEST = 1.1
     """Largest turn to the nearest quarter turns, rad: 62.8 degrees, about an axis through the corner of a cube."""
     SMALL = 0.5
-    """Largest turn beyond the one that fits the forces, rad: what is larger is another frame."""
+    """Largest turn, rad, beyond the turn that fits the forces: a larger one means another frame."""

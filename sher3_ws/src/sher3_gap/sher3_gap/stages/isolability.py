@@ -43,10 +43,6 @@ class Structure:
     invisible: frozenset[str]
     topics: frozenset[str]
 
-    def group_of(self, effect: str) -> frozenset[str]:
-        """Return the group an effect belongs to; the invisible ones are one group."""
-        return next((g for g in self.groups if effect in g), self.invisible)
-
 
 def _breaking(*relations: str) -> tuple[str, ...]:
     """Return the effects that break one of the relations: the one their page names, or the one of their stage."""
