@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from sher3_challenge.calibration.selective import CONFIDENCE, GRID, certified, curve
+from sher3_challenge.calibration.selective import CONFIDENCE, GRID, certified, curve, needed
 
 
 def test_names_without_a_mistake_are_certified_once_they_are_many_enough():
@@ -22,9 +22,16 @@ def test_the_doubtful_ones_are_kept_silent():
 
 def test_the_table_has_a_line_for_each_risk():
     text = curve([(0.97, True)] * 99 + [(0.55, False)])
-    assert "| 0.01 | no odds certified | 0.00 (n 100) | 0 |" in text
+    assert "| 0.01 | no odds certified: 505 right names in a row would | 0.00 (n 100) | 0 |" in text
     assert "| 0.05 | 0.6 | 0.99 (n 100) | 0 |" in text
     assert curve([]).count("no odds certified") == 3
+
+
+def test_what_is_not_certified_says_how_many_names_it_takes():
+    """ln 160 / -ln(1 - risk) without a mistake; more with one."""
+    assert [needed(risk) for risk in (0.01, 0.05, 0.1)] == [505, 99, 49]
+    assert certified([(0.97, k > 0) for k in range(needed(0.05, wrong=1))], 0.05).threshold is not None
+    assert certified([(0.97, k > 0) for k in range(needed(0.05, wrong=1) - 1)], 0.05).threshold is None
 
 
 def test_the_bound_holds_on_causes_drawn_anew():

@@ -45,6 +45,15 @@ class Certified:
         return self.named / self.causes if self.causes else 0.0
 
 
+def needed(risk: float, wrong: int = 0, confidence: float = CONFIDENCE) -> int:
+    """Return how many names, `wrong` of them wrong, are the fewest that certify a threshold for a risk."""
+    level = (1.0 - confidence) / len(GRID)
+    enough = wrong + 1
+    while binom.cdf(wrong, enough, risk) > level:
+        enough += 1
+    return enough
+
+
 def certified(stated: Sequence[Stated], risk: float, confidence: float = CONFIDENCE) -> Certified:
     """Return the loosest threshold of the grid whose names are wrong with at most the risk, at a confidence.
 
@@ -63,9 +72,10 @@ def certified(stated: Sequence[Stated], risk: float, confidence: float = CONFIDE
 
 
 def curve(stated: Sequence[Stated]) -> str:
-    """Return the share named at each risk as a table in Markdown."""
+    """Return the share named at each risk as a table in Markdown; where none is certified, what it would take."""
     lines = ["| wrong names at most | named from | causes named | wrong |", "|---|---|---|---|"]
     for found in (certified(stated, risk) for risk in RISKS):
-        start = "no odds certified" if found.threshold is None else f"{found.threshold:g}"
+        lacking = f"no odds certified: {needed(found.risk)} right names in a row would"
+        start = lacking if found.threshold is None else f"{found.threshold:g}"
         lines.append(f"| {found.risk:g} | {start} | {found.answered:.2f} (n {found.causes}) | {found.wrong} |")
     return "\n".join(lines)
