@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 from sher3_diagnosis.channel import Channel, Residual, Residuals
 from sher3_machines.errors import MachineError
+from sher3_machines.intake.fields import VELOCITIES
 from sher3_machines.thresholds import BLOCKS
 
 from sher3_chain.axes.floors import floors_of
@@ -74,7 +75,7 @@ def gather_axis(runs: Sequence[AxesRun], axis: Axis, repeats: bool) -> AxisEvide
     return AxisEvidence(
         excitations=[view.excitation for view in data.views],
         data=data,
-        nuisance=constants(data, ZERO, [Channel("transmission", axis.name)]),
+        nuisance=constants(data, ZERO, with_zeros(axis)),
         units=units_of(axis),
         places={"axis": (axis.name,)},
         rotary=frozenset({axis.name} if axis.motion == "rotary" else ()),
@@ -86,6 +87,17 @@ def gather_axis(runs: Sequence[AxesRun], axis: Axis, repeats: bool) -> AxisEvide
         untold=untold,
         notes=notes,
     )
+
+
+def with_zeros(axis: Axis) -> list[Channel]:
+    """Return the channels whose zero nobody states: two encoders, and a servo of which a speed was recorded or asked.
+
+    A speed adds up to a place from any zero on.
+    """
+    asked = (axis.signals.position, axis.signals.reference)
+    summed = axis.servo and any(column is not None and column.unit in VELOCITIES for column in asked)
+    stages = ("transmission", "motor_mechanics") if summed else ("transmission",)
+    return [Channel(stage, axis.name) for stage in stages]
 
 
 def levels_of(signals: Sequence[AxisSignals], axis: Axis) -> list[str]:
