@@ -27,6 +27,7 @@ class Publishers:
 
     def __init__(self, node: Node) -> None:
         self._node = node
+        self._full: dict[str, str] = {}
         self._asked: dict[str, tuple[int, int]] = {}
         self._processes: dict[bytes, list[int]] = {}
 
@@ -40,7 +41,8 @@ class Publishers:
                 otherwise.
         """
         topic = TOPICS[name]
-        full = self._node.resolve_topic_name(topic.full_name)
+        if (full := self._full.get(name)) is None:  # asked in every tick: a node's names never change
+            full = self._full[name] = self._node.resolve_topic_name(topic.full_name)
         number = known() if known else self._node.count_publishers(full)
         before, asked = self._asked.get(name, (-1, 0))
         self._asked[name] = number, now

@@ -10,7 +10,6 @@ from collections.abc import Sequence
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import NDArray
 from sher3_diagnosis.channel import Array
 from sher3_diagnosis.fit.fitting import solve
 from sher3_diagnosis.quantify.jackknife import standard_error
@@ -38,6 +37,8 @@ CHOICES = [
     for group in combinations(RESISTING, n)
 ]
 """Every choice of columns."""
+OTHERS = 1.0 - np.eye(BLOCKS)
+"""Of each block all others."""
 DAHL_SHARE = 2.5e-3
 """Displacement over which dry friction builds up, in shares of the lead: the middle one that the effects search."""
 
@@ -54,11 +55,12 @@ def identify_mass(views: Sequence[AxisView]) -> tuple[float, tuple[float, float]
     Raises:
         MachineError: the records do not accelerate enough to tell a mass.
     """
-    x, y, block = _blocks(views)
-    _, columns = _best(x, y, block)
+    x, y = _rows(views)
+    blocks = _blocks(x, y)
+    _, columns = _best(blocks)
     used = x[:, columns]
     noise = noise_share(views, used[:, 0])
-    _, draws = _held_out(used, y, block, noise)
+    _, draws = _held_out(blocks, columns, noise)
     mass = float(solve(_relieved(used, noise), used.T @ y)[0])
     error = float(standard_error(draws))
     if not mass > LEAST_EXCITED * error:
@@ -100,11 +102,11 @@ def share_of_inertia(views: Sequence[AxisView]) -> float:
 
     The mass is taken as two standard errors above what is found.
     """
-    x, y, block = _blocks(views)
+    x, y = _rows(views)
     if len(y) < BLOCKS or not y.any():
         return np.inf
-    columns = _best(x, y, block)[1]
-    _, draws = _held_out(x[:, columns], y, block)
+    blocks = _blocks(x, y)
+    _, draws = _held_out(blocks, _best(blocks)[1])
     error = float(standard_error(draws))
     most = abs(float(draws.mean())) + LEAST_EXCITED * error
     return most * float(np.sqrt(np.mean(x[:, 0] ** 2) / np.mean(y**2)))
@@ -112,30 +114,30 @@ def share_of_inertia(views: Sequence[AxisView]) -> float:
 
 def loss_of(views: Sequence[AxisView]) -> float:
     """Return the smallest held-out loss of the force balance, whatever of its columns is left out."""
-    x, y, block = _blocks(views)
-    return _best(x, y, block)[0] if len(y) >= BLOCKS else 0.0
+    x, y = _rows(views)
+    return _best(_blocks(x, y))[0] if len(y) >= BLOCKS else 0.0
 
 
-def _best(x: Array, y: Array, block: NDArray[np.int64]) -> tuple[float, list[int]]:
+def _best(blocks: Array) -> tuple[float, list[int]]:
     """Return the smallest held-out loss and its columns; those of the position only where they save markedly."""
-    tried = [(_held_out(x[:, columns], y, block)[0], columns) for columns in CHOICES]
+    tried = [(_held_out(blocks, columns)[0], columns) for columns in CHOICES]
     plain = min((t for t in tried if BY_PLACE[0] not in t[1] and BEHIND not in t[1]), key=lambda t: t[0])
     for extra in (BEHIND, BY_PLACE[0]):
         other = min(
             (t for t in tried if extra in t[1] and (extra == BY_PLACE[0] or BY_PLACE[0] not in t[1])),
             key=lambda t: t[0],
         )
-        if plain[0] > LEFT * float(y @ y) and other[0] < MARKED * plain[0]:
+        if plain[0] > LEFT * float(np.sum(blocks[..., -1] ** 2)) and other[0] < MARKED * plain[0]:
             plain = other
     return plain
 
 
 def mass_of(views: Sequence[AxisView]) -> float:
     """Return the mass that the records tell, whatever its error, kg or kg m^2; 0 without samples in motion."""
-    x, y, block = _blocks(views)
+    x, y = _rows(views)
     if len(y) < BLOCKS:
         return 0.0
-    used = x[:, _best(x, y, block)[1]]
+    used = x[:, _best(_blocks(x, y))[1]]
     return float(solve(used.T @ used, used.T @ y)[0])
 
 
@@ -143,8 +145,8 @@ def load_mass_of(views: Sequence[AxisView]) -> float:
     """Return the mass that moves with the second encoder, kg or kg m^2; 0 where the records do not tell it."""
     if any(view.run.load is None for view in views):
         return 0.0
-    x, y, block = _blocks(views)
-    columns = _best(x, y, block)[1] if len(y) >= BLOCKS else []
+    x, y = _rows(views)
+    columns = _best(_blocks(x, y))[1] if len(y) >= BLOCKS else []
     if BEHIND not in columns:
         return 0.0
     used = x[:, columns]
@@ -152,11 +154,24 @@ def load_mass_of(views: Sequence[AxisView]) -> float:
     return max(found, 0.0)
 
 
-def _blocks(views: Sequence[AxisView]) -> tuple[Array, Array, NDArray[np.int64]]:
-    """Equations of all records, and the block of each."""
+def _rows(views: Sequence[AxisView]) -> tuple[Array, Array]:
+    """Return the equations of all records."""
     rows, target = zip(*(_equations(view) for view in views), strict=True)
-    x, y = np.concatenate(rows), np.concatenate(target)
-    return x, y, np.arange(len(y)) * BLOCKS // max(len(y), 1)
+    return np.concatenate(rows), np.concatenate(target)
+
+
+def _blocks(x: Array, y: Array) -> Array:
+    """Return the triangles (BLOCKS, p + 1, p + 1) of the equations (n, p) = (n,), in blocks of equal length.
+
+    The triangle of a QR decomposition leaves the same squares as its block, whatever the coefficients.
+    """
+    rows = np.column_stack([x, y])
+    out = np.zeros((BLOCKS, rows.shape[1], rows.shape[1]))
+    block = np.arange(len(y)) * BLOCKS // max(len(y), 1)
+    for k in range(BLOCKS):
+        triangle = np.linalg.qr(rows[block == k], mode="r")
+        out[k, : len(triangle)] = triangle
+    return out
 
 
 def _equations(view: AxisView) -> tuple[Array, Array]:
@@ -184,12 +199,11 @@ def _equations(view: AxisView) -> tuple[Array, Array]:
     return x[ok], y[ok]
 
 
-def _held_out(x: Array, y: Array, block: NDArray[np.int64], noise: float = 0.0) -> tuple[float, Array]:
+def _held_out(blocks: Array, columns: list[int], noise: float = 0.0) -> tuple[float, Array]:
     """Loss of every block under the others' coefficients, and the mass without each block, (BLOCKS,)."""
-    loss, draws = 0.0, []
-    for k in range(BLOCKS):
-        out = block == k
-        beta = solve(_relieved(x[~out], noise), x[~out].T @ y[~out])
-        loss += float(np.sum((y[out] - x[out] @ beta) ** 2))
-        draws.append(beta[0])
-    return loss, np.array(draws)
+    x, y = blocks[..., columns], blocks[..., -1:]
+    across = np.swapaxes(x, 1, 2)
+    normal, right = np.tensordot(OTHERS, across @ x, 1), np.tensordot(OTHERS, across @ y, 1)
+    normal[:, 0, 0] *= 1.0 - noise
+    beta = solve(normal, right[..., 0])
+    return float(np.sum((y - x @ beta[..., None]) ** 2)), beta[:, 0]
