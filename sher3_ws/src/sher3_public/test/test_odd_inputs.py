@@ -97,6 +97,12 @@ def test_a_control_that_is_no_place_and_one_that_is_no_force(log):
         gap.diagnose(MOTORS, time, control, position)
 
 
+def test_positions_that_drown_in_noise(log):
+    time, control, position = log
+    with pytest.raises(MachineError, match="record quieter positions"):
+        gap.diagnose(MODEL, time, control, position + 0.6 * np.random.default_rng(0).normal(size=position.shape))
+
+
 def test_a_record_that_is_too_short(log):
     with pytest.raises(MachineError, match="too little of the record is motion"):
         gap.diagnose(MODEL, *(x[:50] for x in log))

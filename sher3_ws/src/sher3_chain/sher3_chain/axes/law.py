@@ -7,7 +7,7 @@ least, whatever the gains are.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, lru_cache
 from typing import NamedTuple
@@ -130,8 +130,9 @@ def compared(axis: Axis) -> bool:
 def best_way(signals: Sequence[AxisSignals], axis: Axis) -> Way:
     """Return the way to read the encoder: the one that leaves least of the steps, and of those alike of the command.
 
-    A plain way that leaves hardly anything of the command as stated goes before it: a controller that knows its speed
-    from elsewhere brings no counts, and the way with the fewest of them is then only the smoothest.
+    A plain way that leaves hardly anything of the command as stated, for a reference that may be late, goes before
+    it: a controller that knows its speed from elsewhere brings no counts, and the way with the fewest of them is
+    then only the smoothest.
     """
 
     @lru_cache(maxsize=1)  # all shifts of one speed are tried in turn
@@ -153,8 +154,8 @@ def best_way(signals: Sequence[AxisSignals], axis: Axis) -> Way:
     if not axis.command_law.velocity_gain:
         return _within(least([Way(LAST, shift) for shift in SHIFTS]))
     found = {way: excess(signals, axis, way) for way in (Way(speed, 0) for speed in (LAST, TWO, CENTRAL))}
-    plainest = min(found, key=lambda way: found[way].stated)
-    if found[plainest].stated <= AT_FLOOR:
+    plainest = _least_of(found)
+    if found[plainest].late <= AT_FLOOR:
         return plainest
     plain = least([Way(speed, shift) for speed in (LAST, TWO, CENTRAL) for shift in SHIFTS])
     best = least([Way(speed, shift) for speed in LAGS for shift in SHIFTS])
@@ -164,10 +165,15 @@ def best_way(signals: Sequence[AxisSignals], axis: Axis) -> Way:
         best = least([Way(best.speed * f, shift) for f in (1.0, step, 1.0 / step) for shift in SHIFTS])
     quiet = _within(best if noise(best) < PLAIN * noise(plain) else plain)
     found[quiet] = excess(signals, axis, quiet)
-    freest = min(x.freed for x in found.values())
-    stated = min((way for way, x in found.items() if x.freed <= ALIKE * freest), key=lambda way: found[way].stated)
+    stated = _least_of(found)
     better = any(a < PLAIN * b for a, b in zip(found[stated], found[quiet], strict=True))
     return stated if better else quiet
+
+
+def _least_of(found: Mapping[Way, Excess]) -> Way:
+    """Return the way that leaves least of a law as stated, of those that leave alike with gains of their own."""
+    freest = min(x.freed for x in found.values())
+    return min((way for way, x in found.items() if x.freed <= ALIKE * freest), key=lambda way: found[way].late)
 
 
 def backwards(signals: Sequence[AxisSignals], axis: Axis, way: Way) -> bool:
@@ -201,11 +207,13 @@ class Excess(NamedTuple):
 
     Attributes:
         stated: of the law as it is stated.
-        freed: of the law with gains of its own for its parts and a reference that may be a little late: neither is a
-            matter of the way in which the encoder is read.
+        late: of the law as it is stated for a reference that may be late.
+        freed: of the law with gains of its own for its parts as well: neither is a matter of the way in which the
+            encoder is read.
     """
 
     stated: float
+    late: float
     freed: float
 
 
@@ -216,11 +224,11 @@ def excess(signals: Sequence[AxisSignals], axis: Axis, way: Way) -> Excess:
         view = LawView(run, axis, way)
         left = residual_of(view)
         if left.ok.any():
-            free = np.column_stack([view.stated.parts, _lateness(run)])
-            x, y = run.to_grid(free)[left.ok], left.values[left.ok, 0]
-            rest = y - x @ np.linalg.lstsq(x, y, rcond=None)[0]
-            powers.append(np.mean((np.array([y, rest]) / floor_of(view, left)) ** 2, axis=1))
-    return Excess(*np.mean(powers, axis=0).tolist()) if powers else Excess(0.0, 0.0)
+            late, y = _lateness(run), left.values[left.ok, 0]
+            free = (run.to_grid(x)[left.ok] for x in (late, np.column_stack([view.stated.parts, late])))
+            rest = [y, *(y - x @ np.linalg.lstsq(x, y, rcond=None)[0] for x in free)]
+            powers.append(np.mean((np.array(rest) / floor_of(view, left)) ** 2, axis=1))
+    return Excess(*np.mean(powers, axis=0).tolist()) if powers else Excess(0.0, 0.0, 0.0)
 
 
 def _within(way: Way) -> Way:
@@ -246,10 +254,14 @@ def left_by(run: AxisSignals, parts: Array) -> Array:
 
 
 def _lateness(run: AxisSignals) -> Array:
-    """Return what a short delay of the reference changes, but for its size, (n, 2)."""
+    """Return what a delay of the reference changes, but for its size: three terms of its series, (n, 3).
+
+    20 ms of a motion at 5 Hz are a phase of 0.63: the third term is 4 % of the reference, the fourth 0.7 %.
+    """
     assert run.reference is not None
     speed = np.gradient(run.reference[:, 0])
-    return np.column_stack([speed, np.gradient(speed)])
+    bend = np.gradient(speed)
+    return np.column_stack([speed, bend, np.gradient(bend)])
 
 
 def stated_law(run: AxisSignals, axis: Axis, way: Way) -> StatedLaw:

@@ -29,6 +29,9 @@ from sher3_chain.manipulator.signals import JointSignals, joint_signals
 from sher3_chain.manipulator.view import MotionView
 from sher3_chain.readings.slip_of_unit import Share
 
+DROWNED = 0.1
+"""Noise of a position over its motion, rms, above which nothing can be said of accelerations, nor of directions."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class ArmMotionEvidence(ChainEvidence):
@@ -147,6 +150,14 @@ def not_judged(judged: Sequence[str], signals: Sequence[JointSignals]) -> Machin
             remedy=remedy,
         )
     ticks = max(s.ticks for s in signals)
+    noise, course = (
+        max(float(x(s).std()) for s in signals) for x in (lambda s: s.motor - s.smooth, lambda s: s.smooth)
+    )
+    if noise > DROWNED * course:
+        remedy = "record quieter positions: forces follow from how they bend, which this noise hides"
+        value, limit = f"{noise:.2g} about a motion of {course:.2g}", f"{DROWNED:g} of it"
+        what = "no joint can be judged: positions scatter about their own course, rms in rad or m"
+        return MachineError(what, value=value, limit=limit, remedy=remedy)
     remedy = "record efforts while the joints move, for some seconds"
     value = f"{len(judged)} joints, {ticks} samples"
     return MachineError("no joint can be judged: too little of the record is motion", value=value, remedy=remedy)
