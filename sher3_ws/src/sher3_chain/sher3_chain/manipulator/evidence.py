@@ -23,6 +23,8 @@ from sher3_chain.manipulator.identify import with_identified_inertias
 from sher3_chain.manipulator.model import ArmModel
 from sher3_chain.manipulator.readings.encoders import links_of
 from sher3_chain.manipulator.readings.floors import floors_of
+from sher3_chain.manipulator.readings.senses import against_model
+from sher3_chain.manipulator.readings.senses import turned as turned_round
 from sher3_chain.manipulator.readings.slipped import slipped
 from sher3_chain.manipulator.readings.wrong import without_wrong_loads
 from sher3_chain.manipulator.signals import JointSignals, joint_signals
@@ -43,6 +45,7 @@ class ArmMotionEvidence(ChainEvidence):
         shares: joint -> units of its recorded effort per newton metre, where its gain was found from the data.
         turned: joints whose effort was recorded with the opposite sign, and was turned.
         scales: joint -> units of its recorded effort per newton metre in each record, where they differ by run.
+        against: joints that were recorded in the other sense than the model has, and were turned.
         slips: joint -> times by which its effort is in another scale than its stated gain says; they are not judged.
     """
 
@@ -53,6 +56,7 @@ class ArmMotionEvidence(ChainEvidence):
     turned: Sequence[str] = ()
     slips: Mapping[str, Share] = field(default_factory=dict)
     scales: Mapping[str, Sequence[Share]] = field(default_factory=dict)
+    against: Sequence[str] = ()
 
 
 def channel_of(joint: str) -> Channel:
@@ -96,6 +100,12 @@ def gather_arm_motion(
         return [MotionView(s, link, described.joints, model, coupling, shares) for s, link in both]
 
     plain = seen_by(model, np.ones(n))
+    against = against_model(plain, described, model, judged)
+    if against:
+        read = [turned_round(run, against) for run in read]
+        signals = [joint_signals(run, described, "repeats" if repeats else run.name) for run in read]
+        links = [links_of(s, described.joints, model, coupling) for s in signals]
+        plain = seen_by(model, np.ones(n))
     found = {name: share_of(plain, name) for name in judged}
     stated = {j.name for j in described.joints if not isinstance(j.gain, str)}
     own = [j.name for j in described.joints if j.gain == PER_RUN and j.name in judged]
@@ -137,6 +147,7 @@ def gather_arm_motion(
         turned=turned,
         slips=slips,
         scales=scales,
+        against=against,
     )
 
 

@@ -122,6 +122,11 @@ class Manipulator(Chain[ArmMotionEvidence]):
         turned = ", ".join(evidence.turned)
         if turned:
             notes.append(f"{turned}: effort recorded with the opposite sign: friction would give energy; it was turned")
+        if evidence.against:
+            notes.append(
+                f"{', '.join(evidence.against)}: recorded in the other sense than the model has: place and effort were "
+                "turned; `factor: -1` states it"
+            )
         if self.described.inertias == "identified":
             notes.append(
                 "inertias identified from the data: drive gain, weight and payload are in them, cannot be told apart "
