@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 from sher3_description import ACTUATORS, Robot
 from sher3_diagnosis.channel import Array, Channel
-from sher3_diagnosis.effect import Best, Shape, Signature, column
+from sher3_diagnosis.effect import Best, Shape, Signature
 from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
@@ -42,17 +43,8 @@ class CoulombFriction(DryFriction):
     }
     on_axis = {"force": "coulomb"}
     finer = {"displacement": (0.4,)}
-    DISPLACEMENTS: tuple[float, ...] = (1.0e-3, 2.5e-3, 5.0e-3)
+    DISPLACEMENTS: ClassVar[tuple[float, ...]] = (1.0e-3, 2.5e-3, 5.0e-3)
     """In motor revolutions: 2, 5 and 10 um on a 2 mm lead."""
-
-    def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
-        """Displacement over which the force reverses."""
-        return [{"displacement": d * views[0].lead(site)} for d in self.DISPLACEMENTS]
-
-    def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
-        """One column: the Dahl state."""
-        z = view.run.to_grid(view.sliding(view.row(site), shape["displacement"]))
-        return Signature({Channel(self.stage, site): column(z)})
 
     def tolerated(self, robot: Robot, site: str) -> Sequence[Tolerated]:
         """Return the friction of the axis beyond the nominal one."""

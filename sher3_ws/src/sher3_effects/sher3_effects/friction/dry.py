@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Sequence
+from typing import Any, ClassVar
 
 import numpy as np
 from sher3_diagnosis.channel import Array, Channel
-from sher3_diagnosis.effect import Shape
+from sher3_diagnosis.effect import Shape, Signature, column
 
 from sher3_effects.page import Page
 from sher3_effects.view import AxisView
@@ -21,6 +22,18 @@ class DryFriction(Page):
     Coulomb's inequality: how a bristle bends below the resolution of the encoders is not recorded. On other machines
     the balance at rest is a rule of its own (`sher3_chain.axes.identification.balance_at_rest`).
     """
+
+    DISPLACEMENTS: ClassVar[tuple[float, ...]] = ()
+    """Displacements over which the force turns round after a reversal, in motor revolutions."""
+
+    def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
+        """Return the displacements over which the force turns round, m or rad."""
+        return [{"displacement": d * views[0].lead(site)} for d in self.DISPLACEMENTS]
+
+    def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
+        """Return one column: the Dahl state."""
+        z = view.run.to_grid(view.sliding(view.row(site), shape["displacement"]))
+        return Signature({Channel(self.stage, site): column(z)})
 
     def held(self, view: AxisView, site: str, shape: Shape, coefficients: Array) -> Array | None:
         """Return the level (g,) where the axis of a robot rests, 0 where it moves; None where nobody states a count."""

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from sher3_diagnosis.channel import Array, Channel
-from sher3_diagnosis.effect import Best, Shape, Signature, column
+from sher3_diagnosis.channel import Array
+from sher3_diagnosis.effect import Best, Shape
 from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
@@ -42,15 +42,6 @@ class PreslidingFriction(DryFriction):
     """In motor revolutions: 20 um to 0.64 mm on a 2 mm lead."""
     units: ClassVar[Mapping[str, str]] = {"stiffness": "N/m"}
     finer = {"displacement": (0.7, 0.85, 1.2, 1.4)}
-
-    def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
-        """Displacement over which the force builds up."""
-        return [{"displacement": d * views[0].lead(site)} for d in self.DISPLACEMENTS]
-
-    def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
-        """One column: the Dahl state."""
-        z = view.run.to_grid(view.sliding(view.row(site), shape["displacement"]))
-        return Signature({Channel(self.stage, site): column(z)})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Force, displacement and the initial stiffness they give."""

@@ -1,12 +1,22 @@
-"""The phase of a periodic error."""
+"""Amplitude and phase of a periodic error."""
 
 from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+from sher3_diagnosis.channel import Array
+from sher3_diagnosis.effect import Shape
 from sher3_sim.effect import parameter
 
 
 def phase_at_zero() -> Any:
     """Declare the phase at zero position as a parameter, rad; a little over a whole turn either way is allowed."""
     return parameter("rad", 0.0, -7.0, 7.0, "at zero position", fixed_unit=True)
+
+
+def sine_of(shape: Shape, coefficients: Array) -> dict[str, float]:
+    """Return amplitude, order and phase of A sin(n turn + phase); the first two coefficients are its quadratures."""
+    sine, cosine = float(coefficients[0]), float(coefficients[1])
+    amplitude, phase = float(np.hypot(sine, cosine)), float(np.arctan2(cosine, sine))
+    return {"amplitude": amplitude, "periods_per_rev": shape["periods_per_rev"], "phase": phase}

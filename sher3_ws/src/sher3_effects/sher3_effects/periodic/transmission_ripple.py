@@ -14,7 +14,7 @@ from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.page import Page, Tolerated
-from sher3_effects.periodic.phase import phase_at_zero
+from sher3_effects.periodic.phase import phase_at_zero, sine_of
 from sher3_effects.periodic.teeth import orders_of
 from sher3_effects.table_view import TableView
 from sher3_effects.view import AxisView
@@ -76,11 +76,7 @@ class TransmissionRipple(Page):
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Amplitude, order and phase."""
-        return {
-            "amplitude": float(np.hypot(coefficients[0], coefficients[1])),
-            "periods_per_rev": shape["periods_per_rev"],
-            "phase": float(np.arctan2(coefficients[1], coefficients[0])),
-        }
+        return sine_of(shape, coefficients)
 
 
 class RippleOnAxis(TransmissionRipple):
