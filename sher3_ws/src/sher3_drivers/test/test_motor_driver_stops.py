@@ -47,6 +47,19 @@ def test_a_drive_that_falls_silent_stops_all(rig):
     assert stopped_by(rig, f"delta_3: no TPDO for {rig.settings.missing_limit} ticks")
 
 
+def test_a_drive_that_is_not_heard_shields_no_other_axis(rig):
+    """The robot stops for the silence of one; another that goes on at 5 mm/s, 1.5 mm in 0.3 s, loses its power."""
+    rig.tick(SLOW)
+    rig.mock.drives["delta_3"].powered = False
+    rig.mock.drives["tilt"].stray = lambda velocity: velocity + 5e-3
+    number = ACTUATORS.index("tilt")
+    before = rig.plant.position[number]
+    for _ in range(150):
+        rig.tick(SLOW)
+    assert "delta_3: no TPDO" in rig.driver.stop.reason and rig.driver.stop.later > 0
+    assert abs(rig.plant.position[number] - before) < 0.35e-3
+
+
 def test_one_lost_tpdo_is_counted_and_no_reason_to_stop(rig):
     rig.tick(SLOW)
     rig.mock.tamper_frames = lambda channel, frames, now: frames[16:] if channel else frames

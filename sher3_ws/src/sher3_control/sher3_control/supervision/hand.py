@@ -166,10 +166,9 @@ class HandDetector(PlainDetector):
         What they felt counts as twice the least hand at most, so that a firm one is forgotten as soon as a light one.
         """
         settings = self._settings
-        hand = self._hand + min(1.0, step / settings.hand_notice) * (-held - self._hand)
+        hand = self._begun * (self._hand + min(1.0, step / settings.hand_notice) * (-held - self._hand))
         self._hand = _at_most(2.0 * settings.hand_least, hand)
-        felt = (sizes(hand) > settings.hand_least).any()
-        self._alone = NOWHERE if self._begun and felt else self._alone + moved
+        self._alone = NOWHERE if (sizes(hand) > settings.hand_least).any() else self._alone + moved
         travel = float(np.linalg.norm(self._alone.reshape(2, 3), axis=1).sum())
         if travel / settings.hand_travel > self._found.value / self._found.limit:
             self._found = self._found._replace(value=1e6 * travel, limit=1e6 * settings.hand_travel, unit="um")

@@ -244,6 +244,17 @@ class TpdoCollector:
         """Return the load encoder positions (5,), m or rad."""
         return tuple(map(mul, self._load, self._load_unit))
 
+    def newest(self, stamp: int, demand: Vector) -> DriveFeedback:
+        """Return what is known at the tick `stamp` (ns) though TPDOs are missing: drives not heard stay as they were.
+
+        Their echo is the demand given (5,) [m/s, rad/s]; velocities are zero.
+        """
+        motor, effort = tuple(map(mul, self._motor, self._motor_unit)), tuple(map(mul, self._torque, self._effort_unit))
+        echo = map(mul, self._demand, self._velocity_unit)
+        unheard = self.missing()
+        told = tuple([demand[n] if n in unheard else value for n, value in enumerate(echo)])
+        return DriveFeedback(stamp, self.load_position(), motor, (0.0,) * self._count, effort, told)
+
     def feedback(self, stamp: int) -> DriveFeedback:
         """Return the whole feedback of the tick `stamp` (ns); call it once a tick and only when every TPDO is in."""
         motor = tuple(map(mul, self._motor, self._motor_unit))

@@ -223,11 +223,7 @@ class MotorDriver:
             self._judge_drives(complete, now)
         self._watch(now)
         feedback = collector.feedback(self.gate.stamp) if complete else None
-        if feedback is not None:
-            motion, stop = self.watches.motion, session.stop
-            self._stop_if(motion.check(feedback, session.goal, session.enabled, stop, now))
-            if motion.powers_off(stop):
-                session.power_off()
+        self._judge_motion(feedback, now)
         if not session.enabled:
             self._steer()
         self._follow_early()
@@ -290,6 +286,17 @@ class MotorDriver:
         for trip in self.session.judge(collector.statuswords, missing, self.settings.missing_limit, now):
             self.stop_for(trip)
         self.counters["incomplete"] += not complete
+
+    def _judge_motion(self, feedback: DriveFeedback | None, now: int) -> None:
+        """Judge every axis that is heard; one that is not must not shield the others while the robot is stopped."""
+        motion, session, collector = self.watches.motion, self.session, self.wire.collector
+        seen = feedback
+        if seen is None and session.stop.first is not None:
+            seen = collector.newest(self.gate.stamp, motion.demand.newest)
+        if seen is not None:
+            self._stop_if(motion.check(seen, session.goal, session.enabled, session.stop, now))
+            if motion.powers_off(session.stop):
+                session.power_off()
 
     def _set_up_again(self) -> None:
         """Configure every drive again in a recovery: one of them restarted. The loop is held meanwhile, without power.

@@ -17,6 +17,7 @@ NEAR, TOP = 2e-3, 12.2e-3
 CALM = (IDLE, MOVING)
 NEAR_TRAVEL, TOP_TRAVEL = RUNAWAY[Regime.NEAR_TISSUE], RUNAWAY[Regime.FREE]
 WHY = "an axis that goes by itself at its drive's own limit: 40 um near tissue, 250 um elsewhere"
+UNHEARD = ("JOINTS_STALE", "DRIVE_SILENT", "DRIVE_HOST_LOST", "POSITION_LEFT")
 GOES = ("POSITION_LEFT", "DRIVE_DISOBEYS", "HAND_DOUBTFUL")
 
 
@@ -41,4 +42,11 @@ def _while_braking() -> Iterator[Row]:
                           quick=(after, name, speed) == (0.018, AXIS, NEAR), why=WHY)  # fmt: skip
 
 
-TOGETHER = (*_together(), *_while_braking())
+def _unheard() -> Iterator[Row]:
+    """Yield a leg that runs away while the robot stops for another drive, of which nothing is heard any more."""
+    for name in ("roll.up", "delta_2"):
+        yield Row(name, "off", reasons=UNHEARD, states=CALM, budget=NEAR_TRAVEL, after=0.006,
+                  beside=Row(f"{AXIS}.power", "creep", {"speed": NEAR}), why=WHY)  # fmt: skip
+
+
+TOGETHER = (*_together(), *_while_braking(), *_unheard())
