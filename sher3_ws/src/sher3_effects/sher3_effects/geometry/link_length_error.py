@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 from sher3_description import Robot
@@ -70,6 +71,9 @@ class JointPlace(Page):
     units = {"x": "m", "y": "m", "z": "m"}
     on_axis = {"x": "shift_x", "y": "shift_y", "z": "shift_z"}
     seen_at = (("", "tip"),)
+    FURTHEST = 0.1
+    """Shift, m, from which it is no error of an arm: drawing and measurement then do not belong together."""
+    bounds: ClassVar[Mapping[str, tuple[float, float]]] = dict.fromkeys("xyz", (-FURTHEST, FURTHEST))
 
     def signature(self, view: ArmView, site: str, shape: Shape) -> Signature:
         """Return three columns: shifts along the axes of the joint frame, per m."""

@@ -23,7 +23,7 @@ class ArmDescription(Description):
     """A serial arm measured from outside; a DH table, or a URDF with its base and tip link.
 
     Attributes:
-        joint_positions: (n, joints) of a table.
+        joint_positions: (n, joints) of a table, or a column for each joint.
         poses: (n, 4, 4) of the measured body in the measuring frame, or its position with quaternion or Euler angles.
         positions: (n, 3) of a target on the last link, or three columns, where no orientation was measured.
         lengths: (n,) of a cable or a ball bar from a point that stays to a point on the last link.
@@ -35,7 +35,7 @@ class ArmDescription(Description):
     """
 
     kind: Literal["arm"]
-    joint_positions: Column
+    joint_positions: Column | tuple[Column, ...]
     poses: Column | Pose | None = None
     positions: Column | tuple[Column, Column, Column] | None = None
     lengths: Column | None = None

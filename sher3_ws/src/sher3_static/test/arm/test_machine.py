@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
-from arms import ROWS, machine, measured
+from arms import ROWS, described, machine, measured
 from sher3_diagnosis import diagnose
 from sher3_machines import MachineError
+from sher3_static.arm.reading import read_arm
 
 OFFSETS = np.array([0.0, 0.008, 0.0, -0.006, 0.0, 0.0])
 
@@ -12,6 +13,22 @@ OFFSETS = np.array([0.0, 0.008, 0.0, -0.006, 0.0, 0.0])
 @pytest.fixture(scope="module")
 def verdict():
     return diagnose(machine(), [measured(OFFSETS)]).verdict
+
+
+def test_joint_positions_may_be_a_column_for_each_joint():
+    rng, columns = np.random.default_rng(0), [{"column": f"q{i}", "unit": "deg"} for i in range(6)]
+    data = {f"q{i}": rng.uniform(-70.0, 70.0, 40) for i in range(6)} | {"p": measured(OFFSETS, n=40)["poses"]}
+    read = read_arm("a", data, described(joint_positions=columns))["joints"]
+    np.testing.assert_allclose(read, np.radians(np.column_stack([data[f"q{i}"] for i in range(6)])))
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_no_link_is_a_hand_too_long(seed):
+    """Poses of another arm, or of a base that moved in between, are no error of this one."""
+    record = measured(np.zeros(6), seed=seed)
+    record.columns["poses"][40:, :3, 3] += np.random.default_rng(seed).uniform(-0.4, 0.4, 3)
+    for cause in diagnose(machine(), [record]).verdict.causes:
+        assert all(abs(p.value) < 0.1 for p in cause.parameters.values() if p.unit == "m")
 
 
 def test_a_nominal_arm_has_no_gap():
