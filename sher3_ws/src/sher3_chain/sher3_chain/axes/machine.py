@@ -26,6 +26,7 @@ from sher3_chain.axes.identification.confounded_laws import dead_band_note, with
 from sher3_chain.axes.identification.detection_limits import unseen_note
 from sher3_chain.axes.identification.refine import refine_free
 from sher3_chain.axes.identification.search import causes_of_axis
+from sher3_chain.axes.identification.true_force import in_true_force
 from sher3_chain.axes.law import causes_of_law, is_law, law_of_axis
 from sher3_chain.axes.limits import LIMIT, limit_finding
 from sher3_chain.axes.power import least_seen
@@ -113,7 +114,7 @@ class Axes(Chain[AxisEvidence]):
         causes = within_bounds(causes, attribution.told, self.effects(evidence))
         if free:
             return refine_free(evidence, causes)
-        causes = with_dead_band(causes) if servo else causes
+        causes = with_dead_band(causes) if servo else in_true_force(causes)
         return evidence, [in_own_unit(cause, own) for cause in causes] if own else causes
 
     def remarks(self, finding: Finding[AxisEvidence]) -> list[str]:

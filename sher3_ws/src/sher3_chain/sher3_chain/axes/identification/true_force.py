@@ -1,0 +1,45 @@
+"""Forces of an axis whose drive gives another force than it reports, in newtons that act.
+
+The balance is one of reported forces: with force = (1 + g) * reported, a friction F leaves F / (1 + g) in it, and so
+does a weight, a spring or a mass. Beside a gain that was found each of them is (1 + g) times its coefficient.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from sher3_diagnosis.verdict import Cause, Parameter
+from sher3_effects import pages
+
+GAIN = "drive gain"
+"""What a page scales that says how much force there is to what the drive reports."""
+FORCEFUL = ("N", "kg")
+"""Units of forces, of what a force is per path or speed, and of masses begin so."""
+
+
+def in_true_force(causes: Sequence[Cause]) -> list[Cause]:
+    """Return the causes of one axis with forces and masses as they act.
+
+    They stay as they are where no gain was found, or one that another mass stands in for: the forces are then right.
+    """
+    told = {page.id for page in pages("axis") if page.scales == GAIN}
+    gains = [c.parameters["relative"] for c in causes if c.effect in told and not c.rivals]
+    gain = next(iter(gains), None)
+    return list(causes) if gain is None else [_acting(cause, gain) for cause in causes]
+
+
+def _acting(cause: Cause, gain: Parameter) -> Cause:
+    told = {n: _times(p, gain) if p.unit.startswith(FORCEFUL) else p for n, p in cause.parameters.items()}
+    return cause.model_copy(update={"parameters": told})
+
+
+def _times(parameter: Parameter, gain: Parameter) -> Parameter:
+    """Return a parameter times one more than a gain, whose own interval widens that of the product."""
+    factor = 1.0 + gain.value
+    value, low, high = factor * parameter.value, parameter.low, parameter.high
+    if low is not None and high is not None:
+        own = 0.0 if gain.low is None or gain.high is None else 0.5 * (gain.high - gain.low) * abs(parameter.value)
+        below, above = (float(np.hypot(factor * side, own)) for side in (parameter.value - low, high - parameter.value))
+        low, high = value - below, value + above
+    return parameter.model_copy(update={"value": value, "low": low, "high": high})
