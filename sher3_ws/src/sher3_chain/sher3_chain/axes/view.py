@@ -186,7 +186,8 @@ class AxisView(ChainView):
         """Return quantity, of `sher3_diagnosis.effect.INPUTS`, -> (g, k) columns, as the axis feels them.
 
         The past of force and path is in Dahl states, which turn over a share of what each goes through. The force is
-        the one that the motion needs; where no mass is known and no force balance judged, the recorded one.
+        the one that the motion needs; where no mass is known and no force balance judged, the recorded one. Of a body
+        that nothing drives neither it nor the acceleration is a cause: what is judged there is made of them.
         """
         run, needed = self.run, self.inertial
         if not self.mass and run.effort is not None and run.nominal is None:
@@ -197,15 +198,19 @@ class AxisView(ChainView):
         loops = [dahl_turned(force, pace, share * reach, run.period)[run.grid] for share in PAST]
         travel = max(float(np.ptp(run.smooth)), self.described.encoder_resolution)
         turned = [self.sliding(0, share * travel)[run.grid] for share in PAST]
-        return {
+        felt = {
             "position": self.position,
             "velocity": self.velocity,
             "direction": np.column_stack(turned),
+            "load": self.path.contact_force,
+            "temperature": self.warmth[:, None],
+        }
+        if run.effort is not None and not run.effort.any():
+            return felt
+        return felt | {
             "acceleration": run.to_grid(run.acceleration),
             "force": needed,
             "loading": np.column_stack(loops),
-            "load": self.path.contact_force,
-            "temperature": self.warmth[:, None],
         }
 
     # what discovery reads
