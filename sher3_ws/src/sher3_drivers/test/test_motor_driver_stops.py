@@ -60,6 +60,22 @@ def test_a_drive_that_is_not_heard_shields_no_other_axis(rig):
     assert abs(rig.plant.position[number] - before) < 0.35e-3
 
 
+def test_a_drive_that_is_not_heard_loses_its_power(rig):
+    """It goes on at 5 mm/s though it is told to brake: 0.8 mm in 0.3 s, a tenth of that until its silence is told."""
+    tilt, number = rig.mock.drives["tilt"], ACTUATORS.index("tilt")
+    rig.tick(SLOW)
+    rig.mock.tamper_frames = lambda channel, frames, now: pack_frames(
+        frame for frame in iter_frames(frames) if frame.can_id & 0x7F != tilt.node_id
+    )
+    tilt.stray = lambda velocity: velocity + 5e-3
+    for _ in range(rig.settings.missing_limit + 5):
+        rig.tick(SLOW)
+    before = rig.plant.position[number]
+    for _ in range(150):
+        rig.tick(SLOW)
+    assert "tilt: no TPDO" in rig.driver.stop.reason and rig.plant.position[number] == before
+
+
 def test_one_lost_tpdo_is_counted_and_no_reason_to_stop(rig):
     rig.tick(SLOW)
     rig.mock.tamper_frames = lambda channel, frames, now: frames[16:] if channel else frames

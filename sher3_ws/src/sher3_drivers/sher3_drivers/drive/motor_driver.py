@@ -285,6 +285,7 @@ class MotorDriver:
         missing = frozenset() if complete else frozenset(collector.missing())
         for trip in self.session.judge(collector.statuswords, missing, self.settings.missing_limit, now):
             self.stop_for(trip)
+        self.session.cut_unheard()
         self.counters["incomplete"] += not complete
 
     def _judge_motion(self, feedback: DriveFeedback | None, now: int) -> None:

@@ -119,6 +119,11 @@ class DriveSession:
             drive.set_up(now)
         self.all_enabled, self._judged_words = False, []
 
+    def cut_unheard(self) -> None:
+        """Take the power from drives of which a stopped robot hears nothing: nobody can say that they brake."""
+        if self.stop.first is not None:
+            self.cut.update(axis for axis, drive in enumerate(self.drives) if drive.silent)
+
     def power_off(self) -> None:
         """Take the power from drives that have braked; their transitions keep the times they have."""
         self.goal = Goal.DISABLED

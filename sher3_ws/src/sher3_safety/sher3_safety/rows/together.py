@@ -43,10 +43,13 @@ def _while_braking() -> Iterator[Row]:
 
 
 def _unheard() -> Iterator[Row]:
-    """Yield a leg that runs away while the robot stops for another drive, of which nothing is heard any more."""
+    """Yield a leg that runs away while the robot stops for a drive, another or its own, that is not heard any more."""
     for name in ("roll.up", "delta_2"):
         yield Row(name, "off", reasons=UNHEARD, states=CALM, budget=NEAR_TRAVEL, after=0.006,
                   beside=Row(f"{AXIS}.power", "creep", {"speed": NEAR}), why=WHY)  # fmt: skip
+    for speed, budget in ((NEAR, NEAR_TRAVEL), (TOP, TOP_TRAVEL)):
+        yield Row(f"{AXIS}.up", "off", reasons=UNHEARD, states=CALM, budget=budget, after=0.006,
+                  beside=Row(f"{AXIS}.power", "creep", {"speed": speed}), why=WHY)  # fmt: skip
 
 
 TOGETHER = (*_together(), *_while_braking(), *_unheard())
