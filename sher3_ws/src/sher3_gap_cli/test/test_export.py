@@ -30,11 +30,11 @@ VERDICT = {
             "closure": {"value": 0.9},
         },
         {
-            "effect": "cogging",
+            "effect": "transmission_ripple",
             "family": "periodic",
-            "stage": "motor_mechanics",
+            "stage": "transmission",
             "actuator": "a",
-            "parameters": {"amplitude": {"value": 0.1, "unit": "N"}},
+            "parameters": {"amplitude": {"value": 0.1, "unit": "m"}},
             "closure": {"value": 0.1},
         },
     ],
@@ -55,7 +55,7 @@ def test_a_model_is_written_and_what_it_cannot_express_is_listed(call, tmp_path)
     found = call("--to", "mjcf", "--model", "m.xml", "--joint", "a=j", "--json")
     assert found.exit_code == 0, found.output
     data = json.loads(found.stdout)
-    assert len(data["written"]) == 1 and data["not_expressed"][0].startswith("cogging on j")
+    assert len(data["written"]) == 1 and data["not_expressed"][0].startswith("transmission_ripple on j")
     assert 'frictionloss="2"' in (tmp_path / "exported.xml").read_text()
 
 
