@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 import textwrap
+from datetime import date
 from pathlib import Path
 
 PAGE = Path(__file__).parent.parent / "docs" / "reference" / "safety-matrix.md"
@@ -22,7 +23,7 @@ def page(report: str) -> str:
     _, _, rest = report.partition("\n")
     told, _, _ = rest.strip().replace("um]", "µm]").partition("\n## What goes on")
     lines = [line if line.startswith("|") else textwrap.fill(line, WIDTH) for line in told.splitlines()]
-    return INTRODUCTION + "\n".join(lines).rstrip() + "\n"
+    return f"{INTRODUCTION}Figures of {date.today()}.\n\n" + "\n".join(lines).rstrip() + "\n"
 
 
 if __name__ == "__main__":
