@@ -44,7 +44,7 @@ PLAIN = 0.3
 """Share of the noise of a plain way that a low-pass must leave at most: it has a number that is fitted, and smooths."""
 ALIKE = 1.2
 """Noise over the least up to which two ways are alike: a median over thousands of samples is known to some per cent."""
-AT_FLOOR = 1.0
+NOTHING_LEFT = 1.0
 """Power over the floor up to which a plain way leaves nothing that another could explain: no other is tried."""
 FINER = 9
 """Halvings of the step between two of them."""
@@ -155,7 +155,7 @@ def best_way(signals: Sequence[AxisSignals], axis: Axis) -> Way:
         return _within(least([Way(LAST, shift) for shift in SHIFTS]))
     found = {way: excess(signals, axis, way) for way in (Way(speed, 0) for speed in (LAST, TWO, CENTRAL))}
     plainest = _least_of(found)
-    if found[plainest].late <= AT_FLOOR:
+    if found[plainest].late <= NOTHING_LEFT:
         return plainest
     plain = least([Way(speed, shift) for speed in (LAST, TWO, CENTRAL) for shift in SHIFTS])
     best = least([Way(speed, shift) for speed in LAGS for shift in SHIFTS])

@@ -189,13 +189,7 @@ class AxisView(ChainView):
         the one that the motion needs; where no mass is known and no force balance judged, the recorded one. Of a body
         that nothing drives neither it nor the acceleration is a cause: what is judged there is made of them.
         """
-        run, needed = self.run, self.inertial
-        if not self.mass and run.effort is not None and run.nominal is None:
-            needed = run.to_grid(run.effort)
-        force = np.interp(run.stage_clock, run.stage_clock[run.grid], needed[:, 0])
-        reach = float(np.ptp(force)) or 1.0
-        pace = np.gradient(force, run.period)
-        loops = [dahl_turned(force, pace, share * reach, run.period)[run.grid] for share in PAST]
+        run = self.run
         travel = max(float(np.ptp(run.smooth)), self.described.encoder_resolution)
         turned = [self.sliding(0, share * travel)[run.grid] for share in PAST]
         felt = {
@@ -207,6 +201,13 @@ class AxisView(ChainView):
         }
         if run.effort is not None and not run.effort.any():
             return felt
+        needed = self.inertial
+        if not self.mass and run.effort is not None and run.nominal is None:
+            needed = run.to_grid(run.effort)
+        force = np.interp(run.stage_clock, run.stage_clock[run.grid], needed[:, 0])
+        reach = float(np.ptp(force)) or 1.0
+        pace = np.gradient(force, run.period)
+        loops = [dahl_turned(force, pace, share * reach, run.period)[run.grid] for share in PAST]
         return felt | {
             "acceleration": run.to_grid(run.acceleration),
             "force": needed,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import NamedTuple
+from dataclasses import dataclass
 
 from sher3_description import ACTUATORS
 
@@ -16,8 +16,20 @@ ENCODER = ("transmission",)
 """Where an error of an encoder shows first beside its own stage."""
 
 
-class Row(NamedTuple):
-    """What is the same of a kind of fault on every truth plant; see `Kind` for the words."""
+@dataclass(frozen=True)
+class Row:
+    """What is the same of a kind of fault on every truth plant.
+
+    Attributes:
+        family: family of the contract, `outside` for the others.
+        stage: where it acts.
+        places: actuators on which it can sit.
+        start: magnitude at which calibration starts, for a slider.
+        least: smallest magnitude that makes sense.
+        most: largest one.
+        also: other stages where it may show first.
+        company: effects of the library that belong to it and are no false accusation.
+    """
 
     family: str
     stage: str

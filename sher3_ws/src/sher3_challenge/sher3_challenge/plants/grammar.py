@@ -161,7 +161,7 @@ def _drawn() -> Catalogue:
         for carrier in carriers:
             key = f"{name}_follows_{follows}{_CARRIERS[carrier]}"
             law = sentence(where, source, remembers, carrier)
-            found[key] = Kind(key, "outside", stage, places, *sizes, law, also)
+            found[key] = Kind("outside", stage, places, *sizes, also, name=key, apply=law)
     return found
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,7 @@ from numpy.typing import NDArray
 from sher3_common import Sher3Error
 from sher3_description import ACTUATORS
 
-from sher3_challenge.plants.declared import DECLARED
+from sher3_challenge.plants.declared import DECLARED, Row
 
 ANGULAR = {"length": 31.4, "force": 0.025, "stiffness": 8e-4, "compliance": 1256.0, "speed": 98.0, "inertia": 2e-3}
 """What one unit of a slider becomes on the roll axis, by ratio of encoder steps, rated forces and speed limits."""
@@ -64,33 +65,17 @@ class Site:
 Apply = Callable[[Any, Site, float], dict[str, float]]
 
 
-@dataclass(frozen=True)
-class Kind:
-    """One kind of fault.
+@dataclass(frozen=True, kw_only=True)
+class Kind(Row):
+    """One kind of fault of one truth plant.
 
     Attributes:
         name: effect id of the contract, or a name of its own outside the catalogue.
-        family: family of the contract, `outside` for the others.
-        stage: where it acts.
-        places: actuators on which it can sit.
-        start: magnitude at which calibration starts, for a slider.
-        least: smallest magnitude that makes sense.
-        most: largest one.
         apply: writes the fault of a magnitude into a rig; returns its parameters by the contract's names.
-        also: other stages where it may show first.
-        company: effects of the library that belong to it and are no false accusation.
     """
 
     name: str
-    family: str
-    stage: str
-    places: tuple[str, ...]
-    start: float
-    least: float
-    most: float
     apply: Apply
-    also: tuple[str, ...] = ()
-    company: tuple[str, ...] = ()
 
     @property
     def effect(self) -> str:
@@ -132,19 +117,15 @@ class Catalogue(dict[str, Kind]):
 
     def known(self, apply: Apply) -> Apply:
         """Register the decorated function as the kind that is declared under its name."""
-        name = apply.__name__
-        self[name] = Kind(name=name, apply=apply, **DECLARED[name]._asdict())
-        return apply
+        return self._register(apply, DECLARED[apply.__name__])
 
     def add(
         self, family: str, stage: str, places: tuple[str, ...], start: float, least: float, most: float,
         also: tuple[str, ...] = (), company: tuple[str, ...] = (),
     ) -> Callable[[Apply], Apply]:  # fmt: skip
         """Register the decorated function as the kind of its name."""
+        return partial(self._register, row=Row(family, stage, places, start, least, most, also, company))
 
-        def register(apply: Apply) -> Apply:
-            name = apply.__name__
-            self[name] = Kind(name, family, stage, places, start, least, most, apply, also, company)
-            return apply
-
-        return register
+    def _register(self, apply: Apply, row: Row) -> Apply:
+        self[apply.__name__] = Kind(**vars(row), name=apply.__name__, apply=apply)
+        return apply

@@ -249,22 +249,24 @@ class TpdoCollector:
 
         Their echo is the demand given (5,) [m/s, rad/s]; velocities are zero.
         """
-        motor, effort = tuple(map(mul, self._motor, self._motor_unit)), tuple(map(mul, self._torque, self._effort_unit))
-        echo = map(mul, self._demand, self._velocity_unit)
-        unheard = self.missing()
-        told = tuple([demand[n] if n in unheard else value for n, value in enumerate(echo)])
-        return DriveFeedback(stamp, self.load_position(), motor, (0.0,) * self._count, effort, told)
+        seen, unheard = self._seen(stamp), self.missing()
+        told = tuple([demand[n] if n in unheard else value for n, value in enumerate(seen.velocity_demand)])
+        return seen._replace(velocity_demand=told)
 
     def feedback(self, stamp: int) -> DriveFeedback:
         """Return the whole feedback of the tick `stamp` (ns); call it once a tick and only when every TPDO is in."""
-        motor = tuple(map(mul, self._motor, self._motor_unit))
-        if self._previous is None:
-            velocity: Vector = (0.0,) * self._count
-        else:
-            tick, before = self._previous
-            span = (self._tick - tick) * self._period
-            velocity = tuple([step / span for step in map(sub, motor, before)])
+        seen = self._seen(stamp)
+        motor, previous = seen.motor_position, self._previous
         self._previous = self._tick, motor
+        if previous is None:
+            return seen
+        tick, before = previous
+        span = (self._tick - tick) * self._period
+        return seen._replace(motor_velocity=tuple([step / span for step in map(sub, motor, before)]))
+
+    def _seen(self, stamp: int) -> DriveFeedback:
+        """Return the newest reports; velocities, which take two of them, are zero."""
+        motor = tuple(map(mul, self._motor, self._motor_unit))
         effort = tuple(map(mul, self._torque, self._effort_unit))
         demand = tuple(map(mul, self._demand, self._velocity_unit))
-        return DriveFeedback(stamp, self.load_position(), motor, velocity, effort, demand)
+        return DriveFeedback(stamp, self.load_position(), motor, (0.0,) * self._count, effort, demand)

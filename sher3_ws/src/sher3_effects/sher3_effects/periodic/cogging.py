@@ -87,8 +87,7 @@ class CoggingOnJoint(Cogging):
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Return amplitude, periods per turn of the joint (per 2 pi m of one that slides) and phase."""
-        amplitude, phase = np.hypot(*coefficients), np.arctan2(coefficients[1], coefficients[0])
-        return {"amplitude": float(amplitude), "periods_per_turn": shape["periods_per_turn"], "phase": float(phase)}
+        return sine_of(shape, coefficients, "periods_per_turn")
 
 
 @dataclass(frozen=True)

@@ -15,8 +15,8 @@ def phase_at_zero() -> Any:
     return parameter("rad", 0.0, -7.0, 7.0, "at zero position", fixed_unit=True)
 
 
-def sine_of(shape: Shape, coefficients: Array) -> dict[str, float]:
+def sine_of(shape: Shape, coefficients: Array, order: str = "periods_per_rev") -> dict[str, float]:
     """Return amplitude, order and phase of A sin(n turn + phase); the first two coefficients are its quadratures."""
     sine, cosine = float(coefficients[0]), float(coefficients[1])
     amplitude, phase = float(np.hypot(sine, cosine)), float(np.arctan2(cosine, sine))
-    return {"amplitude": amplitude, "periods_per_rev": shape["periods_per_rev"], "phase": phase}
+    return {"amplitude": amplitude, order: shape[order], "phase": phase}

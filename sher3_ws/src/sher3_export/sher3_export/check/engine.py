@@ -17,6 +17,7 @@ from sher3_diagnosis.channel import Array
 
 from sher3_export.check.recorded import Recorded, Track
 from sher3_export.errors import ExportError, MujocoMissing
+from sher3_export.targets.mjcf_body import controlled
 from sher3_export.xml_file import written
 
 WINDOW = 0.25
@@ -61,12 +62,7 @@ def prepared(root: Element, period: float, tracks: Mapping[str, Track]) -> Eleme
     for block in root.findall("actuator"):
         for x in [x for x in block if x.get("joint") in forced and is_servo(x)]:
             block.remove(x)
-    driven = {
-        x.get("joint")
-        for block in root.findall("actuator")
-        for x in block
-        if x.get("gainprm") != "0" and x.get("input") != "none"
-    }
+    driven = {x.get("joint") for block in root.findall("actuator") for x in block if controlled(x)}
     for joint in tracks:
         if joint not in driven:
             SubElement(actuators, "motor", {"joint": joint, "ctrllimited": "false"})

@@ -10,7 +10,7 @@ from xml.etree.ElementTree import Element, SubElement
 
 from sher3_export.changes import Change
 from sher3_export.targets import mjcf_motor
-from sher3_export.targets.mjcf_body import moved, together
+from sher3_export.targets.mjcf_body import controlled, moved, together
 from sher3_export.targets.target import XmlTarget, field
 from sher3_export.xml_file import elements, number, numbers, parents, written
 
@@ -354,7 +354,7 @@ class Mjcf(XmlTarget):
             x
             for block in self.root.findall("actuator")
             for x in block
-            if x.get("joint") == joint and x.tag in ACTUATORS and x.get("gainprm") != "0" and x.get("input") != "none"
+            if x.get("joint") == joint and x.tag in ACTUATORS and controlled(x)
         ]
 
     def _servos(self, joint: str) -> list[Element]:

@@ -1,4 +1,4 @@
-"""Bodies of an MJCF model: what is fixed to one, and one that moves."""
+"""Parts of an MJCF model: what is fixed to a body, a body that moves, actuators that a control reaches."""
 
 from __future__ import annotations
 
@@ -12,6 +12,11 @@ def together(body: Element) -> list[Element]:
     """Return a body and those below it that no joint parts from it."""
     below = [x for x in body.findall("body") if x.find("joint") is None and x.find("freejoint") is None]
     return [body, *(part for x in below for part in together(x))]
+
+
+def controlled(actuator: Element) -> bool:
+    """Return whether a control reaches an actuator: it has an input, and a gain."""
+    return actuator.get("gainprm") != "0" and actuator.get("input") != "none"
 
 
 def moved(body: Element, change: Change) -> str:
