@@ -59,5 +59,5 @@ def read(path: str) -> dict[str, object]:
 
 
 if __name__ == "__main__":
-    found = {read(path)["module"].split(".")[0]: read(path) for path in sys.argv[1:]}  # type: ignore[attr-defined]
+    found = {str(x["module"]).split(".")[0]: x for x in map(read, sys.argv[1:])}
     print(json.dumps(found, indent=1, sort_keys=True))

@@ -117,16 +117,19 @@ def _from_matrices(found: Array, run: str) -> Rotation:
     return Rotation.from_matrix(turn)
 
 
-def together(columns: Column | tuple[Column, ...], tables: Tables, run: str, width: int) -> Array:
-    """Return one column of (n, width), or that many columns of (n,) side by side; raises MachineError otherwise."""
+def together(columns: Column | tuple[Column, ...], tables: Tables, run: str, width: int | None = None) -> Array:
+    """Return one column of (n, width), or that many columns of (n,) side by side; raises MachineError otherwise.
+
+    Any width will do where none is given.
+    """
     given = columns if isinstance(columns, tuple) else (columns,)
     found = [pick(column, tables, run) for column in given]
     if len({len(x) for x in found}) > 1:
         raise MachineError(
-            f"{run}: columns of a pose differ in length", value=[len(x) for x in found], remedy="cut them"
+            f"{run}: columns that stand side by side differ in length", value=[len(x) for x in found], remedy="cut them"
         )
     out = np.column_stack(found)
-    if out.shape[1] != width:
+    if width is not None and out.shape[1] != width:
         name = given[0].column
         raise MachineError(
             f"{run}: {name} has another width", value=out.shape[1], limit=width, remedy="name its columns"

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 from sher3_diagnosis.channel import Array
 from sher3_machines.errors import MachineError
-from sher3_machines.intake.columns import pick, pick_beside
+from sher3_machines.intake.columns import pick
 from sher3_machines.intake.fields import Column
 from sher3_machines.intake.poses import poses_of, together
 from sher3_machines.intake.tables import Tables
@@ -36,7 +34,7 @@ def read_arm(name: str, tables: Tables, machine: ArmDescription) -> Readings:
             rotation.
     """
     positions = machine.joint_positions
-    joints = pick(positions, tables, name) if isinstance(positions, Column) else _stacked(positions, tables, name)
+    joints = pick(positions, tables, name) if isinstance(positions, Column) else together(positions, tables, name)
     column, measured, places = _measured(name, tables, machine)
     if len(measured) != len(joints) or joints.ndim != 2:
         raise MachineError(
@@ -49,12 +47,6 @@ def read_arm(name: str, tables: Tables, machine: ArmDescription) -> Readings:
     _within(f"{name}: joint positions: likely deg recorded as rad", joints, FURTHEST_TURN, "4 pi", "state unit: deg")
     _within(f"{name}: {column}: likely mm recorded as m", places, FURTHEST, f"{FURTHEST:g} m", "state unit: mm")
     return Readings(name, {"joints": joints, column: measured})
-
-
-def _stacked(columns: Sequence[Column], tables: Tables, name: str) -> Array:
-    """Return a column (n,) for each joint side by side, (n, k); raises MachineError."""
-    first = pick(columns[0], tables, name)
-    return np.column_stack([pick_beside(first.shape, column, tables, name) for column in columns])
 
 
 def _measured(name: str, tables: Tables, machine: ArmDescription) -> tuple[str, Array, Array]:
