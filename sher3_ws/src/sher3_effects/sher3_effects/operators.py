@@ -257,8 +257,8 @@ def _follow(x: Array, keep: float) -> Array:
 
 
 @compiled
-def limited_lag(error: Array, start: float, gains: Array, time_constant: float, period: float) -> Array:
-    """Force (n,) of a PI law on a velocity error (n,), ended at a limit, behind a first-order lag.
+def taken_by_limit(error: Array, start: float, gains: Array, time_constant: float, period: float) -> Array:
+    """Force (n,) that a limit adds to a PI law on a velocity error (n,), both behind a first-order lag.
 
     Args:
         error: (n,) its mean over the interval that ends at each tick.
@@ -270,12 +270,13 @@ def limited_lag(error: Array, start: float, gains: Array, time_constant: float, 
     proportional, integral, limit = gains
     kept = math.exp(-period / time_constant)
     out = np.empty_like(error)
-    force, rest = start, start
+    ended, held, free, rest = start, start, start, start
     for k in range(len(error)):
-        wanted = proportional * error[k] + rest
+        asked, wanted = proportional * error[k] + rest, proportional * error[k] + held
         given = min(max(wanted, -limit), limit)
+        rest += integral * error[k] * period
         if given == wanted or error[k] * wanted < 0.0:
-            rest += integral * error[k] * period
-        force = given + (force - given) * kept
-        out[k] = force
+            held += integral * error[k] * period
+        free, ended = asked + (free - asked) * kept, given + (ended - given) * kept
+        out[k] = ended - free
     return out

@@ -12,8 +12,7 @@ from sher3_diagnosis.verdict import Cause, Verdict
 from sher3_export.changes import Change, Untold, changes_of
 from sher3_export.errors import ExportError
 from sher3_export.targets.configuration import Configuration
-from sher3_export.targets.isaac import Isaac
-from sher3_export.targets.isaaclab import IsaacLab
+from sher3_export.targets.isaac import Isaac, IsaacLab
 from sher3_export.targets.mjcf import Mjcf
 from sher3_export.targets.mjlab import Mjlab
 from sher3_export.targets.plain import Plain

@@ -10,7 +10,6 @@ from sher3_diagnosis.attribute.rivals import Attribution
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import Fit, Term, fit
 from sher3_diagnosis.fit.term import again
-from sher3_diagnosis.judge.borne_out import kept
 from sher3_diagnosis.thresholds import NEEDED
 
 from sher3_chain.search.friction_in_motion import without_slow
@@ -22,7 +21,7 @@ SHAPED = ("friction", "lost_motion", "compliance")
 def borne_out(evidence: Evidence, found: Attribution) -> Attribution:
     """Return the causes without those that show at reversals alone; the others are fitted again."""
     only = of_reversals(evidence, found.fit)
-    return kept(evidence, found, [i for i in found.causes if i not in only])
+    return found.kept(evidence, [i for i in found.causes if i not in only])
 
 
 def of_reversals(evidence: Evidence, found: Fit) -> set[int]:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 from sher3_diagnosis.attribute.candidates import Candidates
 from sher3_diagnosis.channel import AT_TIP, Array
@@ -45,6 +46,33 @@ class Attribution:
     """Fits on the way to this one, where the effects were looked for in layers."""
     moving: InMotion | None = None
     """The fit where no friction rests, where a cause is one that does."""
+
+    def arranged(self, evidence: Evidence, order: Sequence[int], new: Mapping[int, Term] | None = None) -> Attribution:
+        """Return some of the terms in an order, fitted again; what was found of each stays with it.
+
+        Args:
+            evidence: that the fit is of.
+            order: indices of the terms.
+            new: index -> the term in its place, of which no rivals are known.
+        """
+        new = new or {}
+        if list(order) == list(range(len(self.fit.terms))) and not new:
+            return self
+
+        def of(found: tuple[tuple[Fit, ...], ...]) -> tuple[tuple[Fit, ...], ...]:
+            return tuple(() if i in new else found[i] for i in order) if found else ()
+
+        return replace(
+            self,
+            fit=fit(evidence.data, [new.get(i, self.fit.terms[i]) for i in order]),
+            rivals=of(self.rivals),
+            explained=tuple(self.explained[i] for i in order),
+            ranking=of(self.ranking),
+        )
+
+    def kept(self, evidence: Evidence, causes: Sequence[int]) -> Attribution:
+        """Return the attribution with some of its causes alone, given by their indices."""
+        return self.arranged(evidence, [*range(self.nuisance), *causes])
 
     @property
     def causes(self) -> range:

@@ -7,14 +7,14 @@ What fails the first is left out; what fails the others imitates an effect that 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection
 from dataclasses import replace
 
 from sher3_diagnosis.attribute.rivals import Attribution
 from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.finding import Finding
-from sher3_diagnosis.fit.fitting import Fit, fit
+from sher3_diagnosis.fit.fitting import Fit
 from sher3_diagnosis.judge.foreign_inputs import foreign_in
 from sher3_diagnosis.quantify.closure import closure
 from sher3_diagnosis.thresholds import AT_FLOOR, FOREIGN_SHARE, FOREIGN_SIZE, PARSIMONY, PART_CLOSED
@@ -31,7 +31,7 @@ def significant_causes(
     """
     for i in reversed([i for i in attribution.causes if untold(evidence, attribution, i)]):
         if len(attribution.causes) > 1:
-            fewer = kept(evidence, attribution, [k for k in attribution.causes if k != i])
+            fewer = attribution.kept(evidence, [k for k in attribution.causes if k != i])
             if set(left(fewer.fit)) <= set(left(attribution.fit)):
                 attribution = fewer
     return attribution
@@ -72,7 +72,7 @@ def without_imitations(finding: Finding, free_laws: bool) -> Finding:
     ]
     return replace(
         finding,
-        attribution=kept(evidence, found, true),
+        attribution=found.kept(evidence, true),
         causes=[place[i] for i in true],
         left=left,
         imitations=(*finding.imitations, *imitations),
@@ -85,17 +85,3 @@ def foreign_law(evidence: Evidence, attribution: Attribution, channel: Channel) 
     if found is None or found.own < AT_FLOOR:
         return False
     return found.size > FOREIGN_SIZE and found.share > FOREIGN_SHARE
-
-
-def kept(evidence: Evidence, attribution: Attribution, causes: Sequence[int]) -> Attribution:
-    """Return the attribution with some of its causes alone, fitted again; their rivals stay."""
-    indices = [*range(attribution.nuisance), *causes]
-    if len(indices) == len(attribution.fit.terms):
-        return attribution
-    return replace(
-        attribution,
-        fit=fit(evidence.data, [attribution.fit.terms[i] for i in indices]),
-        rivals=tuple(attribution.rivals[i] for i in indices),
-        explained=tuple(attribution.explained[i] for i in indices),
-        ranking=tuple(attribution.ranking[i] for i in indices if attribution.ranking),  # a search by steps ranks none
-    )

@@ -8,7 +8,6 @@ from dataclasses import replace
 from sher3_diagnosis.attribute.rivals import Attribution
 from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.finding import LIBRARY, OUTSIDE, Finding, Item, Judged
-from sher3_diagnosis.fit.fitting import fit
 from sher3_diagnosis.judge.calibration.calibration import Calibration
 from sher3_diagnosis.judge.costs import Costs
 from sher3_diagnosis.judge.items import items_of
@@ -72,18 +71,11 @@ def _imitation(finding: Finding, j: Judged) -> Imitation:
 def _kept(finding: Finding, named: Sequence[Judged], reach: float) -> tuple[Attribution, list[Cause]]:
     """Return the attribution with the named causes alone, their rivals within reach, and the causes."""
     found = finding.attribution
-    indices = [*range(found.nuisance), *(j.item.index for j in named if j.item.index is not None)]
     rivals = {j.item.index: _rivals(found, j, reach) for j in named}
-    again = found.fit
-    if len(indices) < len(found.fit.terms):
-        again = fit(finding.evidence.data, [found.fit.terms[i] for i in indices])
+    indices = [j.item.index for j in named if j.item.index is not None]
+    none = ((),) * found.nuisance
     attribution = replace(
-        found,
-        fit=again,
-        moving=None,
-        rivals=tuple(rivals.get(i, ()) for i in indices),
-        explained=tuple(found.explained[i] for i in indices),
-        ranking=tuple(found.ranking[i] for i in indices),
+        found.kept(finding.evidence, indices), moving=None, rivals=(*none, *(rivals[i] for i in indices))
     )
     causes = []
     for j in named:

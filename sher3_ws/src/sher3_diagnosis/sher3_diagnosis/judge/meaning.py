@@ -17,7 +17,7 @@ from sher3_diagnosis.attribute.candidates import Candidates
 from sher3_diagnosis.attribute.rivals import Attribution
 from sher3_diagnosis.channel import Array
 from sher3_diagnosis.evidence import Evidence
-from sher3_diagnosis.fit.fitting import Fit, Term, fit
+from sher3_diagnosis.fit.fitting import Fit, Term
 from sher3_diagnosis.verdict import Cause, Parameter
 
 LOST = "lost_motion"
@@ -122,19 +122,9 @@ def _holds_zero(p: Parameter) -> bool:
 
 def _unnamed(evidence: Evidence, attribution: Attribution, indices: Sequence[int]) -> Attribution:
     """Return the attribution with some of its causes among the terms that are none."""
-    order = [*range(attribution.nuisance), *indices, *(i for i in attribution.causes if i not in indices)]
-
-    def put(x: tuple) -> tuple:
-        return tuple(x[i] for i in order) if x else x
-
-    return replace(
-        attribution,
-        fit=fit(evidence.data, [attribution.fit.terms[i] for i in order]),
-        rivals=put(attribution.rivals),
-        explained=put(attribution.explained),
-        ranking=put(attribution.ranking),
-        nuisance=attribution.nuisance + len(indices),
-    )
+    rest = [i for i in attribution.causes if i not in indices]
+    put = attribution.arranged(evidence, [*range(attribution.nuisance), *indices, *rest])
+    return replace(put, nuisance=attribution.nuisance + len(indices))
 
 
 def _simpler(candidates: Candidates, attribution: Attribution, index: int) -> Attribution:
@@ -145,15 +135,7 @@ def _simpler(candidates: Candidates, attribution: Attribution, index: int) -> At
     beside = {t.effect.id for t in others if t.site == term.site}
     plain = [e for e in candidates.effects if e.id in term.effect.extends and e.id not in beside]
     trials = [f for e in plain if (f := candidates.best(e, term.site, others)) is not None]
-    new = [min(trials, key=lambda f: f.total).terms[-1]] if trials else []
-
-    def put(x: tuple, of: tuple) -> tuple:
-        return (*x[:index], *of, *x[index + 1 :]) if x else x
-
-    return replace(
-        attribution,
-        fit=fit(evidence.data, [*others[:index], *new, *others[index:]]),
-        rivals=put(attribution.rivals, ((),) * len(new)),
-        explained=put(attribution.explained, (attribution.explained[index],) * len(new)),
-        ranking=put(attribution.ranking, ((),) * len(new)),
-    )
+    if not trials:
+        return attribution.kept(evidence, [i for i in attribution.causes if i != index])
+    simpler = min(trials, key=lambda f: f.total).terms[-1]
+    return attribution.arranged(evidence, range(len(found.terms)), {index: simpler})

@@ -12,7 +12,7 @@ from sher3_diagnosis.effect import Best, Shape, Signature, column
 from sher3_sim.effect import EVERYWHERE, PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
-from sher3_effects.operators import first_order, held_lag, limited_lag, oscillator
+from sher3_effects.operators import first_order, held_lag, oscillator, taken_by_limit
 from sher3_effects.page import Page
 from sher3_effects.view import AxisView, RobotView
 
@@ -75,12 +75,8 @@ class DriveLag(Page):
         run, drive = view.run, view.robot.actuators[axis].drive
         assert run.echo is not None
         error = run.echo[:, axis] - np.diff(run.motor[:, axis], prepend=run.motor[0, axis]) / run.period
-        start = float(run.effort[0, axis])
-        ended, free = (
-            limited_lag(error, start, np.array([drive.kp, drive.ki, limit]), time, run.period)
-            for limit in (drive.limit, np.inf)
-        )
-        return ended - free
+        gains = np.array([drive.kp, drive.ki, drive.limit])
+        return taken_by_limit(error, float(run.effort[0, axis]), gains, time, run.period)
 
     def _between(self, view: RobotView, axis: int, kp: float) -> tuple[Array, Array]:
         """Return the law (n,) behind the step of the tick before, and its mean over the interval.

@@ -25,6 +25,7 @@ class SensorDelay(Page):
     inputs = ("velocity", "force")
     kinds: ClassVar[tuple[str, ...]] = ("axis", "servo")
     seen_at = (("transmission", ""), ("motor_mechanics", ""))
+    of_recorder = True
     computed = "effort_delay"
     best = Best("sweep", "several speeds tell a lag in time from one in travel")
     explanation = (

@@ -7,9 +7,10 @@ from collections.abc import Mapping, Sequence
 from typing import ClassVar
 
 from sher3_export.changes import Change
-from sher3_export.targets.isaac import DELAYS
 from sher3_export.targets.target import Target
 
+DELAYS = ("delay", "servo_delay")
+"""Constants that a group counts in physics steps: it gives a command, or a reference, so many of them late."""
 STEP = 0.005
 """Physics step, s, in which a delay is counted; the file says so. Set by custom: tasks of both libraries run at 200 Hz.
 """
@@ -66,12 +67,7 @@ class Configuration(Target):
     def text(self, remarks: Sequence[str]) -> str:
         """Return the file."""
         self.finish()
-        totals = ALONE if self.nominal is None else "Values are totals, with the model's."
-        lines = [
-            *remarks,
-            f"Fields of {self.version}. Delays in steps of {STEP} s. {totals}",
-            "RANGES: 95 % intervals of the fields, to draw from in domain randomisation.",
-        ]
+        lines = [*self.said(remarks), "RANGES: 95 % intervals of the fields, to draw from in domain randomisation."]
         used = sorted({self._class(group) for group in self.groups.values()} or {self.plain})
         groups = "".join(f"    {joint!r}: {self._group(joint, group)},\n" for joint, group in self.groups.items())
         ranges = "".join(f"    {joint!r}: {found!r},\n" for joint, found in self.ranges.items() if found)
@@ -80,6 +76,11 @@ class Configuration(Target):
             f"{head}\nfrom {self.source} import {', '.join(used)}\n\n"
             f"ACTUATORS = {{\n{groups}}}\n\nRANGES = {{\n{ranges}}}\n"
         )
+
+    def said(self, remarks: Sequence[str]) -> list[str]:
+        """Return the remarks, whose fields these are and what their values mean."""
+        totals = ALONE if self.nominal is None else "Values are totals, with the model's."
+        return [*remarks, f"Fields of {self.version}. Delays in steps of {STEP} s. {totals}"]
 
     def finish(self) -> None:
         """Bring the groups into order before they are written; default nothing."""

@@ -11,7 +11,7 @@ from xml.etree.ElementTree import Element, SubElement
 from sher3_export.changes import Change
 from sher3_export.targets import mjcf_motor
 from sher3_export.targets.mjcf_body import controlled, moved, together
-from sher3_export.targets.target import XmlTarget, field
+from sher3_export.targets.target import NOT_TOLD, XmlTarget, each, field
 from sher3_export.xml_file import elements, number, numbers, parents, written
 
 STEP = 0.002
@@ -65,16 +65,11 @@ class Mjcf(XmlTarget):
         "spring": "stiffness",
         "rest": "springref",
         "link": "inertial, or mass or density of the geoms",
-        **dict.fromkeys(("payload", "payload_x", "payload_y", "payload_z"), "a body of its own"),
-        **dict.fromkeys(("shift_x", "shift_y", "shift_z"), "pos of the body"),
-    }
-    refuses: ClassVar[Mapping[str, str]] = {
-        **dict.fromkeys(
-            ("arm", "hanging"), "a weight at an arm is mass and centre of a link, which the verdict does not give"
+        **each(
+            {"payload payload_x payload_y payload_z": "a body of its own", "shift_x shift_y shift_z": "pos of the body"}
         ),
-        "load_loss": "friction does not follow the load here; that of the mean load was written",
-        "ratio": "the load encoder is no part of the joint",
     }
+    refuses: ClassVar[Mapping[str, str]] = NOT_TOLD
 
     def __init__(self, root: Element) -> None:
         super().__init__(root)
@@ -112,12 +107,8 @@ class Mjcf(XmlTarget):
             "rest": self._rest,
             "link": self._link,
             "payload": self._payload,
-            "payload_x": self._centre,
-            "payload_y": self._centre,
-            "payload_z": self._centre,
-            "shift_x": self._shift,
-            "shift_y": self._shift,
-            "shift_z": self._shift,
+            **dict.fromkeys(("payload_x", "payload_y", "payload_z"), self._centre),
+            **dict.fromkeys(("shift_x", "shift_y", "shift_z"), self._shift),
         }
 
     def nominal(self) -> dict[str, dict[str, float]]:

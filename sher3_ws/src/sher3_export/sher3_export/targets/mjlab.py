@@ -9,8 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import ClassVar
 
-from sher3_export.targets.configuration import Configuration
-from sher3_export.targets.isaac import DELAYS
+from sher3_export.targets.configuration import DELAYS, Configuration
 from sher3_export.targets.mjcf import Mjcf
 
 MODEL = "it stands in the MJCF that mjlab loads: write it there with --to mjcf"

@@ -14,33 +14,13 @@ from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
 
 from sher3_export.changes import Change
-from sher3_export.targets.target import Target
+from sher3_export.targets.target import Target, each
 from sher3_export.xml_file import write_xml, written
 
 PARAMETERS = (
-    "coulomb",
-    "static",
-    "stribeck",
-    "viscous",
-    "load_loss",
-    "offset",
-    "drive",
-    "inertia",
-    "delay",
-    "servo",
-    "servo_position",
-    "servo_velocity",
-    "servo_delay",
-    "lag",
-    "zero",
-    "cogging",
-    "cogging_periods",
-    "cogging_phase",
-    "ratio",
-    "backlash",
-    "compliance",
-    "spring",
-    "rest",
+    *("coulomb", "static", "stribeck", "viscous", "load_loss", "offset", "drive", "inertia", "delay"),
+    *("servo", "servo_position", "servo_velocity", "servo_delay", "lag", "zero"),
+    *("cogging", "cogging_periods", "cogging_phase", "ratio", "backlash", "compliance", "spring", "rest"),
 )
 """Constants that become a parameter of the joint with their own name, SI units."""
 LINK = "it belongs to a link of the URDF, not to the hardware of a joint"
@@ -54,21 +34,8 @@ class Ros2Control(Target):
         **{name: f'param "{name}"' for name in PARAMETERS},
         "limit": "min and max of the command interface `effort`",
     }
-    refuses: ClassVar[Mapping[str, str]] = dict.fromkeys(
-        (
-            "weight",
-            "arm",
-            "hanging",
-            "link",
-            "payload",
-            "payload_x",
-            "payload_y",
-            "payload_z",
-            "shift_x",
-            "shift_y",
-            "shift_z",
-        ),
-        LINK,
+    refuses: ClassVar[Mapping[str, str]] = each(
+        {"weight arm hanging link payload payload_x payload_y payload_z shift_x shift_y shift_z": LINK}
     )
 
     def __init__(self) -> None:

@@ -7,12 +7,9 @@ from typing import ClassVar
 from xml.etree.ElementTree import Element
 
 from sher3_export.changes import Change
-from sher3_export.targets.target import XmlTarget
+from sher3_export.targets.target import NOT_TOLD, XmlTarget, each
 from sher3_export.targets.urdf import PAYLOAD, child
 from sher3_export.xml_file import number, written
-
-DRIVE = "an SDF joint has no drive; gain, delay and lag belong to the controller plugin"
-SPRING = "the spring of an SDF joint acts between its links, not between motor and load"
 
 
 class Sdf(XmlTarget):
@@ -28,27 +25,25 @@ class Sdf(XmlTarget):
         "rest": "spring_reference",
     }
     refuses: ClassVar[Mapping[str, str]] = {
-        **dict.fromkeys(
-            ("arm", "hanging"), "a weight at an arm is mass and centre of a link, which the verdict does not give"
+        **NOT_TOLD,
+        **each(
+            {
+                "static": "SDF friction is the same at rest and in motion; only the sliding level was written",
+                "stribeck": "SDF friction does not depend on speed",
+                "offset": "an SDF joint has no constant force",
+                "weight": "a share of the weight without its inertia is no mass of a link",
+                "inertia": "an SDF joint has no rotor inertia",
+                "drive delay lag servo servo_position servo_velocity servo_delay": "an SDF joint has no drive; gain, "
+                "delay and lag belong to the controller plugin",
+                "cogging cogging_periods cogging_phase": "an SDF joint has no force over its angle",
+                "zero": "an SDF joint has no offset of its zero; turn the pose of its child by hand",
+                "backlash": "an SDF joint has no play; add a joint by hand or export to mjcf",
+                "compliance": "the spring of an SDF joint acts between its links, not between motor and load",
+                "link": "the inertial element of a link is no part of a joint; scale its mass and inertia by hand",
+                "payload payload_x payload_y payload_z": PAYLOAD,
+                "shift_x shift_y shift_z": "the pose of the child link belongs to the model's tree; shift it by hand",
+            }
         ),
-        "load_loss": "friction does not follow the load here; that of the mean load was written",
-        "static": "SDF friction is the same at rest and in motion; only the sliding level was written",
-        "stribeck": "SDF friction does not depend on speed",
-        "offset": "an SDF joint has no constant force",
-        "weight": "a share of the weight without its inertia is no mass of a link",
-        "inertia": "an SDF joint has no rotor inertia",
-        "drive": DRIVE,
-        **dict.fromkeys(("delay", "lag", "servo", "servo_position", "servo_velocity", "servo_delay"), DRIVE),
-        **dict.fromkeys(("cogging", "cogging_periods", "cogging_phase"), "an SDF joint has no force over its angle"),
-        "zero": "an SDF joint has no offset of its zero; turn the pose of its child by hand",
-        "backlash": "an SDF joint has no play; add a joint by hand or export to mjcf",
-        "compliance": SPRING,
-        "link": "the inertial element of a link is no part of a joint; scale its mass and inertia by hand",
-        **dict.fromkeys(("payload", "payload_x", "payload_y", "payload_z"), PAYLOAD),
-        "ratio": "the load encoder is no part of the joint",
-        "shift_x": "the pose of the child link belongs to the model's tree; shift it by hand",
-        "shift_y": "the pose of the child link belongs to the model's tree; shift it by hand",
-        "shift_z": "the pose of the child link belongs to the model's tree; shift it by hand",
     }
 
     def all_joints(self) -> Sequence[Element]:

@@ -12,6 +12,21 @@ from sher3_export.errors import ExportError
 from sher3_export.xml_file import write_xml, written
 
 
+def each(said: Mapping[str, str]) -> dict[str, str]:
+    """Return constant -> what is said of it, from a table whose keys are several names in a row."""
+    return {name: text for names, text in said.items() for name in names.split()}
+
+
+NOT_TOLD = each(
+    {
+        "arm hanging": "a weight at an arm is mass and centre of a link, which the verdict does not give",
+        "load_loss": "friction does not follow the load here; that of the mean load was written",
+        "ratio": "the load encoder is no part of the joint",
+    }
+)
+"""Constants that hardly any target has a field for, and why."""
+
+
 class Target(ABC):
     """A model or configuration that causes are written into.
 

@@ -10,10 +10,9 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from sher3_export.changes import Change
-from sher3_export.targets.target import XmlTarget, field
+from sher3_export.targets.target import NOT_TOLD, XmlTarget, each, field
 from sher3_export.xml_file import add, number, numbers, written
 
-DRIVE = "a URDF has no drive: no gain, delay or lag"
 PAYLOAD = "a payload is a link of its own: add it with a fixed joint by hand, or export to mjcf"
 ELASTIC = "a URDF joint has no play and no spring; add a joint by hand or export to mjcf"
 
@@ -31,24 +30,22 @@ class Urdf(XmlTarget):
         **dict.fromkeys(("zero", "shift_x", "shift_y", "shift_z"), "origin"),
     }
     refuses: ClassVar[Mapping[str, str]] = {
-        **dict.fromkeys(
-            ("arm", "hanging"), "a weight at an arm is mass and centre of a link, which the verdict does not give"
+        **NOT_TOLD,
+        **each(
+            {
+                "static": "URDF friction is the same at rest and in motion; only the sliding level was written",
+                "stribeck": "URDF friction does not depend on speed",
+                "offset": "a URDF joint has no constant force",
+                "weight": "a share of the weight without its inertia is no mass of a link",
+                "inertia": "a URDF joint has no rotor inertia, and that of a link would move every joint before it",
+                "drive delay lag servo servo_position servo_velocity servo_delay": "a URDF has no drive: no gain, "
+                "delay or lag",
+                "cogging cogging_periods cogging_phase": "a URDF joint has no force over its angle",
+                "backlash compliance": ELASTIC,
+                "payload payload_x payload_y payload_z": PAYLOAD,
+                "spring rest": ELASTIC,
+            }
         ),
-        "load_loss": "friction does not follow the load here; that of the mean load was written",
-        "static": "URDF friction is the same at rest and in motion; only the sliding level was written",
-        "stribeck": "URDF friction does not depend on speed",
-        "offset": "a URDF joint has no constant force",
-        "weight": "a share of the weight without its inertia is no mass of a link",
-        "inertia": "a URDF joint has no rotor inertia, and that of a link would move every joint before it",
-        "drive": DRIVE,
-        **dict.fromkeys(("delay", "lag", "servo", "servo_position", "servo_velocity", "servo_delay"), DRIVE),
-        **dict.fromkeys(("cogging", "cogging_periods", "cogging_phase"), "a URDF joint has no force over its angle"),
-        "backlash": ELASTIC,
-        "compliance": ELASTIC,
-        **dict.fromkeys(("payload", "payload_x", "payload_y", "payload_z"), PAYLOAD),
-        "spring": ELASTIC,
-        "rest": ELASTIC,
-        "ratio": "the load encoder is no part of the joint",
     }
 
     def all_joints(self) -> Sequence[Element]:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from sher3_diagnosis.channel import Array
 from sher3_diagnosis.report.summary import cause_text
+from sher3_effects import every
 
 from sher3_public.answer import Answer
 from sher3_public.errors import InputError
@@ -22,8 +23,6 @@ Names = tuple[str, ...]
 STAMPS: Names = ("time", "t")
 COMMANDS: Names = ("ctrl", "control", "reference", "command")
 POSITIONS: Names = ("qpos", "position", "q")
-IMPOSSIBLE = ("sensor_delay",)
-"""Effects that simulators have not: what they log they know at that instant. Late commands are tried as a setting."""
 SAME = 1e-6
 """Share of their largest value by which commands may differ and be the same: a table's last printed digits."""
 
@@ -86,7 +85,8 @@ def compare_simulators(
     found = _settings(model, *tables) if apart.any() else ("", "")
     if all(found) or not apart.any():
         return Comparison(names, apart, found, None)
-    return Comparison(names, apart, ("", ""), diagnose(model, list(tables), tags={TAG: names}, without=IMPOSSIBLE))
+    impossible = {page.id for page in every().values() if page.of_recorder}
+    return Comparison(names, apart, ("", ""), diagnose(model, list(tables), tags={TAG: names}, without=impossible))
 
 
 def _apart(first: Mapping[str, Array], second: Mapping[str, Array]) -> Array:
