@@ -152,3 +152,10 @@ def test_a_full_disk_is_an_error_in_diagnostics_and_ends_a_required_recording(tm
         assert required or int(dict(report.values)["unrecorded"]) > 100
     found = read_run(recover(tmp_path / "again").target)
     assert 200 < len(found["measured_js"]) < 1200
+
+
+def test_a_recorder_that_looked_later_than_its_queues_hold_says_so():
+    from sher3_bags.recording.recorder_node import DEPTH, overflow
+
+    assert overflow(DEPTH * 2_000_000, 2_000_000) is None
+    assert "held up for 14.0 s, and its queues hold 10.0 s" in overflow(14_000_000_000, 2_000_000)

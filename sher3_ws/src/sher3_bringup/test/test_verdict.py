@@ -47,9 +47,19 @@ FAULT = {**ENABLED, "state": "FAULT", "since": BEGIN + 2 * S, "first_fault": FAU
 REFUSED = {**DISABLED, "refused": {"text": "enable is refused: a stream is silent"}}
 
 
+def with_a_hole():
+    """Return a session of which 1.5 s are not recorded."""
+    recorded = session()
+    tip = recorded["measured_cp"]
+    kept = (tip.stamp < BEGIN + S) | (tip.stamp >= BEGIN + 5 * S // 2)
+    recorded["measured_cp"] = SimpleNamespace(stamp=tip.stamp[kept], position=tip.position[kept])
+    return recorded
+
+
 @pytest.mark.parametrize(
     ("recorded", "sentence"),
     [
+        (with_a_hole(), "recording has a hole; value 1.5 s without a pose .* too much else to do"),
         (session((DISABLED, REFUSED)), "never enabled: enable is refused: a stream is silent"),
         (session((DISABLED,)), "never enabled: no enable command arrived"),
         (session(reasons=(("MOVING", 1.2), ("WRENCH_STALE", 1.7))), r"stopped by itself 1.7 s .* wrench sample is too"),

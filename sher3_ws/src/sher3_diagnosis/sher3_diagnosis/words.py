@@ -11,6 +11,8 @@ _COUNTED = frozenset({"%", "count", "eu"})
 """Units that take no prefix in a product either: percent of a rated force, counts, units of the effort as recorded."""
 ROUNDS_UP = 0.9995
 """Share of a prefix from which a number of three digits is printed with it: 999.5 µm reads 1 mm."""
+NOTHING = 1e-14
+"""Size below which a number is what rounding leaves of zero; it is printed as 0."""
 WHOLE = 99.95
 """Number from which three digits leave none behind the point."""
 TENTHS = 100.0
@@ -50,6 +52,8 @@ def quantity(value: float | None, unit: str) -> str:
     if unit.startswith("kg"):
         value, shown = value * 1e3, shown[1:]
     size = abs(value)
+    if size < NOTHING:
+        return f"0 {shown}"
     scale, prefix = next(((s, p) for s, p in _PREFIXES if size >= ROUNDS_UP * s), (1.0, ""))
     number = value / scale
     digits = f"{number:.0f}" if abs(number) >= WHOLE else f"{number:.3g}"

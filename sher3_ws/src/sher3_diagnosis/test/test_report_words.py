@@ -10,6 +10,7 @@ from sher3_diagnosis.words import listed, place, quantity, range_text, ratio_tex
         (0.0123, "m", "12.3 mm"),
         (2.6e-6, "m", "2.6 µm"),
         (0.9996e-3, "m", "1 mm"),  # three digits of 999.6 µm
+        (-1.06e-17, "m/s", "0 m/s"),  # what rounding leaves of zero
         (0.294, "N", "294 mN"),
         (1.5, "N*m/(rad/s)", "1.5 N·m/(rad/s)"),
         (0.012, "kg", "12 g"),

@@ -21,7 +21,7 @@ _LONG = ("versions", "parameters")
 
 
 def overview(path: str | Path, namespace: str = NAMESPACE) -> dict[str, Any]:
-    """Return topics with type, frame, count, rate and drops, and all metadata of a bag.
+    """Return topics with type, frame, count, rate, missing samples and pauses, and all metadata of a bag.
 
     Raises:
         BagError, TopicError, InvalidRobot: the bag does not read.
@@ -36,6 +36,7 @@ def overview(path: str | Path, namespace: str = NAMESPACE) -> dict[str, Any]:
             "messages": timing.messages,
             "rate": timing.rate,
             "dropped": timing.dropped if topic in periods else None,
+            "pauses": timing.pauses if topic in periods else None,
         }
         for topic, timing in topic_timing(run, robot).items()
     }
@@ -103,13 +104,13 @@ def overview_text(data: dict[str, Any]) -> str:
             t["frame_id"] or "-",
             t["messages"],
             f"{t['rate']:.1f}",
-            "-" if t["dropped"] is None else t["dropped"],
+            *("-" if t[key] is None else t[key] for key in ("dropped", "pauses")),
         )
         for name, t in data["topics"].items()
     ]
     total = sum(t["messages"] for t in data["topics"].values())
     parts = [f"{data['bag']}: {data['duration']:.3f} s, {total} messages"]
-    parts.append(table(("topic", "type", "frame", "messages", "Hz", "missing"), rows))
+    parts.append(table(("topic", "type", "frame", "messages", "Hz", "missing", "pauses"), rows))
     parts.append("run: " + ", ".join(f"{key} {value}" for key, value in data["run"].items() if value))
     origin = [f"{k}: {v if k not in _LONG else f'{len(v)} entries'}" for k, v in data["provenance"].items()]
     if origin:

@@ -38,8 +38,25 @@ POLL_NS = 40_000_000
 REPORT_NS = 1_000_000_000
 OK, ERROR = 0, 2
 
-DEPTH = 2000
-"""Samples that may wait while a chunk is compressed or the disk is slow: four seconds of a 500 Hz stream."""
+DEPTH = 5000
+"""Samples that may wait while a chunk is compressed, or disk or processor are busy: ten seconds of a 500 Hz stream.
+Fast DDS holds no more of a topic unless told in a file of its own."""
+
+
+def overflow(wait: int, period: int) -> str | None:
+    """Return a sentence on samples that were lost because the recorder looked too late; None when its queues sufficed.
+
+    Args:
+        wait: longest time between two looks [ns].
+        period: of the fastest streams [ns].
+    """
+    held = DEPTH * period
+    if wait <= held:
+        return None
+    return (
+        f"the recorder was held up for {wait * 1e-9:.1f} s, and its queues hold {held * 1e-9:.1f} s: samples of every "
+        "topic are lost; this computer has too much else to do"
+    )
 
 
 Heard = tuple[int, str, bytes, int]
@@ -146,6 +163,8 @@ class RecorderNode(Node):
         self.failure: BagError | None = None
         self.unrecorded = 0
         self._required = required
+        self._looked = clock_of(self).now()
+        self._longest_wait = 0
         self._ears: Ears | None = None
         self._publish_report = advertise(self, "diagnostics")
         names = tuple(TOPICS if topics is None else topics)
@@ -169,6 +188,8 @@ class RecorderNode(Node):
 
     def _poll(self, _: int) -> None:
         if self._ears is not None and not self.recorder.closed:
+            before, self._looked = self._looked, clock_of(self).now()
+            self._longest_wait = max(self._longest_wait, self._looked - before)
             for arrived, name, data, sent in self._ears.listen():
                 self._write(name, data, arrived, sent)
 
@@ -216,6 +237,8 @@ class RecorderNode(Node):
                 self.get_logger().warning(
                     f"{topic}: {entry['dropped']} samples missing, {entry['disordered']} out of order"
                 )
+        if lost := overflow(self._longest_wait, clock_of(self).period_ns):
+            self.get_logger().warning(lost)
 
 
 def run(

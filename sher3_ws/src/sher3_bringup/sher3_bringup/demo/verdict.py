@@ -20,6 +20,8 @@ PRESSED = 0.5
 """Pedal travel, and force of the hand [N], from which the robot has to follow the hand in a step."""
 SLIGHTEST = 1e-4
 """Tip travel [m] below which the tip did not move in a step: 0.1 mm, far above encoder noise."""
+LONGEST_PAUSE = 1.0
+"""Time [s] without a recorded pose above which a recording does not tell what the robot did: a step lasts 0.6 to 4 s."""
 INTENDED = frozenset({Reason.MOVING, Reason.PEDAL_RELEASED, Reason.NOT_ENABLED})
 
 
@@ -33,7 +35,8 @@ def judge(run: Any, script: Script, steps_begin: int) -> None:
 
     Raises:
         EndedInFault: the robot went to FAULT.
-        SessionFailed: it was never enabled, stopped by itself, or did not move under the hand.
+        SessionFailed: it was never enabled, stopped by itself, was not recorded for some time, or did not move under
+            the hand.
     """
     states = [parse_json(text) for text in run["supervisor/status"].data]
     for status in states:
@@ -49,6 +52,7 @@ def judge(run: Any, script: Script, steps_begin: int) -> None:
             f"the robot was never enabled: {why}", remedy="start again; see supervisor/status in the bag"
         )
     _look_for_stops(run, states, steps_begin)
+    _look_for_pauses(run)
     _look_for_motion(run, script, steps_begin)
 
 
@@ -67,6 +71,19 @@ def _enabled_spans(states: list[dict[str, Any]]) -> Iterator[tuple[int, int]]:
     for status, following in pairwise([*states, {"since": NEVER_NS}]):
         if status["state"] == OperatingState.ENABLED:
             yield int(status["since"]), int(following["since"])
+
+
+def _look_for_pauses(run: Any) -> None:
+    """Raise SessionFailed when the poses of the tip, which the robot always sends, were not recorded for some time."""
+    stamp = run["measured_cp"].stamp
+    longest = float(np.diff(stamp).max(initial=0)) * 1e-9
+    if longest > LONGEST_PAUSE:
+        raise SessionFailed(
+            "the recording has a hole",
+            value=f"{longest:.1f} s without a pose of the tip",
+            limit=f"at most {LONGEST_PAUSE:g} s",
+            remedy="this computer has too much else to do: start the demo again when it has less",
+        )
 
 
 def _look_for_motion(run: Any, script: Script, begin: int) -> None:
