@@ -21,7 +21,7 @@ PRESSED = 0.5
 SLIGHTEST = 1e-4
 """Tip travel [m] below which the tip did not move in a step: 0.1 mm, far above encoder noise."""
 LONGEST_PAUSE = 1.0
-"""Time [s] without a recorded pose above which a recording does not tell what the robot did: a step lasts 0.6 to 4 s."""
+"""Time [s] without a recorded pose from which a recording does not tell enough: steps last 0.6 to 4 s."""
 INTENDED = frozenset({Reason.MOVING, Reason.PEDAL_RELEASED, Reason.NOT_ENABLED})
 
 
