@@ -27,7 +27,7 @@ from sher3_challenge.score.intervals import SYNONYMS
 from sher3_common.shares import wilson
 from sher3_diagnosis.quantify.parameters import least_widths
 from sher3_gap import diagnose_case
-from sher3_gap_cli.challenge import plants_of
+from sher3_gap_cli.commands.challenge import plants_of
 
 GAP = (5.0, 20.0)
 COVER = 0.94

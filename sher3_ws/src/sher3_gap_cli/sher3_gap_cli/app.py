@@ -6,18 +6,18 @@ from collections.abc import Callable
 
 import typer
 
-from sher3_gap_cli.apply import apply, compare
-from sher3_gap_cli.challenge import arms, calibrate, challenge
-from sher3_gap_cli.diagnose import diagnose
-from sher3_gap_cli.discover import discover
-from sher3_gap_cli.excite import excite
-from sher3_gap_cli.experiment import experiment
-from sher3_gap_cli.export import export
+from sher3_gap_cli.commands.apply import apply, compare
+from sher3_gap_cli.commands.challenge import arms, calibrate, challenge
+from sher3_gap_cli.commands.compare_simulators import compare_simulators
+from sher3_gap_cli.commands.diagnose import diagnose
+from sher3_gap_cli.commands.discover import discover
+from sher3_gap_cli.commands.excite import excite
+from sher3_gap_cli.commands.experiment import experiment
+from sher3_gap_cli.commands.export import export
+from sher3_gap_cli.commands.intake import IMPORT_EXAMPLE, case, describe, import_data
+from sher3_gap_cli.commands.monitor import monitor
 from sher3_gap_cli.guard.check import check
-from sher3_gap_cli.intake import IMPORT_EXAMPLE, case, describe, import_data
 from sher3_gap_cli.library.command import library
-from sher3_gap_cli.monitor import monitor
-from sher3_gap_cli.simulators.compare import compare_simulators
 from sher3_gap_cli.watch.command import watch
 
 app = typer.Typer(no_args_is_help=True, help="Find and explain the gap between a robot and its simulation.")

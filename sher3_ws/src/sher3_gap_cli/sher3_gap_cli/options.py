@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -70,3 +72,8 @@ def written(path: Path, text: str) -> None:
         path.write_text(text, encoding="utf-8")
     except OSError as error:
         raise RequestError(f"{path}: cannot be written", value=error.strerror, remedy="choose another --out") from error
+
+
+def shown(as_json: bool, data: Mapping[str, Any], text: str) -> None:
+    """Print what was found: as plain data in one JSON object, or in words."""
+    typer.echo(json.dumps(data, default=str) if as_json else text)

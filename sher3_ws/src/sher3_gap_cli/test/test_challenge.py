@@ -6,7 +6,7 @@ import sys
 import pytest
 from sher3_challenge.errors import ChallengeError
 from sher3_gap_cli.app import app
-from sher3_gap_cli.challenge import parse_gap, parse_seeds, plants_of
+from sher3_gap_cli.commands.challenge import parse_gap, parse_seeds, plants_of
 from typer.testing import CliRunner
 
 ROW = {"case": "a", "truth": "no_gap", "said": "no_gap", "fault": "-", "answer": "-", "families": "-"}

@@ -83,7 +83,7 @@ def test_what_cannot_be_done_is_one_sentence(call, words, named):
 
 def test_the_help_names_every_target():
     from sher3_export import TARGETS
-    from sher3_gap_cli.export import TARGETS as SAID
+    from sher3_gap_cli.commands.export import TARGETS as SAID
 
     assert set(SAID.replace(" or ", ", ").split(", ")) == set(TARGETS)
 

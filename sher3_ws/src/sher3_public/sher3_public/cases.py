@@ -12,8 +12,8 @@ from sher3_chain.manipulator.description import ManipulatorDescription
 from sher3_chain.manipulator.draft import of_arm
 from sher3_chain.manipulator.kind import arm_of
 from sher3_diagnosis.machine import Machine
+from sher3_machines.drafting.draft import drafted
 from sher3_machines.errors import MachineError
-from sher3_machines.intake.draft import drafted
 from sher3_machines.intake.fields import Description
 from sher3_machines.intake.kinds import kinds, load_description
 from sher3_machines.intake.tables import Tables

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.signal import savgol_filter
 from sher3_chain.manipulator.mjcf.drives import Drive, Driven
 from sher3_chain.manipulator.mjcf.joint import drive_joint
-from sher3_machines.intake.guesses import count_of, scatter
+from sher3_machines.drafting.guesses import count_of, scatter
 from sher3_machines.intake.tables import Tables
 
 from sher3_public import plausible

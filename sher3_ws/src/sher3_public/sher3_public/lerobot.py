@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from sher3_machines.intake.guesses import reach
+from sher3_machines.drafting.guesses import reach
 from sher3_machines.intake.readers.lerobot import DataSet, read_data_set
 from sher3_machines.intake.units import UNITS
 

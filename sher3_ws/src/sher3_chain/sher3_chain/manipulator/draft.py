@@ -7,9 +7,10 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from sher3_machines.drafting.draft import drafted, written
+from sher3_machines.drafting.names import EFFORT, words_of
 from sher3_machines.errors import MachineError
-from sher3_machines.intake.draft import Draft, drafted, written
-from sher3_machines.intake.names import EFFORT, words_of
+from sher3_machines.intake.kind import Draft
 from sher3_machines.intake.runs import longest
 from sher3_machines.intake.tables import Tables
 

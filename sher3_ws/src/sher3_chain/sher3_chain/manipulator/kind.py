@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from sher3_machines.intake.draft import Draft
+from sher3_machines.intake.kind import Draft
 from sher3_machines.intake.tables import Tables
 
 from sher3_chain.chain.kind import ChainKind

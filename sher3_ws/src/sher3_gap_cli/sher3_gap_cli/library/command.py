@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from typing import Annotated
 
 import typer
 from sher3_common.commands.options import Json
 
-from sher3_gap_cli.options import Library, Trust, effects, reported
+from sher3_gap_cli.options import Library, Trust, effects, reported, shown
 
 
 def library(
@@ -27,7 +26,4 @@ def library(
     with reported(as_json):
         add_library(own or [], trust)
         rows = library_data(which)
-        if as_json:
-            typer.echo(json.dumps({"effects": rows}))
-        else:
-            typer.echo(page_text(rows[0]) if len(rows) == 1 else list_text(rows))
+        shown(as_json, {"effects": rows}, page_text(rows[0]) if len(rows) == 1 else list_text(rows))

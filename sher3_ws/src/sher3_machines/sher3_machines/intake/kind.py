@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
+from typing import Any, Generic, Protocol, TypeVar
 
 from sher3_diagnosis.channel import Array
 from sher3_diagnosis.machine import Machine
@@ -13,8 +14,13 @@ from sher3_diagnosis.machine import Machine
 from sher3_machines.intake.fields import Description
 from sher3_machines.intake.tables import Tables
 
-if TYPE_CHECKING:
-    from sher3_machines.intake.draft import Draft
+
+@dataclass
+class Draft:
+    """A description as YAML, and the guesses it rests on, one sentence each."""
+
+    text: str
+    guesses: list[str] = field(default_factory=list)
 
 
 class Record(Protocol):

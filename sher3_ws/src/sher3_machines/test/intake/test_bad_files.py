@@ -9,7 +9,7 @@ import pytest
 import scipy.io
 from sher3_common import Sher3Error
 from sher3_machines import MachineError, import_case, kinds
-from sher3_machines.intake.draft import draft
+from sher3_machines.drafting.draft import draft
 from sher3_machines.intake.kinds import load_description
 from sher3_machines.intake.tables import read_tables
 

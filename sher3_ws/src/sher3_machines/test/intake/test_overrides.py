@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 from sher3_machines import MachineError, import_case, load_description, open_case
+from sher3_machines.drafting.draft import draft
 from sher3_machines.intake.columns import pick
-from sher3_machines.intake.draft import draft
 from sher3_machines.intake.fields import Column
 
 T = 0.002 * np.arange(1500)

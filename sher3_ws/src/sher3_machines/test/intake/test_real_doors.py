@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 from sher3_machines import MachineError, import_case, load_description, open_case
-from sher3_machines.drafts import draft_of
+from sher3_machines.drafting.drafts import draft_of
 from sher3_machines.intake.tables import read_tables
 
 SHARED = Path(os.environ.get("SHER3_SHARED", Path(__file__).parents[5].parent / "shared"))

@@ -13,9 +13,9 @@ from typing import Any
 
 import numpy as np
 from sher3_diagnosis.channel import Array
-from sher3_machines.intake.draft import ROTARY_UNITS, Draft, written
-from sher3_machines.intake.guesses import WIDEST_ROOM, reach
-from sher3_machines.intake.names import (
+from sher3_machines.drafting.draft import ROTARY_UNITS, written
+from sher3_machines.drafting.guesses import WIDEST_ROOM, reach
+from sher3_machines.drafting.names import (
     ASKED,
     IGNORED,
     MEASURED,
@@ -27,6 +27,7 @@ from sher3_machines.intake.names import (
     vocabulary,
     words_of,
 )
+from sher3_machines.intake.kind import Draft
 from sher3_machines.intake.spelling import bare
 from sher3_machines.intake.tables import Tables
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from sher3_diagnosis.finding import Finding
-from sher3_machines.intake.draft import Draft
+from sher3_machines.intake.kind import Draft
 from sher3_machines.intake.tables import Tables
 
 from sher3_static.kind import TableKind

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from sher3_diagnosis import diagnose
 from sher3_machines import import_case, open_case
-from sher3_machines.drafts import draft_of
+from sher3_machines.drafting.drafts import draft_of
 
 STEPS = np.linspace(0.0, 500.0, 11)
 TARGET = np.tile(np.concatenate([STEPS, STEPS[::-1]]), 5)

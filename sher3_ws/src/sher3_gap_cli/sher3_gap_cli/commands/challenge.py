@@ -12,7 +12,7 @@ from typing import Annotated
 import typer
 from sher3_common.commands.options import Json
 
-from sher3_gap_cli.options import reported
+from sher3_gap_cli.options import reported, shown
 
 
 def parse_seeds(text: str) -> tuple[int, int]:
@@ -193,4 +193,4 @@ def arms(
         found = run_arms(range(*parse_seeds(seeds)), names, folder, seconds, console.log, sysid, dealt)
         data = {"scores": {name: {"share": x, "cases": n} for name, (x, n) in shares(found).items()}}
         cases = [case.as_dict() for case in found]
-        typer.echo(json.dumps({**data, "cases": cases}) if as_json else table(found))
+        shown(as_json, {**data, "cases": cases}, table(found))

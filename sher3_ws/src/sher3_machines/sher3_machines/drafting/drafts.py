@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from sher3_machines.intake.draft import Draft, draft
+from sher3_machines.drafting.draft import draft
+from sher3_machines.intake.kind import Draft
 from sher3_machines.intake.kinds import kinds
 from sher3_machines.intake.runs import longest
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -11,7 +10,7 @@ import typer
 from sher3_common.commands.options import Domain, InNamespace, Json
 from sher3_common.namespace import NAMESPACE
 
-from sher3_gap_cli.options import NominalFile, reported
+from sher3_gap_cli.options import NominalFile, reported, shown
 
 if TYPE_CHECKING:
     from sher3_description import Robot
@@ -76,7 +75,7 @@ def excite(
     from sher3_gap_cli.printing import steps
 
     if not which:
-        typer.echo(json.dumps({"excitations": listing()}) if as_json else listing_text())
+        shown(as_json, {"excitations": listing()}, listing_text())
         return
     with reported(as_json), steps() as say:
         model = load_robot(robot)
@@ -86,7 +85,7 @@ def excite(
         else:
             _on_graph(model, wanted, out, say, domain)
     data = {"case": str(out), "runs": len(wanted)}
-    typer.echo(json.dumps(data) if as_json else f"{len(wanted)} runs in {out}; next: sher3 gap diagnose {out}")
+    shown(as_json, data, f"{len(wanted)} runs in {out}; next: sher3 gap diagnose {out}")
 
 
 def _simulate(robot: Robot, wanted: list[tuple[Excitation, int]], out: Path, effects: Path | None, seed: int) -> None:

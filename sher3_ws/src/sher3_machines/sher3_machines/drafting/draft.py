@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -12,9 +11,7 @@ import numpy as np
 from sher3_common import dump_yaml
 from sher3_diagnosis.channel import Array
 
-from sher3_machines.errors import MachineError
-from sher3_machines.intake.fields import TIME_UNITS, VELOCITIES
-from sher3_machines.intake.guesses import (
+from sher3_machines.drafting.guesses import (
     clock_of,
     count_of,
     period_of,
@@ -23,9 +20,12 @@ from sher3_machines.intake.guesses import (
     time_unit,
     travel,
 )
-from sher3_machines.intake.names import ASKED, DERIVED, DRIVING, MEASURED, POSITION, counts_samples, named, words_of
+from sher3_machines.drafting.names import ASKED, DERIVED, DRIVING, MEASURED, POSITION, counts_samples, named, words_of
+from sher3_machines.drafting.speeds import told_by_speed
+from sher3_machines.errors import MachineError
+from sher3_machines.intake.fields import TIME_UNITS, VELOCITIES
+from sher3_machines.intake.kind import Draft
 from sher3_machines.intake.runs import longest
-from sher3_machines.intake.speeds import told_by_speed
 from sher3_machines.intake.spelling import bare, table_of
 from sher3_machines.intake.tables import SAMPLES, Tables
 from sher3_machines.intake.units import UNITS
@@ -53,14 +53,6 @@ LISTED = 12
 
 Place = tuple[str, int | None]
 """A column, and the entry of it where each sample is a list."""
-
-
-@dataclass
-class Draft:
-    """A description as YAML, and the guesses it rests on, one sentence each."""
-
-    text: str
-    guesses: list[str] = field(default_factory=list)
 
 
 def draft(path: Path, rate: float | None = None, tables: Tables | None = None) -> Draft:

@@ -6,9 +6,9 @@ import numpy as np
 from sher3_diagnosis.channel import Array
 from sher3_diagnosis.localise.floors import noise_of_bends
 
+from sher3_machines.drafting.names import bare_and_unit, counts_samples, tells_time
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.fields import TIME_UNITS
-from sher3_machines.intake.names import bare_and_unit, counts_samples, tells_time
 from sher3_machines.intake.spelling import bare
 from sher3_machines.intake.tables import Tables
 from sher3_machines.intake.units import UNITS

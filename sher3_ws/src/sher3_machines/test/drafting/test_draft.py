@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from sher3_machines import MachineError, import_case, load_description, open_case
-from sher3_machines.intake.draft import draft
+from sher3_machines.drafting.draft import draft
 
 TIME = np.arange(0.0, 4.0, 0.002)
 

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Annotated
 
 import typer
 from sher3_common.commands.options import Json
 
-from sher3_gap_cli.options import RobotFile, reported, written
+from sher3_gap_cli.options import RobotFile, reported, shown, written
 
 IMPORT_EXAMPLE = "sher3 gap import DATA_EMPS.mat emps.yaml --out cases/emps"
 
@@ -35,10 +34,8 @@ def import_data(
         if len(paths) < 2:
             raise MachineError("data and a description are needed", value=len(paths), remedy=IMPORT_EXAMPLE)
         notes = import_case(paths[:-1], described(paths[-1]), out)
-        if as_json:
-            typer.echo(json.dumps({"case": str(out), "runs": len(paths) - 1, "notes": notes}))
-        else:
-            typer.echo("\n".join([f"{out}: {len(paths) - 1} run{'s' * (len(paths) > 2)}", *notes]))
+        text = "\n".join([f"{out}: {len(paths) - 1} run{'s' * (len(paths) > 2)}", *notes])
+        shown(as_json, {"case": str(out), "runs": len(paths) - 1, "notes": notes}, text)
 
 
 def describe(
@@ -52,18 +49,15 @@ def describe(
 
     Exit codes: 0 drafted, 2 the file cannot be read or nothing in it looks like a position.
     """
-    from sher3_machines.drafts import draft_of
+    from sher3_machines.drafting.drafts import draft_of
 
     with reported(as_json):
         found = draft_of(file, rate, model)
         if out is not None:
             written(out, found.text)
-        if as_json:
-            typer.echo(json.dumps({"description": found.text, "guesses": found.guesses}))
-        elif out is None:
-            typer.echo(found.text, nl=False)
-        else:
-            typer.echo("\n".join([str(out), *(f"  guessed: {guess}" for guess in found.guesses)]))
+        guessed = "\n".join([str(out), *(f"  guessed: {guess}" for guess in found.guesses)])
+        text = found.text.removesuffix("\n") if out is None else guessed
+        shown(as_json, {"description": found.text, "guesses": found.guesses}, text)
 
 
 def case(
@@ -82,4 +76,4 @@ def case(
         runs = assemble(bags, out, robot)
         data = [{"excitation": run.excitation, "repeat": run.repeat, "bag": str(run.bag)} for run in runs]
         lines = [f"  {x['excitation']} {x['repeat']}: {x['bag']}" for x in data]
-        typer.echo(json.dumps({"case": str(out), "runs": data}) if as_json else "\n".join([f"{out}", *lines]))
+        shown(as_json, {"case": str(out), "runs": data}, "\n".join([f"{out}", *lines]))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -10,7 +9,17 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from sher3_common.commands.options import Json
 
-from sher3_gap_cli.options import Bet, Library, RobotFile, Trust, VerdictFile, case_argument, of_the_robot, reported
+from sher3_gap_cli.options import (
+    Bet,
+    Library,
+    RobotFile,
+    Trust,
+    VerdictFile,
+    case_argument,
+    of_the_robot,
+    reported,
+    shown,
+)
 
 if TYPE_CHECKING:
     from sher3_gap.simulate.apply import StageGap
@@ -44,12 +53,8 @@ def apply(
         effects = apply_verdict(verdict, output, model, bet)
         odds = bet_lines(verdict, bet)
         stages = compare_case(runs, model, effects) if runs else []
-        if as_json:
-            typer.echo(
-                json.dumps({"effects": str(output), "count": len(effects), "stages": stages_data(stages), "bets": odds})
-            )
-        else:
-            typer.echo(with_bets(odds, applied_text(effects, stages, output)))
+        data = {"effects": str(output), "count": len(effects), "stages": stages_data(stages), "bets": odds}
+        shown(as_json, data, with_bets(odds, applied_text(effects, stages, output)))
 
 
 def compare(
@@ -68,7 +73,7 @@ def compare(
     with reported(as_json):
         runs, model = load_case(of_the_robot(case, TAGS), robot)
         stages = compare_cases(runs, model, load_case(of_the_robot(other, TAGS), robot)[0])
-        typer.echo(json.dumps({"stages": stages_data(stages)}) if as_json else stages_text(stages))
+        shown(as_json, {"stages": stages_data(stages)}, stages_text(stages))
 
 
 def applied_text(effects: Sequence[PlantEffect], stages: Sequence[StageGap], output: Path) -> str:

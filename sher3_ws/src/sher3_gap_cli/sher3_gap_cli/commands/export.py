@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from sher3_common.commands.options import Json
 
-from sher3_gap_cli.options import Bet, Library, RequestError, Trust, VerdictFile, reported, written
+from sher3_gap_cli.options import Bet, Library, RequestError, Trust, VerdictFile, reported, shown, written
 
 TARGETS = "mjcf, urdf, sdf, isaaclab, isaac, mjlab, ros2_control or yaml"
 """Names of targets as the help has them; the table of `sher3_export` is not imported for it."""
@@ -54,7 +53,7 @@ def export(
         data = _ranges(given, check, model, names) if ranges else _model(given, to, check, model, names)
         written(target, data.pop("text"))
         data = {"file": str(target), **data, "bets": bet_lines(verdict, bet)}
-        typer.echo(json.dumps(data) if as_json else with_bets(data["bets"], _told(data)))
+        shown(as_json, data, with_bets(data["bets"], _told(data)))
 
 
 def _model(given: Any, to: str, check: Path | None, model: Path | None, names: dict[str, str]) -> dict[str, Any]:

@@ -1,8 +1,8 @@
 """Names of columns as people write them: which signal, of which axis."""
 
 import pytest
-from sher3_machines.intake.draft import together
-from sher3_machines.intake.names import bare_and_unit, named, tells_time
+from sher3_machines.drafting.draft import together
+from sher3_machines.drafting.names import bare_and_unit, named, tells_time
 
 
 @pytest.mark.parametrize(

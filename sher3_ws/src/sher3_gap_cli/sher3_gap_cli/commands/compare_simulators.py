@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from sher3_common.commands.options import Json
 
-from sher3_gap_cli.options import reported
+from sher3_gap_cli.options import reported, shown
 
 if TYPE_CHECKING:
     from sher3_public.simulators.comparing import Comparison
@@ -30,7 +29,7 @@ def compare_simulators(
 
     with reported(as_json):
         found = compared(read_tables(first), read_tables(second), model, (first.stem, second.stem))
-        typer.echo(json.dumps(data(found), default=str) if as_json else str(found))
+        shown(as_json, data(found), str(found))
 
 
 def data(found: Comparison) -> dict[str, Any]:

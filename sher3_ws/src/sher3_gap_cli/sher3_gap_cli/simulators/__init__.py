@@ -1,1 +1,0 @@
-"""`sher3 gap compare-simulators`: two traces of the same commands."""
