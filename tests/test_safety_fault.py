@@ -10,7 +10,7 @@ import pytest
 from processes import child_environment, sher3_command
 from sher3_cli.root import main
 
-pytestmark = [pytest.mark.graph, pytest.mark.flaky(reruns=2)]
+pytestmark = pytest.mark.graph
 
 
 @pytest.mark.parametrize(
@@ -36,6 +36,7 @@ def test_without_a_robot_on_mocks_nothing_is_injected(sher3, domain):
     assert f"no robot on mocks runs on domain {domain}; hardware takes no faults" in result.stderr
 
 
+@pytest.mark.flaky(reruns=2)
 def test_a_running_robot_takes_a_fault_and_refuses_another(sher3, domain):
     command = sher3_command("up", "--patient", "--domain", str(domain), "--realtime", "0")
     up = subprocess.Popen(command, env=child_environment(), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)

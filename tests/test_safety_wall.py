@@ -10,7 +10,7 @@ from sher3_safety.rows.processes import WALL, WALL_STATES
 from sher3_safety.runs.wall import run_wall
 from sources import ROOT
 
-pytestmark = [pytest.mark.graph, pytest.mark.flaky(reruns=2)]
+pytestmark = pytest.mark.graph
 FOLDER = ROOT / "bags" / "tests" / "safety"
 QUICK = [row for row in WALL if row.quick]
 UNMEASURED_QUICK, UNMEASURED_ALL = 0.2, 0.05
@@ -23,6 +23,7 @@ BUSY = 4.0
 more (measured 348 um of 250, noticed after 68 ms). The slow test asks for the budget itself, on a quiet computer."""
 
 
+@pytest.mark.flaky(reruns=2)
 def test_killed_and_held_processes_stop_the_robot(run_sher3):
     result = run_sher3("safety", "--wall", "--quick", "--json", "--out", str(FOLDER / "wall_quick"), timeout=240.0)
     cells = json.loads(result.stdout)["cells"]
@@ -35,6 +36,7 @@ def test_killed_and_held_processes_stop_the_robot(run_sher3):
 
 
 @pytest.mark.slow
+@pytest.mark.flaky(reruns=2)
 def test_every_process_killed_or_held_in_every_state(run_sher3):
     result = run_sher3("safety", "--wall", "--json", "--out", str(FOLDER / "wall"), timeout=1000.0)
     require_cells(result, [row.name for row in WALL for _ in WALL_STATES], UNMEASURED_ALL)

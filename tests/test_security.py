@@ -70,7 +70,6 @@ def test_whatever_the_robot_obeys_has_one_owner():
 
 
 @pytest.mark.graph
-@pytest.mark.flaky(reruns=2)
 def test_the_shipped_policy_is_that_of_the_nodes():
     shipped = SOURCES / "sher3_bringup" / "sher3_bringup" / "security" / "policy.xml"
     assert shipped.read_text() == tool("sros2_policy").policy(), "run tools/sros2_policy.py"

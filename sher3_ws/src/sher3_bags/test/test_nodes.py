@@ -8,7 +8,7 @@ from sher3_bags.playback.replay import Replay
 from sher3_description import load_robot
 
 runtime = pytest.importorskip("sher3_runtime")
-pytestmark = [pytest.mark.graph, pytest.mark.flaky(reruns=2)]
+pytestmark = pytest.mark.graph
 
 TOPICS = ["setpoint_js", "servo_jv", "measured_js", "force/measured_cf", "operating_state"]
 

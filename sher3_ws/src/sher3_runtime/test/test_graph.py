@@ -20,7 +20,7 @@ from sher3_runtime.codec.cdr import codec
 from sher3_runtime.ports import UnknownTopic, ports
 from std_srvs.srv import Trigger
 
-pytestmark = [pytest.mark.graph, pytest.mark.flaky(reruns=2)]
+pytestmark = pytest.mark.graph
 
 
 class Source(Node):

@@ -86,7 +86,6 @@ class Ears(Node):
 
 
 @pytest.mark.graph
-@pytest.mark.flaky(reruns=2)
 @pytest.mark.parametrize("middleware", [False, True])
 def test_a_graph_hears_the_same_either_way(middleware):
     """Samples, bytes, a latched state, the newest sample; a paused node finds as many as its queue holds."""

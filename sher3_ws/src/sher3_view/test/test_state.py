@@ -10,7 +10,7 @@ from sher3_description import load_robot
 from sher3_kinematics import RobotKinematics
 from sher3_kinematics.model_joints import MODEL_JOINTS, model_positions
 
-pytestmark = [pytest.mark.graph, pytest.mark.flaky(reruns=2)]
+pytestmark = pytest.mark.graph
 ROBOT = load_robot()
 Q = (0.002, -0.001, 0.0015, 0.2, -0.003)
 
