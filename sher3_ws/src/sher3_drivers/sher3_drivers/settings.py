@@ -81,10 +81,11 @@ class MotorDriverSettings(_Part):
         drive_heartbeat: period of the drives' heartbeats, s.
         drive_heartbeat_limit: silence after which the host gives a drive up, s.
         feedback_limit: longest wait for the TPDOs of a tick, as a share of the period.
-        missing_limit: consecutive ticks with a missing TPDO after which the driver stops the robot. Motion ends
-            before: such ticks are not published, the controller falls silent, and `zero_age` acts.
-        report_limit: reports of a drive in a row that fail their check, or come twice in one tick and differ, after
-            which the robot stops; none of them is believed.
+        missing_limit: consecutive ticks with a TPDO of every drive missing after which the driver stops the robot, as
+            when this computer is held up. Motion ends before: such ticks are not published, the controller falls
+            silent, and `zero_age` acts.
+        report_limit: reports of a drive in a row that fail their check, come twice in one tick and differ, or stay away
+            while others are heard, after which the robot stops; none of them is believed.
         status_reports: statuswords in a row that say that an enabled drive does not follow; one may while it begins to.
         zero_age: age of the newest command after which zero velocity is sent, in periods.
         stop_age: age after which the drives are quick-stopped, in periods; wide, since zero is being sent by then.

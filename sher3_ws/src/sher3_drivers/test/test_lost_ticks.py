@@ -49,6 +49,55 @@ def test_one_that_falls_behind_is_found_whatever_is_lost(lost):
     assert trip is not None and trip.reason is Reason.POSITION_LEFT
 
 
+SILENT, OTHER = 1, 0
+
+
+def unheard(strays=0.0, back=0.0, ticks=8):
+    """Return the tick and the first trip after `SILENT` was last heard at 10 mm/s; it comes back after so many ticks.
+
+    Args:
+        strays: speed that `OTHER` adds to its command meanwhile, m/s.
+        back: how far from its commands `SILENT` then is, m.
+    """
+    checks, log, place = MotionWatch(SCALES, SETTINGS), StopLog(), [0.0] * 5
+    checks.begin()
+    for k in range(-100, ticks + 1):
+        silent, more = 0 <= k < ticks, strays * (k >= 0)
+        checks.demand.sent([round(v / s.velocity) for v, s in zip(FAST, SCALES, strict=True)])
+        checks.sync()
+        place = [x + v * SETTINGS.period for x, v in zip(place, FAST, strict=True)]
+        place[OTHER] += more * SETTINGS.period
+        said = list(place)
+        said[SILENT] = 0.0 if silent else place[SILENT] + back * (k == ticks)
+        stamp = (k + 100) * 2 * MS
+        feedback = DriveFeedback(stamp, tuple(said), tuple(said), tuple(FAST), (0.0,) * 5, tuple(FAST))
+        trip = checks.check(feedback, Goal.ENABLED, True, log, stamp, (SILENT,) if silent else ())
+        if trip is not None:
+            return k + 1, trip
+    return None
+
+
+def test_an_axis_that_is_not_heard_is_where_its_commands_put_it():
+    """Eight ticks at 10 mm/s are 160 um, and its limit is 37: it is there when it is heard again."""
+    assert unheard() is None
+
+
+def test_one_that_is_elsewhere_when_it_is_heard_again_is_found():
+    assert unheard(back=5e-5)[1].reason is Reason.POSITION_LEFT
+
+
+def test_an_axis_that_is_not_heard_shields_no_other_one():
+    """7 um and 3 ms of 10 mm/s are 37 um: 10 mm/s beside the command pass them in the second tick, echo or not."""
+    tick, trip = unheard(strays=1e-2)
+    assert (tick, trip.reason, trip.axes) == (2, Reason.POSITION_LEFT, (OTHER,))
+
+
+def test_before_the_first_whole_report_nothing_is_judged():
+    checks, far = MotionWatch(SCALES, SETTINGS), (1.0,) * 5
+    feedback = DriveFeedback(0, far, far, (0.0,) * 5, (0.0,) * 5, (0.0,) * 5)
+    assert checks.check(feedback, Goal.DISABLED, False, StopLog(), 0, (SILENT,)) is None
+
+
 @pytest.mark.parametrize("hold", [2, 6, 8, 12, 16])
 def test_a_loop_held_up_at_speed_is_no_following_error(rig, hold):
     """The mock drives wait for five periods before they run on by themselves, real ones do not wait: both must do."""

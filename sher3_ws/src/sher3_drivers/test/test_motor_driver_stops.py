@@ -4,6 +4,7 @@ import itertools
 import struct
 
 import pytest
+from sher3_common.reasons import Reason
 from sher3_description import ACTUATORS, load_robot
 from sher3_drivers.bus.condition import BusCondition, error_frame
 from sher3_drivers.bus.frame import iter_frames, pack_frame, pack_frames
@@ -41,14 +42,28 @@ def test_an_emergency_of_one_drive_stops_all(rig, name):
 def test_a_drive_that_falls_silent_stops_all(rig):
     rig.tick(SLOW)
     rig.mock.drives["delta_3"].powered = False
-    missing = [rig.tick(SLOW) for _ in range(rig.settings.missing_limit)]
-    assert missing == [None] * rig.settings.missing_limit
+    missing = [rig.tick(SLOW) for _ in range(rig.settings.report_limit)]
+    assert missing == [None] * rig.settings.report_limit
     rig.mock.drives["delta_3"].powered = True
-    assert stopped_by(rig, f"delta_3: no TPDO for {rig.settings.missing_limit} ticks")
+    assert stopped_by(rig, "delta_3: no TPDO while other drives are heard")
+
+
+def test_a_computer_that_hears_nobody_waits_longer(rig):
+    """It may be late itself: all five drives may miss nine ticks, one alone but two."""
+    rig.tick(SLOW)
+    rig.mock.tamper_frames = lambda channel, frames, now: b""
+    for _ in range(rig.settings.missing_limit - 1):
+        rig.tick(SLOW)
+    rig.mock.tamper_frames = None
+    rig.tick(SLOW)
+    assert rig.driver.stop.first is None
 
 
 def test_a_drive_that_is_not_heard_shields_no_other_axis(rig):
-    """The robot stops for the silence of one; another that goes on at 5 mm/s, 1.5 mm in 0.3 s, loses its power."""
+    """Another one goes 5 mm/s beside its command of -4: 10 um a tick, beyond 7 um and 3 ms of 4 mm/s in the second.
+
+    The silence of the first would be told after 10 ticks, 100 um.
+    """
     rig.tick(SLOW)
     rig.mock.drives["delta_3"].powered = False
     rig.mock.drives["tilt"].stray = lambda velocity: velocity + 5e-3
@@ -56,8 +71,17 @@ def test_a_drive_that_is_not_heard_shields_no_other_axis(rig):
     before = rig.plant.position[number]
     for _ in range(150):
         rig.tick(SLOW)
-    assert "delta_3: no TPDO" in rig.driver.stop.reason and rig.driver.stop.later > 0
-    assert abs(rig.plant.position[number] - before) < 0.35e-3
+    first = rig.driver.stop.first
+    assert (first.reason, first.axes) == (Reason.POSITION_LEFT, (number,)) and first.value < 35e-6
+    assert abs(rig.plant.position[number] - before) < 20e-6
+
+
+def test_a_drive_that_misses_a_report_now_and_then_is_where_its_commands_put_it(rig):
+    """Every other tick lacks the reports of one drive, which obeys: nobody objects for 0.3 s."""
+    for tick in range(150):
+        rig.mock.tamper_frames = (lambda channel, frames, now: frames[16:]) if tick % 2 else None
+        rig.tick(SLOW)
+    assert rig.driver.stop.first is None and rig.driver.counters["incomplete"] == 75
 
 
 def test_a_drive_that_is_not_heard_loses_its_power(rig):

@@ -44,19 +44,34 @@ def test_a_check_belongs_to_one_drive_and_one_sync(make_rig):
     assert len(seen) == 5 * COUNTS
 
 
+def late(age, channels):
+    """Return what holds the reports of some channels back for so many ticks."""
+    waiting = {channel: [b""] * age for channel in channels}
+
+    def delay(channel, frames, now):
+        if channel not in waiting:
+            return frames
+        waiting[channel].append(frames)
+        return waiting[channel].pop(0)
+
+    return delay
+
+
+@pytest.mark.parametrize(("age", "reason"), [(1, Reason.FEEDBACK_STALE), (3, Reason.DRIVE_SILENT)])
+def test_drives_that_are_late_alone_are_found_sooner(make_rig, age, reason):
+    """While others are heard this computer is not late: a report that stays away counts as one that is not believed."""
+    rig = make_rig()
+    rig.enable()
+    rig.tick(SLOW)
+    rig.mock.tamper_frames = late(age, (0,))
+    assert ticks_until_stop(rig) == rig.settings.report_limit and rig.driver.stop.code is reason
+
+
 @pytest.mark.parametrize("velocity", [SLOW, [0.0] * 5], ids=["moving", "at rest"])
 @pytest.mark.parametrize("age", [1, 3])
 def test_reports_of_an_older_tick_stop_the_robot_at_rest_too(rig, age, velocity):
     rig.tick(velocity)
-    waiting = []
-
-    def late(channel, frames, now):
-        if channel:
-            return frames
-        waiting.append(frames)
-        return waiting.pop(0) if len(waiting) > age else b""
-
-    rig.mock.tamper_frames = late
+    rig.mock.tamper_frames = late(age, (0, 1))
     assert ticks_until_stop(rig, velocity=velocity) == age + rig.settings.report_limit
     assert rig.driver.stop.code is Reason.FEEDBACK_STALE and f"{age} ticks old" in rig.driver.stop.reason
 

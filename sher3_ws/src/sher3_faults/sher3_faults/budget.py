@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from sher3_common import Sher3Error
+from sher3_common.vectors import Vector
 from sher3_control.motion.speed_cap import Regime, SpeedCap, axis_caps, speed_cap
 from sher3_control.settings import ControlSettings
 from sher3_description import ACTUATORS, Robot
@@ -18,13 +19,17 @@ from sher3_drivers.settings import MotorDriverSettings
 from sher3_kinematics import RobotKinematics
 
 from sher3_faults.braking import braking_of
-from sher3_faults.creep import SPEEDS, Creep, FalseForce, creeps, false_forces, given_way, per_axis
+from sher3_faults.creep import SPEEDS, Creep, FalseForce, creeps, cut_off, false_forces, given_way, per_axis
 from sher3_faults.fault_classes import FaultClass, fault_classes
 
 GUARDED = (Regime.NEAR_TISSUE, Regime.FREE)
 """Regimes with a stated budget."""
 RUNAWAY = {Regime.NEAR_TISSUE: 40e-6, Regime.FREE: 250e-6}
 """Largest tip travel of axes that go by themselves, one to five, at any speed up to the limits of their drives [m]."""
+
+
+CUT_OFF = {Regime.NEAR_TISSUE: 100e-6, Regime.FREE: 720e-6}
+"""What is stated of the same [m] where the drive of such an axis is cut off too: it stops by its own watch alone."""
 
 
 class BudgetRow(NamedTuple):
@@ -71,6 +76,7 @@ class TravelBudget:
     Attributes:
         rows: every fault in every regime.
         creeps: tip travel with an axis that goes by itself, per regime: every axis, speed and echo.
+        cut_off: tip travel [m] per regime and axis that goes by itself while its drive neither hears nor is heard.
         runaway: tip travel [m] per regime and axis when its drive does not obey and runs at its own speed limit, which
             is the cap of the regime.
     """
@@ -82,6 +88,7 @@ class TravelBudget:
         self._classes = fault_classes(control, drives)
         self.rows = [row for regime in Regime for row in self._rows(regime, self._cap(regime))]
         self.creeps = {regime.value: self._creeps(regime) for regime in Regime}
+        self.cut_off = {regime.value: cut_off(self._braking, drives, self._axis_caps(regime)) for regime in Regime}
         self.runaway = {
             regime: {creep.axis: creep.travel for creep in found if creep.echo == "false"}
             for regime, found in self.creeps.items()
@@ -93,10 +100,12 @@ class TravelBudget:
             return SpeedCap(self._braking.top_speed(), float(self._braking.velocity[3]))
         return cap
 
-    def _creeps(self, regime: Regime) -> list[Creep]:
+    def _axis_caps(self, regime: Regime) -> Vector:
         motion = self._control.motion
-        caps = axis_caps(motion, speed_cap(motion, regime), self._braking.velocity.tolist())
-        return creeps(self._braking, self._drives, caps, self._cap(regime))
+        return axis_caps(motion, speed_cap(motion, regime), self._braking.velocity.tolist())
+
+    def _creeps(self, regime: Regime) -> list[Creep]:
+        return creeps(self._braking, self._drives, self._axis_caps(regime), self._cap(regime))
 
     def false_forces(self, regime: Regime) -> list[FalseForce]:
         """Return what comes of a false force in a regime; on the bench, where nobody watches, nothing is stated."""
@@ -158,7 +167,8 @@ class TravelBudget:
         creep = {regime: [found._asdict() for found in self.creeps[regime]] for regime in self.creeps}
         forces = {regime.value: [_plain(found) for found in self.false_forces(regime)] for regime in GUARDED}
         most = {regime.value: travel for regime, travel in RUNAWAY.items()}
-        return {"rows": rows, "runaway": self.runaway, "runaway_budget": most, "creep": creep, "false_force": forces}
+        stated = {"runaway": self.runaway, "runaway_budget": most, "cut_off": self.cut_off}
+        return {"rows": rows, **stated, "creep": creep, "false_force": forces}
 
     def as_text(self) -> str:
         """Return the tables."""
@@ -185,6 +195,10 @@ class TravelBudget:
         lines.append(f"  {'axis, echo of its drive':34}" + "".join(f"{speed:>9g}" for speed in SPEEDS) + "    limit")
         for (axis, echo), some in groupby(found, key=lambda one: (one.axis, one.echo)):
             lines.append(f"  {axis + ', ' + echo:34}" + "".join(f"{1e6 * one.travel:9.1f}" for one in some))
+        cut = self.cut_off[regime.value].items()
+        lines.append(
+            "  cut off as well, at the limit" + ",".join(f" {1e6 * way:.1f} um by {name}" for name, way in cut)
+        )
         gives = given_way(self._braking, self._ki, self._drives.position_force)
         lines.append(
             "  each newton of a hand adds"

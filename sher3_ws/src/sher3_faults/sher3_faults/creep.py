@@ -68,6 +68,16 @@ def creeps(braking: Braking, drives: MotorDriverSettings, caps: Vector, cap: Spe
     ]
 
 
+def cut_off(braking: Braking, drives: MotorDriverSettings, caps: Vector) -> dict[str, float]:
+    """Return the tip's travel [m] with an axis that goes by itself at its drive's own limit, `caps` (5,), unheard.
+
+    Its drive neither hears nor is heard, so it brakes when it misses the host's heartbeat, two periods later at most.
+    """
+    v = np.array(caps)
+    way = v * (drives.host_heartbeat_limit + 2.0 * drives.period + braking.lag) + v * v / (2.0 * braking.deceleration)
+    return dict(zip(ACTUATORS, (braking.reach() * way).tolist(), strict=True))
+
+
 def given_way(braking: Braking, ki: Array, share: float) -> Array:
     """Return what a newton at the tip adds to the tip's travel per axis (5,) [m/N].
 

@@ -9,7 +9,7 @@ from sher3_control.settings import ControlSettings
 from sher3_description import load_robot
 from sher3_drivers.settings import default_settings
 from sher3_faults.braking import Braking
-from sher3_faults.budget import GUARDED, BudgetExceeded, TravelBudget
+from sher3_faults.budget import CUT_OFF, GUARDED, BudgetExceeded, TravelBudget
 from sher3_faults.creep import ECHOES
 
 ROBOT = load_robot()
@@ -116,6 +116,14 @@ def test_every_axis_at_every_speed_and_with_every_echo_is_stated():
         assert min(c.speed for c in creeps) == 1e-6 and max(c.travel for c in creeps) <= most
         assert all(c.speed >= 0.0 and np.isfinite(c.travel) for c in creeps)
         assert {c.axis: c.travel for c in creeps if c.echo == "false"} == found.runaway[regime.value]
+
+
+def test_an_axis_that_goes_by_itself_and_is_cut_off_by_hand():
+    """The tilt near tissue: 0.9 mm/s for 30 ms, two periods and its lag, and its brake; all axes are as stated."""
+    found, braking = budget().cut_off, Braking(ROBOT)
+    way = 9e-4 * (34e-3 + braking.lag[4]) + 8.1e-7 / (2.0 * braking.deceleration[4])
+    assert found["near_tissue"]["tilt"] == pytest.approx(braking.reach()[4] * way, rel=1e-6)
+    assert all(max(found[regime.value].values()) <= most for regime, most in CUT_OFF.items())
 
 
 def test_a_creep_by_hand():

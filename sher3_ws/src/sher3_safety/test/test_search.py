@@ -1,11 +1,13 @@
 """What the search draws and how it climbs; robots are tried in `tests/test_safety_search.py`."""
 
+from dataclasses import replace
 from random import Random
 
 import pytest
 from sher3_control.motion.speed_cap import Regime
+from sher3_faults.budget import CUT_OFF, RUNAWAY
 from sher3_safety.search.climb import SearchResult
-from sher3_safety.search.draw import ONSETS, STATES, Draw, Fault, Shape, drawn, near
+from sher3_safety.search.draw import CUTS, OF_ONE, ONSETS, STATES, Draw, Fault, Shape, drawn, near
 from sher3_safety.search.trial import Found
 
 CREEP = Shape("power", "creep", "speed")
@@ -50,6 +52,15 @@ def test_the_worst_is_the_one_nearest_to_its_budget_and_one_beyond_it_misses():
     assert result.worst(2) == [large, near_one] and result.missed == [large]
     assert "3 draws, seed 1: 1 beyond their budget." in result.as_text() and "| B | 251.0 | 250 |" in result.as_text()
     assert result.to_dict()["trials"][0]["faults"] == DRAW.told()
+
+
+@pytest.mark.parametrize(
+    ("component", "shape", "stated"),
+    [("bus", CUTS[1], True), ("delta_2", CUTS[0], True), ("tilt", CUTS[0], False), ("delta_2.up", OF_ONE[3], False)],
+)
+def test_an_axis_that_goes_by_itself_and_is_cut_off_is_held_against_what_is_stated(component, shape, stated):
+    draw = replace(DRAW, faults=(DRAW.faults[1], Fault(component, shape, 1.0, 0)))
+    assert draw.budget == (CUT_OFF if stated else RUNAWAY)[Regime.FREE]
 
 
 def test_the_same_seed_draws_the_same():

@@ -53,7 +53,8 @@ class Invalid(NamedTuple):
     """Why the newest report of a drive was not believed.
 
     Attributes:
-        reason: FEEDBACK_STALE, FEEDBACK_SWAPPED, FEEDBACK_GARBLED, or DRIVE_TWICE where two reports contradict.
+        reason: FEEDBACK_STALE, FEEDBACK_SWAPPED, FEEDBACK_GARBLED, DRIVE_TWICE where two reports contradict, or
+            DRIVE_SILENT where there is none.
         text: a sentence without the drive's name.
         times: such ticks in a row.
     """
@@ -147,6 +148,8 @@ class TpdoCollector:
 
     def end(self) -> bool:
         """End a tick: count it, for every drive, as one to be doubted or as a good one; return whether one was not."""
+        if not self.has(self.all_mask):
+            self._doubt_silent()
         for axis, before in enumerate(self.invalid):
             doubt = self._doubt.get(axis)
             if doubt is not None:
@@ -154,6 +157,13 @@ class TpdoCollector:
             elif before is not None and not self._of_axis[axis] & ~self._mask:
                 self.invalid[axis] = None
         return any(self.invalid)
+
+    def _doubt_silent(self) -> None:
+        """Doubt drives that were heard before and stay away while others come: then this computer is not late."""
+        missing = self.missing()
+        for axis in missing if len(missing) < self._count else ():
+            if self.statuswords[axis] is not None:
+                self._doubt.setdefault(axis, (Reason.DRIVE_SILENT, "no TPDO while other drives are heard"))
 
     def take(self, frames: bytes) -> list[tuple[int, int, bytes]]:
         """Take the frames of a bundle; return (channel, can_id, data) of those that are no TPDO of their channel.
@@ -244,18 +254,9 @@ class TpdoCollector:
         """Return the load encoder positions (5,), m or rad."""
         return tuple(map(mul, self._load, self._load_unit))
 
-    def newest(self, stamp: int, demand: Vector) -> DriveFeedback:
-        """Return what is known at the tick `stamp` (ns) though TPDOs are missing: drives not heard stay as they were.
-
-        Their echo is the demand given (5,) [m/s, rad/s]; velocities are zero.
-        """
-        seen, unheard = self._seen(stamp), self.missing()
-        told = tuple([demand[n] if n in unheard else value for n, value in enumerate(seen.velocity_demand)])
-        return seen._replace(velocity_demand=told)
-
     def feedback(self, stamp: int) -> DriveFeedback:
         """Return the whole feedback of the tick `stamp` (ns); call it once a tick and only when every TPDO is in."""
-        seen = self._seen(stamp)
+        seen = self.newest(stamp)
         motor, previous = seen.motor_position, self._previous
         self._previous = self._tick, motor
         if previous is None:
@@ -264,8 +265,11 @@ class TpdoCollector:
         span = (self._tick - tick) * self._period
         return seen._replace(motor_velocity=tuple([step / span for step in map(sub, motor, before)]))
 
-    def _seen(self, stamp: int) -> DriveFeedback:
-        """Return the newest reports; velocities, which take two of them, are zero."""
+    def newest(self, stamp: int) -> DriveFeedback:
+        """Return the newest report of every drive at the tick `stamp` (ns), of this tick or an older one.
+
+        Velocities, which take two reports, are zero.
+        """
         motor = tuple(map(mul, self._motor, self._motor_unit))
         effort = tuple(map(mul, self._torque, self._effort_unit))
         demand = tuple(map(mul, self._demand, self._velocity_unit))

@@ -289,15 +289,13 @@ class MotorDriver:
         self.counters["incomplete"] += not complete
 
     def _judge_motion(self, feedback: DriveFeedback | None, now: int) -> None:
-        """Judge every axis that is heard; one that is not must not shield the others while the robot is stopped."""
+        """Judge every axis in every tick: one that is not heard must not shield the others."""
         motion, session, collector = self.watches.motion, self.session, self.wire.collector
-        seen = feedback
-        if seen is None and session.stop.first is not None:
-            seen = collector.newest(self.gate.stamp, motion.demand.newest)
-        if seen is not None:
-            self._stop_if(motion.check(seen, session.goal, session.enabled, session.stop, now))
-            if motion.powers_off(session.stop):
-                session.power_off()
+        seen = collector.newest(self.gate.stamp) if feedback is None else feedback
+        unheard = collector.missing() if feedback is None else []
+        self._stop_if(motion.check(seen, session.goal, session.enabled, session.stop, now, unheard))
+        if motion.powers_off(session.stop):
+            session.power_off()
 
     def _set_up_again(self) -> None:
         """Configure every drive again in a recovery: one of them restarted. The loop is held meanwhile, without power.

@@ -9,7 +9,7 @@ Where commands do not change nothing is told, and nothing is believed either: th
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 from sher3_common.reasons import Reason
 from sher3_common.vectors import Vector
@@ -45,13 +45,13 @@ class FingerprintCheck:
         """Take note of the commands (5,) [m/s, rad/s] that the drives held up to a SYNC."""
         self._held.append(held)
 
-    def check(self, echo: Vector) -> Trip | None:
-        """Judge the echoes (5,) [m/s, rad/s] of the newest SYNC."""
+    def check(self, echo: Vector, unheard: Collection[int] = ()) -> Trip | None:
+        """Judge the echoes (5,) [m/s, rad/s] of the newest SYNC, but for axes not heard."""
         if self._held and echo == self._held[-1] and not any(self.stale) and not any(self.swapped):  # nearly always
             return None
         if len(self._held) < 2:
             return None
-        return together([self._judge(axis, value) for axis, value in enumerate(echo)])
+        return together([self._judge(axis, value) for axis, value in enumerate(echo) if axis not in unheard])
 
     def _judge(self, axis: int, value: float) -> Trip | None:
         """Judge the echo `value` of one axis."""

@@ -6,7 +6,7 @@ frozen and not the axis. An axis held by friction is not mistaken for it, becaus
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from operator import eq
 
 from sher3_common.reasons import Reason
@@ -38,22 +38,28 @@ class FrozenCheck:
         self.travel = [0.0] * len(self._scales)
         self.blind = False
 
-    def check(self, feedback: DriveFeedback, commanded: Sequence[float], since: float) -> Trip | None:
+    def check(
+        self, feedback: DriveFeedback, commanded: Sequence[float], since: float, unheard: Collection[int] = ()
+    ) -> Trip | None:
         """Judge a feedback.
 
         Args:
             feedback: what the drives said.
             commanded: velocities (5,) [m/s, rad/s] sent before it.
             since: time since the feedback before it, s.
+            unheard: numbers of the axes without a report; they wait for the next one.
         """
         reports = list(zip(feedback.motor_position, feedback.load_position, feedback.effort, strict=True))
         before, self._last = self._last, reports
+        for axis in unheard if before else ():
+            reports[axis] = before[axis]
         if not any(map(eq, reports, before)):  # nearly always
             self.travel = [0.0] * len(self._scales) if before else self.travel
             return None
         for axis, report in enumerate(reports):
             if report != before[axis]:
                 self.travel[axis] = 0.0
+            if report != before[axis] or axis in unheard:
                 continue
             travel = self.travel[axis] = self.travel[axis] + abs(commanded[axis]) * since
             if travel > self._limits[axis]:

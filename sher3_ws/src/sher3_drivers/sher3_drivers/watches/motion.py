@@ -1,14 +1,17 @@
 """The driver's eye on the axes: echo, encoders and demand while they follow, ramp and rest while they are stopped.
 
 Every check judges every axis in every tick, and there is no time between two of them: the sum of the commands and the
-echo are followed on through the ramp of a stop, and the rest begins where the ramp ended.
+echo are followed on through the ramp of a stop, and the rest begins where the ramp ended. An axis that is not heard in
+a tick is taken to be where its commands put it, until it is heard again: so it shields no other one.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Iterable, Sequence
+from operator import add
 
 from sher3_common.reasons import Action, Reason
+from sher3_common.vectors import Vector
 
 from sher3_drivers.canopen.cia402 import Goal
 from sher3_drivers.canopen.tpdo import DriveFeedback
@@ -43,6 +46,7 @@ class MotionWatch:
         self.position = PositionWatch(scales, settings)
         self.rest = RestCheck(scales, settings)
         self._stamp: int | None = None
+        self._seen: DriveFeedback | None = None
         self._held = self.demand.newest
         self._followed = False
         self._goal, self._rest_since = Goal.DISABLED, 0
@@ -64,7 +68,15 @@ class MotionWatch:
         self._held = self.demand.newest
         self.fingerprint.sync(self._held)
 
-    def check(self, feedback: DriveFeedback, goal: Goal, following: bool, stop: StopLog, now: int) -> Trip | None:
+    def check(
+        self,
+        feedback: DriveFeedback,
+        goal: Goal,
+        following: bool,
+        stop: StopLog,
+        now: int,
+        unheard: Collection[int] = (),
+    ) -> Trip | None:
         """Judge the feedback of a robot in any state.
 
         Args:
@@ -73,8 +85,15 @@ class MotionWatch:
             following: every drive follows commands.
             stop: why the robot is stopped, if it is.
             now: time, ns.
+            unheard: numbers of the axes of which there is no report in this tick. Before the first whole feedback
+                nothing is judged.
         """
+        if unheard and self._seen is None:
+            return None
         since = self._since(feedback.stamp)
+        if unheard:
+            feedback = self._carried(feedback, unheard, since)
+        self._seen = feedback
         if stop.first is not None or goal is Goal.DISABLED:
             return self._at_rest(feedback, goal, stop, now, since)
         self.position.follow(feedback, self._held, since)
@@ -87,11 +106,28 @@ class MotionWatch:
         return together(
             (
                 self.demand.check(feedback.velocity_demand),
-                self.fingerprint.check(feedback.velocity_demand),
-                self.frozen.check(feedback, self._held, since),
+                self.fingerprint.check(feedback.velocity_demand, unheard),
+                self.frozen.check(feedback, self._held, since, unheard),
                 self.joints.check(feedback, since),
                 self.position.judge(),
             )
+        )
+
+    def _carried(self, heard: DriveFeedback, unheard: Collection[int], since: float) -> DriveFeedback:
+        """Return a feedback in which axes not heard have obeyed their commands since the one before."""
+        before = heard if self._seen is None else self._seen
+        steps = tuple([held * since for held in self._held])
+
+        def fill(reports: Vector, guesses: Iterable[float]) -> Vector:
+            return tuple(
+                [guess if n in unheard else r for n, (r, guess) in enumerate(zip(reports, guesses, strict=True))]
+            )
+
+        return heard._replace(
+            load_position=fill(heard.load_position, map(add, before.load_position, steps)),
+            motor_position=fill(heard.motor_position, map(add, before.motor_position, steps)),
+            effort=fill(heard.effort, before.effort),
+            velocity_demand=fill(heard.velocity_demand, self._held),
         )
 
     def _at_rest(self, feedback: DriveFeedback, goal: Goal, stop: StopLog, now: int, since: float) -> Trip | None:

@@ -14,8 +14,8 @@ from typing import NamedTuple
 from sher3_common.operating_state import OperatingState
 from sher3_control.motion.speed_cap import Regime
 from sher3_description import ACTUATORS
-from sher3_faults.budget import RUNAWAY
-from sher3_faults.requests import FaultRequest, make_request
+from sher3_faults.budget import CUT_OFF, RUNAWAY
+from sher3_faults.requests import GROUPS, FaultRequest, make_request
 
 from sher3_safety.rows.row import IDLE, LIMIT, MOVING, PAUSED, State
 
@@ -53,8 +53,10 @@ WITH_AXIS = (
     Shape("power", "wrong", "scale", -1.0),
     Shape("power", "wrong", "scale", 1.02),
 )
-OF_ONE = (Shape("demand", "wrong", "code", float(0x8611)), Shape("", "off"), Shape("up", "late"), Shape("up", "off"))
-WHOLE = (Shape("pedal", "off"), Shape("bus", "off"), Shape("bus.up", "late"), Shape("force_sensor", "off"))
+CUTS = (Shape("", "off"), Shape("bus", "off"))
+"""Faults after which a drive neither hears nor is heard."""
+OF_ONE = (Shape("demand", "wrong", "code", float(0x8611)), CUTS[0], Shape("up", "late"), Shape("up", "off"))
+WHOLE = (Shape("pedal", "off"), CUTS[1], Shape("bus.up", "late"), Shape("force_sensor", "off"))
 
 
 @dataclass(frozen=True)
@@ -65,6 +67,12 @@ class Fault:
     shape: Shape
     share: float
     onset: int
+
+    @property
+    def axes(self) -> tuple[str, ...]:
+        """The axes that it acts on."""
+        unit = self.component.partition(".")[0]
+        return ACTUATORS if unit == "bus" else GROUPS.get(unit, (unit,))
 
     def request(self, regime: Regime, period: float) -> FaultRequest:
         """Return what is sent on `mock/fault`."""
@@ -92,8 +100,10 @@ class Draw:
 
     @property
     def budget(self) -> float:
-        """Travel that is allowed [m]."""
-        return RUNAWAY[self.regime]
+        """Travel that is allowed [m]; of an axis that goes by itself while its drive is cut off, what is stated."""
+        cut, going = ({axis for fault in self.faults if fault.shape in shapes for axis in fault.axes}
+                      for shapes in (CUTS, RUNAWAYS))  # fmt: skip
+        return (CUT_OFF if cut & going else RUNAWAY)[self.regime]
 
     @property
     def paused(self) -> bool:
