@@ -43,6 +43,7 @@ def describe(
     out: Annotated[Path | None, typer.Option(help="YAML file to write; default: print it.")] = None,
     rate: Annotated[float | None, typer.Option(min=1e-3, help="Samples per second, without a time.")] = None,
     model: Annotated[Path | None, typer.Option(help="URDF or MJCF of the arm whose joints were recorded.")] = None,
+    names: Annotated[str, typer.Option(help="Names of the columns in order, parted by commas.")] = "",
     as_json: Json = False,
 ) -> None:
     """Draft a machine description from a file and say what was guessed; check it before you import with it.
@@ -52,7 +53,7 @@ def describe(
     from sher3_machines.drafting.drafts import draft_of
 
     with reported(as_json):
-        found = draft_of(file, rate, model)
+        found = draft_of(file, rate, model, [name.strip() for name in names.split(",")] if names else ())
         if out is not None:
             written(out, found.text)
         guessed = "\n".join([str(out), *(f"  guessed: {guess}" for guess in found.guesses)])

@@ -104,9 +104,10 @@ def drafted(path: Path, tables: Tables, rate: float | None, guesses: list[str]) 
             f"{path}: no column looks like a position",
             value=", ".join(sorted(tables)[:LISTED]),
             limit="names with position, pos, q, angle, encoder",
-            remedy="write names of columns into a first line, or the description by hand (`column: c1`; `column: data, "
-            "index: 1` of a matrix); a force sensor by itself is `kind: force_sensor`, postures with measured poses "
-            "are `kind: arm`; levels and temperatures are no machine",
+            remedy="give their names in order, an empty one for what is no signal: --names t,position,,effort; or "
+            "write the description by hand (`column: c1`; `column: data, index: 1` of a matrix); a force sensor by "
+            "itself is `kind: force_sensor`, postures with measured poses are `kind: arm`; levels and temperatures are "
+            "no machine",
         )
     if left:
         more = f" and {len(left) - LISTED} more" if len(left) > LISTED else ""

@@ -2,25 +2,53 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from sher3_machines.drafting.draft import draft
+from sher3_common import parse_yaml
+
+from sher3_machines.drafting.draft import draft, written
+from sher3_machines.drafting.unnamed import Place, as_recorded, given, renamed, told_by_motion
+from sher3_machines.errors import MachineError
 from sher3_machines.intake.kind import Draft
 from sher3_machines.intake.kinds import kinds
 from sher3_machines.intake.runs import longest
+from sher3_machines.intake.tables import Tables
 
 
-def draft_of(path: Path, rate: float | None = None, model: Path | None = None) -> Draft:
+def draft_of(path: Path, rate: float | None = None, model: Path | None = None, names: Sequence[str] = ()) -> Draft:
     """Draft what the first kind that knows the file makes of it, else a chain of axes.
 
     Args:
         path: of the data.
         rate: samples per second, Hz, where no time was recorded.
         model: URDF or MJCF of the arm whose joints were recorded.
+        names: of the columns in their order, where the file has none.
 
     Raises:
         MachineError: the file cannot be read, or no column looks like a time or a position.
     """
     tables = longest(path)
+    if names:
+        return _named(path, tables, rate, model, given(names, tables), [])
+    try:
+        return _draft(path, tables, rate, model)
+    except MachineError:
+        guesses: list[str] = []
+        told = told_by_motion(tables, rate, guesses)
+        if not told:
+            raise
+        return _named(path, tables, rate, model, told, guesses)
+
+
+def _draft(path: Path, tables: Tables, rate: float | None, model: Path | None) -> Draft:
     drafts = (kind.draft(path, tables, rate, model) for kind in kinds().values())
     return next((found for found in drafts if found is not None), None) or draft(path, rate, tables)
+
+
+def _named(
+    path: Path, tables: Tables, rate: float | None, model: Path | None, names: Mapping[Place, str], guesses: list[str]
+) -> Draft:
+    """Return the draft of columns that were named, in the words of the file."""
+    found = _draft(path, renamed(names, tables), rate, model)
+    return written(as_recorded(parse_yaml(found.text), names), [*guesses, *found.guesses])

@@ -64,10 +64,10 @@ def clock_of(tables: Tables, guesses: list[str]) -> str:
         "no column looks like a time",
         value=", ".join(sorted(tables)[:12]) or "no column of numbers",
         limit="a growing column named t, time or stamp",
-        remedy="name it so, or state the rate of the samples, Hz: --rate 500 (`time: {rate: 500}` in a description; a "
-        "column of a matrix is `time: {column: data, index: 0}`); a table without a time is of another kind: targets "
-        "and readings `kind: positioning`, known loads and readings `kind: load_cell`, wrenches in orientations `kind: "
-        "force_sensor`, postures with measured poses `kind: arm`",
+        remedy="name it so (--names t,q,i names all columns in order), or state the rate of the samples, Hz: --rate "
+        "500 (`time: {rate: 500}` in a description; a column of a matrix is `time: {column: data, index: 0}`); a "
+        "table without a time is of another kind: targets and readings `kind: positioning`, known loads and readings "
+        "`kind: load_cell`, wrenches in orientations `kind: force_sensor`, postures with measured poses `kind: arm`",
     )
 
 

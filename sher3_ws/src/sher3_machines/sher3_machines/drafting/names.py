@@ -45,6 +45,8 @@ IGNORED = vocabulary(
 TEMPERATURE = vocabulary("temperature temperatures temp temps temperatur")
 APPLIED = vocabulary("hung applied external disturbance weight brake bremsmoment last")
 """A force from outside that is known, where the column has the unit of one."""
+READING = vocabulary("value val wert")
+"""What a channel calls its readings."""
 DERIVED = vocabulary("filt filtered filter smooth smoothed gefiltert")
 """What was made of a reading: taken where the reading itself was not recorded."""
 PLAIN = DERIVED | vocabulary(
@@ -53,7 +55,7 @@ PLAIN = DERIVED | vocabulary(
 """Words that tell one axis from another only where nothing else does."""
 TURNING = vocabulary("az azimuth el elevation pan tilt yaw pitch roll")
 """Names of axes that, with a unit of an angle, are a position."""
-TIME = vocabulary("t time stamp timestamp timestamps zeit date datetime utc received elapsed clock")
+TIME = vocabulary("t time stamp timestamp timestamps timestep zeit date datetime utc received elapsed clock")
 COUNTERS = vocabulary("sample samples index idx frame step n nr row")
 FORCES = ("%", "A", "mA", "N", "kN", "N*m", "mN*m")
 """Units of an effort."""
@@ -98,6 +100,8 @@ def named(column: str) -> Named:
     *tables, last = PARTING.split(column)
     known, unit = bare_and_unit(last)
     words = words_of(known)
+    if tables and words and set(words) <= READING:  # a channel of a control system: its table has the name
+        words = words_of(tables[-1])
     if unit == "nm" and set(words) & (EFFORT | CURRENT):
         unit = "N*m"
     table = words_of(tables[-1]) if tables else []
@@ -112,6 +116,8 @@ def named(column: str) -> Named:
     if unit == "degC" or set(words) & TEMPERATURE:
         return Named("temperature", "_".join(w for w in rest if w not in TEMPERATURE), unit or "degC")
     signal = _signal(set(used) | (set(words) & SECOND), {w for w in table if w in ASKED | COMMAND})
+    if signal == "load" and unit in DRIVES and unit != "1":
+        signal = None  # a bridge in mV, no place
     if signal == "position" and unit in VELOCITIES:
         signal = "velocity"
     if signal == "reference" and unit in DRIVES and not set(words) & POSITION:

@@ -85,13 +85,22 @@ def read_tables(path: Path) -> Tables:
     if not path.is_file():
         raise MachineError(f"{path}: no such file", remedy="check the path")
     reader = {**READERS, **REFUSED}.get(path.suffix.lower())
-    if reader is None:
+    if path.stat().st_size > MAX_BYTES:
+        raise MachineError(f"{path}: too large", value=path.stat().st_size, limit=MAX_BYTES, remedy="cut the record")
+    return _read(path, reader) if reader else _read_unknown(path)
+
+
+def _read_unknown(path: Path) -> Tables:
+    """Return the columns of a file whose ending says nothing: a table where it is text and holds one, else refused."""
+    try:
+        found = _read(path, read_table)
+    except MachineError:
+        found = {}
+    if not any(len(x) >= SAMPLES for x in found.values()):
         raise MachineError(
             f"{path}: format is not read", value=path.suffix, limit=", ".join(READERS), remedy="convert it to csv"
         )
-    if path.stat().st_size > MAX_BYTES:
-        raise MachineError(f"{path}: too large", value=path.stat().st_size, limit=MAX_BYTES, remedy="cut the record")
-    return _read(path, reader)
+    return found
 
 
 def upright(tables: Tables) -> Tables:

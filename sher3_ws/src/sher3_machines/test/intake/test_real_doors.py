@@ -48,12 +48,18 @@ def test_a_draft_is_imported_as_it_is(name, tmp_path):
     ("name", "shape"),
     [
         ("pneumatic_seals/KDN_1bar.csv", {"c0": (6857,), "c6": (6857,)}),
-        ("brfd_damper/dataset-1_1Hz35lbtension.json", {"data": (10241, 6)}),
         ("franka_fr3_calib/calib_data_converted.npz", {"camera_poses": (114, 4, 4)}),
     ],
 )
 def test_columns_without_names_are_read_and_a_draft_says_what_to_write(name, shape):
     found = read_tables(REAL / name)
     assert {column: found[column].shape for column in shape} == shape
-    with pytest.raises(MachineError, match=r"write names of columns|time: \{column: data, index: 0\}"):
+    with pytest.raises(MachineError, match=r"--names|time: \{column: data, index: 0\}"):
         draft_of(REAL / name)
+
+
+def test_place_and_speed_of_a_matrix_are_told_by_the_motion():
+    name = "brfd_damper/dataset-1_1Hz35lbtension.json"
+    assert read_tables(REAL / name)["data"].shape == (10241, 6)
+    found = draft_of(REAL / name)
+    assert "data[1] is a position" in found.text

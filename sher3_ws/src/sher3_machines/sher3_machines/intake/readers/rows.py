@@ -44,7 +44,8 @@ def columns_of(rows: Rows, comma: bool, names: Sequence[str] = ()) -> dict[str, 
     for i, name in enumerate(header):
         x = _column([row[i] if i < len(row) else "" for row in rows], comma)
         same = [known for known in out if known == name or known.startswith(f"{name}.")] if name in header[:i] else []
-        if x is not None and not any(np.array_equal(out[known], x, equal_nan=True) for known in same):
+        nothing = not name and x is not None and bool(np.isnan(x).all())  # cells that fill a row up
+        if x is not None and not nothing and not any(np.array_equal(out[known], x, equal_nan=True) for known in same):
             out[f"{name}.{len(same) + 1}" if same else name] = x
     return out
 
@@ -57,22 +58,32 @@ def usual_row(rows: int) -> int:
 def _titles(rows: Rows, comma: bool) -> int:
     """Return how many rows of text stand above the header.
 
-    The header is the fullest row above the numbers, of several the first: units stand below it. A spreadsheet fills
-    the lines above its table up with empty cells, so that they are as wide as the table; a logger of drives writes
-    settings there that are wider than its table, and are no header of it.
+    The header is the row above the numbers whose filled cells are most nearly those that the numbers fill, of several
+    the first: units stand below it. A spreadsheet fills the lines above its table up with empty cells, so that they are
+    as wide as the table; a logger of drives writes settings there that are wider, and are no header of it.
     """
     usual = rows[usual_row(len(rows))]
-    filled = sum(map(_filled, usual))
     numeric = [i for i, cell in enumerate(usual) if _is_number(cell, comma)]
     first = next((i for i, row in enumerate(rows) if _in_table(row, numeric, len(usual), comma)), 0)
-    above = [sum(map(_filled, row)) for row in rows[:first]]
+    filled = {i for row in rows[first:] for i, cell in enumerate(row) if _filled(cell)}
+    above = [{i for i, cell in enumerate(row) if _filled(cell)} for row in rows[:first]]
     if not above or len(above) > MOST_TITLES:
         return 0
     if _known_units(rows[first - 1]) and first > 1 and len(rows[first - 2]) == len(rows[first - 1]):
         return first - 2
-    fits = [n if len(row) <= len(usual) else 0 for n, row in zip(above, rows, strict=False)]
+    fits = [len(row & filled) - len(row - filled) for row in above]
     header = fits.index(max(fits))
-    return header if 2 * fits[header] > filled else len(above)
+    return header if 2 * fits[header] > len(filled) else len(above)
+
+
+def names_of(preamble: Rows) -> list[str]:
+    """Return the names in the last row of a preamble; where that holds units, those of the row above it with them."""
+    if not preamble:
+        return []
+    above, last = preamble[-2:] if len(preamble) > 1 else ([], preamble[-1])
+    units = [spelled(cell.strip().strip("[]()")) for cell in last]
+    told = len(above) == len(last) and 2 * sum(unit in UNITS for unit in units) > len(last)
+    return _with_units(above, last) if told else list(last)
 
 
 def _in_table(row: Sequence[str], numeric: Sequence[int], width: int, comma: bool) -> bool:
@@ -109,6 +120,7 @@ def _with_units(header: Sequence[str], units: Sequence[str]) -> list[str]:
     A column without a name whose unit is that of a time is the time.
     """
     cells = [*(u.strip().strip("[]()") for u in units), *[""] * len(header)]
+    cells = ["" if unit == "#" else unit for unit in cells]  # a number of something has no unit
     names = [name or ("time" if spelled(unit) in TIME_UNITS else "") for name, unit in zip(header, cells, strict=False)]
     return [f"{name} [{unit}]" if unit else name for name, unit in zip(names, cells, strict=False)]
 

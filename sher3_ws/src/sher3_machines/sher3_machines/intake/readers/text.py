@@ -9,7 +9,8 @@ from pathlib import Path
 from sher3_common import FileError, read_bytes
 from sher3_diagnosis.channel import Array
 
-from sher3_machines.intake.readers.rows import columns_of, usual_row
+from sher3_machines.intake.readers.long import is_long, tables_of_readings
+from sher3_machines.intake.readers.rows import columns_of, names_of, usual_row
 
 MAX_BYTES = 500_000_000
 """Largest text that is read."""
@@ -35,6 +36,7 @@ def read_table(path: Path) -> dict[str, Array]:
     """Return the numeric columns of a text file; without a header columns are c0, c1, ...
 
     ISO times become seconds since 1970, UTC where no zone is given. Columns of text are left out; empty cells are nan.
+    A log with a channel, a stamp and a reading in each line becomes `CHANNEL/stamp` and `CHANNEL/value`.
     """
     lines = [line for line in decoded(path).splitlines() if line.strip()]
     preamble = 0
@@ -44,11 +46,12 @@ def read_table(path: Path) -> dict[str, Array]:
     if not body:
         raise ValueError("no rows")
     mark = separator(body[usual_row(len(body))])
-    body = _without_remarks(body, mark)
+    body = _ended(_without_remarks(body, mark), mark)
     rows = list(csv.reader(map(_quoted, body), delimiter=mark)) if mark else [BLANKS.findall(line) for line in body]
     comma = mark in (";", "\t", None) and any(DECIMAL_COMMA.fullmatch(c.strip()) for r in rows[:FIRST] for c in r)
-    names = _names(lines[preamble - 1], mark) if preamble else []
-    return columns_of(rows, comma, names)
+    if is_long(rows):
+        return tables_of_readings(rows)
+    return columns_of(rows, comma, names_of([_names(line, mark) for line in lines[:preamble]]))
 
 
 def decoded(path: Path) -> str:
@@ -71,7 +74,14 @@ def decoded(path: Path) -> str:
 def separator(line: str) -> str | None:
     """Return what parts the cells of a line; None: blanks."""
     outside = LISTED.sub("", QUOTED.sub("", line))
-    return next((m for m in SEPARATORS if m in outside), None)
+    return next((m for text in (outside.strip(SEPARATORS), outside) for m in SEPARATORS if m in text), None)
+
+
+def _ended(lines: list[str], mark: str | None) -> list[str]:
+    """Return lines without a sign behind their last cell that parts no cells: `1.0,2.0;`."""
+    signs = SEPARATORS.replace(mark or "\t", "")
+    table = lines[len(lines) // 2 :]
+    return [line.rstrip(signs) for line in lines] if all(line.rstrip()[-1:] in signs for line in table) else lines
 
 
 def _without_remarks(lines: list[str], mark: str | None) -> list[str]:

@@ -1,0 +1,60 @@
+"""Tables whose columns nobody named: names that are given, and what the numbers alone tell."""
+
+import numpy as np
+import pytest
+from scipy.io import savemat
+from sher3_common import parse_yaml
+from sher3_machines import MachineError
+from sher3_machines.drafting.drafts import draft_of
+
+
+def swing(seed):
+    """Time, place, speed and a torque of drawn rate, length and motion."""
+    draw = np.random.default_rng(seed)
+    rate, f = draw.uniform(50.0, 1000.0), draw.uniform(0.3, 2.0, 2)
+    t = np.arange(int(draw.uniform(10.0, 20.0) * rate)) / rate
+    q = np.sin(2 * np.pi * f[0] * t) + 0.5 * np.cos(2 * np.pi * f[1] * t)
+    v = 2 * np.pi * (f[0] * np.cos(2 * np.pi * f[0] * t) - 0.5 * f[1] * np.sin(2 * np.pi * f[1] * t))
+    return np.column_stack([t, q, v, draw.normal(size=len(t))])
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_place_and_speed_are_told_by_the_motion_in_any_order(tmp_path, seed):
+    order = np.random.default_rng(seed).permutation(4)
+    np.savetxt(tmp_path / "a.csv", swing(seed)[:, order], delimiter=",")
+    found = draft_of(tmp_path / "a.csv")
+    column = {what: f"c{list(order).index(i)}" for i, what in enumerate(("time", "position", "velocity", "torque"))}
+    described = parse_yaml(found.text)
+    signals = described["axes"][0]["signals"]
+    assert described["time"]["column"] == column["time"]
+    assert {k: v["column"] for k, v in signals.items()} == {k: column[k] for k in ("position", "velocity")}
+    assert f"not told by the motion: {column['torque']}" in found.text
+
+
+def test_a_matrix_is_a_table_too(tmp_path):
+    savemat(tmp_path / "a.mat", {"data": swing(1), "J": 0.2})
+    described = parse_yaml(draft_of(tmp_path / "a.mat").text)
+    signals = described["axes"][0]["signals"]
+    assert (described["time"]["column"], described["time"]["index"]) == ("data", 0)
+    assert (signals["position"]["column"], signals["position"]["index"]) == ("data", 1)
+
+
+def test_given_names_are_in_the_words_of_the_file(tmp_path):
+    np.savetxt(tmp_path / "a.csv", swing(2)[:, 1:], delimiter=",")
+    described = parse_yaml(draft_of(tmp_path / "a.csv", rate=100.0, names=["q", "", "tau"]).text)
+    signals = described["axes"][0]["signals"]
+    assert {k: v["column"] for k, v in signals.items()} == {"position": "c0", "effort": "c2"}
+
+
+@pytest.mark.parametrize("names", [["t", "q"], ["t", "q", "q", "tau"]])
+def test_names_that_do_not_fit_are_refused_with_the_columns(tmp_path, names):
+    np.savetxt(tmp_path / "a.csv", swing(3), delimiter=",")
+    with pytest.raises(MachineError, match="names do not fit the columns") as refused:
+        draft_of(tmp_path / "a.csv", names=names)
+    assert "c0, c1, c2, c3" in str(refused.value)
+
+
+def test_columns_of_which_nothing_is_told_are_refused_with_a_remedy(tmp_path):
+    np.savetxt(tmp_path / "a.csv", np.random.default_rng(0).normal(size=(99, 2)), delimiter=",")
+    with pytest.raises(MachineError, match="--names"):
+        draft_of(tmp_path / "a.csv", rate=10.0)
