@@ -48,7 +48,11 @@ COMMANDS: dict[str, Entry] = {
     "fault": Entry("sher3_safety.cli.fault", "fault", "Break one part of the running robot on mocks."),
     "benchtop": Entry("sher3_benchtop.cli", "benchtop", "The bench-top tests of the paper, on the running graph."),
 }
-EXTRAS = {**dict.fromkeys(("rclpy", "rcl_interfaces", "can", "canopen"), "robot"), "distributed": "cluster"}
+EXTRAS = {
+    **dict.fromkeys(("rclpy", "rcl_interfaces", "can", "canopen"), "robot"),
+    **dict.fromkeys(("mcap", "rosbags", "zstandard", "lz4"), "bags"),
+    "distributed": "cluster",
+}
 """The extra that brings a library; message packages come with `robot`."""
 
 

@@ -109,7 +109,7 @@ def test_a_place_where_nothing_can_be_written_is_a_sentence(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("library", "extra"), [("rclpy.node", "robot"), ("std_msgs", "robot"), ("distributed", "cluster")]
+    ("library", "extra"), [("rclpy.node", "robot"), ("std_msgs", "robot"), ("distributed", "cluster"), ("mcap", "bags")]
 )
 def test_a_missing_library_names_its_extra(monkeypatch, capsys, library, extra):
     def fail(*_):

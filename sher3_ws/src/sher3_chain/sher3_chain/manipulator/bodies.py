@@ -7,13 +7,14 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-import pinocchio as pin
 from sher3_common import FileError, read_text
 from sher3_machines.errors import MachineError
 
-from sher3_chain.manipulator.mjcf.bodies import model_from_mjcf
+from sher3_chain.manipulator.mjcf.bodies import tree_from_mjcf
 from sher3_chain.manipulator.mjcf.drives import Driven, driven
 from sher3_chain.manipulator.mjcf.reading import MAX_BYTES, compiled, is_mjcf
+from sher3_chain.manipulator.rigid.tree import Tree
+from sher3_chain.manipulator.rigid.urdf import tree_from_urdf
 
 
 @dataclass(frozen=True)
@@ -22,19 +23,18 @@ class Bodies:
 
     Attributes:
         label: path or name, for errors.
-        pinocchio: all bodies and joints.
+        tree: all bodies and joints.
         mujoco: `MjModel` of an MJCF file; None for a URDF.
     """
 
     label: str
-    pinocchio: pin.Model
+    tree: Tree
     mujoco: Any = None
 
     @property
     def joints(self) -> dict[str, bool]:
         """Joint -> whether it slides, of every joint that turns or slides, in the model's order."""
-        model = self.pinocchio
-        return {model.names[j]: slides(model.joints[j]) for j in range(1, model.njoints) if model.joints[j].nv == 1}
+        return {link.name: link.slides for link in self.tree.links}
 
     @cached_property
     def drives(self) -> dict[str, Driven]:
@@ -66,18 +66,9 @@ def bodies_of(text: str, label: str, path: Path | None = None) -> Bodies:
         raise MachineError(f"{label}: has a document type", value="<!DOCTYPE", remedy="give a plain file")
     if is_mjcf(text):
         return bodies_of_mujoco(compiled(text, label, path), label)
-    try:
-        return Bodies(label, pin.buildModelFromXML(text))
-    except (ValueError, RuntimeError) as error:
-        remedy = "give a URDF or MJCF file"
-        raise MachineError(f"{label}: cannot be read", value=str(error)[:120], remedy=remedy) from error
+    return Bodies(label, tree_from_urdf(text, label))
 
 
 def bodies_of_mujoco(model: Any, label: str) -> Bodies:
     """Return an `MjModel`; raises MachineError where a joint neither turns nor slides."""
-    return Bodies(label, model_from_mjcf(model, label), model)
-
-
-def slides(joint: pin.JointModel) -> bool:
-    """Return whether a joint slides."""
-    return joint.shortname().startswith("JointModelP")
+    return Bodies(label, tree_from_mjcf(model, label), model)

@@ -31,9 +31,12 @@ NANOSECONDS = re.compile(r"(?P<clock>(.*[/._])?)(nanos|nsecs?|nanosecs?|nanoseco
 
 
 def read_bag(path: Path) -> Tables:
-    """Return the tables of a bag; its reader is imported when a bag is met."""
-    from sher3_machines.intake.readers.bags import read_bag
-
+    """Return the tables of a bag; its reader is imported when a bag is met, and raises MachineError where it is not."""
+    try:
+        from sher3_machines.intake.readers.bags import read_bag
+    except ImportError as error:
+        value, remedy = f"{error.name} is not installed", "install sher3[bags]"
+        raise MachineError(f"{path}: no reader for bags", value=value, remedy=remedy) from error
     return read_bag(path)
 
 

@@ -1,73 +1,71 @@
-"""The rigid bodies of an MJCF model as a Pinocchio model."""
+"""The rigid bodies of an MJCF model as a tree."""
 
 from __future__ import annotations
 
 from typing import Any
 
 import numpy as np
-import pinocchio as pin
+from scipy.spatial.transform import Rotation
 from sher3_diagnosis.channel import Array
 from sher3_machines.errors import MachineError
 
-SLIDE, HINGE = 2, 3
+from sher3_chain.manipulator.rigid.tree import WORLD, Link, Tree, moved, parameters
+
+FREE, SLIDE, HINGE = 0, 2, 3
 """MuJoCo's numbers for the kinds of joint that are read (mjtJoint)."""
-REMEDIES = {
-    0: "take its freejoint out where the robot is bolted down or hangs in a stand; one that walks is not judged",
-    1: "write a ball joint as three hinges, or take it out where it is at rest",
-}
-"""Number of another kind -> what to do about it."""
+BALL = "write a ball joint as three hinges, or take it out where it is at rest"
+BOLTED = "take its freejoint out where the robot is bolted down or hangs in a stand; one that walks is not judged"
 
 
-def model_from_mjcf(source: Any, label: str) -> pin.Model:
-    """Return the rigid bodies, joints and rotors of an `MjModel` as a Pinocchio model.
+def tree_from_mjcf(source: Any, label: str) -> Tree:
+    """Return the rigid bodies, joints and rotors of an `MjModel`.
+
+    A body that floats freely, as a thing to be grasped, is held where the model has it.
 
     Args:
         source: of MuJoCo.
         label: that errors name.
 
     Raises:
-        MachineError: a joint neither turns nor slides.
+        MachineError: a joint is a ball, or sits on a body that floats.
     """
-    model = pin.Model()
-    model.gravity.linear = np.array(source.opt.gravity)
-    carrier: list[tuple[int, pin.SE3]] = [(0, pin.SE3.Identity())]
-    armature: list[float] = []
+    links: list[Link] = []
+    other: dict[str, str] = {}
+    floats: dict[int, str] = {}  # body below the world, by number -> how it moves
+    carriers: list[tuple[int, Array, Array]] = [(WORLD, np.eye(3), np.zeros(3))]
     for body in range(1, source.nbody):
-        parent, placed = carrier[source.body_parentid[body]]
-        pose = placed * _pose(source.body_pos[body], source.body_quat[body])
+        parent, turn, place = carriers[source.body_parentid[body]]
+        own, at = _pose(source.body_pos[body], source.body_quat[body])
+        place, turn = place + turn @ at, turn @ own
         first, count = source.body_jntadr[body], source.body_jntnum[body]
         for joint in range(first, first + count):
-            parent, pose = _add(model, source, joint, parent, pose, label)
-            armature.append(float(source.dof_armature[source.jnt_dofadr[joint]]))
-        carrier.append((parent, pose))
-        inertia = _inertia(source, body).se3Action(pose)
-        model.appendBodyToJoint(parent, inertia, pin.SE3.Identity())
-        name = source.body(body).name or f"body{body}"
-        model.addFrame(pin.Frame(name, parent, 0, pose, pin.FrameType.BODY, pin.Inertia.Zero()))
-    model.armature = np.array(armature)
-    return model
+            name, kind = source.joint(joint).name or f"joint{joint}", int(source.jnt_type[joint])
+            root = source.body_rootid[body]
+            if kind == FREE:
+                other[name] = floats[root] = "a free joint"
+                continue
+            refused = BOLTED if root in floats else "" if kind in (SLIDE, HINGE) else BALL
+            if refused:
+                value = floats.get(root, "a ball joint")
+                raise MachineError(f"{label}: joint {name} neither turns nor slides", value=value, remedy=refused)
+            anchor, rotor = np.array(source.jnt_pos[joint]), float(source.dof_armature[source.jnt_dofadr[joint]])
+            axis = np.array(source.jnt_axis[joint])
+            links.append(Link(name, "", parent, turn, place + turn @ anchor, axis, kind == SLIDE, rotor=rotor))
+            parent, turn, place = len(links) - 1, np.eye(3), -anchor
+        carriers.append((parent, turn, place))
+        if parent != WORLD:
+            named = source.body(body).name or f"body{body}"
+            links[parent] = links[parent].carrying(_inertia(source, body), turn, place, named)
+    return Tree(tuple(links), np.array(source.opt.gravity), other)
 
 
-def _add(model: pin.Model, source: Any, joint: int, parent: int, pose: pin.SE3, label: str) -> tuple[int, pin.SE3]:
-    """Add a joint; its frame sits at its anchor. Return it, and the body's pose in that frame."""
-    kinds = {SLIDE: pin.JointModelPrismaticUnaligned, HINGE: pin.JointModelRevoluteUnaligned}
-    kind, name = int(source.jnt_type[joint]), source.joint(joint).name or f"joint{joint}"
-    if kind not in kinds:
-        value = "a free joint" if kind == 0 else "a ball joint"
-        raise MachineError(f"{label}: joint {name} neither turns nor slides", value=value, remedy=REMEDIES[kind])
-    anchor = pin.SE3(np.eye(3), np.array(source.jnt_pos[joint]))
-    made = model.addJoint(parent, kinds[kind](np.array(source.jnt_axis[joint])), pose * anchor, name)
-    model.addJointFrame(made)  # by which Pinocchio finds a joint that is kept where others are locked
-    return made, anchor.inverse()
-
-
-def _inertia(source: Any, body: int) -> pin.Inertia:
-    turn = _pose(source.body_ipos[body], source.body_iquat[body])
+def _inertia(source: Any, body: int) -> Array:
+    """Inertial parameters of a body in its own frame, (10,)."""
+    turn, centre = _pose(source.body_ipos[body], source.body_iquat[body])
     principal = np.diag(source.body_inertia[body])
-    return pin.Inertia(float(source.body_mass[body]), np.zeros(3), principal).se3Action(turn)
+    return moved(parameters(float(source.body_mass[body]), np.zeros(3), principal), turn, centre)
 
 
-def _pose(position: Array, quaternion: Array) -> pin.SE3:
-    """Transform of a position and a quaternion (w, x, y, z)."""
-    w, x, y, z = map(float, quaternion)
-    return pin.SE3(pin.Quaternion(w, x, y, z).toRotationMatrix(), np.array(position))
+def _pose(position: Array, quaternion: Array) -> tuple[Array, Array]:
+    """Orientation (3, 3) and origin (3,) of a position and a quaternion (w, x, y, z)."""
+    return Rotation.from_quat(np.roll(quaternion, -1)).as_matrix(), np.array(position)
