@@ -45,7 +45,7 @@ def test_a_running_robot_takes_a_fault_and_refuses_another(sher3, domain):
         assert line.startswith("ready"), line + up.stderr.read()
         taken = sher3("fault", "force_sensor", "stuck", "--for", "0.5", "--domain", str(domain), "--json")
         assert taken.returncode == 0, taken.stderr
-        assert json.loads(taken.stdout)["answer"] == "1 faults injected"
+        assert json.loads(taken.stdout)["answer"] == "broken: force_sensor stuck"
         refused = sher3("fault", "bus2", "off", "--domain", str(domain))
         assert refused.returncode == 2 and "no such channel; value bus2" in refused.stderr
         up.send_signal(signal.SIGINT)

@@ -42,7 +42,7 @@ def _parameter(parameter: Any) -> tuple[str, str, str] | None:
 def _default(parameter: Any) -> str:
     if parameter.is_flag or parameter.default in (None, "", (), []) or callable(parameter.default):
         return ""
-    return f"`{parameter.default}`"
+    return f"`{getattr(parameter.default, 'value', parameter.default)}`"
 
 
 def _paragraphs(text: str) -> str:

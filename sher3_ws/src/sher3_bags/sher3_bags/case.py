@@ -46,6 +46,8 @@ def read_case(path: str | Path, topics: Iterable[str] | None = None, *, check: b
     """
     folder = Path(path)
     file = folder / CASE_FILE
+    if not folder.is_dir():
+        raise CaseError("no such folder", path=folder, remedy="name a case folder")
     if not file.is_file():
         raise CaseError("no case.yaml", path=folder, remedy=_remedy(folder))
     document = read_yaml(file)

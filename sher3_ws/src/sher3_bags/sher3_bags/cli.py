@@ -36,6 +36,8 @@ def record(
     as_json: Json = False,
 ) -> None:
     """Record the running graph into a new bag; exit code 1 where no message came."""
+    from shutil import rmtree
+
     from sher3_description import load_robot
 
     from sher3_bags.errors import NothingRecorded
@@ -47,7 +49,8 @@ def record(
         counts = run(target, load_robot(robot), topics=topic, seconds=seconds, domain=domain)
         if not any(entry["messages"] for name, entry in counts.items() if name != "diagnostics"):
             remedy = f"start the robot in ROS domain {domain}, or name its domain"
-            raise NothingRecorded("no message of the robot came", path=target, remedy=remedy)
+            rmtree(target)
+            raise NothingRecorded("no message of the robot came, and no bag is kept", path=target, remedy=remedy)
         lines = [f"{name}: {entry['messages']} messages, {entry['dropped']} missing" for name, entry in counts.items()]
         printed(as_json, {"bag": str(target), "topics": counts}, "\n".join([*lines, f"recorded to {target}"]))
 

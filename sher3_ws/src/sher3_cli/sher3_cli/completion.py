@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from enum import Enum
+from typing import Annotated
 
 import typer
 
@@ -22,7 +23,7 @@ class Shell(str, Enum):
 
 
 @app.command(epilog="Example: `sher3 completion bash >> ~/.bashrc`")
-def completion(shell: Shell) -> None:
+def completion(shell: Annotated[Shell, typer.Argument(help="Whose script: bash, zsh or fish.")]) -> None:
     """Print the completion script of a shell."""
     from typer.completion import get_completion_script
 

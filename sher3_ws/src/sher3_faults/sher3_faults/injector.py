@@ -143,7 +143,9 @@ class FaultInjector:
         values = tuple((name, active.request.fault) for name, active in self.active.items())
         if self.refused is not None:
             return 1, self.refused, values
-        return (1, f"{len(values)} faults injected", values) if values else (0, "no fault injected", ())
+        if not values:
+            return 0, "everything is well", ()
+        return 1, "broken: " + ", ".join(f"{name} {fault}" for name, fault in values), values
 
     def _check_channel(self, request: FaultRequest) -> None:
         unit = request.component.partition(".")[0]

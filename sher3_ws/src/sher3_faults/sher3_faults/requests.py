@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+from difflib import get_close_matches
 from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
@@ -102,6 +103,11 @@ def make_request(**values: Any) -> FaultRequest:
     return checked(request)
 
 
+def _nearest(name: str, known: tuple[str, ...], otherwise: str) -> str:
+    near = get_close_matches(name, known, 1)
+    return f"did you mean {near[0]}?" if near else otherwise
+
+
 def checked(request: FaultRequest) -> FaultRequest:
     """Return the request.
 
@@ -110,10 +116,13 @@ def checked(request: FaultRequest) -> FaultRequest:
     """
     component, fault = request.component, request.fault
     if component not in DEVICES and component not in OTHERS:
-        known = ", ".join((*DEVICES, *OTHERS))
-        raise FaultRefused(component, fault, "no such component", value=component, limit=known)
+        known = (*DEVICES, *OTHERS)
+        whole = ", ".join(name for name in known if "." not in name)
+        remedy = _nearest(component, known, "parts follow a dot, as in roll.demand")
+        raise FaultRefused(component, fault, "no such component", value=component, limit=whole, remedy=remedy)
     if fault not in KINDS and fault != OK:
-        raise FaultRefused(component, fault, "no such fault", value=fault, limit=", ".join((*KINDS, OK)))
+        known, remedy = (*KINDS, OK), _nearest(fault, (*KINDS, OK), "choose one of them")
+        raise FaultRefused(component, fault, "no such fault", value=fault, limit=", ".join(known), remedy=remedy)
     part = component.partition(".")[2]
     if (component == "safe_torque_off" or part == RESETS) and fault not in (OFF, OK):
         raise FaultRefused(component, fault, "it comes or it does not", value=fault, limit=f"{OFF}, {OK}")

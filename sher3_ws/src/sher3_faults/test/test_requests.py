@@ -49,7 +49,9 @@ def injector(devices):
     ("values", "part"),
     [
         ({"component": "sensor", "fault": "off"}, "no such component; value sensor; limit force_sensor, pedal"),
+        ({"component": "force_senso", "fault": "off"}, "clock; did you mean force_sensor?"),
         ({"component": "pedal", "fault": "broken"}, "no such fault; value broken; limit off, stuck"),
+        ({"component": "pedal", "fault": "stick"}, "ok; did you mean stuck?"),
         ({"component": "pedal", "fault": "slow", "parameters": {"delay": 1.0}}, "no such parameter; value delay"),
         (
             {"component": "pedal", "fault": "slow", "parameters": {"every": 1.0}},

@@ -96,7 +96,7 @@ def test_dask_gives_the_same_verdict(answered, case):
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["diagnose", "nowhere"], "no case.yaml"),
+        (["diagnose", "nowhere"], "nowhere: no such folder; name a case folder"),
         (["diagnose", "nowhere", "--without", "gremlins"], "no such effect"),
         (["apply", "nowhere.json"], "no such file"),
         (["experiment", "nowhere.json"], "no such file"),

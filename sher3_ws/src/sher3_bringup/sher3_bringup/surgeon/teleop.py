@@ -18,6 +18,14 @@ from sher3_bringup.surgeon.script import Script
 from sher3_bringup.terminal.screen import Screen
 from sher3_bringup.terminal.told import UNKNOWN, Told
 
+LISTENED = 5.0
+"""Seconds after which a robot that has not been heard is not there: it tells its state once a second."""
+
+
+def is_over(script: Script, told: Told, elapsed: float) -> bool:
+    """Return whether a script has nobody to act on, or has come to its end, `elapsed` seconds after its start."""
+    return elapsed >= script.duration or (told.state == UNKNOWN and elapsed >= LISTENED)
+
 
 def run_script(script: Script, rate: float, domain: int) -> None:
     """Run a script to its end, or until Ctrl-C; print its steps, and each change of state of the robot.
@@ -46,7 +54,7 @@ def run_script(script: Script, rate: float, domain: int) -> None:
             shown[0] = step
             screen(f"{node.elapsed:6.1f} s  {script.steps[step].name}")
         screen.status(told.status())
-        return node.elapsed >= script.duration
+        return is_over(script, told, node.elapsed)
 
     run_node(make, stop, rate, domain)
     screen.status("")

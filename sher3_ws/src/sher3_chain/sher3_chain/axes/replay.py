@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from sher3_diagnosis.quantify.closure import interval_of
 from sher3_diagnosis.verdict import Cause, Interval
+from sher3_diagnosis.words import quantity
 from sher3_machines.thresholds import BLOCKS
 
 from sher3_chain.axes.evidence import AxisEvidence
@@ -52,6 +53,7 @@ def replay(evidence: AxisEvidence, causes: Sequence[Cause]) -> Replay | None:
         rows += [[*(np.mean(part**2, axis=0) / count**2), 1.0] for part in np.array_split(errors, BLOCKS)]
     before, after = np.sqrt(np.mean(squares, axis=0))
     kind = "free motion run again from its release" if axis.free else "closed loop run again from its reference"
-    text = f"position error {before:.4g} {axis.unit_of_position} rms nominal, {after:.4g} with the causes"
-    note = f"{axis.name}: {kind}: {text}: {1.0 - after / before:.1%} closed in rms"
+    nominal, left = (quantity(float(error), axis.unit_of_position) for error in (before, after))
+    note = f"{axis.name}: {kind}: position error {nominal} rms nominal, {left} with the causes: "
+    note += f"{100.0 * (1.0 - after / before):.1f} % closed in rms"
     return Replay(float(before), float(after), interval_of(np.array(rows)), note)

@@ -98,7 +98,7 @@ def plants_of(arguments: list[str]) -> dict[str, list[Path]]:
 def calibrate(
     folders: Annotated[
         list[str] | None,
-        typer.Argument(metavar="[PLANT=]FOLDER...", help="Labelled cases of each plant, or as labels name it."),
+        typer.Argument(metavar="[PLANT=]FOLDER...", help="Folders of labelled cases; PLANT= where labels do not say which plant made them."),
     ] = None,
     drawn: Annotated[
         str | None, typer.Option(help="Range A:B of seeds of cases drawn on the plants in turn; no bags are written.")
@@ -117,7 +117,7 @@ def calibrate(
         typer.Option("--in-force", help="Set no weight: judge by those in force, as verdicts are judged."),
     ] = False,
     update: Annotated[
-        bool, typer.Option("--update", help="Expect the weights in force, and move them as far as the cases ask for.")
+        bool, typer.Option("--update", help="Start from the weights in force; move them no further than the cases ask for.")
     ] = False,
     as_json: Json = False,
 ) -> None:

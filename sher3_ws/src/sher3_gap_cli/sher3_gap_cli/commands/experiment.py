@@ -25,14 +25,14 @@ def experiment(
     verdict: VerdictFile,
     case: Annotated[
         Path | None,
-        case_argument("Its case: actual floors and loads, excitations not again."),
+        case_argument("Its case: gives floors and loads; what it ran is not proposed again."),
     ] = None,
     output: Annotated[
         Path,
         typer.Option("--output", "-o", help="Excitation file; of another machine .csv, .yaml (ROS 2) or .xml (MJCF)."),
     ] = Path("experiment.yaml"),
     ran: Annotated[
-        Path | None, typer.Option(help="Case the written file was run to: predicted against realised.")
+        Path | None, typer.Option(help="Case recorded with the written file: compares what was predicted with what came.")
     ] = None,
     bet: Bet = False,
     robot: RobotFile = None,

@@ -69,7 +69,7 @@ def case(
 ) -> None:
     """Make a case of recordings of the SHER; runs of one excitation become repeats of it.
 
-    Exit codes: 0 written, 2 a bag is none, or `out` exists.
+    Exit codes: 0 written, 2 a bag cannot be read, or the folder exists.
     """
     from sher3_gap.case.assembling import assemble
 
