@@ -98,7 +98,10 @@ def plants_of(arguments: list[str]) -> dict[str, list[Path]]:
 def calibrate(
     folders: Annotated[
         list[str] | None,
-        typer.Argument(metavar="[PLANT=]FOLDER...", help="Folders of labelled cases; PLANT= where labels do not say which plant made them."),
+        typer.Argument(
+            metavar="[PLANT=]FOLDER...",
+            help="Folders of labelled cases; PLANT= where labels do not say which plant made them.",
+        ),
     ] = None,
     drawn: Annotated[
         str | None, typer.Option(help="Range A:B of seeds of cases drawn on the plants in turn; no bags are written.")
@@ -117,7 +120,8 @@ def calibrate(
         typer.Option("--in-force", help="Set no weight: judge by those in force, as verdicts are judged."),
     ] = False,
     update: Annotated[
-        bool, typer.Option("--update", help="Start from the weights in force; move them no further than the cases ask for.")
+        bool,
+        typer.Option("--update", help="Start from the weights in force; move them no further than the cases ask for."),
     ] = False,
     as_json: Json = False,
 ) -> None:

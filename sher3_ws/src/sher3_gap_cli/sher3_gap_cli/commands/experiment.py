@@ -32,7 +32,8 @@ def experiment(
         typer.Option("--output", "-o", help="Excitation file; of another machine .csv, .yaml (ROS 2) or .xml (MJCF)."),
     ] = Path("experiment.yaml"),
     ran: Annotated[
-        Path | None, typer.Option(help="Case recorded with the written file: compares what was predicted with what came.")
+        Path | None,
+        typer.Option(help="Case recorded with the written file: compares what was predicted with what came."),
     ] = None,
     bet: Bet = False,
     robot: RobotFile = None,

@@ -37,7 +37,9 @@ def watch(
     window: Annotated[float, typer.Option(min=2.0, help="Seconds that are diagnosed at a time.")] = 20.0,
     every: Annotated[float, typer.Option(min=1.0, help="Seconds from one diagnosis to the next.")] = 60.0,
     rate: Annotated[float, typer.Option(min=10.0, help="Samples per second that are kept, Hz.")] = 100.0,
-    best_effort: Annotated[bool, typer.Option("--best-effort", help="Subscribe as sensors publish: best effort, nothing is sent twice.")] = False,
+    best_effort: Annotated[
+        bool, typer.Option("--best-effort", help="Subscribe as sensors publish: best effort, nothing is sent twice.")
+    ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object for each diagnosis.")] = False,
 ) -> None:
     """Diagnose a running robot again and again, and publish its causes on /diagnostics at 1 Hz, until Ctrl-C.
