@@ -98,6 +98,18 @@ def test_a_hand_that_is_felt_ends_the_travel_without_one(detector):
         assert objected is None
 
 
+def test_a_travel_that_a_hand_ends_before_the_supervisor_looks_is_told_with_its_value(detector):
+    """60 um at 50 um/s are over after 1.2 s; a hand comes at 1.25 s, and the next look is behind it."""
+    _, stamp = feel(detector, 1.0, 0.0, 0.0)
+    moved = np.array([50e-6 * TICK * 1e-9, 0.0, 0.0, 0.0, 0.0, 0.0])
+    for tick in range(1000):
+        hand = 0.15 * (tick >= 625)
+        detector.follow(stamp + tick * TICK, 0.15 * UP, -hand * UP, moved)
+    found = detector.check(stamp)
+    assert (found.unit, found.limit) == ("um", pytest.approx(60.0)) and 62.0 < found.value < 80.0
+    assert "force sensor 0 " not in str(found) and detector.check(stamp) is None
+
+
 def test_a_bias_that_drifts_is_taken_for_granted_up_to_its_level(detector):
     """0.01 N/s behind a memory of 2 s: 0.2 N are passed after 22 s."""
     stamp, objected = 0, None

@@ -99,6 +99,12 @@ def test_running_ahead_of_the_way_is_excess():
     assert found.excess == pytest.approx(20 * 2e-3 * SPEED, rel=1e-6)
 
 
+def test_what_has_moved_by_the_row_of_the_fault_is_of_the_fault():
+    """It moves from the row before on: the speed before is still none, and that row's way is off the way."""
+    found = outcome(rows((ONSET - 1, 120)))
+    assert found.speed == 0.0 and found.excess == pytest.approx(21 * 2e-3 * SPEED, rel=1e-6)
+
+
 def test_fault_and_its_code_are_read():
     found = outcome(rows((0, 112)), reason="", state="FAULT")
     assert found.fault and found.reason == "X"

@@ -68,7 +68,7 @@ class HandDetector(PlainDetector):
         self._limits = np.array([*limits, self._settings.hand_level])[:, None]
         self._force_deadband, self._torque_deadband = law.force_deadband, law.torque_deadband
         self._reach = np.repeat((1.0, self._settings.hand_reach), 3)
-        self._nothing = self._found = Finding(Reason.HAND_DOUBTFUL, 0.0, min(limits), "N", "force sensor")
+        self._nothing = self._found = self._worst = Finding(Reason.HAND_DOUBTFUL, 0.0, min(limits), "N", "force sensor")
         self._last = -1
         self.begin()
 
@@ -79,7 +79,7 @@ class HandDetector(PlainDetector):
         self._quick, self._slow = np.zeros((len(self._lags) - 1, AXES)), np.zeros(AXES)
         self._sum = np.zeros(AXES)
         self._both, self._hand, self._alone = np.zeros((len(self._lags), 2)), np.zeros(AXES), NOWHERE
-        self._found = self._nothing
+        self._found = self._worst = self._nothing
 
     def feed(self, stamp: int, contact: Vector, q: Vector, effort: Vector, command: Vector) -> None:
         """Take the samples of one tick, each later than the one before.
@@ -118,6 +118,7 @@ class HandDetector(PlainDetector):
             firm = sizes(held) * (1.0, 0.0) > FIRM
             self._count(_at_most(FIRM, held) * np.repeat(firm, GROUPS), span, moved)
             self._miss(span * bool(moved.any()))
+            self._keep()
 
     def follow(self, stamp: int, felt: Array, held: Array, moved: Array = NOWHERE) -> None:
         """Take what the sensor feels and the drives hold (5,), N, of the tick `stamp` [ns].
@@ -144,6 +145,7 @@ class HandDetector(PlainDetector):
         else:
             self._settle()
         self._count(held, step, moved)
+        self._keep()
 
     def _settle(self) -> None:
         """Judge the sum itself, more coarsely, since no mean of it is known yet: nobody held the tool at enabling."""
@@ -186,6 +188,16 @@ class HandDetector(PlainDetector):
         value, limit = float(doubts[row, torque]), float(limits[row, torque])
         arm, unit = (self._settings.hand_arm, "N m") if torque else (1.0, "N")
         self._found = self._found._replace(value=value * arm, limit=limit * arm, unit=unit)
+
+    def _keep(self) -> None:
+        """Keep what was furthest beyond its limit since the last check: a supervisor looks at several ticks at once."""
+        if not self._found.value * self._worst.limit <= self._worst.value * self._found.limit:
+            self._worst = self._found
+
+    def check(self, now: int) -> Finding | None:
+        """Object to what was furthest beyond its limit in any tick since the last check."""
+        worst, self._worst = self._worst, self._found
+        return None if worst.value <= worst.limit else worst
 
     def look(self, now: int) -> Finding:
         """Return how much of the force nobody holds, or how far it moved the tip."""

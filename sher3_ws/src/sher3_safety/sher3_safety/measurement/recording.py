@@ -182,11 +182,12 @@ class Recording:
         """
         first = self._onset(onset)
         last = self._row(end, first)
-        begin = int(np.searchsorted(self._time, self._time[first] - BEFORE))
-        span = max(self._time[first] - self._time[begin], 1e-9)
-        velocity = (self._tip[first] - self._tip[begin]) / span
+        healthy = max(first - 1, 0)  # a fast axis has moved by the row at which it sets in
+        begin = int(np.searchsorted(self._time, self._time[healthy] - BEFORE))
+        span = max(self._time[healthy] - self._time[begin], 1e-9)
+        velocity = (self._tip[healthy] - self._tip[begin]) / span
         speed = float(np.linalg.norm(velocity))
-        moved = self._tip[first : last + 1] - self._tip[first]
+        moved, passed = (of[healthy : last + 1] - of[healthy] for of in (self._tip, self._time))
         window, time = self._tip[first : last + 1], self._time[first : last + 1] - self._time[first]
         operating = self._state(onset)
         known = operating in ("", OperatingState.ENABLED)
@@ -203,7 +204,7 @@ class Recording:
             detection=self._detection(events[0][0], first, last) if events else None,
             stop=_standstill(window, time, stands),
             travel=_reach(window, window[0]),
-            excess=_off_hand(moved, self._hand(onset)) if pushed else _off_way(moved, time, velocity),
+            excess=_off_hand(moved, self._hand(onset)) if pushed else _off_way(moved, passed, velocity),
             fault=fault is not None,
             alone=float(np.linalg.norm(self._tip[released] - self._tip[last])),
             resumed=_reach(self._tip[pressed : until + 1], self._tip[pressed]),
