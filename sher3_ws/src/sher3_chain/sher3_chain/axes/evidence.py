@@ -47,7 +47,22 @@ class AxisEvidence(ChainEvidence):
 
 
 def gather_axis(runs: Sequence[AxesRun], axis: Axis, repeats: bool) -> AxisEvidence:
-    """Compute residuals and floors of one axis and cut them into blocks."""
+    """Compute residuals and floors of one axis and cut them into blocks.
+
+    An axis of which nothing else can be judged, because its effort is dead or tells no force balance, is judged by how
+    it follows its reference, where one was recorded.
+    """
+    found = _gathered(runs, axis, repeats)
+    tracked = axis.tracked if all("reference" in run.signals[axis.name] for run in runs) else None
+    if tracked is None or found.channels:
+        return found
+    judged = _gathered(runs, tracked, repeats)
+    note = f"{axis.name}: its effort tells no force balance; judged by how it follows its reference"
+    return replace(judged, untold=found.untold, notes=[*found.notes, *judged.notes, note])
+
+
+def _gathered(runs: Sequence[AxesRun], axis: Axis, repeats: bool) -> AxisEvidence:
+    """Compute residuals and floors of one axis as it is described."""
     signals: Sequence[AxisSignals] = [signals_of(run, axis, "repeats" if repeats else run.name) for run in runs]
     slip = slip_of(signals, axis) or ""
     if slip:

@@ -54,7 +54,8 @@ class Axes(Chain[AxisEvidence]):
 
     def library(self) -> Sequence[Effect]:
         """Return the pages for these kinds of axes, and that of the limit, which is read off without a fit."""
-        kinds = sorted({kind_of(axis) for axis in self.described.axes}, reverse=True)
+        axes = self.described.axes
+        kinds = sorted({kind_of(axis) for x in axes for axis in (x, x.tracked) if axis is not None}, reverse=True)
         any_axis = NominalAxis(np.inf, 0.0, 0.0, 0.0, weighed=any(axis.swings for axis in self.described.axes))
         known = [page.on(any_axis) for kind in kinds for page in pages(kind)]
         return [*known, *pages("law"), computed(LIMIT)]

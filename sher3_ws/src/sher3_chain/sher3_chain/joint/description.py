@@ -125,6 +125,13 @@ class Axis(Strict):
         return self.command_law.kind == "position"
 
     @property
+    def tracked(self) -> Axis | None:
+        """The axis as a position servo, whose force nobody knows; None where it is one, or has no reference."""
+        if self.servo or self.free or self.signals.reference is None:
+            return None
+        return self.model_copy(update={"command_law": CommandLaw(kind="position"), "mass": None})
+
+    @property
     def swings(self) -> bool:
         """Whether the axis turns and nothing is said of a weight at an arm."""
         return self.motion == "rotary" and self.gravity.arm == 0.0 and self.signals.nominal_effort is None

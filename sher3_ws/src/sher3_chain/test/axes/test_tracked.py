@@ -1,0 +1,36 @@
+"""An axis whose effort tells no force balance is judged by how it follows its reference."""
+
+import numpy as np
+import pytest
+from scipy.signal import lfilter
+from sher3_chain.joint.record import AxesRun
+from sher3_diagnosis import diagnose
+from slides import columns, machine
+
+COUNT = 1e-4
+
+
+def hobby_servo(seed):
+    """A servo of drawn lag that reports a duty of a few steps, which says nothing of its force."""
+    draw = np.random.default_rng(seed)
+    period, lag = 0.01, draw.uniform(0.05, 0.2)
+    t, fine = np.arange(0.0, 40.0, period), np.arange(0.0, 40.0, 0.1 * period)
+    asked = 0.4 * np.sin(0.9 * t) + 0.1 * np.sin(draw.uniform(2.0, 5.0) * t) + 0.2 * np.sign(np.sin(0.37 * t))
+    keep = np.exp(-0.1 * period / lag)
+    place = lfilter([1.0 - keep], [1.0, -keep], np.interp(fine, t, asked))[::10]
+    signals = {
+        "position": COUNT * np.round(place / COUNT),
+        "reference": asked,
+        "effort": np.round(draw.uniform(0.0, 3.0, len(t))) * (draw.random(len(t)) > 0.5),
+    }
+    return lag, AxesRun("run", period, {"slide": signals})
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_duty_that_tells_no_force_leaves_the_tracking_to_be_judged(seed):
+    lag, run = hobby_servo(seed)
+    described = machine(mass="unknown", signals=columns("position", "reference", "effort"), encoder_resolution=COUNT)
+    verdict = diagnose(described, [run]).verdict
+    assert [c.effect for c in verdict.causes] == ["drive_lag"]
+    assert verdict.causes[0].parameters["time_constant"].value == pytest.approx(lag, rel=0.1)
+    assert any("judged by how it follows its reference" in note for note in verdict.notes)
