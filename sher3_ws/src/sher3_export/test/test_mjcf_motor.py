@@ -54,6 +54,34 @@ def test_friction_at_rest_moves_with_that_in_motion_into_lugre_s_law():
     assert float(data.qfrc_actuator[0]) == pytest.approx(-2.0, abs=0.05)
 
 
+def light(inertia, step):
+    """The model with a small joint without a drive, and another step."""
+    still = MODEL.replace('<position name="p" joint="slide" kp="200" kv="10"/>', "")
+    still = still.replace("0.001", str(step)).replace('frictionloss="1"', "")
+    own = f'mass="0.1" diaginertia="{inertia} {inertia} {inertia}"'
+    return parse_xml(still.replace('mass="2" diaginertia="1 1 1"', own), "mujoco")
+
+
+@pytest.mark.parametrize(("inertia", "step"), [(5e-3, 0.002), (5e-4, 0.0005), (1.0, 0.002)])
+def test_the_bristle_of_a_small_joint_is_as_soft_as_its_step_needs(inertia, step):
+    """A push below the friction at rest leaves the joint where it is."""
+    done = export(verdict(STRIBECK), "mjcf", light(inertia, step))
+    assert not done.untold
+    model = mujoco.MjModel.from_xml_string(done.text)
+    data = mujoco.MjData(model)
+    speeds = []
+    for k in range(4000):
+        data.qfrc_applied[0] = min(3.0, k / 500.0)
+        mujoco.mj_step(model, data)
+        speeds.append(abs(float(data.qvel[0])))
+    assert data.qpos[0] < 0.03 and max(speeds[2000:]) < 1e-3
+
+
+def test_a_joint_too_light_for_its_step_is_refused_with_the_step_it_needs():
+    (left,) = {x.reason for x in export(verdict(STRIBECK), "mjcf", light(1e-4, 0.002)).untold if x.constant == "static"}
+    assert "a timestep of 0.00032 s can express it" in left
+
+
 def test_gains_and_the_reference_of_a_servo():
     done, model = written(
         cause("controller_gain", relative=-0.1, unit="1"), cause("command_delay", reference_delay=0.024, unit="s")

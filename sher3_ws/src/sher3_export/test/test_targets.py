@@ -147,6 +147,20 @@ def test_isaaclab_s_file_is_python_with_fields_that_isaac_lab_has(monkeypatch):
     assert ranges["slide"]["dynamic_friction"] == pytest.approx((2.3, 2.7))
 
 
+SERVO = """<mujoco><worldbody><body><joint name="slide"/><geom size=".1"/></body></worldbody>
+<actuator>{}</actuator></mujoco>"""
+
+
+def test_gains_of_a_servo_are_written_where_the_model_states_them(monkeypatch):
+    weak = verdict(cause("controller_gain", relative=-0.1, unit="1"))
+    servo = parse_xml(SERVO.format('<position joint="slide" kp="50" kv="2" gear="2"/>'), "mujoco")
+    slide = loaded(export(weak, "isaaclab", servo).text, monkeypatch)[0]["slide"]
+    assert (slide.stiffness, slide.damping) == (pytest.approx(180.0), pytest.approx(7.2))
+    for model in (None, parse_xml(SERVO.format('<motor joint="slide"/>'), "mujoco")):
+        (left,) = export(weak, "isaaclab", model).untold
+        assert "give --model with position actuators" in left.reason
+
+
 def test_mjlab_s_file_is_python_with_fields_that_mjlab_has(monkeypatch):
     done = export(verdict(*CAUSES), "mjlab", parse_xml(URDF, "robot"))
     actuators, ranges = loaded(done.text, monkeypatch)

@@ -14,8 +14,11 @@ def _lists(x):
     return pa.array(list(np.asarray(x, np.float32)), pa.list_(pa.float32(), np.shape(x)[1]))
 
 
-def write_data_set(folder, version, rate, joints, episodes, robot="so101_follower"):
-    """Write episodes of (stamps (n,) or None, action (n, k), state (n, k)); stamps of None are frame over rate."""
+def write_data_set(folder, version, rate, joints, episodes, robot="so101_follower", flat=()):
+    """Write episodes of (stamps (n,) or None, action (n, k), state (n, k)); stamps of None are frame over rate.
+
+    Features in `flat` have a column for each joint in place of lists.
+    """
     motors = [f"{joint}.pos" for joint in joints]
     old = version.startswith("v2")
     names = {"motors": motors} if old else motors
@@ -23,6 +26,9 @@ def write_data_set(folder, version, rate, joints, episodes, robot="so101_followe
     one = {"dtype": "int64", "shape": [1], "names": None}
     features = {"action": wide, "observation.state": wide, "timestamp": {**one, "dtype": "float32"}}
     features |= {name: one for name in ("frame_index", "episode_index", "index", "task_index")}
+    for name in flat:
+        features |= {f"{name}.{motor}": {**wide, "shape": [1], "names": None} for motor in motors}
+        del features[name]
     info = {"codebase_version": version, "robot_type": robot, "fps": rate, "features": features}
     info |= {"total_episodes": len(episodes), "total_frames": sum(len(x[1]) for x in episodes), "total_tasks": 1}
     info |= {"chunks_size": 1000, "splits": {"train": f"0:{len(episodes)}"}, "data_path": V2_DATA if old else V3_DATA}
@@ -51,6 +57,11 @@ def write_data_set(folder, version, rate, joints, episodes, robot="so101_followe
             )
         )
         index += n
+        for name in flat:
+            each = np.stack(tables[-1][name].to_pylist()).T
+            columns = {f"{name}.{motor}": pa.array(x) for motor, x in zip(motors, each, strict=True)}
+            kept = tables[-1].drop_columns([name])
+            tables[-1] = pa.table({**{n: kept[n] for n in kept.column_names}, **columns})
     if old:
         for number, table in enumerate(tables):
             pq.write_table(table, chunk / f"episode_{number:06d}.parquet")

@@ -44,6 +44,15 @@ def test_a_late_joint_is_found_in_both_versions(tmp_path, version):
     assert any("states are in deg, because values reach" in guess for guess in answer.guessed)
 
 
+def test_a_column_for_each_joint_is_read_like_a_list(tmp_path):
+    """As `observation.state.lift.pos`; actions stay a list in the second set."""
+    for number, flat in enumerate((("observation.state", "action"), ("observation.state",))):
+        given = [episode(0), episode(1)]
+        folder = write_data_set(tmp_path / f"set{number}", "v3.0", RATE, ["pan", "lift"], given, flat=flat)
+        answer = gap.from_lerobot(folder)
+        assert {(c.family, c.actuator) for c in answer.causes} == {("timing", "lift")}
+
+
 def test_periods_that_a_clock_missed_are_named_with_their_size(tmp_path):
     """One period at two places, and three in a row at a third."""
     folder = write_data_set(

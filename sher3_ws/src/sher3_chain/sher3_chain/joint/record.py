@@ -132,7 +132,15 @@ def _mended(column: Column, tables: Tables, clock: Clock, run: str, of: tuple[st
     if of[1] in POSITIONS and is_speed(column, tables, run):
         x = integrated(stamps, x, clock)
         notes.append(f"{what} is a velocity; integrated, so that places count from the first sample")
-    return stamps, x
+    return _late(stamps, x, column.late, clock)
+
+
+def _late(stamps: Array | None, x: Array, late: float, clock: Clock) -> Stamped:
+    """Return samples as they act, some time after their stamps; without stamps by whole samples."""
+    if stamps is not None:
+        return stamps + late, x
+    samples = round(late * (clock.rate or 0.0))
+    return stamps, np.concatenate([np.full(samples, x[0]), x])[: len(x)]
 
 
 def _without_repeats(tables: Tables, machine: ChainDescription, run: str) -> tuple[Tables, list[str]]:

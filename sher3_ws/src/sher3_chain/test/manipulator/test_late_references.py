@@ -24,3 +24,7 @@ def test_a_late_reference_in_fast_motion_is_a_delay_and_no_gain(seed):
     (cause,) = answer.causes
     assert cause.effect == "command_delay"
     assert cause.parameters["reference_delay"].value == pytest.approx(LATE, rel=0.01)
+    delayed = xml.replace("<position ", f'<position delay="{LATE}" nsample="32" ', place + 1)
+    delayed = delayed.replace(f'<position delay="{LATE}" nsample="32" ', "<position ", place)
+    told = gap.diagnose(delayed, {**log, "actuator_force": force})
+    assert not told.causes and any("its control acts 20 ms late, as the model says" in x for x in told.guessed)

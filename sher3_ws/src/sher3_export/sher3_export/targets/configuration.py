@@ -15,6 +15,7 @@ STEP = 0.005
 """Physics step, s, in which a delay is counted; the file says so. Set by custom: tasks of both libraries run at 200 Hz.
 """
 ALONE = "Values are what the machine has beyond its model: add what your asset has, or give --model."
+NO_GAINS = "the gains are not known here: give --model with position actuators, or multiply them by one plus this"
 Nominal = Mapping[str, Mapping[str, float]]
 """Joint -> constant -> what the nominal model says of it."""
 
@@ -28,6 +29,7 @@ class Configuration(Target):
         joints: field that names the joints, and the type of its list as written.
         delays: fields of the shortest and the longest delay, steps.
         always: fields that a group states anyway.
+        gains: constant of a servo -> the fields that it scales.
         version: of the library whose fields these are.
     """
 
@@ -38,6 +40,7 @@ class Configuration(Target):
     joints: ClassVar[str]
     delays: ClassVar[tuple[str, str]]
     always: ClassVar[Mapping[str, object]] = {}
+    gains: ClassVar[Mapping[str, tuple[str, ...]]] = {}
     version: ClassVar[str]
 
     def __init__(self, nominal: Nominal | None = None) -> None:
@@ -56,6 +59,8 @@ class Configuration(Target):
             shortest, longest = self.delays
             group |= {shortest: math.floor(change.value / STEP), longest: math.ceil(change.value / STEP)}
             return ""
+        if change.constant in self.gains:
+            return self._scale(change, group, ranges)
         name = self.fields[change.constant]
         known = (self.nominal or {}).get(change.joint, {}).get(change.constant, 0.0)
         before = 0.0 if change.constant == "limit" else group.get(name, known)
@@ -63,6 +68,17 @@ class Configuration(Target):
         if change.low is not None and change.high is not None:
             ranges[name] = (before + change.low, before + change.high)
         return ""
+
+    def _scale(self, change: Change, group: dict[str, float], ranges: dict[str, tuple[float, float]]) -> str:
+        """Multiply the gains that the model's servo has; the verdict knows them as shares alone."""
+        known = (self.nominal or {}).get(change.joint, {})
+        fields = [name for name in self.gains[change.constant] if name in known]
+        for name in fields:
+            before = group.get(name, known[name])
+            group[name] = before * (1.0 + change.value)
+            if change.low is not None and change.high is not None:
+                ranges[name] = (before * (1.0 + change.low), before * (1.0 + change.high))
+        return "" if fields else NO_GAINS
 
     def text(self, remarks: Sequence[str]) -> str:
         """Return the file."""

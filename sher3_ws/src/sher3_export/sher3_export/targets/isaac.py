@@ -2,7 +2,7 @@
 
 Fields are those of `isaaclab.actuators.ActuatorBaseCfg`: `friction` at rest and `dynamic_friction` (N or N m),
 `viscous_friction`, `armature` and a limit, of which 2.2 and 3.0 have other names; `DelayedPDActuatorCfg` counts its
-delay in physics steps. Stiffness and damping are left to the asset.
+delay in physics steps. Stiffness and damping are left to the asset, but for those of servos that a cause scales.
 """
 
 from __future__ import annotations
@@ -33,6 +33,14 @@ class IsaacLab(Configuration):
         "inertia": "armature",
         "limit": "actuator_effort_limit",
         **dict.fromkeys(DELAYS, "min_delay, max_delay"),
+        **dict.fromkeys(("drive", "servo"), "stiffness, damping"),
+        "servo_position": "stiffness",
+        "servo_velocity": "damping",
+    }
+    gains: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        **dict.fromkeys(("drive", "servo"), ("stiffness", "damping")),
+        "servo_position": ("stiffness",),
+        "servo_velocity": ("damping",),
     }
     refuses: ClassVar[Mapping[str, str]] = {
         **NOT_TOLD,
@@ -41,8 +49,6 @@ class IsaacLab(Configuration):
                 "stribeck": "static and sliding friction are stated, the speed between them is not",
                 "offset": "an actuator has no constant force",
                 "weight": "a share of the weight without its inertia belongs to the asset, not to an actuator",
-                "drive servo servo_position servo_velocity": "an actuator configuration states its gains; multiply "
-                "stiffness and damping by one plus this",
                 "cogging cogging_periods cogging_phase": "an actuator has no force over its angle",
                 "lag": "an actuator of this kind has no first-order lag",
                 "zero": "the zero of a joint belongs to the asset",

@@ -112,12 +112,21 @@ class Mjcf(XmlTarget):
         }
 
     def nominal(self) -> dict[str, dict[str, float]]:
-        """Return what joints have, classes of <default> included."""
+        """Return what joints have, classes of <default> included, and the gains of their servos."""
         named = {constant: self.fields[constant] for constant in ("coulomb", "viscous", "inertia")}
         return {
             name: {constant: self._inherited(joint, attribute) for constant, attribute in named.items()}
+            | self._gains_of(name)
             for name, joint in self.joints.items()
         }
+
+    def _gains_of(self, joint: str) -> dict[str, float]:
+        """Stiffness and damping of the position actuator on a joint, at the joint; nothing without one."""
+        servo = next((x for x in self._actuators(joint) if x.tag == "position"), None)
+        if servo is None:
+            return {}
+        gear = numbers(servo.get("gear") or self._class_value(servo, "gear"), "1")[0] ** 2
+        return {"stiffness": gear * self._inherited(servo, "kp", 1.0), "damping": gear * self._inherited(servo, "kv")}
 
     def stiffness(self, joint: str) -> float:
         """Return kp of the position actuator on a joint."""
@@ -163,7 +172,8 @@ class Mjcf(XmlTarget):
     def _static(self, change: Change, joint: Element) -> str:
         """Friction at rest takes that in motion of the same cause along into its own law."""
         sliding = self._sliding.get((change.joint, change.effect), 0.0)
-        if reason := mjcf_motor.at_rest(self.root, change, sliding, self._step):
+        inertia = mjcf_motor.inertia_at(self.root, change.joint) or self._inherited(joint, "armature")
+        if reason := mjcf_motor.at_rest(self.root, change, sliding, self._step, inertia):
             return reason
         return self._add(joint, "frictionloss", -sliding)
 

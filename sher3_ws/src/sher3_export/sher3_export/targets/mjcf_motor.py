@@ -7,7 +7,8 @@ the force that the drive needs.
 from __future__ import annotations
 
 import math
-from xml.etree.ElementTree import Element, SubElement
+from importlib import import_module
+from xml.etree.ElementTree import Element, SubElement, tostring
 
 from sher3_export.changes import Change
 from sher3_export.xml_file import numbers, written
@@ -16,8 +17,12 @@ PASSIVE = {"input": "none", "resistance": "1"}
 """What makes a dcmotor passive; the resistance is asked for and does nothing without a motor constant."""
 AGAINST = math.pi
 """Phase by which a torque of the joint is behind the force that the drive needs for it, rad."""
-BRISTLE = 1e-3
-"""Travel over which friction builds up from rest, m or rad: short beside a motion, long enough for steps of 2 ms."""
+BRISTLE, LONGEST = 1e-3, 0.02
+"""Shortest and longest travel over which friction builds up from rest, m or rad: small beside a motion."""
+SPRING, DAMPER = 0.25, 2.0
+"""Stiffness of a bristle, in units of inertia over step^2, and its damping, in those of stiffness times step. MuJoCo
+steps the bristle before the joint: with a spring a and a damping b in units of inertia the pair is stable for b > a and
+2 b < 4 + a, so from a = 0 to 4/3 where b = 2 a."""
 COGGING = ("cogging", "cogging_periods", "cogging_phase")
 """Constants of a cogging, in the order of the attribute of that name."""
 LUGRE = ("stiffness", "damping", "coulomb", "static", "stribeck")
@@ -43,7 +48,16 @@ def cogging(root: Element, change: Change) -> str:
     return field_of(motor, "cogging", values)
 
 
-def at_rest(root: Element, change: Change, sliding: float, step: float) -> str:
+def inertia_at(root: Element, joint: str) -> float:
+    """Return what a force at a joint moves where all others are free, kg or kg m^2; 0 where MuJoCo cannot tell."""
+    try:
+        model = import_module("mujoco").MjModel.from_xml_string(tostring(root, encoding="unicode"))
+        return float(1.0 / model.dof_invweight0[model.joint(joint).dofadr[0]])
+    except (ImportError, ValueError, KeyError, ZeroDivisionError):  # not installed, or its meshes lie elsewhere
+        return 0.0
+
+
+def at_rest(root: Element, change: Change, sliding: float, step: float, inertia: float) -> str:
     """Write a friction at rest beside that in motion, which the motor takes over; LuGre's law has both.
 
     Args:
@@ -51,12 +65,19 @@ def at_rest(root: Element, change: Change, sliding: float, step: float) -> str:
         change: the friction at rest.
         sliding: friction in motion of the same cause, N or N m.
         step: of the simulation, s.
+        inertia: that a force at the joint moves, kg or kg m^2: a bristle too stiff for it swings up.
     """
     if change.value <= sliding:
         return "it is no larger than the friction in motion"
-    stiffness = change.value / BRISTLE
+    stiffness = min(change.value / BRISTLE, SPRING * inertia / step**2)
+    if stiffness * LONGEST < change.value:
+        needed = math.sqrt(SPRING * inertia * LONGEST / change.value)
+        return (
+            f"a bristle on {inertia:.3g} kg m^2 (or kg) is stable to {stiffness:.3g} per unit at steps of {step:g} s "
+            f"and would bend more than {LONGEST:g}; a timestep of {needed:.2g} s can express it"
+        )
     motor = passive(root, change.joint, "friction", fresh=True)
-    return field_of(motor, "lugre", [stiffness, step * stiffness, sliding, change.value, 0.0])
+    return field_of(motor, "lugre", [stiffness, DAMPER * step * stiffness, sliding, change.value, 0.0])
 
 
 def falling(root: Element, change: Change) -> str:

@@ -51,6 +51,7 @@ class Column(Strict):
         offset: added to the scaled values, in SI: what the logger counts from, or a bridge's zero.
         override: whether `unit` holds although the column's header says another one.
         signed_by: column whose sign a magnitude takes, or `motion`: the sign of the motion; an effort alone has one.
+        late: s after its stamp at which a sample acts, such as the delay that a model states of an actuator.
         plus: columns that are added to it, each with its own factor: the pressure on the other side of a piston, the
             second motor of a portal.
     """
@@ -62,6 +63,7 @@ class Column(Strict):
     offset: float = 0.0
     override: bool = False
     signed_by: str | None = None
+    late: float = Field(default=0.0, ge=0.0)
     plus: tuple[Column, ...] = ()
 
     @field_validator("unit", mode="before")

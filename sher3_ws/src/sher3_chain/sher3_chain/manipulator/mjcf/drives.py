@@ -5,6 +5,8 @@ An actuator gives gain * control + bias (chapter Computation of MuJoCo's documen
 
 from __future__ import annotations
 
+from collections import defaultdict
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,6 +21,8 @@ EULER_DAMP = 1 << 15
 """Flag that switches the implicit damping of Euler's method off (mjDSBL_EULERDAMP)."""
 
 
+NO_DELAY: Mapping[int, float] = defaultdict(float)
+"""Delay of each actuator, s, in versions of MuJoCo before 3.4 that have none."""
 TENDON, WRAPPED_JOINT = 3, 1
 """MuJoCo's numbers of a transmission by a tendon (mjtTrn), and of a joint in a tendon (mjtWrap)."""
 
@@ -35,6 +39,7 @@ class Drive:
         factor: what turns the control into a place, m or rad, or into the joint's force, N or N m.
         position_gain, velocity_gain: of a servo, N/m and N/(m/s), or N m/rad and N m/(rad/s), at the joint.
         limit: largest force at the joint; None: none stated.
+        delay: of its control, s.
     """
 
     name: str
@@ -45,6 +50,7 @@ class Drive:
     position_gain: float = 0.0
     velocity_gain: float = 0.0
     limit: float | None = None
+    delay: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -108,15 +114,16 @@ def _drive(source: Any, joint: int) -> tuple[Drive | None, str]:
         return None, f"the force of actuator {name} is no line in control, place and speed"
     gain = float(source.actuator_gainprm[i][0])
     offset, place, speed = (float(x) for x in source.actuator_biasprm[i][:3])
-    limit = _limit(source, i, joint, gear)
+    limit, delay = _limit(source, i, joint, gear), float(getattr(source, "actuator_delay", NO_DELAY)[i])
     if source.actuator_biastype[i] == NONE or (not place and not speed and not offset):
-        return Drive(name, control, gear, False, gain * gear, limit=limit), ""
+        return Drive(name, control, gear, False, gain * gear, limit=limit, delay=delay), ""
     if not place or not gain or offset:
         return (
             None,
             f"actuator {name} is no servo of places: its force is {gain:g} u {offset:+g} {place:+g} q {speed:+g} v",
         )
-    return Drive(name, control, gear, True, -gain / (place * gear), -place * gear**2, -speed * gear**2, limit), ""
+    gains = -gain / (place * gear), -place * gear**2, -speed * gear**2
+    return Drive(name, control, gear, True, *gains, limit, delay), ""
 
 
 def by_tendon(source: Any, joint: int) -> str:

@@ -50,6 +50,7 @@ def _servo(joint: dict[str, Any], drive: Drive, guesses: list[str]) -> None:
             signals["reference"]["factor"] = drive.factor
     if "reference" not in signals:
         return
+    _delayed(signals["reference"], joint, drive, guesses)
     law = {"kind": "force", "position_gain": drive.position_gain, "velocity_gain": drive.velocity_gain}
     joint["command_law"] = {**law, **({"limit": drive.limit} if drive.limit else {})}
     if "effort" not in signals:
@@ -65,10 +66,18 @@ def _motor(joint: dict[str, Any], drive: Drive, guesses: list[str]) -> None:
         return
     unit = "N" if joint["motion"] == "linear" else "N*m"
     signals["command"] = {**signals["command"], "unit": unit}
+    _delayed(signals["command"], joint, drive, guesses)
     joint["command_law"] = {"kind": "force", "gain": drive.factor}
     if "effort" not in signals:
         _force_known(joint, guesses)
     guesses.append(f"{joint['name']}: its control times {drive.factor:.4g} is the force of motor {drive.name}, {unit}")
+
+
+def _delayed(signal: dict[str, Any], joint: dict[str, Any], drive: Drive, guesses: list[str]) -> None:
+    """Let a control act as late as the model says."""
+    if drive.delay:
+        signal["late"] = drive.delay
+        guesses.append(f"{joint['name']}: its control acts {1e3 * drive.delay:.4g} ms late, as the model says")
 
 
 def _force_known(joint: dict[str, Any], guesses: list[str]) -> None:

@@ -63,8 +63,9 @@ def read_data_set(path: Path, wanted: Collection[int] = ()) -> DataSet:
         MachineError: no data set, another version, no joints, no such episode, or no reader of Parquet.
     """
     info = _info(path)
-    features = {name: _joints(info, name) for name in SIGNALS if name in info["features"]}
-    rows = _rows(path, [*ROWS, *features])
+    features = {name: names for name in SIGNALS if (names := _joints(info, name))}
+    flat = [f"{name}.{joint}" for name in features if name not in info["features"] for joint in features[name]]
+    rows = _rows(path, [*ROWS, *(name for name in features if name in info["features"]), *flat])
     found, nominal = {}, True
     for number in np.unique(rows["episode_index"]).astype(int):
         if wanted and number not in wanted:
@@ -75,7 +76,8 @@ def read_data_set(path: Path, wanted: Collection[int] = ()) -> DataSet:
         off = tables["timestamp"] - rows["frame_index"][mine] / info["fps"]
         nominal &= bool(np.abs(off).max() * info["fps"] < ON_GRID)
         for name, joints in features.items():
-            values = np.atleast_2d(rows[name][mine].T).T
+            each = rows[name] if name in rows else np.column_stack([rows[f"{name}.{joint}"] for joint in joints])
+            values = each[mine].reshape(len(mine), -1)
             tables |= {_column(name, joint): values[:, i].astype(float) for i, joint in enumerate(joints)}
         found[f"episode_{number:06d}"] = tables
     missing = set(wanted) - {int(name[-6:]) for name in found}
@@ -96,7 +98,7 @@ def _info(path: Path) -> dict[str, Any]:
     if not version.startswith(VERSIONS):
         remedy = "convert it with the library that wrote it"
         raise MachineError(f"{path}: version is not read", value=version, limit=", ".join(VERSIONS), remedy=remedy)
-    missing = [name for name in NEEDED if name not in info["features"]]
+    missing = [name for name in NEEDED if not _joints(info, name)]
     if missing:
         have = ", ".join(info["features"])
         remedy = "give a data set with what the joints were told and what they did"
@@ -105,7 +107,13 @@ def _info(path: Path) -> dict[str, Any]:
 
 
 def _joints(info: Mapping[str, Any], feature: str) -> list[str]:
-    """Return the names of a feature's entries; older versions have them below a key, some have none."""
+    """Return the names of a feature's entries; older versions have them below a key, some have none.
+
+    Some data sets have a column for each joint, `FEATURE.JOINT.pos`.
+    """
+    if feature not in info["features"]:
+        flat = [name.removeprefix(f"{feature}.") for name in info["features"] if name.startswith(f"{feature}.")]
+        return [name for name in flat if name.endswith(f".{SIGNALS[feature]}")] or flat
     names, width = info["features"][feature].get("names"), info["features"][feature]["shape"][0]
     if isinstance(names, dict):
         names = next((x for x in names.values() if isinstance(x, list)), None)
