@@ -18,7 +18,8 @@ from sher3_description import ACTUATORS
 
 from sher3_challenge.plants.compiled import compiled
 from sher3_challenge.plants.declared import FORCE_SENSOR, TIP
-from sher3_challenge.plants.kinds import ANGULAR, Apply, Catalogue, Kind, Site
+from sher3_challenge.plants.kinds import Apply, Catalogue, Kind
+from sher3_challenge.plants.site import ANGULAR, Site
 
 Array = NDArray[np.floating[Any]]
 

@@ -9,60 +9,23 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 from sher3_common import Sher3Error
-from sher3_description import ACTUATORS
 
 from sher3_challenge.plants.declared import DECLARED, Row
-
-ANGULAR = {"length": 31.4, "force": 0.025, "stiffness": 8e-4, "compliance": 1256.0, "speed": 98.0, "inertia": 2e-3}
-"""What one unit of a slider becomes on the roll axis, by ratio of encoder steps, rated forces and speed limits."""
+from sher3_challenge.plants.site import Site
+from sher3_challenge.plants.told import TOLD, Parameters, Told
 
 
 class FaultError(Sher3Error):
     """An unknown fault, or one on an actuator where it cannot sit."""
 
 
-@dataclass(frozen=True)
-class Site:
-    """Where a fault sits and how its kind scales there.
-
-    Attributes:
-        actuator: an actuator, or `tip`, `force_sensor`, `all`.
-        rng: draws the fault's shape (phase, period, direction); the same every time the fault is applied.
-    """
-
-    actuator: str
-    rng: np.random.Generator
-
-    @property
-    def index(self) -> int:
-        """Index of the actuator; all others are errors."""
-        return ACTUATORS.index(self.actuator)
-
-    @property
-    def rows(self) -> slice:
-        """Rows of the per-actuator arrays that the fault changes."""
-        return slice(None) if self.actuator == "all" else slice(self.index, self.index + 1)
-
-    def scaled(self, value: float, dimension: str) -> float:
-        """Return a slider's value in the actuator's unit."""
-        return value * ANGULAR[dimension] if self.actuator == "roll" else value
-
-    def sign(self) -> float:
-        """Return +1 or -1."""
-        return float(self.rng.choice([-1.0, 1.0]))
-
-    def direction(self, dimensions: int = 3) -> NDArray[np.floating[Any]]:
-        """Return a random unit vector."""
-        v = self.rng.standard_normal(dimensions)
-        return np.asarray(v / np.linalg.norm(v))
-
-
-Apply = Callable[[Any, Site, float], dict[str, float]]
+Apply = Callable[[Any, Site, float], Parameters]
+Law = TypeVar("Law", bound=Callable[..., Any])
+"""Law of a fault: rig, site and its parameters as they are told -> more of them that it drew itself, or nothing."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -115,17 +78,28 @@ class Fault:
 class Catalogue(dict[str, Kind]):
     """Kinds of faults by name, filled by its decorators."""
 
-    def known(self, apply: Apply) -> Apply:
-        """Register the decorated function as the kind that is declared under its name."""
-        return self._register(apply, DECLARED[apply.__name__])
+    def known(self, law: Law) -> Law:
+        """Register the decorated law as the kind that is declared under its name."""
+        name = law.__name__
+        apply = partial(_as_told, law, TOLD[name]) if name in TOLD else law
+        self[name] = Kind(**vars(DECLARED[name]), name=name, apply=apply)
+        return law
 
     def add(
         self, family: str, stage: str, places: tuple[str, ...], start: float, least: float, most: float,
         also: tuple[str, ...] = (), company: tuple[str, ...] = (),
     ) -> Callable[[Apply], Apply]:  # fmt: skip
         """Register the decorated function as the kind of its name."""
-        return partial(self._register, row=Row(family, stage, places, start, least, most, also, company))
+        row = Row(family, stage, places, start, least, most, also, company)
 
-    def _register(self, apply: Apply, row: Row) -> Apply:
-        self[apply.__name__] = Kind(**vars(row), name=apply.__name__, apply=apply)
-        return apply
+        def register(apply: Apply) -> Apply:
+            self[apply.__name__] = Kind(**vars(row), name=apply.__name__, apply=apply)
+            return apply
+
+        return register
+
+
+def _as_told(law: Callable[..., Parameters | None], told: Told, rig: Any, site: Site, x: float) -> Parameters:
+    """Write a fault of a magnitude into a rig by its law; return its parameters."""
+    drawn = told(site, x)
+    return {**drawn, **(law(rig, site, **drawn) or {})}

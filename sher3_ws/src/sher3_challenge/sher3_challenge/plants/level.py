@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from sher3_description import ACTUATORS
 
-from sher3_challenge.plants.kinds import ANGULAR
+from sher3_challenge.plants.site import ANGULAR
 
 Array = NDArray[np.floating[Any]]
 

@@ -20,8 +20,9 @@ from sher3_gap.excitation import Excitation
 from sher3_challenge.errors import ChallengeError
 from sher3_challenge.oracle import nominal
 from sher3_challenge.plants.grammar import ON_SENSOR, ON_TIP, Foreign, added
-from sher3_challenge.plants.kinds import ANGULAR, Fault, Kind
+from sher3_challenge.plants.kinds import Fault, Kind
 from sher3_challenge.plants.level import EXACT, Level
+from sher3_challenge.plants.site import ANGULAR
 
 Array = NDArray[np.floating[Any]]
 Behind = tuple[Array, Array]

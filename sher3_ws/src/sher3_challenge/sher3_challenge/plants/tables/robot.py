@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 from sher3_description import Robot
 
-from sher3_challenge.plants.kinds import ANGULAR
 from sher3_challenge.plants.level import Bend, Level
 from sher3_challenge.plants.plant import AXES, Array
+from sher3_challenge.plants.site import ANGULAR
 from sher3_challenge.plants.tables import parameters as parts
 from sher3_challenge.plants.tables.curves import CURVE, RING, loop_slope, ring, wobble
 from sher3_challenge.plants.tables.mechanism import angle_table

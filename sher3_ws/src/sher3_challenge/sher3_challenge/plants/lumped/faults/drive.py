@@ -7,97 +7,81 @@ import math
 from sher3_description.contract import GRAVITY
 
 from sher3_challenge.plants.declared import DELTAS
-from sher3_challenge.plants.kinds import Catalogue, Site
+from sher3_challenge.plants.kinds import Catalogue
 from sher3_challenge.plants.lumped.rig import Rig
+from sher3_challenge.plants.site import Site
 
 CATALOGUE = Catalogue()
 known = CATALOGUE.known
 
 
 @known
-def command_delay(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def command_delay(rig: Rig, site: Site, delay: float) -> None:
     """Every command arrives later."""
-    rig.delay += x
-    return {"delay": x}
+    rig.delay += delay
 
 
 @known
-def command_jitter(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def command_jitter(rig: Rig, site: Site, sigma: float) -> None:
     """Commands arrive late by a half-normal time."""
-    rig.jitter = x
-    return {"sigma": x}
+    rig.jitter = sigma
 
 
 @known
-def dropped_commands(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def dropped_commands(rig: Rig, site: Site, probability: float) -> None:
     """Some commands never arrive."""
-    rig.loss = x
-    return {"probability": x}
+    rig.loss = probability
 
 
 @known
-def axis_skew(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def axis_skew(rig: Rig, site: Site, skew: float) -> None:
     """Commands of one axis arrive later than those of the others."""
-    rig.delay[site.index] += x
-    return {"skew": x}
+    rig.delay[site.index] += skew
 
 
 @known
-def drive_lag(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def drive_lag(rig: Rig, site: Site, time_constant: float) -> None:
     """A first-order lag of the force (three of four) or of the demand."""
     lag = rig.truth.drive.current_lag if site.rng.random() < 0.75 else rig.truth.drive.demand_lag
-    lag[site.rows] += x
-    return {"time_constant": x}
+    lag[site.rows] += time_constant
 
 
 @known
-def controller_gain(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def controller_gain(rig: Rig, site: Site, relative: float) -> None:
     """The host works with another position gain."""
-    relative = site.sign() * x
     rig.truth.host.gain[site.rows] *= 1 + relative
-    return {"relative": relative}
 
 
 @known
-def torque_constant(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def torque_constant(rig: Rig, site: Site, relative: float) -> None:
     """Real force over reported effort is not 1."""
-    relative = site.sign() * x
     rig.truth.motor.torque_gain[site.rows] *= 1 + relative
-    return {"relative": relative}
 
 
 @known
-def lead_error(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def lead_error(rig: Rig, site: Site, relative: float) -> None:
     """The load travels more or less than the motor."""
-    relative = site.sign() * x
     rig.truth.transmission.lead_error[site.rows] += relative
-    return {"relative": relative}
 
 
 @known
-def force_saturation(rig: Rig, site: Site, x: float) -> dict[str, float]:
-    """The force ends early: at 12 N / (1 + x), more on roll, whose accelerations are larger."""
-    limit = site.scaled(12.0, "force") / (1 + x)
+def force_saturation(rig: Rig, site: Site, limit: float) -> None:
+    """The force ends early: at a share of 12 N, more on roll, whose accelerations are larger."""
     rig.truth.drive.limit[site.rows] = limit
-    return {"limit": limit}
 
 
 @known
-def velocity_deadband(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def velocity_deadband(rig: Rig, site: Site, width: float) -> None:
     """Small demands do nothing; in a third of the cases the larger ones are shortened too."""
-    width = site.scaled(x, "speed")
     rig.truth.drive.deadband[site.rows] = width
     rig.truth.drive.deadband_soft[site.rows] = float(site.rng.random() < 1 / 3)
-    return {"width": width}
 
 
 @known
-def coulomb_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def coulomb_friction(rig: Rig, site: Site, force: float) -> None:
     """Friction of one level."""
-    force = site.scaled(x, "force")
     rig.truth.motor.coulomb[site.rows] += force
     rig.truth.motor.static[site.rows] += force
-    return {"force": force}
 
 
 @known
@@ -112,21 +96,19 @@ def stribeck_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
 
 
 @known
-def viscous_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def viscous_friction(rig: Rig, site: Site, extra: float) -> None:
     """More drag in proportion to speed."""
-    extra = site.scaled(x, "stiffness")
     rig.truth.motor.viscous[site.rows] += extra
-    return {"extra": extra}
 
 
 @known
-def presliding_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def presliding_friction(rig: Rig, site: Site, force: float) -> dict[str, float]:
     """Friction that takes tens of micrometres to build up."""
-    force, reach = site.scaled(x, "force"), site.scaled(site.rng.uniform(25e-6, 110e-6), "length")
+    reach = site.scaled(site.rng.uniform(25e-6, 110e-6), "length")
     rig.truth.motor.coulomb[site.rows] += force
     rig.truth.motor.static[site.rows] += force
     rig.truth.motor.presliding[site.rows] = reach
-    return {"force": force, "displacement": reach}
+    return {"displacement": reach}
 
 
 @known
@@ -140,81 +122,67 @@ def position_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
 
 
 @known
-def friction_drift(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def friction_drift(rig: Rig, site: Site, force: float, time_constant: float) -> None:
     """Friction after standing, which runs in within seconds."""
-    force, constant = site.scaled(x, "force"), site.rng.uniform(0.8, 3.0)
     rig.truth.motor.friction_fading[site.rows] = force
-    rig.truth.motor.friction_time[site.rows] = constant
-    return {"force": force, "time_constant": constant}
+    rig.truth.motor.friction_time[site.rows] = time_constant
 
 
 @known
-def payload_mass(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def payload_mass(rig: Rig, site: Site, mass: float) -> None:
     """Mass on an axis; on the vertical rails its weight too, of a mass on the slider or on the platform."""
-    mass = site.scaled(x, "inertia")
     rig.truth.motor.mass[site.rows] += mass
     if site.actuator in DELTAS:
         if site.rng.random() < 0.5:
             rig.truth.motor.weight[site.rows] += GRAVITY * mass
         else:
             rig.truth.motor.gravity_gain[site.rows] += mass / rig.truth.geometry.masses[0]
-    return {"mass": mass}
 
 
 @known
-def gravity_load(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def gravity_load(rig: Rig, site: Site, mass: float) -> None:
     """Weight without inertia, in the pattern of the axis's own gravity."""
-    mass = site.sign() * x
     carried = rig.truth.geometry.masses[2] if site.actuator == "tilt" else rig.truth.geometry.masses[0]
     rig.truth.motor.gravity_gain[site.rows] += mass / carried
-    return {"mass": mass}
 
 
 @known
-def cogging(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def cogging(rig: Rig, site: Site, amplitude: float, periods_per_rev: float) -> None:
     """Force in phase with the motor's poles."""
-    amplitude, order = site.scaled(x, "force"), float(site.rng.choice([2, 3, 4, 6, 7, 8]))
     m = rig.truth.motor
-    m.cogging[site.rows], m.cogging_order[site.rows] = amplitude, order
+    m.cogging[site.rows], m.cogging_order[site.rows] = amplitude, periods_per_rev
     m.cogging_phase[site.rows] = site.rng.uniform(0, 2 * math.pi)
-    return {"amplitude": amplitude, "periods_per_rev": order}
 
 
 @known
-def transmission_ripple(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def transmission_ripple(rig: Rig, site: Site, amplitude: float, periods_per_rev: float) -> None:
     """The load runs ahead and behind with the motor's turn."""
-    amplitude, order = site.scaled(x, "length"), float(site.rng.choice([1, 2, 3, 4]))
     t = rig.truth.transmission
-    t.ripple[site.rows], t.ripple_order[site.rows] = amplitude, order
+    t.ripple[site.rows], t.ripple_order[site.rows] = amplitude, periods_per_rev
     t.ripple_phase[site.rows] = site.rng.uniform(0, 2 * math.pi)
-    return {"amplitude": amplitude, "periods_per_rev": order}
 
 
 @known
-def backlash(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def backlash(rig: Rig, site: Site, width: float) -> None:
     """A gap with soft flanks."""
-    width = site.scaled(x, "length")
     rig.truth.transmission.backlash[site.rows] = width
-    return {"width": width}
 
 
 @known
-def transmission_hysteresis(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def transmission_hysteresis(rig: Rig, site: Site, width: float) -> dict[str, float]:
     """Lost motion that builds up gradually after a reversal."""
-    half, reach = site.scaled(x, "length"), site.scaled(site.rng.uniform(40e-6, 200e-6), "length")
+    half, reach = width / 2, site.scaled(site.rng.uniform(40e-6, 200e-6), "length")
     rig.truth.transmission.hysteresis[site.rows] = half
     rig.truth.transmission.hysteresis_reach[site.rows] = reach
-    return {"width": 2 * half, "displacement": reach}
+    return {"displacement": reach}
 
 
 @known
-def transmission_compliance(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def transmission_compliance(rig: Rig, site: Site, compliance: float, stiffness: float) -> None:
     """A screw that gives way, more where its free length is longer, with the load's mass behind it."""
-    compliance = site.scaled(x, "compliance")
     rig.truth.transmission.compliance[site.rows] = compliance
     slope = site.rng.uniform(3.0, 10.0)
     rig.truth.transmission.compliance_slope[site.rows] = slope / 30 if site.actuator == "roll" else slope
-    return {"compliance": compliance, "stiffness": 1 / compliance}
 
 
 @known

@@ -5,8 +5,9 @@ from __future__ import annotations
 from sher3_description import ACTUATORS
 
 from sher3_challenge.plants.declared import FORCE_SENSOR, SLIDERS, TIP
-from sher3_challenge.plants.kinds import Catalogue, Site
+from sher3_challenge.plants.kinds import Catalogue
 from sher3_challenge.plants.lumped.rig import Rig
+from sher3_challenge.plants.site import Site
 
 CATALOGUE = Catalogue()
 add = CATALOGUE.add

@@ -7,9 +7,10 @@ import math
 import numpy as np
 
 from sher3_challenge.plants.declared import DELTAS
-from sher3_challenge.plants.kinds import Catalogue, Site
+from sher3_challenge.plants.kinds import Catalogue
 from sher3_challenge.plants.lumped.rig import Rig
 from sher3_challenge.plants.lumped.tip import OUTER_HINGE
+from sher3_challenge.plants.site import Site
 
 CATALOGUE = Catalogue()
 add = CATALOGUE.add
@@ -17,20 +18,16 @@ known = CATALOGUE.known
 
 
 @known
-def encoder_scale(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def encoder_scale(rig: Rig, site: Site, relative: float) -> None:
     """The load encoder's ratio is off."""
-    relative = site.sign() * x
     rig.truth.host.encoder_scale[site.rows] += relative
-    return {"relative": relative}
 
 
 @known
-def encoder_eccentricity(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def encoder_eccentricity(rig: Rig, site: Site, amplitude: float) -> None:
     """The load encoder errs once per revolution; the load does not move."""
-    amplitude = site.scaled(x, "length")
     rig.truth.host.eccentricity[site.rows] = amplitude
     rig.truth.host.eccentricity_phase[site.rows] = site.rng.uniform(0, 2 * math.pi)
-    return {"amplitude": amplitude}
 
 
 @add("lost_motion", "mechanism", DELTAS, 8e-6, 5e-7, 3e-4, also=("structure",))
@@ -42,28 +39,25 @@ def joint_clearance(rig: Rig, site: Site, x: float) -> dict[str, float]:
 
 
 @known
-def structural_compliance(rig: Rig, site: Site, x: float) -> dict[str, float]:
-    """The structure turns about P and, in part, about a hinge on the arm; `x` is the fraction of the measured one."""
+def structural_compliance(rig: Rig, site: Site, fraction: float) -> None:
+    """The structure turns about P and, in part, about a hinge on the arm; `fraction` is that of the measured one."""
     share, arm = 0.3, rig.truth.geometry.arm[1]
     weight = 1 - share + share * (1 - OUTER_HINGE / arm) ** 2  # keeps the tip's compliance that of one hinge at P
-    rig.truth.geometry.hinge[:] = x * np.array([15e-6, 0.0, 1 / 244 / weight, 1 / 213 / weight, 0.0, 0.0])
+    rig.truth.geometry.hinge[:] = fraction * np.array([15e-6, 0.0, 1 / 244 / weight, 1 / 213 / weight, 0.0, 0.0])
     rig.truth.geometry.hinge[4] = share
-    return {"fraction": x}
 
 
 @known
-def link_compliance(rig: Rig, site: Site, x: float) -> dict[str, float]:
-    """The six links give way by their published law; `x` is the fraction of it."""
+def link_compliance(rig: Rig, site: Site, fraction: float) -> None:
+    """The six links give way by their published law; `fraction` is that of it."""
     delta = rig.robot.delta
-    rig.truth.geometry.link_law[0] = x * delta.link_compliance.a * delta.spring_factor
-    return {"fraction": x}
+    rig.truth.geometry.link_law[0] = fraction * delta.link_compliance.a * delta.spring_factor
 
 
 @known
-def tool_bending(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def tool_bending(rig: Rig, site: Site, compliance: float) -> None:
     """The tool bends across its axis."""
-    rig.truth.geometry.bending[0] = x
-    return {"compliance": x}
+    rig.truth.geometry.bending[0] = compliance
 
 
 @known
@@ -75,11 +69,9 @@ def structural_vibration(rig: Rig, site: Site, x: float) -> dict[str, float]:
 
 
 @known
-def link_length_error(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def link_length_error(rig: Rig, site: Site, length: float) -> None:
     """Both links of a leg are longer or shorter."""
-    length = site.sign() * x
     rig.truth.geometry.link[2 * site.index : 2 * site.index + 2] += length
-    return {"length": length}
 
 
 @known
@@ -94,23 +86,18 @@ def platform_geometry_error(rig: Rig, site: Site, x: float) -> dict[str, float]:
 
 
 @known
-def rail_tilt(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def rail_tilt(rig: Rig, site: Site, x: float, y: float, angle: float) -> None:
     """A rail leans."""
-    angle = site.rng.uniform(0, 2 * math.pi)
-    lean = np.array([x * math.cos(angle), x * math.sin(angle), 0.0])
+    lean = np.array([x, y, 0.0])
     rail = rig.truth.geometry.rail
     rail[site.index] += lean
     rail[site.index] /= np.linalg.norm(rail[site.index])
-    return {"x": lean[0], "y": lean[1], "angle": x}
 
 
 @known
-def base_tilt(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def base_tilt(rig: Rig, site: Site, x: float, y: float, angle: float) -> None:
     """The base leans against the tracker."""
-    angle = site.rng.uniform(0, 2 * math.pi)
-    lean = np.array([x * math.cos(angle), x * math.sin(angle), 0.0])
-    rig.truth.geometry.base_tilt[:] += lean
-    return {"x": lean[0], "y": lean[1], "angle": x}
+    rig.truth.geometry.base_tilt[:] += x, y, 0.0
 
 
 @known
@@ -125,34 +112,27 @@ def tilt_linkage_error(rig: Rig, site: Site, x: float) -> dict[str, float]:
 
 
 @known
-def tool_offset(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def tool_offset(rig: Rig, site: Site, x: float, y: float, z: float) -> None:
     """The tool's tip is elsewhere."""
-    offset = x * site.direction()
-    rig.truth.geometry.arm[3:] += offset
-    return dict(zip("xyz", offset.tolist(), strict=True))
+    rig.truth.geometry.arm[3:] += x, y, z
 
 
 @known
-def encoder_offset(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def encoder_offset(rig: Rig, site: Site, offset: float) -> None:
     """The axis was homed wrongly: both encoders read too much or too little."""
-    offset = site.sign() * site.scaled(x, "length")
     rig.truth.host.offset[site.rows] += offset
-    return {"offset": offset}
 
 
 @known
-def thermal_expansion(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def thermal_expansion(rig: Rig, site: Site, coefficient: float) -> None:
     """The structure grows with its temperature."""
-    rig.truth.geometry.expansion[0] = x
-    return {"coefficient": x}
+    rig.truth.geometry.expansion[0] = coefficient
 
 
 @known
-def force_drift(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def force_drift(rig: Rig, site: Site, fx: float, fy: float, fz: float) -> None:
     """The force sensor's zero moves with temperature."""
-    drift = x * site.direction()
-    rig.truth.sensors.force_drift[:3] = drift
-    return dict(zip(("fx", "fy", "fz"), drift.tolist(), strict=True))
+    rig.truth.sensors.force_drift[:3] = fx, fy, fz
 
 
 @known
@@ -165,19 +145,15 @@ def force_bias(rig: Rig, site: Site, x: float) -> dict[str, float]:
 
 
 @known
-def tool_gravity(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def tool_gravity(rig: Rig, site: Site, mass: float) -> None:
     """The tool on the sensor is heavier or lighter than its data."""
-    mass = site.sign() * min(x, 0.015) if x > 0.015 else site.sign() * x
     rig.truth.sensors.tool_mass[0] += mass
-    return {"mass": mass}
 
 
 @known
-def force_scale(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def force_scale(rig: Rig, site: Site, relative: float) -> None:
     """The force sensor's gain is off."""
-    relative = site.sign() * x
     rig.truth.sensors.force_scale[0] *= 1 + relative
-    return {"relative": relative}
 
 
 @known

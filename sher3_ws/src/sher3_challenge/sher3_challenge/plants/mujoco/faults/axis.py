@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 
 from sher3_challenge.plants.declared import DELTAS
-from sher3_challenge.plants.kinds import Catalogue, Site
+from sher3_challenge.plants.kinds import Catalogue
 from sher3_challenge.plants.mujoco.axes.laws import Film, Grease, Guide, Poles
 from sher3_challenge.plants.mujoco.axes.parts import ELEMENTS, Axis, Bristle
 from sher3_challenge.plants.mujoco.axes.wheels import Eccentric
 from sher3_challenge.plants.mujoco.rig import Rig
+from sher3_challenge.plants.site import Site
 
 CATALOGUE = Catalogue()
 known = CATALOGUE.known
@@ -31,27 +32,21 @@ def axis_of(rig: Rig, site: Site) -> Axis:
 
 
 @known
-def torque_constant(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def torque_constant(rig: Rig, site: Site, relative: float) -> None:
     """Real force over reported effort is not one."""
-    relative = site.sign() * x
     axis_of(rig, site).torque_gain *= 1 + relative
-    return {"relative": relative}
 
 
 @known
-def lead_error(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def lead_error(rig: Rig, site: Site, relative: float) -> None:
     """The load travels more or less than the motor."""
-    relative = site.sign() * x
     axis_of(rig, site).lead_error += relative
-    return {"relative": relative}
 
 
 @known
-def coulomb_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def coulomb_friction(rig: Rig, site: Site, force: float) -> None:
     """MuJoCo's dry friction on the motor's joint."""
-    force = site.scaled(x, "force")
     axis_of(rig, site).coulomb += force
-    return {"force": force}
 
 
 @known
@@ -67,19 +62,17 @@ def stribeck_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
 
 
 @known
-def viscous_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def viscous_friction(rig: Rig, site: Site, extra: float) -> None:
     """More damping of the motor's joint."""
-    extra = site.scaled(x, "stiffness")
     axis_of(rig, site).viscous += extra
-    return {"extra": extra}
 
 
 @known
-def presliding_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def presliding_friction(rig: Rig, site: Site, force: float) -> dict[str, float]:
     """Springs that drag light bodies over rough ground: straight flanks with two corners, no exponential."""
-    force, reach = site.scaled(x, "force"), site.scaled(float(site.rng.uniform(25e-6, 110e-6)), "length")
+    reach = site.scaled(float(site.rng.uniform(25e-6, 110e-6)), "length")
     axis_of(rig, site).bristles += bristles(force, reach)
-    return {"force": force, "displacement": reach}
+    return {"displacement": reach}
 
 
 @known
@@ -92,75 +85,63 @@ def position_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
 
 
 @known
-def friction_drift(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def friction_drift(rig: Rig, site: Site, force: float, time_constant: float) -> None:
     """Grease that runs in at two rates."""
-    force, time = site.scaled(x, "force"), float(site.rng.uniform(0.8, 3.0))
-    axis_of(rig, site).levels += (Grease(force, time),)
-    return {"force": force, "time_constant": time}
+    axis_of(rig, site).levels += (Grease(force, time_constant),)
 
 
 @known
-def payload_mass(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def payload_mass(rig: Rig, site: Site, mass: float) -> None:
     """A body on the slider, which MuJoCo's gravity pulls down the vertical rails; or a mass on the platform."""
-    mass, axis = site.scaled(x, "inertia"), axis_of(rig, site)
+    axis = axis_of(rig, site)
     if site.actuator in DELTAS and site.rng.random() < 0.5:
         axis.mass += mass
         axis.gravity_gain += mass / rig.robot.delta.moving_mass
     else:
         axis.payload += mass
-    return {"mass": mass}
 
 
 @known
-def gravity_load(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def gravity_load(rig: Rig, site: Site, mass: float) -> None:
     """Weight without inertia, in the pattern of the axis's own."""
-    mass = site.sign() * x
     carried = rig.robot.arm.tilt_mass if site.actuator == "tilt" else rig.robot.delta.moving_mass
     axis_of(rig, site).gravity_gain += mass / carried
-    return {"mass": mass}
 
 
 @known
-def cogging(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def cogging(rig: Rig, site: Site, amplitude: float, periods_per_rev: float) -> None:
     """Force of the motor's poles, with a third harmonic."""
-    amplitude, order = site.scaled(x, "force"), float(site.rng.choice([2, 3, 4, 6, 7, 8]))
     axis = axis_of(rig, site)
-    axis.pushes += (Poles(amplitude, axis.lead / order, phase(site)),)
-    return {"amplitude": amplitude, "periods_per_rev": order}
+    axis.pushes += (Poles(amplitude, axis.lead / periods_per_rev, phase(site)),)
 
 
 @known
-def transmission_ripple(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def transmission_ripple(rig: Rig, site: Site, amplitude: float, periods_per_rev: float) -> None:
     """An eccentric wheel between motor and load."""
-    amplitude, order = site.scaled(x, "length"), float(site.rng.choice([1, 2, 3, 4]))
     axis = axis_of(rig, site)
-    axis.ripples += (Eccentric(amplitude, axis.lead / order, phase(site)),)
-    return {"amplitude": amplitude, "periods_per_rev": order}
+    axis.ripples += (Eccentric(amplitude, axis.lead / periods_per_rev, phase(site)),)
 
 
 @known
-def backlash(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def backlash(rig: Rig, site: Site, width: float) -> None:
     """The load's guide is pushed from one side of a gap to the other, against MuJoCo's own soft contact."""
-    width = site.scaled(x, "length")
     axis_of(rig, site).gap += width
-    return {"width": width}
 
 
 @known
-def transmission_hysteresis(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def transmission_hysteresis(rig: Rig, site: Site, width: float) -> dict[str, float]:
     """Friction in the nut winds the transmission up: the load stays back by what its bristles are bent."""
-    half, reach = site.scaled(x, "length"), site.scaled(float(site.rng.uniform(40e-6, 200e-6)), "length")
+    half, reach = width / 2, site.scaled(float(site.rng.uniform(40e-6, 200e-6)), "length")
     axis = axis_of(rig, site)
     axis.windup, axis.windup_reach = half, reach
-    return {"width": 2 * half, "displacement": reach}
+    return {"displacement": reach}
 
 
 @known
-def transmission_compliance(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def transmission_compliance(rig: Rig, site: Site, compliance: float, stiffness: float) -> None:
     """A spring between motor and load, which carries its share of the mass and swings on it."""
-    compliance, axis = site.scaled(x, "compliance"), axis_of(rig, site)
+    axis = axis_of(rig, site)
     axis.compliance, axis.load_share = compliance, float(site.rng.uniform(0.1, 0.35))
-    return {"compliance": compliance, "stiffness": 1 / compliance}
 
 
 @known

@@ -9,11 +9,12 @@ from sher3_description import ACTUATORS
 from sher3_description.contract import GRAVITY
 
 from sher3_challenge.plants.declared import SLIDERS, TIP
-from sher3_challenge.plants.kinds import Catalogue, Site
+from sher3_challenge.plants.kinds import Catalogue
 from sher3_challenge.plants.mujoco.axes.laws import Magnet
 from sher3_challenge.plants.mujoco.axes.mjcf import SPACING, body, tendon
 from sher3_challenge.plants.mujoco.axes.parts import Drive, Rider
 from sher3_challenge.plants.mujoco.rig import Rig, Spring
+from sher3_challenge.plants.site import Site
 
 CATALOGUE = Catalogue()
 add = CATALOGUE.add
@@ -169,7 +170,6 @@ def tool_clamp_slip(rig: Rig, site: Site, x: float) -> dict[str, float]:
 @add("outside", "transport", ACTUATORS, 2.0, 2.0, 4.0, company=("command_delay", "axis_skew"))
 def sampled_demand(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The drive looks for a demand only at every second, third or fourth tick."""
-    rig.host.hold = rig.host.hold.copy()
     rig.host.hold[site.rows] = round(x)
     return {"ticks": float(round(x))}
 
@@ -177,6 +177,5 @@ def sampled_demand(rig: Rig, site: Site, x: float) -> dict[str, float]:
 @add("outside", "controller", ACTUATORS, 4e-3, 5e-4, 3e-2, company=("command_delay",))
 def smoothed_command(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """The host sends its command through a first-order filter."""
-    rig.host.smoothing = rig.host.smoothing.copy()
     rig.host.smoothing[site.rows] = x
     return {"time_constant": x}

@@ -7,10 +7,11 @@ import math
 import numpy as np
 
 from sher3_challenge.plants.declared import DELTAS
-from sher3_challenge.plants.kinds import Catalogue, Site
+from sher3_challenge.plants.kinds import Catalogue
 from sher3_challenge.plants.mujoco.faults.axis import bristles
 from sher3_challenge.plants.mujoco.rig import Rig, Spring
 from sher3_challenge.plants.mujoco.tip import ALONG_X, PITCH, YAW
+from sher3_challenge.plants.site import Site
 
 CATALOGUE = Catalogue()
 add = CATALOGUE.add
@@ -27,29 +28,29 @@ def joint_clearance(rig: Rig, site: Site, x: float) -> dict[str, float]:
 
 
 @known
-def structural_compliance(rig: Rig, site: Site, x: float) -> dict[str, float]:
-    """Springs at P that carry a mass and rub; `x` is the fraction of the measured compliance."""
+def structural_compliance(rig: Rig, site: Site, fraction: float) -> None:
+    """Springs at P that carry a mass and rub; `fraction` is that of the measured compliance."""
     springs = (
-        Spring("x", x * ALONG_X, 55.0, rub=RUBBING), Spring("turn_y", x / PITCH, 38.0, rub=0.2 * RUBBING),
-        Spring("turn_z", x / YAW, 42.0, rub=0.2 * RUBBING),
+        Spring("x", fraction * ALONG_X, 55.0, rub=RUBBING), Spring("turn_y", fraction / PITCH, 38.0, rub=0.2 * RUBBING),
+        Spring("turn_z", fraction / YAW, 42.0, rub=0.2 * RUBBING),
     )  # fmt: skip
     rig.yielding.springs += springs
-    return {"fraction": x}
 
 
 @known
-def link_compliance(rig: Rig, site: Site, x: float) -> dict[str, float]:
-    """The six links give way by their published law, seated by a preload; `x` is the fraction of it."""
-    rig.yielding.links += x
-    return {"fraction": x}
+def link_compliance(rig: Rig, site: Site, fraction: float) -> None:
+    """The six links give way by their published law, seated by a preload; `fraction` is that of it."""
+    rig.yielding.links += fraction
 
 
 @known
-def tool_bending(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def tool_bending(rig: Rig, site: Site, compliance: float) -> None:
     """The tool bends across its axis, on a mass that swings."""
-    rig.yielding.springs += (Spring("across_x", x, 60.0, rub=RUBBING), Spring("across_y", x, 60.0, rub=RUBBING))
+    rig.yielding.springs += (
+        Spring("across_x", compliance, 60.0, rub=RUBBING),
+        Spring("across_y", compliance, 60.0, rub=RUBBING),
+    )
     rig.yielding.slope = 1.5 / abs(rig.robot.arm.tool[2])
-    return {"compliance": x}
 
 
 @known
@@ -63,12 +64,11 @@ def structural_vibration(rig: Rig, site: Site, x: float) -> dict[str, float]:
 
 
 @known
-def link_length_error(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def link_length_error(rig: Rig, site: Site, length: float) -> None:
     """Both links of a leg are longer or shorter, not quite alike."""
-    length, unlike = site.sign() * x, float(site.rng.uniform(-0.1, 0.1))
+    unlike = float(site.rng.uniform(-0.1, 0.1))
     rig.mechanism.link[2 * site.index] += (1 + unlike) * length
     rig.mechanism.link[2 * site.index + 1] += (1 - unlike) * length
-    return {"length": length}
 
 
 @known
@@ -81,22 +81,16 @@ def platform_geometry_error(rig: Rig, site: Site, x: float) -> dict[str, float]:
 
 
 @known
-def rail_tilt(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def rail_tilt(rig: Rig, site: Site, x: float, y: float, angle: float) -> None:
     """A rail leans; its scale goes with it."""
-    angle = float(site.rng.uniform(0, 2 * math.pi))
-    lean = np.array([x * math.cos(angle), x * math.sin(angle), 0.0])
-    rail = rig.mechanism.rail[site.index] + lean
+    rail = rig.mechanism.rail[site.index] + [x, y, 0.0]
     rig.mechanism.rail[site.index] = rail / np.linalg.norm(rail)
-    return {"x": lean[0], "y": lean[1], "angle": x}
 
 
 @known
-def base_tilt(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def base_tilt(rig: Rig, site: Site, x: float, y: float, angle: float) -> None:
     """The base leans against the tracker."""
-    angle = float(site.rng.uniform(0, 2 * math.pi))
-    lean = np.array([x * math.cos(angle), x * math.sin(angle), 0.0])
-    rig.mechanism.base_turn = rig.mechanism.base_turn + lean
-    return {"x": lean[0], "y": lean[1], "angle": x}
+    rig.mechanism.base_turn += x, y, 0.0
 
 
 @known
@@ -108,26 +102,21 @@ def tilt_linkage_error(rig: Rig, site: Site, x: float) -> dict[str, float]:
 
 
 @known
-def tool_offset(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def tool_offset(rig: Rig, site: Site, x: float, y: float, z: float) -> None:
     """The tool's tip is elsewhere."""
-    offset = x * site.direction()
-    rig.mechanism.arm[3:] += offset
-    return dict(zip("xyz", offset.tolist(), strict=True))
+    rig.mechanism.arm[3:] += x, y, z
 
 
 @known
-def thermal_expansion(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def thermal_expansion(rig: Rig, site: Site, coefficient: float) -> None:
     """The structure grows with its temperature, some seconds behind the thermometer."""
-    rig.mechanism.expansion += x
-    return {"coefficient": x}
+    rig.mechanism.expansion += coefficient
 
 
 @known
-def force_drift(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def force_drift(rig: Rig, site: Site, fx: float, fy: float, fz: float) -> None:
     """The force sensor's zero moves with temperature."""
-    drift = x * site.direction()
-    rig.sensor.drift = np.array([*drift, 0.0, 0.0, 0.0])
-    return dict(zip(("fx", "fy", "fz"), drift.tolist(), strict=True))
+    rig.sensor.drift = np.array([fx, fy, fz, 0.0, 0.0, 0.0])
 
 
 @known
@@ -139,19 +128,15 @@ def force_bias(rig: Rig, site: Site, x: float) -> dict[str, float]:
 
 
 @known
-def tool_gravity(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def tool_gravity(rig: Rig, site: Site, mass: float) -> None:
     """The tool on the sensor is heavier or lighter than its data."""
-    mass = site.sign() * min(x, 0.015) if x > 0.015 else site.sign() * x
     rig.sensor.tool_mass += mass
-    return {"mass": mass}
 
 
 @known
-def force_scale(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def force_scale(rig: Rig, site: Site, relative: float) -> None:
     """The force sensor's gain is off."""
-    relative = site.sign() * x
     rig.sensor.matrix = (1 + relative) * rig.sensor.matrix
-    return {"relative": relative}
 
 
 @known
@@ -159,7 +144,6 @@ def force_crosstalk(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """A force along one axis of the sensor shows on another."""
     row, column = site.rng.choice(3, 2, replace=False)
     coefficient = site.sign() * x
-    rig.sensor.matrix = rig.sensor.matrix.copy()
     rig.sensor.matrix[row, column] += coefficient
     return {"coefficient": coefficient}
 

@@ -8,7 +8,8 @@ import numpy as np
 from sher3_description.contract import GRAVITY
 
 from sher3_challenge.plants.declared import DELTAS
-from sher3_challenge.plants.kinds import Catalogue, Site
+from sher3_challenge.plants.kinds import Catalogue
+from sher3_challenge.plants.site import Site
 from sher3_challenge.plants.tables.curves import CURVE, ring, teeth, wobble
 from sher3_challenge.plants.tables.plant import Rig
 
@@ -17,154 +18,129 @@ known = CATALOGUE.known
 
 
 @known
-def command_delay(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def command_delay(rig: Rig, site: Site, delay: float) -> None:
     """Every command arrives later, by a time that wavers by two per cent."""
-    rig.transport.delay += x
-    return {"delay": x}
+    rig.transport.delay += delay
 
 
 @known
-def command_jitter(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def command_jitter(rig: Rig, site: Site, sigma: float) -> None:
     """Commands are late as on a busy bus: seldom punctual, sometimes very late; `sigma` is the rms."""
-    rig.transport.lateness = x
-    return {"sigma": x}
+    rig.transport.lateness = sigma
 
 
 @known
-def dropped_commands(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def dropped_commands(rig: Rig, site: Site, probability: float) -> None:
     """Some commands never arrive, often a few in a row."""
-    rig.transport.loss = x
-    return {"probability": x}
+    rig.transport.loss = probability
 
 
 @known
-def axis_skew(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def axis_skew(rig: Rig, site: Site, skew: float) -> None:
     """Commands of one axis arrive later than those of the others."""
-    rig.transport.delay[site.index] += x
-    return {"skew": x}
+    rig.transport.delay[site.index] += skew
 
 
 @known
-def drive_lag(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def drive_lag(rig: Rig, site: Site, time_constant: float) -> None:
     """The force comes late, behind two equal poles; `time_constant` is their sum."""
-    rig.truth.drive.lag[site.rows] += x
-    return {"time_constant": x}
+    rig.truth.drive.lag[site.rows] += time_constant
 
 
 @known
-def controller_gain(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def controller_gain(rig: Rig, site: Site, relative: float) -> None:
     """The host works with another position gain."""
-    relative = site.sign() * x
     rig.truth.host.gain[site.rows] *= 1 + relative
-    return {"relative": relative}
 
 
 @known
-def torque_constant(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def torque_constant(rig: Rig, site: Site, relative: float) -> None:
     """Real force over reported effort is not 1, and bends: less at large forces than at small ones."""
-    relative, bend = site.sign() * x, site.rng.uniform(0.5, 1.0)
+    bend = site.rng.uniform(0.5, 1.0)
     load = np.linspace(0.0, 1.0, CURVE)
     rig.truth.motor.force_gain[site.rows] *= 1 + relative * (1 + bend * (0.15 - load))
-    return {"relative": relative}
 
 
 @known
-def lead_error(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def lead_error(rig: Rig, site: Site, relative: float) -> None:
     """The load travels more or less than the motor, and not evenly along the stroke."""
-    relative = site.sign() * x
     t = rig.truth.transmission
     t.ratio[site.rows] += relative
     t.wave[site.rows] += 0.09 * relative * rig.truth.motor.span[site.rows][:, None] * ring(site.rng, 0.12)
-    return {"relative": relative}
 
 
 @known
-def force_saturation(rig: Rig, site: Site, x: float) -> dict[str, float]:
-    """The force bends from 80 % of its limit on and ends there: at 12 N / (1 + x), more on roll."""
-    limit = site.scaled(12.0, "force") / (1 + x)
+def force_saturation(rig: Rig, site: Site, limit: float) -> None:
+    """The force bends from 80 % of its limit on and ends there: at a share of 12 N, more on roll."""
     rig.truth.drive.limit[site.rows] = limit
     rig.truth.drive.soft[site.rows] = 1.0
-    return {"limit": limit}
 
 
 @known
-def velocity_deadband(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def velocity_deadband(rig: Rig, site: Site, width: float) -> None:
     """Small demands do nothing, with a rounded edge."""
-    width = site.scaled(x, "speed")
     rig.truth.drive.band[site.rows] = width
-    return {"width": width}
 
 
 @known
-def payload_mass(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def payload_mass(rig: Rig, site: Site, mass: float) -> None:
     """Mass on an elastic mount; on the vertical rails its weight too."""
-    mass, frequency = site.scaled(x, "inertia"), site.rng.uniform(35.0, 60.0)
+    frequency = site.rng.uniform(35.0, 60.0)
     m, omega = rig.truth.motor, 2 * math.pi * frequency
     m.mount_mass[site.rows] = mass
     m.mount_stiffness[site.rows] = mass * omega**2
     m.mount_damping[site.rows] = 2 * 0.1 * mass * omega
     m.mount_weight[site.rows] = GRAVITY * mass if site.actuator in DELTAS else 0.0
-    return {"mass": mass}
 
 
 @known
-def gravity_load(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def gravity_load(rig: Rig, site: Site, mass: float) -> None:
     """Weight without inertia, near the pattern of the axis's own gravity: its centre is not quite the same."""
-    mass = site.sign() * x
     carried = rig.truth.mechanism.masses[2] if site.actuator == "tilt" else rig.truth.mechanism.masses[0]
     rig.truth.motor.gravity_gain[site.rows] += mass / carried * wobble(site.rng, 0.06)
-    return {"mass": mass}
 
 
 @known
-def cogging(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def cogging(rig: Rig, site: Site, amplitude: float, periods_per_rev: float) -> None:
     """Force in phase with the motor's poles, every one a little different."""
-    amplitude, order = site.scaled(x, "force"), float(site.rng.choice([2, 3, 4, 6, 7, 8]))
-    wave = teeth(site.rng, order, site.rng.uniform(0, 2 * math.pi), site.rng.uniform(0.2, 0.38))
+    wave = teeth(site.rng, periods_per_rev, site.rng.uniform(0, 2 * math.pi), site.rng.uniform(0.2, 0.38))
     rig.truth.motor.cogging[site.rows] += amplitude * wave
-    return {"amplitude": amplitude, "periods_per_rev": order}
 
 
 @known
-def transmission_ripple(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def transmission_ripple(rig: Rig, site: Site, amplitude: float, periods_per_rev: float) -> None:
     """The load runs ahead and behind with the motor's turn, as a gear's test record shows it."""
-    amplitude, order = site.scaled(x, "length"), float(site.rng.choice([1, 2, 3, 4]))
-    wave = teeth(site.rng, order, site.rng.uniform(0, 2 * math.pi), site.rng.uniform(0.2, 0.38))
+    wave = teeth(site.rng, periods_per_rev, site.rng.uniform(0, 2 * math.pi), site.rng.uniform(0.2, 0.38))
     rig.truth.transmission.ripple[site.rows] += amplitude * wave
-    return {"amplitude": amplitude, "periods_per_rev": order}
 
 
 @known
-def backlash(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def backlash(rig: Rig, site: Site, width: float) -> None:
     """A gap with elastic, damped flanks; behind it a light carriage with friction of its own.
 
     `width` is what is lost between the two directions: the gap and what its flanks give way under that friction.
     """
-    width = site.scaled(x, "length")
     t = rig.truth.transmission
     brake, hardest = t.brake[site.rows], t.contact[site.rows].copy()
     t.contact[site.rows] = np.clip(brake / (0.12 * width), 0.1 * hardest, hardest)
     t.gap[site.rows] = np.maximum(0.2 * width, width - 2 * brake / t.contact[site.rows])
-    return {"width": width}
 
 
 @known
-def transmission_hysteresis(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def transmission_hysteresis(rig: Rig, site: Site, width: float) -> dict[str, float]:
     """Lost motion that builds up after a reversal along a measured loop."""
-    half, reach = site.scaled(x, "length"), site.scaled(site.rng.uniform(25e-6, 120e-6), "length")
+    half, reach = width / 2, site.scaled(site.rng.uniform(25e-6, 120e-6), "length")
     rig.truth.transmission.hysteresis[site.rows] = half
     rig.truth.transmission.hysteresis_reach[site.rows] = reach
-    return {"width": 2 * half, "displacement": reach}
+    return {"displacement": reach}
 
 
 @known
-def transmission_compliance(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def transmission_compliance(rig: Rig, site: Site, compliance: float, stiffness: float) -> None:
     """A screw that winds up and stiffens with its force, three tenths of the mass behind it."""
-    compliance = site.scaled(x, "compliance")
     t, load = rig.truth.transmission, np.linspace(0.0, 1.0, CURVE)
     t.compliance[site.rows] = compliance
     t.stiffening[site.rows] = (0.85 + site.rng.uniform(0.8, 1.6) * load) * wobble(site.rng, 0.02)
-    return {"compliance": compliance, "stiffness": 1 / compliance}
 
 
 @known

@@ -6,8 +6,9 @@ import math
 
 import numpy as np
 
-from sher3_challenge.plants.kinds import Catalogue, Site
+from sher3_challenge.plants.kinds import Catalogue
 from sher3_challenge.plants.plant import Array
+from sher3_challenge.plants.site import Site
 from sher3_challenge.plants.tables.curves import CURVE, RING, ring, wobble
 from sher3_challenge.plants.tables.parameters import PLACES, SPEEDS
 from sher3_challenge.plants.tables.plant import Rig
@@ -32,12 +33,10 @@ def patches(rng: np.random.Generator) -> Array:
 
 
 @known
-def coulomb_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def coulomb_friction(rig: Rig, site: Site, force: float) -> None:
     """Friction of one level on the average."""
-    force = site.scaled(x, "force")
     level = force * wobble(site.rng, 0.06, SPEEDS)[None, :, None] * patches(site.rng)
     rig.truth.motor.friction[site.rows] += level
-    return {"force": force}
 
 
 @known
@@ -52,22 +51,20 @@ def stribeck_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
 
 
 @known
-def viscous_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def viscous_friction(rig: Rig, site: Site, extra: float) -> None:
     """More drag with speed, less than in proportion as a grease that shears."""
-    extra = site.scaled(x, "stiffness")
     v = speeds(rig, site)
     drag = extra * v * (1.2 - 0.5 * v / v[-1]) * wobble(site.rng, 0.02, SPEEDS)
     rig.truth.motor.friction[site.rows] += drag[None, :, None] * (1 + 0.3 * (patches(site.rng) - 1))
-    return {"extra": extra}
 
 
 @known
-def presliding_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def presliding_friction(rig: Rig, site: Site, force: float) -> dict[str, float]:
     """Friction that takes tens of micrometres to build up, along a measured loop."""
-    force, reach = site.scaled(x, "force"), site.scaled(site.rng.uniform(20e-6, 80e-6), "length")
+    reach = site.scaled(site.rng.uniform(20e-6, 80e-6), "length")
     rig.truth.motor.friction[site.rows] += force * (1 + 0.5 * (patches(site.rng) - 1))
     rig.truth.motor.reach[site.rows] = reach
-    return {"force": force, "displacement": reach}
+    return {"displacement": reach}
 
 
 @known
@@ -85,10 +82,8 @@ def position_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
 
 
 @known
-def friction_drift(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def friction_drift(rig: Rig, site: Site, force: float, time_constant: float) -> None:
     """Friction after standing, which runs in within seconds: fast at first, with a long end."""
-    force, constant = site.scaled(x, "force"), site.rng.uniform(0.8, 3.0)
     m, end = rig.truth.motor, 12.0
     m.fading_end[site.rows] = end
-    m.fading[site.rows] += force * np.exp(-((np.linspace(0.0, end, CURVE) / constant) ** 0.7))
-    return {"force": force, "time_constant": constant}
+    m.fading[site.rows] += force * np.exp(-((np.linspace(0.0, end, CURVE) / time_constant) ** 0.7))

@@ -5,7 +5,8 @@ from __future__ import annotations
 from sher3_description import ACTUATORS
 
 from sher3_challenge.plants.declared import DELTAS, FORCE_SENSOR, TIP
-from sher3_challenge.plants.kinds import Catalogue, Site
+from sher3_challenge.plants.kinds import Catalogue
+from sher3_challenge.plants.site import Site
 from sher3_challenge.plants.tables.plant import Rig
 
 CATALOGUE = Catalogue()

@@ -7,7 +7,8 @@ import math
 import numpy as np
 
 from sher3_challenge.plants.declared import DELTAS
-from sher3_challenge.plants.kinds import Catalogue, Site
+from sher3_challenge.plants.kinds import Catalogue
+from sher3_challenge.plants.site import Site
 from sher3_challenge.plants.tables.curves import CURVE, RING, ring, wobble
 from sher3_challenge.plants.tables.mechanism import angle_table
 from sher3_challenge.plants.tables.plant import Rig
@@ -19,20 +20,17 @@ known = CATALOGUE.known
 
 
 @known
-def encoder_scale(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def encoder_scale(rig: Rig, site: Site, relative: float) -> None:
     """The load encoder's ratio is off."""
-    relative = site.sign() * x
     rig.truth.host.scale[site.rows] += relative
-    return {"relative": relative}
 
 
 @known
-def encoder_eccentricity(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def encoder_eccentricity(rig: Rig, site: Site, amplitude: float) -> None:
     """The load encoder errs once per revolution, on a disc that is not quite round; the load does not move."""
-    amplitude, turn = site.scaled(x, "length"), 2 * math.pi * np.arange(RING) / RING
+    turn = 2 * math.pi * np.arange(RING) / RING
     wave = np.sin(turn + site.rng.uniform(0, 2 * math.pi)) + 0.2 * np.sin(2 * turn + site.rng.uniform(0, 6))
     rig.truth.host.eccentricity[site.rows] += amplitude * (wave + 0.08 * ring(site.rng))
-    return {"amplitude": amplitude}
 
 
 @add("lost_motion", "mechanism", (*DELTAS, "tilt"), 8e-6, 5e-7, 3e-4, also=("structure",))
@@ -49,24 +47,21 @@ def joint_clearance(rig: Rig, site: Site, x: float) -> dict[str, float]:
 
 
 @known
-def structural_compliance(rig: Rig, site: Site, x: float) -> dict[str, float]:
-    """The arm turns about the platform and bends; `x` is the fraction of the published compliance."""
-    rig.truth.tip.spring[:] += x * SPRINGS
-    return {"fraction": x}
+def structural_compliance(rig: Rig, site: Site, fraction: float) -> None:
+    """The arm turns about the platform and bends; `fraction` is that of the published compliance."""
+    rig.truth.tip.spring[:] += fraction * SPRINGS
 
 
 @known
-def link_compliance(rig: Rig, site: Site, x: float) -> dict[str, float]:
-    """The six links give way by their published law, sampled, no two alike; `x` is the mean fraction of it."""
-    rig.truth.tip.link_law[:] = x * (1 + 0.12 * site.rng.standard_normal(6))
-    return {"fraction": x}
+def link_compliance(rig: Rig, site: Site, fraction: float) -> None:
+    """The six links give way by their published law, sampled, no two alike; `fraction` is the mean."""
+    rig.truth.tip.link_law[:] = fraction * (1 + 0.12 * site.rng.standard_normal(6))
 
 
 @known
-def tool_bending(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def tool_bending(rig: Rig, site: Site, compliance: float) -> None:
     """The tool bends across its axis and hardens."""
-    rig.truth.tip.bending[0] = x
-    return {"compliance": x}
+    rig.truth.tip.bending[0] = compliance
 
 
 @known
@@ -81,11 +76,9 @@ def structural_vibration(rig: Rig, site: Site, x: float) -> dict[str, float]:
 
 
 @known
-def link_length_error(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def link_length_error(rig: Rig, site: Site, length: float) -> None:
     """Both links of a leg are longer or shorter."""
-    length = site.sign() * x
     rig.truth.mechanism.length[site.index] += length
-    return {"length": length}
 
 
 @known
@@ -98,23 +91,19 @@ def platform_geometry_error(rig: Rig, site: Site, x: float) -> dict[str, float]:
 
 
 @known
-def rail_tilt(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def rail_tilt(rig: Rig, site: Site, x: float, y: float, angle: float) -> None:
     """A rail leans, and is not quite straight."""
-    angle, g = site.rng.uniform(0, 2 * math.pi), rig.truth.mechanism
-    lean = np.array([x * math.cos(angle), x * math.sin(angle), 0.0])
+    g = rig.truth.mechanism
+    lean = np.array([x, y, 0.0])
     g.rail[site.index] += lean
     g.rail[site.index] /= np.linalg.norm(g.rail[site.index])
     g.bow[site.index] += 0.06 * 4e-3 * lean[:2, None] * (wobble(site.rng, 1.0) - 1.0)
-    return {"x": lean[0], "y": lean[1], "angle": x}
 
 
 @known
-def base_tilt(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def base_tilt(rig: Rig, site: Site, x: float, y: float, angle: float) -> None:
     """The base leans against the tracker."""
-    angle = site.rng.uniform(0, 2 * math.pi)
-    lean = np.array([x * math.cos(angle), x * math.sin(angle), 0.0])
-    rig.truth.tip.base_tilt[:] += lean
-    return {"x": lean[0], "y": lean[1], "angle": x}
+    rig.truth.tip.base_tilt[:] += x, y, 0.0
 
 
 @known
@@ -128,34 +117,27 @@ def tilt_linkage_error(rig: Rig, site: Site, x: float) -> dict[str, float]:
 
 
 @known
-def tool_offset(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def tool_offset(rig: Rig, site: Site, x: float, y: float, z: float) -> None:
     """The tool's tip is elsewhere."""
-    offset = x * site.direction()
-    rig.truth.mechanism.arm[3:] += offset
-    return dict(zip("xyz", offset.tolist(), strict=True))
+    rig.truth.mechanism.arm[3:] += x, y, z
 
 
 @known
-def encoder_offset(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def encoder_offset(rig: Rig, site: Site, offset: float) -> None:
     """The axis was homed wrongly: both encoders read too much or too little."""
-    offset = site.sign() * site.scaled(x, "length")
     rig.truth.host.offset[site.rows] += offset
-    return {"offset": offset}
 
 
 @known
-def thermal_expansion(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def thermal_expansion(rig: Rig, site: Site, coefficient: float) -> None:
     """The structure grows with its temperature, which lags behind the thermometer."""
-    rig.truth.tip.expansion[0] += x
-    return {"coefficient": x}
+    rig.truth.tip.expansion[0] += coefficient
 
 
 @known
-def force_drift(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def force_drift(rig: Rig, site: Site, fx: float, fy: float, fz: float) -> None:
     """The force sensor's zero moves with its body's temperature."""
-    drift = x * site.direction()
-    rig.truth.sensor.drift[:3] += drift
-    return dict(zip(("fx", "fy", "fz"), drift.tolist(), strict=True))
+    rig.truth.sensor.drift[:3] += fx, fy, fz
 
 
 @known
@@ -168,20 +150,16 @@ def force_bias(rig: Rig, site: Site, x: float) -> dict[str, float]:
 
 
 @known
-def tool_gravity(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def tool_gravity(rig: Rig, site: Site, mass: float) -> None:
     """The tool on the sensor is heavier or lighter than its data, and its centre elsewhere by a millimetre's part."""
-    mass = site.sign() * min(x, 0.015) if x > 0.015 else site.sign() * x
     rig.truth.sensor.tool_mass[0] += mass
     rig.truth.sensor.tool_com[:] += 1e-3 * site.direction() * min(1.0, abs(mass) / 0.01)
-    return {"mass": mass}
 
 
 @known
-def force_scale(rig: Rig, site: Site, x: float) -> dict[str, float]:
+def force_scale(rig: Rig, site: Site, relative: float) -> None:
     """The force sensor's gain is off, on no two channels quite alike."""
-    relative = site.sign() * x
     rig.truth.sensor.matrix[:] *= 1 + relative * (1 + 0.12 * site.rng.standard_normal((6, 1)))
-    return {"relative": relative}
 
 
 @known
