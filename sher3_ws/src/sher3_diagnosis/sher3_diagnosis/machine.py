@@ -35,7 +35,8 @@ class Policy:
     Attributes:
         down_to_floor: causes are searched until no gap is left at all. For machines whose description leaves several
             plain causes out; otherwise a known cause may leave a share, since laws are idealisations.
-        calibrated: causes and gaps are weighed by the calibration, which was set on machines of this kind.
+        calibrated: odds decide which causes and gaps are named: the calibration was set on machines of this kind, or is
+            shown to hold on them (`bench/other_odds.py`). Otherwise rules decide, and odds are only shown.
         free_laws: what causes leave must not follow quantities that none of them depends on.
         carried: an effect whose size may be zero stays in the fit without a name. For machines of which every part has
             a small error of its own; otherwise it is left out.

@@ -37,13 +37,13 @@ class TableKind(Kind[D, Readings]):
         stored: columns that a case of this kind has at least.
         written_for: words of `Effect.kinds` whose pages it may have.
         words: how a report speaks of it.
-        policy: what the judgement may lean on.
+        policy: what the judgement may lean on: odds decide, which hold on tables that set no weight.
     """
 
     stored: tuple[str, ...] = ()
     written_for: tuple[str, ...]
     words: Words
-    policy = Policy(down_to_floor=True)
+    policy = Policy(down_to_floor=True, calibrated=True)
 
     @abstractmethod
     def tables(self, known: Any, runs: Sequence[Readings]) -> Sequence[Table]:

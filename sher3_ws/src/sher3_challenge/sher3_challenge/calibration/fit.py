@@ -201,7 +201,7 @@ def logistic(
     x = np.array([[e.numbers.get(name, math.nan) for name in inputs] for e in examples], dtype=float)
     x = x.reshape(len(examples), len(inputs))
     y = np.array([[e.answer == name for name in classes] for e in examples], dtype=float).reshape(-1, len(classes))
-    if (y.sum(axis=0) > 0.0).sum() < 2:
+    if (y.sum(axis=0) > 0.0).sum() < (2 if before is None else 1):  # weights of before know both kinds
         raise ChallengeError("cases of one kind only", value=len(examples), limit=2, remedy="healthy and foreign ones")
     known = np.isfinite(x)
     count = np.maximum(known.sum(axis=0), 1)

@@ -13,13 +13,13 @@ from sher3_description import Robot
 from sher3_diagnosis.finding import ExactFinding, Finding, Item
 from sher3_diagnosis.flow import find
 from sher3_diagnosis.judge.items import items_of
-from sher3_gap.evidence import SherEvidence
+from sher3_diagnosis.machine import Machine
 from sher3_gap.signals import RunSignals
 
 from sher3_challenge.cases.seal import CASES, LABELS
 
 LABEL = "truth.yaml"
-VERSION = 6
+VERSION = 7
 """Of the evidence: rows of another version are computed again."""
 
 
@@ -126,24 +126,35 @@ def _observed(plant: str, case: Path, truth: dict[str, Any]) -> list[Observation
 
 
 def observed(plant: str, name: str, truth: dict[str, Any], runs: list[RunSignals], robot: Robot) -> list[Observation]:
-    """Return the observations of a case whose runs are at hand."""
+    """Return the observations of a case of SHER whose runs are at hand."""
     from sher3_gap.sher import Sher
 
-    machine = Sher(robot)
-    (evidence,) = machine.gather(runs)
+    return observed_on(Sher(robot), plant, name, truth, runs, _libraries(truth))
+
+
+def observed_on(
+    machine: Machine,
+    plant: str,
+    name: str,
+    truth: dict[str, Any],
+    runs: Sequence[Any],
+    libraries: Sequence[Collection[str]],
+) -> list[Observation]:
+    """Return the observations of a case of any machine, one for each collection of effects to leave out."""
+    parts = machine.gather(runs)
     out = []
-    for without in _libraries(truth):
-        finding = find(machine, evidence, without, lambda _: None)
-        exact = machine.exact(runs, [evidence], without)
+    for without in libraries:
+        findings = [find(machine, part, without, lambda _: None).with_all for part in parts]
+        exact = machine.exact(runs, parts, without)
         out.append(
             Observation(
                 plant,
                 name,
                 truth,
                 tuple(without),
-                tuple(_plain(finding, item) for item in items_of(finding)),
+                tuple(_plain(finding, item) for finding in findings for item in items_of(finding)),
                 tuple(_stage(stage) for stage in exact),
-                tuple(str(c) for c in finding.significant),
+                tuple(str(c) for finding in findings for c in finding.significant),
             )
         )
     return out
@@ -156,7 +167,7 @@ def _libraries(truth: dict[str, Any]) -> list[Collection[str]]:
     return [(), (effects[0]["effect"],)] if single else [()]
 
 
-def _plain(finding: Finding[SherEvidence], item: Item) -> dict[str, Any]:
+def _plain(finding: Finding, item: Item) -> dict[str, Any]:
     row: dict[str, Any] = {
         "channel": str(item.channel),
         "index": item.index,

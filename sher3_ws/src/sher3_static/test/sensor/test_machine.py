@@ -5,6 +5,7 @@ import pytest
 from scipy.constants import g
 from scipy.spatial.transform import Rotation
 from sher3_diagnosis import diagnose
+from sher3_diagnosis.judge.costs import Costs
 from sher3_machines import MachineError
 from sher3_static.sensor.description import SensorDescription
 from sher3_static.sensor.frames import frames
@@ -152,3 +153,15 @@ def test_the_floor_is_the_noise_in_every_frame():
 
 def test_the_stated_frame_is_the_first_of_them():
     assert str(frames()[0]) == "as stated" and len(frames()) == 96
+
+
+def test_odds_decide_what_a_sensor_has_and_costs_count():
+    bias, described = np.array([0.0, 0.0, 2.0, 0.0, 0.0, 0.0]), description()
+    runs = [read_sensor("a", readings(bias), described)]
+    verdict = diagnose(KIND.machine(described), runs).verdict
+    (first, *_) = verdict.places
+    assert (verdict.status, first.bet.causes[0].effect) == ("attributed", "force_bias")
+    assert sum(a.probability for a in first.answers) + first.other == pytest.approx(1.0)
+    assert verdict.costs == {"name": 1.0, "abstain": 1.0, "miss": 1.0}
+    dear = diagnose(KIND.machine(described), runs, costs=Costs(name=1e6)).verdict
+    assert dear.status == "outside_library" and dear.places[0].bet.causes[0].effect == "force_bias"

@@ -14,6 +14,7 @@ from sher3_diagnosis.attribute.steadiness import steadiness_of
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import Fit, Term
+from sher3_diagnosis.judge.evidence.bent import added, stray_share
 from sher3_diagnosis.judge.evidence.free_law import ROWS, loss_left
 from sher3_diagnosis.localise.gaps import gap_of
 from sher3_diagnosis.localise.pattern import pattern_of
@@ -41,6 +42,7 @@ class CauseEvidence:
 
     Attributes:
         left: share left on held-out runs.
+        stray: share left that is not in proportion to what the cause adds, as the remainder of a bent law is.
         law: share left once its law is a free function of the inputs that the effect's page states. Like the next two
             None on a machine whose views do not tell them.
         place: of all quantities of its place.
@@ -57,6 +59,7 @@ class CauseEvidence:
     """
 
     left: float
+    stray: float
     law: float | None
     place: float | None
     anything: float | None
@@ -89,8 +92,9 @@ def cause_evidence(evidence: Evidence, attribution: Attribution, index: int) -> 
     samples = evidence.samples(channel)
     gap = max(evidence.excess(channel, without), 1.0)
     moving = attribution.moving
-    remainder = remains(evidence, found if moving is None else moving.whole, index, channel)
-    left = excess_of(evidence, channel, remainder)
+    fitted = found if moving is None else moving.whole
+    remainder = remains(evidence, fitted, index, channel)
+    left, own = excess_of(evidence, channel, remainder), added(fitted, index, channel, remainder)
     told = all(isinstance(evidence.views[r], Recorded) for r in remainder)
     taken = free_laws(evidence, channel, term, remainder) if told else (None, None, None)
     law, place, anything = (None if x is None else (left - x * samples) / gap for x in taken)
@@ -100,6 +104,7 @@ def cause_evidence(evidence: Evidence, attribution: Attribution, index: int) -> 
     assert whole is not None
     return CauseEvidence(
         left=left / gap,
+        stray=left / gap * stray_share(whitened(evidence, channel, remainder), own),
         law=law,
         place=place,
         anything=anything,
@@ -117,8 +122,12 @@ def cause_evidence(evidence: Evidence, attribution: Attribution, index: int) -> 
 
 def power_of(evidence: Evidence, channel: Channel, left: Mapping[int, Array]) -> float:
     """Return the power over the floor of residuals {run: (N, d)} in SI units, less one, of the component with most."""
-    white = np.concatenate([x / evidence.floors[r][channel] for r, x in left.items()])
-    return float(np.mean(white**2, axis=0).max()) - 1.0
+    return float(np.mean(whitened(evidence, channel, left) ** 2, axis=0).max()) - 1.0
+
+
+def whitened(evidence: Evidence, channel: Channel, left: Mapping[int, Array]) -> Array:
+    """Return residuals {run: (N, d)} in SI units over their floor, one run after another -> (n, d)."""
+    return np.concatenate([x / evidence.floors[r][channel] for r, x in left.items()])
 
 
 def free_laws(

@@ -12,6 +12,9 @@ LEAST_FLOORS = 0.3
 MOST_POWER = 10.0
 """Power over its threshold, or of a remainder over the floor, above which there is one beyond doubt: how much larger it
 is tells nothing more."""
+BENT = 0.10
+"""Share of a gap that a right law leaves at most by its own shape, which differs from machine to machine: the upper end
+of what labelled robots are drawn with (`sher3_challenge.plants.level.SHAPE`). So much is as likely another law's."""
 LEAST_LAW = 0.02
 """Share that own inputs leave below which it does not matter what explains it; nor does it below the floor."""
 
@@ -39,7 +42,7 @@ def scaled_cause(numbers: Mapping[str, float]) -> dict[str, float]:
 
     What nothing tells is not there, so that it speaks neither for the cause nor against it.
     """
-    left, floors = _share(numbers["left"]), max(numbers["power"], 0.0)
+    left, floors = _share(strange(numbers)), max(numbers["power"], 0.0)
     steady = {"spread": log_above(numbers["spread"], 0.001)} if "spread" in numbers else {}
     return (
         _foreign(numbers, floors)
@@ -52,6 +55,19 @@ def scaled_cause(numbers: Mapping[str, float]) -> dict[str, float]:
             "size": log_above(numbers["ratio"], 1.0),
         }
     )
+
+
+def strange(numbers: Mapping[str, float]) -> float:
+    """Return the share left that is, on average, no bend of the law.
+
+    It is what does not go with the law, and of what does the share that is likely another law's: half of it where it is
+    as much as right laws leave at most, the less the smaller it is. Where nothing says what goes with the law (evidence
+    of before), all that is left counts.
+    """
+    left = numbers["left"]
+    stray = numbers.get("stray", left)
+    bend = max(0.0, left - stray)
+    return stray + bend * bend / (bend + BENT)
 
 
 def _foreign(numbers: Mapping[str, float], floors: float) -> dict[str, float]:

@@ -1,0 +1,76 @@
+"""Bench: what it changes that a bend of a right law is expected, on kept evidence of labelled cases.
+
+    python bench/bent_laws.py EVIDENCE      # folder of `sher3 gap calibrate --drawn --kept`, seconds
+
+Printed is the table of all cases, of robots with bent and with close laws, and of each plant, by the weights in force:
+once with all that is left of a gap held against its cause (`all left`), once less what is a bend of its law
+(`strange`); then log loss of the causes' odds, and how well either number tells right causes from foreign ones (area
+under the curve), on the causes that leave between 2 and 20 %.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from sher3_challenge.calibration.held_out import by_plant, by_shape, groups, judged_by
+from sher3_challenge.calibration.labels import answer_of
+from sher3_challenge.calibration.observe import Observation, stored
+from sher3_challenge.calibration.table import rates, written
+from sher3_diagnosis.finding import LIBRARY, OUTSIDE
+from sher3_diagnosis.judge.calibration.calibration import in_force
+from sher3_diagnosis.judge.evidence.scales import strange
+
+DOUBTFUL = (0.02, 0.20)
+"""Shares left of which both right and foreign causes are known."""
+
+
+def plain(seen: Observation) -> Observation:
+    """Return an observation of which nothing says what goes with a law."""
+    items = [
+        {**x, "numbers": {name: v for name, v in x["numbers"].items() if name != "stray"}} for x in seen.items
+    ]  # fmt: skip
+    return replace(seen, items=tuple(items))
+
+
+def area(right: Sequence[float], foreign: Sequence[float]) -> float:
+    """Return the share of pairs of a right and a foreign cause of which the right one has less."""
+    return float(np.mean([(r < f) + 0.5 * (r == f) for r in right for f in foreign]))
+
+
+def main() -> None:
+    """Print the tables."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", type=Path)
+    found = [o for file in sorted(parser.parse_args().folder.rglob("*.json")) for o in stored(file)]
+    for name, seen in {"all left": [plain(o) for o in found], "strange": found}.items():
+        own = {"all": seen, **groups(seen, by_shape), **groups(seen, by_plant)}
+        judged = {group: judged_by(in_force(), rows) for group, rows in own.items()}
+        stated = [c for j in judged["all"] for c in j.causes]
+        loss = -np.mean([math.log(max(p if right else 1.0 - p, 1e-3)) for p, right in stated])
+        sure = [right for p, right in stated if p >= 0.95]
+        print(f"{name}: log loss {loss:.2f} (n {len(stated)}); stated 95 %: {sum(sure)} of {len(sure)} right")
+        print(written({group: rates(j) for group, j in judged.items()}) + "\n")
+    whole = {(o.plant, o.case): o for o in found if not o.without}
+    causes = [
+        (x["numbers"], answer_of(o, x, whole[o.plant, o.case]))
+        for o in found
+        for x in o.items
+        if x["index"] is not None
+    ]
+    near = [(n, a) for n, a in causes if DOUBTFUL[0] < n["left"] < DOUBTFUL[1]]
+    right, foreign = ([n for n, a in near if a == answer] for answer in (LIBRARY, OUTSIDE))
+    if right and foreign:
+        told = area([n["left"] for n in right], [n["left"] for n in foreign])
+        better = area(*([strange(n) for n in some] for some in (right, foreign)))
+        print(
+            f"area under the curve: left {told:.2f}, strange {better:.2f} ({len(right)} right, {len(foreign)} foreign)"
+        )
+
+
+if __name__ == "__main__":
+    main()
