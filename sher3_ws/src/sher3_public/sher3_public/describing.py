@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 from scipy.signal import savgol_filter
+from sher3_chain.manipulator.mjcf.bodies import FREE
 from sher3_chain.manipulator.mjcf.drives import Drive, Driven
 from sher3_chain.manipulator.mjcf.joint import drive_joint
 from sher3_machines.drafting.guesses import count_of, scatter
@@ -61,9 +62,12 @@ def described(source: Source, runs: Sequence[Arrays], stated: Stated) -> Describ
     """
     plausible.stamps(runs[0].time)
     guesses: list[str] = []
+    runs = [without_free(source, run, stated.joints, guesses) for run in runs]
     names = joints_of(source, runs[0].position.shape[1], stated.joints, guesses)
     drives = source.bodies.drives
+    guesses += plausible.places(names, runs[0], source.bodies.reach)
     controls = [control_of(name, i, len(names), runs[0].control, drives, source) for i, name in enumerate(names)]
+    controls = plausible.columns_of_control(names, controls, runs[0], drives, bool(stated.joints), guesses)
     joints = [_joint(name, i, source, runs, stated, controls[i] is not None) for i, name in enumerate(names)]
     for place, (name, column) in enumerate(zip(names, controls, strict=True)):
         drive = drives[name].drive if name in drives else None
@@ -84,6 +88,17 @@ def described(source: Source, runs: Sequence[Arrays], stated: Stated) -> Describ
         guesses.append(f"joints that were not recorded stay at zero: {', '.join(left)}")
     data = {"kind": "manipulator", "name": source.name, "model": source.bodies.label, "time": {"column": "time"}}
     return Described({**data, "joints": joints}, [_table(run, names, controls) for run in runs], guesses)
+
+
+def without_free(source: Source, run: Arrays, stated: Sequence[str], guesses: list[str]) -> Arrays:
+    """Return a run whose positions are MuJoCo's whole `qpos` without those of free bodies."""
+    model, known = source.bodies.mujoco, list(source.bodies.joints)
+    if stated or model is None or run.position.shape[1] != model.nq or model.nq == len(known):
+        return run
+    said = "positions are MuJoCo's whole qpos: those of free bodies are left out"
+    guesses += [said] if said not in guesses else []
+    own = [int(i) for i in range(model.njnt) if model.jnt_type[i] != FREE]
+    return replace(run, position=run.position[:, model.jnt_qposadr[own]])
 
 
 def joints_of(source: Source, columns: int, stated: Sequence[str], guesses: list[str]) -> list[str]:
@@ -162,6 +177,8 @@ def simulated(
     if stated is not None:
         return stated
     run, off = runs[0], []
+    if run.effort is not None and run.control is None and any(drives[n].recorded for n in names if n in drives):
+        guesses.append("efforts are taken as measured; where a simulator of this model recorded them, simulated=True")
     if run.effort is None or run.control is None or len(run.time) < WINDOW:
         return False
     for place, (name, column) in enumerate(zip(names, controls, strict=True)):

@@ -93,6 +93,8 @@ def _run(given: Mapping[str, Any]) -> Arrays:
         if given[name] is None:
             raise InputError(f"{name} is missing", remedy="give time (n,) and position (n, k)")
     time = _numbers("time", given["time"])
+    if not time.size:
+        raise InputError("time has no stamps", value=time.shape, remedy="give time (n,) and position (n, k)")
     if time.ndim != 1:
         raise InputError("time is no single column", value=time.shape, limit="(n,)", remedy="give stamps in s")
     wide = {name: _columns(name, given[name], len(time)) for name in ("position", "control", "effort", "load")}
@@ -107,7 +109,11 @@ def _run(given: Mapping[str, Any]) -> Arrays:
 
 
 def _numbers(name: str, x: ArrayLike) -> Array:
+    """Return an array of numbers; times and spans of time as NumPy has them are brought to s, from the first."""
     try:
+        found = np.asarray(x)
+        if found.dtype.kind in "Mm":
+            return (found - found[0] if found.dtype.kind == "M" else found) / np.timedelta64(1, "s")
         return np.asarray(x, dtype=float)
     except (TypeError, ValueError) as error:
         raise InputError(f"{name} is no array of numbers", value=str(error)[:80], remedy="give numbers") from error

@@ -97,6 +97,53 @@ def test_a_control_that_is_no_place_and_one_that_is_no_force(log):
         gap.diagnose(MOTORS, time, control, position)
 
 
+def test_columns_in_another_order(log):
+    """Stated joints order both; where nothing is stated, servos that follow each other's control are refused."""
+    time, control, position = log
+    turned = gap.diagnose(MODEL, time, control[:, ::-1], position[:, ::-1], joints=["elbow", "shoulder"])
+    assert named(turned) == {("coulomb_friction", "elbow")}
+    assert any("in the order of `joints`" in guess for guess in turned.guessed)
+    with pytest.raises(InputError, match="shoulder: its position follows the control of elbow"):
+        gap.diagnose(MODEL, time, control, position[:, ::-1])
+
+
+def test_stamps_as_numpy_has_times_and_in_nanoseconds(log):
+    time, control, position = log
+    nano = (1e9 * time).round().astype("timedelta64[ns]")
+    for stamps in (nano, np.datetime64("2026-01-01") + nano):
+        assert named(gap.diagnose(MODEL, stamps, control, position)) == {("coulomb_friction", "elbow")}
+    with pytest.raises(InputError, match="in ns by 1000000000"):
+        gap.diagnose(MODEL, nano.astype(float), control, position)
+    with pytest.raises(InputError, match="time has no stamps"):
+        gap.diagnose(MODEL, [], [], [])
+
+
+def test_angles_in_degrees_beyond_the_model_s_range(log):
+    time, control, position = log
+    few = 0.5 * np.degrees(position)
+    limited = MODEL.replace('name="shoulder"', 'name="shoulder" range="-150 150"')
+    with pytest.raises(InputError, match=r"shoulder: position leaves the model's range; .* limit 2\.618; give angles"):
+        gap.diagnose(limited, time, control, few)
+    with pytest.raises(InputError, match="elbow: position has no number"):
+        gap.diagnose(MODEL, time, control, position * [1.0, np.nan])
+
+
+CUBE = '<body pos="1 1 1"><freejoint/><geom size=".02" contype="0" conaffinity="0"/></body><body pos="0 0 0.5">'
+
+
+def test_a_whole_qpos_with_a_cube_in_it(log):
+    time, control, position = log
+    model = MODEL.replace('<body pos="0 0 0.5">', CUBE, 1)
+    answer = gap.diagnose(model, time, control, np.column_stack([np.ones((len(time), 7)), position]))
+    assert named(answer) == {("coulomb_friction", "elbow")}
+    assert any("whole qpos" in guess for guess in answer.guessed)
+
+
+def test_a_joint_that_an_equality_couples_is_not_judged(log):
+    coupled = MODEL.replace("</mujoco>", '<equality><joint joint1="elbow"/></equality></mujoco>')
+    assert any("an equality couples it" in guess for guess in gap.diagnose(coupled, *log).guessed)
+
+
 def test_positions_that_drown_in_noise(log):
     time, control, position = log
     with pytest.raises(MachineError, match="record quieter positions"):

@@ -36,6 +36,11 @@ class Bodies:
         """Joint -> whether it slides, of every joint that turns or slides, in the model's order."""
         return {link.name: link.slides for link in self.tree.links}
 
+    @property
+    def reach(self) -> dict[str, float]:
+        """Joint -> largest angle that the model allows, rad, of those that turn; infinite where it states none."""
+        return {link.name: link.reach for link in self.tree.links if not link.slides}
+
     @cached_property
     def drives(self) -> dict[str, Driven]:
         """Joint -> how the model drives it; nothing of a URDF, which has no drives."""

@@ -48,6 +48,11 @@ def test_what_is_no_law_of_the_control_says_why(actuators, words):
     assert found.drive is None and words in found.reason
 
 
+def test_what_a_step_adds_counts_every_actuator_that_brakes():
+    found = drive_of('<velocity joint="a" kv="3" gear="2"/>')
+    assert found.recorded == pytest.approx(0.002 * 12.0 + 0.001 * 0.5)
+
+
 def test_a_control_without_a_law_leaves_its_joint_unjudged():
     joint = {"name": "a", "motion": "rotary", "signals": {"position": {}, "command": {"column": "ctrl"}}}
     guesses = []

@@ -50,7 +50,9 @@ def tree_from_mjcf(source: Any, label: str) -> Tree:
                 raise MachineError(f"{label}: joint {name} neither turns nor slides", value=value, remedy=refused)
             anchor, rotor = np.array(source.jnt_pos[joint]), float(source.dof_armature[source.jnt_dofadr[joint]])
             axis = np.array(source.jnt_axis[joint])
-            links.append(Link(name, "", parent, turn, place + turn @ anchor, axis, kind == SLIDE, rotor=rotor))
+            reach = float(np.abs(source.jnt_range[joint]).max()) if source.jnt_limited[joint] else np.inf
+            at = place + turn @ anchor
+            links.append(Link(name, "", parent, turn, at, axis, kind == SLIDE, rotor=rotor, reach=reach))
             parent, turn, place = len(links) - 1, np.eye(3), -anchor
         carriers.append((parent, turn, place))
         if parent != WORLD:

@@ -23,6 +23,8 @@ EULER_DAMP = 1 << 15
 
 NO_DELAY: Mapping[int, float] = defaultdict(float)
 """Delay of each actuator, s, in versions of MuJoCo before 3.4 that have none."""
+OF_JOINTS = 2
+"""MuJoCo's number of an equality of joints (mjtEq)."""
 TENDON, WRAPPED_JOINT = 3, 1
 """MuJoCo's numbers of a transmission by a tendon (mjtTrn), and of a joint in a tendon (mjtWrap)."""
 
@@ -86,7 +88,7 @@ def _driven(source: Any, joint: int) -> Driven:
     half, method = 0.5 * float(source.opt.timestep), source.opt.integrator
     damping = float(source.dof_damping[source.jnt_dofadr[joint]])
     drive, reason = _drive(source, joint)
-    gain = 0.0 if drive is None else drive.velocity_gain
+    gain = _braking(source, joint)
     recorded = of_law = 0.0
     if method in (IMPLICIT, IMPLICIT_FAST):
         recorded, of_law = half * (damping + 2.0 * gain), half * (damping + gain)
@@ -96,10 +98,20 @@ def _driven(source: Any, joint: int) -> Driven:
     return Driven(source.jnt_type[joint] == SLIDE, recorded, of_law, drive, reason)
 
 
+def _braking(source: Any, joint: int) -> float:
+    """Return the force per speed of all actuators on a joint that a control reaches, N/(m/s) or N m/(rad/s)."""
+    braking = [
+        i for i in at_joint(source, joint) if source.actuator_biastype[i] == AFFINE and not is_passive(source, i)
+    ]
+    return float(sum(-source.actuator_biasprm[i][2] * source.actuator_gear[i][0] ** 2 for i in braking))
+
+
 def _drive(source: Any, joint: int) -> tuple[Drive | None, str]:
     """Return the actuator of a joint, or why its force is not known from its control."""
     if through := by_tendon(source, joint):
         return None, f"actuator {through} moves it by a tendon"
+    if coupled(source, joint):
+        return None, "an equality couples it with another joint"
     driving = [i for i in at_joint(source, joint) if not is_passive(source, i)]
     if not driving:
         return None, "the model has no actuator on it"
@@ -124,6 +136,12 @@ def _drive(source: Any, joint: int) -> tuple[Drive | None, str]:
         )
     gains = -gain / (place * gear), -place * gear**2, -speed * gear**2
     return Drive(name, control, gear, True, *gains, limit, delay), ""
+
+
+def coupled(source: Any, joint: int) -> bool:
+    """Return whether an equality that is active couples a joint with another."""
+    own = (source.eq_obj1id == joint) | (source.eq_obj2id == joint)
+    return bool(np.any(own & (source.eq_type == OF_JOINTS) & (source.eq_active0 != 0)))
 
 
 def by_tendon(source: Any, joint: int) -> str:

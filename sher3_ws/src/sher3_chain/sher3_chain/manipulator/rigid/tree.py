@@ -31,6 +31,7 @@ class Link:
         slides: whether it slides.
         inertia: inertial parameters of what it carries, (10,), kg, kg m, kg m^2, in the joint's frame.
         rotor: inertia of the drive at the joint, kg m^2 or kg.
+        reach: largest position that the model allows, rad or m.
     """
 
     name: str
@@ -42,6 +43,7 @@ class Link:
     slides: bool
     inertia: Array = field(default_factory=lambda: np.zeros(PARAMETERS))
     rotor: float = 0.0
+    reach: float = np.inf
 
     def carrying(self, inertia: Array, turn: Array, place: Array, body: str) -> Link:
         """Return the link with a body more, whose frame is at a pose in the joint's frame."""

@@ -106,8 +106,16 @@ class _Reader:
             if kind not in FIXED:
                 self._other[name] = kind
             return _Carrier(at.joint, turn, place)
-        self._links.append(Link(name, "", at.joint, turn, place, self._axis(joint), kind in SLIDING))
+        slides, reach = kind in SLIDING, np.inf if kind == "continuous" else self._reach(joint)
+        self._links.append(Link(name, "", at.joint, turn, place, self._axis(joint), slides, reach=reach))
         return _Carrier(len(self._links) - 1, np.eye(3), np.zeros(3))
+
+    def _reach(self, joint: ElementTree.Element) -> float:
+        """Return the largest position that a joint allows, infinite where it states no limits."""
+        limit = joint.find("limit")
+        if limit is None or not {"lower", "upper"} <= limit.attrib.keys():
+            return np.inf
+        return max(abs(float(self._numbers(limit, key, 1)[0])) for key in ("lower", "upper"))
 
     def _inertial(self, element: ElementTree.Element | None) -> Array:
         if element is None:
