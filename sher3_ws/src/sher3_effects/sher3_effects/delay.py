@@ -1,4 +1,4 @@
-"""A recording that comes late: how it is shifted, and when it is late no more but of another moment."""
+"""A signal that is recorded late: the shift, and the longest delay that is looked for."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ import numpy as np
 from sher3_diagnosis.channel import Array
 
 LONGEST_DELAY = 0.25
-"""Delay, s, beyond which two recordings are not of the same moment at all."""
+"""Largest delay, s, that is searched; two recordings further apart are taken for two different moments."""
 
 
 def shifted(x: Array, clock: Array, delay: float) -> Array:
-    """Return x (n,) as it was `delay` ago, s; its ends stay as they are."""
+    """Return x (n,) delayed by `delay` [s], linear between samples at `clock` (n,) [s]; its ends are held."""
     return np.interp(clock - delay, clock, x)

@@ -100,9 +100,9 @@ class FoundPage(Page):
         return feature.reshaped(tuple(values[s] for s in feature.shape))
 
     def signature(self, view: Any, site: str, shape: Shape) -> Signature:
-        """Return one column for each term, from the quantities of the run; of two encoders one for their zeros too.
+        """Return one column for each term, from the quantities of the run; between two encoders one more, a constant.
 
-        A formula is found on what runs change, and says nothing of where a lost motion rests at the start.
+        The constant stands for where the two are at the start, of which the formula says nothing.
         """
         stages = AT_TIP if self.stage in AT_TIP else (self.stage,)
         main = Channel(self.stage, site)

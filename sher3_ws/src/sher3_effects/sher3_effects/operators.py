@@ -15,7 +15,7 @@ NEAR_LIMIT = 0.95
 
 @compiled
 def dahl(x: Array, displacement: float) -> Array:
-    """Dahl's solid friction state of a path x (n,).
+    """Dahl's solid friction state of a path x (n,) (Dahl 1968).
 
     Dz/dx = (1 - z sgn dx) / displacement, z(0) = 0 -> (n,) in -1..1.
     """

@@ -118,19 +118,19 @@ class Page(Effect):
     computed: ClassVar[str] = ""
 
     def on(self, axis: NominalAxis) -> Page:
-        """Return the page with what it must know of the axis it is looked for on; default as it is."""
+        """Return the page with those constants of the axis that it needs; by default the page itself."""
         return self
 
     def told(self) -> Page:
-        """Return the form of which nothing is fitted, for a computed parameter; default the page itself."""
+        """Return the page with its computed parameter held, so that nothing is fitted; by default the page itself."""
         return self
 
     def least_shown(self, views: Sequence[AxisView], site: str, hidden: Hidden) -> str:
-        """Return in words how little of the effect one encoder would show; default nothing."""
+        """Return in words the least effect that one encoder would show; by default an empty text."""
         return ""
 
     def tolerated(self, robot: Robot, site: str) -> Sequence[Tolerated]:
-        """Return how the effect may show at a site of a healthy robot, from its table of tolerances; default not."""
+        """Return how the effect may show on a healthy robot, from its table of tolerances; by default empty."""
         return ()
 
     def to_simulator(self, actuator: str, values: Values, robot: Robot) -> list[Part]:

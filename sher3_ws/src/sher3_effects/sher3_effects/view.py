@@ -20,8 +20,8 @@ class NominalAxis(NamedTuple):
         lead: travel per motor revolution, m or rad.
         top: largest velocity, m/s or rad/s.
         travel: span of the positions of the run, m or rad; 0 where nothing asks for it.
-        weighed: whether an axis that turns has a weight at an arm that its description leaves open.
-        lead_known: whether `lead` is stated and no stand-in.
+        weighed: whether a turning axis may carry a weight on a lever that its description does not state.
+        lead_known: whether `lead` is stated, not assumed.
         rotary: whether the axis turns.
         load_mass: part of the mass that moves with a second encoder, kg or kg m^2; 0 where it is not known.
         seen: one count of the encoder or its noise, the larger, m or rad; 0 where nothing asks for it.
@@ -165,7 +165,7 @@ class ArmMotionView(AxisView, Protocol):
         """Return joint -> (g,) force that a link, as its model has it, needs of every joint."""
 
     def orders(self, joint: str, count: int) -> list[float]:
-        """Return at most `count` periods per turn that stand out in what the model leaves of a joint's effort."""
+        """Return at most `count` periods per turn: the highest peaks in the spectrum of a joint's effort residual."""
 
 
 class RobotView(AxisView, Protocol):

@@ -20,6 +20,6 @@ def stiffened(shape: Shape) -> list[Shape]:
 
 
 def softness(force: Array, shape: Shape) -> Array:
-    """Return the compliance over that at `TOLD_AT`, (g, 1, 1), under forces (g, 3): c / (1 + |F| / stiffens)."""
+    """Return (g, 1, 1): compliance c / (1 + |F| / stiffens) under forces (g, 3) [N], over that at `TOLD_AT`."""
     knee = shape.get("stiffens", np.inf)
     return ((1.0 + TOLD_AT / knee) / (1.0 + np.linalg.norm(force, axis=1) / knee))[:, None, None]

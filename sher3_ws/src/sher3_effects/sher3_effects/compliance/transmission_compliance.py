@@ -97,8 +97,8 @@ def weighed(view: AxisView, site: str) -> Array:
 def held(acceleration: Array) -> Array:
     """Return the mean over the tick to come (n,) of an acceleration read at the ticks.
 
-    A swing is driven by what the motor does, not by what is left of it behind a filter: one that is late by a tick, or
-    smaller, is taken for another frequency.
+    The motion is taken unfiltered: an oscillator that is driven a tick late, or by a smaller amplitude, is fitted with
+    another frequency.
     """
     return 0.5 * (acceleration + np.append(acceleration[1:], acceleration[-1]))
 

@@ -25,7 +25,7 @@ FINER = (0.75, 0.88, 0.95, 1.05, 1.14, 1.33)
 def knees(forces: Iterable[Array], shape: Shape) -> list[Shape]:
     """Return a shape with a knee in shares of the rms of some forces, each (g,); none where no force tells one.
 
-    Loads that come in steps leave no samples on the way: below the first step a soft spring is a gap.
+    Loads that come in steps have no samples below the first step, where a soft spring cannot be told from a gap.
     """
     size = np.abs(np.concatenate(list(forces)))
     usual = float(np.sqrt(np.mean(size**2)))
@@ -41,12 +41,12 @@ def finer(shape: Shape) -> list[Shape]:
 
 
 def is_told(shape: Shape) -> bool:
-    """Return whether a knee, where there is one, is no smaller than the forces tell."""
+    """Return whether a shape has no knee, or one above the smallest force at which the records would show it."""
     return "knee" not in shape or shape["knee"] >= LEAST * shape["least"]
 
 
 def parts(force: Array, shape: Shape) -> list[Array]:
-    """Return the force (g,) as it is; or what of it lies up to the knee, and beyond."""
+    """Return the force (g,) in one part, or in two: up to the knee, and beyond it."""
     if "knee" not in shape:
         return [force]
     below = np.clip(force, -shape["knee"], shape["knee"])

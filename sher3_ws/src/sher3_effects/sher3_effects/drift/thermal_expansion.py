@@ -70,8 +70,8 @@ class ThermalExpansion(Page):
 class TableExpansion(Page):
     """A positioning table that grows with its own temperature: deviation = coefficient * (T - reference) * target.
 
-    Targets count from the middle of the travel. Of a table that warms up on the way the place that stays where it is
-    may be any of the travel, such as the fixed bearing of a screw: then (target - rest) stands for the target.
+    Targets count from the middle of the travel. A table that warms up during the test may be fixed at any place, such
+    as the fixed bearing of its screw: then deviation = coefficient * (T - reference) * (target - rest).
     """
 
     id, family, best = ThermalExpansion.id, ThermalExpansion.family, ThermalExpansion.best
@@ -83,12 +83,12 @@ class TableExpansion(Page):
     siblings = {"lead_error": "the same share at every temperature"}
 
     def shapes(self, views: Sequence[Any], site: str) -> list[Shape]:
-        """Return a shape about the middle, where it was not as warm as the reference, and one about any place."""
+        """Return a shape fixed at the middle, if any run was warmer, and one fixed anywhere, if any run warmed up."""
         middle: list[Shape] = [{}] if warm(views) else []
         return [*middle, {"half": 0.5 * float(np.ptp(views[0].nodes))}] if warming(views) else middle
 
     def signature(self, view: TableView, site: str, shape: Shape) -> Signature:
-        """Return the target times what the table is warmer than the reference; about any place that warmth too."""
+        """Return warmth (K above the reference) times target; where any place may be fixed, the warmth too."""
         parts = [view.target * view.warmth, *([view.warmth] if shape else [])]
         return Signature({Channel(self.stage, site): column(*parts)})
 
@@ -110,7 +110,7 @@ class ExpansionOnAxis(TableExpansion):
     explanation = "Screw, belt or frame grow between the two encoders, in proportion to their warmth and to the travel."
 
     def shapes(self, views: Sequence[Any], site: str) -> list[Shape]:
-        """Return one shape, where the temperature changed: else it is the ratio of the axis."""
+        """Return one shape where the temperature changed; at one temperature expansion is a ratio of the axis."""
         return [{}] if warming(views) else []
 
     def signature(self, view: Any, site: str, shape: Shape) -> Signature:

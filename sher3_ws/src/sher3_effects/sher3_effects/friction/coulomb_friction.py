@@ -54,7 +54,7 @@ class CoulombFriction(DryFriction):
 
 
 class CoulombOnAxis(CoulombFriction):
-    """The same on one axis of any machine, whose encoder may be finer than any that was foreseen."""
+    """The same on one axis of any machine; its displacement before sliding is not searched more finely."""
 
     kinds = ("axis",)
     plain = True

@@ -36,7 +36,7 @@ class DryFriction(Page):
         return Signature({Channel(self.stage, site): column(z)})
 
     def held(self, view: AxisView, site: str, shape: Shape, coefficients: Array) -> Array | None:
-        """Return the level (g,) where the axis of a robot rests, 0 where it moves; None where nobody states a count."""
+        """Return the level (g,) where the axis of a robot rests, 0 where it moves; None if no count is known."""
         count = view.axis(site).seen
         if "robot" not in self.kinds or count == 0.0:
             return None

@@ -15,7 +15,7 @@ from sher3_effects.view import AxisView
 class GearLoss(Page):
     """F = z (force + share * |nominal force|), z the direction of motion.
 
-    A model without a friction that follows the load has the friction of the mean load, `usual`.
+    A model whose friction does not follow the load takes that at the mean load, `usual`.
     """
 
     id, family, stage = "gear_loss", "friction", "motor_mechanics"
@@ -39,7 +39,7 @@ class GearLoss(Page):
     """Over which the direction reverses, in motor revolutions: the middle one of Coulomb friction."""
 
     def carried(self, view: AxisView, row: int) -> Array:
-        """Return what loads the contact, (g,): the force that the joint carries."""
+        """Return the load on the contact, (g,), N or N m: the size of the force that the joint carries."""
         return np.abs(view.inertial[:, row])
 
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:

@@ -69,7 +69,7 @@ class PositionFriction(DryFriction):
         }
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether the variation is a marked one, and friction may be nowhere below zero."""
+        """Return whether the variation exceeds a fifth of the mean, and friction can be positive everywhere."""
         marked = np.hypot(coefficients[1], coefficients[2]) > 0.2 * abs(coefficients[0])
         return bool(coefficients[0] > 0.0 and marked and least_of(coefficients) >= -self.SLACK * coefficients[0])
 

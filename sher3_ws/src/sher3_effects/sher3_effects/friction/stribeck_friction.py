@@ -109,7 +109,7 @@ class StribeckOnAxis(StribeckFriction):
         return [{"stribeck_velocity": v, "displacement": reach} for v in found] if reach > 0.0 else []
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether friction resists, falls with speed, and is no multiple of itself at rest."""
+        """Return whether friction resists, falls with speed, and is at rest below `HIGHEST` times the sliding one."""
         sliding, more = map(float, coefficients)
         return super().admissible(shape, coefficients) and sliding + more < self.HIGHEST * sliding
 

@@ -70,7 +70,7 @@ class PayloadMass(Page):
 class MassOnAxis(PayloadMass):
     """Mass on one axis of any machine that its description does not know: F = mass * a.
 
-    Of an axis that nothing drives only ratios of forces are told: its mass is what the others are measured by.
+    An axis without a drive shows ratios of forces only: its mass is the unit of all others, and cannot be told.
     """
 
     kinds, places = ("axis",), ("axis",)
@@ -89,7 +89,7 @@ class MassOnAxis(PayloadMass):
         )
 
     def limits(self, shape: Shape) -> Mapping[str, tuple[float, float]]:
-        """Return that no more is missing than was stated."""
+        """Return the bounds of the mass: at most the stated mass may be missing."""
         return {"mass": (-shape["stated"], np.inf)}
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:

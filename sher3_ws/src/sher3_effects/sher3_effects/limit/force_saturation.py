@@ -43,7 +43,7 @@ class ForceSaturation(Page):
     """Share of the limit from which three reports in a row are at it."""
 
     def shapes(self, views: Sequence[RobotView], site: str) -> list[Shape]:
-        """Levels from the largest force that was reported, which no limit is below, to the largest asked for."""
+        """Limits from the largest reported force (no limit can be lower) to the largest that the law asked for."""
         axis = views[0].row(site)
         runs = [v.run for v in views if v.run.effort is not None and v.run.echo is not None]
         if not runs:

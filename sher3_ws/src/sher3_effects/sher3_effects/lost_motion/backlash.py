@@ -66,7 +66,7 @@ class Backlash(Page):
         return [{"width": w * span, "damping": d, "stick": s * stick} for w in self.WIDTHS for d, s in self.DRIFTS]
 
     def bends(self, views: Sequence[AxisView], site: str, shape: Shape) -> list[Shape]:
-        """Return the same of a load that goes back with its flank before the gap opens: its friction gives way."""
+        """Return the shape with a load that follows its flank back before the gap opens: its friction is elastic."""
         stick = max(shape.get("stick", 0.0), resting_force(views, site))
         if "damping" not in shape or stick == 0.0:
             return []
@@ -86,7 +86,7 @@ class Backlash(Page):
         return Signature({}, {Channel(self.stage, site): run.to_grid(lag)[:, None]})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Width of the gap, and the travel lost between the two directions; over which its load lets go, if told."""
+        """Width of the gap, travel lost between both directions, and that over which a load leaves its flank."""
         more = {"release": shape["release"]} if "release" in shape else {}
         return {"width": shape["width"], "lost": shape["width"], **more}
 
@@ -159,7 +159,7 @@ class BacklashOnAxis(Backlash):
         return "soft" not in shape or bool(coefficients[0] > 0.0)
 
     def measured(self, views: Sequence[AxisView], site: str, shape: Shape) -> Mapping[str, Measured]:
-        """Return none: what else makes most of the encoders' difference stands on the plateaus as well."""
+        """Return none: other effects make most of the encoders' difference, and stand on the plateaus as well."""
         return {}
 
 

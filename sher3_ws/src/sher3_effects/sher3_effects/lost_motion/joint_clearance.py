@@ -52,7 +52,7 @@ class JointClearance(Page):
     def shapes(self, views: Sequence[RobotView], site: str) -> list[Shape]:
         """What decides the side: 0 the direction of the slider, 1 the force on it, 2 that on each link of the leg.
 
-        A side that never changes is none.
+        A side that never changes makes no shape: it cannot be seen.
         """
         lead = views[0].lead(site)
         shapes: list[Shape] = [*({"by_load": 0.0, "reach": r * lead} for r in self.REACHES)]

@@ -43,7 +43,7 @@ class Plateau:
 
 
 def plateau(views: Sequence[AxisView], site: str, width: float, friction: float) -> Plateau | None:
-    """Return what the plateaus tell of a gap that a rigid law takes for `width`.
+    """Return what the plateaus tell of a gap that has the `width` by the rigid law.
 
     Args:
         views: of all runs.

@@ -62,11 +62,11 @@ class RubbingBehindGap(Page):
         return bool(seen < shape["width"] and shape["width"] + 2.0 * shape["reach"] < self.MOST * travel)
 
     def limits(self, shape: Shape) -> Mapping[str, tuple[float, float]]:
-        """Return between what the gap lies: within the travel over which its friction builds up it is not told."""
+        """Return the bounds: a gap narrower than the travel over which its friction builds up does not show."""
         return {**self.bounds, "width": (shape["reach"], np.inf)}
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
-        """Return one column: what the follower is behind, beyond the gap."""
+        """Return one column: z, how far the follower lags beyond the gap, over `reach`; -1..1."""
         path, reach = np.ascontiguousarray(view.run.smooth[:, view.row(site)]), shape["reach"]
         behind = -play(path, shape["width"] + 2.0 * reach)
         z = np.sign(behind) * np.maximum(np.abs(behind) - 0.5 * shape["width"], 0.0) / reach

@@ -26,7 +26,7 @@ def lines(position: Array, shape: Shape) -> list[Array]:
 
 
 def gentle(coefficients: Array) -> bool:
-    """Return whether the line is never far from a straight one."""
+    """Return whether no node is off the straight line by more than `MOST` times its value at the end of the travel."""
     return bool(np.abs(coefficients[1:]).max(initial=0.0) <= MOST * abs(coefficients[0]))
 
 

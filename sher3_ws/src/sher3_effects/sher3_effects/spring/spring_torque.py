@@ -94,8 +94,8 @@ class SpringOnAxis(SpringTorque):
 class SpringBesideWeight(SpringOnAxis):
     """A spring on an axis that turns, whose description says nothing of a weight at an arm.
 
-    A spring and the sine of a weight at an arm are the same over a small travel, and each has numbers of its own:
-    neither contains the other, as both contain a constant force.
+    Over a small travel a spring and the sine of a weight at an arm look alike. Neither law is a special case of the
+    other, so they are rivals.
     """
 
     kinds = ()

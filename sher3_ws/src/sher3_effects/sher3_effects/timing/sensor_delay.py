@@ -87,9 +87,9 @@ class SensorDelay(Page):
         return {name: shape["delay"] + float(coefficients[0])}
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether the coefficient takes up a rest, neither most of the delay nor more than another one.
+        """Return whether the fitted rest is between `REST` times the searched delay.
 
-        What it leaves must be no less than the least that is a delay.
+        Their sum must not be shorter than the least delay.
         """
         whole = abs(shape["delay"] + float(coefficients[0]))
         return bool(self.REST[0] < coefficients[0] / shape["delay"] < self.REST[1] and whole >= shape["least"])
@@ -100,7 +100,7 @@ class SensorDelay(Page):
 
 
 class TimedEffort(SensorDelay):
-    """A late effort whose moment is known by its shape: nothing of it is fitted."""
+    """A late effort whose delay was estimated before and is held: nothing is fitted."""
 
     kinds = ()
     finer = {}
@@ -110,7 +110,7 @@ class TimedEffort(SensorDelay):
         return []
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
-        """Return what a late effort leaves."""
+        """Return the residual of a late effort; nothing is fitted."""
         found = super().signature(view, site, {**shape, "of_effort": 1.0})
         return Signature({}, found.fixed)
 
@@ -119,7 +119,7 @@ class TimedEffort(SensorDelay):
         return {"effort_delay": shape["delay"]}
 
     def measured(self, views: Sequence[AxisView], site: str, shape: Shape) -> dict[str, Measured]:
-        """Return what is told of the delay, with its standard error."""
+        """Return the estimated delay, s, with its standard error."""
         return {"effort_delay": Measured(shape["told"], shape["error"])}
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
