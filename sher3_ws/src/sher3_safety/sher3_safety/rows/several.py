@@ -77,7 +77,7 @@ def _lively() -> Iterator[Row]:
     yield from _forces()
     yield from _blinded()
     for first in (0.0, 1.0):
-        yield Row(f"{AXIS}.up", "contradicted", {"first": first}, reasons=("DRIVE_TWICE", "DRIVE_RESTARTED"))
+        yield Row(f"{AXIS}.up", "contradicted", {"first": first}, reasons=("DRIVE_TWICE",))
 
 
 def _forces() -> Iterator[Row]:

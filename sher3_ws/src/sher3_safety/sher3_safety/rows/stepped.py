@@ -66,11 +66,11 @@ PEDAL = (
 )
 
 
-def _up(line: str, quick: bool = False) -> Iterator[Row]:
-    """Yield the faults of what the drives say."""
-    yield Row(line, "off", reasons=LINE_LOST, quick=quick)
+def _up(line: str, silent: tuple[str, ...] = LINE_LOST, quick: bool = False) -> Iterator[Row]:
+    """Yield the faults of what the drives say; `silent` is what is said where they say nothing."""
+    yield Row(line, "off", reasons=silent, quick=quick)
     yield Row(line, "stuck", quiet=STILL)
-    yield Row(line, "garbage")
+    yield Row(line, "garbage", reasons=("FEEDBACK_GARBLED",))
     yield Row(line, "wrong", quick=quick)
     yield Row(line, "slow", {"every": 4.0}, effect="either", why=HELD)
     yield Row(line, "slow", {"every": 20.0}, reasons=LINE_LOST)
@@ -109,7 +109,7 @@ LINES = (
     *_up("bus0.up"),
     *_down("bus1.down"),
     *_both(AXIS),
-    *_up(f"{AXIS}.up"),
+    *_up(f"{AXIS}.up", silent=("DRIVE_SILENT",)),
     *_down(f"{AXIS}.down", quick=True),
 )
 

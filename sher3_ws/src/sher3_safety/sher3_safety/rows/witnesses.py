@@ -10,7 +10,7 @@ class Witness(NamedTuple):
 
     Attributes:
         reason: code.
-        alone: row whose first reason may be no other.
+        alone: row whose first reason may be no other; or in which it is why the robot is not enabled.
         blinded: row in which the watch sees nothing wrong, or nothing at all.
         instead: reason that is given there; empty where the robot is not enabled, or where the residual is stated.
     """
@@ -35,8 +35,23 @@ WITNESSES = (
     Witness(
         "MOVED_DISABLED", "delta_1.motor creep (speed 0.001)", "delta_1.power creep (speed 0.001)", "POSITION_LEFT"
     ),
+    Witness("FEEDBACK_GARBLED", "delta_1.up garbage", "delta_1.power creep (speed 0.0001)", "POSITION_LEFT"),
+    Witness("DRIVE_TWICE", "delta_1.up contradicted (first 0)", "delta_1.up garbage", "FEEDBACK_GARBLED"),
+    Witness("DRIVE_SILENT", "delta_1.up off", "bus.up late (items 3)", "FEEDBACK_STALE"),
+    Witness(
+        "FORCE_UNEXPLAINED",
+        "force_sensor bias (force 1), there at enabling",
+        "force_sensor bias (force 1)",
+        "HAND_DOUBTFUL",
+    ),
     Witness("PEDAL_INVALID", "pedal chatter (items 5, code 1)", "pedal stuck, pedal released", ""),
 )
-"""Not among them: ENCODERS_DISAGREE and FOLLOWING_ERROR, beside which the sum of the commands tells the same; and
-STOP_NOT_OBEYED, which is never the first reason (`rows.together`). HAND_DOUBTFUL is blinded by what is there before
-enabling, which is barred; and by an encoder that jitters, where it says so itself."""
+"""HAND_DOUBTFUL is blinded by what is there before enabling, which is barred; and by an encoder that jitters, where it
+says so itself."""
+BESIDE = {
+    "ENCODERS_DISAGREE": "the sum of the commands tells the same",
+    "FOLLOWING_ERROR": "the sum of the commands tells the same",
+    "STOP_NOT_OBEYED": "never the first reason (`rows.together`)",
+    "LEG_SLIPPED": "needs a tracker, which no robot of the matrix has",
+}
+"""Reasons of watches of motion and hand without such rows, and why."""
