@@ -158,6 +158,19 @@ def test_power_that_goes_while_a_hand_pulls_moves_nothing():
     assert all(robot.brake(REST) is None for _ in range(BRAKE_TICKS + 100))
 
 
+def test_a_force_explains_60_um_of_an_axis_that_goes_on_after_a_stop():
+    """At 0.45 mm/s, 0.9 um a tick, its drive reports what would explain all; in the rest 60 and 7 um take 75 ticks."""
+    robot, scale = Robot(), SCALES[LEG]
+    robot.stop()
+    for tick in range(1, 150):
+        effort = of(LEG, -scale.hold * 4.5e-4 * (tick * PERIOD + scale.settling))
+        if trip := robot.brake(of(LEG, 4.5e-4), effort=effort):
+            break
+    assert (trip.reason, trip.axes) == (Reason.STOP_NOT_OBEYED, (LEG,)) and tick == pytest.approx(
+        BRAKE_TICKS + 75, abs=2
+    )
+
+
 def test_nothing_is_forgotten_where_the_rest_begins():
     """A creep of 0.1 mm/s is 0.2 um a tick: from the stop on it takes 36 ticks to 7 um, whenever the rest begins."""
     for ahead in (0, BRAKE_TICKS - 20, BRAKE_TICKS - 1):

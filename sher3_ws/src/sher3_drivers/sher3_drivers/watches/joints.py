@@ -45,11 +45,14 @@ class JointWatch:
 
         Over ticks that were lost the newest demand is taken to have held. When more than `_HOLE` of them were lost, or
         more time than the loop may hang, the axes start afresh: the robot has been stopped for that reason by then.
-        They start afresh at the first feedback too.
+        They start afresh at the first feedback too. All axes whose motors are off their demand are suspected.
         """
         motor, load = feedback.motor_position, feedback.load_position
         if not 0.0 < since <= self._hole:
             begin_axes(self._rows, motor, load)
             return None
         said: Any = _judge(len(self.axes))(self._rows, motor, load, feedback.velocity_demand, since)
-        return self.axes[said >> 3].trip(said & 7) if said else None
+        if not said:
+            return None
+        off = np.flatnonzero(self._rows["stray_ticks"] >= self._rows["astray_ticks"])
+        return self.axes[said >> 3].trip(said & 7)._replace(axes=tuple(off.tolist()))

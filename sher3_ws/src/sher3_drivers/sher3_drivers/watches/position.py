@@ -28,16 +28,17 @@ from sher3_drivers.units import AxisScale
 from sher3_drivers.watches.row import Row
 from sher3_drivers.watches.trips import Trip
 
-_LIMITS = ("plain", "elastic", "lag", "share", "time", "keep", "hold")
+_LIMITS = ("plain", "elastic", "sudden", "lag", "share", "time", "keep", "hold")
 _SUMS = ("path", "base", "force", "left", "by_motor", "by_load", "explained", "away")
-_MEMORY = ("motor", "load", "peak", "limit", "brakes", *_SUMS)
+_MEMORY = ("motor", "load", "peak", "yields", "limit", "brakes", *_SUMS)
 _CARRIED = 0.5
 """Share of the plain limit up to which a departure is carried over into a stop; healthy axes have less of it."""
 PLACE = np.dtype([(name, np.float64) for name in (*_LIMITS, *_MEMORY)])
 """A row: the limits of an axis and what is remembered of it, in m or rad. `left` is how far it is from the sum of its
 commands since the beginning, by the encoder that says less; `explained` how much of that its force explains, at most
-`elastic`; `away` is the departure, `limit` the largest one at the newest speeds and force. `brakes` is 1 from a stop
-on: then `path` is the travel of the ramp since, of which the axis may do without any part."""
+`yields`, which is `elastic`, and `sudden` from a stop on; `away` is the departure, `limit` the largest one at the
+newest speeds and force. `brakes` is 1 from a stop on: then `path` is the travel of the ramp since, of which the axis
+may do without any part."""
 
 
 def begin_places(places: NDArray[Any], motor: Vector, load: Vector, effort: Vector) -> None:
@@ -46,14 +47,15 @@ def begin_places(places: NDArray[Any], motor: Vector, load: Vector, effort: Vect
         places[name] = 0.0
     places["motor"], places["load"] = motor, load
     places["base"] = places["force"] = np.divide(effort, places["hold"])
-    places["limit"] = places["plain"]
+    places["limit"], places["yields"] = places["plain"], places["elastic"]
 
 
 def brake_places(places: NDArray[Any], rests: bool) -> None:
     """Begin a stop, or a rest, in place, where the axes are.
 
-    What force explained is of the past, a departure is carried over. What speed adds to the limit stays for the whole
-    braking, since a ramp that was late ends further away, and is gone in a rest.
+    What force explained is of the past, a departure is carried over. A drive that goes on by itself may report a force
+    too, so from now on it explains no more than what a moving axis may be pushed off. What speed adds to the limit
+    stays for the whole braking, since a ramp that was late ends further away, and is gone in a rest.
     """
     bound = _CARRIED * places["plain"]
     carried = np.clip(places["away"], -bound, bound)
@@ -64,7 +66,7 @@ def brake_places(places: NDArray[Any], rests: bool) -> None:
     places["base"] = places["force"]
     places["path"] = places["explained"] = 0.0
     places["peak"] *= not rests
-    places["brakes"] = 1.0
+    places["brakes"], places["yields"] = 1.0, places["sudden"]
 
 
 @compiled(error_model="numpy")
@@ -89,7 +91,7 @@ def _advance(place: Any, motor: float, load: float, effort: float, command: floa
     place["by_motor"], place["by_load"] = by_motor, by_load
     place["left"] = left = _lesser(by_load, by_motor)
     place["force"] += min(1.0, since / place["time"]) * (effort / place["hold"] - place["force"])
-    place["explained"] = max(-place["elastic"], min(place["elastic"], place["force"] - place["base"]))
+    place["explained"] = max(-place["yields"], min(place["yields"], place["force"] - place["base"]))
     place["away"] = left - place["explained"]
     if place["brakes"]:
         place["away"] = _lesser(_beyond(place["away"], place["path"]), _beyond(left, place["path"]))
@@ -131,6 +133,7 @@ class AxisPosition(Row):
         limits = {
             "plain": settings.position_angle if scale.revolute else settings.position_distance,
             "elastic": settings.elastic_angle if scale.revolute else settings.elastic_distance,
+            "sudden": settings.following_angle if scale.revolute else settings.following_distance,
             "lag": settings.position_lag,
             "share": settings.position_force,
             "time": scale.settling,

@@ -50,7 +50,7 @@ WITNESSES = (
 says so itself."""
 BESIDE = {
     "ENCODERS_DISAGREE": "the sum of the commands tells the same",
-    "FOLLOWING_ERROR": "the sum of the commands tells the same",
+    "FOLLOWING_ERROR": "the sum of the commands tells the same, but where the drive reports a force that explains it",
     "STOP_NOT_OBEYED": "never the first reason (`rows.together`)",
     "LEG_SLIPPED": "needs a tracker, which no robot of the matrix has",
 }
