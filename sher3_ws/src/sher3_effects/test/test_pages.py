@@ -15,7 +15,19 @@ EVERY = [pytest.param(page, id=f"{kind}-{page.id}") for kind in KINDS for page i
 ROBOT_PAGES = [pytest.param(page, id=page.id) for page in library().values()]
 CONSTANT = {"force_bias"}
 """Effects whose law depends on nothing."""
-FACTS = {"applied", "lead", "load", "temperature", "mass", "drive", "forces", "alone", "behind", "orientation"}
+FACTS = {
+    "applied",
+    "lead",
+    "load",
+    "temperature",
+    "mass",
+    "drive",
+    "forces",
+    "alone",
+    "behind",
+    "orientation",
+    "no_lead",
+}
 RELATIONS = {"", "load_encoder", "both_encoders", "force_sensor"}
 
 

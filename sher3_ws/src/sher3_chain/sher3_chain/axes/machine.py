@@ -203,6 +203,7 @@ def facts_of(axis: Axis) -> set[str]:
     """Return what is known of an axis, as pages ask for it."""
     known = {
         "lead": axis.lead is not None,
+        "no_lead": axis.lead is None,
         "load": axis.signals.load is not None,
         "alone": axis.signals.load is None and axis.encoder_at == "motor",
         "behind": axis.signals.load is None and axis.encoder_at == "load",

@@ -14,6 +14,7 @@ from sher3_effects.view import NominalAxis
 from sher3_chain.chain.view import LEAD_OF_STROKE, SLIP, ChainView, Loads
 from sher3_chain.joint.description import Axis
 from sher3_chain.readings.noise import noise_of
+from sher3_chain.readings.orders import orders_in
 from sher3_chain.readings.signals import AxisSignals
 
 SEEN = 5.0
@@ -74,6 +75,19 @@ class AxisView(ChainView):
         if self.described.motion == "rotary":
             return 2.0 * np.pi
         return LEAD_OF_STROKE * max(float(np.ptp(self.run.motor)), self.described.encoder_resolution)
+
+    def orders(self, site: str, count: int) -> list[float]:
+        """Return the waves over the position that stand out between two encoders, the strongest first.
+
+        Args:
+            site: the axis.
+            count: of them at most; in periods per turn, or per 2 pi m of an axis that slides.
+        """
+        run, row = self.run, self.row(site)
+        if run.load is None:
+            return []
+        apart, ok = run.to_grid(run.load - run.motor)[:, row], run.inner
+        return orders_in(apart[ok], self.position[ok, row], self.velocity[ok, row], count)
 
     @cached_property
     def path(self) -> Loads:

@@ -83,7 +83,7 @@ class Axis(Strict):
         encoder_resolution: one count, m or rad.
         encoder_at: side of the transmission that `position` is read on; with one encoder it says what that one hides.
         effort_resolution: one step of the measured force, N or N m.
-        lead: travel per motor revolution, m or rad; without it no period is named.
+        lead: travel per motor revolution, m or rad; without it cogging is not named.
         range: positions the axis can reach, m or rad; what lies outside is taken for a wrong unit.
     """
 

@@ -140,9 +140,9 @@ def test_notes_say_what_cannot_be_told():
 
 
 def test_facts_are_what_the_description_states():
-    assert facts_of(axis_of()) == {"mass", "drive", "forces", "alone"}
+    assert facts_of(axis_of()) == {"mass", "drive", "forces", "no_lead", "alone"}
     assert facts_of(axis_of(lead=0.005, mass="unknown", command_law={"kind": "none"})) == {"lead", "alone"}
-    assert facts_of(axis_of(encoder_at="load")) == {"mass", "drive", "forces", "behind"}
+    assert facts_of(axis_of(encoder_at="load")) == {"mass", "drive", "forces", "no_lead", "behind"}
 
 
 def test_the_force_of_the_user_s_own_model_takes_the_place_of_mass_and_weight(rubbed):

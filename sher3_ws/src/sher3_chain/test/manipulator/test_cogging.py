@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 import sher3.gap as gap
 from drawn_arms import NOISE, asked, drawn_xml, served
-from sher3_chain.manipulator.readings.orders import orders_in
+from sher3_chain.readings.orders import orders_in
 
 SECONDS, SHOULDER, PHASE = 8.0, 1, 0.7
 

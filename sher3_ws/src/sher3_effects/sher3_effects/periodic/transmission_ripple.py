@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from sher3_description import Robot
@@ -84,6 +84,34 @@ class RippleOnAxis(TransmissionRipple):
 
     kinds = ("axis", "servo")
     bends = Page.bends
+
+
+class RippleOfAnyPeriod(TransmissionRipple):
+    """The same on an axis whose lead nobody states: load = motor + A sin(2 pi q / period + phase)."""
+
+    kinds, needs = ("axis", "servo"), ("load", "no_lead")
+    bends = Page.bends
+    refine = Page.refine
+    discrete = frozenset({"period"})
+    finer: ClassVar[dict[str, tuple[float, ...]]] = {"period": (0.98, 0.993, 1.007, 1.02)}
+    units = {"amplitude": "m", "period": "m", "phase": "rad"}
+    COUNT = 3
+    """Periods that are tried; each is then searched more finely."""
+
+    def shapes(self, views: Sequence[Any], site: str) -> list[Shape]:
+        """Return the periods that stand out in the record with the longest travel."""
+        longest = max(views, key=lambda view: view.axis(site).travel)
+        return [{"period": 2.0 * np.pi / n} for n in longest.orders(site, self.COUNT)]
+
+    def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
+        """Return the quadratures."""
+        turn = 2.0 * np.pi * view.run.smooth[:, view.row(site)] / shape["period"]
+        waves = (view.run.to_grid(wave(turn)) for wave in (np.sin, np.cos))
+        return Signature({Channel(self.stage, site): column(*waves)})
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Return amplitude, the travel of a period and phase."""
+        return sine_of(shape, coefficients, "period")
 
 
 class TableRipple(Page):

@@ -1,4 +1,4 @@
-"""Periods per turn of a joint that stand out in a force over its angle."""
+"""Periods per turn of a joint that stand out in what was read of it over its angle: a force, or a second encoder."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ MOST = 2000
 """Orders that are tried at most."""
 
 
-def orders_in(force: Array, position: Array, speed: Array, count: int) -> list[float]:
-    """Return the periods per turn, or per 2 pi m, whose waves take most of a force, the strongest of each peak first.
+def orders_in(reading: Array, position: Array, speed: Array, count: int) -> list[float]:
+    """Return the periods per turn, or per 2 pi m, whose waves take most of a reading, the strongest of each peak first.
 
     A constant, the position, the speed and its sign are taken off before: whatever a joint has beside a wave.
 
     Args:
-        force: (n,) N m or N.
+        reading: (n,) N m or N, rad or m.
         position: (n,) of the joint, m or rad.
         speed: (n,) of the joint, m/s or rad/s.
         count: of orders that are returned at most.
@@ -33,7 +33,7 @@ def orders_in(force: Array, position: Array, speed: Array, count: int) -> list[f
     turn, top = 2.0 * np.pi / travel, 2.0 * np.pi * BANDWIDTH / quick
     orders = np.arange(LEAST * turn, top, turn / FINE)[:MOST]
     plain = np.column_stack([np.ones_like(position), position, speed, np.sign(speed)])
-    left = force - plain @ np.linalg.lstsq(plain, force, rcond=None)[0]
+    left = reading - plain @ np.linalg.lstsq(plain, reading, rcond=None)[0]
     power = np.array([np.abs(np.exp(-1j * n * position) @ left) for n in orders])
     inner = np.r_[-np.inf, power, -np.inf]
     peaks = np.flatnonzero((inner[1:-1] >= inner[:-2]) & (inner[1:-1] >= inner[2:]))
