@@ -106,6 +106,11 @@ class GridView:
         """Motor velocity on the residual grid, (g, axes)."""
         return self.run.velocity[self.run.grid]
 
+    @cached_property
+    def acceleration(self) -> Array:
+        """Motor acceleration on the residual grid, (g, axes)."""
+        return self.run.to_grid(self.run.acceleration)
+
     @property
     def excitation(self) -> str:
         """Name that repeats of the run share."""

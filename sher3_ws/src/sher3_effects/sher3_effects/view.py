@@ -138,6 +138,10 @@ class AxisView(Protocol):
         """Motor velocity on the residual grid, (g, axes)."""
 
     @property
+    def acceleration(self) -> Array:
+        """Motor acceleration on the residual grid, (g, axes)."""
+
+    @property
     def inertial(self) -> Array:
         """Nominal force that the measured motion needs, (g, axes)."""
 

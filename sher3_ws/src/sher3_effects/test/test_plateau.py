@@ -21,11 +21,11 @@ def view(seed, give=GIVE, pull=1.0):
     lag = -0.5 * GAP * side + give * (outside - FRICTION * side) + 3e-8 * rng.normal(size=n)
     wide = np.zeros((n, 1))
     run = SimpleNamespace(
-        load=position[:, None] + lag[:, None], motor=position[:, None], acceleration=wide, to_grid=lambda x: x,
+        load=position[:, None] + lag[:, None], motor=position[:, None], to_grid=lambda x: x,
         inner=np.ones(n, dtype=bool), loaded_ok=np.ones(n, dtype=bool),
     )  # fmt: skip
     return SimpleNamespace(
-        run=run, position=position[:, None], velocity=velocity[:, None], row=lambda site: 0,
+        run=run, position=position[:, None], velocity=velocity[:, None], acceleration=wide, row=lambda site: 0,
         axis=lambda site: SimpleNamespace(mass=1.0, top=2e-2),
         path=SimpleNamespace(contact_force=outside[:, None], gravity=wide),
     )  # fmt: skip

@@ -17,12 +17,12 @@ from sher3_diagnosis.quantify.closure import interval_of
 from sher3_diagnosis.thresholds import MIN_RUNS
 from sher3_diagnosis.verdict import Cause, Parameter, Residual, Where
 from sher3_effects import computed
+from sher3_machines.intake.mending.readings import longest_run
 from sher3_machines.thresholds import BLOCKS
 
 from sher3_chain.floors.innovation import UNIFORM
 from sher3_chain.joint.description import Axis
 from sher3_chain.joint.record import AxesRun
-from sher3_chain.readings.level import longest
 from sher3_chain.readings.signals import signals_of
 from sher3_chain.thresholds import FLAT, LIMIT_UNCERTAINTY, LONGEST, PINNED
 
@@ -69,7 +69,7 @@ def pinned_in(run: AxesRun, axis: Axis) -> Pinned | None:
     need = needed_force(run, axis)
     flat = np.abs(command) >= (1.0 - FLAT) * level
     pinned = flat & (need * np.sign(command) > (1.0 + FLAT) * level)
-    if level == 0.0 or pinned.mean() < PINNED or longest(pinned) < LONGEST:
+    if level == 0.0 or pinned.mean() < PINNED or longest_run(pinned) < LONGEST:
         return None
     given = signals.get("effort", command)
     floor = max(float(np.std(given[flat] - command[flat])), axis.effort_resolution / UNIFORM, FLAT * level)

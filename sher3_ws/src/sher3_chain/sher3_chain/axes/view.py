@@ -115,7 +115,7 @@ class AxisView(ChainView):
         run = self.run
         if run.load is None:
             return np.zeros((len(run.grid), 1))
-        return np.asarray(run.to_grid(second_difference(run.load, run.period)) - run.to_grid(run.acceleration))
+        return np.asarray(run.to_grid(second_difference(run.load, run.period)) - self.acceleration)
 
     # which samples can be judged
 
@@ -223,7 +223,7 @@ class AxisView(ChainView):
         pace = np.gradient(force, run.period)
         loops = [dahl_turned(force, pace, share * reach, run.period)[run.grid] for share in PAST]
         return felt | {
-            "acceleration": run.to_grid(run.acceleration),
+            "acceleration": self.acceleration,
             "force": needed,
             "loading": np.column_stack(loops),
         }

@@ -129,11 +129,6 @@ class MotionView(ChainView):
         return Loads(weight, np.zeros_like(weight))
 
     @cached_property
-    def acceleration(self) -> Array:
-        """Acceleration on the residual grid, (g, k)."""
-        return self.run.to_grid(self.run.acceleration)
-
-    @cached_property
     def effort(self) -> Array:
         """Recorded effort on the residual grid, (g, k)."""
         assert self.run.effort is not None

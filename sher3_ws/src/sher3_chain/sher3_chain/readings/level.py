@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from sher3_diagnosis.channel import Array, Mask
+from sher3_machines.intake.mending.readings import longest_run
 
 from sher3_chain.thresholds import LONGEST, PINNED
 
@@ -24,7 +25,7 @@ def at_a_level(effort: Array) -> Mask:
     out = np.zeros(len(effort), dtype=bool)
     for level in (float(effort.max()), float(effort.min())):
         at = effort == level
-        if at.mean() >= PINNED and longest(at) >= LONGEST and not at.all():
+        if at.mean() >= PINNED and longest_run(at) >= LONGEST and not at.all():
             out |= at
     rest = ~out[1:] & ~out[:-1]
     stepped = not rest.any() or float(np.mean(np.diff(effort)[rest] == 0.0)) > STEPS
@@ -56,9 +57,3 @@ def level_note(what: str, at: Mask) -> str:
         f"{what} lies flat at its largest reading in {at.mean():.0%} of the samples: its reading or the drive is at a "
         "limit; these samples are not judged"
     )
-
-
-def longest(mask: Mask) -> int:
-    """Return the largest number of samples in a row for which a mask (n,) holds."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], mask.astype(int), [0]])))
-    return int((edges[1::2] - edges[::2]).max()) if len(edges) else 0

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from sher3_chain.axes.limits import limit_finding, longest, needed_force, pinned_in
+from sher3_chain.axes.limits import limit_finding, needed_force, pinned_in
 from sher3_chain.joint.record import AxesRun
 from slides import axis_of, columns
 
@@ -18,11 +18,6 @@ def run(command, reference=1.0, effort=None):
     n = len(command)
     found = {"position": np.zeros(n), "reference": np.full(n, reference), "command": np.asarray(command, dtype=float)}
     return AxesRun("run", 0.01, {"slide": {**found, **({"effort": effort} if effort is not None else {})}})
-
-
-def test_the_longest_stretch():
-    assert longest(np.array([True, True, False, True, True, True])) == 3
-    assert longest(np.zeros(4, dtype=bool)) == 0
 
 
 def test_a_command_that_stays_below_its_need_is_pinned():

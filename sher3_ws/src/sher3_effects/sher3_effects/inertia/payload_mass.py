@@ -45,11 +45,11 @@ class PayloadMass(Page):
         """One column: acceleration plus the weight, per kilogram."""
         if site == "tip":
             weight = GRAVITY * view.path.jacobian[:, 2, :]
-            acceleration = view.run.to_grid(view.run.acceleration)
-            inertia = np.einsum("gji,gjk,gk->gi", view.path.jacobian[:, :3], view.path.jacobian[:, :3], acceleration)
+            across = view.path.jacobian[:, :3]
+            inertia = np.einsum("gji,gjk,gk->gi", across, across, view.acceleration)
             return Signature({c: column(weight[:, i] + inertia[:, i]) for i, c in enumerate(self.channels(site))})
         axis = view.row(site)
-        inertia = view.run.to_grid(view.run.acceleration[:, axis])
+        inertia = view.acceleration[:, axis]
         scale = {3: view.robot.arm.roll_mass, 4: view.robot.arm.tilt_mass}.get(axis, view.robot.delta.moving_mass)
         return Signature(
             {Channel(self.stage, site): column(inertia + shape["weight"] * view.path.gravity[:, axis] / scale)}
@@ -84,9 +84,7 @@ class MassOnAxis(PayloadMass):
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
         """Return one column: the acceleration."""
-        return Signature(
-            {Channel(self.stage, site): column(view.run.to_grid(view.run.acceleration)[:, view.row(site)])}
-        )
+        return Signature({Channel(self.stage, site): column(view.acceleration[:, view.row(site)])})
 
     def limits(self, shape: Shape) -> Mapping[str, tuple[float, float]]:
         """Return the bounds of the mass: at most the stated mass may be missing."""

@@ -31,6 +31,4 @@ class RotorInertia(Page):
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
         """Return one column: the acceleration."""
-        return Signature(
-            {Channel(self.stage, site): column(view.run.to_grid(view.run.acceleration)[:, view.row(site)])}
-        )
+        return Signature({Channel(self.stage, site): column(view.acceleration[:, view.row(site)])})

@@ -81,7 +81,7 @@ def _seated(view: AxisView, site: str, width: float, friction: float) -> Array:
     ok = run.inner & run.loaded_ok & (np.abs(velocity) > SLOW * view.axis(site).top) & (since > SEATED * width)
     ok &= np.abs(pull) < HELD * friction
     lag = run.to_grid(run.load - run.motor)[:, axis]
-    inertia = view.axis(site).mass * run.to_grid(run.acceleration)[:, axis]
+    inertia = view.axis(site).mass * view.acceleration[:, axis]
     return np.column_stack([lag, -0.5 * side, pull, inertia, velocity])[ok]
 
 

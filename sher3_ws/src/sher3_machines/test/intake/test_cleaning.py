@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from sher3_machines import MachineError
 from sher3_machines.intake.mending.parts import cut
-from sher3_machines.intake.mending.readings import glitches, known_readings
+from sher3_machines.intake.mending.readings import glitches, known_readings, longest_run
 from sher3_machines.intake.mending.stamps import even_stamps
 
 TIME = 0.01 * np.arange(200)
@@ -68,3 +68,8 @@ def test_a_log_is_cut_where_its_clock_has_a_hole_or_jumps_back():
     assert [len(x["q"]) for x in parts.values()] == [200, 200, 200] and parts["log.part2"]["q"][0] == 200.0
     assert all(x["matrix"].shape == (3, 3) for x in parts.values()) and "jumps back" in note
     assert cut("log", {"t": TIME}, "t") == ({"log": {"t": TIME}}, "")
+
+
+def test_the_longest_run_of_a_mask():
+    assert longest_run(np.array([True, True, False, True, True, True])) == 3
+    assert longest_run(np.zeros(4, dtype=bool)) == 0

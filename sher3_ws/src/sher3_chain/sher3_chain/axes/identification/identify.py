@@ -195,7 +195,7 @@ def _equations(view: AxisView) -> tuple[Array, Array]:
     by_place = arm.T if view.hangs else (spring, np.zeros_like(q))
     one = np.ones(len(y))
     behind = np.zeros_like(one) if view.load_mass else view.behind[:, 0]
-    x = np.column_stack([run.to_grid(run.acceleration)[:, 0], view.velocity[:, 0], direction, one, *by_place, behind])
+    x = np.column_stack([view.acceleration[:, 0], view.velocity[:, 0], direction, one, *by_place, behind])
     return x[ok], y[ok]
 
 

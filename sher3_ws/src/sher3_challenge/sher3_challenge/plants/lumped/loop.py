@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from sher3_challenge.plants.arrays import axis_slice
 from sher3_challenge.plants.compiled import compiled, compiled_inner
 from sher3_challenge.plants.grammar import ON_FORCE, ON_READING, Foreign, foreign
 from sher3_challenge.plants.lumped.axis import (
@@ -35,7 +36,6 @@ from sher3_challenge.plants.lumped.parameters import (
     Motor,
     Transmission,
     TruthParameters,
-    axis_slice,
 )
 
 HISTORY = 8

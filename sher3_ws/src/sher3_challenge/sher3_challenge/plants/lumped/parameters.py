@@ -174,20 +174,3 @@ class TruthParameters(NamedTuple):
     host: Host
     geometry: Geometry
     sensors: Sensors
-
-
-def copied(p: TruthParameters) -> TruthParameters:
-    """Return a copy whose arrays are its own."""
-    parts: list[Any] = [type(part)(*(array.copy() for array in part)) for part in p]
-    return TruthParameters(*parts)
-
-
-def axis_slice(part: Any, j: int) -> Any:
-    """Return a part of the robot for one axis: the same fields as floats, which compiled code passes by value."""
-    return type(part)(*(float(values[j]) for values in part))
-
-
-def zeros_of(kind: type[Any], **known: Array) -> Any:
-    """Return a part whose unnamed values are zeros (5,)."""
-    fields = {name: np.zeros(AXES) for name in kind._fields}
-    return kind(**{**fields, **{name: np.array(value, dtype=float) for name, value in known.items()}})

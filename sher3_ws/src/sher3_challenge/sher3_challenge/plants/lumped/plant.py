@@ -8,8 +8,9 @@ from functools import cached_property
 import numpy as np
 from sher3_bags import Run
 
+from sher3_challenge.plants.arrays import copied
 from sher3_challenge.plants.lumped.motion import Timing, signals_of
-from sher3_challenge.plants.lumped.parameters import TruthParameters, copied
+from sher3_challenge.plants.lumped.parameters import TruthParameters
 from sher3_challenge.plants.lumped.rig import Rig
 from sher3_challenge.plants.lumped.robot import bend, individual, nominal, scatter
 from sher3_challenge.plants.plant import Plant, RunPlan

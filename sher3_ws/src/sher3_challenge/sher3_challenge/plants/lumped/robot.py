@@ -8,6 +8,7 @@ from collections.abc import Callable
 import numpy as np
 from sher3_description import Robot
 
+from sher3_challenge.plants.arrays import copied, zeros_of
 from sher3_challenge.plants.level import Bend, Level
 from sher3_challenge.plants.lumped.parameters import (
     AXES,
@@ -19,8 +20,6 @@ from sher3_challenge.plants.lumped.parameters import (
     Sensors,
     Transmission,
     TruthParameters,
-    copied,
-    zeros_of,
 )
 
 ROLL = 3

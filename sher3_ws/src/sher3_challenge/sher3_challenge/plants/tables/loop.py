@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from sher3_challenge.plants.arrays import axis_slice
 from sher3_challenge.plants.compiled import compiled, compiled_inner
 from sher3_challenge.plants.grammar import ON_FORCE, ON_READING, Foreign, foreign
 from sher3_challenge.plants.plant import AXES, Array
@@ -39,7 +40,6 @@ from sher3_challenge.plants.tables.parameters import (
     Odd,
     TableParameters,
     Transmission,
-    axis_slice,
 )
 
 STEP = 2e-4

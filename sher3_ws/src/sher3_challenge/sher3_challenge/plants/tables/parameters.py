@@ -8,8 +8,6 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from sher3_challenge.plants.plant import Array
 
 Value = Any
@@ -186,15 +184,3 @@ class TableParameters(NamedTuple):
     tip: Tip
     sensor: Sensor
     stray: Array  # (5, 5) force on one axis per force of another drive
-
-
-def copied(p: TableParameters) -> TableParameters:
-    """Return a copy whose arrays are its own."""
-    parts: list[Any] = [type(part)(*(array.copy() for array in part)) for part in p[:-1]]
-    parts.append(p.stray.copy())
-    return TableParameters(*parts)
-
-
-def axis_slice(part: Any, j: int) -> Any:
-    """Return a part of the robot for one axis: the same fields as numbers, and as the tables of that axis."""
-    return type(part)(*(float(x[j]) if x.ndim == 1 else np.ascontiguousarray(x[j]) for x in part))

@@ -10,11 +10,12 @@ from sher3_bags import Run
 from sher3_description import Robot
 from sher3_description.contract import REFERENCE_TEMPERATURE
 
+from sher3_challenge.plants.arrays import copied
 from sher3_challenge.plants.grammar import NOTHING, Foreign
 from sher3_challenge.plants.plant import AXES, Array, Plant, RunPlan
 from sher3_challenge.plants.recorder import Signals, recorded
 from sher3_challenge.plants.tables.loop import Script, run_loop
-from sher3_challenge.plants.tables.parameters import TableParameters, copied
+from sher3_challenge.plants.tables.parameters import TableParameters
 from sher3_challenge.plants.tables.robot import bend, individual, nominal, scatter
 from sher3_challenge.plants.tables.sensing import force_reading
 from sher3_challenge.plants.tables.tip import tip_of

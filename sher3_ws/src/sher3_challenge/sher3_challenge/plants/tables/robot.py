@@ -6,18 +6,18 @@ Tolerances are those of the contract's amendment, section 1: three standard devi
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 from sher3_description import Robot
 
+from sher3_challenge.plants.arrays import copied, zeros_of
 from sher3_challenge.plants.level import Bend, Level
 from sher3_challenge.plants.plant import AXES, Array
 from sher3_challenge.plants.site import ANGULAR
 from sher3_challenge.plants.tables import parameters as parts
 from sher3_challenge.plants.tables.curves import CURVE, RING, loop_slope, ring, wobble
 from sher3_challenge.plants.tables.mechanism import angle_table
-from sher3_challenge.plants.tables.parameters import PLACES, SPEEDS, TableParameters, copied
+from sher3_challenge.plants.tables.parameters import PLACES, SPEEDS, TableParameters
 
 SPAN = 3e-3
 """Travel of a slider after which its friction map repeats [m]."""
@@ -40,7 +40,7 @@ def nominal(robot: Robot) -> TableParameters:
     }
     top = np.array([a.limits.velocity for a in robot.actuators])
     ones = np.ones(AXES)
-    motor = _part(
+    motor = zeros_of(
         parts.Motor,
         mass=column["mass"],
         viscous=column["viscous"],
@@ -61,8 +61,10 @@ def nominal(robot: Robot) -> TableParameters:
         cable_reach=ones,
         own_viscous=column["viscous"],
     )
-    odd = _part(parts.Odd, plough_reach=ones, snap_width=ones, joint_width=ones, grating_period=ones, detent_order=ones)
-    transmission = _part(
+    odd = zeros_of(
+        parts.Odd, plough_reach=ones, snap_width=ones, joint_width=ones, grating_period=ones, detent_order=ones
+    )
+    transmission = zeros_of(
         parts.Transmission,
         wave=np.zeros((AXES, RING)),
         ripple=np.zeros((AXES, RING)),
@@ -73,7 +75,7 @@ def nominal(robot: Robot) -> TableParameters:
         brake=scaled(robot, 0.05, "force"),
         hysteresis_reach=ones,
     )
-    host = _part(
+    host = zeros_of(
         parts.Host,
         gain=np.full(AXES, robot.position_gain),
         velocity_limit=top,
@@ -82,15 +84,9 @@ def nominal(robot: Robot) -> TableParameters:
         eccentricity=np.zeros((AXES, RING)),
     )
     return TableParameters(
-        motor, odd, _part(parts.Drive, **drive), transmission, host, _mechanism(robot), _tip(), _sensor(robot),
+        motor, odd, zeros_of(parts.Drive, **drive), transmission, host, _mechanism(robot), _tip(), _sensor(robot),
         np.zeros((AXES, AXES)),
     )  # fmt: skip
-
-
-def _part(kind: type[Any], **known: Array) -> Any:
-    """Return a part whose unnamed values are zeros (5,)."""
-    fields = {name: np.zeros(AXES) for name in kind._fields}
-    return kind(**{**fields, **{name: np.array(value, dtype=float) for name, value in known.items()}})
 
 
 def _mechanism(robot: Robot) -> parts.Mechanism:
