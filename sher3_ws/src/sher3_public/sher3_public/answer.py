@@ -106,7 +106,7 @@ class Answer:
         from sher3_diagnosis.report.page import render
 
         name = self.case.source.name if self.case.source is not None else "table"
-        return _written(render(self.diagnosis, name), path)
+        return _written(render(self.diagnosis, name, in_memory=True), path)
 
     def corrected(self, path: str | Path | None = None, to: str = "") -> Corrected:
         """Return the model with the causes in it; write it where a path is given.

@@ -19,6 +19,8 @@ from sher3_diagnosis.words import place, words
 
 MOST = 4
 """Places that a figure shows at most."""
+PAPER = "background:#fff;color:#1f2937;padding:4px 12px;border-radius:8px;max-width:900px"
+"""Style of an answer in a notebook: pictures are drawn for a light ground, which a dark notebook has not."""
 WIDE, HIGH = 8.0, 2.0
 """Width of a figure and height of one picture of it, inch."""
 
@@ -31,26 +33,36 @@ def figure_of(diagnosis: Diagnosis[Any]) -> Figure:
         figure = Figure(figsize=(WIDE, HIGH * max(1, len(shown))), layout="constrained")
         rows = figure.subplots(max(1, len(shown)), 1, squeeze=False)[:, 0]
         for axes, (finding, channel) in zip(rows, shown, strict=False):
-            _draw(axes, finding, channel)
+            _draw(axes, finding, channel, diagnosis.machine.reporter())
         if shown:
             rows[0].legend(loc="upper right", fontsize="small")
-            rows[-1].set_xlabel("sample of the residual grid")
+            rows[-1].set_xlabel("time, s; records one behind the other")
     return figure
 
 
-def _draw(axes: Any, finding: Finding[Any], channel: Channel) -> None:
+def _draw(axes: Any, finding: Finding[Any], channel: Channel, reporter: Any) -> None:
     evidence = finding.evidence
     after = residual_after(evidence, finding.attribution.fit, channel)
     before = residual_after(evidence, evidence.null(), channel)
-    start = 0
-    for run in sorted(after):
+    start = ended = 0.0
+    for number, run in enumerate(sorted(after)):
         x = [np.asarray(found[run]).reshape(len(found[run]), -1)[:, 0] for found in (before, after)]
-        place_ = start + np.arange(len(x[0]))
+        clock = _clock(evidence, run, channel, reporter, len(x[0]))
+        start += ended if clock[0] < ended else 0.0  # a part of the same record goes on, another record starts anew
         for y, colour, label in ((x[0], "0.65", "model alone"), (x[1], "C0", "with the causes")):
-            axes.plot(place_, y, color=colour, lw=0.8, label=label if start == 0 else None)
-        start += len(place_)
+            axes.plot(start + clock, y, color=colour, lw=0.8, label=None if number else label)
+        ended = float(clock[-1])
     axes.set_title(f"{words(channel.stage)}, {place(channel.actuator)}", fontsize="small", loc="left")
     axes.set_ylabel(evidence.units[channel].replace("*", "·") if isinstance(evidence.units, dict) else "")
+
+
+def _clock(evidence: Any, run: int, channel: Channel, reporter: Any, samples: int) -> Any:
+    """Seconds of the samples that count; their numbers where they are not known."""
+    found, clock = evidence.data.residuals[run][channel], reporter.clock(evidence, run)
+    if clock is None:
+        clock = np.arange(len(found.values)) / (evidence.views[run].rate or 1.0)
+    kept = np.asarray(clock)[found.ok]
+    return kept if len(kept) == samples else np.arange(samples)
 
 
 def html_of(
@@ -66,7 +78,7 @@ def html_of(
         for title, texts in folded.items()
         if texts
     ]
-    return f"<div><p><b>{escape(headline)}</b></p>{''.join(shown)}</div>"
+    return f'<div style="{PAPER}"><p><b>{escape(headline)}</b></p>{"".join(shown)}</div>'
 
 
 def _items(texts: Sequence[str]) -> str:

@@ -72,6 +72,7 @@ class Replays:
                 lines = axes.plot(replay.time.T, getattr(replay, what).T, color=colour, lw=0.8)
                 lines[0].set_label(what)
             axes.set_title(name, fontsize="small", loc="left")
+            axes.set_ylabel("rad or m")
         pictures[0].legend(fontsize="small")
         pictures[-1].set_xlabel("time, s")
         return figure

@@ -23,7 +23,18 @@ from sher3_diagnosis.words import place, words
 TEMPLATE = "template.html"
 
 
-def render(diagnosis: Diagnosis, title: str, found: Discovery | None = None, folder: str = "", case: str = "") -> str:
+CORRECTED = 'v.corrected("fixed.xml")', "writes the model with the causes in it"
+"""What goes on from an answer `v` in memory, and what it does."""
+
+
+def render(
+    diagnosis: Diagnosis,
+    title: str,
+    found: Discovery | None = None,
+    folder: str = "",
+    case: str = "",
+    in_memory: bool = False,
+) -> str:
     """Return the report of a diagnosis as one HTML page without external resources.
 
     Args:
@@ -32,27 +43,33 @@ def render(diagnosis: Diagnosis, title: str, found: Discovery | None = None, fol
         found: a discovered formula, if one was looked for.
         folder: where the verdict is written; default `gap/<title>`.
         case: folder of the case; default its name.
+        in_memory: whether the case is in no folder: what goes on from here is a method of the answer.
     """
     loader = jinja2.PackageLoader("sher3_diagnosis", "report")
     environment = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True)
     with rc_context(STYLE):
         return environment.get_template(TEMPLATE).render(
-            found=_formula(found), **_sections(diagnosis, title, folder, case or title)
+            found=_formula(found), **_sections(diagnosis, title, folder, case or title, in_memory)
         )
 
 
-def _sections(diagnosis: Diagnosis, title: str, folder: str, case: str) -> dict[str, object]:
+def _sections(diagnosis: Diagnosis, title: str, folder: str, case: str, in_memory: bool) -> dict[str, object]:
     verdict, reporter = diagnosis.verdict, diagnosis.machine.reporter()
     parts = [f.evidence for f in diagnosis.findings]
     isolability = reporter.isolability(parts)
     rests = {e.id: e.leaves_out for e in diagnosis.machine.library() if e.leaves_out}
+    lines = five_lines(verdict, reporter.simulated, rests, reporter.table(diagnosis), case, folder)
+    going = command(verdict, reporter.simulated, case, folder)
+    if in_memory and going is not None:
+        going = CORRECTED if verdict.causes else None
+        lines = [(head, text) for head, text in lines if head != "next"]
     return dict(
         title=title,
         verdict=verdict,
         headline=headline(verdict, rests),
-        lines=five_lines(verdict, reporter.simulated, rests, reporter.table(diagnosis), case, folder),
+        lines=lines,
         picture=reporter.picture(diagnosis),
-        command=command(verdict, reporter.simulated, case, folder),
+        command=going,
         data=reporter.data(parts),
         held_out=reporter.held_out,
         simulated=reporter.simulated,
