@@ -4,11 +4,11 @@ Chains are drawn axes and servos (`sher3_chain/test/drawn_machines.py`: Karnopp'
 MuJoCo (`sher3_arms`); tables are serial arms seen from outside, force sensors under known weights, and positioning
 tests (`sher3_static/test`). Every case is judged with the whole library and without one of its effects.
 
-    nice python bench/other_odds.py chain --cases 20 --kept evidence        # four minutes
-    nice python bench/other_odds.py table --cases 20 --kept evidence -o table.json
+    nice python bench/other_odds.py chain table --cases 10 30 --kept evidence      # a minute of a core
+    nice python bench/other_odds.py chain table --cases 10 30 --kept evidence --beside robots --diagram reliability.png
 
-Printed for each source: log loss and calibration error of the odds by the weights of SHER, by the weights in force for
-the kind, and by weights of SHER that the other sources moved; then the table of that source left out.
+Printed for each source: log loss and calibration error of the odds by the weights of SHER, and by weights that the
+other sources moved; then the table and what is certified, by the weights of SHER.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ import sys
 import tempfile
 from collections.abc import Iterator, Sequence
 from functools import partial
+from itertools import cycle
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -220,28 +221,39 @@ def surprise(judgements: Sequence[Judgement]) -> str:
     )
 
 
-def main() -> None:
-    """Print how the odds hold on every source, and write the weights."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("kind", choices=KINDS)
-    parser.add_argument("--cases", type=int, default=20, help="of each source")
-    parser.add_argument("--kept", type=Path, default=None, help="folder that keeps the evidence")
-    parser.add_argument("-o", "--out", type=Path, default=None, help="file for the weights")
-    parser.add_argument("--diagram", type=Path, default=None)
-    options = parser.parse_args()
-    found = list(seen(options.kind, options.cases, options.kept or Path(tempfile.mkdtemp())))
-    robot = in_force()
-    own = groups(found, by_plant)
+def shown(kind: str, found: Sequence[Observation]) -> None:
+    """Print how the odds hold on every source of a kind, and the table of each left out."""
+    robot, own = in_force(), groups(found, by_plant)
     left_out = held_out(found, by_plant, partial(updated, robot))
     for source, rows in own.items():
         print(f"{source}: weights of SHER: {surprise(judged_by(robot, rows))}")
         print(f"{source}: moved by the other sources: {surprise(left_out[source])}")
-    print("\n" + written({name: rates(j) for name, j in left_out.items()}))
-    print("\n" + curve([c for j in left_out.values() for x in j for c in x.causes]))
-    if options.out is not None:
-        options.out.write_text(updated(robot, found).model_dump_json(by_alias=True, indent=1) + "\n", encoding="utf-8")
+    print(f"\n{kind}: status by odds, weights of SHER")
+    print(written({name: rates(judged_by(robot, rows)) for name, rows in own.items()}))
+    print("\n" + curve([c for rows in own.values() for j in judged_by(robot, rows) for c in j.causes]) + "\n")
+
+
+def main() -> None:
+    """Print how the odds hold on every source, and draw them beside those of SHER."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("kinds", nargs="+", choices=KINDS)
+    parser.add_argument("--cases", type=int, nargs="+", default=[10], help="of each source; one number for each kind")
+    parser.add_argument("--kept", type=Path, default=None, help="folder that keeps the evidence")
+    parser.add_argument("--beside", type=Path, default=None, help="evidence of SHER, whose plants are drawn beside")
+    parser.add_argument(
+        "--diagram", type=Path, default=None, help="picture: one panel a source, by the weights in force"
+    )
+    options = parser.parse_args()
+    kept, every = options.kept or Path(tempfile.mkdtemp()), []
+    for kind, cases in zip(options.kinds, cycle(options.cases), strict=False):
+        found = list(seen(kind, cases, kept))
+        shown(kind, found)
+        every += found
     if options.diagram is not None:
-        diagram({name: [r for x in j for r in x.right] for name, j in left_out.items()}, options.diagram)
+        beside = [] if options.beside is None else sorted(options.beside.rglob("*.json"))
+        every = [o for file in beside for o in stored(file)] + every
+        judged = {name: judged_by(in_force(), rows) for name, rows in groups(every, by_plant).items()}
+        diagram({name: [r for x in j for r in x.right] for name, j in judged.items()}, options.diagram)
 
 
 if __name__ == "__main__":
