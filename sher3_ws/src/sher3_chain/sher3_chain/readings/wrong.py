@@ -53,6 +53,7 @@ def wrong_readings(run: AxesRun, axis: Axis) -> Mapping[str, str]:
         if name in found and moving.any():
             live = moving & ~off(found[name]) if name == "effort" else moving
             what = stuck(found[name], live if live.sum() > LEFT * moving.sum() else moving)
+            what = None if name == "effort" and set_in_steps(found[name]) else what
             if what is None and name == "load" and np.ptp(found[name]) < FOLLOWS * travel:
                 what = f"moves by {np.ptp(found[name]):.3g} while the axis moves by {travel:.3g}: a dead channel"
             what = wrong_scale(found[name], position) if what is None and name == "load" else what
@@ -73,6 +74,16 @@ def stuck(signal: Array, moving: Mask) -> str | None:
     if share < DEAD or limit:
         return None
     return f"reads {common:.6g} in {share:.0%} of the samples in which the axis moves: a dead channel"
+
+
+def set_in_steps(effort: Array) -> bool:
+    """Return whether an effort (n,) was set in steps: levels that are held for long are nearly all of it.
+
+    It may stay at one level for half of a record and is not dead; a dead channel has one level, and flickers beside it.
+    """
+    held = stays(effort)
+    levels = {float(effort[first]) for first, _ in held}
+    return len(levels) > 1 and sum(last - first for first, last in held) > AT_THE_END * len(effort)
 
 
 def wrong_scale(load: Array, position: Array) -> str | None:

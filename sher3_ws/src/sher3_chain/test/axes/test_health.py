@@ -80,3 +80,14 @@ def test_a_play_of_a_quarter_of_the_travel_is_no_flat_encoder():
         load[k] = min(max(load[k - 1], q[k] - width / 2), q[k] + width / 2)
     assert stays_over(load, q) == 0.0
     assert stays_over(np.maximum(q, -1e-3), q) > 0.2
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_an_effort_that_was_set_in_steps_is_not_dead(rows, seed):
+    """One level may be half of the record; noise about one level, and flickers beside it, are no steps."""
+    draw = np.random.default_rng(seed)
+    first = int(draw.uniform(0.5, 0.8) * len(rows))
+    effort = np.where(np.arange(len(rows)) < first, *draw.uniform(-2.0, 2.0, 2))
+    assert "effort" not in wrong_readings(run_of(rows, effort=effort), axis_of())
+    flickers = np.where(draw.random(len(rows)) < 0.1, draw.normal(size=len(rows)), effort[0])
+    assert "dead channel" in wrong_readings(run_of(rows, effort=flickers), axis_of())["effort"]
