@@ -35,7 +35,7 @@ def recorded(settings):
     """What the devices of a whole robot said while a surgeon drove it: the first push of the demo."""
     script = load_script(demo_script())
     script = script.model_copy(update={"steps": script.steps[:FIRST_PUSH]})
-    with Graph(period=1.0 / RATE) as graph:
+    with Graph(period=1.0 / RATE, middleware=False) as graph:
         rig = RobotRig(graph, robot=settings.robot(), control=settings.control())
         probe = graph.probe(*INPUTS)
         rig.play(script)

@@ -15,7 +15,7 @@ NEAR, FREE = [60, 60, 60, 29, 27], [366, 366, 366, 287, 270]
 def test_the_drives_get_the_limits_of_the_regime_before_it_begins_and_after_it_ended():
     robot = load_robot()
     control = ControlSettings.from_robot(robot, {"motion": {"regime": "near_tissue"}})
-    with Graph() as graph:
+    with Graph(middleware=False) as graph:
         stepped = SteppedRobot(graph, seed=1, robot=robot, control=control)
         probe = graph.probe("motion/settings", sends=("command/regime",))
         motion, drives = stepped.kinematics.motion, stepped.plant.drives.drives.values()

@@ -51,7 +51,7 @@ class Bench:
 
 @pytest.fixture
 def bench() -> Iterator[Bench]:
-    with Graph(period=ROBOT.control_period) as graph:
+    with Graph(period=ROBOT.control_period, middleware=False) as graph:
         yield Bench(graph)
 
 

@@ -12,7 +12,7 @@ pytestmark = pytest.mark.graph
 
 
 def test_an_untouched_hand_publishes_nothing_and_a_push_moves_the_tip(bag_folder):
-    with Graph(period=ROBOT.control_period) as graph:
+    with Graph(period=ROBOT.control_period, middleware=False) as graph:
         robot = RobotRig(graph, robot=ROBOT)
         with recorded(graph, bag_folder.name, robot=ROBOT):
             view = graph.add(ViewNode)

@@ -124,5 +124,5 @@ class ControlGraph:
 
 @contextmanager
 def control_graph():
-    with Graph() as graph:
+    with Graph(middleware=False) as graph:
         yield ControlGraph(graph)

@@ -46,7 +46,7 @@ def test_every_set_point_reaches_the_host_at_its_tick():
     from sher3_runtime import Graph
 
     excitation = excite("sweep", ROBOT, posture="p1", duration=2.0)
-    with Graph() as graph:
+    with Graph(middleware=False) as graph:
         graph.add(robot_node())
         bench = ControlSettings.from_robot(ROBOT, {"motion": {"regime": "bench"}})
         for node in (SupervisorNode, KinematicsNode, AdmittanceNode):

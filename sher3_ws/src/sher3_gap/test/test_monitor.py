@@ -105,7 +105,7 @@ def test_the_node_publishes_once_a_second():
                     self.publish[topic](sample._replace(stamp=stamp))
             self.count += 1
 
-    with Graph() as graph:
+    with Graph(middleware=False) as graph:
         graph.add(Robot)
         lines = []
         graph.add(

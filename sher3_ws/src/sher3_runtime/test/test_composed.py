@@ -227,9 +227,10 @@ def test_a_node_that_waits_for_its_device_does_not_hold_up_the_others():
     spin([device, loop], stop=lambda: time.monotonic() > end, diagnostics=False)
     context.try_shutdown()
     os.close(silent), os.close(other_end)
-    assert len(waited) >= 8 and all(0.079 < seconds < 0.12 for seconds, _ in waited)
-    gaps = [(b - a) / 1e6 for a, b in pairwise(late)]
-    assert len(late) >= 80 and sorted(gaps)[len(gaps) // 2] < 15.0
+    waits, gaps = sorted(seconds for seconds, _ in waited), sorted((b - a) / 1e6 for a, b in pairwise(late))
+    assert len(waits) >= 5 and waits[0] > 0.079 and waits[len(waits) // 2] < 0.12
+    # Held up by each wait it would tick 20 to 30 times; a busy computer takes some of the 100 ticks.
+    assert len(late) >= 50 and gaps[len(gaps) // 2] < 15.0
     # What came while the device was waited for was handed over afterwards, in order; none was lost.
     assert hears == sorted(hears) and len(hears) >= len(late) - 10
 
@@ -246,7 +247,6 @@ def test_slow_callbacks_of_one_process_come_in_different_periods(shortest):
     assert len({tick.due_ns % (1_000_000 * shortest) for tick in ticks}) == 10
 
 
-@pytest.mark.flaky(reruns=2)
 @pytest.mark.parametrize(("limit", "first", "again"), [(0.002, 0.0, 0.0014), (0.05, 0.048, 0.048)])
 def test_a_device_that_answered_last_time_is_waited_for_in_place(limit, first, again):
     """Time [s] left to the others: less of the first wait than of the next, when the device is known to be silent."""

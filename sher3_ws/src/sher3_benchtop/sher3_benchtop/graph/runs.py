@@ -47,7 +47,7 @@ def run_timeline(
     Raises:
         BenchtopStopped: a command was refused, or the robot stopped.
     """
-    with Graph(period=robot.control_period) as graph:
+    with Graph(period=robot.control_period, middleware=False) as graph:
         bench = graph.add(BenchtopNode, timeline, robot)
         SteppedRobot(graph, effects, seed, robot, control)
         with recorded(graph, timeline.name, robot=robot, root=folder) as recorder:
