@@ -5,6 +5,7 @@ The challenge judges with them, so they must not come from the code that is judg
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -79,15 +80,14 @@ def tip_pose(robot: Robot, q: Array) -> tuple[Array, Rotation]:
     return tip_position(robot, q), roll * tilt
 
 
-def tip_jacobian(robot: Robot, q: Array, step: float = 1e-6) -> Array:
+def tip_jacobian(robot: Robot, q: Array) -> Array:
     """Return (n, 3, 5) the Jacobian from actuator velocities to the tip's linear velocity, by central differences."""
-    columns = []
-    for j in range(5):
-        ahead, behind = q.copy(), q.copy()
-        ahead[:, j] += step
-        behind[:, j] -= step
-        columns.append((tip_position(robot, ahead) - tip_position(robot, behind)) / (2 * step))
-    return np.stack(columns, axis=2)
+    return np.stack(slopes(lambda at: tip_position(robot, at), q, 1e-6), axis=2)
+
+
+def slopes(of: Callable[[Array], Array], q: Array, step: float) -> list[Array]:
+    """Return the derivatives of a function of (n, 5) positions along each of the five, by central differences."""
+    return [(of(q + d) - of(q - d)) / (2 * step) for d in step * np.eye(5)]
 
 
 def potential(robot: Robot, q: Array) -> Array:
@@ -99,15 +99,9 @@ def potential(robot: Robot, q: Array) -> Array:
     return np.asarray(GRAVITY * height)
 
 
-def gravity(robot: Robot, q: Array, step: float = 1e-5) -> Array:
+def gravity(robot: Robot, q: Array) -> Array:
     """Return (n, 5) the gravity force G(q) that the drives hold, by central differences of the potential."""
-    columns = []
-    for j in range(5):
-        ahead, behind = q.copy(), q.copy()
-        ahead[:, j] += step
-        behind[:, j] -= step
-        columns.append((potential(robot, ahead) - potential(robot, behind)) / (2 * step))
-    return np.column_stack(columns)
+    return np.column_stack(slopes(lambda at: potential(robot, at), q, 1e-5))
 
 
 def force_reading(robot: Robot, rotation: Rotation, contact: Array) -> Array:

@@ -23,7 +23,7 @@ COMPONENTS = {"sensing": ("fx", "fy", "fz", "tx", "ty", "tz")}
 POSE = ("x", "y", "z", "rx", "ry", "rz")
 
 
-def component_name(channel: Channel, component: int, width: int = 6) -> str:
+def component_name(channel: Channel, component: int) -> str:
     """Return the name of a component; empty where there is one alone."""
     if channel.actuator not in ("tip", "force_sensor"):
         return ""

@@ -44,11 +44,13 @@ ABOVE: dict[str, Any] = {
 """A legend above its axes, where it hides no line, and on the left, where a narrow screen begins to show it."""
 MARGINS: dict[str, Any] = {"x": 0.005, "y": 0.06}
 """Room around the lines, as shares of the axes."""
+WIDTH = 10.4
+"""Of a figure, inches."""
 
 
-def figure(rows: int, height: float, width: float = 10.4, **options: Any) -> tuple[Figure, Sequence[Axes]]:
-    """Return a figure of `height` x `width` inches with `rows` panels below each other, made for `to_svg`."""
-    made = Figure(figsize=(width, height), layout="constrained")
+def figure(rows: int, height: float, **options: Any) -> tuple[Figure, Sequence[Axes]]:
+    """Return a figure of `height` x `WIDTH` inches with `rows` panels below each other, made for `to_svg`."""
+    made = Figure(figsize=(WIDTH, height), layout="constrained")
     axes = made.subplots(rows, 1, squeeze=False, **options)[:, 0]
     for ax in axes:
         ax.spines[["top", "right"]].set_visible(False)

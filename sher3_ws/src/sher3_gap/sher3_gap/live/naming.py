@@ -109,9 +109,9 @@ class Naming:
         return Named(stamp, verdict) if verdict.status != "no_gap" else None
 
 
-def pieces(run: RunSignals, parts: int = PIECES) -> list[RunSignals]:
+def pieces(run: RunSignals) -> list[RunSignals]:
     """Return a run cut into parts of equal length, each under its own name, so that none counts as a repeat."""
-    edges = np.linspace(0, run.ticks, parts + 1).astype(int)
+    edges = np.linspace(0, run.ticks, PIECES + 1).astype(int)
     return [_piece(run, k, a, b) for k, (a, b) in enumerate(pairwise(edges))]
 
 

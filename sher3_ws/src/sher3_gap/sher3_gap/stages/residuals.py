@@ -37,7 +37,7 @@ class Demand:
     late: Array
 
 
-def drive_law(run: RunSignals, robot: Robot, demand: Array, position: Array | None = None) -> Array:
+def drive_law(run: RunSignals, robot: Robot, demand: Array) -> Array:
     """Nominal PI force at each tick for the demand held and the measured motion, (n, axes), up to a constant per axis.
 
     `demand` (n, axes) is the velocity demand in force just before each tick. The integral of the demand is that of the
@@ -46,9 +46,8 @@ def drive_law(run: RunSignals, robot: Robot, demand: Array, position: Array | No
     assert run.echo is not None
     drive = [a.drive for a in robot.actuators]
     kp, ki = np.array([d.kp for d in drive]), np.array([d.ki for d in drive])
-    motor = run.motor if position is None else position
-    velocity = np.gradient(motor, run.period, axis=0)
-    xi = np.cumsum(run.echo, axis=0) * run.period - (motor - motor[0])
+    velocity = np.gradient(run.motor, run.period, axis=0)
+    xi = np.cumsum(run.echo, axis=0) * run.period - (run.motor - run.motor[0])
     return kp * (demand - velocity) + ki * xi
 
 

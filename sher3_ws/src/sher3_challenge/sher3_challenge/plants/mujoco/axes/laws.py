@@ -111,16 +111,3 @@ class Magnet:
         """Return the force at position `q`; the factor makes the largest one `force`."""
         x = (q - self.place) / self.reach
         return -self.force * 3.0792 * x / (1 + x * x) ** 2
-
-
-@dataclass(frozen=True)
-class Wind:
-    """A slow disturbance within a run: what the room and the cables do."""
-
-    force: float
-    frequency: float
-    phase: float
-
-    def __call__(self, q: float, v: float, t: float) -> float:
-        """Return the force at time `t`."""
-        return self.force * math.sin(2 * math.pi * self.frequency * t + self.phase)
