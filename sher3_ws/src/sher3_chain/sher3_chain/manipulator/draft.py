@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -84,14 +84,11 @@ def fitted(axes: Sequence[str], joints: Sequence[str], model: object) -> dict[st
     plain = {_plain(joint): joint for joint in joints}
     if all(_plain(axis) in plain for axis in axes):
         return {axis: (plain[_plain(axis)], "name") for axis in axes}
-    numbers = {n: joint for joint in joints if (n := _number(joint)) is not None}
     own = {axis: n for axis in axes if (n := _number(axis)) is not None}
     if len(set(own.values())) == len(axes):
-        if set(own.values()) <= numbers.keys():
-            return {axis: (numbers[n], "number") for axis, n in own.items()}
-        first = min(own.values())
-        if max(own.values()) - first < len(joints):
-            return {axis: (joints[n - first], "number") for axis, n in own.items()}
+        chain = _chain_of(own.values(), joints)
+        if chain is not None:
+            return {axis: (chain[n], "number") for axis, n in own.items()}
     if len(axes) == len(joints):
         return {axis: (joint, "order") for axis, joint in zip(axes, joints, strict=True)}
     raise MachineError(
@@ -100,6 +97,23 @@ def fitted(axes: Sequence[str], joints: Sequence[str], model: object) -> dict[st
         limit=f"{len(joints)} joints: {', '.join(joints[:8])}",
         remedy="name columns as the joints are, or write `joints` by hand",
     )
+
+
+def _chain_of(own: Collection[int], joints: Sequence[str]) -> dict[int, str] | None:
+    """Return number -> joint of columns that are numbered, None where none or several chains of joints fit.
+
+    Joints whose names differ in one number are a chain; fingers have numbers of their own. Numbers may begin elsewhere
+    than those of the columns. Where no chain of numbers is most of the machine, joints count in their order.
+    """
+    chains: dict[str, dict[int, str]] = {}
+    for joint in joints:
+        for found in re.finditer(r"\d+", joint):
+            chains.setdefault(f"{joint[: found.start()]}#{joint[found.end() :]}", {})[int(found[0])] = joint
+    longest = max(chains.values(), key=len, default={})
+    alike = [chain for chain in chains.values() if len(chain) == len(longest)]
+    numbered = longest if 2 * len(longest) > len(joints) else dict(enumerate(joints))
+    starts = (0, min(numbered) - min(own)) if len(alike) < 2 or numbered is longest else ()
+    return next(({n: numbered[n + by] for n in own} for by in starts if {n + by for n in own} <= set(numbered)), None)
 
 
 def _number(name: str) -> int | None:

@@ -56,3 +56,18 @@ def test_axes_are_joints_by_name_by_number_or_in_their_order(tmp_path):
     assert fitted(["pan", "lift", "roll"], joints, model)["lift"] == (joints[1], "order")
     with pytest.raises(MachineError, match="do not fit"):
         fitted(["pan", "lift"], joints, model)
+
+
+def test_numbered_columns_are_the_longest_chain_of_joints(tmp_path):
+    """A hand's fingers have numbers of their own, numbers may begin at 0 or 1, and may stand within a name."""
+    model = tmp_path / "a.urdf"
+    fingers = ["panda_finger_joint1", "panda_finger_joint2"]
+    arm = [f"panda_joint{i}" for i in range(1, 8)]
+    for joints in ([*fingers, *arm], [*arm, *fingers]):
+        for first in (0, 1):
+            columns = [f"q{i + first}" for i in range(7)]
+            assert [joint for joint, _ in fitted(columns, joints, model).values()] == arm
+    assert fitted(["q1", "q2"], ["lwr_0_joint", "lwr_1_joint", "grip"], model)["q2"] == ("lwr_1_joint", "number")
+    two = [f"{side}_joint{i}" for side in ("left", "right") for i in range(3)]
+    with pytest.raises(MachineError, match="do not fit"):
+        fitted(["q0", "q1", "q2"], two, model)
