@@ -214,6 +214,14 @@ class Effect:
         found = iter(coefficients)
         return {name: shape[name] if name in shape else float(next(found)) for name in self.gives or shape}
 
+    def free(self) -> Effect | None:
+        """Return the law with a coefficient for each number, where this one's are found beforehand; default None."""
+        return None
+
+    def found(self, each: Mapping[str, Measured]) -> Shape:
+        """Return the shape of numbers that were found beforehand, by name, with their standard errors."""
+        return {name: x.value for name, x in each.items()}
+
     def measured(self, views: Sequence[Any], site: str, shape: Shape) -> Mapping[str, Measured]:
         """Return parameters that other means than the fit tell better, by name; default none."""
         return {}

@@ -168,6 +168,9 @@ class ArmMotionView(AxisView, Protocol):
     def link(self, link: str) -> dict[str, Array]:
         """Return joint -> (g,) force that a link, as its model has it, needs of every joint."""
 
+    def per_inertial(self, link: str) -> dict[str, Array]:
+        """Return joint -> (g, 10) force per inertial parameter of a link, about its joint, as Pinocchio orders them."""
+
     def orders(self, joint: str, count: int) -> list[float]:
         """Return at most `count` periods per turn: the highest peaks in the spectrum of a joint's effort residual."""
 

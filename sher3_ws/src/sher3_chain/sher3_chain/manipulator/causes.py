@@ -10,6 +10,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
+import numpy as np
 from sher3_diagnosis.attribute.candidates import Candidates, cost, possible, price
 from sher3_diagnosis.attribute.rivals import Attribution, without_term
 from sher3_diagnosis.attribute.search import Say, attribute
@@ -22,7 +23,9 @@ from sher3_diagnosis.thresholds import NEEDED, PARSIMONY, RIVAL
 from sher3_diagnosis.tolerance import NUISANCE
 from sher3_effects import computed
 
+from sher3_chain.manipulator.confounding import GAIN
 from sher3_chain.manipulator.evidence import ArmMotionEvidence, channel_of, channels_of, of_channel
+from sher3_chain.manipulator.links import clearly_less, wrong_links
 from sher3_chain.manipulator.readings.lateness import LATE, Late, lateness
 from sher3_chain.search.away_from_reversals import borne_out
 from sher3_chain.search.bounded import Bounded
@@ -61,30 +64,52 @@ def causes_of_arm(evidence: ArmMotionEvidence, candidates: Candidates, say: Say)
     """Choose the causes of an arm in motion, with their rivals; none where no joint has a gap."""
     if not down_to_floor(evidence.channels, evidence, evidence.null()):
         return Attribution(evidence.null(), (), (), nuisance=len(evidence.nuisance))
-    found = _explained(evidence, candidates, None, say)
+    found = _explained(evidence, candidates, (), None, say)
+    best, second = found, None
     loaded = _payload(evidence, candidates)
-    if loaded is None:
-        return _with_rivals(evidence, candidates, found, None)
-    other = _explained(evidence, candidates, loaded, say)
-    best, second = (other, found) if other.cost < found.cost and closes(evidence, other) else (found, other)
-    return _with_rivals(evidence, candidates, best, second)
+    if loaded is not None:
+        other = _explained(evidence, candidates, loaded.terms[-1:], loaded, say)
+        better = other.cost < found.cost and closes(evidence, other)
+        best, second = (other, found) if better else (found, other)
+    linked = _linked(evidence, candidates, best, say)
+    return _with_rivals(evidence, candidates, *((best, second) if linked is None else (linked, None)))
 
 
-def _explained(evidence: ArmMotionEvidence, candidates: Candidates, payload: Fit | None, say: Say) -> Explained:
-    """Search every joint for causes beside a payload, and fit all of them together.
+def _linked(evidence: ArmMotionEvidence, candidates: Candidates, best: Explained, say: Say) -> Explained | None:
+    """Return the causes beside links with wrong inertial parameters; None where links do not leave clearly less.
+
+    Plain laws of the joints come with the links; richer ones are looked for in what is left.
+    """
+    page = next((e for e in candidates.effects if e.free() is not None), None)
+    if page is None:
+        return None
+    plain = [e for e in candidates.effects if e.plain and e.scales != GAIN]
+    laws = [(e, j, _middle(e, evidence, j)) for j in evidence.judged for e in plain]
+    links = wrong_links(evidence, page, laws)
+    if not links:
+        return None
+    loads = [candidates.term(*link) for link in links]
+    other = _explained(evidence, candidates, loads, fit(evidence.data, loads), say)
+    return other if clearly_less(evidence, other.fit, best.fit) else None
+
+
+def _explained(
+    evidence: ArmMotionEvidence, candidates: Candidates, loads: Sequence[Term], loaded: Fit | None, say: Say
+) -> Explained:
+    """Search every joint for causes beside `loads` on links, as `loaded` has them, and fit all of them together.
 
     What lies between two encoders says nothing of a force balance, since the links move as their own encoders say.
     """
     effects = [e for e in candidates.effects if e.places == ("axis",)]
-    beside = _added(evidence, payload) if payload is not None else ()
+    beside = _added(evidence, loaded, loads) if loaded is not None else ()
     alone: list[Attribution] = []
     for channel in (c for joint in evidence.judged for c in channels_of(joint)):
         own = of_channel(evidence, channel, beside)
-        say(f"{channel}{' beside a payload' if payload is not None else ''}")
+        say(f"{channel}{' beside ' + ' and '.join(t.site for t in loads) if loads else ''}")
         balance = channel == channel_of(channel.actuator)
         late = lateness(evidence, channel.actuator, beside) if balance else None
         alone.append(_beside_delay(own, late, effects, say) if balance else _searched(own, effects, say))
-    terms = [*evidence.nuisance, *([payload.terms[-1]] if payload is not None else [])]
+    terms = [*evidence.nuisance, *loads]
     for found in alone:
         terms += [candidates.term(t.effect, t.site, t.shape) for t in _causes(found)]
     return Explained(fit(evidence.data, terms), alone)
@@ -166,7 +191,7 @@ def _payload(evidence: ArmMotionEvidence, candidates: Candidates) -> Fit | None:
     rubbing = [(e, j) for j in evidence.judged for e in _plain(candidates)]
     plain = [*evidence.nuisance, *(candidates.term(e, j, _middle(e, evidence, j)) for e, j in rubbing)]
     base, null = fit(evidence.data, plain), evidence.null().total
-    places = [(page, link) for page in pages for link in evidence.places["link"]]
+    places = [(page, link) for page in pages for link in evidence.places["link"] if page.shapes(evidence.views, link)]
     trials = [t for page, link in places if (t := _at(evidence, candidates, page, link, plain)) is not None]
     if not trials:
         return None
@@ -232,14 +257,20 @@ def centred(candidates: Candidates, found: Fit) -> Fit:
     return found
 
 
-def _added(evidence: ArmMotionEvidence, loaded: Fit) -> list[dict[Channel, Array]]:
-    """Return what the last term of a fit adds to the residuals of every block, (g, 1) in SI units."""
-    term, coefficients = loaded.terms[-1], loaded.of(len(loaded.terms) - 1)
+def _added(evidence: ArmMotionEvidence, loaded: Fit, loads: Sequence[Term]) -> list[dict[Channel, Array]]:
+    """Return what terms of a fit that sit on links add to the residuals of every block, (g, 1) in SI units."""
+    at = [i for i, term in enumerate(loaded.terms) if any(term is load for load in loads)]
     seen: dict[int, dict[Channel, Array]] = {}
     for view in evidence.views:
-        if id(view) not in seen:
-            columns = term.effect.signature(view, term.site, term.shape).columns
-            seen[id(view)] = {c: x @ coefficients for c, x in columns.items()}
+        if id(view) in seen:
+            continue
+        added: dict[Channel, Array] = {}
+        for i in at:
+            term, coefficients = loaded.terms[i], loaded.of(i)
+            own = term.effect.signature(view, term.site, term.shape)
+            for c, x in [*own.fixed.items(), *((c, x @ coefficients) for c, x in own.columns.items())]:
+                added[c] = added.get(c, np.zeros(1)) + x
+        seen[id(view)] = added
     return [seen[id(view)] for view in evidence.views]
 
 

@@ -98,6 +98,10 @@ class MotionView(ChainView):
         need = self._of_joints(self.regressor_of_joints[..., own] @ self.model.inertial[own, None])
         return {joint: force[:, 0] for joint, force in need.items()}
 
+    def per_inertial(self, link: str) -> dict[str, Array]:
+        """Return joint -> (g, 10) force per inertial parameter of a link."""
+        return self._of_joints(self.regressor_of_joints[..., self._parameters_of(link)])
+
     def orders(self, joint: str, count: int) -> list[float]:
         """Return the periods per turn that stand out in what the model leaves of a joint's effort, the strongest first.
 
