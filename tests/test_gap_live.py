@@ -25,7 +25,7 @@ from sher3_gap.excitation import excite
 from sher3_gap.simulate.apply import apply_verdict, compare_cases
 from sher3_runtime import Graph
 
-pytestmark = [pytest.mark.graph, pytest.mark.flaky(reruns=2)]
+pytestmark = pytest.mark.graph
 BACKLASH = plants()["backlash"]("tilt", width=6e-5)
 
 
@@ -37,7 +37,7 @@ def play(case: Path, effects, labels, repeats: int, duration: float) -> Path:
     wanted = [(excite(label, ROBOT, duration=duration), repeat) for label in labels for repeat in range(repeats)]
     heard = Heard()
     players = [Player(excitation, ROBOT, heard) for excitation, _ in wanted]
-    with Graph(period=ROBOT.control_period) as graph:
+    with Graph(period=ROBOT.control_period, middleware=False) as graph:
         SteppedRobot(graph, effects, robot=ROBOT)
         with recorded(graph, f"gap_live_{case.name}", topics=RECORDED, robot=ROBOT) as recorder:
             node = graph.add(ExciteNode, players[0])
@@ -130,6 +130,7 @@ class Up:
 
 
 @pytest.mark.slow
+@pytest.mark.flaky(reruns=2)
 def test_the_loop_across_processes(sher3, domain, tmp_path):
     """The commands a user types, each in a process of its own, on a machine that may be busy."""
     save_effects(tmp_path / "robot.yaml", [BACKLASH])

@@ -158,7 +158,7 @@ def _session(path: Path) -> None:
     from sher3_bringup.surgeon.script import Script
     from sher3_runtime import Graph
 
-    with Graph(period=ROBOT.control_period) as graph:
+    with Graph(period=ROBOT.control_period, middleware=False) as graph:
         rig = RobotRig(graph)
         with recorded(graph, "documentation", robot=ROBOT) as recorder:
             rig.play(Script.model_validate(yaml.safe_load(SURGEON)))
