@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from sher3_effects.delay import shifted_path
 from sher3_effects.timing.sensor_delay import SensorDelay
 
 
@@ -15,3 +16,18 @@ def test_less_than_a_period_of_an_effort_is_no_delay(rest, possible):
 def test_a_second_encoder_may_be_late_by_less():
     shape = {"delay": 1e-3, "of_effort": 0.0, "least": 0.0}
     assert SensorDelay().admissible(shape, np.array([-0.4e-3]))
+
+
+@pytest.mark.parametrize("share", [0.06, 0.15, 0.3, 0.7, 1.6, 4.0])
+def test_a_delay_of_any_part_of_a_period_is_within_reach_of_one_that_is_tried(share):
+    tried = SensorDelay().PERIODS
+    low, high = SensorDelay().REST
+    assert any(low < (share - n) / n < high for n in tried)
+
+
+def test_a_path_between_two_samples_is_no_line():
+    """A sine of 1 Hz at 50 Hz: a line between samples is off by up to 2e-3 of its amplitude, a spline by 1e-5."""
+    clock = 0.02 * np.arange(200)
+    late = shifted_path(np.sin(2.0 * np.pi * clock), clock, 0.01)
+    assert np.abs(late - np.sin(2.0 * np.pi * (clock - 0.01)))[5:-5].max() < 1e-5
+    assert late[0] == 0.0

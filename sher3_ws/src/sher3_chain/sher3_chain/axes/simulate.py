@@ -21,6 +21,10 @@ STEP = 1.0e-3
 """Longest integration step, s."""
 FIRST = 4
 """Periods of the record from which the speed at the start is taken: one count in one period is a large speed."""
+SETTLES = 0.5
+"""Longest period of a controller over the time in which its damping stops the axis: a slower one would not be stable,
+so that a log which is slower than this is slower than its controller.
+"""
 ROUNDING = 1e-9
 """Steps by which a period may exceed a whole number of them through rounding."""
 
@@ -111,8 +115,11 @@ def simulate(run: AxesRun, axis: Axis, mass: float, law: Law, first: int = 0) ->
         start = float((q[min(FIRST, len(q) - 1)] - q[0]) / (FIRST * run.period))
     gravity = axis.gravity
     nominal = Nominal(mass, axis.viscous, gravity.constant, gravity.arm, gravity.hanging)
-    substeps = max(1, int(np.ceil(run.period / STEP - ROUNDING)))
-    return np.asarray(_run(reference, float(q[0]), start, run.period, substeps, gains, float(top), nominal, law))
+    turns = max(1, int(np.ceil(run.period * gains[1] / (SETTLES * mass) - ROUNDING)))
+    period = run.period / turns
+    substeps = max(1, int(np.ceil(period / STEP - ROUNDING)))
+    asked = np.interp(np.arange(len(q) * turns) / turns, np.arange(len(q)), reference)
+    return np.asarray(_run(asked, float(q[0]), start, period, substeps, gains, float(top), nominal, law))[::turns]
 
 
 @compiled
@@ -127,7 +134,7 @@ def _run(
     nominal: Nominal,
     law: Law,
 ) -> Array:
-    """Position (n,); the drive sees the mean velocity of two periods and holds its force over a period."""
+    """Position (n,) at each turn of a controller, which sees the mean velocity of two periods and holds its force."""
     out = np.empty(len(reference))
     h = period / substeps
     for k in range(len(reference)):

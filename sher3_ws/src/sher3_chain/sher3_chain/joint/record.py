@@ -14,7 +14,14 @@ from sher3_machines.intake.fields import Clock, Column
 from sher3_machines.intake.mending.motion import check_speed, counts_backwards, is_magnitude, signs_of, speed_ratio
 from sher3_machines.intake.mending.parts import LONGEST_HOLE, cut
 from sher3_machines.intake.mending.readings import glitches, known_readings
-from sher3_machines.intake.mending.repeats import filled, fresh_readings, fresh_rows, goes_smoothly, hold_of
+from sher3_machines.intake.mending.repeats import (
+    LONGEST_HOLD,
+    filled,
+    fresh_readings,
+    fresh_rows,
+    goes_smoothly,
+    hold_of,
+)
 from sher3_machines.intake.mending.stamps import even_stamps, missed_periods, missing_note
 from sher3_machines.intake.mending.wraps import TURN, joined, wrapped_over
 from sher3_machines.intake.spelling import table_of
@@ -125,7 +132,8 @@ def _mended(column: Column, tables: Tables, clock: Clock, run: str, of: tuple[st
     known, note = known_readings(x, stamps is not None, what)
     notes += [note] if note else []
     stamps, x = _only(stamps, x, known)
-    fresh = fresh_readings(x) if of[1] in (*READINGS, "reference") else np.ones(len(x), dtype=bool)
+    told = of[1] in (*READINGS, "reference")
+    fresh = fresh_readings(x, steps=of[1] not in ENCODERS) if told else np.ones(len(x), dtype=bool)
     if not fresh.all() and (of[1] in READINGS or goes_smoothly(x[fresh])):
         stamps, x = _only(stamps, x, fresh)
         notes.append(f"{what} is held for {hold_of(fresh):.0f} rows: slower than the log; its new readings are taken")
@@ -271,7 +279,8 @@ def _clock(found: list[Stamped], clock: Clock, run: str, polled: bool) -> tuple[
         if len(lengths) > 1:
             raise MachineError(f"{run}: columns differ in length", value=sorted(lengths), remedy="give a time column")
         return np.arange(min(lengths)) / clock.rate, 1.0 / clock.rate, []
-    stamps = [_checked(t, run) for t, _ in found if t is not None]
+    longest = max(LONGEST_HOLE, LONGEST_HOLD + 1.0) if polled else LONGEST_HOLE
+    stamps = [_checked(t, run, longest) for t, _ in found if t is not None]
     period = float(max(np.median(np.diff(t)) for t in stamps))  # of the slowest signal: between its samples is nothing
     start, end = max(t[0] for t in stamps), min(t[-1] for t in stamps)
     if end - start < (MIN_SAMPLES - 1) * period * (1.0 - ROUNDING):
@@ -288,8 +297,8 @@ def _clock(found: list[Stamped], clock: Clock, run: str, polled: bool) -> tuple[
     return start + period * np.arange(samples), period, notes + ([note] if uneven > JITTER else [])
 
 
-def _checked(t: Array, run: str) -> Array:
-    """Stamps (n,), refused where they run backwards or have a hole."""
+def _checked(t: Array, run: str, longest: float) -> Array:
+    """Stamps (n,), refused where they run backwards or have a hole of more periods than the longest."""
     steps = np.diff(t)
     if (steps <= 0.0).any():
         at = int(np.argmax(steps <= 0.0)) + 1
@@ -299,12 +308,12 @@ def _checked(t: Array, run: str) -> Array:
             remedy="cut the record there",
         )
     hole = float(steps.max() / np.median(steps))
-    if hole > LONGEST_HOLE:
+    if hole > longest:
         at = int(np.argmax(steps)) + 1
         raise MachineError(
             f"{run}: a hole of {steps[at - 1]:.3g} s before sample {at}",
             value=f"{hole:.0f} periods",
-            limit=f"{LONGEST_HOLE:.0f} periods",
+            limit=f"{longest:.0f} periods",
             remedy="import the parts as runs of their own",
         )
     return t

@@ -16,8 +16,8 @@ from sher3_diagnosis.localise.gaps import component_rms
 from sher3_diagnosis.quantify.closure import closure, residual_after
 from sher3_diagnosis.verdict import Interval, Residual
 
+from sher3_chain.axes.command.law import law_of_axis
 from sher3_chain.axes.evidence import AxisEvidence
-from sher3_chain.axes.law import law_of_axis
 from sher3_chain.axes.machine import Axes
 from sher3_chain.joint.description import AxesDescription, Axis, ChainDescription
 from sher3_chain.joint.record import AxesRun

@@ -35,10 +35,10 @@ def controlled(law, seed=3, seconds=12.0, smooth=False):
     return rows
 
 
-def verdict_of(rows, **law):
+def verdict_of(rows, period=PERIOD, **law):
     stated = {"kind": "force", "position_gain": KP, "velocity_gain": KD, "held": True, **law}
     signals = dict(zip(("position", "reference", "command"), rows.T, strict=True))
-    return diagnose(machine(command_law=stated), [AxesRun("run", PERIOD, {"slide": signals})]).verdict
+    return diagnose(machine(command_law=stated), [AxesRun("run", period, {"slide": signals})]).verdict
 
 
 def of_controller(verdict):
@@ -56,6 +56,14 @@ def test_a_command_that_is_what_was_stated(smooth):
     assert not of_controller(verdict)
     if not smooth:
         assert any("what the stated law asks for" in n for n in verdict.notes)
+    assert {"coulomb_friction", "viscous_friction"} <= set(effects(verdict))
+
+
+@pytest.mark.parametrize("rows", [2, 3, 10])
+def test_a_log_that_is_slower_than_its_controller(rows):
+    """Over a shorter time than the log tells, a speed is late by less: that is no term that nobody stated."""
+    verdict = verdict_of(controlled(as_stated)[::rows], PERIOD * rows)
+    assert not of_controller(verdict) and {p.stage for p in verdict.places} == {"motor_mechanics"}
     assert {"coulomb_friction", "viscous_friction"} <= set(effects(verdict))
 
 

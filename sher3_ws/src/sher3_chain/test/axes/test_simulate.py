@@ -36,6 +36,15 @@ def test_friction_is_a_budget_that_never_drives():
     assert moved[-1] == pytest.approx(-0.5, rel=2e-3) and (np.diff(moved) <= 0.0).all()
 
 
+def test_a_log_that_is_slower_than_its_loop_is_run_again_all_the_same():
+    """A damping of 1200 N/(m/s) stops 2 kg in 1.7 ms; the log has a row each 20 ms."""
+    law = {"kind": "force", "position_gain": 1e4, "velocity_gain": 1200.0}
+    axis, start = axis_of(command_law=law), held(200, period=0.02)
+    start.signals["slide"]["reference"][:] = 0.01
+    moved = simulate(start, axis, 2.0, Law())
+    assert moved[-1] == pytest.approx(0.01, abs=1e-5) and (np.diff(moved) >= -1e-9).all()
+
+
 def test_a_loop_settles_where_its_stiffness_carries_the_offset():
     """100 N/m against 2 N: 20 mm behind the reference."""
     axis = axis_of(command_law={"kind": "force", "position_gain": 100.0, "velocity_gain": 30.0})

@@ -85,6 +85,11 @@ def _hold(x: Array, size: int, rng: np.random.Generator, record: Record) -> Arra
     return x[np.arange(len(x)) // (size + 1) * (size + 1)]
 
 
+def _long_hold(x: Array, size: int, rng: np.random.Generator, record: Record) -> Array:
+    every = (6, 10, 16)[size - 1]
+    return x[np.arange(len(x)) // every * every]
+
+
 def _counted(role: str) -> Nuisance:
     def change(x: Array, size: int, rng: np.random.Generator, record: Record) -> Array:
         step = record.counts.get(role, 0.0) or float(np.ptp(x)) * 1e-4
@@ -136,6 +141,12 @@ def cut_end(record: Record, size: int, rng: np.random.Generator) -> Record | Non
     """Stop the logger early: by 2, 4, 6 percent of the record."""
     n = len(next(iter(record.columns.values())))
     return record.rows(np.arange(n - size * n // 50))
+
+
+def slower_log(record: Record, size: int, rng: np.random.Generator) -> Record | None:
+    """Log every second, third or fourth row. A table without a clock has no rows to spare."""
+    n = len(next(iter(record.columns.values())))
+    return record.rows(np.arange(0, n, size + 1)) if "time" in record.roles else None
 
 
 def polled_rows(record: Record, size: int, rng: np.random.Generator) -> Record | None:
@@ -190,6 +201,7 @@ NUISANCES: Mapping[str, Nuisance] = {
     "turned reference": _on("reference", _opposite),
     "held effort": _on("effort", _hold),
     "held position": _on("position", _hold),
+    "slow position": _on("position", _long_hold),
     "held load encoder": _on("load", _hold),
     "held reference": _on("reference", _hold),
     "counts of the position": _counted("position"),
@@ -210,6 +222,7 @@ NUISANCES: Mapping[str, Nuisance] = {
     "dropped rows": drop_rows,
     "repeated rows": repeat_rows,
     "polled rows": polled_rows,
+    "slower log": slower_log,
     "silent effort": silent_effort,
     "late start": cut_start,
     "early end": cut_end,

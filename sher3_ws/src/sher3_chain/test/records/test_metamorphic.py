@@ -14,7 +14,7 @@ from metamorphic import Outcome, difference, outcomes, table
 from nuisances import NUISANCES, SIZES
 from sweep import swept
 
-QUICK = ("early end",)
+QUICK = ("early end", "slower log")
 """Nuisances of a slide in the quick sub-sample."""
 
 
@@ -36,7 +36,7 @@ def test_no_nuisance_changes_what_is_said_of_a_load_cell():
 def test_a_sub_sample_does_not_change_what_is_said_of_a_slide():
     described, record = slide()
     found = list(outcomes(record, partial(answer, described), QUICK))
-    assert len(found) == 3 and not [x for x in found if x.difference], table(found)
+    assert len(found) == 3 * len(QUICK) and not [x for x in found if x.difference], table(found)
 
 
 def test_another_machine_is_seen_as_another_verdict():
@@ -53,14 +53,8 @@ def test_misses_are_listed_by_name():
     assert table(found) == "2 verdicts, 50.0% unchanged\n  jitter of the clock, size 3: lost backlash"
 
 
-MISSES: Mapping[str, set[str]] = {
-    "slide": {"held reference"},
-    "lift": {"polled rows"},
-}
-"""Record -> nuisances that change its verdict at one size or more.
-
-A reference logged at a half to a quarter of the rate reads as another law of the controller.
-"""
+MISSES: Mapping[str, set[str]] = {}
+"""Record -> nuisances that change its verdict at one size or more."""
 
 
 @pytest.mark.slow

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from sher3_diagnosis.attribute.candidates import Candidates
 from sher3_diagnosis.channel import AT_TIP, Array
 from sher3_diagnosis.evidence import Evidence
@@ -84,6 +86,15 @@ class Attribution:
         """The term of each cause with its coefficients, (p,)."""
         return [(self.fit.terms[i], self.fit.of(i)) for i in self.causes]
 
+    def ranked(self, index: int) -> tuple[tuple[Fit, ...], float]:
+        """Return the ranking of a cause, and the total loss of the cause itself that it is to be compared with.
+
+        A cause that was looked for in its own place was ranked there, where the losses of other places are in no total.
+        """
+        found = self.ranking[index] if self.ranking else ()  # a search by steps ranks none
+        own = next((f.total for f in found if f.terms[-1].key == self.fit.terms[index].key), np.inf)
+        return found, min(own, self.fit.total)
+
 
 def without_term(evidence: Evidence, current: Fit, index: int) -> Fit:
     """Fit again without one term."""
@@ -101,18 +112,18 @@ def with_rivals(candidates: Candidates, current: Fit) -> Attribution:
         worth = fit(evidence.data, others).total - current.total
         ranked = candidates.search(term.channels, others) if i >= len(evidence.nuisance) else []
         ranking.append(tuple(ranked[:RANKED]))
-        alike = [f for f in ranked if unlikeness(f, current, worth) < 1.0]
+        alike = [f for f in ranked if unlikeness(f, current.total, worth) < 1.0]
         rivals.append(tuple(f for f in alike if f.terms[-1].effect.id != term.effect.id))
         explained.append(worth)
     return Attribution(current, tuple(rivals), tuple(explained), tuple(ranking), len(evidence.nuisance))
 
 
-def unlikeness(rival: Fit, chosen: Fit, worth: float) -> float:
-    """Return the normalised loss difference of a rival to the chosen effect; below 1 it explains as much.
+def unlikeness(rival: Fit, chosen: float, worth: float) -> float:
+    """Return the normalised difference of a rival's loss to that of the chosen effect; below 1 it explains as much.
 
     The share is of the gap with its floor: rounding repeats, so that a small part of the floor is no evidence. At the
     tip there is none.
     """
     floor = sum(len(x) for run in rival.terms[-1].columns for c, x in run.items() if c.stage not in AT_TIP)
     margin = max(NEEDED, RIVAL * (worth + floor))
-    return (rival.total - chosen.total) / margin
+    return (rival.total - chosen) / margin

@@ -52,8 +52,9 @@ def candidates_of(attribution: Attribution, index: int) -> list[Candidate]:
     """Return the cause and those that come closest to it in its place, each effect and site once."""
     term = attribution.fit.terms[index]
     out = {term.key: _candidate(term, 0.0)}
-    for f in attribution.ranking[index] if attribution.ranking else ():  # a search by steps ranks none
-        far = max(0.0, unlikeness(f, attribution.fit, attribution.explained[index]))
+    ranking, total = attribution.ranked(index)
+    for f in ranking:
+        far = max(0.0, unlikeness(f, total, attribution.explained[index]))
         out.setdefault(f.terms[-1].key, _candidate(f.terms[-1], far))
     return list(out.values())
 

@@ -9,7 +9,7 @@ import numpy as np
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Best, Measured, Shape, Signature, column
 
-from sher3_effects.delay import LONGEST_DELAY, shifted
+from sher3_effects.delay import LONGEST_DELAY, shifted, shifted_path
 from sher3_effects.page import Page
 from sher3_effects.view import AxisView
 
@@ -39,7 +39,7 @@ class SensorDelay(Page):
         "command_delay": "the command is late, all readings agree",
     }
     units = {"load_delay": "s", "effort_delay": "s"}
-    PERIODS = (0.5, 1.0, 2.0, 3.0, 5.0, 8.0, 13.0, 21.0)
+    PERIODS = (0.1, 0.25, 0.5, 1.0, 2.0, 3.0, 5.0, 8.0, 13.0, 21.0)
     """Delays that are tried, in periods of the record, either way."""
     finer = {"delay": (0.85, 0.95, 1.05, 1.2)}
     REST = (-0.5, 1.0)
@@ -76,7 +76,7 @@ class SensorDelay(Page):
             slope = -np.gradient(shifted(truth, run.stage_clock, -shape["delay"]), run.period)
         else:
             channel, truth = Channel("transmission", site), run.motor[:, row]
-            moved = shifted(truth, run.stage_clock, shape["delay"]) - truth
+            moved = shifted_path(truth, run.stage_clock, shape["delay"]) - truth
             slope = -np.gradient(shifted(run.smooth[:, row], run.stage_clock, shape["delay"]), run.period)
         fixed = run.to_grid(moved[:, None])
         return Signature({channel: column(run.to_grid(slope[:, None])[:, 0])}, {channel: fixed})

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from xml.etree.ElementTree import Element, SubElement, tostring
 
+from sher3_chain.axes.command.law import is_law
 from sher3_chain.axes.evidence import AxisEvidence
-from sher3_chain.axes.law import is_law
 from sher3_common import FileError, read_text
 from sher3_description.contract import GRAVITY
 

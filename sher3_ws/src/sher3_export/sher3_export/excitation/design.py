@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from sher3_chain.axes.law import is_law
+from sher3_chain.axes.command.law import is_law
 from sher3_chain.axes.machine import Axes
 from sher3_chain.manipulator.machine import Manipulator
 from sher3_diagnosis.channel import Array

@@ -172,8 +172,8 @@ def _stacked(columns: Mapping[str, Array], rows: NDArray[np.int64]) -> Array:
 def _sibling(attribution: Attribution, index: int) -> float:
     """Share by which the next effect of another id explains less in the place of a cause."""
     chosen, worth = attribution.fit.terms[index], max(attribution.explained[index], 1.0)
-    ranked = attribution.ranking[index] if attribution.ranking else ()
+    ranked, total = attribution.ranked(index)
     others = [f.total for f in ranked if f.terms[-1].effect.id != chosen.effect.id]
     if not others:
         return 1.0
-    return float(np.clip((min(others) - attribution.fit.total) / worth, 0.0, 1.0))
+    return float(np.clip((min(others) - total) / worth, 0.0, 1.0))

@@ -7,13 +7,16 @@ steps of its column. A coarse encoder that moves slowly repeats its counts too, 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 from sher3_diagnosis.channel import Array, Mask
 
-LONGEST_HOLD = 9
-"""Rows in a row that may repeat one: a longer stretch is an axis at rest, or a drive that is off."""
+LONGEST_HOLD = 16
+"""Rows in a row that may repeat one: where one row in three is polled again, an hour at 1 kHz holds a stretch of 14
+(3^14 rows are 80 minutes). A longer one is an axis at rest, or a drive that is off.
+"""
 USUAL_HOLD = 5.0
 """Rows that usually repeat one, as a median, beyond which an axis dwells: it is started and stopped."""
 FEWEST = 5
@@ -27,25 +30,32 @@ JUMP = 4.0
 be followed so."""
 
 
-def repeats(x: Array, least: float) -> Mask:
+def repeats(x: Array, least: float, longest: float = LONGEST_HOLD, usual: float = USUAL_HOLD) -> Mask:
     """Return (n,) True where a row of readings (n, m) repeats the one before without being a sample of its own.
 
     Args:
         x: readings; a single channel has m = 1.
         least: share of the rows from which repeats say anything.
+        longest: rows in a row that may repeat one.
+        usual: the same as a median.
     """
     out = np.zeros(len(x), dtype=bool)
     change = np.diff(x, axis=0)
-    same = np.concatenate([[False], (change == 0.0).all(axis=1)])
-    edges = np.flatnonzero(np.diff(np.concatenate([same.astype(np.int8), [0]])))
-    first, last = edges[::2], edges[1::2]  # the row that is repeated, and the last one that repeats it
-    short = (last - first <= LONGEST_HOLD) & (last + 1 < len(x))
+    first, last = stretches(x)
+    short = (last - first <= longest) & (last + 1 < len(x))
     for a, b in zip(first[short], last[short], strict=True):
         out[a + 1 : b + 1] = True
-    if out.sum() < max(FEWEST, least * len(x)) or np.median((last - first)[short]) > USUAL_HOLD:
+    if out.sum() < max(FEWEST, least * len(x)) or np.median((last - first)[short]) > usual:
         return np.zeros_like(out)
     jumps = np.abs(x[last[short] + 1] - x[first[short]]) > JUMP * smallest_steps(change)
     return out if jumps.any(axis=1).mean() > 0.5 else np.zeros_like(out)
+
+
+def stretches(x: Array) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return the rows (k,) of readings (n, m) that are repeated, and the last ones (k,) that repeat them."""
+    same = np.concatenate([[False], (np.diff(x, axis=0) == 0.0).all(axis=1)])
+    edges = np.flatnonzero(np.diff(np.concatenate([same.astype(np.int8), [0]])))
+    return edges[::2], edges[1::2]
 
 
 def smallest_steps(change: Array) -> Array:
@@ -60,9 +70,31 @@ def fresh_rows(columns: Sequence[Array]) -> Mask:
     return ~repeats(np.hstack(flat), POLLED)
 
 
-def fresh_readings(x: Array) -> Mask:
-    """Return (n,) False where a channel (n,) that is slower than its log repeats a reading."""
-    return ~repeats(np.nan_to_num(x)[:, None], HELD)
+def fresh_readings(x: Array, steps: bool = True) -> Mask:
+    """Return (n,) False where a channel (n,) that is slower than its log repeats a reading.
+
+    A reading that stays for longer than the channel is held was read again: its axis rests there or turns round.
+
+    Args:
+        x: readings.
+        steps: whether what is read may go in steps. An encoder may be held for any number of rows, if most of its
+            readings are held for as many: nothing moves in steps.
+    """
+    x = np.nan_to_num(x)[:, None]
+    fresh = ~repeats(x, HELD) if steps else ~_held(x)
+    hold, at = hold_of(fresh), np.flatnonzero(fresh)
+    for first, after in pairwise(at):
+        again = np.arange(1, round((after - first) / hold)) * hold
+        fresh[first + np.rint(again).astype(int)] = True
+    return fresh
+
+
+def _held(x: Array) -> Mask:
+    """Return (n,) True where an encoder (n, 1) that is slower than its log repeats a reading."""
+    first, last = stretches(x)
+    usual = float(np.median(last - first)) if len(first) else 0.0
+    found = repeats(x, HELD, np.inf, np.inf)
+    return found if usual <= USUAL_HOLD or hold_of(~found) > usual else np.zeros_like(found)
 
 
 def goes_smoothly(x: Array) -> bool:
