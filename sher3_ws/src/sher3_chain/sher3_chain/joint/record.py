@@ -29,13 +29,12 @@ from sher3_machines.intake.tables import Tables
 
 from sher3_chain.joint.counted import with_counted_clock
 from sher3_chain.joint.description import Axis, ChainDescription
+from sher3_chain.joint.moments import JITTER, Stamped, timed
 from sher3_chain.joint.speed import integrated, is_speed
 from sher3_chain.joint.units import check_units
 
 MIN_SAMPLES = 20
 """Samples a run must have: five blocks of the smallest size. Several short runs are judged together."""
-JITTER = 0.01
-"""Share of the period by which stamps may be off before the record is resampled."""
 ROUNDING = 1e-6
 """Share by which a period may be off through rounding."""
 SIGNALS = ("position", "reference", "command", "effort", "load", "nominal_effort", "applied", "temperature")
@@ -51,9 +50,6 @@ steps.
 """
 OTHERS = ("reference", "load")
 """Places that follow the position, in its sense or turned."""
-
-Stamped = tuple[Array | None, Array]
-"""Stamps in s, where there are any, and the samples."""
 
 
 @dataclass(frozen=True)
@@ -104,6 +100,7 @@ def axes_run(name: str, tables: Tables, machine: ChainDescription) -> AxesRun:
         mended += joints
         mended += _without_glitches(axis, raw[axis.name], name)
         _check_velocity(axis, raw[axis.name]["position"], tables, machine.time, name)
+    mended += timed(raw, name)
     clock, period, notes = _clock([s for a in raw.values() for s in a.values()], machine.time, name, polled)
     signals = {
         a: {k: _onto(clock, t, x, polled and k in ENCODERS) for k, (t, x) in found.items()} for a, found in raw.items()

@@ -110,6 +110,16 @@ def _jitter(x: Array, size: int, rng: np.random.Generator, record: Record) -> Ar
     return x + 0.003 * size * step * rng.uniform(-1.0, 1.0, len(x))
 
 
+def _noisy_clock(x: Array, size: int, rng: np.random.Generator, record: Record) -> Array:
+    step = float(np.median(np.diff(x)))
+    return x + (0.05, 0.2, 0.4)[size - 1] * step * rng.uniform(-1.0, 1.0, len(x))
+
+
+def _rounded_clock(x: Array, size: int, rng: np.random.Generator, record: Record) -> Array:
+    step = (0.4, 2.5, 5.0)[size - 1] * float(np.median(np.diff(x)))
+    return np.floor(x / step) * step
+
+
 def _later(x: Array, size: int, rng: np.random.Generator, record: Record) -> Array:
     return x + (1.0, 1e3, 1e6)[size - 1]
 
@@ -212,6 +222,8 @@ NUISANCES: Mapping[str, Nuisance] = {
     "outliers of the effort": _on("effort", _outliers),
     "outliers of the load encoder": _on("load", _outliers),
     "jitter of the clock": _on("time", _jitter),
+    "noisy stamps": _on("time", _noisy_clock),
+    "rounded stamps": _on("time", _rounded_clock),
     "another start of the clock": _on("time", _later),
     "unit of the position": _unit("position"),
     "unit of the effort": _unit("effort"),

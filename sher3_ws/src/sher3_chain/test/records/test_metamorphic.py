@@ -14,7 +14,7 @@ from metamorphic import Outcome, difference, outcomes, table
 from nuisances import NUISANCES, SIZES
 from sweep import swept
 
-QUICK = ("early end", "slower log")
+QUICK = ("slower log", "noisy stamps")
 """Nuisances of a slide in the quick sub-sample."""
 
 

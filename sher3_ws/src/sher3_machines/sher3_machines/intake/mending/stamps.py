@@ -54,7 +54,13 @@ def even_stamps(stamps: Array, run: str) -> tuple[Array, NDArray[np.int64], str]
 
 
 def missed_periods(stamps: Array) -> NDArray[np.int64]:
-    """Return how many periods are missing at each place where a clock with stamps (m,) missed some.
+    """Return how many periods are missing at each place where a clock with stamps (m,) missed some."""
+    missing = missing_at(stamps)
+    return missing[missing > 0]
+
+
+def missing_at(stamps: Array) -> NDArray[np.int64]:
+    """Return how many periods are missing after each stamp of a clock (m,) but the last, (m - 1,).
 
     A stamp that is only late is followed by a short step; after a missed period the clock goes on late.
     """
@@ -62,7 +68,7 @@ def missed_periods(stamps: Array) -> NDArray[np.int64]:
     period = float(np.median(steps))
     two = np.concatenate([steps[:-1] + steps[1:], steps[-1:] + period])
     missing = np.minimum(np.round(steps / period), np.round(two / period - 1.0)).astype(np.int64) - 1
-    return missing[missing > 0]
+    return np.maximum(missing, 0)
 
 
 def missing_note(missed: NDArray[np.int64], period: float, run: str) -> str:
@@ -75,8 +81,9 @@ def missing_note(missed: NDArray[np.int64], period: float, run: str) -> str:
 
 
 def _on_a_line(stamps: Array, repeated: float, rounding: float, run: str) -> Array:
-    """Return rounded stamps on the line through the first and the last one; raises MachineError where they are none."""
-    line = np.linspace(stamps[0], stamps[-1], len(stamps))
+    """Return rounded stamps on the line through them, by least squares; raises MachineError where they are none."""
+    row = np.arange(len(stamps)) - 0.5 * (len(stamps) - 1)
+    line = stamps.mean() + row * float(row @ stamps) / float(row @ row)
     off = float(np.abs(line - stamps).max())
     if off > 2.0 * rounding:
         raise MachineError(
