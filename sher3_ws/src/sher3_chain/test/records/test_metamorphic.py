@@ -14,7 +14,7 @@ from metamorphic import Outcome, difference, outcomes, table
 from nuisances import NUISANCES, SIZES
 from sweep import swept
 
-QUICK = ("slower log", "noisy stamps")
+QUICK = ("early end", "noisy stamps")
 """Nuisances of a slide in the quick sub-sample."""
 
 
@@ -53,8 +53,11 @@ def test_misses_are_listed_by_name():
     assert table(found) == "2 verdicts, 50.0% unchanged\n  jitter of the clock, size 3: lost backlash"
 
 
-MISSES: Mapping[str, set[str]] = {}
-"""Record -> nuisances that change its verdict at one size or more."""
+MISSES: Mapping[str, set[str]] = {"slide": {"slower log"}}
+"""Record -> nuisances that change its verdict at one size or more.
+
+A log of a quarter of the rate tells the displacement of a friction that has none as 4 um, 0.1 um before.
+"""
 
 
 @pytest.mark.slow
