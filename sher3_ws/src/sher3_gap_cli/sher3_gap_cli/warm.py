@@ -7,6 +7,7 @@ user's cache; without this the first diagnosis compiles it.
 from __future__ import annotations
 
 import json
+import sys
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -34,8 +35,11 @@ def warm_up() -> str:
 
 
 def main() -> None:
-    """Fill the cache of compiled code."""
-    warm_up()
+    """Fill the cache of compiled code; end with a sentence where the readers of recordings are not installed."""
+    try:
+        warm_up()
+    except ModuleNotFoundError as error:
+        sys.exit(f"sher3: the laws of this robot need its recordings; no {error.name}; pip install 'sher3[bags]'")
 
 
 if __name__ == "__main__":
