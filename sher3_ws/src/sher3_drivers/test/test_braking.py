@@ -46,21 +46,21 @@ class Robot:
         self.log.add(trip, self._now)
         self.watch.rest.begin()
 
-    def brake(self, velocity, echo=REST, effort=REST, goal=Goal.STOPPED):
-        """Let a period of a stop pass."""
+    def brake(self, velocity, echo=REST, effort=REST, goal=Goal.STOPPED, motor=None):
+        """Let a period of a stop pass; `motor` is what the motor encoders say instead of the truth."""
         self.watch.demand.stopped()
         self.watch.sync()
-        return self._look(goal, velocity, echo, effort)
+        return self._look(goal, velocity, echo, effort, motor)
 
     @property
     def _now(self):
         return round(self.tick * PERIOD * 1e9)
 
-    def _look(self, goal, velocity, echo, effort):
+    def _look(self, goal, velocity, echo, effort, motor=None):
         self.tick += 1
         self.place = [x + v * PERIOD for x, v in zip(self.place, velocity, strict=True)]
         place = tuple(self.place)
-        said = DriveFeedback(self._now, place, place, velocity, effort, echo)
+        said = DriveFeedback(self._now, place, motor or place, velocity, effort, echo)
         return self.watch.check(said, goal, goal is Goal.ENABLED, self.log, self._now)
 
 
@@ -169,6 +169,14 @@ def test_a_force_explains_60_um_of_an_axis_that_goes_on_after_a_stop():
     assert (trip.reason, trip.axes) == (Reason.STOP_NOT_OBEYED, (LEG,)) and tick == pytest.approx(
         BRAKE_TICKS + 75, abs=2
     )
+
+
+def test_a_motor_encoder_that_stands_hides_no_axis_that_goes_on_after_a_stop():
+    """At 1 mm/s, 2 um a tick, the load encoder has moved by more than 7 um in the fourth tick."""
+    robot = Robot()
+    robot.stop()
+    trips = [robot.brake(of(LEG, 1e-3), motor=REST) for _ in range(4)]
+    assert trips[:3] == [None] * 3 and (trips[3].reason, trips[3].axes) == (Reason.ENCODER_FROZEN, (LEG,))
 
 
 def test_nothing_is_forgotten_where_the_rest_begins():

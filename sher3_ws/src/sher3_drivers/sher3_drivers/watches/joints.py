@@ -40,12 +40,13 @@ class JointWatch:
         begin_axes(self._rows, (0.0,) * len(scales), (0.0,) * len(scales))
         _judge(len(scales))
 
-    def check(self, feedback: DriveFeedback, since: float) -> Trip | None:
+    def check(self, feedback: DriveFeedback, since: float, stops: bool = False) -> Trip | None:
         """Judge a feedback that came `since` s after the one before; 0 means that there was none before.
 
         Over ticks that were lost the newest demand is taken to have held. When more than `_HOLE` of them were lost, or
         more time than the loop may hang, the axes start afresh: the robot has been stopped for that reason by then.
-        They start afresh at the first feedback too. All axes whose motors are off their demand are suspected.
+        They start afresh at the first feedback too. All axes whose motors are off their demand are suspected. Where the
+        robot `stops`, so is the one whose encoders differ: nobody can say that it brakes.
         """
         motor, load = feedback.motor_position, feedback.load_position
         if not 0.0 < since <= self._hole:
@@ -54,5 +55,7 @@ class JointWatch:
         said: Any = _judge(len(self.axes))(self._rows, motor, load, feedback.velocity_demand, since)
         if not said:
             return None
-        off = np.flatnonzero(self._rows["stray_ticks"] >= self._rows["astray_ticks"])
-        return self.axes[said >> 3].trip(said & 7)._replace(axes=tuple(off.tolist()))
+        number = said >> 3
+        off = {number} if stops else set()
+        off.update(np.flatnonzero(self._rows["stray_ticks"] >= self._rows["astray_ticks"]).tolist())
+        return self.axes[number].trip(said & 7)._replace(axes=tuple(sorted(off)))

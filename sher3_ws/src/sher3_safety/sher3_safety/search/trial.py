@@ -43,7 +43,7 @@ def try_all(draws: Sequence[Draw], robot: Robot, seed: int) -> Iterator[Found]:
             ready = run.start()
             while ready and left:
                 yield _try(run, left.pop(0))
-                ready = _recover(run)
+                ready = recover(run)
 
 
 def _try(run: MatrixRun, draw: Draw) -> Found:
@@ -71,7 +71,7 @@ def _try(run: MatrixRun, draw: Draw) -> Found:
     return Found(draw, farthest, first.reason.name if first else operator.state)
 
 
-def _recover(run: MatrixRun) -> bool:
+def recover(run: MatrixRun) -> bool:
     """End all faults, lead the tip back, and enable the robot again; return whether it is."""
     run.inject(make_request(component="all", fault=OK).to_json())
     run.operator.pedal = 0.0

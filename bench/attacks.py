@@ -1,0 +1,188 @@
+"""Pairs of faults that are in none of the kinds of `sher3 fault`: how far each moves the tip, in stepped time.
+
+    python bench/attacks.py             # all of them
+    python bench/attacks.py --only tilt
+
+Each acts for 0.8 s on a robot in a state of the matrix. Travel is how far the tip is off its way, straight on until the
+driver is told zero or stops.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
+
+import numpy as np
+from sher3_control.motion.speed_cap import Regime
+from sher3_description import ACTUATORS, load_robot
+from sher3_drivers.bus.frame import iter_frames, pack_frames
+from sher3_drivers.canopen import objects as od
+from sher3_drivers.sensor.device import WrenchRecord
+from sher3_runtime import Graph
+from sher3_safety.rows.row import IDLE, LIMIT, MOVING, SIDEWAYS, State
+from sher3_safety.runs.stepped import APPROACH, MatrixRun
+from sher3_safety.search.trial import BEFORE, recover
+
+ROBOT = load_robot()
+TICKS = 400
+PERIOD, TICK = ROBOT.control_period, round(ROBOT.control_period * 1e9)
+LEGS, NEAR, FREE = ACTUATORS[:3], Regime.NEAR_TISSUE, Regime.FREE
+Lost = Callable[[int, int, int, int], bool]
+"""Whether a frame is lost: of tick, node id, CAN id, channel."""
+
+
+def lossy(run: MatrixRun, lost: Lost) -> Callable[[int, bytes, int], bytes]:
+    """Return what loses frames on their way."""
+    begin = run.rig.plant.drives.clock()
+
+    def tamper(channel: int, frames: bytes, now: int) -> bytes:
+        tick = (now - begin) // TICK
+        return pack_frames(f for f in iter_frames(frames) if not lost(tick, f.can_id & 0x7F, f.can_id, channel))
+
+    return tamper
+
+
+def goes(run: MatrixRun, speed: float, *names: str) -> None:
+    """Let axes go by themselves [m/s, rad/s]."""
+    for name in names:
+        run.rig.plant.drives.drives[name].stray = lambda velocity: velocity + speed
+
+
+def unheard(lost: Lost, speed: float, *names: str) -> Callable[[MatrixRun], None]:
+    """Return an attack that loses reports while axes go."""
+
+    def attack(run: MatrixRun) -> None:
+        run.rig.plant.drives.tamper_frames = lossy(run, lost)
+        goes(run, speed, *names)
+
+    return attack
+
+
+def without_sync(run: MatrixRun) -> None:
+    """Let one channel hear no SYNC while the tilt goes."""
+    run.rig.plant.drives.tamper_received = lossy(
+        run, lambda t, n, can_id, channel: can_id == od.SYNC_ID and channel == 1
+    )
+    goes(run, 9e-4, "tilt")
+
+
+def explained(speed: float) -> Callable[[MatrixRun], None]:
+    """Return an attack of a leg that goes and reports the force that would explain it."""
+
+    def attack(run: MatrixRun) -> None:
+        drive, went = run.rig.plant.drives.drives[LEGS[0]], [0.0]
+
+        def stray(velocity: float) -> float:
+            went[0] += speed * PERIOD
+            return velocity + speed
+
+        drive.stray = stray
+        drive.tamper = lambda said: said._replace(
+            effort=said.effort - drive.scale.hold * (went[0] + speed * drive.scale.settling), velocity_demand=0.0
+        )
+
+    return attack
+
+
+def mirrored(run: MatrixRun) -> None:
+    """Let one channel of the force sensor have the other sign."""
+    run.rig.force.tamper = lambda said: [said._replace(wrench=(-said.wrench[0], *said.wrench[1:]))]
+
+
+def slow_sensor(run: MatrixRun) -> None:
+    """Put the force sensor behind a low pass of 0.3 s, and let the hand leave."""
+    felt: list[np.ndarray] = []
+
+    def tamper(said: WrenchRecord) -> list[WrenchRecord]:
+        now = np.array(said.wrench)
+        felt[:] = [felt[0] + PERIOD / 0.3 * (now - felt[0])] if felt else [now]
+        return [said._replace(wrench=tuple(felt[0].tolist()))]
+
+    run.rig.force.tamper = tamper
+    run.graph.step(3)
+    run.operator.force = 0.0
+
+
+def one_stands(run: MatrixRun) -> None:
+    """Let a leg stand and another be twice as fast while channel 1 is heard in one tick of three."""
+    run.rig.plant.drives.tamper_frames = lossy(run, lambda tick, node, can_id, channel: channel == 1 and tick % 3 != 0)
+    drives = run.rig.plant.drives.drives
+    drives[LEGS[0]].stray, drives[LEGS[1]].stray = (lambda velocity: 0.0), (lambda velocity: 2.0 * velocity)
+
+
+class Case(NamedTuple):
+    """An attack, in a state of a regime."""
+
+    name: str
+    attack: Callable[[MatrixRun], None]
+    state: State
+    regime: Regime = NEAR
+
+
+BY_TURNS = unheard(lambda tick, node, can_id, channel: (tick + node) % 3 != 0, 2e-3, *LEGS)
+ONE_LOST = unheard(lambda tick, node, can_id, channel: node == 1 and tick % 2 == 1, 2e-3, LEGS[0])
+NINE_LOST = unheard(lambda tick, node, can_id, channel: tick % 10 != 9, 9e-3, "tilt")
+SPEEDS = (1e-4, 4.5e-4, 5.5e-4, 1e-3, 2e-3)
+CASES = (
+    Case("delta_1 at 2 mm/s, every other report of it lost", ONE_LOST, IDLE),
+    Case("legs at 2 mm/s, each drive heard in one tick of three", BY_TURNS, IDLE),
+    Case("tilt at 0.9 mm/s, channel 1 hears no SYNC", without_sync, IDLE),
+    *(Case(f"delta_1 at {v * 1e3:g} mm/s with the force that explains it", explained(v), IDLE) for v in SPEEDS),
+    Case("x channel of the force sensor with the other sign", mirrored, SIDEWAYS),
+    Case("force sensor behind 0.3 s, the hand leaves", slow_sensor, MOVING),
+    Case("tilt at 9 mm/s, all reports lost but in one tick of ten", NINE_LOST, IDLE, FREE),
+    Case("delta_1 stands, delta_2 twice as fast, channel 1 in one tick of three", one_stands, LIMIT, FREE),
+)
+
+
+def travel(run: MatrixRun, case: Case) -> tuple[float, str]:
+    """Return how far the tip gets off its way [m], and the first reason."""
+    operator, plant, driver = run.operator, run.rig.plant.plant, run.rig.motor_driver.driver
+    operator.force, operator.across, operator.pedal = case.state.force, case.state.across, case.state.pedal
+    run.graph.step(APPROACH)
+    before = plant.true_tip[1]
+    run.graph.step(BEFORE)
+    way, farthest = np.array(plant.true_tip[1]), 0.0
+    step = (way - before) / BEFORE
+    case.attack(run)
+    for _ in range(TICKS):
+        going = driver.stop.first is None and any(driver.watches.motion.demand.newest)
+        run.graph.step()
+        way = way + step * going
+        farthest = max(farthest, float(np.linalg.norm(plant.true_tip[1] - way)))
+    first = driver.stop.first
+    return farthest, first.reason.name if first else operator.state
+
+
+def end(run: MatrixRun) -> bool:
+    """End an attack and recover the robot; return whether it is enabled again."""
+    drives = run.rig.plant.drives
+    run.rig.force.tamper = drives.tamper_frames = drives.tamper_received = None
+    for drive in drives.drives.values():
+        drive.stray = drive.tamper = None
+    run.operator.across = 0.0
+    return recover(run)
+
+
+def results(cases: list[Case]) -> Iterator[str]:
+    """Try cases of one regime, with a new robot where one cannot be recovered; yield a line of each."""
+    left = list(cases)
+    while left:
+        with Graph(period=PERIOD, middleware=False) as graph:
+            run = MatrixRun(graph, ROBOT, 1, regime=left[0].regime.value)
+            ready = run.start()
+            while ready and left:
+                case = left.pop(0)
+                way, reason = travel(run, case)
+                yield f"{way * 1e6:7.1f} um  {case.regime.value:12}{case.state.name:10}{reason:18}{case.name}"
+                ready = end(run)
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--only", default="", help="only those whose name has this in it")
+    only = parser.parse_args().only
+    for regime in (NEAR, FREE):
+        for line in results([case for case in CASES if case.regime is regime and only in case.name]):
+            print(line, flush=True)
