@@ -15,10 +15,12 @@ from sher3_static.kind import TableKind
 from sher3_static.readings import Readings, joined, warmed
 from sher3_static.reporter import Words
 from sher3_static.sensor.description import SensorDescription
-from sher3_static.sensor.reading import identify, read_sensor, scatter
+from sher3_static.sensor.reading import expressed_otherwise, identify, read_sensor, scatter
 from sher3_static.sensor.view import AppliedView, SensorView, TurnedView
 from sher3_static.table import Table, TableEvidence
 
+FRAMES = ("sensor", "base")
+"""Frames that readings may be expressed in."""
 READING = Channel("sensing", "force_sensor")
 """The one channel of a sensor."""
 
@@ -67,7 +69,7 @@ class SensorKind(TableKind[SensorDescription]):
         return [table]
 
     def remarks(self, finding: Finding[TableEvidence]) -> list[str]:
-        """Say what is known of the load."""
+        """Say what is known of the load, and in which frame the readings are where that is not the stated one."""
         view = finding.evidence.table.view
         assert isinstance(view, SensorView)
         return view.in_words()
@@ -78,12 +80,15 @@ def view_of(known: SensorDescription, rows: dict[str, Array], warmth: Array) -> 
     wrench, load = rows["wrench"], known.load
     if "applied" in rows:
         return AppliedView(warmth, wrench, rows["applied"])
+    other = expressed_otherwise(wrench, rows["turn"], known.expressed_in) if load.mass != 0.0 else None
+    found_in = "" if other is None else next(frame for frame in FRAMES if frame != known.expressed_in)
+    wrench = wrench if other is None else other
     mass, moment = (
         (load.mass, load.mass * np.array(load.centre))
         if isinstance(load.mass, float)
         else identify(wrench, rows["turn"])
     )
-    return TurnedView(warmth, wrench, rows["turn"], mass, moment, load.mass == "unknown")
+    return TurnedView(warmth, wrench, rows["turn"], mass, moment, load.mass == "unknown", found_in)
 
 
 KIND = SensorKind()

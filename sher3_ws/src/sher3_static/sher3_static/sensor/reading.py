@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from scipy.constants import g
 from scipy.spatial.transform import Rotation
@@ -25,6 +27,12 @@ SPREAD = 0.05
 STATED = 1.1
 """Error of the stated frame over that of the best one up to which the stated frame is believed: noise makes the wrong
 frame better by less than a tenth with twenty readings. Set by that argument."""
+
+
+CLEARLY = 0.5
+"""Error of the forces in the other frame over that in the stated one, up to which they were given in the other."""
+WEIGHS = 3.0
+"""Weight over the error of the forces from which something hangs on a sensor."""
 
 
 def read_sensor(name: str, tables: Tables, described: SensorDescription) -> Readings:
@@ -111,15 +119,54 @@ def identify(wrench: Array, turn: Array) -> tuple[float, Array]:
 
     A frame may be turned by any angle: each is tried as it is, and turned by what fits the forces best.
     """
+    found = fit_of(wrench, turn)
+    return found.mass, found.moment
+
+
+class Hung(NamedTuple):
+    """A load as readings in their best frame have it.
+
+    Attributes:
+        error: rms of the forces that it leaves, N.
+        mass: kg.
+        moment: (3,) first moment in the stated frame, kg m.
+    """
+
+    error: float
+    mass: float
+    moment: Array
+
+
+def fit_of(wrench: Array, turn: Array) -> Hung:
+    """Return the load in the frame in which readings fit best; in the stated one where that is as good."""
     tried = [(frame, np.eye(3)) for frame in frames()]
     view = TurnedView(np.zeros(len(wrench)), wrench, turn, 0.0, np.zeros(3), True)
     tried += [(f, Rotation.from_rotvec(view.turn(k)).as_matrix()) for k, f in enumerate(frames())]
     fits = [load_in(frame, wrench, turn, further) for frame, further in tried]
     best = min(range(len(fits)), key=lambda k: fits[k][0])
     chosen = 0 if fits[0][0] < STATED * fits[best][0] and fits[0][1] > 0.0 else best
-    _, mass, moment = fits[chosen]
+    error, mass, moment = fits[chosen]
     frame, further = tried[chosen]
-    return mass, frame.turn.T @ further.T @ moment
+    return Hung(error, mass, frame.turn.T @ further.T @ moment)
+
+
+def expressed_otherwise(wrench: Array, turn: Array, stated: str) -> Array | None:
+    """Return the readings (n, 6) in the sensor's frame where they were given in the other frame than was stated.
+
+    What hangs on a sensor turns in its frame and stays as it is in the base's, and its zero does the reverse: of both
+    readings of a record the right one leaves clearly less of the forces, whatever the load and the zero. Readings that
+    no load explains as stated, and one does in the other frame, are in that frame.
+
+    Args:
+        wrench: (n, 6) readings, brought into the sensor's frame as stated.
+        turn: (n, 3, 3) stated orientations.
+        stated: `sensor` or `base`.
+    """
+    into = turn if stated == "base" else np.swapaxes(turn, 1, 2)
+    other = np.hstack([(into @ x[:, :, None])[:, :, 0] for x in (wrench[:, :3], wrench[:, 3:])])
+    own, left = (fit_of(x, turn) for x in (wrench, other))
+    hangs, turned = (found.mass * g > WEIGHS * found.error for found in (own, left))
+    return other if turned and left.error < (CLEARLY if hangs else STATED) * own.error else None
 
 
 def load_in(frame: Frame, wrench: Array, turn: Array, further: Array) -> tuple[float, float, Array]:

@@ -92,6 +92,7 @@ class TurnedView(SensorView):
         mass: nominal or identified, kg.
         moment: (3,) first moment, mass times centre, kg m.
         identified: whether mass and moment were identified from the readings.
+        found_in: frame that the readings were given in, where another one was stated; "" where none was.
     """
 
     excitation = "orientations"
@@ -99,6 +100,7 @@ class TurnedView(SensorView):
     mass: float
     moment: Array
     identified: bool
+    found_in: str = ""
 
     @property
     def known_frames(self) -> Sequence[Frame]:
@@ -140,7 +142,8 @@ class TurnedView(SensorView):
         """Return the load as stated or identified, and what an identified one leaves open."""
         load = self.load_in_words(0.0, np.zeros(3))
         told = "the mass was identified from the readings: a scale of all forces cannot be told from it"
-        return [load] * bool(load) + [told] * self.identified
+        turned = f"the load turns as readings in the frame of the {self.found_in} do: `expressed_in: {self.found_in}`"
+        return [load] * bool(load) + [told] * self.identified + [turned] * bool(self.found_in)
 
 
 @dataclass(frozen=True, eq=False)

@@ -142,7 +142,20 @@ def test_readings_in_the_base_frame_are_turned_into_the_sensors():
     (same,) = verdict_of(hung(BIAS), known=own).causes
     assert cause.effect == same.effect == "force_bias"
     assert cause.parameters["fz"].value == pytest.approx(same.parameters["fz"].value, abs=1e-9)
-    assert verdict_of(hung(base=True), known=own).status != "no_gap"
+
+
+@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("stated", ["sensor", "base"])
+@pytest.mark.parametrize("mass", [1.5, "unknown"])
+def test_the_frame_of_readings_is_told_from_how_the_load_turns_whatever_was_stated(seed, stated, mass):
+    rng = np.random.default_rng(seed)
+    bias = rng.choice([0.0, 1.0]) * rng.normal(0.0, [5.0] * 3 + [0.5] * 3)
+    load = {"mass": mass, **({} if mass == "unknown" else {"centre": [0.01, -0.02, 0.06]})}
+    more = {"orientation": {"quaternion": {"column": "q", "unit": "1"}}, "load": load}
+    for base in (False, True):
+        found = verdict_of(hung(bias, base=base, n=40, seed=seed), known=described(expressed_in=stated, **more))
+        assert [c.effect for c in found.causes] == ["force_bias"] * bool(bias.any())
+        assert any("expressed_in" in note for note in found.notes) == (base is (stated == "sensor"))
 
 
 @pytest.mark.parametrize(
