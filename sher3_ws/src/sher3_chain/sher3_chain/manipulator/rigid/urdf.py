@@ -14,7 +14,7 @@ from sher3_machines.errors import MachineError
 from sher3_chain.manipulator.rigid.tree import WORLD, Link, Tree, moved, parameters
 
 GRAVITY = (0.0, 0.0, -9.81)
-"""Of a file that states none, m/s^2."""
+"""Of a URDF, which states none: what simulators and Pinocchio take, m/s^2."""
 LARGEST, SHORTEST = 1e9, 1e-9
 """Largest number of a file, and shortest axis that has a direction."""
 TURNING, SLIDING, FIXED = ("revolute", "continuous"), ("prismatic",), ("fixed",)
