@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from sher3_effects.delay import shifted_path
 from sher3_effects.timing.sensor_delay import SensorDelay
 
 
@@ -23,11 +22,3 @@ def test_a_delay_of_any_part_of_a_period_is_within_reach_of_one_that_is_tried(sh
     tried = SensorDelay().PERIODS
     low, high = SensorDelay().REST
     assert any(low < (share - n) / n < high for n in tried)
-
-
-def test_a_path_between_two_samples_is_no_line():
-    """A sine of 1 Hz at 50 Hz: a line between samples is off by up to 2e-3 of its amplitude, a spline by 1e-5."""
-    clock = 0.02 * np.arange(200)
-    late = shifted_path(np.sin(2.0 * np.pi * clock), clock, 0.01)
-    assert np.abs(late - np.sin(2.0 * np.pi * (clock - 0.01)))[5:-5].max() < 1e-5
-    assert late[0] == 0.0

@@ -9,7 +9,7 @@ import numpy as np
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Best, Measured, Shape, Signature, column
 
-from sher3_effects.delay import LONGEST_DELAY, shifted, shifted_path
+from sher3_effects.delay import LONGEST_DELAY, shifted
 from sher3_effects.page import Page
 from sher3_effects.view import AxisView
 
@@ -76,7 +76,7 @@ class SensorDelay(Page):
             slope = -np.gradient(shifted(truth, run.stage_clock, -shape["delay"]), run.period)
         else:
             channel, truth = Channel("transmission", site), run.motor[:, row]
-            moved = shifted_path(truth, run.stage_clock, shape["delay"]) - truth
+            moved = shifted(truth, run.stage_clock, shape["delay"]) - truth
             slope = -np.gradient(shifted(run.smooth[:, row], run.stage_clock, shape["delay"]), run.period)
         fixed = run.to_grid(moved[:, None])
         return Signature({channel: column(run.to_grid(slope[:, None])[:, 0])}, {channel: fixed})
