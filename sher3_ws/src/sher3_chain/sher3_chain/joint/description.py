@@ -126,8 +126,12 @@ class Axis(Strict):
 
     @property
     def tracked(self) -> Axis | None:
-        """The axis as a position servo, whose force nobody knows; None where it is one, or has no reference."""
-        if self.servo or self.free or self.signals.reference is None:
+        """The axis as a position servo, whose force nobody knows; None where it is one, or has no reference.
+
+        Neither where the gains of its loop are stated: such a loop follows late by itself, which is no gap.
+        """
+        stated = self.command_law.position_gain is not None
+        if self.servo or self.free or stated or self.signals.reference is None:
             return None
         return self.model_copy(update={"command_law": CommandLaw(kind="position"), "mass": None})
 

@@ -29,7 +29,8 @@ def hobby_servo(seed):
 @pytest.mark.parametrize("seed", range(4))
 def test_a_duty_that_tells_no_force_leaves_the_tracking_to_be_judged(seed):
     lag, run = hobby_servo(seed)
-    described = machine(mass="unknown", signals=columns("position", "reference", "effort"), encoder_resolution=COUNT)
+    signals = columns("position", "reference", "effort")
+    described = machine(mass="unknown", signals=signals, encoder_resolution=COUNT, command_law={"kind": "force"})
     verdict = diagnose(described, [run]).verdict
     assert [c.effect for c in verdict.causes] == ["drive_lag"]
     assert verdict.causes[0].parameters["time_constant"].value == pytest.approx(lag, rel=0.1)
