@@ -16,8 +16,8 @@ import numpy as np
 import pinocchio as pin
 from sher3_common.compiled import compiled_ieee
 from sher3_description import load_robot
-from sher3_description.urdf import urdf
 from sher3_kinematics import InverseVelocity, RobotKinematics
+from sher3_kinematics.arm import whole_robot_model
 from sher3_kinematics.kernel import batch as batch
 from sher3_kinematics.kernel.robot import pose_inverse_into, tip_jacobian_into, tip_pose_into
 from sher3_kinematics.tip_deflection import TipDeflection
@@ -45,7 +45,7 @@ def scalar_figures(kinematics: RobotKinematics) -> dict[str, float]:
     tip, axis, centre = transform[:3, 3].copy(), -transform[:3, 2], np.array([0.0, 0.0, 0.06])
     velocity, twist, rest = InverseVelocity(kinematics), np.full(6, 0.001), np.zeros(5)
     deflection, wrench = TipDeflection(kinematics.robot), np.array([0.5, 1.0, -0.5, 0.0, 0.0, 0.0])
-    model = pin.buildModelFromXML(urdf(kinematics.robot))
+    model = whole_robot_model(kinematics.robot)
     data, frame = model.createData(), model.getFrameId("t")
     x, aligned = pin.neutral(model), pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
     calls: dict[str, Callable[[], object]] = {

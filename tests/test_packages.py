@@ -78,6 +78,7 @@ def test_pyproject_installs_every_package():
 def test_third_party_imports_are_declared():
     """A library that is imported is in the project's dependencies, in those of the robot, or has a command's extra."""
     module_of = {
+        "pin": "pinocchio",
         "python-can": "can",
         "pyyaml": "yaml",
         "scikit-learn": "sklearn",

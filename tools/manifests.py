@@ -29,6 +29,7 @@ KEYS = {
     "mcap": "python3-mcap-pip",
     "numba": "python3-numba",
     "numpy": "python3-numpy",
+    "pinocchio": "pinocchio",
     "psutil": "python3-psutil",
     "pydantic": "python3-pydantic",
     "pydantic_core": "python3-pydantic",

@@ -49,7 +49,7 @@ COMMANDS: dict[str, Entry] = {
     "benchtop": Entry("sher3_benchtop.cli", "benchtop", "The bench-top tests of the paper, on the running graph."),
 }
 EXTRAS = {
-    **dict.fromkeys(("rclpy", "rcl_interfaces", "can", "canopen"), "robot"),
+    **dict.fromkeys(("rclpy", "rcl_interfaces", "can", "canopen", "pinocchio"), "robot"),
     **dict.fromkeys(("mcap", "rosbags", "zstandard", "lz4"), "bags"),
     "distributed": "cluster",
 }

@@ -5,8 +5,8 @@ import pinocchio as pin
 import pytest
 from scipy.optimize import root
 from sher3_description import Robot
-from sher3_description.urdf import urdf
 from sher3_kinematics import RobotKinematics
+from sher3_kinematics.arm import Arm, whole_robot_model
 from sher3_kinematics.kernel.parameters import KernelParameters
 
 
@@ -14,7 +14,7 @@ def test_urdf_model_has_the_tip_pose_jacobian_and_gravity(
     robot: Robot, kinematics: RobotKinematics, workspace_q: np.ndarray
 ) -> None:
     """The URDF, parsed by Pinocchio, with the platform where our delta puts it and the tilt angle of our linkage."""
-    model = pin.buildModelFromXML(urdf(robot))
+    model = whole_robot_model(robot)
     data = model.createData()
     tip = model.getFrameId("t")
     names = ("platform_x", "platform_y", "platform_z", "roll", "tilt_angle")
@@ -32,6 +32,17 @@ def test_urdf_model_has_the_tip_pose_jacobian_and_gravity(
         assert np.abs(jacobian @ chain - kinematics.jacobian(q)).max() < 1e-10
         torque = pin.computeGeneralizedGravity(model, data, x)[index[3:]]
         assert np.abs(torque * [1.0, chain[4, 4]] - kinematics.gravity_load(q)[3:]).max() < 1e-10
+
+
+def test_arm_model_agrees(robot: Robot, kinematics: RobotKinematics, workspace_q: np.ndarray) -> None:
+    arm = Arm(robot)
+    for q in workspace_q[:20]:
+        angles = [q[3], kinematics.tilt_linkage.angle(q[4])]
+        to_base = kinematics.transform_tip_to_base(q)
+        to_base[:3, 3] -= kinematics.delta.forward(q[:3])
+        assert np.abs(arm.transform_tip_to_platform(angles) - to_base).max() < 1e-12
+        assert np.abs(arm.jacobian(angles)[:, 0] - kinematics.jacobian(q)[:, 3]).max() < 1e-12
+        assert arm.gravity_torque(angles)[0] == pytest.approx(kinematics.gravity_load(q)[3], abs=1e-12)
 
 
 def ball_centres(robot: Robot) -> tuple[np.ndarray, np.ndarray]:
