@@ -65,9 +65,10 @@ def evenly(positions: list[Stamped]) -> Array | None:
     clocks = [even for even, off in lines if JITTER < off < 1.0]
     if not clocks:
         return None
-    best = min(clocks, key=lambda even: sum(roughness(even, x) / (roughness(stamps, x) or 1.0) for _, x in positions))
-    told = [roughness(best, x) < CLEARLY * roughness(stamps, x) for _, x in positions]
-    return best if np.mean(told) > 0.5 else None
+    before = np.array([roughness(stamps, x) for _, x in positions])
+    after = [np.array([roughness(even, x) for _, x in positions]) for even in clocks]
+    best = int(np.argmin([np.sum(rough / np.where(before > 0.0, before, 1.0)) for rough in after]))
+    return clocks[best] if np.mean(after[best] < CLEARLY * before) > 0.5 else None
 
 
 def on_a_line(turn: Array, stamps: Array) -> tuple[Array, float]:

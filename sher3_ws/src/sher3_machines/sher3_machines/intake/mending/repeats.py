@@ -7,7 +7,6 @@ steps of its column. A coarse encoder that moves slowly repeats its counts too, 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -83,8 +82,9 @@ def fresh_readings(x: Array, steps: bool = True) -> Mask:
     x = np.nan_to_num(x)[:, None]
     fresh = ~repeats(x, HELD) if steps else ~_held(x)
     hold, at = hold_of(fresh), np.flatnonzero(fresh)
-    for first, after in pairwise(at):
-        again = np.arange(1, round((after - first) / hold)) * hold
+    stays = np.diff(at)
+    for first, rows in zip(at[:-1][stays >= 1.5 * hold], stays[stays >= 1.5 * hold], strict=True):
+        again = np.arange(1, round(rows / hold)) * hold
         fresh[first + np.rint(again).astype(int)] = True
     return fresh
 
