@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable, Iterator
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -22,7 +23,7 @@ from sher3_drivers.sensor.device import WrenchRecord
 from sher3_runtime import Graph
 from sher3_safety.rows.row import IDLE, LIMIT, MOVING, SIDEWAYS, State
 from sher3_safety.runs.stepped import APPROACH, MatrixRun
-from sher3_safety.search.trial import BEFORE, recover
+from sher3_safety.search.trial import off_its_way, recover
 
 ROBOT = load_robot()
 TICKS = 400
@@ -138,21 +139,10 @@ CASES = (
 
 def travel(run: MatrixRun, case: Case) -> tuple[float, str]:
     """Return how far the tip gets off its way [m], and the first reason."""
-    operator, plant, driver = run.operator, run.rig.plant.plant, run.rig.motor_driver.driver
+    operator = run.operator
     operator.force, operator.across, operator.pedal = case.state.force, case.state.across, case.state.pedal
     run.graph.step(APPROACH)
-    before = plant.true_tip[1]
-    run.graph.step(BEFORE)
-    way, farthest = np.array(plant.true_tip[1]), 0.0
-    step = (way - before) / BEFORE
-    case.attack(run)
-    for _ in range(TICKS):
-        going = driver.stop.first is None and any(driver.watches.motion.demand.newest)
-        run.graph.step()
-        way = way + step * going
-        farthest = max(farthest, float(np.linalg.norm(plant.true_tip[1] - way)))
-    first = driver.stop.first
-    return farthest, first.reason.name if first else operator.state
+    return off_its_way(run, partial(case.attack, run), TICKS)
 
 
 def end(run: MatrixRun) -> bool:

@@ -96,6 +96,15 @@ def served(
     return table[:, 0], table[:, 1]
 
 
+def log_of_servos(model: mujoco.MjModel, rng: np.random.Generator, seconds: float) -> dict[str, NDArray[np.float64]]:
+    """Return what a log of servos along drawn sines holds, by the names that `gap.diagnose` knows."""
+    stamps = np.arange(round(seconds / model.opt.timestep)) * model.opt.timestep
+    ctrl = asked(rng, stamps, model.nu) * model.actuator_gear[:, 0]
+    qpos, force = served(model, ctrl)
+    noisy = qpos + NOISE * rng.standard_normal(qpos.shape)
+    return {"time": stamps, "ctrl": ctrl, "qpos": noisy, "actuator_force": force}
+
+
 def logged(xml: str, seed: int) -> Logged:
     """Run a model along drawn sines and return its log; motors are driven by a PD law outside the model."""
     model = mujoco.MjModel.from_xml_string(xml)

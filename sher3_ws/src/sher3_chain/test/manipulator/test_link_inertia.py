@@ -4,7 +4,7 @@ import mujoco
 import numpy as np
 import pytest
 import sher3.gap as gap
-from drawn_arms import NOISE, asked, drawn_xml, served
+from drawn_arms import drawn_xml, log_of_servos
 
 SECONDS = 12.0
 OF_A_JOINT = {"coulomb_friction", "viscous_friction"}
@@ -23,11 +23,6 @@ def test_several_wrong_links_are_links_and_neither_cables_nor_waves_nor_gains(se
         geom.pos = [rng.uniform(0.0, 0.1), *rng.uniform(-0.05, 0.05, 2)]
         geom.size = [0.03, 0.1, 0]
     real = spec.compile()
-    stamps = np.arange(round(SECONDS / real.opt.timestep)) * real.opt.timestep
-    ctrl = asked(rng, stamps, real.nu) * real.actuator_gear[:, 0]
-    qpos, force = served(real, ctrl)
-    log = {"time": stamps, "ctrl": ctrl, "qpos": qpos + NOISE * rng.standard_normal(qpos.shape)}
-    answer = gap.diagnose(xml, {**log, "actuator_force": force})
-    print(answer)
+    answer = gap.diagnose(xml, log_of_servos(real, rng, SECONDS))
     links = {c.actuator for c in answer.causes if c.effect == "link_inertia"}
     assert links and {c.effect for c in answer.causes} <= {"link_inertia", *OF_A_JOINT}

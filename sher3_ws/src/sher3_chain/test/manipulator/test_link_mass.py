@@ -4,7 +4,7 @@ import mujoco
 import numpy as np
 import pytest
 import sher3.gap as gap
-from drawn_arms import NOISE, asked, drawn_xml, served
+from drawn_arms import NOISE, drawn_xml, log_of_servos
 from lifts import MJCF, friction, machine, motion, needed, run_of, values
 from sher3_diagnosis import diagnose
 
@@ -35,11 +35,7 @@ def test_a_link_of_a_drawn_arm_is_told_written_into_its_model_and_gone(seed, sha
     spec = mujoco.MjSpec.from_string(xml)
     spec.bodies[3].geoms[0].mass *= 1.0 + share
     real = spec.compile()
-    stamps = np.arange(round(SECONDS / real.opt.timestep)) * real.opt.timestep
-    ctrl = asked(rng, stamps, real.nu) * real.actuator_gear[:, 0]
-    qpos, force = served(real, ctrl)
-    log = {"time": stamps, "ctrl": ctrl, "qpos": qpos + NOISE * rng.standard_normal(qpos.shape)}
-    answer = gap.diagnose(xml, {**log, "actuator_force": force})
+    answer = gap.diagnose(xml, log_of_servos(real, rng, SECONDS))
     assert [(c.effect, c.actuator) for c in answer.causes] == [("link_mass", "body3")]
     relative = answer.causes[0].parameters["relative"]
     assert relative.value == pytest.approx(share, abs=0.02) and relative.low <= share <= relative.high

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -48,27 +48,38 @@ def try_all(draws: Sequence[Draw], robot: Robot, seed: int) -> Iterator[Found]:
 
 def _try(run: MatrixRun, draw: Draw) -> Found:
     """Play a draw; the way of the tip is straight on at its speed until the robot is told to rest."""
-    operator, state, plant = run.operator, draw.state, run.rig.plant.plant
+    operator, state = run.operator, draw.state
     operator.force, operator.pedal = state.force, state.pedal
     run.graph.step(APPROACH)
     if draw.paused:
         operator.command(StateCommand.PAUSE.value)
         run.graph.step(SETTLE)
+
+    def begin() -> None:
+        for fault in draw.faults:
+            run.inject(fault.request(draw.regime, run.rig.robot.control_period).to_json())
+
+    return Found(draw, *off_its_way(run, begin, WATCHED))
+
+
+def off_its_way(run: MatrixRun, begin: Callable[[], None], ticks: int) -> tuple[float, str]:
+    """Return how far the tip gets off its way [m] within some ticks of what begins, and the driver's first reason.
+
+    Its way is straight on, at the speed before, until the driver is told zero or stops.
+    """
+    plant, driver = run.rig.plant.plant, run.rig.motor_driver.driver
     before = plant.true_tip[1]
     run.graph.step(BEFORE)
-    begin = plant.true_tip[1]
-    step = (begin - before) / BEFORE
-    driver = run.rig.motor_driver.driver
-    for fault in draw.faults:
-        run.inject(fault.request(draw.regime, run.rig.robot.control_period).to_json())
-    way, farthest = np.array(begin), 0.0
-    for _ in range(WATCHED):
+    way, farthest = np.array(plant.true_tip[1]), 0.0
+    step = (way - before) / BEFORE
+    begin()
+    for _ in range(ticks):
         going = driver.stop.first is None and any(driver.watches.motion.demand.newest)
         run.graph.step()
         way = way + step * going
         farthest = max(farthest, float(np.linalg.norm(plant.true_tip[1] - way)))
     first = driver.stop.first
-    return Found(draw, farthest, first.reason.name if first else operator.state)
+    return farthest, first.reason.name if first else run.operator.state
 
 
 def recover(run: MatrixRun) -> bool:
