@@ -276,7 +276,7 @@ def test_a_mat_file_that_unpacks_to_too_much_is_refused(tmp_path, monkeypatch):
     path = tmp_path / "bomb.mat"
     scipy.io.savemat(path, {"a": np.zeros(1_000_000)}, do_compression=True)
     assert path.stat().st_size < 20_000 and len(read_tables(path)["a"]) == 1_000_000
-    monkeypatch.setattr("sher3_machines.intake.readers.mat.MAX_BYTES", 1_000_000)
+    monkeypatch.setattr("sher3_machines.intake.readers.native.MAX_BYTES", 1_000_000)
     with pytest.raises(Sher3Error, match="unpacks to too much"):
         read_tables(path)
 

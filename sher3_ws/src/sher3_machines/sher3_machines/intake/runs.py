@@ -1,16 +1,47 @@
-"""What a path holds as runs: a file or a folder is one, a LeRobot data set one for each episode."""
+"""What a path holds as runs: a file or a folder is one; episodes of a data set, and of a file, one each."""
 
 from __future__ import annotations
 
+import re
+from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from sher3_machines.intake.readers.lerobot import is_data_set, read_data_set
 from sher3_machines.intake.tables import Tables, read_tables
 
+EPISODES = (
+    "demo",
+    "demonstration",
+    "ep",
+    "episode",
+    "exp",
+    "experiment",
+    "measurement",
+    "rec",
+    "record",
+    "recording",
+    "rep",
+    "repeat",
+    "repetition",
+    "rollout",
+    "run",
+    "seq",
+    "sequence",
+    "session",
+    "take",
+    "test",
+    "traj",
+    "trajectory",
+    "trial",
+)
+"""Words that people number runs by; joints, sensors and channels are numbered by others."""
+NUMBERED = re.compile(rf"(?i:(?P<group>(?:[^/]+/)*?(?:{'|'.join(EPISODES)})[ _-]?\d+)/(?P<column>.+))")
+"""A column of a group that is numbered as runs are: `data/demo_12/obs/q`."""
+
 
 def runs_of(data: Sequence[Path]) -> dict[str, Tables]:
-    """Return the tables of every run by its name: that of its file, numbered where two are alike.
+    """Return the tables of every run by its name: that of its file or episode, numbered where two are alike.
 
     Raises:
         MachineError: as `read_tables` and `read_data_set` do.
@@ -22,10 +53,28 @@ def runs_of(data: Sequence[Path]) -> dict[str, Tables]:
     return {name: tables for name, (_, tables) in zip(names, found, strict=True)}
 
 
+def episodes_in(tables: Tables) -> dict[str, Tables]:
+    """Return the runs of one file by name: groups that are numbered as runs are and hold the same columns.
+
+    What stands beside them belongs to each of them. Empty where a file has no two such groups.
+    """
+    parts: dict[str, Tables] = defaultdict(dict)
+    for name, x in tables.items():
+        if match := NUMBERED.fullmatch(name):
+            parts[match["group"]][match["column"]] = x
+    if len(parts) < 2 or len({tuple(sorted(part)) for part in parts.values()}) > 1:
+        return {}
+    beside = {name: x for name, x in tables.items() if not name.startswith(tuple(f"{group}/" for group in parts))}
+    return {group.replace("/", "_"): {**beside, **part} for group, part in parts.items()}
+
+
 def _runs(path: Path) -> Mapping[str, Tables]:
     if is_data_set(path):
         return {name: dict(tables) for name, tables in read_data_set(path).episodes.items()}
-    return {path.resolve().name if path.is_dir() else path.stem: read_tables(path)}
+    tables = read_tables(path)
+    if path.is_dir():
+        return {path.resolve().name: tables}
+    return episodes_in(tables) or {path.stem: tables}
 
 
 def longest(path: Path) -> Tables:

@@ -14,7 +14,7 @@ from sher3_diagnosis.channel import Array
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.readers.excel import read_workbook
 from sher3_machines.intake.readers.hdf5 import ENDINGS as OF_HDF5
-from sher3_machines.intake.readers.hdf5 import refuse_hdf5
+from sher3_machines.intake.readers.hdf5 import read_hdf5
 from sher3_machines.intake.readers.mat import read_mat
 from sher3_machines.intake.readers.structured import read_lines, read_lists, read_npz, read_parquet
 from sher3_machines.intake.readers.text import read_table
@@ -56,11 +56,8 @@ READERS: dict[str, Callable[[Path], Tables]] = {
     ".parquet": read_parquet,
     ".mcap": read_bag,
     ".bag": read_bag,
+    **dict.fromkeys(OF_HDF5, read_hdf5),
 }
-REFUSED = dict.fromkeys(OF_HDF5, refuse_hdf5)
-"""Endings of files that are known and not read: the refusal says how to convert them."""
-
-
 NOT_IN_FOLDERS = (".txt", ".dat", ".log", ".asc")
 """Endings that are read where they are named, and passed over in a folder: there they are notes more often."""
 
@@ -80,14 +77,11 @@ def read_tables(path: Path) -> Tables:
             if (f.suffix.lower() in READERS and f.suffix not in NOT_IN_FOLDERS) or is_rosbag2(f)
         ]
         if not found:
-            known = [f for f in sorted(path.iterdir()) if f.suffix.lower() in REFUSED]
-            if known:
-                return read_tables(known[0])
             raise MachineError(f"{path}: no data files", limit=", ".join(READERS), remedy="give a file or its folder")
         return {f"{f.stem}/{name}": x for f in found for name, x in read_tables(f).items()}
     if not path.is_file():
         raise MachineError(f"{path}: no such file", remedy="check the path")
-    reader = {**READERS, **REFUSED}.get(path.suffix.lower())
+    reader = READERS.get(path.suffix.lower())
     if path.stat().st_size > MAX_BYTES:
         raise MachineError(f"{path}: too large", value=path.stat().st_size, limit=MAX_BYTES, remedy="cut the record")
     return _read(path, reader) if reader else _read_unknown(path)

@@ -1,41 +1,90 @@
-"""HDF5 files, MATLAB's version 7.3 among them: no reader of them is among the dependencies, so they are refused."""
+"""HDF5 files, where `h5py` is installed: those of MATLAB's version 7.3, of simulators, loggers and learned policies."""
 
 from __future__ import annotations
 
+import math
+from importlib import import_module
+from importlib.util import find_spec
+from io import BytesIO
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 from sher3_diagnosis.channel import Array
 
 from sher3_machines.errors import MachineError
+from sher3_machines.intake.readers.native import read_in_child, whole
+from sher3_machines.intake.readers.shapes import plain, stacked
 
 MAGIC = b"\x89HDF\r\n\x1a\n"
 """How HDF5 files begin; behind 512 bytes of a header those of MATLAB."""
 ENDINGS = (".h5", ".hdf5", ".hdf", ".he5", ".h5df")
-CONVERTS = (
-    "import h5py, numpy as np, sys; d = {}; h5py.File(sys.argv[1]).visititems(lambda n, x: "
-    "d.update({n.replace('/', '_'): x[()]}) if isinstance(x, h5py.Dataset) and x.dtype.kind in 'biuf' else None); "
-    "np.savez(sys.argv[2], **d)"
-)
-"""Python that writes every numeric dataset of a file into an NPZ; it needs h5py."""
+CLASS = "MATLAB_class"
+"""Attribute by which MATLAB says what a dataset is; such arrays lie by columns, so their axes come in reverse."""
+INTEGERS = tuple(f"{sign}int{bits}".encode() for sign in ("", "u") for bits in (8, 16, 32, 64))
+NUMBERS = (b"double", b"single", b"logical", *INTEGERS)
+"""Classes of MATLAB that are numbers; text, tables and class objects are left out."""
+KINDS = "fiub"
+"""Kinds of NumPy's types that are numbers."""
+PICTURE = 3
+"""Axes from which on bytes are pictures and no samples."""
 
 
-def refuse_hdf5(path: Path) -> dict[str, Array]:
-    """Refuse a file; raises MachineError with how to convert it."""
-    raise refused(path, "HDF5", "")
+def read_hdf5(path: Path) -> dict[str, Array]:
+    """Return the numeric datasets of a file by their path, fields of compound ones as `dataset/field`.
 
+    Pictures, text, links and what lies in another file are left out. Structs of MATLAB are `struct/field`.
 
-def refused(path: Path, kind: str, first: str) -> MachineError:
-    """Return the refusal of a file.
-
-    Args:
-        path: of the file.
-        kind: of file, in words.
-        first: remedy that comes before the conversion.
+    Raises:
+        MachineError: no reader is installed.
+        ValueError: its reader ended without an answer.
     """
-    command = f'python -c "{CONVERTS}" {path.name} {path.stem}.npz'
-    return MachineError(
-        f"{path}: {kind} is not read",
-        value=path.suffix,
-        limit="csv, mat to version 7, npz, json, parquet, bags",
-        remedy=f"{first}convert it where h5py is installed: {command}",
-    )
+    return read_raw(path, whole(path))
+
+
+def read_raw(path: Path, raw: bytes) -> dict[str, Array]:
+    """Return what `read_hdf5` does, of a file that is in memory."""
+    if find_spec("h5py") is None:
+        raise MachineError(
+            f"{path}: no reader for HDF5",
+            value="h5py is not installed",
+            remedy="install sher3[hdf5], or save it as npz or csv, in MATLAB with the option -v7",
+        )
+    return read_in_child("hdf5", raw)
+
+
+def arrays(raw: bytes, limit: int) -> dict[str, Array]:
+    """Return the arrays of a file; raises ValueError where they take more than `limit`, bytes, or none is there."""
+    with import_module("h5py").File(BytesIO(raw), "r") as file:
+        wanted: dict[str, Any] = {}
+        file.visititems(lambda name, x: wanted.update({name: x} if _may_be_samples(name, x) else {}))  # follows no link
+        size = sum(8 * math.prod(x.shape) * max(len(x.dtype.names or ()), 1) for x in wanted.values())
+        if size > limit:
+            raise ValueError(f"unpacks to too much: {size} bytes, limit {limit}")
+        columns = [_columns(file, name, dataset) for name, dataset in wanted.items()]
+    found = {name: x for part in columns for name, x in part.items() if x.size}
+    if not found:
+        raise ValueError("no numeric dataset")
+    return found
+
+
+def _may_be_samples(name: str, x: Any) -> bool:
+    """Whether a name is that of a dataset with entries of its own, here and not in another file, and no picture."""
+    if name.startswith("#") or not hasattr(x, "dtype") or not x.shape or x.external or x.is_virtual:
+        return False
+    return not (x.dtype == np.uint8 and x.ndim >= PICTURE) and "MATLAB_empty" not in x.attrs
+
+
+def _columns(file: Any, name: str, dataset: Any) -> dict[str, Array]:
+    """Return the arrays of a dataset by name."""
+    of_matlab = dataset.attrs.get(CLASS)
+    if dataset.dtype.names:
+        fields = [n for n in dataset.dtype.names if dataset.dtype[n].kind in KINDS]
+        return {f"{name}/{field}": plain(dataset[field]) for field in fields}
+    if "ref" in (dataset.dtype.metadata or {}):  # a cell, or a field of a struct array
+        parts = [file[reference] for reference in dataset[()].T.ravel() if reference]
+        numbers = parts and all(x.attrs.get(CLASS) in NUMBERS for x in parts)
+        return {name: stacked([plain(x[()].T) for x in parts])} if numbers else {}
+    if dataset.dtype.kind not in KINDS or of_matlab not in (None, *NUMBERS):
+        return {}
+    return {name: plain(dataset[()] if of_matlab is None else dataset[()].T)}
