@@ -1,4 +1,4 @@
-"""Arrays from `.npz` files of bounded size: the unpacked size is checked before any memory is allocated for it."""
+"""Arrays from `.npy` and `.npz` files of bounded size, which is checked before any memory is allocated for it."""
 
 from __future__ import annotations
 
@@ -54,6 +54,21 @@ def read_arrays(
         raise FileError(f"is no whole npz file: {error}", path=path, remedy="write it again") from error
 
 
+def read_array(path: Path | str, max_bytes: int = MAX_ARRAY_BYTES) -> np.ndarray:
+    """Return the array of an npy file. Objects are refused, so nothing is unpickled.
+
+    Raises:
+        FileError: the file is not regular, no npy file or too large; it is damaged or holds objects.
+    """
+    raw = read_bytes(path, max_bytes)
+    try:
+        return _array(BytesIO(raw), len(raw), Path(path).name, path)
+    except ValueError as error:
+        if isinstance(error, FileError):
+            raise
+        raise FileError(f"is no whole npy file: {error}", path=path, remedy="write it again") from error
+
+
 def _check_total(members: list[zipfile.ZipInfo], path: Path | str, max_bytes: int) -> None:
     """Raise FileError when the members declare more than `max_bytes` in all."""
     total = sum(member.file_size for member in members)
@@ -67,14 +82,20 @@ def _read(archive: zipfile.ZipFile, member: zipfile.ZipInfo, path: Path | str) -
     if member.compress_type not in _METHODS:
         raise ValueError(f"{member.filename}: packed by method {member.compress_type}")
     with archive.open(member) as stream:
-        shape, fortran, dtype = _header(stream, member.filename)
-        size = math.prod(shape) * dtype.itemsize
-        if dtype.hasobject or min(shape, default=0) < 0 or size > member.file_size:
-            value = f"{member.filename}: {shape} of {dtype}"
-            remedy = "write plain numbers with numpy.savez"
-            raise FileError("declares what it does not hold", path=path, value=value, remedy=remedy)
-        content = bytearray(stream.read(size))
+        found = _array(stream, member.file_size, member.filename, path)
         stream.read(1)  # the end of the member, where its checksum is compared
+    return found
+
+
+def _array(stream: Any, held: int, name: str, path: Path | str) -> np.ndarray:
+    """Return the array that begins at a stream of `held` bytes."""
+    shape, fortran, dtype = _header(stream, name)
+    size = math.prod(shape) * dtype.itemsize
+    if dtype.hasobject or min(shape, default=0) < 0 or size > held:
+        value = f"{name}: {shape} of {dtype}"
+        remedy = "write plain numbers with numpy.save or numpy.savez"
+        raise FileError("declares what it does not hold", path=path, value=value, remedy=remedy)
+    content = bytearray(stream.read(size))
     flat: Any = np.frombuffer(content, dtype=dtype) if size else np.empty(0, dtype)
     return flat.reshape(shape, order="F" if fortran else "C")
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import re
+import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
@@ -16,7 +17,9 @@ from sher3_machines.intake.readers.excel import read_workbook
 from sher3_machines.intake.readers.hdf5 import ENDINGS as OF_HDF5
 from sher3_machines.intake.readers.hdf5 import read_hdf5
 from sher3_machines.intake.readers.mat import read_mat
-from sher3_machines.intake.readers.structured import read_lines, read_lists, read_npz, read_parquet
+from sher3_machines.intake.readers.packed import ENDINGS as PACKED
+from sher3_machines.intake.readers.packed import unpack
+from sher3_machines.intake.readers.structured import read_lines, read_lists, read_npy, read_npz, read_parquet
 from sher3_machines.intake.readers.text import read_table
 from sher3_machines.intake.spelling import table_of
 
@@ -40,6 +43,18 @@ def read_bag(path: Path) -> Tables:
     return read_bag(path)
 
 
+def read_packed(path: Path) -> Tables:
+    """Return the tables of a packed file, of several files in it as `stem/name`; raises MachineError."""
+    with tempfile.TemporaryDirectory() as folder:
+        inside = unpack(path, Path(folder), MAX_BYTES)
+        try:
+            return read_tables(inside)
+        except MachineError as error:
+            what = f"{path}: {inside.name}" if inside.is_file() else str(path)
+            reason = error.what.replace(str(inside), what)
+            raise MachineError(reason, value=error.value, limit=error.limit, remedy=error.remedy) from error
+
+
 READERS: dict[str, Callable[[Path], Tables]] = {
     ".csv": read_table,
     ".tsv": read_table,
@@ -48,6 +63,7 @@ READERS: dict[str, Callable[[Path], Tables]] = {
     ".log": read_table,
     ".asc": read_table,
     ".mat": read_mat,
+    ".npy": read_npy,
     ".npz": read_npz,
     ".json": read_lists,
     ".jsonl": read_lines,
@@ -57,7 +73,21 @@ READERS: dict[str, Callable[[Path], Tables]] = {
     ".mcap": read_bag,
     ".bag": read_bag,
     **dict.fromkeys(OF_HDF5, read_hdf5),
+    **dict.fromkeys(PACKED, read_packed),
 }
+FROM_PICKLE = (
+    "it may run code, so it is not opened here; where you trust it: "
+    "python -c \"import pickle, numpy; numpy.savez('{stem}.npz', **pickle.load(open('{name}', 'rb')))\""
+)
+CONVERSIONS = {
+    **dict.fromkeys((".pkl", ".pickle", ".p"), FROM_PICKLE),
+    ".xls": "save it as xlsx",
+    ".ods": "save it as xlsx",
+    ".tdms": "write its channels as csv, as with `tdmsinfo` and pandas of the package nptdms",
+    ".ulg": "convert it with `ulog2csv {name}` of the package pyulog",
+    ".feather": "convert it to parquet with pandas",
+}
+"""What to do with files that are known and not read, by their ending."""
 NOT_IN_FOLDERS = (".txt", ".dat", ".log", ".asc")
 """Endings that are read where they are named, and passed over in a folder: there they are notes more often."""
 
@@ -94,9 +124,9 @@ def _read_unknown(path: Path) -> Tables:
     except MachineError:
         found = {}
     if not any(len(x) >= SAMPLES for x in found.values()):
-        raise MachineError(
-            f"{path}: format is not read", value=path.suffix, limit=", ".join(READERS), remedy="convert it to csv"
-        )
+        limit, remedy = ", ".join(READERS), CONVERSIONS.get(path.suffix.lower(), "convert it to csv")
+        remedy = remedy.format(name=path.name, stem=path.stem)
+        raise MachineError(f"{path}: format is not read", value=path.suffix, limit=limit, remedy=remedy)
     return found
 
 

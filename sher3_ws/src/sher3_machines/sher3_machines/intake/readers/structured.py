@@ -1,4 +1,4 @@
-"""NPZ, JSON, JSON lines and Parquet."""
+"""NPY, NPZ, JSON, JSON lines and Parquet."""
 
 from __future__ import annotations
 
@@ -9,11 +9,12 @@ from typing import Any
 
 import numpy as np
 from sher3_common import parse_json, read_json
-from sher3_common.array_files import read_arrays
+from sher3_common.array_files import read_array, read_arrays
 from sher3_diagnosis.channel import Array
 
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.readers.epics import is_archive, tables_of_archive
+from sher3_machines.intake.readers.shapes import plain
 from sher3_machines.intake.readers.text import decoded
 
 MAX_BYTES = 2_000_000_000
@@ -23,6 +24,14 @@ MAX_TEXT_BYTES = 500_000_000
 def read_npz(path: Path) -> dict[str, Array]:
     """Return the numeric arrays of a file."""
     return numeric(read_arrays(path, max_bytes=MAX_BYTES))
+
+
+def read_npy(path: Path) -> dict[str, Array]:
+    """Return the fields of a record array, the columns of a table as `c0`, `c1`, ..., or more axes as `array`."""
+    x = read_array(path, MAX_BYTES)
+    if x.dtype.names:
+        return numeric({name: x[name] for name in x.dtype.names})
+    return numeric({f"c{i}": column for i, column in enumerate(x.T)} if x.ndim == 2 else {"array": x})
 
 
 def read_lists(path: Path) -> dict[str, Array]:
@@ -108,6 +117,5 @@ def numeric(data: Mapping[str, object]) -> dict[str, Array]:
         except ValueError:  # rows of different lengths are no signal
             continue
         if x.dtype.kind in "fiub" and x.ndim:
-            x = np.asarray(x, dtype=float)
-            out[name] = x.ravel() if x.ndim == 2 and 1 in x.shape else x
+            out[name] = plain(x)
     return out
