@@ -91,9 +91,9 @@ def drafted(path: Path, tables: Tables, rate: float | None, guesses: list[str]) 
         table = table_of(clock)
         alone = table and sum(n.startswith(table + "/") for n in tables) == 1  # a name with a slash, and no table
         time = {"column": clock if alone else bare(clock)}
-        time["unit"] = time_unit(clock, period_of(tables[clock]), guesses, float(tables[clock][-1]))
+        time["unit"] = time_unit(clock, tables[clock], guesses)
     period = 1.0 / rate if rate else period_of(tables[str(clock)]) * TIME_UNITS[time["unit"]]
-    placed = with_loads(with_speeds(_placed(tables, clock)))
+    placed = with_loads(with_speeds(with_output(_living(_placed(tables, clock), tables, guesses), tables)))
     groups, left = together(placed)
     known = {name for name, _ in placed}
     left += [n for n, x in tables.items() if n not in known and n != clock and _moves(x)]
@@ -135,6 +135,30 @@ def _placed(tables: Tables, clock: str | None) -> dict[Place, tuple[str, str]]:
                 axis = "_".join(w for w in (what.axis, "" if index is None else str(index + 1)) if w)
                 found[name, index] = what.signal, axis
     return found
+
+
+def _living(
+    placed: Mapping[Place, tuple[str, str]], tables: Tables, guesses: list[str]
+) -> dict[Place, tuple[str, str]]:
+    """Return the signals without what was not connected: a reading that never changes, beside places that do.
+
+    What an axis is asked for may stay.
+    """
+    dead = [p for p, (signal, _) in placed.items() if signal != "reference" and not _moves(values_of(p, tables))]
+    alive = {p: what for p, what in placed.items() if p not in dead}
+    if not any(signal in ("position", "load", "velocity") for signal, _ in alive.values()):
+        return dict(placed)
+    if dead:
+        guesses.append(f"never changes, and is not used: {', '.join(dict.fromkeys(name for name, _ in dead))}")
+    return alive
+
+
+def with_output(placed: Mapping[Place, tuple[str, str]], tables: Tables) -> dict[Place, tuple[str, str]]:
+    """Return the signals with a column `y` as a place where none was recorded, beside one that drives: `u`, `y`."""
+    signals = {signal for signal, _ in placed.values()}
+    if signals & {"position", "load", "velocity"} or "command" not in signals or "y" not in tables:
+        return dict(placed)
+    return {**placed, ("y", None): ("position", "")}
 
 
 def with_speeds(placed: Mapping[Place, tuple[str, str]]) -> dict[Place, tuple[str, str]]:

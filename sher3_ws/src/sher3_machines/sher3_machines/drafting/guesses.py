@@ -83,8 +83,9 @@ def evenly(x: Array) -> bool:
     steps = np.diff(x[np.isfinite(x)])
     if np.std(steps) < EVEN * np.mean(steps):
         return True
-    off = np.abs(steps / max(float(np.median(steps)), np.finfo(float).tiny) - 1.0)
-    return bool((steps > 0.0).all() and np.mean(off < LATE) > FORWARD)
+    if not (steps > 0.0).all():
+        return False
+    return bool(np.mean(np.abs(steps / np.median(steps) - 1.0) < LATE) > FORWARD)
 
 
 def period_of(stamps: Array) -> float:
@@ -95,13 +96,17 @@ def period_of(stamps: Array) -> float:
     return float(middle.mean()) if len(middle) and middle.mean() > 0.0 else float("nan")
 
 
-def time_unit(clock: str, period: float, guesses: list[str], latest: float | None = None) -> str:
-    """Return the unit of stamps: of the name, or the one that makes the rate usual; `latest`: the last of them."""
+def time_unit(clock: str, stamps: Array, guesses: list[str]) -> str:
+    """Return the unit of stamps (n,): of the name, or the one that makes the rate usual."""
     unit = bare_and_unit(bare(clock))[1]
     if unit in TIME_UNITS:
         return str(unit)
-    if latest is not None and EPOCH[0] < latest < EPOCH[1]:
+    if EPOCH[0] < stamps[-1] < EPOCH[1]:
         guesses.append("time in s since 1970")
+        return "s"
+    period = period_of(stamps)
+    if in_thousandths(stamps):
+        guesses.append("time in s, because its stamps are read to a thousandth, which is a ms")
         return "s"
     for unit, scale in TIME_UNITS.items():
         if USUAL_RATES[0] <= 1.0 / (period * scale) <= USUAL_RATES[1]:
@@ -109,6 +114,13 @@ def time_unit(clock: str, period: float, guesses: list[str], latest: float | Non
             return unit
     guesses.append(f"time in s, though a period of {period:.4g} s is unusual")
     return "s"
+
+
+def in_thousandths(stamps: Array) -> bool:
+    """Return whether stamps (n,) are whole thousandths, of which most are no hundredths."""
+    known = 1e3 * stamps[np.isfinite(stamps)]
+    fine = np.abs(known / 10.0 - np.round(known / 10.0)) > WHOLE
+    return bool((np.abs(known - np.round(known)) < WHOLE * 0.1).all() and fine.mean() > 0.5)
 
 
 def position_unit(unit: str | None, x: Array, slides: bool = False) -> tuple[str, float, str]:

@@ -10,7 +10,7 @@ import re
 from dataclasses import dataclass
 
 from sher3_machines.intake.columns import IN_HEADER
-from sher3_machines.intake.fields import VELOCITIES
+from sher3_machines.intake.fields import TIME_UNITS, VELOCITIES
 from sher3_machines.intake.spelling import PARTING, bare
 from sher3_machines.intake.units import UNITS, spelled
 
@@ -24,11 +24,13 @@ POSITION = vocabulary(
     "position positions pos posn q qpos theta angle angles encoder enc lage weg winkel qm x dist displacement displ "
     "stroke gap hub verschiebung schrittzähler steps schritte"
 )
-VELOCITY = vocabulary("velocity velocities vel speed qd dq omega qdot qvel gyro drehzahl geschwindigkeit rate")
+VELOCITY = vocabulary(
+    "velocity velocities vel speed qd dq omega qdot qvel gyro drehzahl geschwindigkeit rate dot thetadot xdot"
+)
 EFFORT = vocabulary("effort efforts torque torques tau taus force iq trq moment drehmoment strom kraft amps qfrc")
 CURRENT = vocabulary("current currents curr cur i")
 """A current is an effort, but the current position is the measured one."""
-COMMAND = vocabulary("control ctrl u voltage volt spannung pwm duty vir valve ventil")
+COMMAND = vocabulary("control ctrl u input eingang voltage volt spannung pwm duty vir valve ventil")
 ASKED = vocabulary(
     "ref reference set setpoint sp desired des target goal soll demand commanded cmd command action qg d"
 )
@@ -38,8 +40,8 @@ SECOND = vocabulary(
     "interferometer vicon mocap optitrack qualisys gt truth groundtruth"
 )
 IGNORED = vocabulary(
-    "acceleration acc accel qdd ddq error err bus supply battery versorgung power leistung energy tcp pose cartesian "
-    "ee eef execution main"
+    "acceleration acc accel qdd ddq qddot ddot thetaddot xddot error err bus supply battery versorgung power leistung "
+    "energy tcp pose cartesian ee eef execution main"
 )
 """What is no signal of an axis: derivatives, supplies, and what the hand of an arm does."""
 TEMPERATURE = vocabulary("temperature temperatures temp temps temperatur")
@@ -47,7 +49,7 @@ APPLIED = vocabulary("hung applied external disturbance weight brake bremsmoment
 """A force from outside that is known, where the column has the unit of one."""
 READING = vocabulary("value val wert")
 """What a channel calls its readings."""
-DERIVED = vocabulary("filt filtered filter smooth smoothed gefiltert")
+DERIVED = vocabulary("filt filtered filter smooth smoothed gefiltert kalman ekf")
 """What was made of a reading: taken where the reading itself was not recorded."""
 PLAIN = DERIVED | vocabulary(
     "motor mot actuator state states joint value wert data real raw message msg sensor averaged average mean mittel"
@@ -63,6 +65,8 @@ DRIVES = (*FORCES, "V", "mV", "1")
 """Units of what a drive is told, where it is no place."""
 PLACES = ("m", "cm", "mm", "um", "rad", "mrad", "deg", "arcmin", "arcsec", "rev", "count")
 """Units of a position."""
+CLEAR = vocabulary("deg degree degrees rad radians rpm mm ms msec millis us usec micros sec secs seconds")
+"""Words that are nothing but a unit: a name by themselves, `ms,deg,rpm`, or at its end, `speedRpm`."""
 DRIVING = vocabulary("motor mot antrieb drive schrittzähler steps schritte")
 """The one of two places of an axis that the drive moves; the other one is that of the load."""
 WORDS = POSITION | VELOCITY | EFFORT | CURRENT | COMMAND | ASKED | MEASURED | IGNORED
@@ -70,6 +74,8 @@ SLIDING = vocabulary("position pos posn x y z dist distance displacement displ s
 """Words beside which an `m` at the end is a metre: `cart_position_m`; `q_m` is an angle of a motor."""
 PER_SECOND = re.compile(r"(?P<name>.+)_(?P<unit>deg|rad|m|mm)(_|p|_per_)s")
 """A velocity whose name ends in its unit: `gyro_deg_s`, `omega_rad_per_s`."""
+CAPITAL = re.compile(r"(?<=[a-z])(?=[A-Z][a-z]+$)")
+"""Where the last word of a name begins with a capital: `wheelSpeedRpm`."""
 ENTRY = re.compile(r"[A-Za-z]{0,5}[ _]?\d{1,2}|[xyz]")
 """What brackets hold that is no unit but an entry: `POSITIONS (J1)`, `FORCE (x)`."""
 SHORT = vocabulary("x i u n d q t")
@@ -126,6 +132,7 @@ def named(column: str) -> Named:
     if signal is None and not set(words) & IGNORED:
         plain = unit == "count" or (unit in PLACES and set(words) <= PLAIN | TURNING)
         signal = "position" if plain else "effort" if unit in FORCES and not set(words) & WORDS else None
+        signal = "velocity" if not words and unit in VELOCITIES else signal
     return Named(signal, "_".join(rest), unit)
 
 
@@ -173,6 +180,9 @@ def bare_and_unit(name: str) -> tuple[str, str | None]:
         return (f"{match['name']} {inside}" if ENTRY.fullmatch(inside) else match["name"]), None
     if match := PER_SECOND.fullmatch(name):
         return match["name"], f"{match['unit']}/s"
+    first, last = ([*CAPITAL.split(name), ""] if CAPITAL.search(name) else ["", name])[:2]
+    if last.lower() in CLEAR:
+        return first, spelled(last.lower())
     head, mark, last = name.rpartition("_" if "_" in name else " ")
     if mark == " " and (last not in UNITS or len(last) == 1):
         return name, None
@@ -186,8 +196,8 @@ def bare_and_unit(name: str) -> tuple[str, str | None]:
 
 def tells_time(column: str) -> bool:
     """Return whether a column's name says that it is a time."""
-    known, _ = bare_and_unit(bare(column))
-    return bool(set(words_of(known)) & TIME)
+    known, unit = bare_and_unit(bare(column))
+    return bool(set(words_of(known)) & TIME) or (not known and unit in TIME_UNITS)
 
 
 def counts_samples(column: str) -> bool:

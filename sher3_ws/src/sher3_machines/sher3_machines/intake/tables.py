@@ -28,6 +28,10 @@ MAX_BYTES = 2_000_000_000
 """Largest file that is read."""
 SAMPLES = 20
 """Entries from which a list is one of samples, and no parameter of each joint."""
+UNNAMED = re.compile(r"c\d+")
+"""Names of columns without a header."""
+WIDE = 10
+"""Columns for each row from which a table without a header has a row for each signal."""
 SECONDS = re.compile(r"(?P<clock>(.*[/._])?)(secs?|seconds)")
 NANOSECONDS = re.compile(r"(?P<clock>(.*[/._])?)(nanos|nsecs?|nanosecs?|nanoseconds)")
 """The two columns of a clock, as ROS and EPICS write them."""
@@ -134,9 +138,19 @@ def upright(tables: Tables) -> Tables:
     """Return the arrays of a file with matrices (k, n) as (n, k), where lists of n samples stand beside them.
 
     MATLAB users write a row for each joint as often as one for each sample. Lists of the matrix' own table count before
-    those of the file, and short lists, such as a gain for each joint, where there are none of samples alone.
+    those of the file, and short lists, such as a gain for each joint, where there are none of samples alone. A table
+    without a header that is much wider than long has a row for each signal.
     """
+    if tables and all(UNNAMED.fullmatch(n) for n in tables) and _is_wide(tables):
+        return {f"c{i}": row for i, row in enumerate(np.array(list(tables.values())).T)}
     return {n: np.ascontiguousarray(x.T) if x.ndim == 2 and _lies(n, x, tables) else x for n, x in tables.items()}
+
+
+def _is_wide(tables: Tables) -> bool:
+    """Whether columns (n,) of a table are more than samples, by far."""
+    rows = {x.shape for x in tables.values()}
+    shape = rows.pop()
+    return not rows and len(shape) == 1 and shape[0] < SAMPLES and len(tables) > WIDE * shape[0]
 
 
 def _lies(name: str, x: Array, tables: Tables) -> bool:

@@ -96,6 +96,29 @@ def test_a_speed_alone_is_a_place_that_is_integrated(tmp_path):
     assert any("is a velocity; integrated" in note for note in notes)
 
 
+def test_what_was_not_connected_is_no_signal_and_said(tmp_path):
+    """A second encoder and a current that are zero all along say nothing; a target that stays is one."""
+    nothing = np.zeros(len(TIME))
+    found = written(
+        tmp_path, "t,left_pos,right_pos,left_effort,left_target", TIME, np.sin(TIME), nothing, nothing, nothing
+    )
+    assert set(signals_of(found, tmp_path)) == {"position", "reference"}
+    assert any("never changes, and is not used: right_pos, left_effort" in guess for guess in found.guesses)
+
+
+@pytest.mark.parametrize(("header", "columns"), [("t,u,y", ("u", "y")), ("t,input,output", ("input", "output"))])
+def test_what_drives_and_what_comes_out_are_command_and_place(tmp_path, header, columns):
+    found = columns_of(tmp_path, header, TIME, np.cos(3.0 * TIME), np.sin(TIME))
+    assert (found["command"], found["position"]) == columns
+
+
+@pytest.mark.parametrize(("period", "unit"), [(1.001, "s"), (0.251, "s"), (5.0, "ms"), (12.5, "ms")])
+def test_stamps_with_thousandths_are_seconds(tmp_path, period, unit):
+    """A slow log in s is read to a ms; one in ms has no need of thousandths."""
+    found = written(tmp_path, "time,pos", np.round(30.0 + period * np.arange(200), 3), np.sin(np.arange(200) / 9.0))
+    assert f"unit: {unit}\n" in found.text
+
+
 def test_axes_named_x_y_z_slide_in_metres_or_millimetres(tmp_path):
     far = written(tmp_path, "t,X1_ActualPosition,X1_CommandPosition", TIME, 40.0 * np.sin(TIME), 40.0 * np.sin(TIME))
     near = written(tmp_path, "t,pos_x,ref_x", TIME, 2.0 * np.sin(TIME), 2.0 * np.sin(TIME))

@@ -55,6 +55,12 @@ from sher3_machines.drafting.names import bare_and_unit, named, tells_time
         ("left_ticks", "position", "left"),
         ("tracker_x_m", "load", "x"),
         ("gt_x", "load", "x"),
+        ("theta_dot", "velocity", ""),
+        ("theta_ddot_kalman", None, ""),
+        ("input", "command", ""),
+        ("leftSpeedRpm", "velocity", "left"),
+        ("rpm", "velocity", ""),
+        ("deg", "position", ""),
     ],
 )
 def test_a_name_says_signal_and_axis(column, signal, axis):
@@ -79,6 +85,9 @@ def test_a_name_says_signal_and_axis(column, signal, axis):
         ("time_s", "s"),
         ("joint_s", None),
         ("FORCE (x)", None),
+        ("wheelSpeedRpm", "rpm"),
+        ("timeMs", "ms"),
+        ("positionMin", None),
     ],
 )
 def test_a_unit_stands_in_brackets_or_at_the_end(column, unit):
@@ -86,7 +95,7 @@ def test_a_unit_stands_in_brackets_or_at_the_end(column, unit):
 
 
 def test_names_of_time():
-    assert all(tells_time(x) for x in ("t", "Time (ms)", "__time", "t_ns", "header.stamp", "Zeit [s]"))
+    assert all(tells_time(x) for x in ("t", "Time (ms)", "__time", "t_ns", "header.stamp", "Zeit [s]", "ms", "seconds"))
     assert not any(tells_time(x) for x in ("q", "torque", "state"))
 
 

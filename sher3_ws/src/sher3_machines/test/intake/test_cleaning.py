@@ -26,9 +26,17 @@ def test_rounded_stamps_lie_on_their_line():
     assert np.diff(stamps) == pytest.approx(0.01, rel=0.05) and "rounded to 0.04 s" in note
 
 
+@pytest.mark.parametrize("rows", [2, 5, 9])
+def test_of_each_tick_of_a_clock_slower_than_its_log_one_row_is_a_sample(rows):
+    """A logger that runs as fast as it can writes one to ten rows for each tick of 25 ms."""
+    ticks = np.arange(200) * 0.025
+    stamps, kept, note = even_stamps(np.repeat(ticks, np.random.default_rng(rows).integers(1, 2 * rows, 200)), "run")
+    assert (stamps == ticks).all() and len(kept) == 200 and "of each of its 200 ticks" in note
+
+
 def test_stamps_that_are_no_line_are_refused():
     with pytest.raises(MachineError, match="repeat the one before"):
-        even_stamps(np.floor(np.r_[TIME, 2.0 + 3.0 * TIME] / 0.04) * 0.04, "run")
+        even_stamps(np.repeat(np.cumsum(np.random.default_rng(1).exponential(size=50)), 3), "run")
     with pytest.raises(MachineError, match="does not increase"):
         even_stamps(np.zeros(50), "run")
 

@@ -102,3 +102,12 @@ def test_columns_that_are_added():
         pick(Column.model_validate({"column": "pa", "unit": "bar", "factor": 1e-3, "plus": [other]}), data, "a")
     with pytest.raises(ValueError, match="a pressure needs its `factor`"):
         Column(column="pa", unit="bar")
+
+
+@pytest.mark.parametrize("signals", [3, 8, 15])
+def test_a_row_for_each_signal_is_turned(tmp_path, signals):
+    """`numpy.savetxt` of a list of signals writes a few lines that are very long; a short table stays as it is."""
+    rows = np.arange(signals)[:, None] * 1000.0 + np.arange(400)
+    found = tables(tmp_path, "\n".join(",".join(f"{x:g}" for x in row) for row in rows))
+    assert list(found) == [f"c{i}" for i in range(signals)] and (found["c2"] == rows[2]).all()
+    assert len(tables(tmp_path, "\n".join("1,2,3,4" for _ in range(3)))) == 4

@@ -10,6 +10,8 @@ from sher3_machines.errors import MachineError
 
 ROUNDED = 0.2
 """Share of steps of zero from which stamps are rounded; fewer are samples that were written twice."""
+EVEN, TICKING = 0.1, 0.9
+"""Share by which the ticks of a clock may differ from the usual one, and the share of them that must not."""
 FEWEST = 3
 """Stamps below which nothing can be said of them."""
 MIXED_UP = 10.0
@@ -48,8 +50,22 @@ def even_stamps(stamps: Array, run: str) -> tuple[Array, NDArray[np.int64], str]
         found, kept = found[first], kept[first]
         notes.append(f"{int((~first).sum())} stamps are there twice; the first one is taken")
     elif told >= ROUNDED and (steps >= 0.0).all():
-        found = _on_a_line(found, told, float(steps[steps > 0.0].min()), run)
-        notes.append(f"stamps are rounded to {steps[steps > 0.0].min():.3g} s; samples are taken as even")
+        tick, line = float(steps[steps > 0.0].min()), _line(found)
+        ticks = np.flatnonzero(np.concatenate([[True], steps > 0.0]))
+        off = float(np.abs(line - found).max())
+        if off <= 2.0 * tick:
+            found = line
+            notes.append(f"stamps are rounded to {tick:.3g} s; samples are taken as even")
+        elif np.mean(np.abs(np.diff(found[ticks]) / usual - 1.0) < EVEN) > TICKING:
+            found, kept = found[ticks], kept[ticks]
+            notes.append(f"several rows have one stamp: of each of its {len(ticks)} ticks the first row is taken")
+        else:
+            raise MachineError(
+                f"{run}: {told:.0%} of the stamps repeat the one before",
+                value=f"{off:.3g} s off an even clock",
+                limit=f"{2.0 * tick:.3g} s",
+                remedy="record finer stamps, or state the rate of the samples: `time: {rate: HZ}`",
+            )
     return found, kept, f"{run}: {', '.join(notes)}" if notes else ""
 
 
@@ -80,16 +96,7 @@ def missing_note(missed: NDArray[np.int64], period: float, run: str) -> str:
     )
 
 
-def _on_a_line(stamps: Array, repeated: float, rounding: float, run: str) -> Array:
-    """Return rounded stamps on the line through them, by least squares; raises MachineError where they are none."""
+def _line(stamps: Array) -> Array:
+    """Return stamps (n,) on the line through them, by least squares."""
     row = np.arange(len(stamps)) - 0.5 * (len(stamps) - 1)
-    line = stamps.mean() + row * float(row @ stamps) / float(row @ row)
-    off = float(np.abs(line - stamps).max())
-    if off > 2.0 * rounding:
-        raise MachineError(
-            f"{run}: {repeated:.0%} of the stamps repeat the one before",
-            value=f"{off:.3g} s off an even clock",
-            limit=f"{2.0 * rounding:.3g} s",
-            remedy="record finer stamps, or state the rate of the samples: `time: {rate: HZ}`",
-        )
-    return line
+    return np.asarray(stamps.mean() + row * float(row @ stamps) / float(row @ row))
