@@ -12,7 +12,7 @@ from sher3_public.answer import Answer
 from sher3_public.cases import Case, case_of_arrays, case_of_description, case_of_tables
 from sher3_public.describing import Stated
 from sher3_public.errors import InputError
-from sher3_public.records import arrays_of, columns_of, is_several, is_table
+from sher3_public.records import arrays_of, columns_of, is_several, is_table, tables_at
 
 UNUSED = "is not used"
 """Words of a guess by which a signal plays no part."""
@@ -42,7 +42,8 @@ def diagnose(
     Args:
         model: path or text of MJCF or URDF, `MjModel`, `MjSpec`; a description (mapping, path of YAML, or object) of
             any kind of machine; None: axes by themselves, with a table.
-        time: stamps (n,), or a table with named columns: a mapping of arrays, or a frame of pandas or Polars.
+        time: stamps (n,), or a table with named columns: a mapping of arrays, or a frame of pandas or Polars; or the
+            path of a log in any format that is imported, each of its runs a table.
         control: what the actuators were told, (n, m): one column for each actuator of the model, or each joint.
         position: (n, k), of the joints in the order of the model.
         effort: (n, k), forces at the joints; without it those of the model's motors and servos follow from `control`.
@@ -77,6 +78,7 @@ def diagnose(
 def _case(
     model: object, time: Any, arrays: tuple[Runs, Runs, Runs, Runs], stated: Stated, rate: float | None, tags: Any
 ) -> Case:
+    time = tables_at(time)
     tables = time if is_several(time) and is_table(time[0]) else [time] if is_table(time) else []
     if not tables:
         if model is None:

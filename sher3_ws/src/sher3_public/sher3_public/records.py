@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -37,6 +39,21 @@ class Arrays:
 def is_table(record: object) -> bool:
     """Return whether a record is a table with names: a mapping, or a frame of pandas or Polars."""
     return isinstance(record, Mapping) or (hasattr(record, "columns") and hasattr(record, "__getitem__"))
+
+
+def tables_at(record: object) -> object:
+    """Return the tables of a log whose path is given, or of several, one for each run; other records as they are.
+
+    Raises:
+        MachineError: no such file, no known format, or a table that cannot be read.
+    """
+    given = list(record) if isinstance(record, list | tuple) else [record]
+    paths = [Path(x) for x in given if isinstance(x, str | PathLike)]
+    if not paths or len(paths) < len(given):
+        return record
+    from sher3_machines.intake.runs import runs_of
+
+    return list(runs_of(paths).values())
 
 
 def columns_of(table: Any) -> dict[str, Array]:

@@ -43,6 +43,16 @@ def test_a_table_with_names(log):
     assert right(gap.diagnose(log.xml, table))
 
 
+def test_logs_by_their_paths(log, tmp_path):
+    """One path, a text or a `Path`, or several of one kind of record."""
+    np.savez(tmp_path / "a.npz", time=log.time, qpos=log.qpos, ctrl=log.ctrl)
+    assert right(gap.diagnose(log.xml, str(tmp_path / "a.npz")))
+    two = gap.diagnose(log.xml, [tmp_path / "a.npz", tmp_path / "a.npz"])
+    assert right(two) and len(two.case.runs) == 2
+    with pytest.raises(ValueError, match=r"none\.csv: no such file"):
+        gap.diagnose(log.xml, tmp_path / "none.csv")
+
+
 class Frame:
     """What a frame of pandas or Polars has and the diagnosis uses: names of columns, and columns by name."""
 

@@ -42,14 +42,12 @@ class Told:
 
 def told(log: Log, say: Callable[[str], None] = lambda _: None) -> Told:
     """Diagnose one log; input errors come back as the answer, mistakes of ours are raised."""
-    from sher3_machines.intake.runs import runs_of
     from sher3_public import diagnose
     from sher3_public.guard.baseline import entry_of
 
     say(f"reading {log.log}")
     try:
-        tables = list(runs_of([log.log]).values())
-        found = diagnose(log.model, tables if len(tables) > 1 else tables[0], without=log.without)
+        found = diagnose(log.model, log.log, without=log.without)
     except Sher3Error as error:
         return Told(log, error=error)
     return Told(log, entry_of(found.diagnosis), found.headline)
