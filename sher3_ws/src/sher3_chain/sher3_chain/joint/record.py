@@ -9,7 +9,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from sher3_diagnosis.channel import Array, Mask
 from sher3_machines.errors import MachineError
-from sher3_machines.intake.columns import MOTION, find, pick, stamps_of
+from sher3_machines.intake.columns import MOTION, clock_beside, find, pick, stamps_of
 from sher3_machines.intake.fields import Clock, Column
 from sher3_machines.intake.mending.motion import check_speed, counts_backwards, is_magnitude, signs_of, speed_ratio
 from sher3_machines.intake.mending.parts import LONGEST_HOLE, cut
@@ -151,18 +151,25 @@ def _late(stamps: Array | None, x: Array, late: float, clock: Clock) -> Stamped:
 def _without_repeats(tables: Tables, machine: ChainDescription, run: str) -> tuple[Tables, list[str]]:
     """Return the tables without the rows that repeat their predecessor in all described columns, and a note for each.
 
-    Where the clock is a rate each row has its place: those rows are interpolated.
+    Tables of one clock are one log, parted by signal. Where the clock is a rate each row has its place: those rows are
+    interpolated.
     """
-    named = {find(c.column, tables, run) for axis in machine.chain for c in _columns(axis).values()}
+    logs: dict[str, set[str]] = {}
+    for column in (c for axis in machine.chain for c in _columns(axis).values()):
+        clock = clock_beside(column, tables, machine.time, run)
+        logs.setdefault(table_of(column.column) if clock is None else clock, set()).add(
+            find(column.column, tables, run)
+        )
     out, notes = dict(tables), []
-    for table in sorted({table_of(column) for column in named}):
-        own = [tables[c] for c in named if table_of(c) == table and len(tables[c])]
+    for clock, named in sorted(logs.items()):
+        own = [tables[c] for c in named if len(tables[c])]
         if len({len(x) for x in own}) != 1 or any(not np.issubdtype(x.dtype, np.number) for x in own):
             continue
         fresh = fresh_rows(own)
         if fresh.all():
             continue
-        rows = [c for c, x in tables.items() if table_of(c) == table and x.ndim and len(x) == len(fresh)]
+        homes = {table_of(c) for c in (*named, clock)}
+        rows = [c for c, x in tables.items() if table_of(c) in homes and x.ndim and len(x) == len(fresh)]
         timed = machine.time.column is not None
         out |= {c: tables[c][fresh] if timed else filled(tables[c], fresh) for c in rows if timed or c in named}
         lost = int((~fresh).sum())

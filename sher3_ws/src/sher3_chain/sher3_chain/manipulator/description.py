@@ -62,6 +62,7 @@ class ManipulatorDescription(ChainDescription):
         coupling: motor travel = coupling * joint travel, one row for each joint of the list; without it every motor
             moves its own joint.
         effort_of: whether the efforts are those of the joints or of the motors behind the coupling.
+        position_of: whether the positions are those of the joints or of the motors behind the coupling.
         gravity: at the base of the model, m/s^2; None: that of the model.
     """
 
@@ -71,6 +72,7 @@ class ManipulatorDescription(ChainDescription):
     joints: tuple[Joint, ...] = Field(min_length=1)
     coupling: tuple[Row, ...] | None = None
     effort_of: Literal["joints", "motors"] = "joints"
+    position_of: Literal["joints", "motors"] = "joints"
     gravity: tuple[float, float, float] | None = None
 
     @model_validator(mode="after")

@@ -9,6 +9,7 @@ from typing import Any
 
 from sher3_machines.drafting.draft import drafted, written
 from sher3_machines.drafting.names import EFFORT, words_of
+from sher3_machines.drafting.unnamed import as_recorded, renamed, told_by_blocks
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.kind import Draft
 from sher3_machines.intake.runs import longest
@@ -40,8 +41,10 @@ def draft_arm(path: Path, model: Path, rate: float | None = None, tables: Tables
             the joints.
     """
     guesses: list[str] = []
-    chain = drafted(path, longest(path) if tables is None else tables, rate, guesses)
-    return written(of_arm(chain, read_bodies(model), guesses), guesses)
+    bodies, tables = read_bodies(model), longest(path) if tables is None else tables
+    names = told_by_blocks(tables, rate, len(bodies.joints), guesses)
+    chain = drafted(path, renamed(names, tables) if names else tables, rate, guesses)
+    return written(as_recorded(of_arm(chain, bodies, guesses), names), guesses)
 
 
 def of_arm(data: Mapping[str, Any], model: Bodies, guesses: list[str]) -> dict[str, Any]:

@@ -30,13 +30,15 @@ def joint_signals(run: AxesRun, described: ManipulatorDescription, excitation: s
     """
     each = [signals_of(run, joint, excitation) for joint in described.joints]
     travel = np.asarray(described.coupling if described.coupling is not None else np.eye(len(each)))
-    force = np.linalg.inv(travel) if described.effort_of == "joints" else np.eye(len(each))
+    own = np.eye(len(each))
+    force = np.linalg.inv(travel) if described.effort_of == "joints" else own
+    place = travel if described.position_of == "joints" else own
     effort = np.hstack([_gained(one, joint.gain) for one, joint in zip(each, described.joints, strict=True)])
     return JointSignals(
         name=run.name,
         excitation=excitation,
         period=run.period,
-        motor=np.hstack([one.motor for one in each]) @ travel.T,
+        motor=np.hstack([one.motor for one in each]) @ place.T,
         effort=effort @ force,
         load=_beside([one.load for one in each], each[0].motor, travel),
         bandwidth=min(cut_off(one.motor[:, 0], run.period, one.bandwidth) for one in each),

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from lifts import URDF, friction, motion, needed
 from sher3_chain.manipulator.draft import draft_arm, fitted
+from sher3_common import parse_yaml
 from sher3_diagnosis import diagnose
 from sher3_machines import MachineError, import_case, open_case
 
@@ -71,3 +72,31 @@ def test_numbered_columns_are_the_longest_chain_of_joints(tmp_path):
     two = [f"{side}_joint{i}" for side in ("left", "right") for i in range(3)]
     with pytest.raises(MachineError, match="do not fit"):
         fitted(["q0", "q1", "q2"], two, model)
+
+
+@pytest.mark.parametrize("blocks", ["qvat", "qvt", "tqv", "qtv"])
+def test_a_table_without_names_is_blocks_of_the_joints(tmp_path, blocks):
+    (tmp_path / "lift.urdf").write_text(URDF)
+    parts = {"q": Q, "v": V, "a": A, "t": EFFORT}
+    np.savetxt(tmp_path / "a.csv", np.column_stack([parts[b] for b in blocks]), delimiter=",", fmt="%.9g")
+    joints = parse_yaml(draft_arm(tmp_path / "a.csv", tmp_path / "lift.urdf", rate=200.0).text)["joints"]
+    at = {"position": blocks.index("q"), "velocity": blocks.index("v"), "effort": blocks.index("t")}
+    for i, joint in enumerate(joints):
+        assert {k: x["column"] for k, x in joint["signals"].items()} == {k: f"c{2 * n + i}" for k, n in at.items()}
+
+
+@pytest.mark.parametrize(("place", "force"), [("dataQ", "dataTau"), ("joint_pos_read", "joint_torque_read")])
+def test_files_of_one_signal_each_are_the_joints_of_an_arm(tmp_path, place, force):
+    """No file has a header, none is a csv, and one of five rows was polled twice: the clock loses it too."""
+    (tmp_path / "lift.urdf").write_text(URDF)
+    (tmp_path / "log").mkdir()
+    rows = np.repeat(np.arange(len(Q)), np.where(np.arange(len(Q)) % 4 == 3, 2, 1))
+    for name, x in {"stamps": np.arange(len(rows)) * 0.004, place: Q[rows], force: EFFORT[rows]}.items():
+        np.savetxt(tmp_path / "log" / f"{name}.txt", x, fmt="%.9g")
+    (tmp_path / "log" / "readme.txt").write_text("what was done\n")
+    found = draft_arm(tmp_path / "log", tmp_path / "lift.urdf")
+    (tmp_path / "a.yaml").write_text(found.text, encoding="utf-8")
+    import_case([tmp_path / "log"], tmp_path / "a.yaml", tmp_path / "case")
+    _, (run,) = open_case(tmp_path / "case")
+    assert set(run.signals) == {"lift", "swing"} and all(set(x) == {"position", "effort"} for x in run.signals.values())
+    assert any("polled twice" in note for note in run.notes)

@@ -149,6 +149,18 @@ def test_friction_behind_a_coupling_belongs_to_the_motor(path):
     assert values(found)["coulomb_friction", "swing", "force"] == pytest.approx(3.0, rel=0.06)
 
 
+@pytest.mark.parametrize("gear", [1.0, 20.0, -48.0])
+def test_places_of_the_motors_behind_a_coupling_are_those_of_the_joints(path, gear):
+    """A drive logs its motor: travel and effort are on its side, geared and coupled, and friction is the motor's."""
+    travel = np.array([[1.0, 0.0], [1.0, 0.5]]) * gear
+    motors = needed(Q, V, A) @ np.linalg.inv(travel) + friction(V @ travel.T, (0.0, 3.0 / abs(gear)))
+    run = run_of(Q @ travel.T, motors, noise=0.02 / abs(gear))
+    sides = {"coupling": travel.tolist(), "effort_of": "motors", "position_of": "motors"}
+    found = diagnose(machine(path, joint={"swing": {"motion": "linear"}}, **sides), [run]).verdict
+    assert {(c.effect, c.actuator) for c in found.causes} == {("coulomb_friction", "swing")}
+    assert values(found)["coulomb_friction", "swing", "force"] == pytest.approx(3.0 / abs(gear), rel=0.06)
+
+
 def test_identified_inertias_leave_the_friction(path):
     """The model's pendulum is 30 % too light: with inertias free, what is left is friction alone."""
     text = described(path).model and path.read_text().replace('mass value="2.0"', 'mass value="1.4"')

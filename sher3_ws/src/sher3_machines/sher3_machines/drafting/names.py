@@ -21,8 +21,8 @@ def vocabulary(text: str) -> frozenset[str]:
 
 
 POSITION = vocabulary(
-    "position positions pos posn q qpos theta angle angles encoder enc lage weg winkel qm x dist displacement displ "
-    "stroke gap hub verschiebung schrittzähler steps schritte"
+    "position positions pos posn q qpos theta angle angles ang encoder enc lage weg winkel qm x dist displacement "
+    "displ stroke gap hub verschiebung schrittzähler steps schritte"
 )
 VELOCITY = vocabulary(
     "velocity velocities vel speed qd dq omega qdot qvel gyro drehzahl geschwindigkeit rate dot thetadot xdot"
@@ -70,6 +70,10 @@ CLEAR = vocabulary("deg degree degrees rad radians rpm mm ms msec millis us usec
 DRIVING = vocabulary("motor mot antrieb drive schrittzähler steps schritte")
 """The one of two places of an axis that the drive moves; the other one is that of the load."""
 WORDS = POSITION | VELOCITY | EFFORT | CURRENT | COMMAND | ASKED | MEASURED | IGNORED
+TELLING = WORDS | SECOND | TEMPERATURE | APPLIED | TURNING | TIME | COUNTERS
+"""Words by which a column tells something by itself."""
+NAMELESS = "c"
+"""Word of the columns of a table without a header: c0, c1, ..."""
 SLIDING = vocabulary("position pos posn x y z dist distance displacement displ stroke gap hub weg verschiebung")
 """Words beside which an `m` at the end is a metre: `cart_position_m`; `q_m` is an angle of a motor."""
 PER_SECOND = re.compile(r"(?P<name>.+)_(?P<unit>deg|rad|m|mm)(_|p|_per_)s")
@@ -108,6 +112,10 @@ def named(column: str) -> Named:
     words = words_of(known)
     if tables and words and set(words) <= READING:  # a channel of a control system: its table has the name
         words = words_of(tables[-1])
+    if tables and unit is None and not set(words) & TELLING:  # a file for each signal: its columns are the joints
+        parted = named(tables[-1])
+        axis = "_".join(w for w in words if w not in PLAIN and w != NAMELESS)
+        return Named(parted.signal, axis or parted.axis, parted.unit)
     if unit == "nm" and set(words) & (EFFORT | CURRENT):
         unit = "N*m"
     table = words_of(tables[-1]) if tables else []

@@ -24,6 +24,9 @@ WITHOUT = re.compile(r"c\d+|")
 MOST = 12
 """Columns of a matrix that is taken for a table at most."""
 
+POSITION, VELOCITY, ACCELERATION, EFFORT = "position", "velocity", "acceleration", "effort"
+"""Names of the blocks of a table of a robot."""
+
 Place = tuple[str, int | None]
 """A column, and the entry of it where each sample is a list."""
 
@@ -61,15 +64,9 @@ def told_by_motion(tables: Tables, rate: float | None, guesses: list[str]) -> di
 
     Empty where there is no time, or where no two columns without a name are place and speed.
     """
-    unnamed = [place for place in places_of(tables) if place[1] is not None or WITHOUT.fullmatch(place[0])]
-    columns = {place: values_at(place, tables) for place in unnamed}
-    clock = next((p for p, x in columns.items() if grows(x) and evenly(x)), None) if rate is None else None
-    if not columns or (clock is None and rate is None):
-        return {}
-    t = columns[clock] if clock else np.arange(len(next(iter(columns.values())))) / float(rate or 1.0)
-    moving = {p: x for p, x in columns.items() if p != clock and np.isfinite(x).all() and float(np.ptp(x)) > 0.0}
-    ahead = np.concatenate([[True], np.diff(t) > 0.0])
-    pairs = [(x, v) for x, v in permutations(moving, 2) if _is_speed(t[ahead], moving[x][ahead], moving[v][ahead])]
+    clock, t, columns = _timed(tables, rate)
+    moving = {p: x for p, x in columns.items() if np.isfinite(x).all() and float(np.ptp(x)) > 0.0}
+    pairs = [(x, v) for x, v in permutations(moving, 2) if _is_speed(t, moving[x], moving[v])]
     speeds = {v for _, v in pairs}
     found = [(x, v) for x, v in pairs if x not in speeds]
     if not found:
@@ -79,6 +76,67 @@ def told_by_motion(tables: Tables, rate: float | None, guesses: list[str]) -> di
     rest = [_said(p) for p in moving if p not in (x, v)]
     guesses.extend([f"not told by the motion: {', '.join(rest)}; name them: --names t,q,..."] if rest else [])
     return {**({clock: "time"} if clock else {}), x: "position", v: "velocity"}
+
+
+def told_by_blocks(tables: Tables, rate: float | None, joints: int, guesses: list[str]) -> dict[Place, str]:
+    """Return names for a table without any that holds blocks of as many columns as a robot has joints.
+
+    One block is the speed of another one. What is left is the effort; of two, the one that goes more as the slope of
+    the speed is the acceleration. Empty where no block is the speed of another.
+
+    Args:
+        tables: of the file.
+        rate: samples per second, Hz, where no time was recorded.
+        joints: of the model, in the order of the columns.
+        guesses: so far.
+    """
+    clock, t, columns = _timed(tables, rate)
+    places = list(columns)
+    if len(places) % joints or len(places) < 2 * joints:
+        return {}
+    blocks = [places[i : i + joints] for i in range(0, len(places), joints)]
+    signals = [np.column_stack([columns[p] for p in block]) for block in blocks]
+    speed = {i: j for i, j in permutations(range(len(blocks)), 2) if _are_speeds(t, signals[i], signals[j])}
+    first = next((i for i in speed if i not in speed.values()), None)
+    if first is None:
+        return {}
+    kinds = {first: POSITION, speed[first]: VELOCITY}
+    slope = np.gradient(signals[speed[first]], t, axis=0)
+    left = sorted((i for i in range(len(blocks)) if i not in kinds), key=lambda i: _like(slope, signals[i]))
+    kinds |= dict(zip(left, (EFFORT, ACCELERATION), strict=False)) if len(left) < 3 else {}
+    for i, kind in kinds.items():
+        why = "it is what is left" if kind == EFFORT else "the motion says so"
+        guesses.append(f"{_said(blocks[i][0])} to {_said(blocks[i][-1])} are the {kind} of {joints} joints: {why}")
+    named = {place: f"{kind}_{n}" for i, kind in kinds.items() for n, place in enumerate(blocks[i], 1)}
+    return {**({clock: "time"} if clock and named else {}), **named}
+
+
+def _like(x: Array, y: Array) -> float:
+    """Return how columns (n, k) correlate with those of another block, in the mean over those that move."""
+    x, y = (block - block.mean(axis=0) for block in (x, y))
+    norm = np.linalg.norm(x, axis=0) * np.linalg.norm(y, axis=0)
+    return float(np.sum(np.sum(x * y, axis=0)[norm > 0.0] / norm[norm > 0.0]) / max(int((norm > 0.0).sum()), 1))
+
+
+def _are_speeds(t: Array, x: Array, v: Array) -> bool:
+    """Return whether most of the columns that move of one block (n, k) are the speeds of those of another."""
+    moving = np.flatnonzero((np.ptp(x, axis=0) > 0.0) & (np.ptp(v, axis=0) > 0.0))
+    return 2 * sum(_is_speed(t, x[:, i], v[:, i]) for i in moving) > len(moving)
+
+
+def _timed(tables: Tables, rate: float | None) -> tuple[Place | None, Array, dict[Place, Array]]:
+    """Return the clock, its stamps (n,) and the other columns without a name, (n,) each, where the clock runs forward.
+
+    Without a clock and a rate there are no columns.
+    """
+    unnamed = [place for place in places_of(tables) if place[1] is not None or WITHOUT.fullmatch(place[0])]
+    columns = {place: values_at(place, tables) for place in unnamed}
+    clock = next((p for p, x in columns.items() if grows(x) and evenly(x)), None) if rate is None else None
+    if not columns or (clock is None and rate is None):
+        return None, np.zeros(0), {}
+    t = columns.pop(clock) if clock else np.arange(len(next(iter(columns.values())))) / float(rate or 1.0)
+    ahead = np.concatenate([[True], np.diff(t) > 0.0])
+    return clock, t[ahead], {p: x[ahead] for p, x in columns.items()}
 
 
 def _is_speed(t: Array, x: Array, v: Array) -> bool:

@@ -125,13 +125,21 @@ def stamps_of(column: Column, tables: Tables, clock: Clock, run: str) -> Array |
 
     A table of another clock has its offset added; the offset of the longest name that fits counts.
     """
+    name = clock_beside(column, tables, clock, run)
+    if name is None:
+        return None
+    table = f"{home}/" if (home := table_of(column.column)) else ""
+    stamps = pick(_clock_column(name, clock), tables, run, finite=False)
+    known = [x for x in clock.offsets if table.startswith(x.rstrip("/") + "/")]
+    return stamps + (clock.offsets[max(known, key=len)] if known else 0.0)
+
+
+def clock_beside(column: Column, tables: Tables, clock: Clock, run: str) -> str | None:
+    """Return the column of the stamps of a column: in its own table, else as it is named; None where it is a rate."""
     if clock.column is None:
         return None
     table = f"{home}/" if (home := table_of(column.column)) else ""
     try:
-        name = find(table + clock.column, tables, run)
+        return find(table + clock.column, tables, run)
     except MachineError:
-        name = clock.column
-    stamps = pick(_clock_column(name, clock), tables, run, finite=False)
-    known = [x for x in clock.offsets if table.startswith(x.rstrip("/") + "/")]
-    return stamps + (clock.offsets[max(known, key=len)] if known else 0.0)
+        return clock.column

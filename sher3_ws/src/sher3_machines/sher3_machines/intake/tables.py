@@ -76,6 +76,7 @@ READERS: dict[str, Callable[[Path], Tables]] = {
     ".parquet": read_parquet,
     ".mcap": read_bag,
     ".bag": read_bag,
+    ".db3": read_bag,
     **dict.fromkeys(OF_HDF5, read_hdf5),
     **dict.fromkeys(PACKED, read_packed),
 }
@@ -93,7 +94,9 @@ CONVERSIONS = {
 }
 """What to do with files that are known and not read, by their ending."""
 NOT_IN_FOLDERS = (".txt", ".dat", ".log", ".asc")
-"""Endings that are read where they are named, and passed over in a folder: there they are notes more often."""
+"""Endings that are read where they are named, and passed over in a folder beside others: there they are notes more
+often.
+"""
 
 
 def read_tables(path: Path) -> Tables:
@@ -110,6 +113,7 @@ def read_tables(path: Path) -> Tables:
             for f in sorted(path.iterdir())
             if (f.suffix.lower() in READERS and f.suffix not in NOT_IN_FOLDERS) or is_rosbag2(f)
         ]
+        found = found or [f for f in sorted(path.iterdir()) if f.suffix in NOT_IN_FOLDERS and _is_table(f)]
         if not found:
             raise MachineError(f"{path}: no data files", limit=", ".join(READERS), remedy="give a file or its folder")
         return {f"{f.stem}/{name}": x for f in found for name, x in read_tables(f).items()}
@@ -123,15 +127,19 @@ def read_tables(path: Path) -> Tables:
 
 def _read_unknown(path: Path) -> Tables:
     """Return the columns of a file whose ending says nothing: a table where it is text and holds one, else refused."""
-    try:
-        found = _read(path, read_table)
-    except MachineError:
-        found = {}
-    if not any(len(x) >= SAMPLES for x in found.values()):
+    if not _is_table(path):
         limit, remedy = ", ".join(READERS), CONVERSIONS.get(path.suffix.lower(), "convert it to csv")
         remedy = remedy.format(name=path.name, stem=path.stem)
         raise MachineError(f"{path}: format is not read", value=path.suffix, limit=limit, remedy=remedy)
-    return found
+    return _read(path, read_table)
+
+
+def _is_table(path: Path) -> bool:
+    """Return whether a text holds a table of samples."""
+    try:
+        return any(len(x) >= SAMPLES for x in _read(path, read_table).values())
+    except MachineError:
+        return False
 
 
 def upright(tables: Tables) -> Tables:

@@ -126,3 +126,11 @@ def test_a_damaged_bag_is_refused(tmp_path, cut):
     for damaged in (path, file):
         with pytest.raises(MachineError):
             read_tables(damaged)
+
+
+def test_a_database_without_its_metadata_is_read(tmp_path):
+    bag(tmp_path / "bag")
+    (database,) = (tmp_path / "bag").glob("*.db3")
+    database.rename(tmp_path / "alone.db3")
+    whole = read_tables(tmp_path / "alone.db3")
+    assert whole["arm/joint_states/elbow/position"].shape == (500,)

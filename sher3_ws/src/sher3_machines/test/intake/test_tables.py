@@ -50,3 +50,9 @@ def test_a_row_for_each_joint_is_turned_to_a_row_for_each_sample(tmp_path):
     found = read_tables(tmp_path / "a.mat")
     assert found["q"].shape == (50, 3) and found["q"][1].tolist() == [1.0, 51.0, 101.0]
     assert found["frames"].shape == (50, 4) and found["gains"].shape == (2, 2)
+
+
+def test_texts_are_read_in_a_folder_that_holds_no_other_data(tmp_path):
+    np.savetxt(tmp_path / "q.txt", np.zeros((30, 2)))
+    (tmp_path / "readme.txt").write_text("how it was measured\n")
+    assert set(read_tables(tmp_path)) == {"q/c0", "q/c1"}
