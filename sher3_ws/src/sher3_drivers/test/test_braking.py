@@ -36,11 +36,14 @@ class Robot:
         for _ in range(ticks):
             assert self.follow(command, effort) is None
 
-    def follow(self, command, effort=REST, strays=REST):
-        """Let a period pass in which drives follow `command` and go `strays` beside it; return who objects."""
+    def follow(self, command, effort=REST, strays=REST, motor=None):
+        """Let a period pass in which drives follow `command` and go `strays` beside it; return who objects.
+
+        `motor` is what the motor encoders say instead of the truth.
+        """
         self.watch.demand.sent([round(v / scale.velocity) for v, scale in zip(command, SCALES, strict=True)])
         self.watch.sync()
-        return self._look(Goal.ENABLED, tuple(map(sum, zip(command, strays, strict=True))), command, effort)
+        return self._look(Goal.ENABLED, tuple(map(sum, zip(command, strays, strict=True))), command, effort, motor)
 
     def stop(self, trip=EMERGENCY):
         self.log.add(trip, self._now)
@@ -177,6 +180,23 @@ def test_a_motor_encoder_that_stands_hides_no_axis_that_goes_on_after_a_stop():
     robot.stop()
     trips = [robot.brake(of(LEG, 1e-3), motor=REST) for _ in range(4)]
     assert trips[:3] == [None] * 3 and (trips[3].reason, trips[3].axes) == (Reason.ENCODER_FROZEN, (LEG,))
+
+
+def test_all_axes_whose_load_encoders_stand_while_their_motors_go_lose_their_power_at_once():
+    """At 0.5 mm/s, 1 um a tick, a motor is more than 7 um off in the eighth tick; nobody can say that it brakes."""
+    robot = Robot()
+    for tick in range(1, 8):
+        assert robot.follow(REST, motor=(tick * 1e-6, 0.0, 0.0, 0.0, -tick * 1e-6)) is None
+    trip = robot.follow(REST, motor=(8e-6, 0.0, 0.0, 0.0, -8e-6))
+    assert (trip.reason, trip.axes) == (Reason.ENCODER_FROZEN, (LEG, TILT)) and trip.text.startswith("delta_1")
+
+
+def test_encoders_that_differ_after_another_axis_stopped_the_robot_for_theirs_are_told():
+    """The tilt was accused; a leg whose load encoder stands goes on at 1 mm/s, and is beyond 7 um in four ticks."""
+    robot = Robot()
+    robot.stop(Trip(Reason.ENCODERS_DISAGREE, "apart", axes=(TILT,)))
+    trips = [robot.brake(REST, motor=of(LEG, tick * 2e-6)) for tick in range(1, 5)]
+    assert trips[:3] == [None] * 3 and trips[3].axes == (LEG,)
 
 
 def test_nothing_is_forgotten_where_the_rest_begins():

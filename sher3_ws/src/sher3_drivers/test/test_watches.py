@@ -96,7 +96,9 @@ def test_encoders_that_part_stop_the_robot_and_take_its_power(rig, name, field):
     assert stop.first.value > stop.first.limit > 0.0 and stop.action is Action.POWER_OFF
     for _ in range(round(rig.settings.brake_time / rig.settings.period) + 5):
         rig.tick(SLOW)
-    assert rig.states() == {"SWITCH_ON_DISABLED"} and rig.driver.goal is Goal.DISABLED
+    assert stop.first.axes == (ACTUATORS.index(name),)
+    assert rig.states() == {"FAULT"}, "nobody can say that it brakes, so the host falls silent"
+    assert rig.driver.goal is Goal.DISABLED
     with pytest.raises(CommandRefused):
         rig.driver.enable()
 

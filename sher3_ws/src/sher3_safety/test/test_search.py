@@ -6,9 +6,10 @@ from random import Random
 import pytest
 from sher3_control.motion.speed_cap import Regime
 from sher3_faults.budget import CUT_OFF, RUNAWAY
-from sher3_safety.search.climb import SearchResult
+from sher3_safety.search.climb import ROUND, SearchResult, search
 from sher3_safety.search.draw import CUTS, OF_ONE, ONSETS, STATES, Draw, Fault, Shape, drawn, near
 from sher3_safety.search.trial import Found
+from sher3_safety.search.words import NotADraw, read
 
 CREEP = Shape("power", "creep", "speed")
 DRAW = Draw((Fault("delta_1.power", CREEP, 0.5, 0), Fault("legs.power", CREEP, -1.0, 7)), STATES[Regime.FREE][0],
@@ -65,3 +66,44 @@ def test_an_axis_that_goes_by_itself_and_is_cut_off_is_held_against_what_is_stat
 
 def test_the_same_seed_draws_the_same():
     assert drawn(Random(9), Regime.FREE) == drawn(Random(9), Regime.FREE)
+
+
+@pytest.mark.parametrize("regime", STATES)
+def test_a_draw_is_read_from_the_line_that_tells_it(regime):
+    """Of a fault without a drawn size the share is not told, since it means nothing."""
+    random = Random(7)
+    for _ in range(300):
+        draw = drawn(random, regime)
+        same = read(f"| {draw.line(17)} | POSITION_LEFT | 12.3 | 40 |")
+        assert same.line(17) == draw.line(17) and same.budget == draw.budget
+        assert [f.shape for f in same.faults] == [f.shape for f in draw.faults]
+        assert [f.request(regime, 0.002) for f in same.faults] == [f.request(regime, 0.002) for f in draw.faults]
+
+
+def test_commas_do_as_well_as_bars():
+    line = "free, paused, tilt.power creep speed 0.009 at 3"
+    assert read(line).line() == line.replace(", ", " | ")
+
+
+@pytest.mark.parametrize(
+    "text", ["", "free | idle", "free | asleep | tilt.power creep speed 1 at 0", "free | idle | tilt"]
+)
+def test_what_is_no_line_is_refused_with_an_example(text):
+    with pytest.raises(NotADraw, match="no draw"):
+        read(text)
+
+
+def test_a_search_goes_on_from_what_is_kept_as_if_it_had_not_ended(tmp_path, monkeypatch):
+    """Trials by a formula: the sum of the onsets is the travel in um."""
+    tried = []
+
+    def formula(draws, robot, seed):
+        tried.append(len(draws))
+        return [Found(draw, 1e-6 * sum(f.onset for f in draw.faults), "A") for draw in draws]
+
+    monkeypatch.setattr("sher3_safety.search.climb.try_all", formula)
+    whole = search(100, seed=5)
+    first = search(50, seed=5, kept=tmp_path)
+    assert search(100, seed=5, kept=tmp_path) == whole and whole.found[:50] == first.found
+    assert tried == [ROUND] * 8 and search(100, seed=5, kept=tmp_path) == whole and len(tried) == 8
+    assert search(25, seed=6, kept=tmp_path).found != whole.found[:25]

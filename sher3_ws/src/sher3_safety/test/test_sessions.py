@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
 from sher3_description import load_robot
+from sher3_safety.runs.healthy import KEPT, run_healthy
 from sher3_safety.runs.sessions import ACROSS, SESSION, STRONGEST, TORQUE, WEAKEST, excitations, surgeon
 
 ROBOT = load_robot()
@@ -34,3 +37,11 @@ def test_excitations_follow_each_other_without_a_jump():
     assert not goals[0].any()
     speed = np.abs(np.diff(goals, axis=0)).max(axis=0) / ROBOT.control_period
     assert all(speed <= [1.02 * actuator.limits.velocity for actuator in ROBOT.actuators])
+
+
+def test_sessions_that_are_kept_are_not_run_again(tmp_path):
+    lines = [{"seed": seed, "trips": ["CLOCK"] * (seed == 6)} for seed in range(3, 8)]
+    (tmp_path / KEPT).write_text("".join(json.dumps(line) + "\n" for line in lines))
+    found = run_healthy(tmp_path / "bags", 4.0, 4, 1, lambda _: None, tmp_path)
+    assert (found["what"], found["seeds"], found["hours"]) == (["CLOCK"], [4, 7], pytest.approx(4 / 60))
+    assert not (tmp_path / "bags").exists() and found["seconds"] < 10.0

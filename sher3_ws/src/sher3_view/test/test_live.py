@@ -18,7 +18,7 @@ from sher3_view.errors import ExtraMissing
 from sher3_view.live.mock_panel import FAULTS
 from sher3_view.live.page import PROFILES, LivePage, pose_of, revolved
 from sher3_view.live.plot import plot_svg, scale_for
-from sher3_view.live.snapshot import Snapshot
+from sher3_view.live.snapshot import Snapshot, fault_text
 from sher3_view.scene import RobotState, Scene
 
 ROBOT = load_robot()
@@ -155,3 +155,11 @@ def test_the_page_is_served_on_loopback_alone():
         socket.create_connection(("127.0.0.1", port), 2.0).close()
     finally:
         page.close()
+
+
+def test_a_fault_of_the_driver_tells_its_limit_once():
+    """Its source is the driver's sentence."""
+    source = "motor_driver: delta_1: 1.2e-05 m from where its commands add up to (limit 1.16e-05)"
+    fault = {"code": "POSITION_LEFT", "source": source, "value": 1.2e-5, "limit": 1.16e-5, "unit": "m"}
+    assert fault_text(fault) == f"POSITION_LEFT {source}"
+    assert fault_text({**fault, "source": "delta_1"}) == "POSITION_LEFT delta_1: 1.2e-05 m, limit 1.16e-05 m"

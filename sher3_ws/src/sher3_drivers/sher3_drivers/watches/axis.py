@@ -116,13 +116,12 @@ def judge_axes(axes: Any, motor: Vector, load: Vector, demand: Vector, since: fl
         since: time since the last readings, s.
 
     Returns:
-        Of the last axis that objects, its number times 8 plus what it says; 0 when none does.
+        What every axis says, three bits each, those of the first axis lowest; 0 when none objects.
     """
     said = 0
     for number in range(len(axes)):
         what = _judge_axis(axes[number], motor[number], load[number], demand[number] * since, demand[number])
-        if what != AGREES:
-            said = 8 * number + what
+        said |= what << 3 * number
     return said
 
 

@@ -40,13 +40,13 @@ class JointWatch:
         begin_axes(self._rows, (0.0,) * len(scales), (0.0,) * len(scales))
         _judge(len(scales))
 
-    def check(self, feedback: DriveFeedback, since: float, stops: bool = False) -> Trip | None:
+    def check(self, feedback: DriveFeedback, since: float) -> Trip | None:
         """Judge a feedback that came `since` s after the one before; 0 means that there was none before.
 
         Over ticks that were lost the newest demand is taken to have held. When more than `_HOLE` of them were lost, or
         more time than the loop may hang, the axes start afresh: the robot has been stopped for that reason by then.
-        They start afresh at the first feedback too. All axes whose motors are off their demand are suspected. Where the
-        robot `stops`, so is the one whose encoders differ: nobody can say that it brakes.
+        They start afresh at the first feedback too. All axes whose motors are off their demand are suspected, and all
+        whose encoders differ: nobody can say that they brake, so they lose their power at once.
         """
         motor, load = feedback.motor_position, feedback.load_position
         if not 0.0 < since <= self._hole:
@@ -55,7 +55,8 @@ class JointWatch:
         said: Any = _judge(len(self.axes))(self._rows, motor, load, feedback.velocity_demand, since)
         if not said:
             return None
-        number = said >> 3
-        off = {number} if stops else set()
+        objections = [(number, said >> 3 * number & 7) for number in range(len(self.axes))]
+        first, what = next(objection for objection in objections if objection[1])
+        off = {number for number, said_of_it in objections if said_of_it}
         off.update(np.flatnonzero(self._rows["stray_ticks"] >= self._rows["astray_ticks"]).tolist())
-        return self.axes[number].trip(said & 7)._replace(axes=tuple(sorted(off)))
+        return self.axes[first].trip(what)._replace(axes=tuple(sorted(off)))

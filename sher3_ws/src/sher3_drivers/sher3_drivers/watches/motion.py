@@ -25,8 +25,6 @@ from sher3_drivers.watches.position import PositionWatch
 from sher3_drivers.watches.rest import RestCheck
 from sher3_drivers.watches.trips import StopLog, Trip, together
 
-_ENCODERS = (Reason.ENCODERS_DISAGREE, Reason.ENCODER_FROZEN)
-
 
 class MotionWatch:
     """The checks of a moving robot and of a stopped one.
@@ -144,13 +142,12 @@ class MotionWatch:
         self.position.follow(feedback, self._held, since)
         reason = Reason.MOVED_DISABLED if first is None else Reason.STOP_NOT_OBEYED
         powered = goal is Goal.STOPPED
-        # What compares one tick with the next has no gap; encoders that stopped the robot need not be told again.
-        self._followed = self._followed and powered and stop.code not in _ENCODERS
+        self._followed = self._followed and powered  # what compares one tick with the next has no gap
         trip = together(
             (
                 self.position.judge(reason),
                 self.demand.check(feedback.velocity_demand) if powered else None,
-                self.joints.check(feedback, since, stops=True) if self._followed else None,
+                self.joints.check(feedback, since) if self._followed else None,
                 self.rest.check(self.position.moved, reason),
             )
         )

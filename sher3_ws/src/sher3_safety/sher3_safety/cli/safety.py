@@ -18,11 +18,12 @@ app = typer.Typer(rich_markup_mode="markdown", invoke_without_command=True)
 
 app.command(epilog="Examples: `sher3 safety budget` · `sher3 safety budget --rate 200 --json`")(budget)
 app.command(epilog="Examples: `sher3 safety hazards` · `sher3 safety hazards --json`")(hazards)
-app.command(epilog="Examples: `sher3 safety search` · `sher3 safety search --trials 1000 --seed 7 --json`")(search)
+app.command(epilog="Examples: `sher3 safety search` · `sher3 safety search --trials 20000 --kept drawn`")(search)
 
 
 @app.callback(
-    epilog="Examples: `sher3 safety` · `sher3 safety --only pedal` · `sher3 safety --wall` · `sher3 safety --healthy 5`"
+    epilog="Examples: `sher3 safety --only pedal` · `sher3 safety --wall` · "
+    "`sher3 safety --only healthy --healthy 600 --kept hours`"
 )
 def safety(
     context: typer.Context,
@@ -36,6 +37,10 @@ def safety(
     healthy: Annotated[
         Optional[float],  # noqa: UP045
         typer.Option(help="Minutes of healthy running to count false trips in; 5 with the whole matrix.", min=0.0),
+    ] = None,
+    kept: Annotated[
+        Optional[Path],  # noqa: UP045
+        typer.Option(help="Folder to keep healthy sessions in; a run that was ended goes on there.", file_okay=False),
     ] = None,
     seed: Annotated[int, typer.Option(help="Seed of noise and faults.", min=0)] = 1,
     jobs: Annotated[int, typer.Option(help="Processes at a time (stepped time only).", min=1, max=16)] = 1,
@@ -61,7 +66,7 @@ def safety(
     if minutes:
         from sher3_safety.runs.healthy import run_healthy
 
-        result.false_trips = run_healthy(out, minutes, seed, jobs, _say)
+        result.false_trips = run_healthy(out, minutes, seed, jobs, _say, kept)
     result.write(out)
     typer.echo(json.dumps(result.to_dict()) if as_json else result.as_text())
     if result.missed:

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from sher3_control.motion.speed_cap import Regime
 from sher3_faults.budget import RUNAWAY
 
-from sher3_safety.rows.row import AXIS, IDLE, LIMIT, MOVING, Row
+from sher3_safety.rows.row import AXIS, IDLE, LIMIT, MOVING, PAUSED, Row
 
 NEAR, TOP = 2e-3, 12.2e-3
 """Limits of a leg's drive near tissue and elsewhere [m/s]."""
@@ -52,4 +52,12 @@ def _unheard() -> Iterator[Row]:
                   beside=Row(f"{AXIS}.power", "creep", {"speed": speed}), why=WHY)  # fmt: skip
 
 
-TOGETHER = (*_together(), *_while_braking(), *_unheard())
+def _behind() -> Iterator[Row]:
+    """Yield axes that go by themselves behind encoders that stand, which at rest is what healthy encoders do."""
+    for name, encoder, goes, speed in (("axes", "load", "tilt", 5e-4), ("legs", "motor", "legs", 1e-3)):
+        yield Row(f"{name}.{encoder}_encoder", "stuck", reasons=("ENCODER_FROZEN",), budget=NEAR_TRAVEL, after=0.01,
+                  states=(*CALM, PAUSED), beside=Row(f"{goes}.power", "creep", {"speed": speed}),
+                  quick=goes == "tilt", why=WHY)  # fmt: skip
+
+
+TOGETHER = (*_together(), *_while_braking(), *_unheard(), *_behind())

@@ -38,6 +38,8 @@ from sher3_safety.runs.operator_node import tare
 from sher3_safety.runs.sessions import SESSION, excitations, surgeon
 
 RECORDED = ("supervisor/status", "admittance/status", "motion/status", "operating_state", "mock/pedal", "measured_cp")
+KEPT = "healthy.jsonl"
+"""File of the sessions that are kept, a line of JSON each."""
 EVERY = 4
 """One session in four has excitations instead of a surgeon."""
 WARM, SWING, WARMING = 23.0, 5.0, 240.0
@@ -46,7 +48,9 @@ STRETCH = 250
 """Ticks from one temperature to the next."""
 
 
-def run_healthy(folder: Path, minutes: float, seed: int, jobs: int, say: Callable[[str], None]) -> dict[str, Any]:
+def run_healthy(
+    folder: Path, minutes: float, seed: int, jobs: int, say: Callable[[str], None], kept: Path | None = None
+) -> dict[str, Any]:
     """Run so many minutes of sessions; return trips, hours, the rate per hour, its bound, and the time that it took.
 
     Args:
@@ -55,16 +59,34 @@ def run_healthy(folder: Path, minutes: float, seed: int, jobs: int, say: Callabl
         seed: of the first session; each further one has the next.
         jobs: processes at a time.
         say: prints progress.
+        kept: folder of what earlier sessions came to, which are not run again, and of what these come to.
     """
-    sessions = max(1, round(minutes * 60.0 / SESSION))
-    trips: list[str] = []
-    begin = time.monotonic()
+    seeds = range(seed, seed + max(1, round(minutes * 60.0 / SESSION)))
+    begin, found = time.monotonic(), _earlier(kept)
+    left = [number for number in seeds if number not in found]
     with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
-        for number, found in enumerate(pool.map(run_session, [folder] * sessions, range(seed, seed + sessions)), 1):
-            trips += found
-            say(f"healthy: {number} min, {len(trips)} trips so far" + (f", last: {trips[-1]}" if trips else ""))
-    lasted = {"what": trips, "seeds": [seed, seed + sessions - 1], "seconds": time.monotonic() - begin}
-    return {**false_trips(len(trips), sessions * SESSION / 3600.0), **lasted}
+        for number, trips in zip(left, pool.map(run_session, [folder] * len(left), left), strict=True):
+            found[number] = trips
+            _keep(kept, number, trips)
+            so_far = [trip for done in seeds for trip in found.get(done, [])]
+            say(f"healthy: seed {number}, {len(so_far)} trips so far" + (f", last: {so_far[-1]}" if so_far else ""))
+    what = [trip for number in seeds for trip in found[number]]
+    lasted = {"what": what, "seeds": [seeds[0], seeds[-1]], "seconds": time.monotonic() - begin}
+    return {**false_trips(len(what), len(seeds) * SESSION / 3600.0), **lasted}
+
+
+def _earlier(kept: Path | None) -> dict[int, list[str]]:
+    """Return the trips of the sessions that are kept, by their seeds."""
+    path = kept and kept / KEPT
+    lines = path.read_text().splitlines() if path and path.exists() else []
+    return {data["seed"]: data["trips"] for data in map(json.loads, lines)}
+
+
+def _keep(kept: Path | None, seed: int, trips: list[str]) -> None:
+    if kept:
+        kept.mkdir(parents=True, exist_ok=True)
+        with (kept / KEPT).open("a") as file:
+            file.write(json.dumps({"seed": seed, "trips": trips}) + "\n")
 
 
 def run_session(folder: Path, seed: int) -> list[str]:

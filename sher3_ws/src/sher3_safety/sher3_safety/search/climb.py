@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from random import Random
 from typing import Any
 
@@ -12,6 +13,7 @@ from sher3_description import Robot, load_robot
 from sher3_faults.budget import RUNAWAY
 
 from sher3_safety.search.draw import Draw, drawn, near
+from sher3_safety.search.kept import Kept
 from sher3_safety.search.trial import Found, try_all
 
 ROUND, PARENTS, CLIMBS = 25, 10, 0.6
@@ -49,10 +51,7 @@ class SearchResult:
         ]
         for one in self.worst():
             draw = one.draw
-            lines.append(
-                f"| {draw.regime.value} | {draw.state.name} | {draw.told()} | {one.reason} "
-                f"| {one.travel * 1e6:.1f} | {draw.budget * 1e6:g} |"
-            )
+            lines.append(f"| {draw.line()} | {one.reason} | {one.travel * 1e6:.1f} | {draw.budget * 1e6:g} |")
         return "\n".join(lines)
 
     def to_dict(self) -> dict[str, Any]:
@@ -66,26 +65,39 @@ class SearchResult:
 
 
 def search(
-    trials: int, seed: int = 1, robot: Robot | None = None, say: Callable[[str], None] = lambda _: None
+    trials: int,
+    seed: int = 1,
+    robot: Robot | None = None,
+    say: Callable[[str], None] = lambda _: None,
+    kept: Path | None = None,
 ) -> SearchResult:
     """Try so many draws, in rounds of one regime each.
 
     Args:
-        trials: number of draws.
-        seed: of the draws, and of the noise of the robot.
+        trials: number of draws, with those that are kept.
+        seed: of the draws, and of the noise of the robot. Each round has its own stream of it, so that a search that
+            was ended goes on as it would have.
         robot: nominal by default.
         say: prints progress.
+        kept: folder of what earlier searches of the seed tried, and of what this one tries.
     """
-    random, robot = Random(seed), robot or load_robot()
-    result, regimes = SearchResult([], seed), list(RUNAWAY)
-    for number, begin in enumerate(range(0, trials, ROUND)):
-        regime, count = regimes[number % len(regimes)], min(ROUND, trials - begin)
-        draws = _next(random, regime, count, result)
-        result.found += try_all(draws, robot, seed + number)
+    robot, regimes, store = robot or load_robot(), list(RUNAWAY), Kept(kept, seed)
+    result = SearchResult(store.before(), seed)
+    while len(result.found) < trials:
+        number = len(result.found) // ROUND
+        regime, count = regimes[number % len(regimes)], min(ROUND, trials - len(result.found))
+        draws = _next(Random(f"{seed} {number}"), regime, count, result)
+        result.found += store.add(list(try_all(draws, robot, seed + number)))
         worst = result.worst(1)[0]
         sizes = f"{worst.travel * 1e6:.1f} um of {worst.draw.budget * 1e6:g}"
         say(f"{len(result.found)} draws, worst {sizes}, {worst.draw.state.name}: {worst.draw.told()}")
     return result
+
+
+def again(draws: Sequence[Draw], seed: int = 1, robot: Robot | None = None) -> SearchResult:
+    """Try some draws, each on a robot of its own."""
+    robot = robot or load_robot()
+    return SearchResult([found for draw in draws for found in try_all([draw], robot, seed)], seed)
 
 
 def _next(random: Random, regime: Regime, count: int, result: SearchResult) -> list[Draw]:

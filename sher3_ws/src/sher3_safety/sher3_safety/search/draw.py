@@ -53,6 +53,8 @@ WITH_AXIS = (
     Shape("power", "wrong", "scale", -1.0),
     Shape("power", "wrong", "scale", 1.02),
 )
+DRAWN = ("speed", "rate", "size")
+"""Parameters whose size is drawn."""
 CUTS = (Shape("", "off"), Shape("bus", "off"))
 """Faults after which a drive neither hears nor is heard."""
 OF_ONE = (Shape("demand", "wrong", "code", float(0x8611)), CUTS[0], Shape("up", "late"), Shape("up", "off"))
@@ -74,19 +76,25 @@ class Fault:
         unit = self.component.partition(".")[0]
         return ACTUATORS if unit == "bus" else GROUPS.get(unit, (unit,))
 
+    def full(self, regime: Regime) -> float:
+        """Return the size of which `share` is a part: limit of the drive [m/s, rad/s], or largest jitter [m, rad]."""
+        if self.shape.size == "size":
+            return SHAKES
+        return CAPS.get(self.component.partition(".")[0], LEG)[regime is Regime.FREE]
+
     def request(self, regime: Regime, period: float) -> FaultRequest:
         """Return what is sent on `mock/fault`."""
-        cap = CAPS.get(self.component.partition(".")[0], LEG)[regime is Regime.FREE]
-        drawn_sizes = {"speed": self.share * cap, "rate": self.share * cap, "size": abs(self.share) * SHAKES}
+        size = self.share * self.full(regime)
+        drawn_sizes = {"speed": size, "rate": size, "size": abs(size)}
         value = drawn_sizes.get(self.shape.size, self.shape.value)
         parameters = {self.shape.size: value} if self.shape.size else {}
         return make_request(component=self.component, fault=self.shape.kind, start=self.onset * period, duration=LASTS,
                             parameters=parameters)  # fmt: skip
 
-    def told(self, regime: Regime) -> str:
+    def told(self, regime: Regime, digits: int) -> str:
         """Return the fault in words."""
         request = self.request(regime, 0.002)
-        sizes = "".join(f" {name} {value:.3g}" for name, value in request.parameters.items())
+        sizes = "".join(f" {name} {value:.{digits}g}" for name, value in request.parameters.items())
         return f"{self.component} {self.shape.kind}{sizes} at {self.onset}"
 
 
@@ -110,9 +118,13 @@ class Draw:
         """Whether motion is paused."""
         return self.state.operating is OperatingState.PAUSED
 
-    def told(self) -> str:
-        """Return the draw in words."""
-        return "; ".join(fault.told(self.regime) for fault in self.faults)
+    def told(self, digits: int = 5) -> str:
+        """Return the faults in words, with sizes of so many digits."""
+        return "; ".join(fault.told(self.regime, digits) for fault in self.faults)
+
+    def line(self, digits: int = 5) -> str:
+        """Return the draw as a line of a table, which `search.words` reads."""
+        return f"{self.regime.value} | {self.state.name} | {self.told(digits)}"
 
 
 def drawn(random: Random, regime: Regime) -> Draw:

@@ -198,9 +198,9 @@ def lost_cycles(sample: Any) -> dict[str, int]:
 
 
 def fault_text(fault: dict[str, Any]) -> str:
-    """Return code, source, value and limit of a fault."""
+    """Return code, source, value and limit of a fault; a source that is a sentence of the driver has them in it."""
     text = f"{fault.get('code')} {fault.get('source', '')}".strip()
     value, limit, unit = (fault.get(key) for key in ("value", "limit", "unit"))
-    if not isinstance(value, float | int) or not isinstance(limit, float | int):
+    if "(limit" in text or not isinstance(value, float | int) or not isinstance(limit, float | int):
         return text
     return f"{text}: {value:.4g} {unit}, limit {limit:.4g} {unit}"
