@@ -17,7 +17,7 @@ from zipfile import ZipFile
 
 CLASSES = {
     "isaaclab": ("isaaclab.actuators", ("IdealPDActuatorCfg", "DelayedPDActuatorCfg")),
-    "mjlab": ("mjlab.actuator", ("XmlActuatorCfg",)),
+    "mjlab": ("mjlab.actuator", ("XmlActuatorCfg", "BuiltinPositionActuatorCfg")),
 }
 """Library -> module and classes of it that an export imports."""
 

@@ -30,7 +30,7 @@ class Logged:
 def drawn_xml(rng: np.random.Generator, servo: bool = True, joints: int | None = None) -> str:
     """Return an arm of two to four joints with drawn masses, losses, rotors, drives and integrator."""
     k = int(rng.integers(2, 5)) if joints is None else joints
-    method, step = rng.choice(["Euler", "implicit", "implicitfast"]), rng.choice([0.001, 0.002])
+    method, step = rng.choice(["Euler", "implicit", "implicitfast", "RK4"]), rng.choice([0.001, 0.002])
     links = [_link(rng, i) for i in range(k)]
     bodies = "".join(f'<body pos="0.3 0 0" gravcomp="{rng.choice([0, 0, 0, 1])}">{link}' for link in links)
     drives = [_drive(rng, i, servo) for i in range(k)]

@@ -71,6 +71,8 @@ class Trace:
     svg: str
 
 
+TO_YAML = "--to yaml"
+"""Options of `sher3 gap export` for a machine without a model that takes the causes."""
 EMPTY = "–"
 """Cell in which nothing was found."""
 
@@ -104,6 +106,7 @@ class Reporter(Generic[E]):
         places: in the order they are listed; places not named here follow by name.
         every_stage: list the stages of which nothing was recorded too.
         simulated: whether `sher3 gap apply` and `sher3 gap experiment` know the machine's simulator.
+        target: options by which `sher3 gap export` writes the causes into the machine's model.
         abscissa: label of what pictures run over.
         end: where the closure of the machine run from end to end is read.
         held_out: what is left out of a fit in turn, in the plural.
@@ -114,6 +117,7 @@ class Reporter(Generic[E]):
     places: Sequence[str] = ()
     every_stage: bool = False
     simulated: bool = False
+    target: str = TO_YAML
     abscissa: str = "time [s]"
     end: str = "at the tip"
     held_out: str = "runs"

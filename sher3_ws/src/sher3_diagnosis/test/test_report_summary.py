@@ -87,6 +87,8 @@ def test_five_lines_of_an_explained_gap():
 def test_commands_are_named_for_a_simulated_machine_only():
     answer = verdict("attributed", causes=[FRICTION])
     assert "own simulator" in dict(five_lines(answer, simulated=False))["next"]
+    into = "--to mjcf --model arm.xml --out corrected.xml"
+    assert f"verdict.json {into}`" in dict(five_lines(answer, simulated=False, target=into))["next"]
     open_one = verdict("under_excited", causes=[BACKLASH], next_experiment=TELLS)
     assert dict(five_lines(open_one, simulated=False))["next"] == "loads tells backlash / cogging apart"
     assert "`sher3 gap experiment" in dict(five_lines(open_one, simulated=True))["next"]

@@ -43,7 +43,8 @@ class Change:
         return self.constant in FORCES and self.unit in ("m", "rad")
 
     def __str__(self) -> str:
-        return f"{self.effect} on {self.joint}: {CONSTANTS[self.constant]} {self.value:.6g} {self.unit}"
+        between = "" if self.low is None or self.high is None else f" ({self.low:.4g} to {self.high:.4g})"
+        return f"{self.effect} on {self.joint}: {CONSTANTS[self.constant]} {self.value:.6g} {self.unit}{between}"
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ from functools import partial
 from pathlib import Path
 from types import ModuleType
 
+import mujoco
 import pinocchio
 import pytest
 import yaml
@@ -75,14 +76,16 @@ MJCF = """<mujoco><default><joint damping="0.1"/></default><worldbody><body><joi
 <geom size="0.1"/></body></worldbody></mujoco>"""
 
 
+XML = {"urdf": URDF, "sdf": SDF, "mjcf": MJCF}
+
+
 @pytest.mark.parametrize("name", TARGETS)
 def test_every_constant_is_written_or_refused_with_a_reason_by_every_target(name):
     target = TARGETS[name]
     assert set(target.fields) | set(target.refuses) == set(CONSTANTS)
     assert all(len(reason) > 20 for reason in target.refuses.values())
     if issubclass(target, XmlTarget):
-        model = {"urdf": URDF, "sdf": SDF, "mjcf": MJCF}[name]
-        assert set(target(parse_xml(model, target.root_tag)).writers) == set(target.fields)
+        assert set(target(parse_xml(XML[name], target.root_tag)).writers) == set(target.fields)
 
 
 FIELDS = json.loads((Path(__file__).parent / "fields.json").read_text())
@@ -113,7 +116,7 @@ def test_the_version_that_is_named_is_the_one_whose_fields_are_known(name):
     assert FIELDS[name]["version"].startswith(version) and library.replace(" ", "").lower() == name
     assert FIELDS[name]["licence"] in ("BSD-3-Clause", "Apache-2.0")
     written = {field for text in TARGETS[name].fields.values() for field in text.split(", ")}
-    assert written <= set(FIELDS[name]["classes"][TARGETS[name].delayed])
+    assert written <= set(FIELDS[name]["classes"][TARGETS[name].servo or TARGETS[name].delayed])
 
 
 def loaded(text, monkeypatch):
@@ -159,6 +162,35 @@ def test_gains_of_a_servo_are_written_where_the_model_states_them(monkeypatch):
     for model in (None, parse_xml(SERVO.format('<motor joint="slide"/>'), "mujoco")):
         (left,) = export(weak, "isaaclab", model).untold
         assert "give --model with position actuators" in left.reason
+
+
+def test_a_servo_of_other_gains_is_an_actuator_of_mjlab_s_own(monkeypatch):
+    weak = verdict(cause("controller_gain", relative=-0.1, unit="1"), FRICTION)
+    text = export(weak, "mjlab", parse_xml(SERVO.format('<position joint="slide" kp="50" kv="2"/>'), "mujoco")).text
+    actuators, ranges = loaded(text, monkeypatch)
+    slide = actuators["slide"]
+    assert (slide.stiffness, slide.damping, slide.frictionloss) == (pytest.approx(45.0), pytest.approx(1.8), 2.0)
+    assert "BuiltinPositionActuatorCfg(" in text and "out of the MJCF" in text
+    assert ranges["slide"]["stiffness"] == pytest.approx((45.5, 44.5))
+    assert "XmlActuatorCfg(" in export(verdict(FRICTION), "mjlab").text
+
+
+def test_ranges_stand_in_every_target():
+    """Which a program reads, or where the format has no place for them a person, in the comment on top."""
+    text = {name: export(verdict(FRICTION), name).text for name in TARGETS if name not in XML}
+    text |= {name: export(verdict(FRICTION), name, parse_xml(XML[name], TARGETS[name].root_tag)).text for name in XML}
+    assert all("friction in motion 2 N*m (1.8 to 2.2)" in x for x in text.values())
+    assert yaml.safe_load(text["isaac"])["ranges"] == {"slide": {"dynamic_friction": [1.8, 2.2]}}
+    joint = parse_xml(text["ros2_control"], "ros2_control").find("joint")
+    found = {x.get("name"): x.text for x in joint.findall("param")}
+    assert found == {"coulomb": "2", "coulomb_low": "1.8", "coulomb_high": "2.2"}
+
+
+def test_mujoco_loads_the_ranges_and_an_export_later_adds_to_them():
+    once = export(verdict(FRICTION), "mjcf", parse_xml(MJCF, "mujoco")).text
+    twice = export(verdict(FRICTION), "mjcf", parse_xml(once, "mujoco")).text
+    for text, between in ((once, (1.8, 2.2)), (twice, (3.6, 4.4))):
+        assert mujoco.MjModel.from_xml_string(text).numeric("slide/coulomb").data == pytest.approx(between)
 
 
 def test_mjlab_s_file_is_python_with_fields_that_mjlab_has(monkeypatch):

@@ -59,7 +59,8 @@ def answer(task: Task, say: Say = lambda _: None) -> Answer:
         return Answer(task, error=error)
     rests = {e.id: e.leaves_out for e in found.machine.library() if e.leaves_out}
     reporter = found.machine.reporter()
-    lines = five_lines(found.verdict, reporter.simulated, rests, reporter.table(found), str(task.case), task.folder)
+    table, case = reporter.table(found), str(task.case)
+    lines = five_lines(found.verdict, reporter.simulated, rests, table, case, task.folder, reporter.target)
     if not task.report:
         return Answer(task, found.verdict, lines)
     say("writing the report")

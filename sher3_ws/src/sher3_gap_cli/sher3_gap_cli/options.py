@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+import os
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -64,6 +65,33 @@ def of_the_robot(case: Path, instead: str) -> Path:
     if is_machine_case(case):
         raise RequestError(f"{case}: is a case of another machine", limit="cases of the SHER", remedy=instead)
     return case
+
+
+def check_writable(files: Sequence[Path | None] = (), folders: Sequence[Path | None] = ()) -> None:
+    """Refuse where nothing could be written, before any work is done for it.
+
+    Args:
+        files: to write, into folders that exist.
+        folders: to make, or to write into.
+
+    Raises:
+        RequestError: a folder is a file or the other way round, is missing, or may not be written.
+    """
+    for path in filter(None, files):
+        _check(path, path.parent, "is a folder" if path.is_dir() else "")
+    for path in filter(None, folders):
+        _check(path, next(p for p in (path, *path.absolute().parents) if p.exists()), "")
+
+
+def _check(path: Path, folder: Path, wrong: str) -> None:
+    if not folder.exists():
+        wrong = f"there is no folder {folder}"
+    elif not folder.is_dir():
+        wrong = f"{folder} is no folder"
+    elif not os.access(path if path.exists() else folder, os.W_OK):
+        wrong = "Permission denied"
+    if wrong:
+        raise RequestError(f"{path}: cannot be written", value=wrong, remedy="choose another --out")
 
 
 def written(path: Path, text: str) -> None:

@@ -49,6 +49,7 @@ def test_a_log_like_the_baseline_passes_and_a_rubbing_one_does_not(folder, recor
     found = run(folder, "same.npz", "rubbing.npz", "arm.xml", "--baseline", "verdict.json", "--jobs", "2", *pages)
     assert found.exit_code == 1, found.output
     assert "rubbing: Coulomb friction on shoulder" in found.stdout and "worse, new cause" in found.stdout
+    assert found.output.count("rubbing: Coulomb friction on shoulder") == 1
     suites = {s.get("name"): s for s in ElementTree.parse(folder / "gap.xml").getroot()}
     assert [suites[n].get("failures") for n in ("same", "rubbing")] == ["0", "1"]
     (failure,) = suites["rubbing"].iter("failure")
@@ -79,6 +80,7 @@ def test_a_log_that_cannot_be_read_is_named_and_the_others_are_answered(folder, 
         (["arm.xml", "--record", "x.json"], "logs and a model are needed"),
         (["good.npz", "good.csv", "arm.xml", "--record", "x.json"], "logs of the same name"),
         (["good.npz", "arm.xml", "--baseline", "nowhere.json"], "cannot be read"),
+        (["good.npz", "arm.xml", "--record", "nowhere/x.json"], "there is no folder"),
     ],
 )
 def test_what_makes_no_check_is_said(folder, words, said):

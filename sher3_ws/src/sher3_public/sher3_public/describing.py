@@ -7,9 +7,8 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
-from scipy.signal import savgol_filter
 from sher3_chain.manipulator.mjcf.bodies import FREE
-from sher3_chain.manipulator.mjcf.drives import Drive, Driven
+from sher3_chain.manipulator.mjcf.drives import Driven
 from sher3_chain.manipulator.mjcf.joint import drive_joint
 from sher3_machines.drafting.guesses import count_of, scatter
 from sher3_machines.intake.tables import Tables
@@ -17,15 +16,11 @@ from sher3_machines.intake.tables import Tables
 from sher3_public import plausible
 from sher3_public.errors import InputError
 from sher3_public.models import Source
+from sher3_public.own_effort import simulated
 from sher3_public.records import Array, Arrays
 
 LEAST_RESOLUTION = 1e-9
 """Resolution of an encoder whose readings neither step nor scatter, rad or m: a simulator's own numbers."""
-LIKE_ITS_LAW = 0.02
-"""Share of an effort's scatter by which it may differ from the law of its drive and be the simulator's own. Recorded
-torques of real drives differ by a tenth and more; rounding and an encoder's noise by less than a hundredth."""
-WINDOW = 21
-"""Samples over which readings are smoothed before they are held against a law; a run has at least 20."""
 
 
 @dataclass(frozen=True)
@@ -73,7 +68,7 @@ def described(source: Source, runs: Sequence[Arrays], stated: Stated) -> Describ
         drive = drives[name].drive if name in drives else None
         if drive is not None and column is not None and runs[0].control is not None and runs[0].effort is None:
             plausible.control_of(name, runs[0].control[:, column], runs[0].position[:, place], drive)
-    own = simulated(joints, names, controls, runs, drives, stated.simulated, guesses)
+    own = simulated(joints, names, controls, runs[0], source.bodies, stated.simulated, guesses)
     for joint in joints:
         if joint["name"] in drives:
             drive_joint(joint, drives[joint["name"]], own, guesses)
@@ -162,54 +157,6 @@ def resolution(x: Array) -> float:
     """Return the count of an encoder, rad or m: its smallest step, else its scatter."""
     x = x[np.isfinite(x)]
     return float(f"{max(count_of(x) or scatter(x), LEAST_RESOLUTION):.6g}")
-
-
-def simulated(
-    joints: Sequence[Mapping[str, Any]],
-    names: Sequence[str],
-    controls: Sequence[int | None],
-    runs: Sequence[Arrays],
-    drives: Mapping[str, Driven],
-    stated: bool | None,
-    guesses: list[str],
-) -> bool:
-    """Return whether the efforts are a simulator's own: as stated, else where each is that of its drive's law."""
-    if stated is not None:
-        return stated
-    run, off = runs[0], []
-    if run.effort is not None and run.control is None and any(drives[n].recorded for n in names if n in drives):
-        guesses.append("efforts are taken as measured; where a simulator of this model recorded them, simulated=True")
-    if run.effort is None or run.control is None or len(run.time) < WINDOW:
-        return False
-    for place, (name, column) in enumerate(zip(names, controls, strict=True)):
-        drive = drives[name].drive if name in drives else None
-        if drive is None or column is None or "effort" not in joints[place]["signals"]:
-            continue
-        limit = np.inf if drive.limit is None else drive.limit
-        off.append(
-            from_law(run.time, run.position[:, place], drive, run.control[:, column], run.effort[:, place], limit)
-        )
-    own = bool(off) and max(off) < LIKE_ITS_LAW
-    if off:
-        kind = "a simulator's own" if own else "measured"
-        why = f"differ by {max(off):.2g} of their scatter at most from the law of their drives"
-        guesses.append(f"efforts are {kind}: they {why}; simulated=True or False")
-    return own
-
-
-def from_law(time: Array, q: Array, drive: Drive, control: Array, effort: Array, limit: float) -> float:
-    """Return by how much an effort (n,) differs from its drive's law, over its own scatter.
-
-    Encoder noise is smoothed away, and what half a step of delay in the law's speed adds, a share of the acceleration,
-    is taken off.
-    """
-    period = float(np.median(np.diff(time)))
-    v, a = (savgol_filter(q, WINDOW, 3, deriv=k, delta=period) for k in (1, 2))
-    asked = drive.factor * control
-    law = drive.position_gain * (asked - q) - drive.velocity_gain * v if drive.servo else asked
-    left = savgol_filter(effort - np.clip(law, -limit, limit), WINDOW, 3)
-    left = left - a * (left @ a) / max(a @ a, np.finfo(float).tiny)
-    return float(np.std(left) / max(np.std(effort), np.finfo(float).tiny))
 
 
 def _table(run: Arrays, names: Sequence[str], controls: Sequence[int | None]) -> Tables:

@@ -146,7 +146,7 @@ class Manipulator(Chain[ArmMotionEvidence]):
         """Return the part of this machine in a report."""
         from sher3_chain.manipulator.report.reporter import ManipulatorReporter
 
-        return ManipulatorReporter()
+        return ManipulatorReporter(self.described.model, self.model.losses is not None)
 
 
 def gain_notes(evidence: ArmMotionEvidence) -> list[str]:

@@ -8,7 +8,7 @@ import pytest
 from drawn_arms import drawn_xml
 from sher3_chain.manipulator.description import ManipulatorDescription
 from sher3_chain.manipulator.kind import KIND
-from sher3_chain.manipulator.mjcf.drives import driven
+from sher3_chain.manipulator.mjcf.drives import Step, driven
 from sher3_chain.manipulator.mjcf.joint import drive_joint
 
 XML = """<mujoco><option timestep="0.002" integrator="implicitfast"/><worldbody>
@@ -25,8 +25,17 @@ def test_a_position_actuator_is_a_servo_at_its_joint():
     drive = found.drive
     assert drive.servo and (drive.position_gain, drive.velocity_gain, drive.limit) == (400.0, 20.0, 60.0)
     assert drive.factor == 0.5  # control 1 asks for half a radian behind a gear of two
-    assert found.recorded == pytest.approx(0.002 * 20.0 + 0.001 * 0.5)
-    assert found.of_law == pytest.approx(0.001 * (20.0 + 0.5))
+    assert found.recorded == pytest.approx(Step(0.002 * 20.0 + 0.001 * 0.5))
+    assert found.of_law == pytest.approx(Step(0.001 * (20.0 + 0.5)))
+
+
+def test_runge_and_kutta_hold_the_control_alone():
+    xml = XML.format('<position joint="a" kp="100" kv="5" gear="2"/>').replace("implicitfast", "RK4")
+    found = driven(mujoco.MjModel.from_xml_string(xml))["a"]
+    inertia = 2.0 * 0.2**2 + 0.4 * 2.0 * 0.1**2  # kg m^2, of a ball at a distance
+    kinks = 0.002 * 20.0 / (3.0 * inertia)
+    assert found.recorded == pytest.approx(Step(0.001 * 20.0, 0.001 * 400.0 * (1.0 + kinks), 0.001))
+    assert found.of_law == pytest.approx(Step(late=0.001))
 
 
 def test_a_motor_is_a_force():
@@ -50,7 +59,7 @@ def test_what_is_no_law_of_the_control_says_why(actuators, words):
 
 def test_what_a_step_adds_counts_every_actuator_that_brakes():
     found = drive_of('<velocity joint="a" kv="3" gear="2"/>')
-    assert found.recorded == pytest.approx(0.002 * 12.0 + 0.001 * 0.5)
+    assert found.recorded == pytest.approx(Step(0.002 * 12.0 + 0.001 * 0.5))
 
 
 def test_a_control_without_a_law_leaves_its_joint_unjudged():

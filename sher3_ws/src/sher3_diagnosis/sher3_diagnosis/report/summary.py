@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 from sher3_diagnosis.report.odds import name_of, odds, significant, sized
-from sher3_diagnosis.reporter import Table
+from sher3_diagnosis.reporter import TO_YAML, Table
 from sher3_diagnosis.verdict import Cause, Interval, Parameter, Verdict
 from sher3_diagnosis.words import listed, lower, place, quantity, range_text, ratio_text, share, words
 
@@ -50,6 +50,7 @@ def five_lines(
     table: Table | None = None,
     case: str = "CASE",
     folder: str = "",
+    target: str = TO_YAML,
 ) -> list[tuple[str, str]]:
     """Return (label, text) of the five lines: verdict, where, cause, closure, next; with a table a cause for each row.
 
@@ -60,6 +61,7 @@ def five_lines(
         table: of the causes, where the machine has one.
         case: its folder.
         folder: where its verdict is written; both as in `command`, so that the next line can be typed as it stands.
+        target: as in `command`.
     """
     causes = ["; ".join(cause_text(c) for c in verdict.causes) or _unknown(verdict)]
     return [
@@ -67,7 +69,7 @@ def five_lines(
         ("where", _where(verdict)),
         *(("cause", text) for text in (causes if table is None else table.lines())),
         ("closure", _closure(verdict)),
-        ("next", _next(verdict, simulated, case, folder)),
+        ("next", _next(verdict, simulated, case, folder, target)),
     ]
 
 
@@ -156,7 +158,9 @@ def _closure(verdict: Verdict) -> str:
     return ", ".join(parts) or ("nothing to close" if verdict.status == "no_gap" else "nothing, without a cause")
 
 
-def command(verdict: Verdict, simulated: bool, case: str, folder: str = "") -> tuple[str, str] | None:
+def command(
+    verdict: Verdict, simulated: bool, case: str, folder: str = "", target: str = TO_YAML
+) -> tuple[str, str] | None:
     """Return the command that goes on from a verdict and what it does; None where there is none.
 
     Args:
@@ -164,30 +168,31 @@ def command(verdict: Verdict, simulated: bool, case: str, folder: str = "") -> t
         simulated: as in `five_lines`.
         case: its folder.
         folder: where the verdict was written; default where `sher3 gap diagnose` writes it.
+        target: options by which `sher3 gap export` writes the machine's model.
     """
     file = _file(case, folder)
     if verdict.status == "attributed" and simulated:
         line = f"sher3 gap apply {file} -o corrected.yaml --case {case}"
         return line, "puts the causes into the simulator and prints the gap that is left"
     if verdict.status == "attributed":
-        return f"sher3 gap export {file} --to yaml", "writes the parameters for your own simulator"
+        return f"sher3 gap export {file} {target}", "writes the causes for your own simulator"
     if verdict.status == "under_excited" and simulated:
         return f"sher3 gap experiment {file} {case}", "designs the motion that tells the rivals apart"
     bet = verdict.places[0].bet if verdict.places else None
     if verdict.status == "outside_library" and bet is not None and bet.probability >= WORTH_TRYING:
-        tries = f"apply {file} -o corrected.yaml --case {case}" if simulated else f"export {file} --to yaml"
+        tries = f"apply {file} -o corrected.yaml --case {case}" if simulated else f"export {file} {target}"
         return f"sher3 gap {tries} --bet", f"tries the best bet, {share(bet.probability)}"
     if verdict.status == "outside_library":
         return f"sher3 gap discover {case} --save found.yaml", "looks for a formula that explains it"
     return None
 
 
-def _next(verdict: Verdict, simulated: bool, case: str, folder: str) -> str:
+def _next(verdict: Verdict, simulated: bool, case: str, folder: str, target: str) -> str:
     e = verdict.next_experiment
     if e is not None:
         tells = f"{e.excitation} tells {' / '.join(words(i).lower() for i in e.separates)} apart"
         return f"`sher3 gap experiment {_file(case, folder)} {case}`: {tells}" if simulated else tells
-    line = command(verdict, simulated, case, folder)
+    line = command(verdict, simulated, case, folder, target)
     return "none" if line is None else f"`{line[0]}` {line[1]}"
 
 

@@ -26,6 +26,7 @@ class Configuration(Target):
     Class attributes:
         source: module that has the classes.
         plain, delayed: class of a group, without and with a delay.
+        servo: class of a group whose gains are stated; empty: the same.
         joints: field that names the joints, and the type of its list as written.
         delays: fields of the shortest and the longest delay, steps.
         always: fields that a group states anyway.
@@ -37,6 +38,7 @@ class Configuration(Target):
     source: ClassVar[str]
     plain: ClassVar[str]
     delayed: ClassVar[str]
+    servo: ClassVar[str] = ""
     joints: ClassVar[str]
     delays: ClassVar[tuple[str, str]]
     always: ClassVar[Mapping[str, object]] = {}
@@ -102,6 +104,8 @@ class Configuration(Target):
         """Bring the groups into order before they are written; default nothing."""
 
     def _class(self, group: Mapping[str, float]) -> str:
+        if self.servo and group.keys() & {name for names in self.gains.values() for name in names}:
+            return self.servo
         return self.delayed if self.delays[1] in group else self.plain
 
     def _group(self, joint: str, group: Mapping[str, float]) -> str:

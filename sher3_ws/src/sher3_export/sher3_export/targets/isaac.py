@@ -84,4 +84,6 @@ class Isaac(IsaacLab):
             joint: {"class": f"{self.source}.{self._class(group)}", "joint_names_expr": [joint], **group}
             for joint, group in self.groups.items()
         }
-        return "".join(f"# {line}\n" for line in self.said(remarks)) + dump_yaml({"actuators": groups})
+        ranges = {joint: {n: list(x) for n, x in found.items()} for joint, found in self.ranges.items() if found}
+        head = "".join(f"# {line}\n" for line in self.said(remarks))
+        return head + dump_yaml({"actuators": groups, "ranges": ranges})

@@ -11,6 +11,7 @@ from xml.etree.ElementTree import Element, SubElement
 from sher3_export.changes import Change
 from sher3_export.targets import mjcf_motor
 from sher3_export.targets.mjcf_body import controlled, moved, together
+from sher3_export.targets.mjcf_ranges import write_range
 from sher3_export.targets.target import NOT_TOLD, XmlTarget, each, field
 from sher3_export.xml_file import elements, number, numbers, parents, written
 
@@ -74,6 +75,10 @@ class Mjcf(XmlTarget):
     def __init__(self, root: Element) -> None:
         super().__init__(root)
         self._sliding: dict[tuple[str, str], float] = {}
+
+    def apply(self, change: Change) -> str:
+        """Write a change at its joint with its interval; return why it cannot be written, or nothing."""
+        return super().apply(change) or write_range(self.root, change)
 
     def all_joints(self) -> Sequence[Element]:
         """Return hinges and slides of the bodies."""

@@ -48,8 +48,10 @@ class Ros2Control(Target):
         if change.constant not in self.fields:
             return self.refuses.get(change.constant, "hardware of a joint has no such parameter")
         joint = self.joints.setdefault(change.joint, {})
-        replaced = change.constant == "limit"
-        joint[change.constant] = change.value + (0.0 if replaced else joint.get(change.constant, 0.0))
+        for ending, value in (("", change.value), ("_low", change.low), ("_high", change.high)):
+            name = f"{change.constant}{ending}"
+            if value is not None:
+                joint[name] = value + (0.0 if change.constant == "limit" else joint.get(name, 0.0))
         return ""
 
     def text(self, remarks: Sequence[str]) -> str:
@@ -69,6 +71,7 @@ class Ros2Control(Target):
                 SubElement(joint, "state_interface", {"name": state})
         ElementTree.indent(root)
         note = (
-            "Parameters: SI units, beyond the nominal model. mock_components ignores them; your component reads them."
+            "Parameters: SI units, beyond the nominal model; between _low and _high with 95 %, to draw from. "
+            "mock_components ignores them; your component reads them."
         )
         return write_xml(root, [*remarks, note])

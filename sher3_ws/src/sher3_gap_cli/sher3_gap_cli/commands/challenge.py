@@ -12,7 +12,7 @@ from typing import Annotated
 import typer
 from sher3_common.commands.options import Json
 
-from sher3_gap_cli.options import reported, shown
+from sher3_gap_cli.options import check_writable, reported, shown
 
 
 def parse_seeds(text: str) -> tuple[int, int]:
@@ -64,6 +64,7 @@ def challenge(
         if merge:
             outcome = merged(merge)
         else:
+            check_writable(folders=[out])
             chosen = [k for k in kinds.split(",") if k]
             wanted = requests(parse_seeds(seeds), chosen, without, parse_gap(gap), plant or (), console.log)
             folder = out or Path(scratch) / "challenge"
@@ -138,6 +139,7 @@ def calibrate(
     from sher3_diagnosis.judge.calibration import calibration
 
     with reported(as_json), tempfile.TemporaryDirectory() as scratch:
+        check_writable([out, diagram], [kept])
         room = kept or Path(scratch)
         seen = gathered(plants_of(folders or []), room, jobs)
         if drawn is not None:

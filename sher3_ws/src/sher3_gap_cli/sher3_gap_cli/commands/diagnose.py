@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import typer
 from sher3_common.commands.options import Json
 
-from sher3_gap_cli.options import BAD_INPUT, Library, RobotFile, Trust, case_argument, effects, reported
+from sher3_gap_cli.options import BAD_INPUT, Library, RobotFile, Trust, case_argument, check_writable, effects, reported
 
 
 def diagnose(
@@ -43,6 +43,7 @@ def diagnose(
     with reported(as_json):
         add_library(own or [], trust)
         target, left_out = folders(case, out), check_effects(without or [])
+        check_writable(folders=list(target.values()))
         mistakes = Costs.parse(costs)
         tasks = [Task(c, robot, left_out, report, str(target[c]), mistakes) for c in case]
         data: list[dict[str, Any]] = []

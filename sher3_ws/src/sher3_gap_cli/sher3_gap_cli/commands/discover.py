@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from sher3_common.commands.options import Json
 
-from sher3_gap_cli.options import Library, RequestError, RobotFile, Trust, reported
+from sher3_gap_cli.options import Library, RequestError, RobotFile, Trust, check_writable, reported
 
 if TYPE_CHECKING:
     from sher3_diagnosis.channel import Channel
@@ -43,6 +43,7 @@ def discover(
     from sher3_gap_cli.printing import steps
 
     with reported(as_json), steps() as say:
+        check_writable([save], [out])
         add_library(own or [], trust)
         place = _channel(where)
         diagnosis = diagnosed(Task(case, robot, check_effects(without or [])), say)

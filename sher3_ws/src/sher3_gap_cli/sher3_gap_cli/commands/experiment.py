@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from sher3_common.commands.options import Json
 
-from sher3_gap_cli.options import Bet, RobotFile, VerdictFile, case_argument, of_the_robot, reported
+from sher3_gap_cli.options import Bet, RobotFile, VerdictFile, case_argument, check_writable, of_the_robot, reported
 
 if TYPE_CHECKING:
     from sher3_gap.experiments.design import Experiment
@@ -48,6 +48,7 @@ def experiment(
     from sher3_gap_cli.printing import bet_lines, with_bets
 
     with reported(as_json):
+        check_writable([output])
         if ran is not None:
             text = realised_command(verdict, output, ran, robot, as_json, bet)
         elif case is not None and is_machine_case(case):

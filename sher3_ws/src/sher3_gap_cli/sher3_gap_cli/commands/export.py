@@ -8,7 +8,17 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from sher3_common.commands.options import Json
 
-from sher3_gap_cli.options import Bet, Library, RequestError, Trust, VerdictFile, reported, shown, written
+from sher3_gap_cli.options import (
+    Bet,
+    Library,
+    RequestError,
+    Trust,
+    VerdictFile,
+    check_writable,
+    reported,
+    shown,
+    written,
+)
 
 TARGETS = "mjcf, urdf, sdf, isaaclab, isaac, mjlab, ros2_control or yaml"
 """Names of targets as the help has them; the table of `sher3_export` is not imported for it."""
@@ -48,8 +58,9 @@ def export(
 
     with reported(as_json):
         add_library(own or [], trust)
-        given, names = read_verdict(verdict, bet), _names(joint or [])
         target = out or Path(f"exported.{'yaml' if ranges else _suffix(to)}")
+        check_writable([target])
+        given, names = read_verdict(verdict, bet), _names(joint or [])
         data = _ranges(given, check, model, names) if ranges else _model(given, to, check, model, names)
         written(target, data.pop("text"))
         data = {"file": str(target), **data, "bets": bet_lines(verdict, bet)}

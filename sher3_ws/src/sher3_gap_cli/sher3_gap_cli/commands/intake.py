@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 from sher3_common.commands.options import Json
 
-from sher3_gap_cli.options import RobotFile, reported, shown, written
+from sher3_gap_cli.options import RobotFile, check_writable, reported, shown, written
 
 IMPORT_EXAMPLE = "sher3 gap import DATA_EMPS.mat emps.yaml --out cases/emps"
 
@@ -33,6 +33,7 @@ def import_data(
     with reported(as_json):
         if len(paths) < 2:
             raise MachineError("data and a description are needed", value=len(paths), remedy=IMPORT_EXAMPLE)
+        check_writable(folders=[out])
         notes = import_case(paths[:-1], described(paths[-1]), out)
         text = "\n".join([f"{out}: {len(paths) - 1} run{'s' * (len(paths) > 2)}", *notes])
         shown(as_json, {"case": str(out), "runs": len(paths) - 1, "notes": notes}, text)
@@ -53,6 +54,7 @@ def describe(
     from sher3_machines.drafting.drafts import draft_of
 
     with reported(as_json):
+        check_writable([out])
         found = draft_of(file, rate, model, [name.strip() for name in names.split(",")] if names else ())
         if out is not None:
             written(out, found.text)
@@ -74,6 +76,7 @@ def case(
     from sher3_gap.case.assembling import assemble
 
     with reported(as_json):
+        check_writable(folders=[out])
         runs = assemble(bags, out, robot)
         data = [{"excitation": run.excitation, "repeat": run.repeat, "bag": str(run.bag)} for run in runs]
         lines = [f"  {x['excitation']} {x['repeat']}: {x['bag']}" for x in data]

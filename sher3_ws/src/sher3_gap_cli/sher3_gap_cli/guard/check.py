@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from sher3_common.commands.options import Json
 
-from sher3_gap_cli.options import BAD_INPUT, RequestError, effects, reported, shown, written
+from sher3_gap_cli.options import BAD_INPUT, RequestError, check_writable, effects, reported, shown, written
 
 if TYPE_CHECKING:
     from sher3_public.guard.baseline import Baseline
@@ -43,6 +43,7 @@ def check(
     from sher3_gap_cli.guard import pages
 
     with reported(as_json):
+        check_writable([record, junit, markdown])
         tasks, known = _tasks(paths, without or [], baseline, record), None if baseline is None else _read(baseline)
         found = [_compared(t, known, allow) for t in _told(tasks, jobs, dask)]
         for target, text in ((junit, pages.junit), (markdown, pages.markdown)):
@@ -83,7 +84,7 @@ def _told(tasks: Sequence[Log], jobs: int, dask: str) -> list[Told]:
     with bar(len(tasks)) as (say, advance):
         for one in run_on_dask(told, tasks, dask) if dask else run_here(told, tasks, jobs, say):
             found[one.task] = one
-            say(f"{one.task.name}: {one.error or one.headline}")
+            say(f"{one.task.name} is read")
             advance("", "")
     return [found[task] for task in tasks]
 

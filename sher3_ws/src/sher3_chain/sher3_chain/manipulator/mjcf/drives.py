@@ -8,14 +8,14 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from sher3_chain.manipulator.mjcf.bodies import SLIDE
 from sher3_chain.manipulator.mjcf.passive import AFFINE, FIXED, NONE, at_joint, is_passive
 
-EULER, IMPLICIT, IMPLICIT_FAST = 0, 2, 3
+EULER, RUNGE_KUTTA, IMPLICIT, IMPLICIT_FAST = range(4)
 """MuJoCo's numbers of integrators (mjtIntegrator)."""
 EULER_DAMP = 1 << 15
 """Flag that switches the implicit damping of Euler's method off (mjDSBL_EULERDAMP)."""
@@ -55,21 +55,35 @@ class Drive:
     delay: float = 0.0
 
 
+class Step(NamedTuple):
+    """By what a force differs from the one that acted between two steps of a simulator.
+
+    It is larger by `inertia` times acceleration, kg or kg m^2, and by `damping` times speed, N/(m/s) or N m/(rad/s),
+    and acts `late` s after its stamp, as a control does that holds over a whole step.
+    """
+
+    inertia: float = 0.0
+    damping: float = 0.0
+    late: float = 0.0
+
+
 @dataclass(frozen=True)
 class Driven:
     """How the model drives one joint.
 
     Attributes:
         slides: whether the joint slides.
-        recorded, of_law: inertia, kg or kg m^2, by which a force is larger than the one that acted, where it is the one
-            that the simulator recorded, or that of the drive's law by the speed of central differences.
+        recorded, of_law: what a step adds to the force that the simulator recorded, and to that of the drive's law by
+            the speed of central differences.
+        damping: of the joint in the model, N/(m/s) or N m/(rad/s).
         drive: its actuator; None: none, or none whose force is a line in control, place and speed.
         reason: why there is no drive.
     """
 
     slides: bool
-    recorded: float
-    of_law: float
+    recorded: Step
+    of_law: Step
+    damping: float
     drive: Drive | None
     reason: str = ""
 
@@ -84,26 +98,36 @@ def _name(name: str, joint: int) -> str:
 
 
 def _driven(source: Any, joint: int) -> Driven:
-    """Reckon what a step adds: its speed lies half a step before central differences, an implicit one behind."""
+    """Reckon what a step adds: its speed lies half a step before central differences, an implicit one behind.
+
+    The method of Runge and Kutta follows place and speed within a step and holds the control, so what was recorded at
+    its beginning is half a step early, and all but the control was not. Each change of the control kinks the speed: its
+    mean lies a sixth of a step times the change of acceleration above the one that was recorded.
+    """
     half, method = 0.5 * float(source.opt.timestep), source.opt.integrator
     damping = float(source.dof_damping[source.jnt_dofadr[joint]])
     drive, reason = _drive(source, joint)
-    gain = _braking(source, joint)
-    recorded = of_law = 0.0
+    stiffness, gain = _held(source, joint)
+    recorded = of_law = Step()
     if method in (IMPLICIT, IMPLICIT_FAST):
-        recorded, of_law = half * (damping + 2.0 * gain), half * (damping + gain)
+        recorded, of_law = Step(half * (damping + 2.0 * gain)), Step(half * (damping + gain))
+    elif method == RUNGE_KUTTA:
+        kinks = half * gain / (1.5 * float(source.dof_M0[source.jnt_dofadr[joint]]))
+        recorded, of_law = Step(half * gain, half * stiffness * (1.0 + kinks), half), Step(late=half)
     elif method == EULER:
-        recorded = half * damping * (-1.0 if source.opt.disableflags & EULER_DAMP else 1.0)
-        of_law = recorded - half * gain
-    return Driven(source.jnt_type[joint] == SLIDE, recorded, of_law, drive, reason)
+        own = half * damping * (-1.0 if source.opt.disableflags & EULER_DAMP else 1.0)
+        recorded, of_law = Step(own), Step(own - half * gain)
+    return Driven(source.jnt_type[joint] == SLIDE, recorded, of_law, damping, drive, reason)
 
 
-def _braking(source: Any, joint: int) -> float:
-    """Return the force per speed of all actuators on a joint that a control reaches, N/(m/s) or N m/(rad/s)."""
-    braking = [
+def _held(source: Any, joint: int) -> tuple[float, float]:
+    """Return the force per place and per speed of all actuators on a joint that a control reaches, at the joint."""
+    holding = [
         i for i in at_joint(source, joint) if source.actuator_biastype[i] == AFFINE and not is_passive(source, i)
     ]
-    return float(sum(-source.actuator_biasprm[i][2] * source.actuator_gear[i][0] ** 2 for i in braking))
+    each = [-source.actuator_biasprm[i][1:3] * source.actuator_gear[i][0] ** 2 for i in holding]
+    stiffness, gain = np.sum(each, axis=0) if each else (0.0, 0.0)
+    return float(stiffness), float(gain)
 
 
 def _drive(source: Any, joint: int) -> tuple[Drive | None, str]:

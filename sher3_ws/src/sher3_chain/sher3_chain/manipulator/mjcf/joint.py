@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from sher3_chain.manipulator.mjcf.drives import Drive, Driven
+from sher3_chain.manipulator.mjcf.drives import Drive, Driven, Step
 
 OWN_EFFORT = frozenset(("actuator", "qfrc"))
 """Words in a column's name by which an effort is MuJoCo's own: `actuator_force`, `qfrc_actuator`."""
@@ -24,21 +24,38 @@ def drive_joint(joint: dict[str, Any], own: Driven, simulated: bool, guesses: li
     """
     name, signals, drive = joint["name"], joint["signals"], own.drive
     measured = "effort" in signals
+    step = own.recorded if simulated and measured else Step()
     if drive is None:
         if signals.pop("command", None) is not None:
             known = "" if measured else "; record efforts, this joint is not judged"
             guesses.append(f"{name}: its control is not used, because {own.reason}{known}")
-        inertia = own.recorded if simulated and measured else 0.0
     elif drive.servo:
+        if step.damping and {"command", "reference"} & signals.keys():
+            signals.pop("effort")
+            guesses.append(f"{name}: the effort is that of its law, which the simulator follows within a step")
         _servo(joint, drive, guesses)
-        of_law = 0.0 if "reference" not in signals else own.of_law
-        inertia = (own.recorded if simulated else 0.0) if measured else of_law
+        if "reference" in signals and "effort" not in signals:
+            step = own.of_law
     else:
         _motor(joint, drive, guesses)
-        inertia = own.recorded if simulated or not measured else 0.0
-    if inertia:
-        joint["step_inertia"] = float(f"{inertia:.6g}")
-        guesses.append(f"{name}: a step of the simulator adds {inertia:.4g} {_inertia(own)} to what this effort moves")
+        step = own.recorded if simulated or not measured else step
+    _stepped(joint, own, step, guesses)
+
+
+def _stepped(joint: dict[str, Any], own: Driven, step: Step, guesses: list[str]) -> None:
+    """Write what a step of a simulator adds to an effort."""
+    name, signals = joint["name"], joint["signals"]
+    if step.inertia:
+        joint["step_inertia"] = float(f"{step.inertia:.6g}")
+        text = f"{step.inertia:.4g} {'kg' if own.slides else 'kg*m^2'}"
+        guesses.append(f"{name}: a step of the simulator adds {text} to what this effort moves")
+    if step.damping:
+        joint["viscous"] = float(f"{own.damping + step.damping:.6g}")
+        guesses.append(f"{name}: a step of the simulator adds {step.damping:.4g} per speed to this effort")
+    forces = [signals[x] for x in ("effort", "reference", "command") if x in signals][:1] if step.late else []
+    for signal in forces:
+        signal["late"] = signal.get("late", 0.0) + step.late
+        guesses.append(f"{name}: its force acts {1e3 * step.late:.4g} ms late: the simulator holds it over a step")
 
 
 def _servo(joint: dict[str, Any], drive: Drive, guesses: list[str]) -> None:
@@ -84,7 +101,3 @@ def _force_known(joint: dict[str, Any], guesses: list[str]) -> None:
     """Take back that the gain of a joint is not known."""
     joint.pop("gain", None)
     guesses[:] = [guess for guess in guesses if not guess.startswith(f"{joint['name']}: gain unknown")]
-
-
-def _inertia(own: Driven) -> str:
-    return "kg" if own.slides else "kg*m^2"

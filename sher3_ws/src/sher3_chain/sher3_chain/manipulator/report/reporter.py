@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Sequence
 
 from sher3_diagnosis.channel import Channel
@@ -16,6 +17,11 @@ from sher3_chain.manipulator.report.table import table_of
 
 class ManipulatorReporter(ChainReporter[ArmMotionEvidence]):
     """The part of an arm in motion in a report: measured, nominal and corrected effort over time."""
+
+    def __init__(self, model: str, mjcf: bool) -> None:
+        """Take the file of the arm, and whether it is one of MuJoCo or a URDF."""
+        kind, ending = ("mjcf", "xml") if mjcf else ("urdf", "urdf")
+        self.target = f"--to {kind} --model {shlex.quote(model)} --out corrected.{ending}"
 
     def joints(self, parts: Sequence[ArmMotionEvidence]) -> str:
         """Return the number of joints."""

@@ -1,0 +1,122 @@
+"""Whether efforts are a simulator's own, computed at the beginning of its steps, or were measured."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from copy import copy
+from typing import Any
+
+import numpy as np
+from scipy.signal import savgol_filter
+from sher3_chain.manipulator.bodies import Bodies
+from sher3_chain.manipulator.mjcf.drives import Drive
+from sher3_chain.manipulator.mjcf.reading import mujoco
+
+from sher3_public.records import Array, Arrays
+
+LIKE_ITS_LAW = 0.02
+"""Share of an effort's scatter by which it may differ from the law of its drive and be the simulator's own. Recorded
+torques of real drives differ by a tenth and more; rounding and an encoder's noise by less than a hundredth."""
+WINDOW = 21
+"""Samples over which readings are smoothed before they are held against a law; a run has at least 20."""
+LOOKED_AT = 4000
+"""Samples at most at which an effort without a control is held against the model."""
+LIKE_A_STEP = 0.2
+"""Share by which the inertia that an effort moves beyond the model's may differ from what a step adds, and be it. A
+rotor that nobody modelled has no reason to weigh half a time step times the servo's gain."""
+NAMED = "simulated=True or False"
+
+
+def simulated(
+    joints: Sequence[Mapping[str, Any]],
+    names: Sequence[str],
+    controls: Sequence[int | None],
+    run: Arrays,
+    bodies: Bodies,
+    stated: bool | None,
+    guesses: list[str],
+) -> bool:
+    """Return whether the efforts are a simulator's own.
+
+    As stated; else where each is that of its drive's law; without controls, where half of the joints move beyond the
+    model's inertia what a step of its integrator adds.
+    """
+    if stated is not None:
+        return stated
+    drives = bodies.drives
+    if run.effort is None or len(run.time) < WINDOW:
+        return False
+    if run.control is None:
+        return _alone(names, run, bodies, guesses)
+    off = []
+    for place, (name, column) in enumerate(zip(names, controls, strict=True)):
+        drive = drives[name].drive if name in drives else None
+        if drive is None or column is None or "effort" not in joints[place]["signals"]:
+            continue
+        off.append(from_law(run.time, run.position[:, place], drive, run.control[:, column], run.effort[:, place]))
+    own = bool(off) and max(off) < LIKE_ITS_LAW
+    if off:
+        kind = "a simulator's own" if own else "measured"
+        why = f"differ by {max(off):.2g} of their scatter at most from the law of their drives"
+        guesses.append(f"efforts are {kind}: they {why}; {NAMED}")
+    return own
+
+
+def from_law(time: Array, q: Array, drive: Drive, control: Array, effort: Array) -> float:
+    """Return by how much an effort (n,) differs from its drive's law, over its own scatter.
+
+    Encoder noise is smoothed away, and what half a step of delay in the law's speed adds, a share of the acceleration,
+    is taken off.
+    """
+    period, limit = float(np.median(np.diff(time))), np.inf if drive.limit is None else drive.limit
+    v, a = (savgol_filter(q, WINDOW, 3, deriv=k, delta=period) for k in (1, 2))
+    asked = drive.factor * control
+    law = drive.position_gain * (asked - q) - drive.velocity_gain * v if drive.servo else asked
+    left = savgol_filter(effort - np.clip(law, -limit, limit), WINDOW, 3)
+    left = left - a * (left @ a) / max(a @ a, np.finfo(float).tiny)
+    return float(np.std(left) / max(np.std(effort), np.finfo(float).tiny))
+
+
+def _alone(names: Sequence[str], run: Arrays, bodies: Bodies, guesses: list[str]) -> bool:
+    """Return whether half of the efforts or more are the model's own, which a step of its integrator makes larger."""
+    added = {name: bodies.drives[name].recorded.inertia for name in names if name in bodies.drives}
+    if not any(added.values()) or run.effort is None:
+        return False
+    late = max(bodies.drives[name].recorded.late for name in added)
+    beyond = beyond_model(names, run, bodies.mujoco, late)
+    like = [abs(beyond[name] / x - 1.0) < LIKE_A_STEP for name, x in added.items() if x]
+    own = 2 * sum(like) >= len(like)
+    said = "a simulator's own: they move" if own else "measured: they do not move"
+    guesses.append(f"efforts are {said} beyond the model's inertia what a step of it adds; {NAMED}")
+    return own
+
+
+def beyond_model(names: Sequence[str], run: Arrays, model: Any, late: float = 0.0) -> dict[str, float]:
+    """Return joint -> inertia that its effort, `late` by so many s, moves beyond an `MjModel`'s, kg or kg m^2.
+
+    What else may be wrong there (friction, a spring, weight) is fitted beside it.
+    """
+    api, held, period = mujoco(), copy(model), float(np.median(np.diff(run.time)))
+    flags = api.mjtDisableBit
+    held.opt.disableflags |= int(flags.mjDSBL_CONTACT) | int(flags.mjDSBL_LIMIT)
+    held.opt.enableflags &= ~int(api.mjtEnableBit.mjENBL_INVDISCRETE)
+    q, v, a = (savgol_filter(run.position, WINDOW, 3, deriv=k, delta=period, axis=0) for k in (0, 1, 2))
+    assert run.effort is not None
+    acted = np.column_stack([np.interp(run.time, run.time + late, x) for x in run.effort.T])
+    effort = savgol_filter(acted, WINDOW, 3, axis=0)
+    joints = [held.joint(name) for name in names]
+    places, rows = [int(j.qposadr[0]) for j in joints], [int(j.dofadr[0]) for j in joints]
+    state, inner = api.MjData(held), np.arange(WINDOW, len(q) - WINDOW, max(1, len(q) // LOOKED_AT))
+    left = np.empty((len(inner), len(names)))
+    for i, k in enumerate(inner):
+        state.qpos[places], state.qvel[rows], state.qacc[rows] = q[k], v[k], a[k]
+        api.mj_inverse(held, state)
+        left[i] = effort[k] - state.qfrc_inverse[rows]
+    return {name: _slope(left[:, i], *(x[inner, i] for x in (a, v, q))) for i, name in enumerate(names)}
+
+
+def _slope(left: Array, a: Array, v: Array, q: Array) -> float:
+    """Return what of a force (n,) goes with the acceleration, beside friction, a spring and a constant."""
+    known = np.isfinite(left) & np.isfinite(a)
+    shapes = np.column_stack([a, v, np.sign(v), q, np.ones_like(a)])[known]
+    return float(np.linalg.lstsq(shapes, left[known], rcond=None)[0][0]) if known.any() else 0.0
