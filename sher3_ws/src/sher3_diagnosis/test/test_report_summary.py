@@ -3,6 +3,7 @@
 import pytest
 from sher3_diagnosis.judge.bets import placed
 from sher3_diagnosis.report.summary import cause_text, closure_text, command, five_lines, headline
+from sher3_diagnosis.reporter import Reporter
 from sher3_diagnosis.verdict import (
     Answer,
     Cause,
@@ -16,6 +17,16 @@ from sher3_diagnosis.verdict import (
     Where,
 )
 
+
+class Simulated(Reporter):
+    simulated = True
+
+
+class Into(Reporter):
+    target = "--to mjcf --model arm.xml"
+
+
+OURS = Simulated()
 PLACE = Where(
     stage="transmission",
     actuator="tilt",
@@ -76,22 +87,21 @@ def test_five_lines_of_an_explained_gap():
     closed = Closure(stage=Interval(value=0.98, low=0.9, high=1.0), tip=Interval(value=0.5))
     left = Residual(gap=2.1e-6, floor=2e-6, unit="m")
     answer = verdict("attributed", causes=[FRICTION], closure=closed, residual=left)
-    lines = dict(five_lines(answer, simulated=True, case="bags/case", folder="out"))
+    lines = dict(five_lines(answer, OURS, case="bags/case", folder="out"))
     assert list(lines) == ["verdict", "where", "cause", "closure", "next"]
     assert lines["where"] == "transmission, tilt: 6 µm rms, 3.0 times the floor, just after a reversal"
     assert lines["cause"] == "Coulomb friction on delta 2, force 300 mN (250 mN … 350 mN)"
-    assert lines["closure"] == "stage 98 % (90 % … 100 %), tip 50 %, left 2.1 µm over a floor of 2 µm"
+    assert lines["closure"] == "stage 98 % (90 % … 100 %), at the tip 50 %, left 2.1 µm over a floor of 2 µm"
     assert lines["next"].startswith("`sher3 gap apply out/verdict.json -o corrected.yaml --case bags/case` ")
 
 
 def test_commands_are_named_for_a_simulated_machine_only():
     answer = verdict("attributed", causes=[FRICTION])
-    assert "own simulator" in dict(five_lines(answer, simulated=False))["next"]
-    into = "--to mjcf --model arm.xml --out corrected.xml"
-    assert f"verdict.json {into}`" in dict(five_lines(answer, simulated=False, target=into))["next"]
+    assert "own simulator" in dict(five_lines(answer, Reporter()))["next"]
+    assert "verdict.json --to mjcf --model arm.xml`" in dict(five_lines(answer, Into()))["next"]
     open_one = verdict("under_excited", causes=[BACKLASH], next_experiment=TELLS)
-    assert dict(five_lines(open_one, simulated=False))["next"] == "loads tells backlash / cogging apart"
-    assert "`sher3 gap experiment" in dict(five_lines(open_one, simulated=True))["next"]
+    assert dict(five_lines(open_one, Reporter()))["next"] == "loads tells backlash / cogging apart"
+    assert "`sher3 gap experiment" in dict(five_lines(open_one, OURS))["next"]
 
 
 @pytest.mark.parametrize(("odds", "tried"), [(0.3, True), (0.05, False)])
@@ -99,7 +109,10 @@ def test_the_next_line_tries_a_bet_that_is_worth_it(odds, tried):
     outside = Answer(answer="outside_library", probability=1.0 - odds)
     bet = Answer(causes=[FRICTION], probability=odds, closure=Interval(value=0.97))
     answer = verdict("outside_library", places=[placed(PLACE, [outside, bet])], unexplained=LEFT)
-    lines = {known: dict(five_lines(answer, known, case="bags/case"))["next"] for known in (True, False)}
+    lines = {
+        known: dict(five_lines(answer, OURS if known else Reporter(), case="bags/case"))["next"]
+        for known in (True, False)
+    }
     starts = ("`sher3 gap apply gap/bags/case/verdict.json -o corrected.yaml --case bags/case --bet` tries",
               "`sher3 gap export gap/bags/case/verdict.json --to yaml --bet` tries the best bet, 30 %")  # fmt: skip
     assert [lines[k].startswith(s) for k, s in zip((True, False), starts, strict=True)] == [tried, tried]
@@ -149,10 +162,10 @@ def test_the_headline_says_what_the_rest_is():
 
 
 def test_the_command_goes_on_from_the_verdict():
-    assert command(verdict("attributed", causes=[FRICTION]), True, "c")[0].startswith("sher3 gap apply gap/c/")
-    assert command(verdict("outside_library", unexplained=LEFT), True, "c")[0].startswith("sher3 gap discover c ")
-    assert command(verdict("attributed", causes=[FRICTION]), True, "c", "out")[0].startswith("sher3 gap apply out/")
-    assert command(Verdict(status="no_gap"), True, "c") is None
+    assert command(verdict("attributed", causes=[FRICTION]), OURS, "c")[0].startswith("sher3 gap apply gap/c/")
+    assert command(verdict("outside_library", unexplained=LEFT), OURS, "c")[0].startswith("sher3 gap discover c ")
+    assert command(verdict("attributed", causes=[FRICTION]), OURS, "c", "out")[0].startswith("sher3 gap apply out/")
+    assert command(Verdict(status="no_gap"), OURS, "c") is None
 
 
 def test_rivals_stand_behind_the_cause():

@@ -60,7 +60,7 @@ def answer(task: Task, say: Say = lambda _: None) -> Answer:
     rests = {e.id: e.leaves_out for e in found.machine.library() if e.leaves_out}
     reporter = found.machine.reporter()
     table, case = reporter.table(found), str(task.case)
-    lines = five_lines(found.verdict, reporter.simulated, rests, table, case, task.folder, reporter.target)
+    lines = five_lines(found.verdict, reporter, rests, table, case, task.folder)
     if not task.report:
         return Answer(task, found.verdict, lines)
     say("writing the report")

@@ -81,8 +81,8 @@ class Answer:
         return {e.id: e.leaves_out for e in self.diagnosis.machine.library() if e.leaves_out}
 
     def __str__(self) -> str:
-        simulated = self.diagnosis.machine.reporter().simulated
-        lines = [f"{label:9}{text}" for label, text in five_lines(self.verdict, simulated, self._rests)[:4]]
+        reporter = self.diagnosis.machine.reporter()
+        lines = [f"{label:9}{text}" for label, text in five_lines(self.verdict, reporter, self._rests)[:4]]
         lines += [f"odds     {odds:.0%}: {cause_text(c)}" for c in self.causes if (odds := c.probability) is not None]
         return "\n".join([*lines, *(f"guessed  {text}" for text in self.guessed)])
 

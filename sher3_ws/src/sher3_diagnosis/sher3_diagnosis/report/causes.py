@@ -144,9 +144,10 @@ def _rivals(cause: Cause, attribution: Attribution, index: int) -> list[RivalRow
         if key == (cause.effect, cause.actuator):
             continue
         rival = trial.terms[-1]
-        behind = f"{100.0 * (trial.total - attribution.fit.total) / worth:.1f} %"
+        behind = (trial.total - attribution.fit.total) / worth
         separator = separates(chosen, rival.effect)
-        rows.append(RivalRow(words(rival.effect.id), place(rival.site), behind, key in kept, separator))
+        less = "all of it" if behind >= 1.0 else f"{100.0 * behind:.1f} %"
+        rows.append(RivalRow(words(rival.effect.id), place(rival.site), less, key in kept, separator))
     return rows
 
 

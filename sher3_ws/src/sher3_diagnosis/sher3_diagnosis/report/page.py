@@ -58,8 +58,8 @@ def _sections(diagnosis: Diagnosis, title: str, folder: str, case: str, in_memor
     parts = [f.evidence for f in diagnosis.findings]
     isolability = reporter.isolability(parts)
     rests = {e.id: e.leaves_out for e in diagnosis.machine.library() if e.leaves_out}
-    lines = five_lines(verdict, reporter.simulated, rests, reporter.table(diagnosis), case, folder, reporter.target)
-    going = command(verdict, reporter.simulated, case, folder, reporter.target)
+    lines = five_lines(verdict, reporter, rests, reporter.table(diagnosis), case, folder)
+    going = command(verdict, reporter, case, folder)
     if in_memory and going is not None:
         going = CORRECTED if verdict.causes else None
         lines = [(head, text) for head, text in lines if head != "next"]

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from types import MappingProxyType
+from typing import Any
 
 from sher3_diagnosis.report.odds import name_of, odds, significant, sized
-from sher3_diagnosis.reporter import TO_YAML, Table
+from sher3_diagnosis.reporter import Reporter, Table
 from sher3_diagnosis.verdict import Cause, Interval, Parameter, Verdict
 from sher3_diagnosis.words import listed, lower, place, quantity, range_text, ratio_text, share, words
 
@@ -45,31 +46,29 @@ def headline(verdict: Verdict, rests: Mapping[str, str] = MappingProxyType({})) 
 
 def five_lines(
     verdict: Verdict,
-    simulated: bool,
+    reporter: Reporter[Any],
     rests: Mapping[str, str] = MappingProxyType({}),
     table: Table | None = None,
     case: str = "CASE",
     folder: str = "",
-    target: str = TO_YAML,
 ) -> list[tuple[str, str]]:
     """Return (label, text) of the five lines: verdict, where, cause, closure, next; with a table a cause for each row.
 
     Args:
         verdict: of any machine.
-        simulated: whether `sher3 gap apply` and `sher3 gap experiment` know the machine's simulator.
+        reporter: of the machine.
         rests: as in `headline`.
         table: of the causes, where the machine has one.
         case: its folder.
         folder: where its verdict is written; both as in `command`, so that the next line can be typed as it stands.
-        target: as in `command`.
     """
     causes = ["; ".join(cause_text(c) for c in verdict.causes) or _unknown(verdict)]
     return [
         ("verdict", f"{verdict.status}: {headline(verdict, rests)}"),
         ("where", _where(verdict)),
         *(("cause", text) for text in (causes if table is None else table.lines())),
-        ("closure", _closure(verdict)),
-        ("next", _next(verdict, simulated, case, folder, target)),
+        ("closure", _closure(verdict, reporter.end)),
+        ("next", _next(verdict, reporter, case, folder)),
     ]
 
 
@@ -144,9 +143,9 @@ def _unknown(verdict: Verdict) -> str:
     return f"none of the library{nearest}; what is left: {verdict.unexplained.signature}"
 
 
-def _closure(verdict: Verdict) -> str:
+def _closure(verdict: Verdict, end: str) -> str:
     parts = []
-    for name, value in (("stage", verdict.closure.stage), ("tip", verdict.closure.tip)):
+    for name, value in (("stage", verdict.closure.stage), (end, verdict.closure.tip)):
         if value is not None and verdict.causes:
             parts.append(f"{name} {closure_text(value)}")
     bet = verdict.places[0].bet if verdict.places and not verdict.causes else None
@@ -158,18 +157,16 @@ def _closure(verdict: Verdict) -> str:
     return ", ".join(parts) or ("nothing to close" if verdict.status == "no_gap" else "nothing, without a cause")
 
 
-def command(
-    verdict: Verdict, simulated: bool, case: str, folder: str = "", target: str = TO_YAML
-) -> tuple[str, str] | None:
+def command(verdict: Verdict, reporter: Reporter[Any], case: str, folder: str = "") -> tuple[str, str] | None:
     """Return the command that goes on from a verdict and what it does; None where there is none.
 
     Args:
         verdict: of the case.
-        simulated: as in `five_lines`.
+        reporter: of the machine: whether the project simulates it, and what takes its causes.
         case: its folder.
         folder: where the verdict was written; default where `sher3 gap diagnose` writes it.
-        target: options by which `sher3 gap export` writes the machine's model.
     """
+    simulated, target = reporter.simulated, reporter.target
     file = _file(case, folder)
     if verdict.status == "attributed" and simulated:
         line = f"sher3 gap apply {file} -o corrected.yaml --case {case}"
@@ -187,12 +184,12 @@ def command(
     return None
 
 
-def _next(verdict: Verdict, simulated: bool, case: str, folder: str, target: str) -> str:
+def _next(verdict: Verdict, reporter: Reporter[Any], case: str, folder: str) -> str:
     e = verdict.next_experiment
     if e is not None:
         tells = f"{e.excitation} tells {' / '.join(words(i).lower() for i in e.separates)} apart"
-        return f"`sher3 gap experiment {_file(case, folder)} {case}`: {tells}" if simulated else tells
-    line = command(verdict, simulated, case, folder, target)
+        return f"`sher3 gap experiment {_file(case, folder)} {case}`: {tells}" if reporter.simulated else tells
+    line = command(verdict, reporter, case, folder)
     return "none" if line is None else f"`{line[0]}` {line[1]}"
 
 
