@@ -18,26 +18,10 @@ from sher3_public.errors import InputError
 from sher3_public.models import Source
 from sher3_public.own_effort import simulated
 from sher3_public.records import Array, Arrays
+from sher3_public.stating import Stated
 
 LEAST_RESOLUTION = 1e-9
 """Resolution of an encoder whose readings neither step nor scatter, rad or m: a simulator's own numbers."""
-
-
-@dataclass(frozen=True)
-class Stated:
-    """What a caller states in place of a guess.
-
-    Attributes:
-        joints: names of the columns of `position`, in their order; empty: guessed.
-        gain: N m (N) per unit of the effort, one number or one for each joint by name, or `unknown`.
-        resolution: one count of the encoders, rad or m; None: told from the readings.
-        simulated: whether the effort is a simulator's own; None: guessed.
-    """
-
-    joints: Sequence[str] = ()
-    gain: float | str | Mapping[str, float | str] = 1.0
-    resolution: float | None = None
-    simulated: bool | None = None
 
 
 @dataclass
@@ -55,26 +39,31 @@ def described(source: Source, runs: Sequence[Arrays], stated: Stated) -> Describ
     Raises:
         InputError: the arrays do not fit the joints of the model, or cannot be what they would be taken for.
     """
+    runs = [stated.in_si(run) for run in runs]
     plausible.stamps(runs[0].time)
     guesses: list[str] = []
     runs = [without_free(source, run, stated.joints, guesses) for run in runs]
     names = joints_of(source, runs[0].position.shape[1], stated.joints, guesses)
-    drives = source.bodies.drives
+    stated.check_names(names)
+    control = runs[0].control
+    drives = stated.drives(source.bodies, names, 0 if control is None else control.shape[1])
     guesses += plausible.places(names, runs[0], source.bodies.reach)
-    controls = [control_of(name, i, len(names), runs[0].control, drives, source) for i, name in enumerate(names)]
-    controls = plausible.columns_of_control(names, controls, runs[0], drives, bool(stated.joints), guesses)
+    controls = _controls(names, control, drives, source, stated)
+    if not stated.controls:
+        controls = plausible.columns_of_control(names, controls, runs[0], drives, bool(stated.joints), guesses)
     joints = [_joint(name, i, source, runs, stated, controls[i] is not None) for i, name in enumerate(names)]
     for place, (name, column) in enumerate(zip(names, controls, strict=True)):
         drive = drives[name].drive if name in drives else None
         if drive is not None and column is not None and runs[0].control is not None and runs[0].effort is None:
             plausible.control_of(name, runs[0].control[:, column], runs[0].position[:, place], drive)
-    own = simulated(joints, names, controls, runs[0], source.bodies, stated.simulated, guesses)
+    own = simulated(joints, names, controls, runs[0], source.bodies.mujoco, drives, stated.simulated, guesses)
     for joint in joints:
         if joint["name"] in drives:
             drive_joint(joint, drives[joint["name"]], own, guesses)
+            stated.delayed(joint, guesses)
         elif "command" in joint["signals"]:
             joint["signals"].pop("command")
-            guesses.append(f"{joint['name']}: its control is not used, because the model has no drives")
+            guesses.append(f"{joint['name']}: its control is not used, because the model has no drives; servo=(kp, kv)")
     if runs[0].control is not None:
         unheard = [n for n, c in zip(names, controls, strict=True) if c is None and n in drives]
         guesses += [f"{n}: its control is not used, because {drives[n].reason}" for n in unheard if drives[n].reason]
@@ -116,6 +105,16 @@ def joints_of(source: Source, columns: int, stated: Sequence[str], guesses: list
     raise InputError(
         "positions do not fit the joints of the model", value=f"{columns} columns", limit=limit, remedy=remedy
     )
+
+
+def _controls(
+    names: Sequence[str], control: Array | None, drives: Mapping[str, Driven], source: Source, stated: Stated
+) -> list[int | None]:
+    """Return the column of `control` of each joint, as stated or guessed; raises InputError where they do not fit."""
+    if control is not None and stated.controls:
+        stated.check_controls(control.shape[1], names, drives)
+        return [stated.column(name, drives[name].drive if name in drives else None) for name in names]
+    return [control_of(name, i, len(names), control, drives, source) for i, name in enumerate(names)]
 
 
 def control_of(

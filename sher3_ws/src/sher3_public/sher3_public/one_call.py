@@ -10,9 +10,9 @@ from sher3_machines.errors import MachineError
 
 from sher3_public.answer import Answer
 from sher3_public.cases import Case, case_of_arrays, case_of_description, case_of_tables
-from sher3_public.describing import Stated
 from sher3_public.errors import InputError
 from sher3_public.records import arrays_of, columns_of, is_several, is_table, tables_at
+from sher3_public.stating import Gains, Stated
 
 UNUSED = "is not used"
 """Words of a guess by which a signal plays no part."""
@@ -31,13 +31,18 @@ def diagnose(
     gain: float | str | Mapping[str, float | str] = 1.0,
     resolution: float | None = None,
     simulated: bool | None = None,
+    units: Mapping[str, str] | None = None,
+    controls: Sequence[str] = (),
+    servo: Gains | Mapping[str, Gains] | None = None,
+    delay: float | Mapping[str, float] = 0.0,
     rate: float | None = None,
     tags: Mapping[str, Sequence[object]] | Sequence[Mapping[str, object]] | None = None,
     without: Collection[str] = (),
 ) -> Answer:
     """Say where a robot leaves its model, which effects explain it, and how far the gap shrinks; or abstain.
 
-    Arrays are taken in SI units: s, rad or m, N m or N. Several runs are lists of arrays, or a list of tables.
+    Arrays are taken in SI units, where `units` says nothing else: s, rad or m, N m or N. Several
+    runs are lists of arrays, or a list of tables.
 
     Args:
         model: path or text of MJCF or URDF, `MjModel`, `MjSpec`; a description (mapping, path of YAML, or object) of
@@ -52,6 +57,11 @@ def diagnose(
         gain: N m (N) per unit of the effort, for all joints or by name; `unknown`: told by the model's inertias.
         resolution: one count of the encoders, rad or m; default what the readings say.
         simulated: whether the effort is a simulator's own, computed at the beginning of its steps; default guessed.
+        units: unit of an array by its name, such as `{"time": "ms", "position": "deg", "control": "deg"}`.
+        controls: joint, or actuator of the model, of each column of `control`, where the guess is wrong.
+        servo: stiffness and damping of the servo that follows `control`, N m/rad and N m/(rad/s) (N/m and N/(m/s)), in
+            place of the model's: one pair for all joints, or by name. It gives a URDF its drives.
+        delay: s after its stamp at which a control acts, beyond the model's: one number, or by name of the joint.
         rate: samples per second, Hz, of tables without stamps.
         tags: what differs between runs: tag -> value for each run, or a mapping for each run. The first run is the
             reference.
@@ -65,7 +75,7 @@ def diagnose(
         MachineError: the model or the record cannot be used; the sentence says why and what to do.
         UnknownEffect: an id in `without` is no effect.
     """
-    stated = Stated(tuple(joints), gain, resolution, simulated)
+    stated = Stated(tuple(joints), gain, resolution, simulated, units or {}, tuple(controls), servo, delay)
     case = _case(model, time, (control, position, effort, load), stated, rate, tags)
     try:
         return Answer.of(case, tuple(without))
@@ -87,6 +97,9 @@ def _case(
         return case_of_arrays(model, arrays_of(time, control, position, effort, load), stated, tags)
     if any(x is not None for x in arrays):
         raise InputError("a table and arrays", remedy="give either a table or time, control, position, effort")
+    if stated != Stated():
+        remedy = "give arrays; what is known of a table stands in the names of its columns, or in a description"
+        raise InputError("joints, gain, units and the like are stated of arrays", value="a table", remedy=remedy)
     columns = [columns_of(table) for table in tables]
     if is_description(model):
         return case_of_description(model, columns, tags)

@@ -8,8 +8,7 @@ from typing import Any
 
 import numpy as np
 from scipy.signal import savgol_filter
-from sher3_chain.manipulator.bodies import Bodies
-from sher3_chain.manipulator.mjcf.drives import Drive
+from sher3_chain.manipulator.mjcf.drives import Drive, Driven
 from sher3_chain.manipulator.mjcf.reading import mujoco
 
 from sher3_public.records import Array, Arrays
@@ -32,7 +31,8 @@ def simulated(
     names: Sequence[str],
     controls: Sequence[int | None],
     run: Arrays,
-    bodies: Bodies,
+    model: Any,
+    drives: Mapping[str, Driven],
     stated: bool | None,
     guesses: list[str],
 ) -> bool:
@@ -43,11 +43,10 @@ def simulated(
     """
     if stated is not None:
         return stated
-    drives = bodies.drives
     if run.effort is None or len(run.time) < WINDOW:
         return False
     if run.control is None:
-        return _alone(names, run, bodies, guesses)
+        return _alone(names, run, model, drives, guesses)
     off = []
     for place, (name, column) in enumerate(zip(names, controls, strict=True)):
         drive = drives[name].drive if name in drives else None
@@ -77,13 +76,13 @@ def from_law(time: Array, q: Array, drive: Drive, control: Array, effort: Array)
     return float(np.std(left) / max(np.std(effort), np.finfo(float).tiny))
 
 
-def _alone(names: Sequence[str], run: Arrays, bodies: Bodies, guesses: list[str]) -> bool:
+def _alone(names: Sequence[str], run: Arrays, model: Any, drives: Mapping[str, Driven], guesses: list[str]) -> bool:
     """Return whether half of the efforts or more are the model's own, which a step of its integrator makes larger."""
-    added = {name: bodies.drives[name].recorded.inertia for name in names if name in bodies.drives}
+    added = {name: drives[name].recorded.inertia for name in names if name in drives}
     if not any(added.values()) or run.effort is None:
         return False
-    late = max(bodies.drives[name].recorded.late for name in added)
-    beyond = beyond_model(names, run, bodies.mujoco, late)
+    late = max(drives[name].recorded.late for name in added)
+    beyond = beyond_model(names, run, model, late)
     like = [abs(beyond[name] / x - 1.0) < LIKE_A_STEP for name, x in added.items() if x]
     own = 2 * sum(like) >= len(like)
     said = "a simulator's own: they move" if own else "measured: they do not move"

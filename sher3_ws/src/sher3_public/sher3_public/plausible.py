@@ -58,7 +58,7 @@ def control_of(name: str, control: Array, position: Array, drive: Drive) -> None
         )
     alike = float(np.corrcoef(told, q)[0, 1])
     if not drive.servo and alike > FOLLOWS and 1.0 / SAME < wide / own < SAME:
-        remedy = "give a model with position actuators, or effort="
+        remedy = "give a model with position actuators, servo=(kp, kv), or effort="
         raise InputError(
             f"{name}: its control is the place of the joint, and motor {drive.name} takes a force",
             value=f"correlation {alike:.3f}",

@@ -1,0 +1,68 @@
+"""What was guessed wrongly is put right by keywords, with arrays as they are."""
+
+import re
+
+import mujoco
+import numpy as np
+import pytest
+import sher3.gap as gap
+from drawn_arms import drawn_xml, logged
+
+SEED, LATE = 704, 5
+XML = drawn_xml(np.random.default_rng(SEED))
+"""An arm of three joints, `implicit`, as its model says."""
+
+
+@pytest.fixture(scope="module")
+def log():
+    return logged(XML, SEED)
+
+
+def healthy(model, log, control, position=None, time=None, **stated):
+    time = log.time if time is None else time
+    return gap.diagnose(model, time, control, log.qpos if position is None else position, **stated).status == "no_gap"
+
+
+def test_units_of_arrays(log):
+    units = {"time": "ms", "position": "deg", "control": "degrees"}
+    assert healthy(XML, log, np.degrees(log.ctrl), np.degrees(log.qpos), 1e3 * log.time, units=units)
+
+
+def test_which_control_drives_which_joint(log):
+    assert healthy(XML, log, log.ctrl[:, ::-1], controls=["elbow", "shoulder", "turn"])
+
+
+def test_a_delay_that_no_model_states(log):
+    early = np.vstack([log.ctrl[LATE:], np.repeat(log.ctrl[-1:], LATE, axis=0)])
+    assert healthy(XML, log, early, delay=LATE * 0.001)
+
+
+def test_servos_whose_law_is_in_the_firmware(log):
+    """A model with motors, as people have it, and the gains that the drives were given."""
+    model = mujoco.MjModel.from_xml_string(XML)
+    motors = re.sub(r'<position joint="(\w+)" [^>]*/>', r'<motor joint="\1"/>', XML)
+    laws = {model.joint(i).name: tuple(-model.actuator_biasprm[i][1:3]) for i in range(model.nu)}
+    assert healthy(motors, log, log.ctrl, servo=laws)
+
+
+@pytest.mark.parametrize(
+    ("stated", "words"),
+    [
+        ({"units": {"position": "N"}}, "unit of position"),
+        ({"units": {"places": "deg"}}, "no such array"),
+        ({"controls": ["elbow"]}, "controls do not fit"),
+        ({"controls": ["elbow", "elbow", "turn"]}, "controls do not fit"),
+        ({"servo": {"nobody": (1.0, 2.0)}}, "servo of no such joint"),
+        ({"gain": {"nobody": 1.0}}, "gain of no such joint"),
+        ({"delay": {"nobody": 1.0}}, "delay of no such joint"),
+        ({"delay": -1.0}, "below zero"),
+    ],
+)
+def test_what_cannot_be_stated_is_said(log, stated, words):
+    with pytest.raises(gap.InputError, match=words):
+        gap.diagnose(XML, log.time, log.ctrl, log.qpos, **stated)
+
+
+def test_a_table_says_by_its_columns_what_it_holds(log):
+    with pytest.raises(gap.InputError, match="stated of arrays"):
+        gap.diagnose(XML, {"time": log.time, "ctrl": log.ctrl, "qpos": log.qpos}, gain=2.0)
