@@ -69,10 +69,12 @@ HAZARDS = (
          "sher3_ws/src/sher3_control/test/test_zero.py"),
         ("force sensor silent, dead", "force sensor frozen", "force not finite, out of range",
          "force to and fro every other tick", FALSE_FORCE),
-        "beside a true hand a false force of 0.2 N and less, or below 12 % of the hand: 0.2 mm/s more; a gain that "
-        "grows by 10 % a second under 0.6 N: 1.6 mm further along the hand in 8.8 s, of 6.0 mm; a "
-        "sensor turned by 20 degrees under a hand that grows over 15 s: 210 um sideways on 3.3 mm; without a hand "
-        "0.2 to 0.9 N are noticed so late that the travel near tissue is beyond the budget of 25 um",
+        "beside a true hand a false force of 0.2 N and less, or below 12 % of the hand: 0.2 mm/s more, since the "
+        "drives know a level no better: 20 g on the tool, and what friction in the screws holds, look the same; so a "
+        "gain that grows by 10 % a second under 0.6 N: 1.5 mm further along the hand in 8.7 s, of 5.9 mm; a sensor "
+        "turned by 20 degrees under a hand that grows over 15 s: 202 um sideways on 3.2 mm (`python "
+        "bench/slow_forces.py`); without a hand 0.2 to 0.9 N are noticed so late that the travel near tissue is "
+        "beyond the budget of 25 um, since a leg's force has a noise of 0.17 N and a light hand takes time",
     ),
     Hazard(
         "an axis moves by itself",
@@ -81,7 +83,9 @@ HAZARDS = (
         ("*.power", "*.demand", "*.echo", "*.motor", "*.statusword"),
         (f"{_DRIVERS}/test_position.py", f"{_DRIVERS}/test_speed_limits.py"),
         ("axis leaves its commands", RUNAWAY),
-        "a drive that creeps and reports the force that would explain it: 0.2 mm of the axis; one that turns its motor "
+        "a drive that creeps and reports the force that would explain it: 0.2 mm of the axis, up to 268 um near "
+        "tissue (`python bench/attacks.py`), since the driver does not hear the force sensor, whose range is 26 N at "
+        "a leg; one that neither hears nor is heard: 98 and 712 um (`sher3 safety budget`); one that turns its motor "
         "without being enabled: only safe torque off stops it",
     ),
     Hazard(
@@ -91,7 +95,9 @@ HAZARDS = (
         ("*.load_encoder", "*.motor_encoder", "*.encoders"),
         (f"{_DRIVERS}/test_watches.py",),
         ("encoder wrong, coupling slips", "encoder frozen"),
-        "both encoders wrong alike by less than the force explains; a slip behind the load encoder without a tracker",
+        "both encoders wrong alike by less than the force explains; axes that creep behind encoders that drift, each "
+        "within its own limit: 28 um near tissue (`sher3 safety search`); a slip behind the load encoder without a "
+        "tracker",
     ),
     Hazard(
         "goes elsewhere, since cables are exchanged",
