@@ -14,13 +14,23 @@ export PYTHONDONTWRITEBYTECODE =
 demo: $(READY)  ## scripted surgeon on mocks: recorded, analysed, shown
 	$(BIN)/sher3 demo
 
-# Graphs in stepped time do not care what runs beside them; those in wall time (flaky) run alone. In the order of the
-# files: long ones come first, so that neither of the two waits for the other at the end. The second call reads only
-# the files that name the mark it asks for (`conftest.py` sees to it that they do): a quarter of the time to collect.
-test: $(READY) lint  ## lint, types and every test but the slow ones
-	$(BIN)/pytest -n 2 --dist loadscope --no-loadscope-reorder --durations 10 -m "not slow and not (graph and flaky)"; beside=$$?; \
+test: test-all-but-wall test-wall  ## lint, types and every test but the slow ones
+
+# Tests in wall time (graph and flaky) run beside all others, which give way to them: processes of a robot that wake up
+# a thousand times a second leave most of two cores idle, and `nice` lets them have a core the moment they want it.
+# In the order of the files: long ones come first, so that neither of the two waits for the other at the end.
+.PHONY: test-all-but-wall test-wall
+test-all-but-wall: $(READY) lint
+	nice -n 10 $(BIN)/pytest -n 2 --dist loadscope --no-loadscope-reorder --durations 10 \
+		-m "not slow and not (graph and flaky)"
+
+# Reads only the files that name the mark it asks for (`conftest.py` sees to it that they do): a quarter of the time to
+# collect. What it says is shown at its end, in one piece.
+test-wall: $(READY) lint
+	mkdir -p build
 	$(BIN)/pytest --durations 10 -m "graph and flaky and not slow" \
-		$$(grep -rl flaky --include='test_*.py' tests $(wildcard sher3_ws/src/*/test)) && exit $$beside
+		$$(grep -rl flaky --include='test_*.py' tests $(wildcard sher3_ws/src/*/test)) > build/test-wall.log 2>&1; \
+	status=$$?; cat build/test-wall.log; exit $$status
 
 test-slow: $(READY)  ## colcon build and test of the workspace, a sealed challenge end to end
 	$(BIN)/pytest -m slow

@@ -7,6 +7,7 @@ import os
 import platform
 import subprocess
 from collections.abc import Mapping
+from functools import cache
 from importlib.metadata import distributions
 from pathlib import Path
 from typing import Any
@@ -35,10 +36,14 @@ def provenance(robot: Robot | None = None, parameters: Mapping[str, Any] | None 
     return record
 
 
+@cache
 def _versions() -> dict[str, str]:
-    return dict(sorted((d.metadata["Name"], d.version) for d in distributions() if d.metadata["Name"]))
+    """Return the version of every installed wheel, read once in a process: there are hundreds of them."""
+    told = (distribution.metadata for distribution in distributions())
+    return dict(sorted((one["Name"], one["Version"]) for one in told if one["Name"]))
 
 
+@cache
 def _commit(folder: Path) -> str:
     """Return the commit of the working tree this package runs from, `-dirty` when it has changes, or `unknown`."""
     command = ["git", "-C", str(folder), "describe", "--always", "--abbrev=40", "--dirty", "--exclude=*"]
