@@ -5,6 +5,7 @@ A machine hands its own object to the pages; these protocols say which facts a p
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
@@ -152,6 +153,12 @@ class AxisView(Protocol):
     @property
     def loaded(self) -> Mask:
         """(g,) True where a load acts."""
+
+
+def without_force(views: Sequence[AxisView]) -> bool:
+    """Return whether no force was recorded: of a drive, which an axis that is let go has none of, or from outside."""
+    efforts = [v.run.effort for v in views]
+    return all(x is None or not x.any() for x in efforts) and not any(v.path.contact_force.any() for v in views)
 
 
 class ArmMotionView(AxisView, Protocol):

@@ -13,7 +13,11 @@ COUNT = 1e-5
 
 
 def behind_a_gap(x, width):
-    side, out = x[0], np.empty_like(x)
+    return behind_a_gap_from(x[0], x, width)
+
+
+def behind_a_gap_from(side, x, width):
+    out = np.empty_like(x)
     for k, place in enumerate(x):
         side = min(max(side, place - 0.5 * width), place + 0.5 * width)
         out[k] = side
@@ -52,6 +56,38 @@ def test_the_play_of_a_late_servo_is_its_transmission_s():
     verdict = of_servo(position, behind_a_gap(position, 1.0e-3))
     assert set(between(verdict)) == {"backlash"}
     assert {"timing", "lost_motion"} == {c.family for c in verdict.causes}
+
+
+def of_forceps(motor, load):
+    signals = columns("position", "load", unit="rad")
+    run = AxesRun("run", PERIOD, {"slide": {"position": motor, "load": load}})
+    free = machine(signals=signals, command_law={"kind": "none"}, motion="rotary", mass=None, encoder_resolution=COUNT)
+    return diagnose(free, [run]).verdict
+
+
+STROKES = {"one": np.sin(1.57 * T), "two": np.sin(1.57 * T) + 0.4 * np.sin(3.83 * T + 1.0)}
+
+
+@pytest.mark.parametrize("stroke", STROKES)
+@pytest.mark.parametrize("ratio", [0.91, 0.97, 1.06])
+@pytest.mark.parametrize("width", [0.76, 0.2])
+def test_a_ratio_beside_a_gap_is_told_from_a_wider_gap_and_from_a_loop(stroke, ratio, width):
+    """Forceps on a tendon: of 1 rad a gap takes up to 44 degrees, and a pulley makes less, or more, of it."""
+    motor, rng = STROKES[stroke], np.random.default_rng(1)
+    load = 0.02 + ratio * behind_a_gap_from(0.0, motor, width) + 0.003 * rng.normal(size=len(T))
+    found = between(of_forceps(motor, load))
+    assert set(found) == {"backlash", "lead_error"}
+    assert found["backlash"].parameters["width"].value == pytest.approx(ratio * width, rel=0.1)
+    assert found["lead_error"].parameters["relative"].value == pytest.approx(ratio - 1.0, abs=0.016)
+
+
+def test_a_load_that_begins_between_the_flanks_widens_no_gap():
+    """The motor goes 0.4 rad in the first quarter of a second, through half of the gap, from another zero."""
+    motor, rng = STROKES["one"], np.random.default_rng(2)
+    load = 0.5 + behind_a_gap_from(0.0, motor, 0.76) + 0.003 * rng.normal(size=len(T))
+    found = between(of_forceps(motor, load))
+    assert set(found) == {"backlash"}
+    assert found["backlash"].parameters["width"].value == pytest.approx(0.76, rel=0.005)
 
 
 def test_a_spring_between_the_encoders_gives_way_to_a_known_load():

@@ -27,6 +27,9 @@ PASSES = 3
 def together(candidates: Candidates, gaps: Collection[Channel], left_over: Left) -> Fit:
     """Return the plain laws that are worth their numbers, fitted at once; the null fit where none is.
 
+    A law whose shape is searched is tried beside all linear ones too: a ratio that is impossible by itself, because a
+    gap makes most of the difference, is possible beside the gap.
+
     Args:
         candidates: the evidence and the effects, of which the plain ones are taken.
         gaps: channels of which at least one must show a law.
@@ -34,25 +37,33 @@ def together(candidates: Candidates, gaps: Collection[Channel], left_over: Left)
     """
     laws = [(e, site) for e in candidates.effects if e.plain for site in candidates.sites(e)]
     laws = [(e, site) for e, site in laws if set(e.channels(site)) & set(gaps)]
-    current = _linear(candidates, laws)
+    every = _linear(candidates, laws)
+    current = _possible(candidates.evidence, every)
+    beside = {(e.id, site): [every] for e, site in laws} | {t.key: [] for t in every.terms}
     for _ in range(PASSES):
         before = current
         for effect, site in laws:
-            others = [t for t in current.terms if t.key != (effect.id, site)]
-            trial = candidates.best_plain(effect, site, others)
-            if trial is not None and trial.total < current.total - TIE:
-                current = trial
+            for start in [current, *beside[effect.id, site]]:
+                others = [t for t in start.terms if t.key != (effect.id, site)]
+                trial = candidates.best_plain(effect, site, others)
+                if trial and (start is not every or trial.admissible) and trial.total < current.total - TIE:
+                    current = trial
         if current is before:
             break
+        beside = {key: [] for key in beside}
     return pruned(candidates.evidence, current, left_over, relative=True)
 
 
 def _linear(candidates: Candidates, laws: list[tuple[Effect, str]]) -> Fit:
-    """Return the laws that a coefficient of zero takes away, in their first shape, without impossible ones."""
+    """Return the laws that a coefficient of zero takes away, in their first shape; some may be impossible alone."""
     evidence = candidates.evidence
     shapes = [(e, site, next(iter(e.plain_shapes(evidence.views, site)), None)) for e, site in laws]
     terms = [candidates.term(e, site, shape) for e, site, shape in shapes if shape is not None]
-    current = fit(evidence.data, [*evidence.nuisance, *(t for t in terms if _vanishes(t))])
+    return fit(evidence.data, [*evidence.nuisance, *(t for t in terms if _vanishes(t))])
+
+
+def _possible(evidence: Evidence, current: Fit) -> Fit:
+    """Return a fit without impossible laws, of which the one that explains least goes first."""
     while wrong := [i for i, t in enumerate(current.terms) if not t.effect.admissible(t.shape, current.of(i))]:
         reduced = {i: without_term(evidence, current, i) for i in wrong}
         current = reduced[first_of_least({i: f.total for i, f in reduced.items()})]
@@ -71,6 +82,11 @@ def worth_of(term: Term, explained: float, left: float) -> float:
     return NEEDED * complexity(term) + min(PARSIMONY * explained, OF_THE_REST * left)
 
 
+def _is_plain(evidence: Evidence, term: Term) -> bool:
+    """Return whether a cause is one of the laws that are fitted at once, on this evidence."""
+    return term.effect.plain and bool(term.effect.plain_shapes(evidence.views, term.site))
+
+
 def pruned(evidence: Evidence, current: Fit, left_over: Left, relative: bool) -> Fit:
     """Drop causes whose removal costs nothing, among equals the last chosen first; at least one cause is kept.
 
@@ -84,7 +100,7 @@ def pruned(evidence: Evidence, current: Fit, left_over: Left, relative: bool) ->
     while len(current.terms) > first + 1:
         reduced = {i: without_term(evidence, current, i) for i in range(first, len(current.terms))}
         i = first_of_least({j: reduced[j].total for j in sorted(reduced, reverse=True)})
-        plain = relative and current.terms[i].effect.plain
+        plain = relative and _is_plain(evidence, current.terms[i])
         price = worth_of(current.terms[i], base - current.total, current.total if plain else math.inf)
         if reduced[i].total - current.total > price or set(left_over(reduced[i])) - set(left_over(current)):
             return current

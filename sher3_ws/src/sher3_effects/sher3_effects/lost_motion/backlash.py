@@ -17,7 +17,10 @@ from sher3_effects.compliance.transmission_compliance import carried
 from sher3_effects.lost_motion.plateau import plateau
 from sher3_effects.operators import flight, released_play
 from sher3_effects.page import Page, Part, Values
-from sher3_effects.view import AxisView
+from sher3_effects.view import AxisView, without_force
+
+FIRST, HARDLY = 25, 0.05
+"""Samples at the start that say on which side of a gap a load lies, and the travel meanwhile, in widths."""
 
 
 class Backlash(Page):
@@ -79,11 +82,16 @@ class Backlash(Page):
         pull = np.interp(clock, clock[run.grid], view.path.contact_force[:, axis] - view.path.gravity[:, axis])
         held = np.clip(pull, -stick, stick)
         damping = shape["damping"] * view.axis(site).viscous / 60.0
-        first = (run.load[:25, axis] - run.motor[:25, axis]).mean() if run.load is not None else 0.0
-        start = float(np.clip(2.0 * first / shape["width"], -1.0, 1.0))
+        start = self.start(view, site, shape["width"])
         rest = held * (release / stick) if release else np.zeros_like(held)
         lag = released_play(run.smooth[:, axis], pull - held, rest, release, shape["width"], damping, run.period, start)
         return Signature({}, {Channel(self.stage, site): run.to_grid(lag)[:, None]})
+
+    def start(self, view: AxisView, site: str, width: float) -> float:
+        """Return where in a gap the load begins, -1..1, as the first samples say."""
+        run, axis = view.run, view.row(site)
+        first = (run.load[:FIRST, axis] - run.motor[:FIRST, axis]).mean() if run.load is not None else 0.0
+        return float(np.clip(2.0 * first / width, -1.0, 1.0))
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Width of the gap, travel lost between both directions, and that over which a load leaves its flank."""
@@ -105,6 +113,7 @@ class BacklashOnAxis(Backlash):
 
     kinds: ClassVar[tuple[str, ...]] = ("axis", "servo")
     units: ClassVar[Mapping[str, str]] = {}
+    plain = True
     SMALLER = (0.06, 0.12, 0.25, 0.45)
     """Widths in spans of the residual that are tried for a load that stays put in the gap."""
     SOFT = (0.001, 0.01, 0.05)
@@ -134,6 +143,11 @@ class BacklashOnAxis(Backlash):
         seen = np.inf if loaded else max(np.ptp(v.run.motor[:, v.row(site)]) for v in views)
         return [shape for shape in found if shape.get("width", 0.0) < seen]  # no motion shows a gap wider than itself
 
+    def plain_shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
+        """Return gaps in which a load stays put, where no force was recorded: a ratio takes a part of their span."""
+        found = self.shapes(views, site) if without_force(views) else []
+        return [s for s in found if s.get("damping") == np.inf and s["stick"] == 0.0]
+
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
         """Return the lag behind a gap; a load with a `braking` (m/s^2) keeps its speed in it but for that.
 
@@ -145,14 +159,22 @@ class BacklashOnAxis(Backlash):
         if "braking" not in shape:
             return super().signature(view, site, shape)
         axis, run = view.row(site), view.run
-        first = (run.load[:25, axis] - run.motor[:25, axis]).mean() if run.load is not None else 0.0
-        start = float(np.clip(2.0 * first / shape["width"], -1.0, 1.0))
+        start = self.start(view, site, shape["width"])
         lag = flight(np.ascontiguousarray(run.smooth[:, axis]), shape["width"], shape["braking"], run.period, start)
         return Signature({}, {Channel(self.stage, site): run.to_grid(lag)[:, None]})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Return the width of the gap."""
         return {"width": float(coefficients[0]) if "soft" in shape else shape["width"]}
+
+    def start(self, view: AxisView, site: str, width: float) -> float:
+        """Return where the load begins, by the samples at which the motor has hardly moved: its zero is free."""
+        run, axis = view.run, view.row(site)
+        assert run.load is not None
+        apart, moved = run.load[:, axis] - run.motor[:, axis], np.abs(run.motor[:FIRST, axis] - run.motor[0, axis])
+        middle = np.percentile(apart, [1.0, 99.0]).mean()
+        first = apart[:FIRST][moved < HARDLY * width].mean() - middle
+        return float(np.clip(2.0 * first / width, -1.0, 1.0))
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
         """Return whether the load gives way to the force."""

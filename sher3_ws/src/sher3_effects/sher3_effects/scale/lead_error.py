@@ -15,7 +15,7 @@ from sher3_effects.page import Page, Tolerated
 from sher3_effects.scale.varying_ratio import gentle, lines, mean_ratio
 from sher3_effects.table_view import TableView
 from sher3_effects.travel import over_travel
-from sher3_effects.view import AxisView
+from sher3_effects.view import AxisView, without_force
 
 
 class LeadError(Page):
@@ -64,7 +64,12 @@ class LeadErrorOnAxis(LeadError):
     """The same on one axis of any machine: the ratio is one."""
 
     kinds = ("axis", "servo")
+    plain = True
     bends = Page.bends
+
+    def plain_shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
+        """Return one shape where no force was recorded: a spring that a force tells gives way along the travel too."""
+        return self.shapes(views, site) if without_force(views) else []
 
 
 class TableScale(Page):
