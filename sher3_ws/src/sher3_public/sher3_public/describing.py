@@ -43,10 +43,11 @@ def described(source: Source, runs: Sequence[Arrays], stated: Stated) -> Describ
     plausible.stamps(runs[0].time)
     guesses: list[str] = []
     runs = [without_free(source, run, stated.joints, guesses) for run in runs]
+    _check_alike(runs)
     names = joints_of(source, runs[0].position.shape[1], stated.joints, guesses)
     stated.check_names(names)
     control = runs[0].control
-    drives = stated.drives(source.bodies, names, 0 if control is None else control.shape[1])
+    drives = stated.drives(source.bodies, names, runs[0])
     guesses += plausible.places(names, runs[0], source.bodies.reach)
     controls = _controls(names, control, drives, source, stated)
     if not stated.controls:
@@ -67,9 +68,10 @@ def described(source: Source, runs: Sequence[Arrays], stated: Stated) -> Describ
     if runs[0].control is not None:
         unheard = [n for n, c in zip(names, controls, strict=True) if c is None and n in drives]
         guesses += [f"{n}: its control is not used, because {drives[n].reason}" for n in unheard if drives[n].reason]
-    left = [name for name in source.bodies.joints if name not in names]
+    left = [link for link in source.bodies.tree.links if link.name not in names]
     if left:
-        guesses.append(f"joints that were not recorded stay at zero: {', '.join(left)}")
+        each = [link.name + (f" (mimics {link.mimics}: record it, too)" if link.mimics else "") for link in left]
+        guesses.append(f"joints that were not recorded stay at zero: {', '.join(each)}")
     data = {"kind": "manipulator", "name": source.name, "model": source.bodies.label, "time": {"column": "time"}}
     return Described({**data, "joints": joints}, [_table(run, names, controls) for run in runs], guesses)
 
@@ -82,7 +84,24 @@ def without_free(source: Source, run: Arrays, stated: Sequence[str], guesses: li
     said = "positions are MuJoCo's whole qpos: those of free bodies are left out"
     guesses += [said] if said not in guesses else []
     own = [int(i) for i in range(model.njnt) if model.jnt_type[i] != FREE]
-    return replace(run, position=run.position[:, model.jnt_qposadr[own]])
+    run = replace(run, position=run.position[:, model.jnt_qposadr[own]])
+    if run.effort is None or run.effort.shape[1] != model.nv:
+        return run
+    return replace(run, effort=run.effort[:, model.jnt_dofadr[own]])
+
+
+def _check_alike(runs: Sequence[Arrays]) -> None:
+    """Raise InputError where runs have not the same columns, or efforts other ones than positions."""
+    remedy = "give one column for each joint; NaN where a joint has none"
+    for run in runs:
+        wide = run.position.shape
+        for name in ("position", "control", "effort", "load"):
+            x, first = getattr(run, name), getattr(runs[0], name)
+            if (x is None) != (first is None) or (x is not None and x.shape[1] != first.shape[1]):
+                value, limit = ("none" if a is None else f"{a.shape[1]} columns" for a in (x, first))
+                raise InputError(f"{name} differs between runs", value=value, limit=limit, remedy=remedy)
+            if name in ("effort", "load") and x is not None and x.shape != wide:
+                raise InputError(f"{name} and position differ in shape", value=x.shape, limit=wide, remedy=remedy)
 
 
 def joints_of(source: Source, columns: int, stated: Sequence[str], guesses: list[str]) -> list[str]:

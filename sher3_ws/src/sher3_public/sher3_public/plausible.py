@@ -32,7 +32,7 @@ def stamps(time: Array) -> Array:
     apart = float(np.median(np.abs(np.diff(time)))) if len(time) > 1 else 0.0
     if apart > SLOWEST:
         unit, scale = next(((u, x) for u, x in UNITS.items() if apart / x < SLOWEST), ("ns", 1e9))
-        remedy = f"give stamps in s: divide those in {unit} by {scale:.0f}"
+        remedy = f"give stamps in s: divide those in {unit} by {scale:.0f}, or units={{'time': '{unit}'}}"
         raise InputError("stamps are too far apart", value=f"{apart:.4g} s", limit=f"{SLOWEST:g} s", remedy=remedy)
     return time
 
@@ -44,7 +44,7 @@ def control_of(name: str, control: Array, position: Array, drive: Drive) -> None
         InputError: it cannot be that.
     """
     known = np.isfinite(control) & np.isfinite(position)
-    told, q = drive.factor * control[known], position[known]
+    told, q = drive.asked(control[known]), position[known]
     wide, own = float(np.std(told)), float(np.std(q))
     if not wide or not own:
         return
@@ -85,7 +85,7 @@ def places(names: Sequence[str], run: Arrays, reach: Mapping[str, float]) -> lis
         if name not in reach or most < TURNS * 2.0 * np.pi:
             continue
         if most > WIDER * own:
-            value, remedy = f"{most:.4g} rad", "give angles in rad: np.radians(...)"
+            value, remedy = f"{most:.4g} rad", "give angles in rad, or units={'position': 'deg'}"
             raise InputError(
                 f"{name}: position leaves the model's range", value=value, limit=f"{own:.4g}", remedy=remedy
             )
@@ -130,7 +130,7 @@ def _other_follows(
     for name, column in zip(names, columns, strict=True):
         drive = drives[name].drive if name in drives else None
         if run.control is not None and column is not None and drive is not None and drive.servo:
-            told[name] = drive.factor * run.control[:, column]
+            told[name] = drive.asked(run.control[:, column])
     for name in told:
         q = run.position[:, names.index(name)]
         alike = {other: _alike(x, q) for other, x in told.items()}

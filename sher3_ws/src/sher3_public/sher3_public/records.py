@@ -117,11 +117,6 @@ def _run(given: Mapping[str, Any]) -> Arrays:
     wide = {name: _columns(name, given[name], len(time)) for name in ("position", "control", "effort", "load")}
     position = wide.pop("position")
     assert position is not None
-    for name in ("effort", "load"):
-        x = wide[name]
-        if x is not None and x.shape != position.shape:
-            remedy = "give one column for each joint; NaN where a joint has none"
-            raise InputError(f"{name} and position differ in shape", value=x.shape, limit=position.shape, remedy=remedy)
     return Arrays(time, position, **wide)
 
 

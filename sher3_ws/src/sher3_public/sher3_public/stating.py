@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+import numpy as np
 from sher3_chain.manipulator.bodies import Bodies
 from sher3_chain.manipulator.mjcf.drives import Drive, Driven, Step
 from sher3_machines.intake.fields import TIME_UNITS
@@ -66,13 +67,15 @@ class Stated:
                 scaled[name] = {**UNITS, **TIME_UNITS}[known] * x
         return replace(run, **scaled)
 
-    def drives(self, bodies: Bodies, names: Sequence[str], width: int) -> Mapping[str, Driven]:
+    def drives(self, bodies: Bodies, names: Sequence[str], run: Arrays) -> Mapping[str, Driven]:
         """Return joint -> its drive: the model's, or the servo that is stated; raises InputError for a wrong name.
+
+        A servo of firmware, without a model's, knows the speed of its last period alone, half of one ago.
 
         Args:
             bodies: of the model.
             names: of the recorded joints.
-            width: columns of the control.
+            run: of which the controls and the stamps are looked at.
         """
         if self.servo is None:
             return bodies.drives
@@ -80,7 +83,9 @@ class Stated:
         _known("servo", gains, names)
         found = dict(bodies.drives)
         for name, (stiffness, damping) in gains.items():
-            own = found.get(name) or Driven(bodies.joints[name], Step(), Step(), 0.0, None)
+            behind = Step(-0.5 * float(np.median(np.diff(run.time))) * float(damping))
+            own = found.get(name) or Driven(bodies.joints[name], Step(), behind, 0.0, None)
+            width = 0 if run.control is None else run.control.shape[1]
             number = own.drive.number if own.drive is not None and width != len(names) else list(names).index(name)
             limit, delay = (None, 0.0) if own.drive is None else (own.drive.limit, own.drive.delay)
             drive = Drive("as stated", number, 1.0, True, 1.0, float(stiffness), float(damping), limit, delay)

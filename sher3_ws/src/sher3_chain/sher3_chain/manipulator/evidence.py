@@ -125,7 +125,7 @@ def gather_arm_motion(
     views = seen_by(model, factors)
     residuals = [_residuals(view, judged) for view in views]
     if not any(residuals):
-        raise not_judged(judged, signals)
+        raise not_judged(judged, signals, slips)
     floors = floors_of(views, residuals, repeats)
     seen = tuple(j for j in judged if any(channel_of(j) in x for x in residuals))
     data = in_blocks(views, residuals, floors)
@@ -151,8 +151,13 @@ def gather_arm_motion(
     )
 
 
-def not_judged(judged: Sequence[str], signals: Sequence[JointSignals]) -> MachineError:
+def not_judged(judged: Sequence[str], signals: Sequence[JointSignals], slips: Mapping[str, Share]) -> MachineError:
     """Return the error of an arm without a joint that can be judged: no force is known, or too little motion."""
+    if slips and not judged:
+        each = ", ".join(f"{joint} {share.value:.4g}" for joint, share in slips.items())
+        remedy = "give efforts in N m: state `factor` of a column or `gain`, or let the model tell it: `gain: unknown`"
+        what = "no joint can be judged: efforts are this many times what the model needs"
+        return MachineError(what, value=each, limit="1", remedy=remedy)
     if not judged:
         remedy = "record efforts, or give a model whose actuators say what force a control is"
         return MachineError(

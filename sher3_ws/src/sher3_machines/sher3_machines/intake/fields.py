@@ -52,6 +52,7 @@ class Column(Strict):
         override: whether `unit` holds although the column's header says another one.
         signed_by: column whose sign a magnitude takes, or `motion`: the sign of the motion; an effort alone has one.
         late: s after its stamp at which a sample acts, such as the delay that a model states of an actuator.
+        within: smallest and largest recorded number that acts, such as the range of a control; beyond, the bound does.
         plus: columns that are added to it, each with its own factor: the pressure on the other side of a piston, the
             second motor of a portal.
     """
@@ -64,6 +65,7 @@ class Column(Strict):
     override: bool = False
     signed_by: str | None = None
     late: float = Field(default=0.0, ge=0.0)
+    within: tuple[float, float] | None = None
     plus: tuple[Column, ...] = ()
 
     @field_validator("unit", mode="before")

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
+from sher3_diagnosis.channel import Array
 
 from sher3_chain.manipulator.mjcf.bodies import SLIDE
 from sher3_chain.manipulator.mjcf.passive import AFFINE, FIXED, NONE, at_joint, is_passive
@@ -19,7 +20,8 @@ EULER, RUNGE_KUTTA, IMPLICIT, IMPLICIT_FAST = range(4)
 """MuJoCo's numbers of integrators (mjtIntegrator)."""
 EULER_DAMP = 1 << 15
 """Flag that switches the implicit damping of Euler's method off (mjDSBL_EULERDAMP)."""
-
+CLAMP_OFF = 1 << 7
+"""Flag that lets controls go beyond their range (mjDSBL_CLAMPCTRL)."""
 
 NO_DELAY: Mapping[int, float] = defaultdict(float)
 """Delay of each actuator, s, in versions of MuJoCo before 3.4 that have none."""
@@ -42,6 +44,7 @@ class Drive:
         position_gain, velocity_gain: of a servo, N/m and N/(m/s), or N m/rad and N m/(rad/s), at the joint.
         limit: largest force at the joint; None: none stated.
         delay: of its control, s.
+        within: smallest and largest control that acts, in its own unit; None: none stated.
     """
 
     name: str
@@ -53,6 +56,11 @@ class Drive:
     velocity_gain: float = 0.0
     limit: float | None = None
     delay: float = 0.0
+    within: tuple[float, float] | None = None
+
+    def asked(self, control: Array) -> Array:
+        """Return what a control (n,) asks for: a place, m or rad, or a force, N or N m."""
+        return self.factor * (control if self.within is None else np.clip(control, *self.within))
 
 
 class Step(NamedTuple):
@@ -148,18 +156,21 @@ def _drive(source: Any, joint: int) -> tuple[Drive | None, str]:
         return None, f"actuator {name} has dynamics of its own"
     if source.actuator_gaintype[i] != FIXED or source.actuator_biastype[i] not in (NONE, AFFINE) or not gear:
         return None, f"the force of actuator {name} is no line in control, place and speed"
+    within = None
+    if source.actuator_ctrllimited[i] and not source.opt.disableflags & CLAMP_OFF:
+        within = (float(source.actuator_ctrlrange[i][0]), float(source.actuator_ctrlrange[i][1]))
     gain = float(source.actuator_gainprm[i][0])
     offset, place, speed = (float(x) for x in source.actuator_biasprm[i][:3])
     limit, delay = _limit(source, i, joint, gear), float(getattr(source, "actuator_delay", NO_DELAY)[i])
     if source.actuator_biastype[i] == NONE or (not place and not speed and not offset):
-        return Drive(name, control, gear, False, gain * gear, limit=limit, delay=delay), ""
+        return Drive(name, control, gear, False, gain * gear, limit=limit, delay=delay, within=within), ""
     if not place or not gain or offset:
         return (
             None,
             f"actuator {name} is no servo of places: its force is {gain:g} u {offset:+g} {place:+g} q {speed:+g} v",
         )
     gains = -gain / (place * gear), -place * gear**2, -speed * gear**2
-    return Drive(name, control, gear, True, *gains, limit, delay), ""
+    return Drive(name, control, gear, True, *gains, limit, delay, within), ""
 
 
 def coupled(source: Any, joint: int) -> bool:

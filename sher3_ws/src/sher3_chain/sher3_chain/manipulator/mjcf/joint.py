@@ -91,7 +91,9 @@ def _motor(joint: dict[str, Any], drive: Drive, guesses: list[str]) -> None:
 
 
 def _delayed(signal: dict[str, Any], joint: dict[str, Any], drive: Drive, guesses: list[str]) -> None:
-    """Let a control act as late as the model says."""
+    """Let a control act as late as the model says, and within the range that it states."""
+    if drive.within is not None:
+        signal["within"] = list(drive.within)
     if drive.delay:
         signal["late"] = drive.delay
         guesses.append(f"{joint['name']}: its control acts {1e3 * drive.delay:.4g} ms late, as the model says")

@@ -49,6 +49,8 @@ def against_model(
         return ()
     motion = [_thinned(view, len(views)) for view in views]
     q, v, a, effort = (np.concatenate(x) for x in zip(*motion, strict=True))
+    if not effort[:, rows].any() or not v.any():
+        return ()
 
     def left(senses: Array) -> float:
         needed = model.needed(senses * q, senses * v, senses * a)

@@ -32,6 +32,7 @@ class Link:
         inertia: inertial parameters of what it carries, (10,), kg, kg m, kg m^2, in the joint's frame.
         rotor: inertia of the drive at the joint, kg m^2 or kg.
         reach: largest position that the model allows, rad or m.
+        mimics: joint that it follows by a gear; empty: none.
     """
 
     name: str
@@ -44,6 +45,7 @@ class Link:
     inertia: Array = field(default_factory=lambda: np.zeros(PARAMETERS))
     rotor: float = 0.0
     reach: float = np.inf
+    mimics: str = ""
 
     def carrying(self, inertia: Array, turn: Array, place: Array, body: str) -> Link:
         """Return the link with a body more, whose frame is at a pose in the joint's frame."""

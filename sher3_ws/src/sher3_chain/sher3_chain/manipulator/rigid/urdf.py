@@ -107,7 +107,10 @@ class _Reader:
                 self._other[name] = kind
             return _Carrier(at.joint, turn, place)
         slides, reach = kind in SLIDING, np.inf if kind == "continuous" else self._reach(joint)
-        self._links.append(Link(name, "", at.joint, turn, place, self._axis(joint), slides, reach=reach))
+        follows = joint.find("mimic")
+        mimics = "" if follows is None else follows.get("joint", "")
+        link = Link(name, "", at.joint, turn, place, self._axis(joint), slides, reach=reach, mimics=mimics)
+        self._links.append(link)
         return _Carrier(len(self._links) - 1, np.eye(3), np.zeros(3))
 
     def _reach(self, joint: ElementTree.Element) -> float:

@@ -37,7 +37,7 @@ def even_stamps(stamps: Array, run: str) -> tuple[Array, NDArray[np.int64], str]
             f"{run}: time does not increase",
             value=f"{len(kept)} stamps",
             limit=f"{FEWEST} different ones",
-            remedy="give the column of the stamps, or state the rate of the samples: `time: {rate: HZ}`",
+            remedy="give stamps that grow (turn those that fall), or the rate of the samples: `time: {rate: HZ}`",
         )
     usual = float(np.median(steps[steps > 0.0]))
     if (steps < 0.0).any() and steps.min() > -MIXED_UP * usual:

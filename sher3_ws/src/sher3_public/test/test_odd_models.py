@@ -1,0 +1,101 @@
+"""Models and records that a simulator takes as they are: clipped controls, free bodies, URDFs without drives."""
+
+import mujoco
+import numpy as np
+import pytest
+import sher3.gap as gap
+from drawn_arms import asked
+from sher3_machines.errors import MachineError
+
+ARM = """<mujoco><option timestep="0.002"/><worldbody>{body}<body pos="0 0 0.5">
+<joint name="shoulder" axis="0 1 0" damping="0.5" armature="0.02"/>
+<geom type="capsule" fromto="0 0 0 0.4 0 0" size="0.03" mass="2"/><body pos="0.4 0 0">
+<joint name="elbow" axis="0 1 0" damping="0.2" armature="0.01"/>
+<geom type="capsule" fromto="0 0 0 0.3 0 0" size="0.025" mass="1"/></body></body></worldbody><actuator>
+<position joint="shoulder" kp="400" kv="20" {range}/><position joint="elbow" kp="200" kv="8" {range}/></actuator>
+</mujoco>"""
+CUBE = '<body name="cube" pos="2 0 1" gravcomp="1"><freejoint/><geom size=".05" mass=".1"/></body>'
+URDF = """<robot name="arm"><link name="base"/>
+<link name="upper"><inertial><origin xyz="0.2 0 0"/><mass value="2"/>
+<inertia ixx="0.001" iyy="0.03" izz="0.03" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<link name="lower"><inertial><origin xyz="0.15 0 0"/><mass value="1"/>
+<inertia ixx="0.0005" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<joint name="shoulder" type="revolute"><parent link="base"/><child link="upper"/><axis xyz="0 1 0"/>
+<limit lower="-3" upper="3" effort="99" velocity="9"/></joint>
+<joint name="elbow" type="revolute"><origin xyz="0.4 0 0"/><parent link="upper"/><child link="lower"/>{mimic}
+<axis xyz="0 1 0"/><limit lower="-3" upper="3" effort="99" velocity="9"/></joint></robot>"""
+GAINS = {"shoulder": (400.0, 20.0), "elbow": (200.0, 8.0)}
+
+
+def log_of(xml):
+    """Return stamps, controls, the whole qpos with noise of an encoder, and `qfrc_actuator`."""
+    model = mujoco.MjModel.from_xml_string(xml)
+    state, rows = mujoco.MjData(model), []
+    for place in asked(np.random.default_rng(5), np.arange(6000) * model.opt.timestep, 2):
+        state.ctrl[:] = place
+        mujoco.mj_forward(model, state)
+        rows.append([state.time, *place, *state.qpos, *state.qfrc_actuator])
+        mujoco.mj_step(model, state)
+    time, control, position, effort = np.split(np.array(rows), np.cumsum([1, 2, model.nq]), axis=1)
+    return time[:, 0], control, position + 1e-5 * np.random.default_rng(1).normal(size=position.shape), effort
+
+
+def test_a_control_beyond_its_range_acts_as_its_bound():
+    """MuJoCo clips it; a log holds what was asked for."""
+    xml = ARM.format(body="", range='ctrllimited="true" ctrlrange="-0.4 0.4"')
+    time, control, position, effort = log_of(xml)
+    assert np.abs(control).max() > 0.6
+    assert gap.diagnose(xml, time, control, position).status == "no_gap"
+    assert gap.diagnose(xml, {"time": time, "ctrl": control, "qpos": position}).status == "no_gap"
+    assert gap.diagnose(xml, time, control, position, effort).status == "no_gap"
+
+
+def test_efforts_as_wide_as_mujoco_s_speeds():
+    time, control, position, effort = log_of(ARM.format(body=CUBE, range=""))
+    assert (position.shape[1], effort.shape[1]) == (9, 8)
+    assert gap.diagnose(ARM.format(body=CUBE, range=""), time, control, position, effort).status == "no_gap"
+
+
+def driven_urdf():
+    """Return stamps, references, positions and torques of a digital PD law on the bodies of the URDF."""
+    model = mujoco.MjModel.from_xml_string(URDF.format(mimic=""))
+    state, rows, (stiff, damped) = mujoco.MjData(model), [], np.array(list(GAINS.values())).T
+    for place in asked(np.random.default_rng(5), np.arange(6000) * model.opt.timestep, 2):
+        state.qfrc_applied[:] = stiff * (place - state.qpos) - damped * state.qvel
+        rows.append([state.time, *place, *state.qpos, *state.qfrc_applied])
+        mujoco.mj_step(model, state)
+    time, reference, position, effort = np.split(np.array(rows), [1, 3, 5], axis=1)
+    return time[:, 0], reference, position + 1e-5 * np.random.default_rng(1).normal(size=position.shape), effort
+
+
+@pytest.fixture(scope="module")
+def urdf_log():
+    return driven_urdf()
+
+
+def test_a_urdf_with_the_gains_of_its_servos(urdf_log):
+    time, reference, position, _ = urdf_log
+    assert gap.diagnose(URDF.format(mimic=""), time, reference, position, servo=GAINS).status == "no_gap"
+    with pytest.raises(MachineError, match="servo="):
+        gap.diagnose(URDF.format(mimic=""), time, reference, position)
+
+
+def test_a_joint_that_mimics_another_and_was_not_recorded(urdf_log):
+    time, _, position, effort = urdf_log
+    model = URDF.format(mimic='<mimic joint="shoulder"/>')
+    found = gap.diagnose(model, time, None, position[:, :1], effort[:, :1], joints=["shoulder"])
+    assert any("elbow (mimics shoulder: record it, too)" in guess for guess in found.guessed)
+
+
+def test_runs_with_other_columns(urdf_log):
+    time, _, q, effort = urdf_log
+    with pytest.raises(gap.InputError, match="position differs between runs"):
+        gap.diagnose(URDF.format(mimic=""), [time, time], None, [q, q[:, :1]], [effort, effort[:, :1]])
+
+
+def test_a_joint_that_never_moved_and_efforts_in_another_unit(urdf_log):
+    time, _, q, effort = urdf_log
+    with pytest.raises(MachineError, match="no joint can be judged"):
+        gap.diagnose(ARM.format(body="", range=""), time, 0.0 * q, 0.0 * q)
+    with pytest.raises(MachineError, match="this many times what the model needs"):
+        gap.diagnose(URDF.format(mimic=""), time, None, q, 37.0 * effort)
