@@ -79,3 +79,11 @@ def test_a_force_without_a_gain_keeps_its_unit():
         "rad",
     ]
     assert described(mass=3.0).axes[0].unit_of_force == "N"
+
+
+@pytest.mark.parametrize("stiffness", [8.0, 20.0, 60.0])
+def test_a_drive_that_pulls_towards_its_reference_has_the_right_sign_though_it_takes_energy(stiffness):
+    """An ankle on the ground, which others push, under a PD law."""
+    q, v, _ = motion()
+    answer = verdict(q, stiffness * (2.0 * q - q) - 3.0 * v, reference=2.0 * q)
+    assert not any("opposite sign" in note for note in answer.notes)

@@ -2,7 +2,8 @@
 
 Half a period of 4 ms looks like a viscous friction of mass times jerk, a tenth of the friction of a small arm. What is
 found within one period either way is taken off and said; what lies beyond is a late sensor, which is a cause. An effort
-that takes energy from a machine without another drive, as a mass below zero would, was recorded with the opposite sign.
+that takes energy from a machine without another drive, as a mass below zero would, was recorded with the opposite sign,
+unless it pulls towards what the axis was asked for.
 """
 
 from __future__ import annotations
@@ -23,13 +24,17 @@ from sher3_chain.thresholds import ALIGNED
 SHIFTS = (-1.0, -0.5, 0.0, 0.5, 1.0)
 """Shifts of the effort that are tried, in periods; the ends only tell whether the best one lies between them."""
 
+PULLS = 0.5
+"""Correlation of effort and tracking error from which a drive pulls towards its reference."""
+
 
 def aligned(signals: Sequence[AxisSignals], axis: Axis) -> tuple[Sequence[AxisSignals], list[str]]:
     """Return the signals with the effort's sign and its moment put right, and a note for each."""
     if any(s.effort is None for s in signals) or axis.free or axis.servo:
         return signals, []
     notes = []
-    if takes_energy(signals) and mass_of([AxisView(s, axis, 0.0) for s in signals]) < 0.0:
+    turned = takes_energy(signals) and not any(map(pulls_home, signals))
+    if turned and mass_of([AxisView(s, axis, 0.0) for s in signals]) < 0.0:
         signals = [replace(s, effort=-s.effort) for s in signals if s.effort is not None]
         notes.append(f"{axis.name}: effort recorded with the opposite sign: it would take energy; it was turned")
     signals, note = unfiltered(signals, axis)
@@ -49,6 +54,19 @@ def takes_energy(signals: Sequence[AxisSignals]) -> bool:
     """
     work = [np.cumsum(s.effort * s.velocity) * s.period for s in signals if s.effort is not None]
     return all(w[-1] < -0.5 * float(np.abs(w).max()) for w in work if len(w))
+
+
+def pulls_home(signals: AxisSignals) -> bool:
+    """Return whether the effort pulls the axis towards its reference: its sign is right, and others drive the axis.
+
+    A foot on the ground, a brake and a generator are driven from outside; what their drives take is no wrong sign.
+    """
+    if signals.effort is None or signals.reference is None:
+        return False
+    error = signals.reference[:, 0] - signals.motor[:, 0]
+    if not (np.ptp(error) > 0.0 and np.ptp(signals.effort) > 0.0):
+        return False
+    return bool(np.corrcoef(signals.effort[:, 0], error)[0, 1] > PULLS)
 
 
 def best_shift(signals: Sequence[AxisSignals], axis: Axis) -> float:
