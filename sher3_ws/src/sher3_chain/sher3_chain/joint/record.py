@@ -283,7 +283,7 @@ def _clock(found: list[Stamped], clock: Clock, run: str, polled: bool) -> tuple[
         if len(lengths) > 1:
             raise MachineError(f"{run}: columns differ in length", value=sorted(lengths), remedy="give a time column")
         return np.arange(min(lengths)) / clock.rate, 1.0 / clock.rate, []
-    longest = max(LONGEST_HOLE, LONGEST_HOLD + 1.0) if polled else LONGEST_HOLE
+    longest = LONGEST_HOLE + (LONGEST_HOLD if polled else 0.0)  # rows that were left out, and a row that is late
     stamps = [_checked(t, run, longest) for t, _ in found if t is not None]
     period = float(max(np.median(np.diff(t)) for t in stamps))  # of the slowest signal: between its samples is nothing
     start, end = max(t[0] for t in stamps), min(t[-1] for t in stamps)

@@ -32,6 +32,21 @@ def test_a_late_stamp_is_moved_to_the_grid_and_said():
     assert "off the grid by up to 0.4 periods" in run.notes[0]
 
 
+@pytest.mark.parametrize("late", [0.0, 0.6, 4.0, 8.0])
+def test_a_stretch_that_was_polled_again_is_no_hole_though_a_row_of_it_is_late(late):
+    """Of 400 rows every fourth is polled twice, and one for sixteen rows, of which one comes up to 8 periods late."""
+    place = np.sin(0.05 * np.arange(400.0))
+    read = np.arange(400) - (np.arange(400) % 4 == 3)
+    read[201:217] = 200
+    t = 0.01 * np.arange(400.0)
+    t[210:] += 0.01 * late
+    again = {"t": t, "position": place[read], "reference": place[read]}
+    run = axes_run("run", again, described(**SERVO))
+    assert run.notes[0].endswith("polled twice; left out")
+    at = 0.01 * np.arange(len(run.signals["slide"]["position"]))
+    assert run.signals["slide"]["position"] == pytest.approx(np.interp(at, t, place), abs=0.08)
+
+
 def test_signals_on_clocks_of_their_own_meet_where_they_overlap():
     machine = described(
         **{**SERVO, "signals": {k: {"column": f"{k}/x", "unit": "m"} for k in ("position", "reference")}}

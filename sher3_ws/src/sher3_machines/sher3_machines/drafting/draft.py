@@ -231,7 +231,8 @@ def _unit_of(place: Place, x: Array) -> tuple[str, float, str]:
     what = named(place[0])
     if what.signal == "velocity":
         return (what.unit, 1.0, "its name says so") if what.unit in VELOCITIES else ("rad/s", 1.0, "it is a velocity")
-    return position_unit(what.unit, x, bool(set(what.axis.split("_")) & CARTESIAN))
+    slides = what.signal is not None and bool(set(what.axis.split("_")) & CARTESIAN)  # `y` beside `u` is no direction
+    return position_unit(what.unit, x, slides)
 
 
 def by_motion(label: str, signals: Mapping[str, Place], tables: Tables, guesses: list[str]) -> Mapping[str, Place]:

@@ -110,6 +110,7 @@ def test_what_was_not_connected_is_no_signal_and_said(tmp_path):
 def test_what_drives_and_what_comes_out_are_command_and_place(tmp_path, header, columns):
     found = columns_of(tmp_path, header, TIME, np.cos(3.0 * TIME), np.sin(TIME))
     assert (found["command"], found["position"]) == columns
+    assert "unit: rad" in written(tmp_path, header, TIME, np.cos(3.0 * TIME), np.sin(TIME)).text
 
 
 @pytest.mark.parametrize(("period", "unit"), [(1.001, "s"), (0.251, "s"), (5.0, "ms"), (12.5, "ms")])
