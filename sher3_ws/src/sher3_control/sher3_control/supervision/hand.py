@@ -33,6 +33,10 @@ legs stray for 50 ms, in which the law moves the tip by 70 um. No more of it cou
 direction: what they hold against an encoder that jitters is more, and goes to and fro."""
 TAKES_UP = 0.25
 """Share of the settling time in which drives take up weights and nothing is a hand: four times their kp/ki."""
+FELT = 1.5
+"""How many times the least hand the drives are taken to feel at most: behind 0.25 s it is forgotten 0.1 s after the
+hand has left, in which the law takes the tip by 50 um near tissue. By their noise a hand that stays falls from there
+to the least one with 1.75 standard deviations, and the next tick that feels it ends the travel."""
 NOWHERE = np.zeros(6)
 GROUPS = (LEGS, AXES - LEGS)
 """Numbers of channels of force and of torque."""
@@ -165,11 +169,11 @@ class HandDetector(PlainDetector):
         """Add up the travel that the law makes while the drives feel nobody; a hand that they feel ends it.
 
         Just after enabling they feel weights, and none of it is a hand.
-        What they felt counts as twice the least hand at most, so that a firm one is forgotten as soon as a light one.
+        What they felt counts as little more than the least hand: a firm one is forgotten as soon as a light one.
         """
         settings = self._settings
         hand = self._begun * (self._hand + min(1.0, step / settings.hand_notice) * (-held - self._hand))
-        self._hand = _at_most(2.0 * settings.hand_least, hand)
+        self._hand = _at_most(FELT * settings.hand_least, hand)
         self._alone = NOWHERE if (sizes(hand) > settings.hand_least).any() else self._alone + moved
         travel = float(np.linalg.norm(self._alone.reshape(2, 3), axis=1).sum())
         if travel / settings.hand_travel > self._found.value / self._found.limit:
