@@ -192,6 +192,10 @@ class Effect:
         """Return whether the runs can hold a shape that a finer search came to; default any."""
         return True
 
+    def of_model(self, shape: Shape) -> bool:
+        """Return whether a shape is a share of what the model says: where that is found from the data, none is told."""
+        return False
+
     def bends(self, views: Sequence[Any], site: str, shape: Shape) -> list[Shape]:
         """Return shapes of the law with a bend that some machines have, near the best one without; default none."""
         return []

@@ -1,5 +1,7 @@
 """Causes that say nothing, by hand: of no size, wider than the travel, of no use to what was left out."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from sher3_diagnosis.attribute.candidates import Candidates
@@ -97,3 +99,17 @@ def test_what_has_no_size_may_stay_in_the_fit_without_a_name():
     assert kept.explained == (found.explained[1], found.explained[0])
     gone = without_empty(candidates, found, told)
     assert [t.effect for t in gone.fit.terms] == [DIRECTION]
+
+
+@pytest.mark.parametrize("size", [15.0, 40.0])
+def test_what_others_need_for_their_size_stays_in_the_fit_without_a_name(size):
+    """A quantity that goes with the direction in every second run, against it in the others: nothing is told alone."""
+    beside = [(-1.0) ** i * np.sign(run.velocity) for i, run in enumerate(case(4.0))]
+    runs = [replace(run, values=run.values + size * x, warmth=x) for run, x in zip(case(4.0), beside, strict=True)]
+    evidence = evidence_of(runs)
+    second = Column("second", "inertia", "warmth")
+    terms = [make_term(evidence.data, effect, "axis", {}) for effect in (DIRECTION, second)]
+    found = with_rivals(Candidates(evidence, [DIRECTION, second]), fit(evidence.data, terms))
+    told = [cause(size=(1.0, 2.0)), cause(size=(-1.0, 2.0))]
+    kept = without_empty(Candidates(evidence, [DIRECTION, second]), found, told)
+    assert [kept.fit.terms[i].effect for i in kept.causes] == [DIRECTION] and kept.nuisance == 1

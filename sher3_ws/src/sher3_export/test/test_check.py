@@ -140,6 +140,16 @@ def test_an_arm_in_motion_is_run_from_its_own_model(tmp_path, monkeypatch):
     assert all(gap.after < 0.3 * gap.before for gap in found.gaps), found.gaps
 
 
+def test_motors_behind_a_coupling_are_refused_with_what_a_gear_does(tmp_path, monkeypatch):
+    """The causes are those of the motors: run on the joints they would be off by the gear."""
+    import lifts
+
+    machine = lifts.machine(tmp_path / "lift.urdf", coupling=[[1.0, 0.0], [0.0, 20.0]])
+    monkeypatch.setattr(checking, "open_case", lambda path: (machine, []))
+    with pytest.raises(ExportError, match="behind a coupling"):
+        check(verdict(cause("coulomb_friction", "swing", force=0.5, unit="N*m")), Path("case"), None)
+
+
 def test_a_servo_of_the_model_gives_way_to_the_recorded_force(tmp_path, monkeypatch):
     """Torques are no references: as controls of position actuators they would send the arm anywhere."""
     import lifts

@@ -90,7 +90,7 @@ def _linked(evidence: ArmMotionEvidence, candidates: Candidates, best: Explained
         return None
     loads = [candidates.term(*link) for link in links]
     other = _explained(evidence, candidates, loads, fit(evidence.data, loads), say)
-    return other if clearly_less(evidence, other.fit, best.fit) else None
+    return other if clearly_less(evidence, other.fit, best.fit, page) else None
 
 
 def _explained(
@@ -102,13 +102,14 @@ def _explained(
     """
     effects = [e for e in candidates.effects if e.places == ("axis",)]
     beside = _added(evidence, loaded, loads) if loaded is not None else ()
+    links = any(load.effect.free() is not None for load in loads)
     alone: list[Attribution] = []
     for channel in (c for joint in evidence.judged for c in channels_of(joint)):
         own = of_channel(evidence, channel, beside)
         say(f"{channel}{' beside ' + ' and '.join(t.site for t in loads) if loads else ''}")
         balance = channel == channel_of(channel.actuator)
         late = lateness(evidence, channel.actuator, beside) if balance else None
-        alone.append(_beside_delay(own, late, effects, say) if balance else _searched(own, effects, say))
+        alone.append(_beside_delay(own, late, effects, say, links) if balance else _searched(own, effects, say))
     terms = [*evidence.nuisance, *loads]
     for found in alone:
         terms += [candidates.term(t.effect, t.site, t.shape) for t in _causes(found)]
@@ -119,12 +120,23 @@ def _causes(found: Attribution) -> list[Term]:
     return [t for t in found.fit.terms if t.effect.family != NUISANCE]
 
 
+@dataclass
 class PlainFirst(Bounded):
     """Candidates of which two plain laws come before a richer one that contains the first of them.
 
     Friction that varies with the position takes up a viscous one as long as that is not there. It is a cause where it
     is worth its numbers beside both.
+
+    Attributes:
+        found: whether links were found from the data: a share of what the model says then tells nothing.
     """
+
+    found: bool = False
+
+    def possible(self, trial: Fit) -> bool:
+        """Return whether the new cause is possible beside the others and the links."""
+        term = trial.terms[-1]
+        return not (self.found and term.effect.of_model(term.shape)) and super().possible(trial)
 
     def search(self, channels: Collection[Channel], given: Sequence[Term] = ()) -> list[Fit]:
         """Search as the engine does; the plain law first where it and another plain one are as cheap as the best."""
@@ -142,13 +154,13 @@ class PlainFirst(Bounded):
         return [first, *(f for f in found if f is not first)] if cheaper else found
 
 
-def _searched(own: Evidence, effects: Sequence[Effect], say: Say) -> Attribution:
-    """Search one channel for causes."""
+def _searched(own: Evidence, effects: Sequence[Effect], say: Say, links: bool = False) -> Attribution:
+    """Search one channel for causes, beside links that were found from the data or not."""
     left = partial(down_to_floor, own.channels, own)
-    return borne_out(own, attribute(PlainFirst(own, effects), left, say, CAUSES_OF_JOINT))
+    return borne_out(own, attribute(PlainFirst(own, effects, found=links), left, say, CAUSES_OF_JOINT))
 
 
-def _beside_delay(own: Evidence, late: Late | None, effects: Sequence[Effect], say: Say) -> Attribution:
+def _beside_delay(own: Evidence, late: Late | None, effects: Sequence[Effect], say: Say, links: bool) -> Attribution:
     """Search the force balance of a joint without and beside a late effort; return what is cheaper.
 
     The delay is told by its shape: causes may be at the floor without it, and a fit would take up a viscous friction or
@@ -158,14 +170,14 @@ def _beside_delay(own: Evidence, late: Late | None, effects: Sequence[Effect], s
     others = [e for e in effects if e.family != TIMING]
     if late is not None and late.told and not late.sure:
         others = list(effects)
-    found = _searched(own, others, say)
+    found = _searched(own, others, say, links)
     if late is None or not late.sure or len(others) == len(effects):
         return found
     site = own.places["axis"][0]
     page = computed(LATE).told()
     trials = [make_term(own.data, page, site, shape) for shape in late.shapes]
     best = min(trials, key=lambda term: fit(own.data, [*found.fit.terms, term]).total)
-    beside = _searched(replace(own, nuisance=(best,)), others, say)
+    beside = _searched(replace(own, nuisance=(best,)), others, say, links)
     return beside if beside.fit.admissible and _worth(own, site, found.fit, beside.fit) > NEEDED else found
 
 
@@ -239,8 +251,9 @@ def _at(
     if not possible(trial):  # friction that is not there may fit below zero
         return None
     found = centred(candidates, trial)
-    arm, values = evidence.records[0].model.mass, page.parameters({}, found.of(len(plain)))
-    return found if not arm or values.get("mass", 0.0) < HEAVIEST * arm else None
+    model, values = evidence.records[0].model, page.parameters({}, found.of(len(plain)))
+    mass = values.get("mass", values.get("relative", 0.0) * model.mass_of(link))
+    return found if not model.mass or mass < HEAVIEST * model.mass else None
 
 
 def centred(candidates: Candidates, found: Fit) -> Fit:

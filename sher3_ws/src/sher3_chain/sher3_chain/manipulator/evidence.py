@@ -18,7 +18,7 @@ from sher3_chain.constants import ZERO, constants
 from sher3_chain.joint.own_unit import RECORDED
 from sher3_chain.joint.record import AxesRun
 from sher3_chain.manipulator.description import PER_RUN, ManipulatorDescription
-from sher3_chain.manipulator.gains import share_of
+from sher3_chain.manipulator.gains import backwards, share_of
 from sher3_chain.manipulator.identify import with_identified_inertias
 from sher3_chain.manipulator.model import ArmModel
 from sher3_chain.manipulator.readings.encoders import links_of
@@ -113,7 +113,7 @@ def gather_arm_motion(
     judged = [name for name in judged if all(share.told for share in scales.get(name, ()))]
     slips = slipped(plain, {name: found[name] for name in judged if name in stated})
     judged = [name for name in judged if name not in slips]
-    turned = tuple(name for name in judged if name not in own and found[name].opposite(name in stated))
+    turned = backwards({name: found[name] for name in judged if name not in own}, stated)
     if turned or own:
         signals = _put_right(signals, described, turned, scales)
         plain = seen_by(model, np.ones(n))

@@ -7,7 +7,7 @@ where the share is not told, the sign is that by which friction takes work and d
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 import numpy as np
 from sher3_diagnosis.channel import Array
@@ -45,3 +45,18 @@ def friction_columns(view: MotionView, joint: str) -> Array:
     row = view.row(joint)
     direction = view.run.to_grid(view.sliding(row, DAHL_SHARE * view.lead(joint))[:, None])[:, 0]
     return np.column_stack([view.velocity[:, row], direction, np.ones(len(direction))])
+
+
+def backwards(found: Mapping[str, Share], stated: Collection[str]) -> tuple[str, ...]:
+    """Return the joints whose efforts are to be turned.
+
+    One controller counts all its efforts alike: where some are surely of the opposite sign and none is surely right,
+    those are turned too that only seem so.
+
+    Args:
+        found: joint -> share of its effort.
+        stated: joints whose gain is stated.
+    """
+    sure = {name for name, share in found.items() if share.opposite(name in stated)}
+    right = any(share.told and not share.backwards for share in found.values())
+    return tuple(n for n, share in found.items() if n in sure or (sure and not right and share.backwards))

@@ -8,7 +8,7 @@ by what they explain of parts that were left out.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -28,7 +28,7 @@ from sher3_chain.manipulator.evidence import ArmMotionEvidence, channel_of
 from sher3_chain.thresholds import CONFOUNDED
 
 CLEARLY = 0.5
-"""Mean square over that before, of all joints alike, up to which wrong links are the better explanation.
+"""Mean square over that before, of the joints that they load alike, up to which wrong links are the better explanation.
 
 A rigid body has ten numbers, and what a joint does by itself is partly like one.
 """
@@ -55,9 +55,10 @@ def wrong_links(evidence: ArmMotionEvidence, page: Effect, laws: Sequence[Law]) 
         alike = balanced(evidence, left)
         plain = _terms(alike, laws)
         found = worthy(alike, [*plain, *_entered(alike, free, plain)])
-        if i == 0 and found.total + sum(map(price, found.terms)) > CLEARLY * sum(alike.data.samples.values()):
+        after = {c: max(left[c], 1.0) * x for c, x in level(alike, found).items()}
+        if i == 0 and not _far_less(after, left, loaded_by(found, page)):
             return []
-        left = {c: max(left[c], 1.0) * x for c, x in level(alike, found).items()}
+        left = after
     at = [i for i, term in enumerate(found.terms) if term.effect.id == page.id]
     return [(page, found.terms[i].site, page.found(_measured(found, i))) for i in at]
 
@@ -71,11 +72,23 @@ def worthy(evidence: Evidence, terms: Sequence[Term]) -> Fit:
     return found
 
 
-def clearly_less(evidence: ArmMotionEvidence, found: Fit, before: Fit) -> bool:
-    """Return whether a fit leaves clearly less than another one, down to the floor, of all joints alike."""
-    after, first = level(evidence, found), level(evidence, before)
-    falls = [np.log(max(after[c], 1.0) / max(first[c], 1.0)) for c in first]
-    return bool(np.mean(falls) < np.log(CLEARLY))
+def clearly_less(evidence: ArmMotionEvidence, found: Fit, before: Fit, page: Effect) -> bool:
+    """Return whether a fit with wrong links leaves clearly less than another one, down to the floor.
+
+    All joints that those links load count alike; the others gain nothing by them.
+    """
+    return _far_less(level(evidence, found), level(evidence, before), loaded_by(found, page))
+
+
+def loaded_by(found: Fit, page: Effect) -> set[Channel]:
+    """Return the force balances that the links of a fit, the terms of a page, load."""
+    return {c for term in found.terms if term.effect.id == page.id for c in term.channels}
+
+
+def _far_less(after: Mapping[Channel, float], before: Mapping[Channel, float], at: Collection[Channel]) -> bool:
+    """Return whether mean squares in floors fell clearly, in the mean of their logarithms over some joints."""
+    falls = [np.log(max(after[c], 1.0) / max(before[c], 1.0)) for c in before if c in at]
+    return bool(falls) and bool(np.mean(falls) < np.log(CLEARLY))
 
 
 def _terms(evidence: Evidence, laws: Sequence[Law]) -> list[Term]:

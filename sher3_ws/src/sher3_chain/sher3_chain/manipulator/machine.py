@@ -127,6 +127,11 @@ class Manipulator(Chain[ArmMotionEvidence]):
                 f"{', '.join(evidence.against)}: recorded in the other sense than the model has: place and effort were "
                 "turned; `factor: -1` states it"
             )
+        if self.described.coupling is not None:
+            notes.append(
+                "behind `coupling`: forces, frictions and rotors are those of the motors, by their own travel; of a "
+                "gear of n alone, a joint has n times the dry friction and n^2 times the viscous one and the rotor"
+            )
         if self.described.inertias == "identified":
             notes.append(
                 "inertias identified from the data: drive gain, weight and payload are in them, cannot be told apart "

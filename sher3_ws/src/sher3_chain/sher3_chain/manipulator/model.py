@@ -67,6 +67,10 @@ class ArmModel:
         """Inertial parameters of the model, (10 links,)."""
         return self.tree.inertial
 
+    def mass_of(self, link: str) -> float:
+        """Return the mass of a link, kg, as the model has it."""
+        return float(self.inertial[PARAMETERS * self.links.index(link)])
+
     @property
     def mass(self) -> float:
         """Mass of all links that move, kg."""

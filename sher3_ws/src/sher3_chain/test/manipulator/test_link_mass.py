@@ -63,3 +63,16 @@ def test_a_slide_without_weight_is_too_heavy_in_the_model():
     answer = gap.diagnose(xml.format(mass=2.0), time, ctrl, qpos + NOISE * np.random.default_rng(0).normal(size=5000))
     assert (answer.causes[0].effect, answer.causes[0].actuator) == ("link_mass", "car")
     assert answer.causes[0].parameters["relative"].value == pytest.approx(-0.5, abs=0.01)
+
+
+@pytest.mark.parametrize(("seed", "times"), [(2005, 30.0), (2011, 60.0)])
+def test_a_rotor_is_no_link_many_times_as_heavy_as_the_arm(seed, times):
+    """The first joint turns about the vertical: a rotor and a heavier first link need the same force of it alone."""
+    rng = np.random.default_rng(seed)
+    xml = drawn_xml(rng, servo=True, joints=3)
+    spec = mujoco.MjSpec.from_string(xml)
+    nominal = spec.compile()
+    spec.joints[0].armature = nominal.dof_armature[0] + times * nominal.body_inertia[1].max()
+    answer = gap.diagnose(xml, log_of_servos(spec.compile(), rng, SECONDS))
+    assert "rotor_inertia" in {c.effect for c in answer.causes if c.actuator == "turn"}
+    assert not {c.effect for c in answer.causes} & {"link_mass", "payload_mass"}

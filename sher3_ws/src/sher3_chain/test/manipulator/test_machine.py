@@ -5,6 +5,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from lifts import L, described, friction, machine, motion, needed, run_of, values
+from sher3_chain.manipulator.gains import backwards
+from sher3_chain.readings.slip_of_unit import Share
 from sher3_diagnosis import diagnose
 from sher3_machines import MachineError
 
@@ -98,6 +100,29 @@ def test_an_unknown_gain_is_found_and_what_hides_in_it_is_said(path):
     assert "gain, weight and payload are confounded" in told
     share = next(n for n in found.notes if "per N m" in n)
     assert float(share.split()[1]) == pytest.approx(0.4, rel=0.01)
+
+
+@pytest.mark.parametrize(
+    ("shares", "turned"),
+    [
+        ({"a": -1.2, "b": -0.3}, ("a", "b")),  # one controller, one sign: the doubtful one follows
+        ({"a": -1.2, "b": -0.3, "c": 1.1}, ("a",)),  # signs differ by joint: each by itself
+        ({"a": 1.2, "b": -0.3}, ()),
+        ({"b": -0.3}, ()),
+    ],
+)
+def test_a_doubtful_sign_follows_those_of_the_other_joints(shares, turned):
+    found = {name: Share(x, 0.01, x < 0.0) for name, x in shares.items()}
+    assert backwards(found, set(shares)) == turned
+
+
+@pytest.mark.parametrize("size", [0.2, 0.5, 1.5])
+def test_a_constant_is_no_cable_and_a_cable_has_a_span(path, size):
+    """A force of a zero that is off, on a joint with friction: a cable takes it up with no span of its own."""
+    effort = needed(Q, V, A) + friction(V, (8.0, 0.5), (20.0, 0.4)) + np.array([0.0, size])
+    found = verdict(path, effort)
+    causes = {c.effect for c in found.causes if c.actuator == "swing"}
+    assert "gravity_load" in causes and not causes & {"cable_torque", "spring_torque"}
 
 
 def test_gains_that_differ_by_run_are_found_run_by_run(path):

@@ -8,16 +8,17 @@ even if its gap is open then: a gap without a name is an answer, a wrong name is
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from sher3_diagnosis.attribute.candidates import Candidates
-from sher3_diagnosis.attribute.rivals import Attribution
+from sher3_diagnosis.attribute.rivals import Attribution, without_term
 from sher3_diagnosis.channel import Array
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import Fit, Term
+from sher3_diagnosis.quantify.parameters import parameters
 from sher3_diagnosis.verdict import Cause, Parameter
 
 LOST = "lost_motion"
@@ -39,7 +40,8 @@ def without_empty(
         candidates: the evidence and the effects.
         attribution: of the evidence.
         causes: of the attribution, with their sizes.
-        carried: whether one that only has no size stays in the fit without a name.
+        carried: whether one that only has no size stays in the fit without a name; where it is not, one stays that
+            others of its place need for theirs.
     """
     evidence, empty = candidates.evidence, dict[str, int]()
     for i, cause in zip(attribution.causes, causes, strict=True):
@@ -48,14 +50,36 @@ def without_empty(
             least = empty.setdefault(site, i)
             empty[site] = i if worth < attribution.explained[least] else least
     at = dict(zip(attribution.causes, causes, strict=True))
-    small = [
-        i for i in empty.values() if carried and of_no_size(attribution.fit.terms[i], attribution.fit.of(i), at[i])
-    ]
+    small = [i for i in empty.values() if _small(attribution, i, at)]
+    small = small if carried else [i for i in small if _bears(evidence, attribution, i, at)]
     if small:
         return _unnamed(evidence, attribution, small)
     for i in sorted(empty.values(), reverse=True):
         attribution = _simpler(candidates, attribution, i)
     return attribution
+
+
+def _small(attribution: Attribution, index: int, causes: Mapping[int, Cause]) -> bool:
+    """Return whether a cause, of those by their index, has no size of its own."""
+    return of_no_size(attribution.fit.terms[index], attribution.fit.of(index), causes[index])
+
+
+def _bears(evidence: Evidence, attribution: Attribution, index: int, causes: Mapping[int, Cause]) -> bool:
+    """Return whether another cause of the same place has a size beside a cause, and none without it.
+
+    A weight that is somewhat off is not told from the rest of the model; a friction is not told without it.
+    """
+    term = attribution.fit.terms[index]
+    if term.effect.told_by:
+        return False  # a simpler law takes its place
+    sized = [i for i in attribution.causes if i != index and not _small(attribution, i, causes)]
+    fewer = without_term(evidence, attribution.fit, index)
+    for i in (i for i in sized if attribution.fit.terms[i].site == term.site):
+        at = i - (i > index)
+        other = causes[i].model_copy(update={"parameters": parameters(evidence, fewer, at)})
+        if of_no_size(fewer.terms[at], fewer.of(at), other):
+            return True
+    return False
 
 
 def says_nothing(evidence: Evidence, found: Fit, index: int, cause: Cause) -> bool:

@@ -47,6 +47,10 @@ class GravityLoad(Page):
         gravity = view.path.gravity[:, view.row(site)]
         return Signature({Channel(self.stage, site): column(np.ones_like(gravity) if shape["constant"] else gravity)})
 
+    def of_model(self, shape: Shape) -> bool:
+        """Return whether it is a share of the modelled weight."""
+        return not shape["constant"]
+
     def tolerated(self, robot: Robot, site: str) -> Sequence[Tolerated]:
         """Return the weight that the axis carries."""
         return (Tolerated({"constant": 0.0}, {f"gravity load of {site}": (robot.tolerances.gravity_load, "1")}),)

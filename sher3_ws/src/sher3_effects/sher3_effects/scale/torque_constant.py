@@ -38,6 +38,10 @@ class TorqueConstant(Page):
         """One column: the force the motion needs. reported - needed = -relative / (1 + relative) * needed."""
         return Signature({Channel(self.stage, site): column(-view.inertial[:, view.row(site)])})
 
+    def of_model(self, shape: Shape) -> bool:
+        """Return that it is a share of all forces that the model needs."""
+        return True
+
     def tolerated(self, robot: Robot, site: str) -> Sequence[Tolerated]:
         """Return the torque constant of the axis."""
         return (Tolerated({}, {f"torque constant of {site}": (robot.tolerances.torque_constant, "1")}),)

@@ -60,7 +60,7 @@ def recorded(machine: object, runs: Sequence[Any], joints: Mapping[str, str], la
         late: whether a cause acts between command and force, so that the command drives and not the measured effort.
 
     Raises:
-        ExportError: the case is of another kind.
+        ExportError: the case is of another kind, or its motors move several joints.
     """
     if not isinstance(machine, Axes | Manipulator):
         remedy = (
@@ -68,6 +68,14 @@ def recorded(machine: object, runs: Sequence[Any], joints: Mapping[str, str], la
         )
         raise ExportError(
             "records of this kind of machine are not run in MuJoCo", value=type(machine).__name__, remedy=remedy
+        )
+    if isinstance(machine, Manipulator) and machine.described.coupling is not None:
+        raise ExportError(
+            "motors behind a coupling are not run in MuJoCo: the causes are theirs, and its joints have drives of "
+            "their own",
+            value="coupling",
+            remedy="judge by the verdict's closure; of a gear of n alone, a joint has n times the dry friction of its "
+            "motor and n^2 times viscous friction and rotor",
         )
     axes = machine.described.chain
     return [
