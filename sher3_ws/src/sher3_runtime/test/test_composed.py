@@ -7,7 +7,6 @@ import os
 import time
 from collections import deque
 from contextlib import contextmanager
-from itertools import pairwise
 
 import pytest
 from rclpy.context import Context
@@ -200,12 +199,15 @@ def test_an_object_has_the_numbers_that_come_over_the_wire(travel):
 
 @pytest.mark.flaky(reruns=2)
 def test_a_node_that_waits_for_its_device_does_not_hold_up_the_others():
-    """One waits 80 ms of each 100 ms for a device that never answers; the other one ticks every 10 ms nevertheless."""
+    """One waits 80 ms of each 100 ms for a device that never answers; the other one ticks every 10 ms nevertheless.
+
+    Every wait is judged by the ticks that fall into it, which a busy computer makes fewer, but not none.
+    """
     context = Context()
     context.init(domain_id=own_domain())
     use_clock(context, Clock(10_000_000))
     silent, other_end = os.pipe()
-    late, waited = [], []
+    ticks, waits = [], []
     with Composition():
         device, loop = (Node(name, context=context, **NODE_OPTIONS) for name in ("device", "loop"))
         hears = []
@@ -214,25 +216,25 @@ def test_a_node_that_waits_for_its_device_does_not_hold_up_the_others():
         def wait(stamp):
             begin = time.monotonic()
             assert wait_readable((silent,), 0.08) == []
-            waited.append((time.monotonic() - begin, len(hears)))
+            waits.append((begin, time.monotonic()))
 
         def tick(stamp):
-            late.append(time.monotonic_ns())
+            ticks.append(time.monotonic())
             say(TwistSample(stamp, ZERO))
 
         subscribe(device, "servo_cv", lambda s: hears.append(s.stamp))
         on_tick(device, wait, every=10)
         on_tick(loop, tick, phase=0.001)
-    end = time.monotonic() + 1.0
-    spin([device, loop], stop=lambda: time.monotonic() > end, diagnostics=False)
+    spin([device, loop], stop=lambda: len(waits) >= 8, diagnostics=False)
     context.try_shutdown()
     os.close(silent), os.close(other_end)
-    waits, gaps = sorted(seconds for seconds, _ in waited), sorted((b - a) / 1e6 for a, b in pairwise(late))
-    assert len(waits) >= 5 and waits[0] > 0.079 and waits[len(waits) // 2] < 0.12
-    # Held up by each wait it would tick 20 to 30 times; a busy computer takes some of the 100 ticks.
-    assert len(late) >= 50 and gaps[len(gaps) // 2] < 15.0
+    assert min(end - begin for begin, end in waits) > 0.079
+    within = [sum(begin < at < end for at in ticks) for begin, end in waits]
+    behind = [sum(begin + 0.08 < at < end for at in ticks) for begin, end in waits]
+    # Held up by a wait it would not tick in it at all; kept from going on, the device would see one tick after another.
+    assert min(within) >= 1 and sum(within) >= 4 * len(waits) and max(behind) <= 3
     # What came while the device was waited for was handed over afterwards, in order; none was lost.
-    assert hears == sorted(hears) and len(hears) >= len(late) - 10
+    assert hears == sorted(hears) and len(hears) >= len(ticks) - 10
 
 
 @pytest.mark.parametrize("shortest", [10, 25, 50])

@@ -48,12 +48,16 @@ class AxisView(ChainView):
 
     def axis(self, site: str) -> NominalAxis:
         """Return the nominal constants of the axis."""
+        return self._nominal
+
+    @cached_property
+    def _nominal(self) -> NominalAxis:
         axis, known = self.described, self.described.lead is not None
         travel = float(np.ptp(self.run.smooth))
         return NominalAxis(
             self.mass,
             max(axis.viscous, SLIP),
-            self.lead(site),
+            self.lead(axis.name),
             float(self.tops[0]),
             travel,
             self.hangs,

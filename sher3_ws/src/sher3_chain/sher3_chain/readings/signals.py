@@ -19,6 +19,9 @@ from sher3_chain.readings.noise import cut_off
 NYQUIST_SHARE = 0.4
 """Cut-off over the Nyquist rate where a record is too slow for the engine's: two differentiations must survive it."""
 
+SPLINE = 5
+"""Order of the spline whose derivatives are taken: those of its neighbours are too small near the Nyquist frequency."""
+
 
 @dataclass(frozen=True)
 class AxisSignals(FilteredRun):
@@ -62,6 +65,15 @@ class AxisSignals(FilteredRun):
     def stage_clock(self) -> Array:
         """Time since the first sample, (n,), s."""
         return self.period * np.arange(self.ticks, dtype=np.float64)
+
+    @cached_property
+    def effort_derivatives(self) -> tuple[Array, Array]:
+        """First and second derivative of the effort, (n, 1) each, by a spline; of what was recorded, not smoothed."""
+        from scipy.interpolate import make_interp_spline
+
+        clock = self.stage_clock
+        spline = make_interp_spline(clock, self.effort, k=min(SPLINE, len(clock) - 1))
+        return spline(clock, 1), spline(clock, 2)
 
     @cached_property
     def loaded_ok(self) -> Mask:

@@ -14,7 +14,7 @@ from dataclasses import replace
 import numpy as np
 from sher3_diagnosis.channel import Array
 
-from sher3_chain.axes.identification.identify import loss_of, mass_of
+from sher3_chain.axes.identification.identify import ForceBalance, mass_of
 from sher3_chain.axes.identification.unfiltered import unfiltered
 from sher3_chain.axes.view import AxisView
 from sher3_chain.joint.description import Axis
@@ -72,7 +72,9 @@ def pulls_home(signals: AxisSignals) -> bool:
 def best_shift(signals: Sequence[AxisSignals], axis: Axis) -> float:
     """Return by how much later the effort is to be read, s, at most half a period; 0 where the record does not tell."""
     period = signals[0].period
-    losses = np.array([loss_of([AxisView(shifted(s, n * period), axis, 0.0) for s in signals]) for n in SHIFTS])
+    balance = ForceBalance([AxisView(s, axis, 0.0) for s in signals])
+    moved = [[shifted(s, n * period).effort for s in signals] for n in SHIFTS]
+    losses = np.array([balance.loss([effort for effort in efforts if effort is not None]) for efforts in moved])
     best = int(np.argmin(losses))
     middle = SHIFTS.index(0.0)
     if best in (0, len(SHIFTS) - 1) or not losses[best] < (1.0 - ALIGNED) * losses[middle]:

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from itertools import combinations
 
 import numpy as np
-from sher3_diagnosis.channel import Array
+from sher3_diagnosis.channel import Array, Mask
 from sher3_diagnosis.fit.fitting import solve
 from sher3_diagnosis.quantify.jackknife import standard_error
 from sher3_diagnosis.thresholds import JACKKNIFE
@@ -60,7 +60,7 @@ def identify_mass(views: Sequence[AxisView]) -> tuple[float, tuple[float, float]
     _, columns = _best(blocks)
     used = x[:, columns]
     noise = noise_share(views, used[:, 0])
-    _, draws = _held_out(blocks, columns, noise)
+    _, draws = _held_out(blocks, _others(blocks), columns, noise)
     mass = float(solve(_relieved(used, noise), used.T @ y)[0])
     error = float(standard_error(draws))
     if not mass > LEAST_EXCITED * error:
@@ -106,21 +106,31 @@ def share_of_inertia(views: Sequence[AxisView]) -> float:
     if len(y) < BLOCKS or not y.any():
         return np.inf
     blocks = _blocks(x, y)
-    _, draws = _held_out(blocks, _best(blocks)[1])
+    _, draws = _held_out(blocks, _others(blocks), _best(blocks)[1])
     error = float(standard_error(draws))
     most = abs(float(draws.mean())) + LEAST_EXCITED * error
     return most * float(np.sqrt(np.mean(x[:, 0] ** 2) / np.mean(y**2)))
 
 
-def loss_of(views: Sequence[AxisView]) -> float:
-    """Return the smallest held-out loss of the force balance, whatever of its columns is left out."""
-    x, y = _rows(views)
-    return _best(_blocks(x, y))[0] if len(y) >= BLOCKS else 0.0
+class ForceBalance:
+    """The force balance of records whose effort is tried in several ways; its columns are those of the motion."""
+
+    def __init__(self, views: Sequence[AxisView]) -> None:
+        self._views = views
+        self._columns = [_columns(view) for view in views]
+        self._motion = np.concatenate([x[ok] for x, ok in self._columns])
+
+    def loss(self, efforts: Sequence[Array]) -> float:
+        """Return the smallest held-out loss under these efforts, (n, 1) each, whatever of the columns is left out."""
+        tried = zip(self._views, self._columns, efforts, strict=True)
+        left = np.concatenate([_left(view, effort)[ok] for view, (_, ok), effort in tried])
+        return _best(_blocks(self._motion, left))[0] if len(left) >= BLOCKS else 0.0
 
 
 def _best(blocks: Array) -> tuple[float, list[int]]:
     """Return the smallest held-out loss and its columns; those of the position only where they save markedly."""
-    tried = [(_held_out(blocks, columns)[0], columns) for columns in CHOICES]
+    others = _others(blocks)
+    tried = [(_held_out(blocks, others, columns)[0], columns) for columns in CHOICES]
     plain = min((t for t in tried if BY_PLACE[0] not in t[1] and BEHIND not in t[1]), key=lambda t: t[0])
     for extra in (BEHIND, BY_PLACE[0]):
         other = min(
@@ -175,7 +185,19 @@ def _blocks(x: Array, y: Array) -> Array:
 
 
 def _equations(view: AxisView) -> tuple[Array, Array]:
-    """Columns (n, 7) acceleration, velocity, direction, one, two of the position, and the load; force (n,) left over.
+    """Columns (n, 7) and the force (n,) that is left over, where the axis moves."""
+    x, ok = _columns(view)
+    assert view.run.effort is not None
+    return x[ok], _left(view, view.run.effort)[ok]
+
+
+def _left(view: AxisView, effort: Array) -> Array:
+    """Return what the motion and the weight leave of an effort (n, 1), on the residual grid, (g,)."""
+    return np.asarray(view.run.to_grid(effort)[:, 0] - view.inertial[:, 0])
+
+
+def _columns(view: AxisView) -> tuple[Array, Mask]:
+    """Columns (g, 7) acceleration, velocity, direction, one, two of the position, and the load; where the axis moves.
 
     Those of the position are a weight at an arm on an axis that turns and a spring on one that slides.
     """
@@ -187,23 +209,24 @@ def _equations(view: AxisView) -> tuple[Array, Array]:
     nominal = view.axis(site)
     reach = DAHL_SHARE * nominal.lead if nominal.lead_known else DAHL_TRAVEL * nominal.travel
     direction = run.to_grid(view.sliding(0, max(reach, view.described.encoder_resolution))[:, None])[:, 0]
-    assert run.effort is not None
-    y = run.to_grid(run.effort)[:, 0] - view.inertial[:, 0]
     q = view.position[:, 0]
     spring = q - q.mean() if view.described.motion == "linear" else np.zeros_like(q)
     arm = run.to_grid(np.column_stack([np.sin(run.motor[:, 0]), np.cos(run.motor[:, 0])]))
     by_place = arm.T if view.hangs else (spring, np.zeros_like(q))
-    one = np.ones(len(y))
+    one = np.ones(len(q))
     behind = np.zeros_like(one) if view.load_mass else view.behind[:, 0]
-    x = np.column_stack([view.acceleration[:, 0], view.velocity[:, 0], direction, one, *by_place, behind])
-    return x[ok], y[ok]
+    columns = [view.acceleration[:, 0], view.velocity[:, 0], direction, one, *by_place, behind]
+    return np.column_stack(columns), ok
 
 
-def _held_out(blocks: Array, columns: list[int], noise: float = 0.0) -> tuple[float, Array]:
+def _others(blocks: Array) -> Array:
+    """Return the products of columns and target (BLOCKS, p + 1, p + 1), of each block those of all others."""
+    return np.tensordot(OTHERS, np.swapaxes(blocks, 1, 2) @ blocks, 1)
+
+
+def _held_out(blocks: Array, others: Array, columns: list[int], noise: float = 0.0) -> tuple[float, Array]:
     """Loss of every block under the others' coefficients, and the mass without each block, (BLOCKS,)."""
-    x, y = blocks[..., columns], blocks[..., -1:]
-    across = np.swapaxes(x, 1, 2)
-    normal, right = np.tensordot(OTHERS, across @ x, 1), np.tensordot(OTHERS, across @ y, 1)
+    normal, right = others[:, columns][..., columns], others[:, columns, -1]
     normal[:, 0, 0] *= 1.0 - noise
-    beta = solve(normal, right[..., 0])
-    return float(np.sum((y - x @ beta[..., None]) ** 2)), beta[:, 0]
+    beta = solve(normal, right)
+    return float(np.sum((blocks[..., -1] - (blocks[..., columns] @ beta[..., None])[..., 0]) ** 2)), beta[:, 0]

@@ -9,14 +9,15 @@ much, and is then looked for as a late sensor.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 from sher3_diagnosis.channel import Array
 
-from sher3_chain.axes.identification.identify import loss_of
+from sher3_chain.axes.identification.identify import ForceBalance
 from sher3_chain.axes.view import AxisView
 from sher3_chain.joint.description import Axis
 from sher3_chain.readings.signals import AxisSignals
@@ -28,8 +29,6 @@ FINER = 4
 """Halvings of the step between two corners."""
 OF_NYQUIST = 0.9
 """Share of the Nyquist frequency that a corner stays below: beyond it the record does not show it."""
-SPLINE = 5
-"""Order of the spline whose derivatives are taken: those of its neighbours alone are too small near that frequency."""
 
 
 class Filter(NamedTuple):
@@ -42,18 +41,14 @@ class Filter(NamedTuple):
         """Return the signals with the effort as it was before the filter."""
         if signals.effort is None:
             return signals
-        clock, effort, pace = signals.stage_clock, signals.effort[:, 0], 1.0 / (2.0 * np.pi * self.corner)
-        if self.order == 0:
-            before: Array = np.interp(clock + pace, clock, effort)
-        else:
-            from scipy.interpolate import make_interp_spline
-
-            spline = make_interp_spline(clock, effort, k=min(SPLINE, len(clock) - 1))
-            if self.order == 1:
-                before = effort + pace * spline(clock, 1)
-            else:
-                before = effort + np.sqrt(2.0) * pace * spline(clock, 1) + pace**2 * spline(clock, 2)
-        return replace(signals, effort=before[:, None])
+        clock, effort, pace = signals.stage_clock, signals.effort, 1.0 / (2.0 * np.pi * self.corner)
+        slope, bend = signals.effort_derivatives
+        before: Array = (
+            np.interp(clock + pace, clock, effort[:, 0])[:, None],
+            effort + pace * slope,
+            effort + np.sqrt(2.0) * pace * slope + pace**2 * bend,
+        )[self.order]
+        return replace(signals, effort=before)
 
 
 def unfiltered(signals: Sequence[AxisSignals], axis: Axis) -> tuple[Sequence[AxisSignals], str]:
@@ -65,11 +60,16 @@ def unfiltered(signals: Sequence[AxisSignals], axis: Axis) -> tuple[Sequence[Axi
     """
     top = OF_NYQUIST * 0.5 / signals[0].period
     corners = [float(f) for f in CORNERS if f < top]
-    plain = loss_of([AxisView(s, axis, 0.0) for s in signals])
+    balance = ForceBalance([AxisView(s, axis, 0.0) for s in signals])
+
+    def loss(order: int, corner: float) -> float:
+        return balance.loss([s.effort for s in map(Filter(corner, order).undone, signals) if s.effort is not None])
+
+    plain = balance.loss([s.effort for s in signals if s.effort is not None])
     if not plain or not corners:
         return signals, ""
-    late = min(_loss(signals, axis, Filter(f, 0)) for f in corners)
-    best = min((_best(signals, axis, order, corners, top) for order in (1, 2)), key=lambda found: found[0])
+    late = min(loss(0, f) for f in corners)
+    best = min((_best(partial(loss, order), order, corners, top) for order in (1, 2)), key=lambda found: found[0])
     if not best[0] < (1.0 - ALIGNED) * min(plain, late):
         return signals, ""
     found = best[1]
@@ -78,21 +78,15 @@ def unfiltered(signals: Sequence[AxisSignals], axis: Axis) -> tuple[Sequence[Axi
     return [found.undone(s) for s in signals], note
 
 
-def _best(
-    signals: Sequence[AxisSignals], axis: Axis, order: int, corners: Sequence[float], top: float
-) -> tuple[float, Filter]:
+def _best(loss: Callable[[float], float], order: int, corners: Sequence[float], top: float) -> tuple[float, Filter]:
     """Return the smallest loss and the filter of an order that has it: on the grid, then by halving its step."""
-    tried = {f: _loss(signals, axis, Filter(f, order)) for f in corners}
+    tried = {f: loss(f) for f in corners}
     best = min(tried, key=lambda f: tried[f])
     step = float(CORNERS[1] / CORNERS[0])
     for _ in range(FINER):
         step = float(np.sqrt(step))
         for f in (best / step, best * step):
             if f < top:
-                tried[f] = _loss(signals, axis, Filter(f, order))
+                tried[f] = loss(f)
         best = min(tried, key=lambda f: tried[f])
     return tried[best], Filter(best, order)
-
-
-def _loss(signals: Sequence[AxisSignals], axis: Axis, filtered: Filter) -> float:
-    return loss_of([AxisView(filtered.undone(s), axis, 0.0) for s in signals])
