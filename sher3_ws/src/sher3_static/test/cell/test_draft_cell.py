@@ -1,0 +1,65 @@
+"""Drafts of load cells: tables of weights and readings as people write them."""
+
+import numpy as np
+import pytest
+from sher3_diagnosis import diagnose
+from sher3_machines import MachineError, import_case, open_case
+from sher3_machines.drafting.drafts import draft_of
+
+LEVELS = np.tile([0.0, 10.0, 20.0, 30.0, 40.0, 30.0, 20.0, 10.0], 6)
+COUNTS = 5800.0 + 1000.0 * LEVELS + 90.0 * np.random.default_rng(1).normal(size=len(LEVELS))
+
+
+def drafted(tmp_path, header, *columns):
+    np.savetxt(tmp_path / "a.csv", np.column_stack(columns), delimiter=",", header=header, comments="", fmt="%.6g")
+    return draft_of(tmp_path / "a.csv")
+
+
+def bias(tmp_path, found):
+    (tmp_path / "a.yaml").write_text(found.text, encoding="utf-8")
+    import_case([tmp_path / "a.csv"], tmp_path / "a.yaml", tmp_path / "case")
+    causes = diagnose(*open_case(tmp_path / "case")).verdict.causes
+    return {c.effect: next(iter(c.parameters.values())).value for c in causes}
+
+
+@pytest.mark.parametrize(
+    ("header", "newton"),
+    [
+        ("force [lbf],cell 1", 4.4482216),
+        ("weight_g,counts", 9.80665e-3),
+        ("mass (kg),reading", 9.80665),
+        ("applied_N,signal_mV", 1.0),
+        ("Gewicht [kg],Messwert", 9.80665),
+    ],
+)
+def test_a_table_of_weights_and_readings_is_a_load_cell(tmp_path, header, newton):
+    """A zero of 5.8 of the unit, whatever that is, in newtons."""
+    found = drafted(tmp_path, header, LEVELS, COUNTS)
+    assert "kind: load_cell" in found.text
+    assert bias(tmp_path, found) == {"force_bias": pytest.approx(5.8 * newton, rel=0.02)}
+
+
+@pytest.mark.parametrize("noise", [0.0, 500.0, 2000.0])
+def test_single_readings_may_scatter(tmp_path, noise):
+    found = drafted(tmp_path, "weight_g,counts", LEVELS, COUNTS + noise * np.random.default_rng(3).normal(size=48))
+    assert "kind: load_cell" in found.text
+
+
+def test_a_bridge_that_counts_backwards_is_a_cell_too(tmp_path):
+    found = drafted(tmp_path, "reading,weight [kg]", -COUNTS, LEVELS)
+    assert "column: weight [kg]" in found.text and "factor: -0.0" in found.text
+
+
+@pytest.mark.parametrize(
+    ("header", "columns"),
+    [
+        ("force_N,position_mm", (LEVELS, COUNTS)),
+        ("t,force_N,reading", (np.arange(48.0), LEVELS, COUNTS)),
+        ("weight_kg,reading", (LEVELS, np.random.default_rng(2).normal(size=48))),
+    ],
+)
+def test_a_spring_a_record_in_time_and_what_does_not_follow_are_no_cell(tmp_path, header, columns):
+    try:
+        assert "load_cell" not in drafted(tmp_path, header, *columns).text
+    except MachineError as error:
+        assert "looks like a" in str(error)
