@@ -1,11 +1,12 @@
-"""Bench: what it changes that a bend of a right law is expected, on kept evidence of labelled cases.
+"""Bench: what it changes that a bend of a right law is expected, and that the causes of a gap share what they leave.
 
     python bench/bent_laws.py EVIDENCE      # folder of `sher3 gap calibrate --drawn --kept`, seconds
 
 Printed is the table of all cases, of robots with bent and with close laws, and of each plant, by the weights in force:
-once with all that is left of a gap held against its cause (`all left`), once less what is a bend of its law
-(`strange`); then log loss of the causes' odds, and how well either number tells right causes from foreign ones (area
-under the curve), on the causes that leave between 2 and 20 %.
+once with all that is left of a gap held against its cause (`all left`), once as if each cause stood alone, and once as
+it is judged: less what is a bend of its law, beside the other causes of its gap; then log loss of the causes' odds, and
+how well what is left, less a bend or not, tells right causes from foreign ones (area under the curve), on the causes
+that leave between 2 and 20 %.
 """
 
 from __future__ import annotations
@@ -13,13 +14,12 @@ from __future__ import annotations
 import argparse
 import math
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 from sher3_challenge.calibration.held_out import by_plant, by_shape, groups, judged_by
 from sher3_challenge.calibration.labels import answer_of
-from sher3_challenge.calibration.observe import Observation, stored
+from sher3_challenge.calibration.observe import stored, without_evidence
 from sher3_challenge.calibration.table import rates, written
 from sher3_diagnosis.finding import LIBRARY, OUTSIDE
 from sher3_diagnosis.judge.calibration.calibration import in_force
@@ -27,14 +27,6 @@ from sher3_diagnosis.judge.evidence.scales import strange
 
 DOUBTFUL = (0.02, 0.20)
 """Shares left of which both right and foreign causes are known."""
-
-
-def plain(seen: Observation) -> Observation:
-    """Return an observation of which nothing says what goes with a law."""
-    items = [
-        {**x, "numbers": {name: v for name, v in x["numbers"].items() if name != "stray"}} for x in seen.items
-    ]  # fmt: skip
-    return replace(seen, items=tuple(items))
 
 
 def area(right: Sequence[float], foreign: Sequence[float]) -> float:
@@ -47,7 +39,12 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path)
     found = [o for file in sorted(parser.parse_args().folder.rglob("*.json")) for o in stored(file)]
-    for name, seen in {"all left": [plain(o) for o in found], "strange": found}.items():
+    alike = {
+        "all left": [without_evidence(o, "stray") for o in found],
+        "each cause alone": [without_evidence(o, "part") for o in found],
+        "in force": found,
+    }
+    for name, seen in alike.items():
         own = {"all": seen, **groups(seen, by_shape), **groups(seen, by_plant)}
         judged = {group: judged_by(in_force(), rows) for group, rows in own.items()}
         stated = [c for j in judged["all"] for c in j.causes]

@@ -68,6 +68,19 @@ def test_scales_end_where_they_tell_nothing_more():
     assert scaled_exact(0.9) == {"missed": pytest.approx(0.1)}
 
 
+def test_a_remainder_is_the_bends_of_all_causes_or_one_foreign_law():
+    """16 % of a part that is 1 % of the gap: 0.16 % of the whole, and half way, in logarithms, 1.6 %."""
+    alone, beside = (scaled_cause(NUMBERS | {"left": 0.16, "part": part}) for part in (1.0, 0.01))
+    assert alone["left"] == pytest.approx(math.log(0.16)) == scaled_cause(NUMBERS | {"left": 0.16})["left"]
+    assert beside["left"] == pytest.approx(math.log(0.016))
+    assert beside["floors"] == alone["floors"]  # as much of it, however many causes there are
+    assert answer_to(judged(cause(part=0.01), CALIBRATION, Interval(value=0.4, low=0.3)), DEFAULT) == "library"
+
+
+def test_a_gap_beyond_doubt_is_not_unusual_for_its_size():
+    assert scaled_cause(NUMBERS | {"ratio": 400.0})["size"] == pytest.approx(math.log(25.0))
+
+
 def test_candidates_share_what_the_library_has_by_their_unlikeness():
     j = judged(cause(), CALIBRATION)
     assert sum(j.effects) + j.outside + j.no_gap == pytest.approx(1.0)

@@ -1,11 +1,17 @@
 """What the evidence counts: repeats, samples, losses above the floor."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from sher3_diagnosis.attribute.candidates import Candidates
+from sher3_diagnosis.attribute.rivals import with_rivals
 from sher3_diagnosis.channel import Channel
-from toy import AXIS, ToyRun, evidence_of
+from sher3_diagnosis.fit.fitting import fit
+from sher3_diagnosis.fit.term import make_term
+from sher3_diagnosis.judge.evidence.cause import cause_evidence
+from toy import AXIS, DIRECTION, OFFSET, ToyRun, case, evidence_of
 
 
 def run(excitation, value):
@@ -36,3 +42,15 @@ def test_angles_are_never_in_metres_and_torques_never_in_newtons():
 def test_an_unknown_count_is_infinite():
     assert evidence_of([run("a", 1.0)], counts={"axis": 0.5}).count(AXIS) == 0.5
     assert math.isinf(evidence_of([run("a", 1.0)]).count(AXIS))
+
+
+def test_two_causes_of_one_gap_share_what_they_leave():
+    """Direction of 6 and an offset of 2 floors: the offset's part is 4 of 40 squares of the floor."""
+    runs = [replace(r, values=r.values + 2.0) for r in case(6.0)]
+    evidence = evidence_of(runs)
+    terms = [make_term(evidence.data, effect, "axis", {}) for effect in (DIRECTION, OFFSET)]
+    found = with_rivals(Candidates(evidence, [DIRECTION, OFFSET]), fit(evidence.data, terms))
+    first, second = (cause_evidence(evidence, found, i) for i in found.causes)
+    assert (first.part, second.part) == (pytest.approx(0.9, abs=0.02), pytest.approx(0.1, abs=0.02))
+    assert first.left * first.part == pytest.approx(second.left * second.part)
+    assert first.law is None  # the toy tells no quantities

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +19,7 @@ from sher3_gap.signals import RunSignals
 from sher3_challenge.cases.seal import CASES, LABELS
 
 LABEL = "truth.yaml"
-VERSION = 7
+VERSION = 8
 """Of the evidence: rows of another version are computed again."""
 
 
@@ -49,6 +49,12 @@ class Observation:
         """Largest gap over floor by the label's oracle; None for exact stages and healthy cases."""
         found = [x["gap_over_floor"] for x in (self.truth.get("oracle") or {}).values() if x.get("gap_over_floor")]
         return max(found) if found and self.truth["effects"] else None
+
+
+def without_evidence(seen: Observation, name: str) -> Observation:
+    """Return an observation of which one piece of evidence is not told."""
+    items = ({**x, "numbers": {n: v for n, v in x["numbers"].items() if n != name}} for x in seen.items)
+    return replace(seen, items=tuple(items))
 
 
 def labelled(folder: Path) -> Iterator[Path]:

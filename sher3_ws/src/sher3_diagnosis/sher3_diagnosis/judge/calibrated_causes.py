@@ -79,9 +79,10 @@ def _kept(finding: Finding, named: Sequence[Judged], reach: float) -> tuple[Attr
     )
     causes = []
     for j in named:
-        alike = [f.terms[-1].effect.id for f in rivals[j.item.index]]
+        cause, ranked = _cause(finding, j.item), {c.effect for c in j.item.candidates}
+        alike = [f.terms[-1].effect.id for f in rivals[j.item.index]] + [r for r in cause.rivals if r not in ranked]
         update = {"rivals": list(dict.fromkeys(alike)), "probability": j.effects[0]}
-        causes.append(_cause(finding, j.item).model_copy(update=update))
+        causes.append(cause.model_copy(update=update))
     return attribution, causes
 
 
@@ -89,5 +90,6 @@ def _rivals(found: Attribution, j: Judged, reach: float) -> tuple:
     """Return the fits of the candidates within reach, of other effects than the cause."""
     within = {(c.effect, c.site) for c in j.item.candidates if c.unlikeness <= reach}
     own = j.item.candidates[0].effect
-    ranking = found.ranking[j.item.index]  # type: ignore[index]
+    assert j.item.index is not None
+    ranking, _ = found.ranked(j.item.index)
     return tuple(f for f in ranking if f.terms[-1].key in within and f.terms[-1].effect.id != own)

@@ -6,6 +6,7 @@ from collections.abc import Collection, Sequence
 
 from sher3_diagnosis.finding import LIBRARY, NO_GAP, OUTSIDE, Item, Judged
 from sher3_diagnosis.judge.costs import Costs
+from sher3_diagnosis.judge.evidence.scales import beside_others
 from sher3_diagnosis.thresholds import COVERED
 from sher3_diagnosis.verdict import Status
 
@@ -17,7 +18,8 @@ def answer_to(j: Judged, costs: Costs) -> str:
     answers holds: a small gap that the cause may not close is likely none.
     """
     closure = j.closure
-    named = closure is not None and closure.value >= COVERED and (closure.low is None or closure.low > 0.0)
+    left = 1.0 if closure is None else beside_others(1.0 - closure.value, j.item.numbers)
+    named = closure is not None and left <= 1.0 - COVERED and (closure.low is None or closure.low > 0.0)
     return costs.cheapest(j.odds, (LIBRARY, OUTSIDE, NO_GAP) if named else (OUTSIDE, NO_GAP))
 
 

@@ -14,6 +14,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from sher3_diagnosis.attribute.rivals import Attribution
+from sher3_diagnosis.fit.fitting import Fit, Term
 from sher3_diagnosis.thresholds import NEEDED
 from sher3_diagnosis.verdict import Cause
 from sher3_effects import pages
@@ -29,15 +30,19 @@ def told_by_travel(found: Attribution) -> Attribution:
 
     Both laws are exact, and over a travel of 2 rad they part by 0.4 % of the gap: what a further cause must be worth.
     """
-    rivals = list(found.rivals)
+    rivals, ranking = list(found.rivals), list(found.ranking)
     for i in found.causes:
         share = found.fit.terms[i].effect.told_by_travel
         if share:
-            worth = max(NEEDED, share * found.explained[i])
-            rivals[i] = tuple(
-                f for f in rivals[i] if not f.terms[-1].effect.told_by_travel or f.total - found.fit.total < worth
-            )
-    return replace(found, rivals=tuple(rivals))
+            most = found.fit.total + max(NEEDED, share * found.explained[i])
+            rivals[i], ranking[i] = (_close(fits, found.fit.terms[i], most) for fits in (rivals[i], ranking[i]))
+    return replace(found, rivals=tuple(rivals), ranking=tuple(ranking))
+
+
+def _close(fits: Sequence[Fit], own: Term, most: float) -> tuple[Fit, ...]:
+    """Return the fits without those of another law that the travel tells from a cause, by their loss."""
+    others = ((f, f.terms[-1].effect) for f in fits)
+    return tuple(f for f, e in others if not e.told_by_travel or e.id == own.effect.id or f.total < most)
 
 
 def with_dead_band(causes: Sequence[Cause]) -> list[Cause]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import asdict, dataclass
 from typing import Protocol, runtime_checkable
 
@@ -24,11 +24,16 @@ from sher3_diagnosis.thresholds import AT_FLOOR
 
 
 @runtime_checkable
-class Recorded(Protocol):
-    """What a view tells of the quantities that laws may depend on."""
+class Felt(Protocol):
+    """What a view tells of the quantities that laws of a place may depend on."""
 
     def quantities(self, site: str) -> Mapping[str, Array]:
         """Return quantity, of `sher3_diagnosis.effect.INPUTS`, -> (g, k) columns, as a place feels them."""
+
+
+@runtime_checkable
+class Recorded(Protocol):
+    """What a view tells of a machine whose places may act on each other."""
 
     def everything(self) -> Array:
         """Return (g, k) everything that was recorded of the whole machine, with its past."""
@@ -42,6 +47,7 @@ class CauseEvidence:
 
     Attributes:
         left: share left on held-out runs.
+        part: that gap over the one that there is without any cause, at most 1.
         stray: share left that is not in proportion to what the cause adds, as the remainder of a bent law is.
         law: share left once its law is a free function of the inputs that the effect's page states. Like the next two
             None on a machine whose views do not tell them.
@@ -59,6 +65,7 @@ class CauseEvidence:
     """
 
     left: float
+    part: float
     stray: float
     law: float | None
     place: float | None
@@ -95,8 +102,8 @@ def cause_evidence(evidence: Evidence, attribution: Attribution, index: int) -> 
     fitted = found if moving is None else moving.whole
     remainder = remains(evidence, fitted, index, channel)
     left, own = excess_of(evidence, channel, remainder), added(fitted, index, channel, remainder)
-    told = all(isinstance(evidence.views[r], Recorded) for r in remainder)
-    taken = free_laws(evidence, channel, term, remainder) if told else (None, None, None)
+    told = all(isinstance(evidence.views[r], Felt) for r in remainder)
+    taken = free_laws(evidence, channel, inputs_of(attribution, channel), remainder) if told else (None, None, None)
     law, place, anything = (None if x is None else (left - x * samples) / gap for x in taken)
     steady = steadiness_of(evidence, found, index)
     before = residual_after(evidence, without, channel)
@@ -104,6 +111,7 @@ def cause_evidence(evidence: Evidence, attribution: Attribution, index: int) -> 
     assert whole is not None
     return CauseEvidence(
         left=left / gap,
+        part=min(1.0, gap / max(evidence.excess(channel), gap)),
         stray=left / gap * stray_share(whitened(evidence, channel, remainder), own),
         law=law,
         place=place,
@@ -130,12 +138,23 @@ def whitened(evidence: Evidence, channel: Channel, left: Mapping[int, Array]) ->
     return np.concatenate([x / evidence.floors[r][channel] for r, x in left.items()])
 
 
-def free_laws(
-    evidence: Evidence, channel: Channel, term: Term, left: Mapping[int, Array]
-) -> tuple[float, float, float]:
-    """Return the mean square over the floor, per sample and component, that free laws take off what a cause leaves.
+OF_FAMILY: Mapping[str, tuple[str, ...]] = {"friction": ("direction", "velocity")}
+"""Inputs that the laws of a family share, whichever was chosen: any friction may rise or fall with the speed."""
 
-    Of the inputs that the term's effect states; of all quantities of the place; of everything recorded.
+
+def inputs_of(attribution: Attribution, channel: Channel) -> frozenset[str]:
+    """Return the quantities that the laws of the causes of a channel depend on."""
+    terms = [attribution.fit.terms[i] for i in attribution.causes]
+    effects = [term.effect for term in terms if channel in term.channels]
+    return frozenset(x for e in effects for x in (*e.inputs, *OF_FAMILY.get(e.family, ())))
+
+
+def free_laws(
+    evidence: Evidence, channel: Channel, inputs: Collection[str], left: Mapping[int, Array]
+) -> tuple[float, float, float]:
+    """Return the mean square over the floor, per sample and component, that free laws take off what causes leave.
+
+    Of the inputs that their laws depend on; of all quantities of the place; of everything recorded.
     """
     white = {r: x / evidence.floors[r][channel] for r, x in left.items()}
     signal = np.concatenate(list(white.values()))
@@ -149,23 +168,24 @@ def free_laws(
     run = np.concatenate([np.full(len(picked[r]), r) for r in left])
     own, place, rest = [], [], []
     for r, rows in picked.items():
-        view: Recorded = evidence.views[r]  # type: ignore[assignment]
-        known = view.quantities(channel.actuator)
-        own.append(_stacked({n: x for n, x in known.items() if n in term.effect.inputs}, rows))
-        place.append(_stacked({n: x for n, x in known.items() if n not in term.effect.inputs + ELSEWHERE}, rows))
-        rest.append(view.everything()[rows])
+        view = evidence.views[r]
+        known = view.quantities(channel.actuator)  # type: ignore[attr-defined]
+        others = known.keys() - set(inputs)
+        own.append(_stacked(known, known.keys() - others, rows))
+        place.append(_stacked(known, others - ELSEWHERE, rows))
+        rest.append(view.everything()[rows] if isinstance(view, Recorded) else _stacked(known, others, rows))
     losses = loss_left([np.vstack(own), np.vstack(place), np.vstack(rest)], signal, run)
     before = float(np.sum(signal**2)) / len(signal)
     law, whole, anything = ((before - x) / width for x in losses)
     return law, whole, anything
 
 
-ELSEWHERE = ("time", "temperature", "posture")
+ELSEWHERE = frozenset({"time", "temperature", "posture"})
 """Quantities that are no place's own; at the tip the posture is in everything that was recorded."""
 
 
-def _stacked(columns: Mapping[str, Array], rows: NDArray[np.int64]) -> Array:
-    parts = [x[rows] for x in columns.values()]
+def _stacked(columns: Mapping[str, Array], names: Collection[str], rows: NDArray[np.int64]) -> Array:
+    parts = [x[rows] for name, x in columns.items() if name in names]
     return np.hstack(parts) if parts else np.zeros((len(rows), 0))
 
 

@@ -12,6 +12,9 @@ LEAST_FLOORS = 0.3
 MOST_POWER = 10.0
 """Power over its threshold, or of a remainder over the floor, above which there is one beyond doubt: how much larger it
 is tells nothing more."""
+MOST_FLOORS = 25.0
+"""Gap over its floor above which there is one beyond doubt, so that a larger one is not unusual either: the upper end
+of what labelled robots are drawn with (`sher3_challenge.calibration.drawn.GAP`)."""
 BENT = 0.10
 """Share of a gap that a right law leaves at most by its own shape, which differs from machine to machine: the upper end
 of what labelled robots are drawn with (`sher3_challenge.plants.level.SHAPE`). So much is as likely another law's."""
@@ -42,7 +45,8 @@ def scaled_cause(numbers: Mapping[str, float]) -> dict[str, float]:
 
     What nothing tells is not there, so that it speaks neither for the cause nor against it.
     """
-    left, floors = _share(strange(numbers)), max(numbers["power"], 0.0)
+    floors, bare = max(numbers["power"], 0.0), _share(strange(numbers))
+    left = beside_others(bare, numbers)
     steady = {"spread": log_above(numbers["spread"], 0.001)} if "spread" in numbers else {}
     return (
         _foreign(numbers, floors)
@@ -50,11 +54,21 @@ def scaled_cause(numbers: Mapping[str, float]) -> dict[str, float]:
         | {
             "left": log_above(left, LEAST_SHARE),
             "complete": 0.0 if numbers["idealised"] else log_above(left, LEAST_SHARE) - math.log(LEAST_SHARE),
-            "floors": log_above(min(left * floors, MOST_POWER), LEAST_FLOORS),
+            "floors": log_above(min(bare * floors, MOST_POWER), LEAST_FLOORS),
             "mismatch": log_above(numbers["mismatch"], 0.01),
-            "size": log_above(numbers["ratio"], 1.0),
+            "size": log_above(min(numbers["ratio"], MOST_FLOORS), 1.0),
         }
     )
+
+
+def beside_others(left: float, numbers: Mapping[str, float]) -> float:
+    """Return what a share that is left of a cause's part of a gap weighs beside the causes of the other parts.
+
+    What several causes leave is one remainder. Were all of them right, it would be the bends of all of them, a share of
+    the whole gap; were one foreign, a share of that one's part. Both are asked of each cause, and the logarithms
+    averaged: a sixth of a small part and a thousandth of the whole weigh as much as a hundredth of a lone cause's gap.
+    """
+    return left * math.sqrt(numbers.get("part", 1.0))
 
 
 def strange(numbers: Mapping[str, float]) -> float:
@@ -74,7 +88,7 @@ def _foreign(numbers: Mapping[str, float], floors: float) -> dict[str, float]:
     """Return the share of what own inputs leave that others explain; nothing where free laws were not looked at."""
     if "law" not in numbers:
         return {}
-    law, anything = _share(numbers["law"]), _share(numbers["anything"])
+    law, anything = (beside_others(_share(numbers[name]), numbers) for name in ("law", "anything"))
     return {"foreign": max(0.0, law - anything) / max(law, LEAST_LAW, 1.0 / max(floors, 1.0))}
 
 
