@@ -123,6 +123,7 @@ class Score:
 
     def __init__(self) -> None:
         self.right = self.true = self.good = self.all = self.machines = self.spoilt = 0
+        self.drawn: Counter[str] = Counter()
         self.missed: Counter[str] = Counter()
         self.wrong: Counter[str] = Counter()
 
@@ -133,6 +134,7 @@ class Score:
         self.right, self.true = self.right + len(truth & seen), self.true + len(truth)
         self.good, self.all = self.good + len(found) - len(bad), self.all + len(found)
         self.machines, self.spoilt = self.machines + 1, self.spoilt + bool(bad)
+        self.drawn.update(truth)
         self.missed.update(truth - seen)
         self.wrong.update(sorted(f)[0] for f in bad)
 
@@ -165,6 +167,8 @@ def main() -> None:
         taken = time.perf_counter() - begun
         print(f"{kind}: {last - first} machines, {taken:.0f} s, {dict(status)}")
         print(f"  intervals that hold the truth: {sum(held)} of {len(held)} = {np.mean(held):.3f}")
+        each = sorted(scores["sher3"].drawn.items())
+        print("  told:", ", ".join(f"{x} {n - scores['sher3'].missed[x]} of {n}" for x, n in each))
         for name, score in scores.items():
             print(f"  {name:14} {score.line()}")
             print(f"  {'':14} missed {dict(score.missed)}, wrong {dict(score.wrong)}", flush=True)

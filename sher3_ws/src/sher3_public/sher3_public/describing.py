@@ -14,6 +14,7 @@ from sher3_machines.drafting.guesses import count_of, scatter
 from sher3_machines.intake.tables import Tables
 
 from sher3_public import plausible
+from sher3_public.degrees import check_degrees
 from sher3_public.errors import InputError
 from sher3_public.models import Source
 from sher3_public.own_effort import simulated
@@ -57,6 +58,8 @@ def described(source: Source, runs: Sequence[Arrays], stated: Stated) -> Describ
         drive = drives[name].drive if name in drives else None
         if drive is not None and column is not None and runs[0].control is not None and runs[0].effort is None:
             plausible.control_of(name, runs[0].control[:, column], runs[0].position[:, place], drive)
+    if "position" not in stated.units and not isinstance(stated.gain, str):
+        check_degrees(names, runs[0], controls, source.bodies, drives, guesses)
     own = simulated(joints, names, controls, runs[0], source.bodies.mujoco, drives, stated.simulated, guesses)
     for joint in joints:
         if joint["name"] in drives:

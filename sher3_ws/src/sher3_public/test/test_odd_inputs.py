@@ -85,7 +85,7 @@ def test_units_that_cannot_be(log):
     time, control, position = log
     with pytest.raises(InputError, match="in ms by 1000"):
         gap.diagnose(MODEL, 1e3 * time, control, position)
-    with pytest.raises(MachineError, match="likely deg recorded as rad"):
+    with pytest.raises(InputError, match="likely in degrees"):
         gap.diagnose(MODEL, time, np.degrees(control), np.degrees(position))
 
 

@@ -27,11 +27,11 @@ URDF = """<robot name="arm"><link name="base"/>
 GAINS = {"shoulder": (400.0, 20.0), "elbow": (200.0, 8.0)}
 
 
-def log_of(xml):
+def log_of(xml, size=1.0):
     """Return stamps, controls, the whole qpos with noise of an encoder, and `qfrc_actuator`."""
     model = mujoco.MjModel.from_xml_string(xml)
     state, rows = mujoco.MjData(model), []
-    for place in asked(np.random.default_rng(5), np.arange(6000) * model.opt.timestep, 2):
+    for place in size * asked(np.random.default_rng(5), np.arange(6000) * model.opt.timestep, 2):
         state.ctrl[:] = place
         mujoco.mj_forward(model, state)
         rows.append([state.time, *place, *state.qpos, *state.qfrc_actuator])
@@ -54,6 +54,22 @@ def test_efforts_as_wide_as_mujoco_s_speeds():
     time, control, position, effort = log_of(ARM.format(body=CUBE, range=""))
     assert (position.shape[1], effort.shape[1]) == (9, 8)
     assert gap.diagnose(ARM.format(body=CUBE, range=""), time, control, position, effort).status == "no_gap"
+
+
+def test_small_angles_in_degrees():
+    """Of ten degrees nobody knows that they are no radians, but the weights of the links."""
+    xml = ARM.format(body="", range="")
+    time, control, position, effort = log_of(xml, size=0.15)
+    assert 6.0 < np.degrees(np.abs(position).max()) < 12.0
+    for own in (None, effort):
+        with pytest.raises(gap.InputError, match="likely in degrees"):
+            gap.diagnose(xml, time, np.degrees(control), np.degrees(position), own)
+    units = {"position": "deg", "control": "deg"}
+    assert gap.diagnose(xml, time, np.degrees(control), np.degrees(position), units=units).status == "no_gap"
+    lighter = mujoco.MjSpec.from_string(xml)
+    lighter.option.gravity = [0.0, 0.0, 0.0]  # balanced, which its model does not know: no reason for another unit
+    time, control, position, _ = log_of(lighter.to_xml())
+    assert gap.diagnose(xml, time, control, position).status != "no_gap"
 
 
 def driven_urdf():

@@ -104,7 +104,7 @@ def test_a_urdf_needs_efforts(log, tmp_path):
     assert gap.diagnose(tmp_path / "arm.urdf", log.time, None, log.qpos[:, 0], effort).status == "attributed"
     answer = gap.diagnose(urdf, log.time, log.ctrl[:, 0], log.qpos[:, 0], effort)
     assert [(c.effect, c.actuator) for c in answer.causes] == [("coulomb_friction", "turn")]
-    assert "turn: its control is not used, because the model has no drives" in answer.guessed
+    assert "turn: its control is not used, because the model has no drives; servo=(kp, kv)" in answer.guessed
 
 
 def test_a_description_of_any_kind():

@@ -1,0 +1,102 @@
+"""Angles in degrees that go no further than radians might: the forces of the arm tell them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from scipy.signal import savgol_filter
+from sher3_chain.manipulator.bodies import Bodies
+from sher3_chain.manipulator.mjcf.drives import Driven
+from sher3_chain.manipulator.model import arm_model
+
+from sher3_public.errors import InputError
+from sher3_public.own_effort import LOOKED_AT, WINDOW
+from sher3_public.records import Array, Arrays
+
+FURTHEST = 1.0
+"""Largest place, rad, up to which nobody asks: a joint that moves within a degree tells nothing."""
+BETTER = 0.35
+"""Share of what the model leaves of efforts in radians that it leaves in degrees at most, in the mean of the joints.
+Where angles are right the other unit leaves two to a hundred times more."""
+
+
+def check_degrees(
+    names: Sequence[str],
+    run: Arrays,
+    controls: Sequence[int | None],
+    bodies: Bodies,
+    drives: Mapping[str, Driven],
+    guesses: list[str],
+) -> None:
+    """Raise InputError where the model explains the efforts far better with angles in degrees.
+
+    Where the forces are those of servos, which grow with the unit, weight alone tells them apart, and a robot may have
+    another one: within half a turn that is a guess.
+
+    Args:
+        names: of the joints, one for each column of the positions.
+        run: that is looked at.
+        controls: column of `control` of each joint, None where it has none.
+        bodies: of the model.
+        drives: joint -> how it is driven.
+        guesses: so far.
+    """
+    turns = [i for i, name in enumerate(names) if not bodies.joints[name]]
+    most = float(np.nanmax(np.abs(run.position[:, turns]), initial=0.0))
+    known = np.isfinite(run.position).all() and np.isfinite(run.time).all() and len(run.time) > 3 * WINDOW
+    if most < FURTHEST or not known:
+        return
+    radians, degrees = (left(names, run, controls, bodies, drives, x)[turns] for x in (1.0, np.pi / 180.0))
+    told = np.isfinite(radians)
+    better = np.log(degrees[told] / radians[told])
+    if not told.any() or better.max() > 0.0 or better.mean() > np.log(BETTER):
+        return
+    value = f"{degrees[told].max():.2g} of the efforts left in degrees"
+    said = "units={'position': 'deg', 'control': 'deg'}"
+    if run.effort is None and most < np.pi:
+        guesses.append(f"positions are in rad; in degrees the model would leave less of its forces, {value}: {said}")
+        return
+    limit = f"{radians[told].min():.2g} left in rad"
+    raise InputError("positions are likely in degrees", value=value, limit=limit, remedy=f"give rad, or {said}")
+
+
+def left(
+    names: Sequence[str],
+    run: Arrays,
+    controls: Sequence[int | None],
+    bodies: Bodies,
+    drives: Mapping[str, Driven],
+    scale: float,
+) -> Array:
+    """Return the share of each joint's effort that model and friction leave, with angles times a scale.
+
+    NaN where no effort is known.
+    """
+    period = float(np.median(np.diff(run.time)))
+    sizes = np.array([1.0 if bodies.joints[name] else scale for name in names])
+    q, v, a = (sizes * savgol_filter(run.position, WINDOW, 3, deriv=k, delta=period, axis=0) for k in (0, 1, 2))
+    inner = np.arange(WINDOW, len(q) - WINDOW, max(1, len(q) // LOOKED_AT))
+    needed = arm_model(bodies, names, None).needed(*(x[inner] for x in (q, v, a)))
+    out = np.full(len(names), np.nan)
+    for i, name in enumerate(names):
+        drive = drives[name].drive if name in drives else None
+        added = 0.0
+        if run.effort is not None:
+            effort = run.effort[:, i]
+        elif run.control is None or controls[i] is None or drive is None:
+            continue
+        elif drive.servo:
+            asked = sizes[i] * drive.asked(run.control[:, controls[i]])
+            effort, added = (
+                drive.position_gain * (asked - q[:, i]) - drive.velocity_gain * v[:, i],
+                drives[name].of_law.inertia,
+            )
+        else:
+            effort = drive.asked(run.control[:, controls[i]])
+        effort = savgol_filter(effort, WINDOW, 3)[inner]
+        beside = np.column_stack([v[inner, i], np.sign(v[inner, i]), np.ones(len(inner))])
+        rest = effort - needed[:, i] - added * a[inner, i]
+        rest = rest - beside @ np.linalg.lstsq(beside, rest, rcond=None)[0]
+        out[i] = np.std(rest) / max(float(np.std(effort)), np.finfo(float).tiny)
+    return out
