@@ -18,11 +18,11 @@ from sher3_machines.intake.fields import Description
 from sher3_machines.intake.kinds import kinds, load_description
 from sher3_machines.intake.tables import Tables
 
-from sher3_public.describing import described
+from sher3_public.arrays.describing import described
+from sher3_public.arrays.stating import Stated
 from sher3_public.errors import InputError
 from sher3_public.models import Source, source_of
 from sher3_public.records import Arrays, per_run
-from sher3_public.stating import Stated
 
 RECORD = Path("table")
 """What a table is called where a file's name would stand."""

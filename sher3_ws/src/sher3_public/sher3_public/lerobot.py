@@ -12,10 +12,10 @@ from sher3_machines.intake.readers.lerobot import DataSet, read_data_set
 from sher3_machines.intake.units import UNITS
 
 from sher3_public.answer import Answer
+from sher3_public.arrays.stating import Stated
 from sher3_public.cases import case_of_arrays, case_of_tables
 from sher3_public.errors import InputError
 from sher3_public.records import Array, Arrays
-from sher3_public.stating import Stated
 
 STATE, ACTION = "observation.state/", "action/"
 CLOCK = "timestamp"

@@ -9,10 +9,10 @@ from numpy.typing import ArrayLike
 from sher3_machines.errors import MachineError
 
 from sher3_public.answer import Answer
+from sher3_public.arrays.stating import Gains, Stated
 from sher3_public.cases import Case, case_of_arrays, case_of_description, case_of_tables
 from sher3_public.errors import InputError
 from sher3_public.records import arrays_of, columns_of, is_several, is_table, tables_at
-from sher3_public.stating import Gains, Stated
 
 UNUSED = "is not used"
 """Words of a guess by which a signal plays no part."""

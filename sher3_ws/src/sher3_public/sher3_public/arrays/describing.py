@@ -13,13 +13,13 @@ from sher3_chain.manipulator.mjcf.joint import drive_joint
 from sher3_machines.drafting.guesses import count_of, scatter
 from sher3_machines.intake.tables import Tables
 
-from sher3_public import plausible
-from sher3_public.degrees import check_degrees
+from sher3_public.arrays import plausible
+from sher3_public.arrays.degrees import check_degrees
+from sher3_public.arrays.own_effort import simulated
+from sher3_public.arrays.stating import Stated
 from sher3_public.errors import InputError
 from sher3_public.models import Source
-from sher3_public.own_effort import simulated
 from sher3_public.records import Array, Arrays
-from sher3_public.stating import Stated
 
 LEAST_RESOLUTION = 1e-9
 """Resolution of an encoder whose readings neither step nor scatter, rad or m: a simulator's own numbers."""

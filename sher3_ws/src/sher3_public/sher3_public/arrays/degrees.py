@@ -10,8 +10,8 @@ from sher3_chain.manipulator.bodies import Bodies
 from sher3_chain.manipulator.mjcf.drives import Driven
 from sher3_chain.manipulator.model import arm_model
 
+from sher3_public.arrays.own_effort import LOOKED_AT, WINDOW
 from sher3_public.errors import InputError
-from sher3_public.own_effort import LOOKED_AT, WINDOW
 from sher3_public.records import Array, Arrays
 
 FURTHEST = 1.0
