@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from bisect import bisect_left
 from collections.abc import Mapping
 
@@ -50,7 +51,8 @@ def distance(x: np.ndarray, covariance: np.ndarray) -> float:
     if not told.any():
         return 0.0
     within = covariance[np.ix_(told, told)] + RIDGE * np.eye(int(told.sum()))
-    return float(np.sqrt(x[told] @ np.linalg.solve(within, x[told]) / told.sum()))
+    square = float(x[told] @ np.linalg.solve(within, x[told]))  # pairs that are seldom told may make it negative
+    return math.sqrt(max(square, 0.0) / int(told.sum()))
 
 
 def trust(typicality: float | None) -> float:
