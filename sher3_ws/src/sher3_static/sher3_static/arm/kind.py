@@ -18,9 +18,11 @@ from sher3_diagnosis.machine import Policy
 from sher3_diagnosis.quantify.closure import closure
 from sher3_diagnosis.verdict import Interval
 from sher3_machines.errors import MachineError
+from sher3_machines.intake.kind import Draft
 from sher3_machines.intake.tables import Tables
 
 from sher3_static.arm.description import ArmDescription
+from sher3_static.arm.draft import draft_arm
 from sher3_static.arm.frames import fitted_view, set_up
 from sher3_static.arm.kinematics import Arm, arm_from_table
 from sher3_static.arm.reading import read_arm
@@ -83,6 +85,10 @@ class ArmKind(TableKind[ArmDescription]):
         seen: dict[str, Sight] = {"poses": PoseSight(), "positions": PositionSight(), "lengths": LengthSight()}
         sight = next(x for name, x in seen.items() if getattr(description, name) is not None)
         return KnownArm(arm, sight, description.noise, description.noise_rotation)
+
+    def draft(self, path: Path, tables: Tables, rate: float | None, model: Path | None) -> Draft | None:
+        """Draft an arm of postures where a model and no clock is given; None of any other table."""
+        return draft_arm(path, tables, model) if model is not None and rate is None else None
 
     def read(self, name: str, tables: Tables, description: ArmDescription) -> Readings:
         """Check a data file; raises MachineError."""

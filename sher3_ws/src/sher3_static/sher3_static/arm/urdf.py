@@ -30,7 +30,7 @@ def arm_from_urdf(path: Path, base: str, tip: str) -> Arm:
             attribute is missing or does not hold three numbers.
     """
     names, fixed, axes, pending = [], [], [], np.eye(4)
-    for joint in _chain(_root(path), path, base, tip):
+    for joint in _chain(read_urdf(path), path, base, tip):
         pending = pending @ _origin(joint, path)
         kind, name = _word(joint, "type", path), _word(joint, "name", path)
         if kind in ("revolute", "continuous"):
@@ -43,7 +43,8 @@ def arm_from_urdf(path: Path, base: str, tip: str) -> Arm:
     return Arm(tuple(names), np.array(fixed), np.array(axes), pending)
 
 
-def _root(path: Path) -> ElementTree.Element:
+def read_urdf(path: Path) -> ElementTree.Element:
+    """Return the root of a URDF file; raises MachineError where it cannot be read."""
     try:
         text = read_text(path, MAX_BYTES)
         if "<!DOCTYPE" in text:  # what declares entities can expand without bound or name other files

@@ -1,0 +1,92 @@
+"""An arm in measured postures drafted from a table without a clock: a column for each joint, and x, y, z of a point.
+
+Columns are joints of the model by their names. The chain runs from the link that carries the first recorded joint to
+the one that the last moves.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+from sher3_machines.drafting.draft import written
+from sher3_machines.drafting.guesses import position_unit
+from sher3_machines.drafting.names import bare_and_unit, tells_time
+from sher3_machines.intake.kind import Draft
+from sher3_machines.intake.spelling import bare
+from sher3_machines.intake.tables import Tables
+
+from sher3_static.arm.urdf import read_urdf
+
+PLACE = re.compile(r"(?P<before>.*?)(?P<axis>[xyz])(?P<behind>[_ ]?\d*)", re.IGNORECASE)
+"""Name of one of three coordinates: `x1`, `tip_y`, `pos z`."""
+NOISE = 1e-4
+"""Noise of a measured position, m, that a draft states until somebody does: that of a good tracker in a hall."""
+FEWEST = 2
+"""Joints that must be named, so that a table is one of postures."""
+
+
+def draft_arm(path: Path, tables: Tables, model: Path) -> Draft | None:
+    """Draft an arm of a table of postures; None where it has a clock, or no columns of joints and of a point.
+
+    Raises:
+        MachineError: the model cannot be read.
+    """
+    columns = {name: x for name, x in tables.items() if x.ndim == 1}
+    point = next(iter(points(columns).values()), None)
+    if point is None or model.suffix.lower() != ".urdf" or any(tells_time(name) for name in columns):
+        return None
+    above = {child: (joint, parent) for joint, parent, child in joints_of(read_urdf(model))}
+    named = {_plain(bare_and_unit(bare(name))[0]): name for name in columns}
+    chain = [(joint, parent, child) for child, (joint, parent) in above.items() if _plain(joint) in named]
+    if len(chain) < FEWEST:
+        return None
+    depth = {child: _depth(child, above) for _, _, child in chain}
+    chain.sort(key=lambda link: depth[link[2]])
+    own = [named[_plain(joint)] for joint, _, _ in chain]
+    guesses = [
+        f"postures: {', '.join(own)} are the joints, {', '.join(point)} the measured point; without a time",
+        f"noise of {NOISE:g} m is a placeholder: state that of the instrument",
+    ]
+    data: dict[str, Any] = {"kind": "arm", "name": re.sub(r"\W+", "_", path.stem)}
+    data["joint_positions"] = [_column(name, columns, False) for name in own]
+    data["positions"] = [_column(name, columns, True) for name in point]
+    data |= {"noise": NOISE, "urdf": str(model.resolve()), "base_link": chain[0][1], "tip_link": chain[-1][2]}
+    rest = [name for name in tables if name not in (*own, *point)]
+    guesses += [f"not used: {', '.join(rest)}"] if rest else []
+    return written(data, guesses)
+
+
+def points(columns: Mapping[str, Any]) -> dict[tuple[str, str], list[str]]:
+    """Return the names of the three coordinates of each point that has all of them."""
+    found: dict[tuple[str, str], dict[str, str]] = {}
+    for name in columns:
+        if match := PLACE.fullmatch(bare_and_unit(bare(name))[0]):
+            found.setdefault((match["before"], match["behind"]), {})[match["axis"].lower()] = name
+    return {key: [each[axis] for axis in "xyz"] for key, each in found.items() if len(each) == len("xyz")}
+
+
+def joints_of(root: ElementTree.Element) -> list[tuple[str, str, str]]:
+    """Return joint, parent and child link of every joint of a URDF that has them."""
+    ends = [(joint.get("name", ""), joint.find("parent"), joint.find("child")) for joint in root.iter("joint")]
+    return [(name, a.get("link", ""), b.get("link", "")) for name, a, b in ends if a is not None and b is not None]
+
+
+def _depth(link: str, above: Mapping[str, tuple[str, str]]) -> int:
+    """Return how many joints lie between a link and the root; a circle ends the count."""
+    seen: list[str] = []
+    while link in above and link not in seen:
+        seen.append(link)
+        link = above[link][1]
+    return len(seen)
+
+
+def _column(name: str, columns: Mapping[str, Any], slides: bool) -> dict[str, Any]:
+    return {"column": name, "unit": position_unit(bare_and_unit(bare(name))[1], columns[name], slides)[0]}
+
+
+def _plain(name: str) -> str:
+    return re.sub(r"[^a-z0-9]", "", name.lower())

@@ -1,0 +1,74 @@
+"""An arm in measured postures drafted from a table and its URDF."""
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+from sher3_common import parse_yaml
+from sher3_diagnosis import diagnose
+from sher3_machines import import_case, open_case
+from sher3_machines.drafting.drafts import draft_of
+from sher3_static.arm.draft import draft_arm
+
+AXES = {"pan": "z", "lift": "y", "elbow": "y", "roll": "z"}
+LENGTH = 0.4
+URDF = (
+    '<robot name="arm"><link name="world"/><link name="base"/>'
+    + "".join(f'<link name="{name}_link"/>' for name in AXES)
+    + '<joint name="stand" type="fixed"><parent link="world"/><child link="base"/></joint>'
+    + "".join(
+        f'<joint name="{name}_joint" type="revolute"><parent link="{before}"/><child link="{name}_link"/>'
+        f'<origin xyz="0 0 {LENGTH}"/><axis xyz="{int(axis == "x")} {int(axis == "y")} {int(axis == "z")}"/></joint>'
+        for before, (name, axis) in zip(("base", *(f"{n}_link" for n in AXES)), AXES.items(), strict=False)
+    )
+    + "</robot>"
+)
+
+
+def seen(q, target=(0.1, 0.05, 0.2)):
+    """Where a target on the last link is, m, for joint positions (4,)."""
+    place = np.array(target)
+    for axis, angle in reversed(list(zip(AXES.values(), q, strict=True))):
+        place = Rotation.from_euler(axis, angle).apply(place) + np.array([0.0, 0.0, LENGTH])
+    return place
+
+
+def table(tmp_path, header, seed, zero=0.0, unit=1.0, postures=60):
+    """Postures of a drawn arm whose lift reads `zero` too much, as a csv beside the model."""
+    rng = np.random.default_rng(seed)
+    q = rng.uniform(-1.2, 1.2, (postures, 4))
+    places = np.array([seen(x - [0.0, zero, 0.0, 0.0]) for x in q]) + 1e-4 * rng.standard_normal((postures, 3))
+    rows = np.column_stack([places * unit, q[:, [2, 0, 1, 3]]])
+    np.savetxt(tmp_path / "a.csv", rows, delimiter=",", header=header, comments="", fmt="%.9g")
+    (tmp_path / "arm.urdf").write_text(URDF)
+    return draft_of(tmp_path / "a.csv", model=tmp_path / "arm.urdf")
+
+
+@pytest.mark.parametrize(
+    ("header", "unit"),
+    [
+        ("x1,y1,z1,elbow_joint,pan_joint,lift_joint,roll_joint", 1.0),
+        ("tip_X [mm],tip_Y [mm],tip_Z [mm],Elbow Joint,Pan Joint,Lift Joint,Roll Joint", 1e3),
+        ("x,y,z,elbow_joint,pan_joint,lift_joint,roll_joint", 1e3),
+    ],
+)
+def test_a_table_of_postures_is_drafted_and_its_zero_found(tmp_path, header, unit):
+    found = table(tmp_path, header, seed=1, zero=0.01, unit=unit)
+    described = parse_yaml(found.text)
+    assert described["kind"] == "arm" and described["base_link"] == "base" and described["tip_link"] == "roll_link"
+    joints = [c["column"].lower().replace(" ", "_") for c in described["joint_positions"]]
+    assert joints == ["pan_joint", "lift_joint", "elbow_joint", "roll_joint"]
+    assert {c["unit"] for c in described["positions"]} == {"m" if unit == 1.0 else "mm"}
+    (tmp_path / "a.yaml").write_text(found.text, encoding="utf-8")
+    import_case([tmp_path / "a.csv"], tmp_path / "a.yaml", tmp_path / "case")
+    verdict = diagnose(*open_case(tmp_path / "case")).verdict
+    offsets = {c.actuator: c.parameters["offset"].value for c in verdict.causes if c.effect == "encoder_offset"}
+    assert offsets["lift_joint"] == pytest.approx(0.01, abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    "header", ["t,x,y,z,pan_joint,lift_joint", "x,y,z,left,right,up", "x,y,w,a,pan_joint,lift_joint"]
+)
+def test_what_has_a_clock_or_no_joints_or_no_point_is_no_table_of_postures(tmp_path, header):
+    (tmp_path / "arm.urdf").write_text(URDF)
+    columns = {name: np.arange(30.0) for name in header.split(",")}
+    assert draft_arm(tmp_path / "a.csv", columns, tmp_path / "arm.urdf") is None
