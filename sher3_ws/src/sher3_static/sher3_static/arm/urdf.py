@@ -18,6 +18,10 @@ MAX_BYTES = 4_000_000
 """Largest file that is read."""
 LARGEST, SHORTEST = 1e6, 1e-9
 """Largest number of a file [m, rad], and shortest axis that has a direction."""
+SLIDES = (
+    "take postures in which it stayed, and begin the chain behind it (`base_link`) or end it before it (`tip_link`)"
+)
+"""What helps where a joint of the chain slides: the errors that are looked for are those of joints that turn."""
 DEFAULT_AXIS = "1 0 0"
 """Axis of a joint that states none, as the format has it."""
 
@@ -39,7 +43,7 @@ def arm_from_urdf(path: Path, base: str, tip: str) -> Arm:
             axes.append(_axis(joint, path))
             pending = np.eye(4)
         elif kind != "fixed":
-            raise MachineError(f"{path}: joint {name} is not revolute", value=kind, remedy="use a DH table")
+            raise MachineError(f"{path}: joint {name} is not revolute", value=kind, remedy=SLIDES)
     return Arm(tuple(names), np.array(fixed), np.array(axes), pending)
 
 
