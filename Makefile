@@ -21,7 +21,7 @@ test: test-all-but-wall test-wall  ## lint, types and every test but the slow on
 # In the order of the files: long ones come first, so that neither of the two waits for the other at the end.
 .PHONY: test-all-but-wall test-wall
 test-all-but-wall: $(READY) lint
-	nice -n 10 $(BIN)/pytest -n 2 --dist loadscope --no-loadscope-reorder --durations 10 \
+	nice -n 5 $(BIN)/pytest -n 2 --dist loadscope --no-loadscope-reorder --durations 10 \
 		-m "not slow and not (graph and flaky)"
 
 # Reads only the files that name the mark it asks for (`conftest.py` sees to it that they do): a quarter of the time to

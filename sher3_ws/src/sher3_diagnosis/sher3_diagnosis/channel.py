@@ -7,6 +7,7 @@ that stage. A gap upstream therefore does not leak downstream (conditional predi
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,9 +21,8 @@ AT_TIP = ("mechanism", "structure")
 """Stages that are seen at the tip, by one reading of its pose."""
 
 
-@dataclass(frozen=True, order=True)
-class Channel:
-    """A stage at an actuator, or at another place of the machine such as its tip."""
+class Channel(NamedTuple):
+    """A stage at an actuator, or at another place of the machine such as its tip; a tuple is looked up fast."""
 
     stage: str
     actuator: str
