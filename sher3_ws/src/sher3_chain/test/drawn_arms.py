@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import mujoco
@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 
 NAMES = ("turn", "shoulder", "elbow", "wrist")
 AXES = ("0 0 1", "0 1 0", "0 1 0", "0 1 0")
+METHODS = ("Euler", "implicit", "implicitfast", "RK4")
+"""Integrators of MuJoCo."""
 SECONDS, NOISE = 16.0, 1e-5
 """Length of a log, s, and noise of its encoders, rad."""
 
@@ -27,10 +29,12 @@ class Logged:
     actuator_force: NDArray[np.float64]
 
 
-def drawn_xml(rng: np.random.Generator, servo: bool = True, joints: int | None = None) -> str:
+def drawn_xml(
+    rng: np.random.Generator, servo: bool = True, joints: int | None = None, methods: Sequence[str] = METHODS
+) -> str:
     """Return an arm of two to four joints with drawn masses, losses, rotors, drives and integrator."""
     k = int(rng.integers(2, 5)) if joints is None else joints
-    method, step = rng.choice(["Euler", "implicit", "implicitfast", "RK4"]), rng.choice([0.001, 0.002])
+    method, step = rng.choice(methods), rng.choice([0.001, 0.002])
     links = [_link(rng, i) for i in range(k)]
     bodies = "".join(f'<body pos="0.3 0 0" gravcomp="{rng.choice([0, 0, 0, 1])}">{link}' for link in links)
     drives = [_drive(rng, i, servo) for i in range(k)]
