@@ -20,6 +20,8 @@ from sher3_machines.intake.kind import Kind
 
 GROUP = "sher3.kinds"
 """Group of entry points by which packages give kinds."""
+DRAFT_IT = "add it: `sher3 gap describe DATA` drafts a description that has it; see docs/reference/real-data.md"
+"""What to do where a field is missing that has no usual value."""
 
 
 @lru_cache(maxsize=1)
@@ -79,8 +81,9 @@ def load_description(path: Path) -> Description:
     except ValidationError as error:
         first = error.errors()[0]
         place = ".".join(map(str, first["loc"])) or "the file"
+        missing = first["type"] == "missing"
         raise MachineError(
             f"{path}: {place}: {first['msg']}",
-            value=repr(first["input"])[:80],
-            remedy="see docs/reference/real-data.md",
+            value="it is not there" if missing else repr(first["input"])[:80],
+            remedy=DRAFT_IT if missing else "see docs/reference/real-data.md",
         ) from error

@@ -21,6 +21,14 @@ def test_an_unknown_kind_is_named(tmp_path):
     assert set(caught.value.limit.split(", ")) == set(kinds())
 
 
+def test_a_field_that_is_missing_is_drafted_by_a_command(tmp_path):
+    """Ten lines by hand without the count of an encoder, which few people know."""
+    axis = "axes: [{name: a, motion: rotary, signals: {position: {column: q, unit: rad}}, command_law: {kind: none}}]"
+    (tmp_path / "m.yaml").write_text(f"kind: axes\nname: m\ntime: {{rate: 100}}\n{axis}\n", encoding="utf-8")
+    with pytest.raises(MachineError, match=r"encoder_resolution: Field required.*sher3 gap describe"):
+        load_description(tmp_path / "m.yaml")
+
+
 @pytest.mark.parametrize("text", ["name: x\n", "kind: [axes]\n"])
 def test_a_file_that_describes_nothing_is_refused(tmp_path, text):
     (tmp_path / "machine.yaml").write_text(text)
