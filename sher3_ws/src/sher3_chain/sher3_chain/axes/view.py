@@ -23,6 +23,9 @@ STIRRING = 0.01
 """Share of the travel above which a change is no noise: what a slow record moves by is not taken for one."""
 SPREAD = 0.5
 """Periods of the cut-off by which the filter spreads a step."""
+REST_SPREADS = 2
+"""Samples of the grid by which the filter spreads what friction does at rest, and in motion: 0.8 of a period of the
+cut-off. By one sample a stop of a finely resolved axis still leaves thousands of floors."""
 PAST = (0.003, 0.03, 0.3)
 """Shares of a range over which a state forgets: what went before within a fine, a usual and a coarse stroke."""
 ENOUGH = 0.5
@@ -126,11 +129,8 @@ class AxisView(ChainView):
     @cached_property
     def moving(self) -> Mask:
         """(g,) True where the axis moves: at rest friction takes any value, and the force balance says nothing."""
-        run = self.run
-        half = max(1, run.stride)
-        before = run.smooth[np.maximum(run.grid - half, 0), 0]
-        after = run.smooth[np.minimum(run.grid + half, run.ticks - 1), 0]
-        return np.abs(after - before) > max(self.described.encoder_resolution, self._jitter)
+        least = max(self.described.encoder_resolution, self._jitter)
+        return self.moves(np.array([least]))[:, 0]
 
     @cached_property
     def noise(self) -> float:
@@ -168,7 +168,7 @@ class AxisView(ChainView):
         """(g,) True where the force balance can be judged: well inside a stretch of motion."""
         limited = self.run.limited
         told = self.moving if limited is None else self.moving & ~limited[self.run.grid]
-        inside = self.run.inner & self.released & settled(told, 1)
+        inside = self.run.inner & self.released & settled(told, REST_SPREADS)
         clear = inside & self.clear
         return clear if clear.sum() >= ENOUGH * inside.sum() and not self.described.free else inside
 
@@ -191,7 +191,7 @@ class AxisView(ChainView):
     @cached_property
     def at_rest(self) -> Mask:
         """(g,) True well inside a stretch without motion."""
-        return self.run.inner & self.released & settled(~self.moving, 2)
+        return self.run.inner & self.released & settled(~self.moving, REST_SPREADS)
 
     # what the engine reads
 

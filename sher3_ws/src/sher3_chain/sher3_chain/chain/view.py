@@ -8,8 +8,10 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
+from scipy.ndimage import maximum_filter1d, minimum_filter1d
 from sher3_diagnosis.channel import Array, Mask
 from sher3_diagnosis.evidence import Motion
+from sher3_diagnosis.thresholds import AT_REST
 from sher3_effects.motion import GridView
 from sher3_effects.operators import dahl_turned
 
@@ -25,6 +27,8 @@ REFERENCE = 20.0
 """Temperature, deg C, at which lengths are stated (ISO 1)."""
 STILL = 1e-12
 """Top speed in place of none, m/s or rad/s: shares of the top speed are taken."""
+TURNS_BY = 4.0
+"""Counts by which a turn differs from a stop: fewer are rounding."""
 
 
 class Loads(NamedTuple):
@@ -103,5 +107,29 @@ class ChainView(GridView, ABC):
         """Return the motion of a joint."""
         row = self.row(actuator)
         return Motion(self.position[:, row], self.velocity[:, row], float(self.tops[row]), self.joints[row].lead)
+
+    def moves(self, least: Array) -> Mask:
+        """Return (g, n) where each joint moves by more than `least` (n,), m or rad, around a sample of the grid.
+
+        The filter lets a joint creep that has come to rest, and hides a stop between two samples: by its raw readings,
+        too, it must not stop.
+        """
+        run, half = self.run, max(1, self.run.stride)
+        before, after = np.maximum(run.grid - half, 0), np.minimum(run.grid + half, run.ticks - 1)
+        stops = np.column_stack([self._stops(row) for row in range(len(self.joints))])
+        return np.asarray((np.abs(run.smooth[after] - run.smooth[before]) > least) & ~stops)
+
+    def _stops(self, row: int) -> Mask:
+        """Return (g,) where the readings of a joint stay for as long as a slow motion, or a turn, takes to pass counts.
+
+        A turn at the usual acceleration passes `TURNS_BY` counts on either side of it within that time.
+        """
+        run, count = self.run, self.joints[row].encoder_resolution
+        bend = float(np.sqrt(np.mean(np.gradient(run.velocity[:, row], run.period) ** 2))) or STILL
+        time = max(count / (AT_REST * self.tops[row]), float(np.sqrt(2.0 * TURNS_BY * count / bend)))
+        window = 2 * int(np.clip(np.ceil(time / run.period), 1, max(1, run.stride))) + 1
+        readings = run.motor[:, row]
+        stays = maximum_filter1d(readings, window) - minimum_filter1d(readings, window) < 0.5 * count
+        return np.asarray(maximum_filter1d(stays, 2 * (run.stride // 2) + 1)[run.grid])
 
     # what discovery reads

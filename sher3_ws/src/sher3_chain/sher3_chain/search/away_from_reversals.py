@@ -6,6 +6,7 @@ late effort, a spring or a mass can take up some of that. Away from reversals no
 
 from __future__ import annotations
 
+from sher3_diagnosis.attribute.candidates import complexity
 from sher3_diagnosis.attribute.rivals import Attribution
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import Fit, Term, fit
@@ -25,7 +26,7 @@ def borne_out(evidence: Evidence, found: Attribution) -> Attribution:
 
 
 def of_reversals(evidence: Evidence, found: Fit) -> set[int]:
-    """Return the terms of a fit with dry friction that are worth nothing away from its reversals."""
+    """Return the terms of a fit with dry friction that are not worth their numbers away from its reversals."""
     dry = {t.site for t in found.terms if t.effect.dry}
     judged = [i for i, t in enumerate(found.terms) if t.site in dry and t.effect.family not in SHAPED and _force(t)]
     if not judged:
@@ -34,7 +35,7 @@ def of_reversals(evidence: Evidence, found: Fit) -> set[int]:
     terms = again(data, found.terms)
     whole = fit(data, terms).total
     worth = {i: fit(data, [*terms[:i], *terms[i + 1 :]]).total - whole for i in judged}
-    return {i for i, gain in worth.items() if gain < NEEDED}
+    return {i for i, gain in worth.items() if gain < NEEDED * complexity(found.terms[i])}
 
 
 def _force(term: Term) -> bool:

@@ -63,6 +63,12 @@ class CoulombOnAxis(CoulombFriction):
     DISPLACEMENTS = (1.0e-4, 3.0e-4, 1.0e-3, 2.5e-3, 5.0e-3)
     """In motor revolutions, or shares of what stands for one: too long a one reverses the force too late."""
 
+    def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
+        """Return those displacements, m or rad, and one count: a force that builds up slower breaks away too late."""
+        count = min(view.axis(site).seen for view in views)
+        found = super().shapes(views, site)
+        return [{"displacement": count}, *found] if 0.0 < count < found[0]["displacement"] else found
+
 
 class ServoStiction(CoulombFriction):
     """Coulomb friction under a proportional servo: the axis stays until the error reaches friction over stiffness.

@@ -14,6 +14,7 @@ from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.friction.bristle import deflection, soften
+from sher3_effects.friction.coulomb_friction import CoulombOnAxis
 from sher3_effects.friction.dry import DryFriction
 from sher3_effects.page import Page
 from sher3_effects.view import AxisView
@@ -89,6 +90,8 @@ class StribeckOnAxis(StribeckFriction):
     """The same on one axis of any machine: the hump is below its top speed, and not many times the friction."""
 
     kinds = ("axis",)
+    finer = {"stribeck_velocity": (0.7, 0.85, 1.2, 1.4)}
+    polished = ("displacement",)
     bends = Page.bends
     bounds = {"force": (0.0, np.inf), "static": (0.0, np.inf), "stribeck_velocity": (0.0, np.inf)}
     SHARES = (0.02, 0.05, 0.1, 0.2)
@@ -99,14 +102,14 @@ class StribeckOnAxis(StribeckFriction):
     """Friction at rest over friction in motion at most: lubricated and plastic pairs stay below it."""
 
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
-        """Return Stribeck velocities below the top speed, and the displacement of Coulomb friction."""
+        """Return Stribeck velocities below the top speed, each with the displacements of Coulomb friction."""
         axes = [v.axis(site) for v in views]
         top, known = max(a.top for a in axes), axes[0].lead_known
         tried = [s["stribeck_velocity"] for s in super().shapes(views, site)] if known else []
-        reach = 2.5e-3 * axes[0].lead if known else 1e-3 * max(a.travel for a in axes)
         most = self.MOST * top / max(self.finer["stribeck_velocity"]) ** 2
         found = [v for v in tried or [s * top for s in self.SHARES] if 0.0 < v <= most]
-        return [{"stribeck_velocity": v, "displacement": reach} for v in found] if reach > 0.0 else []
+        sliding = CoulombOnAxis().shapes(views, site)
+        return [{"stribeck_velocity": v, **shape} for v in found for shape in sliding]
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
         """Return whether friction resists, falls with speed, and is at rest below `HIGHEST` times the sliding one."""
