@@ -144,13 +144,16 @@ def units_of(axis: Axis) -> Mapping[Channel, str]:
 def residuals_of(view: AxisView) -> Residuals:
     """Return the residuals of one record.
 
-    They are the force balance, or the tracking error of a servo, and load encoder minus motor encoder.
+    They are the force balance, or the tracking error of a servo, and load encoder minus motor encoder. Both of the first
+    are judged in motion: at rest friction holds any force, and a servo any error. A servo that mostly rests is judged
+    throughout.
     """
     run, axis = view.run, view.described
     out: Residuals = {}
     if axis.servo:
         assert run.reference is not None
-        out[Channel("motor_mechanics", axis.name)] = Residual(run.to_grid(run.reference - run.motor), run.inner)
+        told = view.in_motion if view.mostly_moves else run.inner
+        out[Channel("motor_mechanics", axis.name)] = Residual(run.to_grid(run.reference - run.motor), told)
     elif (axis.mass is not None or axis.signals.nominal_effort is not None) and run.effort is not None:
         balance = run.to_grid(run.effort) - view.inertial
         out[Channel("motor_mechanics", axis.name)] = Residual(balance, view.in_motion)

@@ -29,7 +29,7 @@ cut-off. By one sample a stop of a finely resolved axis still leaves thousands o
 PAST = (0.003, 0.03, 0.3)
 """Shares of a range over which a state forgets: what went before within a fine, a usual and a coarse stroke."""
 ENOUGH = 0.5
-"""Share of the samples in motion that must be away from such reversals for the others to be left out."""
+"""Share of the samples that must be in motion, or away from such reversals, for the others to be left out."""
 
 
 class AxisView(ChainView):
@@ -171,6 +171,11 @@ class AxisView(ChainView):
         inside = self.run.inner & self.released & settled(told, REST_SPREADS)
         clear = inside & self.clear
         return clear if clear.sum() >= ENOUGH * inside.sum() and not self.described.free else inside
+
+    @property
+    def mostly_moves(self) -> bool:
+        """Whether the axis is in motion for most of the record."""
+        return bool(self.in_motion.sum() >= ENOUGH * self.run.inner.sum())
 
     @cached_property
     def clear(self) -> Mask:
