@@ -132,6 +132,7 @@ class Effect:
         scales: the known force that it multiplies, in words ("drive gain", "weight", "payload"); no motion tells such
             effects of one joint apart while its drive gain is not known.
         indistinct: ids of effects that give the same readings where the force was not recorded.
+        of_recorder: whether only a recorder makes it: its law is exact, and what a simulator logs, it knows at once.
         told_by_travel: share of what it explains by which it differs, over the recorded travel, from other forces that
             follow the position; 0 for an effect that is none.
         settles: whether its parameters are of sliding alone, so that samples at which it rests tell nothing of them.
@@ -165,6 +166,7 @@ class Effect:
     companion: ClassVar[str] = ""
     shown_by: ClassVar[tuple[str, ...]] = ()
     plain: ClassVar[bool] = False
+    of_recorder: ClassVar[bool] = False
     dry: ClassVar[bool] = False
     slow: ClassVar[bool] = False
     unseen: ClassVar[bool] = False
@@ -175,6 +177,11 @@ class Effect:
     best: ClassVar[Best]
     leaves_out: ClassVar[str] = ""
     condition: str | None = None
+
+    @property
+    def ordinary(self) -> bool:
+        """Whether its law is one that any joint or its recorder may have: such laws are fitted at once."""
+        return self.plain or self.of_recorder
 
     def channels(self, site: str) -> tuple[Channel, ...]:
         """Return the channels in which the effect must show to be looked for at a site."""

@@ -106,7 +106,6 @@ class Page(Effect):
         breaks: which relation of the signal chain the effect breaks, where that is not the one named like its stage:
             "load_encoder", "both_encoders" or "force_sensor", the readings.
         on_axis: fitted parameter -> constant of `CONSTANTS` that it sets, beyond the nominal one.
-        of_recorder: whether only a recorder makes it: what a simulator logs, it knows at that instant.
         computed: the parameter that is read off a record without a fit, as in an exact stage; "" where there is none.
     """
 
@@ -114,7 +113,6 @@ class Page(Effect):
     source: ClassVar[Path | None] = None
     breaks: ClassVar[str] = ""
     on_axis: ClassVar[Mapping[str, str]] = {}
-    of_recorder: ClassVar[bool] = False
     computed: ClassVar[str] = ""
 
     def on(self, axis: NominalAxis) -> Page:

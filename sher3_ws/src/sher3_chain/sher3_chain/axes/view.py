@@ -169,8 +169,8 @@ class AxisView(ChainView):
         limited = self.run.limited
         told = self.moving if limited is None else self.moving & ~limited[self.run.grid]
         inside = self.run.inner & self.released & settled(told, REST_SPREADS)
-        clear = inside & self.clear
-        return clear if clear.sum() >= ENOUGH * inside.sum() and not self.described.free else inside
+        clear, told_by_force = inside & self.clear, not (self.described.free or self.described.servo)
+        return clear if clear.sum() >= ENOUGH * inside.sum() and told_by_force else inside
 
     @property
     def mostly_moves(self) -> bool:

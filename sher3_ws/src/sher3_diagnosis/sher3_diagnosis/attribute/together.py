@@ -24,7 +24,7 @@ PASSES = 3
 """Rounds over the laws at most: each is searched again beside the others as they are by then."""
 
 
-def together(candidates: Candidates, gaps: Collection[Channel], left_over: Left) -> Fit:
+def together(candidates: Candidates, gaps: Collection[Channel], left_over: Left, given: Fit | None = None) -> Fit:
     """Return the plain laws that are worth their numbers, fitted at once; the null fit where none is.
 
     A law whose shape is searched is tried beside all linear ones too: a ratio that is impossible by itself, because a
@@ -34,10 +34,11 @@ def together(candidates: Candidates, gaps: Collection[Channel], left_over: Left)
         candidates: the evidence and the effects, of which the plain ones are taken.
         gaps: channels of which at least one must show a law.
         left_over: says which gaps are left under a fit.
+        given: fit beside which the laws are looked for; default all laws that a coefficient of zero takes away.
     """
-    laws = [(e, site) for e in candidates.effects if e.plain for site in candidates.sites(e)]
+    laws = [(e, site) for e in candidates.effects if e.ordinary for site in candidates.sites(e)]
     laws = [(e, site) for e, site in laws if set(e.channels(site)) & set(gaps)]
-    every = _linear(candidates, laws)
+    every = _linear(candidates, laws) if given is None else given
     current = _possible(candidates.evidence, every)
     beside = {(e.id, site): [every] for e, site in laws} | {t.key: [] for t in every.terms}
     for _ in range(PASSES):
@@ -84,7 +85,7 @@ def worth_of(term: Term, explained: float, left: float) -> float:
 
 def _is_plain(evidence: Evidence, term: Term) -> bool:
     """Return whether a cause is one of the laws that are fitted at once, on this evidence."""
-    return term.effect.plain and bool(term.effect.plain_shapes(evidence.views, term.site))
+    return term.effect.ordinary and bool(term.effect.plain_shapes(evidence.views, term.site))
 
 
 def pruned(evidence: Evidence, current: Fit, left_over: Left, relative: bool) -> Fit:
@@ -94,7 +95,8 @@ def pruned(evidence: Evidence, current: Fit, left_over: Left, relative: bool) ->
         evidence: that the fit is of.
         current: to be pruned.
         left_over: says which gaps are left under a fit: a cause without which one opens again is kept.
-        relative: whether a plain cause may be worth little beside what all explain, if it is much of what they leave.
+        relative: whether an ordinary cause may be worth little beside what all explain, if it is much of what they
+            leave.
     """
     first, base = len(evidence.nuisance), evidence.null().total
     while len(current.terms) > first + 1:

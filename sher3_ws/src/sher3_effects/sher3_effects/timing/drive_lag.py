@@ -132,7 +132,7 @@ class ServoLag(DriveLag):
         first: list[Shape] = [{"time_constant": n * period} for n in self.PERIODS]
         second = [{"time_constant": t, "damping": z} for t in slow for z in self.DAMPINGS]
         both = [{"time_constant": n * period, "delay": d * period} for n in self.LAGS for d in self.LATE]
-        return [*first, *second, *both, *self.plain_shapes(views, site), {"balance": 3.0}]
+        return [*first, *second, *both, *({"balance": n} for n in (1.0, 2.0, 3.0))]
 
     def plain_shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
         """Return balances of one number and of two, at once and a dead time later.

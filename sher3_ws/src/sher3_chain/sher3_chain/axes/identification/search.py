@@ -66,10 +66,21 @@ def _plain_first(evidence: AxisEvidence, candidates: Candidates, left_over: Left
     say("fitting the plain laws together")
     null = evidence.null()
     plain = together(candidates, evidence.channels, left_over) if left_over(null) else null
-    found = _refined(candidates, attribute(candidates, left_over, say, start=plain), left_over)
+    found = _uncovered(candidates, attribute(candidates, left_over, say, start=plain), left_over, say)
     if not left_over(found.fit):
         return found
-    return min((found, _refined(candidates, attribute(candidates, left_over, say), left_over)), key=_priced)
+    return min((found, _uncovered(candidates, attribute(candidates, left_over, say), left_over, say)), key=_priced)
+
+
+def _uncovered(candidates: Candidates, found: Attribution, left_over: Left, say: Say) -> Attribution:
+    """Return causes refined, and what is found in what they leave then: a better law uncovers what its error hid."""
+    for _ in range(POLISHES):
+        before, found = found, _refined(candidates, found, left_over)
+        if not left_over(found.fit) or found.fit.total > before.fit.total - NEEDED:
+            break
+        again = together(candidates, candidates.evidence.channels, left_over, found.fit)
+        found = attribute(candidates, left_over, say, start=again)
+    return found
 
 
 def _refined(candidates: Candidates, found: Attribution, left_over: Left) -> Attribution:
