@@ -21,6 +21,7 @@ from pathlib import Path
 
 import numpy as np
 from sher3_chain.readings.signals import signals_of
+from sher3_common.shares import wilson
 from sher3_diagnosis import diagnose
 from sher3_diagnosis.verdict import Verdict
 
@@ -140,8 +141,16 @@ class Score:
 
     def line(self) -> str:
         """Return recall, precision and the share of machines with a wrong cause."""
-        parts = self.right / max(self.true, 1), self.good / max(self.all, 1), self.spoilt / max(self.machines, 1)
-        return "recall {:.3f}  precision {:.3f}  machines with a wrong cause {:.3f}".format(*parts)
+        parts = (self.right, self.true), (self.good, self.all), (self.spoilt, self.machines)
+        return "recall {}  precision {}  machines with a wrong cause {}".format(*(share(k, n) for k, n in parts))
+
+
+def share(count: int, of: int) -> str:
+    """Return a share of a number of cases with its 95 % Wilson interval."""
+    if not of:
+        return "of 0"
+    low, high = wilson(count / of, of)
+    return f"{count / of:.3f} ({low:.3f} .. {high:.3f}) of {of}"
 
 
 def main() -> None:
@@ -166,7 +175,7 @@ def main() -> None:
                 scores[name].add(truths(drawn), [{x} for x in sorted(by_fit(drawn, how))])
         taken = time.perf_counter() - begun
         print(f"{kind}: {last - first} machines, {taken:.0f} s, {dict(status)}")
-        print(f"  intervals that hold the truth: {sum(held)} of {len(held)} = {np.mean(held):.3f}")
+        print(f"  intervals that hold the truth: {share(sum(held), len(held))}")
         each = sorted(scores["sher3"].drawn.items())
         print("  told:", ", ".join(f"{x} {n - scores['sher3'].missed[x]} of {n}" for x, n in each))
         for name, score in scores.items():

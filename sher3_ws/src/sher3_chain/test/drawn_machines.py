@@ -130,7 +130,7 @@ def drawn_axis(seed: int) -> Drawn:
         "gravity_load": {"arm": weight} if arm else {"force": weight},
         "payload_mass": {"mass": more},
         "torque_constant": {"relative": gain - 1.0},
-        "sensor_delay": {"delay": late * DRIVE},
+        "sensor_delay": {"delay": (late - 0.5) * DRIVE},  # a held force acts half a period after its stamp on average
         "stribeck_friction": {"force": stribeck},
         "spring_torque": {"stiffness": spring},
     }

@@ -144,9 +144,8 @@ def units_of(axis: Axis) -> Mapping[Channel, str]:
 def residuals_of(view: AxisView) -> Residuals:
     """Return the residuals of one record.
 
-    They are the force balance, or the tracking error of a servo, and load encoder minus motor encoder. Both of the first
-    are judged in motion: at rest friction holds any force, and a servo any error. A servo that mostly rests is judged
-    throughout.
+    They are the force balance, or the tracking error of a servo, and load encoder minus motor encoder. Balance and
+    error are judged in motion: at rest friction holds any of them. A servo that mostly rests is judged throughout.
     """
     run, axis = view.run, view.described
     out: Residuals = {}

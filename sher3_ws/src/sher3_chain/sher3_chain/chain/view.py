@@ -11,7 +11,6 @@ import numpy as np
 from scipy.ndimage import maximum_filter1d, minimum_filter1d
 from sher3_diagnosis.channel import Array, Mask
 from sher3_diagnosis.evidence import Motion
-from sher3_diagnosis.thresholds import AT_REST
 from sher3_effects.motion import GridView
 from sher3_effects.operators import dahl_turned
 
@@ -27,6 +26,8 @@ REFERENCE = 20.0
 """Temperature, deg C, at which lengths are stated (ISO 1)."""
 STILL = 1e-12
 """Top speed in place of none, m/s or rad/s: shares of the top speed are taken."""
+CREEPS = 0.01
+"""Share of the top speed of a slow motion: what moves more slowly is not told from a stop."""
 TURNS_BY = 4.0
 """Counts by which a turn differs from a stop: fewer are rounding."""
 
@@ -126,7 +127,7 @@ class ChainView(GridView, ABC):
         """
         run, count = self.run, self.joints[row].encoder_resolution
         bend = float(np.sqrt(np.mean(np.gradient(run.velocity[:, row], run.period) ** 2))) or STILL
-        time = max(count / (AT_REST * self.tops[row]), float(np.sqrt(2.0 * TURNS_BY * count / bend)))
+        time = max(count / (CREEPS * self.tops[row]), float(np.sqrt(2.0 * TURNS_BY * count / bend)))
         window = 2 * int(np.clip(np.ceil(time / run.period), 1, max(1, run.stride))) + 1
         readings = run.motor[:, row]
         stays = maximum_filter1d(readings, window) - minimum_filter1d(readings, window) < 0.5 * count

@@ -32,3 +32,18 @@ def test_a_servo_with_a_weight_at_an_arm_keeps_lag_stiction_and_weight_apart():
     assert found["coulomb_friction"].parameters["force"].value == pytest.approx(0.088, rel=0.05)
     arm = found["gravity_load"].parameters["arm"]
     assert arm.low <= drawn.truth["gravity_load"]["arm"] <= arm.high
+
+
+def test_a_late_effort_beside_a_stribeck_friction_is_told():
+    """Stops of milliseconds once passed for motion, and their friction for a force that nothing explains."""
+    drawn = drawn_axis(3003)
+    found = told(drawn)
+    assert set(found) == set(drawn.truth) >= {"sensor_delay", "stribeck_friction", "torque_constant"}
+    delay = drawn.truth["sensor_delay"]["delay"]
+    assert found["sensor_delay"].parameters["effort_delay"].value == pytest.approx(delay, rel=0.05)
+
+
+def test_a_dead_time_beside_lag_and_stiction_of_a_servo():
+    found = told(drawn_servo(3008))
+    assert set(found) == {"drive_lag", "coulomb_friction", "gravity_load"}
+    assert found["drive_lag"].parameters["delay"].low > 0.0

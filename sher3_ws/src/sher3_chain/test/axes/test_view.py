@@ -44,6 +44,15 @@ def test_rest_motion_and_release_of_an_axis_that_is_let_go():
     assert driven.at_rest[20:190].all()
 
 
+def test_a_stop_between_two_samples_of_the_grid_is_rest():
+    """A stop of 8 ms at 1 m into a stroke of 1 m/s, read at 1 kHz; a turn of 10 m/s^2 without a stop is none."""
+    clock = 0.001 * np.arange(2000)
+    stopped = view(np.where(clock < 1.0, clock, np.maximum(clock - 0.008, 1.0)), period=0.001, encoder_resolution=1e-6)
+    assert not stopped.in_motion[98:104].any() and stopped.in_motion[20:95].all() and stopped.in_motion[106:180].all()
+    turned = view(5.0 * (clock - 1.0) ** 2, period=0.001, encoder_resolution=1e-6)
+    assert turned.moving[20:180].sum() >= 159
+
+
 def test_what_the_engine_reads():
     seen = view(0.1 * 0.01 * np.arange(400), lead=0.004)
     assert seen.excitation == "sweep" and seen.rate == 100.0

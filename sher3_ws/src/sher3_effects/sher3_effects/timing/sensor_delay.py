@@ -62,6 +62,10 @@ class SensorDelay(Page):
             {"delay": t, "of_effort": k, "least": k * least} for k in which for t in late if not k or abs(t) >= unsaid
         ]
 
+    def plain_shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
+        """Return delays of the effort: between two encoders a gap, a spring and a tendon are late as well."""
+        return [shape for shape in self.shapes(views, site) if shape["of_effort"]]
+
     def refine(self, shape: Shape) -> list[Shape]:
         """Return neighbours of a delay; which reading is late has none."""
         return [{**shape, "delay": shape["delay"] * factor} for factor in self.finer["delay"]]
