@@ -66,23 +66,10 @@ def _plain_first(evidence: AxisEvidence, candidates: Candidates, left_over: Left
     say("fitting the plain laws together")
     null = evidence.null()
     plain = together(candidates, evidence.channels, left_over) if left_over(null) else null
-    found = _uncovered(candidates, attribute(candidates, left_over, say, start=plain), left_over)
+    found = _refined(candidates, attribute(candidates, left_over, say, start=plain), left_over)
     if not left_over(found.fit):
         return found
-    return min((found, _uncovered(candidates, attribute(candidates, left_over, say), left_over)), key=_priced)
-
-
-def _uncovered(candidates: Candidates, found: Attribution, left_over: Left) -> Attribution:
-    """Return causes refined, with the plain laws that show in what they leave: a better law uncovers what it hid."""
-    for _ in range(POLISHES):
-        before, found = found, _refined(candidates, found, left_over)
-        if not left_over(found.fit) or found.fit.total > before.fit.total - NEEDED:
-            break
-        again = together(candidates, candidates.evidence.channels, left_over, found.fit)
-        if len(again.terms) <= len(found.fit.terms):
-            break
-        found = with_rivals(candidates, again)
-    return found
+    return min((found, _refined(candidates, attribute(candidates, left_over, say), left_over)), key=_priced)
 
 
 def _refined(candidates: Candidates, found: Attribution, left_over: Left) -> Attribution:
