@@ -24,7 +24,7 @@ PASSES = 3
 """Rounds over the laws at most: each is searched again beside the others as they are by then."""
 
 
-def together(candidates: Candidates, gaps: Collection[Channel], left_over: Left, given: Fit | None = None) -> Fit:
+def together(candidates: Candidates, gaps: Collection[Channel], left_over: Left) -> Fit:
     """Return the plain laws that are worth their numbers, fitted at once; the null fit where none is.
 
     A law whose shape is searched is tried beside all linear ones too: a ratio that is impossible by itself, because a
@@ -34,11 +34,10 @@ def together(candidates: Candidates, gaps: Collection[Channel], left_over: Left,
         candidates: the evidence and the effects, of which the plain ones are taken.
         gaps: channels of which at least one must show a law.
         left_over: says which gaps are left under a fit.
-        given: fit beside which the laws are looked for; default all laws that a coefficient of zero takes away.
     """
     laws = [(e, site) for e in candidates.effects if e.ordinary for site in candidates.sites(e)]
     laws = [(e, site) for e, site in laws if set(e.channels(site)) & set(gaps)]
-    every = _linear(candidates, laws) if given is None else given
+    every = _linear(candidates, laws)
     current = _possible(candidates.evidence, every)
     beside = {(e.id, site): [every] for e, site in laws} | {t.key: [] for t in every.terms}
     for _ in range(PASSES):
