@@ -77,6 +77,11 @@ def verdict(status, **more):
             "Coulomb friction on delta 2, 300 mN: 98 % of the gap; no effect of the library explains the rest in "
             "transmission, tilt.",
         ),
+        (
+            verdict("outside_library", causes=[FRICTION], closure=Closure(stage=Interval(value=0.0)), unexplained=LEFT),
+            "Coulomb friction on delta 2, 300 mN: 98 % of the gap there; no effect of the library explains the rest in "
+            "transmission, tilt.",
+        ),
     ],
 )
 def test_the_headline_is_the_answer(answer, text):

@@ -105,9 +105,10 @@ def _finding(verdict: Verdict) -> str:
 
 
 def _share(verdict: Verdict) -> str:
-    """Return how much of the gap the causes are."""
-    found = verdict.closure.stage or verdict.causes[0].closure
-    return f"{share(found.value)} of the gap"
+    """Return how much of the gap the causes are: of the first place, or where they act if they take nothing off it."""
+    own = verdict.causes[0].closure
+    first = verdict.closure.stage or own
+    return f"{share(first.value)} of the gap" if first.value > 0.0 else f"{share(own.value)} of the gap there"
 
 
 def _rest(verdict: Verdict, rests: Mapping[str, str]) -> str:
