@@ -33,6 +33,7 @@ OWN_FILES = {
     "sher3_challenge/cases/seal.py": "digest of the folder it has just written",
     "sher3_drivers/pedal/hid.py": "the pedal, a device",
     "sher3_runtime/publishers.py": "processes, as the kernel lists them",
+    "sher3_safety/kept.py": "appends",
     "sher3_bringup/surgeon/device.py": "a joystick, a device",
 }
 

@@ -31,6 +31,7 @@ from sher3_effects import plants
 from sher3_runtime import Graph
 from sher3_sim.scatter import RunScatter
 
+from sher3_safety.kept import Kept
 from sher3_safety.measurement.recording import INTENDED
 from sher3_safety.measurement.report import false_trips
 from sher3_safety.runs.excitation_node import ExcitationNode
@@ -62,31 +63,18 @@ def run_healthy(
         kept: folder of what earlier sessions came to, which are not run again, and of what these come to.
     """
     seeds = range(seed, seed + max(1, round(minutes * 60.0 / SESSION)))
-    begin, found = time.monotonic(), _earlier(kept)
+    store = Kept(kept, KEPT)
+    begin, found = time.monotonic(), {entry["seed"]: entry["trips"] for entry in store.before()}
     left = [number for number in seeds if number not in found]
     with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
         for number, trips in zip(left, pool.map(run_session, [folder] * len(left), left), strict=True):
             found[number] = trips
-            _keep(kept, number, trips)
+            store.add([{"seed": number, "trips": trips}])
             so_far = [trip for done in seeds for trip in found.get(done, [])]
             say(f"healthy: seed {number}, {len(so_far)} trips so far" + (f", last: {so_far[-1]}" if so_far else ""))
     what = [trip for number in seeds for trip in found[number]]
     lasted = {"what": what, "seeds": [seeds[0], seeds[-1]], "seconds": time.monotonic() - begin}
     return {**false_trips(len(what), len(seeds) * SESSION / 3600.0), **lasted}
-
-
-def _earlier(kept: Path | None) -> dict[int, list[str]]:
-    """Return the trips of the sessions that are kept, by their seeds."""
-    path = kept and kept / KEPT
-    lines = path.read_text().splitlines() if path and path.exists() else []
-    return {data["seed"]: data["trips"] for data in map(json.loads, lines)}
-
-
-def _keep(kept: Path | None, seed: int, trips: list[str]) -> None:
-    if kept:
-        kept.mkdir(parents=True, exist_ok=True)
-        with (kept / KEPT).open("a") as file:
-            file.write(json.dumps({"seed": seed, "trips": trips}) + "\n")
 
 
 def run_session(folder: Path, seed: int) -> list[str]:

@@ -12,12 +12,15 @@ from sher3_control.motion.speed_cap import Regime
 from sher3_description import Robot, load_robot
 from sher3_faults.budget import RUNAWAY
 
+from sher3_safety.kept import Kept
 from sher3_safety.search.draw import Draw, drawn, near
-from sher3_safety.search.kept import Kept
 from sher3_safety.search.trial import Found, try_all
+from sher3_safety.search.words import read
 
 ROUND, PARENTS, CLIMBS = 25, 10, 0.6
 """Draws of a round, how many of the worst have children, and the share of children after the first round."""
+EXACT = 17
+"""Digits with which a number is written and read as the same one."""
 
 
 @dataclass
@@ -81,17 +84,27 @@ def search(
         say: prints progress.
         kept: folder of what earlier searches of the seed tried, and of what this one tries.
     """
-    robot, regimes, store = robot or load_robot(), list(RUNAWAY), Kept(kept, seed)
-    result = SearchResult(store.before(), seed)
+    robot, regimes, store = robot or load_robot(), list(RUNAWAY), Kept(kept, f"draws-{seed}.jsonl")
+    result = SearchResult([_found(entry) for entry in store.before()], seed)
     while len(result.found) < trials:
         number = len(result.found) // ROUND
         regime, count = regimes[number % len(regimes)], min(ROUND, trials - len(result.found))
         draws = _next(Random(f"{seed} {number}"), regime, count, result)
-        result.found += store.add(list(try_all(draws, robot, seed + number)))
+        tried = [_entry(found) for found in try_all(draws, robot, seed + number)]
+        store.add(tried)
+        result.found += [_found(entry) for entry in tried]  # as they will be read, so that a search goes on as it would
         worst = result.worst(1)[0]
         sizes = f"{worst.travel * 1e6:.1f} um of {worst.draw.budget * 1e6:g}"
         say(f"{len(result.found)} draws, worst {sizes}, {worst.draw.state.name}: {worst.draw.told()}")
     return result
+
+
+def _entry(found: Found) -> dict[str, Any]:
+    return {"draw": found.draw.line(EXACT), "travel": found.travel, "reason": found.reason}
+
+
+def _found(entry: dict[str, Any]) -> Found:
+    return Found(read(entry["draw"]), entry["travel"], entry["reason"])
 
 
 def again(draws: Sequence[Draw], seed: int = 1, robot: Robot | None = None) -> SearchResult:
