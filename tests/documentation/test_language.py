@@ -33,6 +33,12 @@ def test_blocks_name_their_language(page):
 
 
 @pytest.mark.parametrize("page", pages())
+def test_fences_open(page):
+    """With a backtick behind its own, a fence is text, and the next one turns the rest of the page into code."""
+    assert not re.findall(r"^```[^`\n]+`.*$", (ROOT / page).read_text(), re.M)
+
+
+@pytest.mark.parametrize("page", pages())
 def test_links_lead_to_files(page):
     """Relative to the page; those to pages that are made from the sources are checked on the built site."""
     text = FENCE.sub("", (ROOT / page).read_text())
