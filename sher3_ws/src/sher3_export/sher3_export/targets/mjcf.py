@@ -78,7 +78,10 @@ class Mjcf(XmlTarget):
 
     def apply(self, change: Change) -> str:
         """Write a change at its joint with its interval; return why it cannot be written, or nothing."""
-        return super().apply(change) or write_range(self.root, change)
+        reason = super().apply(change)
+        if not reason:
+            write_range(self.root, change)
+        return reason
 
     def all_joints(self) -> Sequence[Element]:
         """Return hinges and slides of the bodies."""

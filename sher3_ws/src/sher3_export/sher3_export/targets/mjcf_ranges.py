@@ -12,10 +12,10 @@ from sher3_export.changes import Change
 from sher3_export.xml_file import numbers, written
 
 
-def write_range(root: Element, change: Change) -> str:
-    """Write the interval of a constant, added to what an export before has written there; return nothing: it could."""
+def write_range(root: Element, change: Change) -> None:
+    """Write the interval of a constant, where it has one, added to what an export before has written there."""
     if change.low is None or change.high is None or change.over_stiffness:
-        return ""
+        return
     name = f"{change.joint}/{change.constant}"
     standing = next((x for x in root.iter("numeric") if x.get("name") == name), None)
     if standing is None:
@@ -24,4 +24,3 @@ def write_range(root: Element, change: Change) -> str:
         standing = SubElement(custom, "numeric", {"name": name})
     low, high = numbers(standing.get("data"), "0 0")
     standing.set("data", written(low + change.low, high + change.high))
-    return ""

@@ -80,20 +80,16 @@ def left(
     needed = arm_model(bodies, names, None).needed(*(x[inner] for x in (q, v, a)))
     out = np.full(len(names), np.nan)
     for i, name in enumerate(names):
-        drive = drives[name].drive if name in drives else None
+        column, drive = controls[i], drives[name].drive if name in drives else None
         added = 0.0
         if run.effort is not None:
             effort = run.effort[:, i]
-        elif run.control is None or controls[i] is None or drive is None:
+        elif run.control is None or column is None or drive is None:
             continue
-        elif drive.servo:
-            asked = sizes[i] * drive.asked(run.control[:, controls[i]])
-            effort, added = (
-                drive.position_gain * (asked - q[:, i]) - drive.velocity_gain * v[:, i],
-                drives[name].of_law.inertia,
-            )
         else:
-            effort = drive.asked(run.control[:, controls[i]])
+            asked = drive.asked(run.control[:, column]) * (sizes[i] if drive.servo else 1.0)
+            effort = drive.law(asked, q[:, i], v[:, i])
+            added = drives[name].of_law.inertia if drive.servo else 0.0
         effort = savgol_filter(effort, WINDOW, 3)[inner]
         beside = np.column_stack([v[inner, i], np.sign(v[inner, i]), np.ones(len(inner))])
         rest = effort - needed[:, i] - added * a[inner, i]

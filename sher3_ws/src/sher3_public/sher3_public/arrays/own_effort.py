@@ -69,8 +69,7 @@ def from_law(time: Array, q: Array, drive: Drive, control: Array, effort: Array)
     """
     period, limit = float(np.median(np.diff(time))), np.inf if drive.limit is None else drive.limit
     v, a = (savgol_filter(q, WINDOW, 3, deriv=k, delta=period) for k in (1, 2))
-    asked = drive.asked(control)
-    law = drive.position_gain * (asked - q) - drive.velocity_gain * v if drive.servo else asked
+    law = drive.law(drive.asked(control), q, v)
     left = savgol_filter(effort - np.clip(law, -limit, limit), WINDOW, 3)
     left = left - a * (left @ a) / max(a @ a, np.finfo(float).tiny)
     return float(np.std(left) / max(np.std(effort), np.finfo(float).tiny))

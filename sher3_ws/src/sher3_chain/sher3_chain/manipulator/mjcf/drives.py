@@ -62,6 +62,10 @@ class Drive:
         """Return what a control (n,) asks for: a place, m or rad, or a force, N or N m."""
         return self.factor * (control if self.within is None else np.clip(control, *self.within))
 
+    def law(self, asked: Array, q: Array, v: Array) -> Array:
+        """Return the joint's force (n,), N or N m, of what was asked, at a place and a speed; without its limit."""
+        return self.position_gain * (asked - q) - self.velocity_gain * v if self.servo else asked
+
 
 class Step(NamedTuple):
     """By what a force differs from the one that acted between two steps of a simulator.
