@@ -39,6 +39,7 @@ class LinkInertia(Page):
     NAMES = ("mass", "mx", "my", "mz", "ixx", "ixy", "iyy", "ixz", "iyz", "izz")
     """Inertial parameters of a link about its joint, as Pinocchio orders them."""
     gives = NAMES
+    on_axis: ClassVar[Mapping[str, str]] = {name: f"link_{name}" for name in NAMES}
     MOMENTS = ("mx", "my", "mz")
     units: ClassVar[Mapping[str, str]] = {
         "mass": "kg",

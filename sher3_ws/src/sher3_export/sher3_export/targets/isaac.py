@@ -13,6 +13,7 @@ from typing import ClassVar
 from sher3_common import dump_yaml
 
 from sher3_export.targets.configuration import DELAYS, Configuration
+from sher3_export.targets.links import INERTIAL
 from sher3_export.targets.target import NOT_TOLD, each
 
 
@@ -55,6 +56,7 @@ class IsaacLab(Configuration):
                 "backlash": "an actuator has no play",
                 "compliance": "an actuator has no spring behind it",
                 "spring rest": "an actuator has no spring beside it",
+                " ".join(INERTIAL): "the inertia of a link belongs to the asset: write it into its URDF or MJCF",
                 "link": "the mass of a link belongs to the asset: the event randomize_rigid_body_mass scales it",
                 "payload payload_x payload_y payload_z": "a payload belongs to the asset",
                 "ratio": "the load encoder is no part of the actuator",

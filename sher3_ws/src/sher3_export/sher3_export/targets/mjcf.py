@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Callable, Mapping, Sequence
 from typing import ClassVar
 from xml.etree.ElementTree import Element, SubElement
 
 from sher3_export.changes import Change
 from sher3_export.targets import mjcf_motor
-from sher3_export.targets.mjcf_body import controlled, moved, together
+from sher3_export.targets.links import INERTIAL, WrongLinks
+from sher3_export.targets.mjcf_body import controlled, moved, payloads_on, set_inertial, skeleton, together
 from sher3_export.targets.mjcf_ranges import write_range
 from sher3_export.targets.target import NOT_TOLD, XmlTarget, each, field
 from sher3_export.xml_file import elements, number, numbers, parents, written
@@ -21,8 +21,7 @@ LIGHT = 1e-3
 """Armature of a joint that only plays or bends, as a share of that of the motor's side: light enough not to matter,
 heavy enough for the solver."""
 LEAST = 1e-4
-"""Armature that the motor's side is given where the model has none, kg or kg m^2: without inertia of its own the motor
-cannot cross a gap."""
+"""Armature, kg or kg m^2, of a motor's side that has none: without inertia of its own it cannot cross a gap."""
 DUST = 1e-9
 """Mass and inertia of the motor's own body beside its armature, kg and kg m^2: MuJoCo refuses none at all."""
 WATER = 1000.0
@@ -66,6 +65,7 @@ class Mjcf(XmlTarget):
         "spring": "stiffness",
         "rest": "springref",
         "link": "inertial, or mass or density of the geoms",
+        **dict.fromkeys(INERTIAL, "inertial"),
         **each(
             {"payload payload_x payload_y payload_z": "a body of its own", "shift_x shift_y shift_z": "pos of the body"}
         ),
@@ -75,6 +75,13 @@ class Mjcf(XmlTarget):
     def __init__(self, root: Element) -> None:
         super().__init__(root)
         self._sliding: dict[tuple[str, str], float] = {}
+        self.links = WrongLinks(root, skeleton)
+
+    def text(self, remarks: Sequence[str]) -> str:
+        """Return the model with remarks as a comment on top, and its links changed together."""
+        for name, inertia in self.links.changed().items():
+            set_inertial(self.body(name), inertia)
+        return super().text([*remarks, *self.links.remarks()])
 
     def apply(self, change: Change) -> str:
         """Write a change at its joint with its interval; return why it cannot be written, or nothing."""
@@ -114,6 +121,7 @@ class Mjcf(XmlTarget):
             "spring": lambda change, joint: self._add(joint, "stiffness", change.value),
             "rest": self._rest,
             "link": self._link,
+            **dict.fromkeys(INERTIAL, lambda change, body: self.links.want(change)),
             "payload": self._payload,
             **dict.fromkeys(("payload_x", "payload_y", "payload_z"), self._centre),
             **dict.fromkeys(("shift_x", "shift_y", "shift_z"), self._shift),
@@ -143,7 +151,7 @@ class Mjcf(XmlTarget):
 
     def place(self, change: Change) -> Element | None:
         """Return the joint of a change, or the body of a link and of a payload."""
-        on_link = change.constant == "link" or change.constant.startswith("payload")
+        on_link = change.constant.startswith(("link", "payload"))
         return self.body(change.joint) if on_link else self.joints.get(change.joint)
 
     def _add(self, joint: Element, attribute: str, change: float) -> str:
@@ -280,7 +288,7 @@ class Mjcf(XmlTarget):
         """A body of its own with the mass of a point, at the joint of the link until its centre is known."""
         if change.value <= 0.0:
             return "no mass is zero or less"
-        anchor, number_ = body.find("joint"), len(self._payloads(change.joint)) + 1
+        anchor, number_ = body.find("joint"), len(payloads_on(self.root, change.joint)) + 1
         name = f"{change.joint}_payload" + (f"_{number_}" if number_ > 1 else "")
         added = SubElement(body, "body", {"name": name})
         added.set("pos", "0 0 0" if anchor is None else anchor.get("pos", "0 0 0"))
@@ -290,23 +298,15 @@ class Mjcf(XmlTarget):
 
     def _centre(self, change: Change, body: Element) -> str:
         """The centre is that of the payload that was written last."""
-        payloads = self._payloads(change.joint)
+        payloads = payloads_on(self.root, change.joint)
         return moved(payloads[-1], change) if payloads else "the payload itself could not be written"
-
-    def _payloads(self, link: str) -> list[Element]:
-        """Return the payloads that exports have put on a link; each has a place of its own."""
-        named = re.compile(rf"{re.escape(link)}_payload(_\d+)?")
-        return [x for x in elements(self.root, "body") if named.fullmatch(x.get("name", ""))]
 
     def _shift(self, change: Change, joint: Element) -> str:
         """A joint that sits elsewhere than drawn: the body moves by as much in its own frame."""
         body = parents(self.root)[joint]
         if any(name in body.attrib for name in PLACE[1:]):
             return "the body is turned against its parent; shift its pos along its own axes by hand"
-        place = numbers(body.get("pos"), "0 0 0")
-        place["xyz".index(change.constant[-1])] += change.value
-        body.set("pos", written(*place))
-        return ""
+        return moved(body, change)
 
     def _backlash(self, change: Change, joint: Element) -> str:
         half = change.value / 2.0

@@ -2,10 +2,39 @@
 
 from __future__ import annotations
 
+import re
+from copy import deepcopy
+from pathlib import PurePath
 from xml.etree.ElementTree import Element
 
 from sher3_export.changes import Change
+from sher3_export.targets.links import Inertia
 from sher3_export.xml_file import numbers, written
+
+BONES = ("compiler", "option", "size", "default", "asset", "worldbody")
+"""Sections that say where bodies are and what they weigh."""
+
+
+def skeleton(root: Element) -> Element:
+    """Return the bodies of a model by themselves: no looks, and no mesh that no inertia is made of."""
+    bare = deepcopy(root)
+    for section in [x for x in bare if x.tag not in BONES]:
+        bare.remove(section)
+    for body in [x for x in bare.iter() if x.tag == "worldbody" or x.find("inertial") is not None]:
+        for geom in body.findall("geom"):
+            body.remove(geom)
+    for element in bare.iter():
+        element.attrib.pop("material", None)
+    needed = {x.get("mesh") for x in bare.iter("geom")}
+    for assets in bare.findall("asset"):
+        for asset in [x for x in assets if x.tag != "mesh" or _called(x) not in needed]:
+            assets.remove(asset)
+    return bare
+
+
+def _called(mesh: Element) -> str:
+    """Return the name of a mesh, which is that of its file where it states none."""
+    return mesh.get("name") or PurePath(mesh.get("file", "")).stem
 
 
 def together(body: Element) -> list[Element]:
@@ -25,3 +54,20 @@ def moved(body: Element, change: Change) -> str:
     place["xyz".index(change.constant[-1])] += change.value
     body.set("pos", written(*place))
     return ""
+
+
+def payloads_on(root: Element, link: str) -> list[Element]:
+    """Return the payloads that exports have put on a link; each has a place of its own."""
+    named = re.compile(rf"{re.escape(link)}_payload(_\d+)?")
+    return [x for x in root.iter("body") if named.fullmatch(x.get("name", ""))]
+
+
+def set_inertial(body: Element | None, inertia: Inertia) -> None:
+    """Give a body mass, centre and inertia, in place of those that it states or that its geoms make."""
+    if body is None:  # what a skeleton has, its model has
+        return
+    for standing in body.findall("inertial"):
+        body.remove(standing)
+    full = written(*(inertia.about[name] for name in ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")))
+    values = {"pos": written(*inertia.centre), "mass": written(inertia.mass), "fullinertia": full}
+    body.insert(0, Element("inertial", values))

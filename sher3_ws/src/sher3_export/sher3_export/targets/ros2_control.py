@@ -14,6 +14,7 @@ from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
 
 from sher3_export.changes import Change
+from sher3_export.targets.links import INERTIAL
 from sher3_export.targets.target import Target, each
 from sher3_export.xml_file import write_xml, written
 
@@ -35,7 +36,10 @@ class Ros2Control(Target):
         "limit": "min and max of the command interface `effort`",
     }
     refuses: ClassVar[Mapping[str, str]] = each(
-        {"weight arm hanging link payload payload_x payload_y payload_z shift_x shift_y shift_z": LINK}
+        {
+            " ".join(INERTIAL): LINK,
+            "weight arm hanging link payload payload_x payload_y payload_z shift_x shift_y shift_z": LINK,
+        }
     )
 
     def __init__(self) -> None:

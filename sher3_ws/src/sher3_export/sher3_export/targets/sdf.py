@@ -7,6 +7,7 @@ from typing import ClassVar
 from xml.etree.ElementTree import Element
 
 from sher3_export.changes import Change
+from sher3_export.targets.links import INERTIAL
 from sher3_export.targets.target import NOT_TOLD, XmlTarget, each
 from sher3_export.targets.urdf import PAYLOAD, child
 from sher3_export.xml_file import number, written
@@ -40,6 +41,7 @@ class Sdf(XmlTarget):
                 "backlash": "an SDF joint has no play; add a joint by hand or export to mjcf",
                 "compliance": "the spring of an SDF joint acts between its links, not between motor and load",
                 "link": "the inertial element of a link is no part of a joint; scale its mass and inertia by hand",
+                " ".join(INERTIAL): "the inertial element is no part of a joint; export a URDF and convert it",
                 "payload payload_x payload_y payload_z": PAYLOAD,
                 "shift_x shift_y shift_z": "the pose of the child link belongs to the model's tree; shift it by hand",
             }

@@ -10,6 +10,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from sher3_export.changes import Change
+from sher3_export.targets.links import INERTIAL, Inertia, WrongLinks
 from sher3_export.targets.target import NOT_TOLD, XmlTarget, each, field
 from sher3_export.xml_file import add, number, numbers, written
 
@@ -27,6 +28,7 @@ class Urdf(XmlTarget):
         "viscous": "damping",
         "limit": "effort",
         "link": "mass and inertia",
+        **dict.fromkeys(INERTIAL, "inertial"),
         **dict.fromkeys(("zero", "shift_x", "shift_y", "shift_z"), "origin"),
     }
     refuses: ClassVar[Mapping[str, str]] = {
@@ -48,6 +50,17 @@ class Urdf(XmlTarget):
         ),
     }
 
+    def __init__(self, root: Element) -> None:
+        super().__init__(root)
+        self.links = WrongLinks(root)
+
+    def text(self, remarks: Sequence[str]) -> str:
+        """Return the model with remarks as a comment on top, and its links changed together."""
+        links = {x.get("name"): x for x in self.root.findall("link")}
+        for name, body in self.links.changed().items():
+            set_inertial(links[name], body)
+        return super().text([*remarks, *self.links.remarks()])
+
     def all_joints(self) -> Sequence[Element]:
         """Return the joints that move."""
         return [x for x in self.root.findall("joint") if x.get("type") != "fixed"]
@@ -60,6 +73,7 @@ class Urdf(XmlTarget):
             "viscous": lambda change, joint: self._dynamics(joint, "damping", change.value),
             "limit": lambda change, joint: field(child(joint, "limit"), "effort", change.value),
             "link": self._link,
+            **dict.fromkeys(INERTIAL, lambda change, link: self.links.want(change)),
             "zero": self._zero,
             "shift_x": self._shift,
             "shift_y": self._shift,
@@ -69,7 +83,7 @@ class Urdf(XmlTarget):
     def place(self, change: Change) -> Element | None:
         """Return the joint of a change, or the link that is heavier."""
         links = {x.get("name"): x for x in self.root.findall("link")}
-        return links.get(change.joint) if change.constant == "link" else super().place(change)
+        return links.get(change.joint) if change.constant.startswith("link") else super().place(change)
 
     def nominal(self) -> dict[str, dict[str, float]]:
         """Return friction and damping of joints; a URDF knows no rotor."""
@@ -118,6 +132,14 @@ class Urdf(XmlTarget):
     def _move(self, origin: Element, turn: Rotation, step: np.ndarray) -> str:
         origin.set("xyz", written(*(np.array(numbers(origin.get("xyz"), "0 0 0")) + turn.apply(step))))
         return ""
+
+
+def set_inertial(link: Element, body: Inertia) -> None:
+    """Give a link mass, centre and inertia."""
+    inertial = child(link, "inertial")
+    child(inertial, "origin").attrib.update({"xyz": written(*body.centre), "rpy": "0 0 0"})
+    child(inertial, "mass").set("value", written(body.mass))
+    child(inertial, "inertia").attrib.update({name: written(x) for name, x in body.about.items()})
 
 
 def child(element: Element, tag: str) -> Element:

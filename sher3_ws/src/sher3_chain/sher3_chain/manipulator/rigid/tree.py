@@ -30,6 +30,8 @@ class Link:
         axis: unit vector in the joint's frame, (3,).
         slides: whether it slides.
         inertia: inertial parameters of what it carries, (10,), kg, kg m, kg m^2, in the joint's frame.
+        own: those of the first body alone.
+        at: origin of that body in the joint's frame, (3,), m; both have the same axes.
         rotor: inertia of the drive at the joint, kg m^2 or kg.
         reach: largest position that the model allows, rad or m.
         mimics: joint that it follows by a gear; empty: none.
@@ -43,13 +45,17 @@ class Link:
     axis: Array
     slides: bool
     inertia: Array = field(default_factory=lambda: np.zeros(PARAMETERS))
+    own: Array = field(default_factory=lambda: np.zeros(PARAMETERS))
+    at: Array = field(default_factory=lambda: np.zeros(3))
     rotor: float = 0.0
     reach: float = np.inf
     mimics: str = ""
 
     def carrying(self, inertia: Array, turn: Array, place: Array, body: str) -> Link:
         """Return the link with a body more, whose frame is at a pose in the joint's frame."""
-        return replace(self, inertia=self.inertia + moved(inertia, turn, place), body=self.body or body)
+        added = moved(inertia, turn, place)
+        more = replace(self, inertia=self.inertia + added)
+        return more if self.body else replace(more, body=body, own=added, at=place)
 
 
 @dataclass(frozen=True)
