@@ -60,9 +60,13 @@ def up(
         typer.Option("--monitor", help="Also run the gap monitor: gap/diagnostics at 1 Hz against the nominal model."),
     ] = False,
     patient: Annotated[
-        bool,
-        typer.Option("--patient", help="Mocks on a busy machine: time limits that a held-up process does not trip."),
-    ] = False,
+        Optional[bool],  # noqa: UP045
+        typer.Option(
+            "--patient/--strict",
+            help="Time limits that a held-up process does not trip, for mocks, or those of the robot; patient by "
+            "default on the bench without real-time rights.",
+        ),
+    ] = None,
     duration: Annotated[Optional[float], typer.Option(help="Stop after so many seconds.")] = None,  # noqa: UP045
     robot: Robot = None,
     drives: Annotated[
@@ -102,9 +106,11 @@ def up(
     gc.disable()  # nothing that is imported until the processes are forked is garbage; `preload` enables it again
     from sher3_bringup.errors import EndedInFault
     from sher3_bringup.processes.onlooker import onlooker
-    from sher3_bringup.processes.up import run_graph
+    from sher3_bringup.processes.up import granted, run_graph
+    from sher3_bringup.settings.patience import usual
     from sher3_bringup.settings.run_settings import checked, parse_processes
 
+    patience = usual(mock, regime, granted(realtime)) if patient is None else "patient" if patient else "strict"
     settings = checked(
         mock=mock,
         rate=rate,
@@ -121,7 +127,7 @@ def up(
         pedal_device=pedal_device,
         realtime=realtime,
         seed=seed,
-        patience="patient" if patient else "strict",
+        patience=patience,
         regime=regime,
         near_speed=near_speed,
         free_speed=free_speed,
@@ -129,6 +135,8 @@ def up(
         other_hosts=other_hosts,
     )
     screen = _screen(as_json)
+    if patient is None and patience == "patient":
+        screen("no real-time rights: patient time limits, for mocks alone; --strict has those of the robot")
     with onlooker(view, domain, view_port):
         fault = run_graph(settings, say=screen, status=screen.status)
     if fault:

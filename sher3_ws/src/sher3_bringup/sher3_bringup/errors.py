@@ -27,6 +27,14 @@ class AlreadyRunning(StartError):
     """A robot is running in this ROS domain already."""
 
 
+class NoRealtime(StartError):
+    """The real robot is to be started without real-time rights: the kernel may hold its loop up for any time."""
+
+    def __init__(self, priority: int) -> None:
+        remedy = f"let this user have them (rtprio {priority} in limits.conf, then log in again), or --realtime 0"
+        super().__init__("no permission for real-time priority", limit=f"ulimit -r >= {priority}", remedy=remedy)
+
+
 class ProcessDied(Sher3Error):
     """A process ended while the robot was running; everything else has been stopped."""
 

@@ -4,7 +4,7 @@ import json
 
 import pytest
 from sher3_bringup.errors import ConfigurationError
-from sher3_bringup.settings.patience import BENCH, CONTROL, DRIVES, drives_in
+from sher3_bringup.settings.patience import BENCH, CONTROL, DRIVES, drives_in, usual
 from sher3_bringup.settings.run_settings import NODES, checked, parse_processes
 from sher3_cli.root import make_app
 from sher3_common import Sher3Error
@@ -58,6 +58,22 @@ def test_patience_lengthens_time_limits_and_nothing_else():
     before, after = strict.drives().model_dump(), patient.drives().model_dump()
     assert {name for name in before if before[name] != after[name]} == set(DRIVES)
     assert all(after[name] > before[name] for name in DRIVES)
+
+
+@pytest.mark.parametrize(
+    ("mock", "regime", "realtime", "expected"),
+    [
+        (True, "", 0, "patient"),
+        (True, "bench", 0, "patient"),
+        (True, "", 40, "strict"),
+        (True, "near_tissue", 0, "strict"),
+        (True, "free", 0, "strict"),
+        (False, "", 0, "strict"),
+        (False, "bench", 0, "strict"),
+    ],
+)
+def test_limits_are_patient_only_where_nothing_can_be_hurt_and_no_hold_up_is_bounded(mock, regime, realtime, expected):
+    assert usual(mock, regime, realtime) == expected
 
 
 @pytest.mark.parametrize(

@@ -14,6 +14,7 @@ from sher3_runtime.composed.ring import Ring, share
 from sher3_runtime.ports import PERIOD_VARIABLE
 from sher3_runtime.process import make_logging_prompt, realtime_permitted
 
+from sher3_bringup.errors import NoRealtime
 from sher3_bringup.processes.fleet import Fleet
 from sher3_bringup.processes.nodes import make_nodes, preload
 from sher3_bringup.processes.only_robot import only_robot
@@ -47,7 +48,8 @@ def run_graph(
         The fault that the robot was in at the end, as one line; empty where it was in none.
 
     Raises:
-        AlreadyRunning, StartError, ProcessDied, NotStopped: see `errors`; whatever was running has been stopped.
+        AlreadyRunning, NoRealtime, StartError, ProcessDied, NotStopped: see `errors`; whatever was running has been
+            stopped.
     """
     begin = time.monotonic()
     with only_robot(settings.domain), _signals() as caught, Fleet() as fleet:
@@ -137,13 +139,25 @@ def launch_order(processes: Sequence[tuple[str, ...]]) -> list[tuple[str, ...]]:
     return sorted(processes, key=lambda process: "plant" not in process)
 
 
+def granted(asked: int) -> int:
+    """Return the priority of a run that asks for `asked`: for -1 the usual one where the user may, else 0."""
+    if asked >= 0:
+        return asked
+    return DEFAULT_REALTIME if realtime_permitted() else 0
+
+
 def prepare(settings: RunSettings) -> int:
-    """Set the environment of the run; return the priority it may use."""
+    """Set the environment of the run; return the priority it may use.
+
+    Raises:
+        NoRealtime: the real robot may use none, and nobody asked to do without.
+    """
     environment.apply(settings.domain, settings.other_hosts)
     os.environ[PERIOD_VARIABLE] = repr(1.0 / settings.rate)
-    if settings.realtime >= 0:
-        return settings.realtime
-    return DEFAULT_REALTIME if realtime_permitted() else 0
+    realtime = granted(settings.realtime)
+    if not (settings.mock or realtime or settings.realtime == 0):
+        raise NoRealtime(DEFAULT_REALTIME)
+    return realtime
 
 
 @contextmanager
