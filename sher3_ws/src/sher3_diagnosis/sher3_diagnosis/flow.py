@@ -77,7 +77,7 @@ def find(machine: Machine[R, E], evidence: E, without: Collection[str], say: Say
     gaps = localise(evidence, nominal(evidence))
     significant = [g.channel for g in gaps if g.significant]
     candidates = Candidates(evidence, [e for e in machine.effects(evidence) if e.id not in without])
-    rule = down_to_floor if machine.policy.down_to_floor else left_over
+    rule = down_to_floor if machine.plan(evidence).down_to_floor else left_over
     attribution = machine.attribute(evidence, candidates, partial(rule, significant, evidence), say)
     say("quantifying")
     attribution = polished(evidence, attribution)

@@ -12,8 +12,10 @@ from dataclasses import dataclass
 from typing import Generic, TypeVar
 
 from sher3_diagnosis.attribute.candidates import Candidates
+from sher3_diagnosis.attribute.plan import SearchPlan
+from sher3_diagnosis.attribute.planned import planned
 from sher3_diagnosis.attribute.rivals import Attribution
-from sher3_diagnosis.attribute.search import Left, Say, attribute
+from sher3_diagnosis.attribute.search import Left, Say
 from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.evidence import Evidence
@@ -33,8 +35,6 @@ class Policy:
     """What a machine's descriptions allow the judgement to lean on.
 
     Attributes:
-        down_to_floor: causes are searched until no gap is left at all. For machines whose description leaves several
-            plain causes out; otherwise a known cause may leave a share, since laws are idealisations.
         calibrated: odds decide which causes and gaps are named: the calibration was set on machines of this kind, or is
             shown to hold on them (`bench/other_odds.py`). Otherwise rules decide, and odds are only shown.
         free_laws: what causes leave must not follow quantities that none of them depends on.
@@ -42,7 +42,6 @@ class Policy:
             a small error of its own; otherwise it is left out.
     """
 
-    down_to_floor: bool = False
     calibrated: bool = False
     free_laws: bool = False
     carried: bool = False
@@ -79,9 +78,13 @@ class Machine(ABC, Generic[R, E]):
         """Judge the stages whose error is computed without a fit; `without` are effects not to be named."""
         return []
 
+    def plan(self, evidence: E) -> SearchPlan:
+        """Return how the causes of one part are looked for; default one by one, leaving what laws leave."""
+        return SearchPlan()
+
     def attribute(self, evidence: E, candidates: Candidates, left_over: Left, say: Say) -> Attribution:
-        """Choose the causes of one part; default the engine's search."""
-        return attribute(candidates, left_over, say)
+        """Choose the causes of one part; default by its plan alone."""
+        return planned(candidates, self.plan(evidence), left_over, say)
 
     def refine(self, evidence: E, causes: list[Cause], attribution: Attribution) -> tuple[E, list[Cause]]:
         """Improve a part's causes, and nominal constants found from the data, beyond what the fit can do.

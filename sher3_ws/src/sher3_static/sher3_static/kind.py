@@ -7,9 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
-from sher3_diagnosis.attribute.candidates import Candidates
-from sher3_diagnosis.attribute.rivals import Attribution
-from sher3_diagnosis.attribute.search import Left, Say, attribute
+from sher3_diagnosis.attribute.plan import SearchPlan
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.finding import Finding
@@ -26,9 +24,6 @@ from sher3_static.table import Table, TableEvidence, eaten, evidence_of, zeros_i
 
 D = TypeVar("D", bound=Description)
 
-MOST = 6
-"""Causes named at most: a table may have one of each page."""
-
 
 class TableKind(Kind[D, Readings]):
     """A kind of table; a case stores the columns of its readings.
@@ -38,12 +33,14 @@ class TableKind(Kind[D, Readings]):
         written_for: words of `Effect.kinds` whose pages it may have.
         words: how a report speaks of it.
         policy: what the judgement may lean on: odds decide, which hold on tables that set no weight.
+        plan: how causes are looked for: up to six, since a table may have one of each page.
     """
 
     stored: tuple[str, ...] = ()
     written_for: tuple[str, ...]
     words: Words
-    policy = Policy(down_to_floor=True, calibrated=True)
+    policy = Policy(calibrated=True)
+    plan = SearchPlan(causes=6, down_to_floor=True)
 
     @abstractmethod
     def tables(self, known: Any, runs: Sequence[Readings]) -> Sequence[Table]:
@@ -56,10 +53,6 @@ class TableKind(Kind[D, Readings]):
     def library(self) -> Sequence[Effect]:
         """Return the pages written for this kind."""
         return [page for word in self.written_for for page in pages(word)]
-
-    def attribute(self, evidence: TableEvidence, candidates: Candidates, left_over: Left, say: Say) -> Attribution:
-        """Search for up to six causes: a table may have one of each page."""
-        return attribute(candidates, left_over, say, MOST)
 
     def remarks(self, finding: Finding[TableEvidence]) -> list[str]:
         """Return notes on one table; default none."""
@@ -115,9 +108,9 @@ class StaticTest(Machine[Readings, TableEvidence]):
         """Return every table as a part; raises MachineError where nothing tells what repeats."""
         return [evidence_of(table) for table in self.kind.tables(self.known, runs)]
 
-    def attribute(self, evidence: TableEvidence, candidates: Candidates, left_over: Left, say: Say) -> Attribution:
-        """Search for causes as the kind does."""
-        return self.kind.attribute(evidence, candidates, left_over, say)
+    def plan(self, evidence: TableEvidence) -> SearchPlan:
+        """Return how the kind looks for causes."""
+        return self.kind.plan
 
     def remarks(self, finding: Finding[TableEvidence]) -> list[str]:
         """Return what the kind and the pages of the causes say, and how far the zeros of runs are apart."""

@@ -8,9 +8,8 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
-from sher3_diagnosis.attribute.candidates import Candidates
+from sher3_diagnosis.attribute.plan import SearchPlan
 from sher3_diagnosis.attribute.rivals import Attribution
-from sher3_diagnosis.attribute.search import Left, Say
 from sher3_diagnosis.channel import Array, Channel, Mask
 from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.finding import ExactFinding, Finding
@@ -21,18 +20,19 @@ from sher3_effects.view import NominalAxis
 from sher3_machines.errors import MachineError
 from sher3_machines.thresholds import BLOCKS
 
-from sher3_chain.axes.command.law import causes_of_law, is_law, law_of_axis
+from sher3_chain.axes.command.law import LAW, is_law, law_of_axis
 from sher3_chain.axes.evidence import AxisEvidence, gather_axis, levels_of
 from sher3_chain.axes.identification.confounded_laws import dead_band_note, with_dead_band
 from sher3_chain.axes.identification.detection_limits import unseen_note
+from sher3_chain.axes.identification.plan import AXIS
 from sher3_chain.axes.identification.refine import refine_free
-from sher3_chain.axes.identification.search import causes_of_axis
 from sher3_chain.axes.identification.true_force import in_true_force
 from sher3_chain.axes.limits import LIMIT, limit_finding
 from sher3_chain.axes.power import least_seen
 from sher3_chain.axes.replay import replay
 from sher3_chain.chain.machine import Chain
 from sher3_chain.joint.bounds import within_bounds
+from sher3_chain.joint.conditions import Condition
 from sher3_chain.joint.description import AxesDescription, Axis, Gravity
 from sher3_chain.joint.own_unit import in_own_unit, own_unit_note, renamed
 from sher3_chain.joint.record import AxesRun
@@ -50,7 +50,7 @@ class Axes(Chain[AxisEvidence]):
     """Axes that move independently of each other."""
 
     described: AxesDescription
-    policy = Policy(down_to_floor=True, free_laws=True)
+    policy = Policy(free_laws=True)
 
     def library(self) -> Sequence[Effect]:
         """Return the pages for these kinds of axes, and that of the limit, which is read off without a fit."""
@@ -93,15 +93,13 @@ class Axes(Chain[AxisEvidence]):
         found = (limit_finding(part.runs, part.axis) for part in evidence if not is_law(part))
         return [limit for limit in found if limit is not None]
 
-    def attribute(self, evidence: AxisEvidence, candidates: Candidates, left_over: Left, say: Say) -> Attribution:
-        """Choose the causes of one axis, and what changed between conditions; a command has none."""
-        if is_law(evidence):
-            return causes_of_law(candidates, left_over, say)
-        return super().attribute(evidence, candidates, left_over, say)
+    def plan(self, evidence: AxisEvidence) -> SearchPlan:
+        """Return how the causes of an axis, or of its command, are looked for."""
+        return LAW if is_law(evidence) else AXIS
 
-    def causes(self, evidence: AxisEvidence, candidates: Candidates, left_over: Left, say: Say) -> Attribution:
-        """Choose the causes of one axis; what it does at rest counts too."""
-        return causes_of_axis(evidence, candidates, left_over, say)
+    def parted(self, evidence: AxisEvidence) -> list[tuple[Condition, frozenset[int]]]:
+        """Return the conditions of an axis; a command has none, since its law is stated once for all."""
+        return [] if is_law(evidence) else super().parted(evidence)
 
     def refine(
         self, evidence: AxisEvidence, causes: list[Cause], attribution: Attribution

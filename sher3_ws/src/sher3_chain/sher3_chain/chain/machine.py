@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -42,9 +41,9 @@ class Chain(Machine[AxesRun, E]):
 
     described: ChainDescription
 
-    @abstractmethod
     def causes(self, evidence: E, candidates: Candidates, left_over: Left, say: Say) -> Attribution:
-        """Choose the causes of one part, recorded under one condition."""
+        """Choose the causes of one part, recorded under one condition; default by its plan alone."""
+        return super().attribute(evidence, candidates, left_over, say)
 
     def finished(self, candidates: Candidates, found: Fit) -> Fit:
         """Return the fit of a change between conditions, improved by what its search does not do; default as it is."""
@@ -61,15 +60,15 @@ class Chain(Machine[AxesRun, E]):
 
     def attribute(self, evidence: E, candidates: Candidates, left_over: Left, say: Say) -> Attribution:
         """Choose the causes of one part, and what changed between the conditions of its runs."""
-        conditions = self.conditions(evidence.runs)
-        if not conditions:
+        parted = self.parted(evidence)
+        if not parted:
             return self.causes(evidence, candidates, left_over, say)
-        kept = reference_runs(conditions, [run.name for run in evidence.runs])
+        kept = reference_runs([c for c, _ in parted], [run.name for run in evidence.runs])
         reference = of_runs(evidence, evidence.views_of(kept))
         left = partial(down_to_floor, reference.channels, reference)
         common = self.causes(reference, Candidates(reference, candidates.effects), left, say)
         say("contrasting conditions")
-        return contrasted(evidence, common, candidates.effects, self.parted(evidence), self.finished)
+        return contrasted(evidence, common, candidates.effects, parted, self.finished)
 
     def parted(self, evidence: E) -> list[tuple[Condition, frozenset[int]]]:
         """Return every condition with the identities of the views of its runs."""

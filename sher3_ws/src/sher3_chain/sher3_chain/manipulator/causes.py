@@ -6,14 +6,16 @@ where it and what the joints then still need are cheaper than what the joints ne
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 from sher3_diagnosis.attribute.candidates import Candidates, cost, possible, price
+from sher3_diagnosis.attribute.plan import SearchPlan
+from sher3_diagnosis.attribute.planned import planned
 from sher3_diagnosis.attribute.rivals import Attribution, without_term
-from sher3_diagnosis.attribute.search import Say, attribute
+from sher3_diagnosis.attribute.search import Say
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.evidence import Evidence
@@ -28,8 +30,8 @@ from sher3_chain.manipulator.evidence import ArmMotionEvidence, channel_of, chan
 from sher3_chain.manipulator.links import clearly_less, wrong_links
 from sher3_chain.manipulator.readings.lateness import LATE, Late, lateness
 from sher3_chain.search.away_from_reversals import borne_out
-from sher3_chain.search.bounded import Bounded
 from sher3_chain.search.friction_in_motion import FRICTION, without_slow
+from sher3_chain.search.one_joint import of_one_joint
 from sher3_chain.thresholds import CAUSES_OF_JOINT, LEAST_CLOSURE
 
 TIMING, ON_LINK = "timing", "link"
@@ -120,44 +122,45 @@ def _causes(found: Attribution) -> list[Term]:
     return [t for t in found.fit.terms if t.effect.family != NUISANCE]
 
 
-@dataclass
-class PlainFirst(Bounded):
-    """Candidates of which two plain laws come before a richer one that contains the first of them.
+def plain_before_richer(candidates: Candidates, trials: list[Fit], given: Sequence[Term]) -> list[Fit]:
+    """Return the trials of a step; a plain law first where it and another plain one are as cheap as the best trial.
 
     Friction that varies with the position takes up a viscous one as long as that is not there. It is a cause where it
-    is worth its numbers beside both.
-
-    Attributes:
-        found: whether links were found from the data: a share of what the model says then tells nothing.
+    is worth its numbers beside both plain laws.
     """
+    if not trials:
+        return trials
+    best = trials[0].terms[-1]
+    own = [f for f in trials if f.terms[-1].site == best.site]
+    first = next((f for f in own if f.terms[-1].effect.id in best.effect.extends), None)
+    if first is None:
+        return trials
+    plain = [f.terms[-1] for f in own if f is not first and f.terms[-1].effect.plain]
+    pairs = [fit(candidates.evidence.data, [*first.terms, term]) for term in plain]
+    cheaper = any(pair.admissible and spent(pair) <= spent(trials[0]) for pair in pairs)
+    return [first, *(f for f in trials if f is not first)] if cheaper else trials
 
-    found: bool = False
 
-    def possible(self, trial: Fit) -> bool:
-        """Return whether the new cause is possible beside the others and the links."""
-        term = trial.terms[-1]
-        return not (self.found and term.effect.of_model(term.shape)) and super().possible(trial)
+def beside_links(trial: Fit) -> bool:
+    """Return whether a trial is possible beside links found from the data: a share of what the model says is not."""
+    term = trial.terms[-1]
+    return not term.effect.of_model(term.shape) and of_one_joint(trial)
 
-    def search(self, channels: Collection[Channel], given: Sequence[Term] = ()) -> list[Fit]:
-        """Search as the engine does; the plain law first where it and another plain one are as cheap as the best."""
-        found = super().search(channels, given)
-        if not found:
-            return found
-        best = found[0].terms[-1]
-        own = [f for f in found if f.terms[-1].site == best.site]
-        first = next((f for f in own if f.terms[-1].effect.id in best.effect.extends), None)
-        if first is None:
-            return found
-        plain = [f.terms[-1] for f in own if f is not first and f.terms[-1].effect.plain]
-        pairs = [fit(self.evidence.data, [*first.terms, term]) for term in plain]
-        cheaper = any(pair.admissible and spent(pair) <= spent(found[0]) for pair in pairs)
-        return [first, *(f for f in found if f is not first)] if cheaper else found
+
+JOINT = SearchPlan(
+    causes=CAUSES_OF_JOINT,
+    down_to_floor=True,
+    possible=of_one_joint,
+    order=plain_before_richer,
+    reviews=(borne_out,),
+)
+"""How the causes of one force balance, or of one pair of encoders, are looked for."""
 
 
 def _searched(own: Evidence, effects: Sequence[Effect], say: Say, links: bool = False) -> Attribution:
     """Search one channel for causes, beside links that were found from the data or not."""
-    left = partial(down_to_floor, own.channels, own)
-    return borne_out(own, attribute(PlainFirst(own, effects, found=links), left, say, CAUSES_OF_JOINT))
+    plan = replace(JOINT, possible=beside_links) if links else JOINT
+    return planned(Candidates(own, effects), plan, partial(down_to_floor, own.channels, own), say)
 
 
 def _beside_delay(own: Evidence, late: Late | None, effects: Sequence[Effect], say: Say, links: bool) -> Attribution:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from sher3_diagnosis.attribute.candidates import Candidates
+from sher3_diagnosis.attribute.plan import SearchPlan
 from sher3_diagnosis.attribute.rivals import Attribution
 from sher3_diagnosis.attribute.search import Left, Say
 from sher3_diagnosis.channel import Channel
@@ -14,7 +15,6 @@ from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.finding import ExactFinding, Finding
 from sher3_diagnosis.fit.fitting import Fit
 from sher3_diagnosis.localise.gaps import localise
-from sher3_diagnosis.machine import Policy
 from sher3_diagnosis.verdict import Cause
 from sher3_effects import computed, pages
 from sher3_machines.intake.notes import told_once
@@ -23,7 +23,7 @@ from sher3_chain.chain.machine import Chain
 from sher3_chain.joint.bounds import within_bounds
 from sher3_chain.joint.own_unit import RECORDED, in_own_unit
 from sher3_chain.joint.record import AxesRun
-from sher3_chain.manipulator.causes import causes_of_arm, centred
+from sher3_chain.manipulator.causes import JOINT, causes_of_arm, centred
 from sher3_chain.manipulator.confounding import GAIN, PAYLOAD, WEIGHT, confounding_notes, same_force
 from sher3_chain.manipulator.description import ManipulatorDescription
 from sher3_chain.manipulator.evidence import ArmMotionEvidence, gather_arm_motion
@@ -57,7 +57,6 @@ class Manipulator(Chain[ArmMotionEvidence]):
 
     described: ManipulatorDescription
     model: ArmModel
-    policy = Policy(down_to_floor=True)
 
     def library(self) -> Sequence[Effect]:
         """Return the pages of an axis and those of a joint of an arm, and those of a servo's law."""
@@ -96,6 +95,10 @@ class Manipulator(Chain[ArmMotionEvidence]):
             return [law for law in laws if law.closed]
         late = [] if computed(LATE).id in without else [x for part in evidence for x in late_efforts(part)]
         return [*laws, *late]
+
+    def plan(self, evidence: ArmMotionEvidence) -> SearchPlan:
+        """Return how the causes of each joint are looked for."""
+        return JOINT
 
     def causes(self, evidence: ArmMotionEvidence, candidates: Candidates, left_over: Left, say: Say) -> Attribution:
         """Choose the causes joint by joint, without and with a payload."""

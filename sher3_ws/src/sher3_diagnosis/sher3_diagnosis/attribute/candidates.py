@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field
 
 from sher3_diagnosis.attribute.ties import TIE, ranked
@@ -16,6 +16,22 @@ ROUNDS = 3
 """Rounds of the search over shapes: the effect's own, then twice around the best so far."""
 
 
+def possible(trial: Fit) -> bool:
+    """Return whether the last term shows anywhere and its fit is physically possible."""
+    last = len(trial.terms) - 1
+    term = trial.terms[last]
+    return bool(term.channels) and term.effect.admissible(term.shape, trial.of(last))
+
+
+def as_found(candidates: Candidates, trials: list[Fit], given: Sequence[Term]) -> list[Fit]:
+    """Return the trials of a step as they are: the cheapest first."""
+    return trials
+
+
+Order = Callable[["Candidates", list[Fit], Sequence[Term]], list[Fit]]
+"""Says in which order the trials of a step are taken, and which not at all: of candidates, trials and terms given."""
+
+
 @dataclass
 class Candidates:
     """The effects that may be causes of one piece of evidence; terms are evaluated once.
@@ -23,10 +39,14 @@ class Candidates:
     Attributes:
         evidence: to be explained.
         effects: that may explain it.
+        possible: whether a trial may be an answer.
+        order: of the trials of a step.
     """
 
     evidence: Evidence
     effects: Sequence[Effect]
+    possible: Callable[[Fit], bool] = possible
+    order: Order = as_found
     terms: dict[tuple, Term] = field(default_factory=dict)
 
     def sites(self, effect: Effect) -> Sequence[str]:
@@ -75,10 +95,6 @@ class Candidates:
             shapes = effect.refine(found.terms[-1].shape)
         return found
 
-    def possible(self, trial: Fit) -> bool:
-        """Return whether a fit may be an answer; default that its last term is."""
-        return possible(trial)
-
     def search(self, channels: Collection[Channel], given: Sequence[Term] = ()) -> list[Fit]:
         """Fit every effect that shows on any of `channels`, best first; of equals, the law of fewest inputs first.
 
@@ -93,7 +109,7 @@ class Candidates:
                 found = self.best(effect, site, given)
                 if found is not None:
                     out.append(found)
-        return ranked(self._without_idle_extensions(out, given), cost, inputs_of)
+        return self.order(self, ranked(self._without_idle_extensions(out, given), cost, inputs_of), given)
 
     def _without_idle_extensions(self, fits: list[Fit], given: Sequence[Term]) -> list[Fit]:
         base = fit(self.evidence.data, given).total
@@ -105,13 +121,6 @@ class Candidates:
             if simpler is None or simpler - f.total > max(NEEDED, 2.0 * PARSIMONY * (base - f.total)):
                 kept.append(f)
         return kept
-
-
-def possible(trial: Fit) -> bool:
-    """Return whether the last term shows anywhere and its fit is physically possible."""
-    last = len(trial.terms) - 1
-    term = trial.terms[last]
-    return bool(term.channels) and term.effect.admissible(term.shape, trial.of(last))
 
 
 def complexity(term: Term) -> int:

@@ -9,12 +9,36 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from sher3_diagnosis.attribute.candidates import Candidates, complexity
-from sher3_diagnosis.attribute.rivals import without_term
+from sher3_diagnosis.attribute.rivals import Attribution, without_term
+from sher3_diagnosis.attribute.search import Left, Say
 from sher3_diagnosis.attribute.ties import first_of_least
 from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import Fit, Term, fit
 from sher3_diagnosis.thresholds import NEEDED, PARSIMONY, PRICE
+
+
+def layers(effects: Sequence[Effect]) -> list[list[Effect]]:
+    """Return effects in the order they are looked for: what a plain one explains is not blamed on the others."""
+    return [[e for e in effects if e.plain], [e for e in effects if not e.plain]]
+
+
+def layered(candidates: Candidates, left_over: Left, say: Say) -> Attribution:
+    """Grow the fit layer by layer where there is a gap.
+
+    Rivals are not named: each of many small errors could be another one's at its neighbour.
+    """
+    current = candidates.evidence.null()
+    steps = [current]
+    for layer in layers(candidates.effects) if left_over(current) else ():
+        say(f"fitting {', '.join(e.id for e in layer)}")
+        current = grow(candidates, layer, current)
+        steps.append(current)
+    terms = range(len(current.terms))
+    explained = tuple(without_term(candidates.evidence, current, i).total - current.total for i in terms)
+    rivals: tuple[tuple[()], ...] = tuple(() for _ in terms)
+    nuisance = len(candidates.evidence.nuisance)
+    return Attribution(current, rivals=rivals, explained=explained, nuisance=nuisance, steps=tuple(steps))
 
 
 def grow(candidates: Candidates, effects: Sequence[Effect], current: Fit) -> Fit:

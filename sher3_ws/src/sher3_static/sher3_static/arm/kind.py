@@ -7,12 +7,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from sher3_diagnosis.attribute.candidates import Candidates
-from sher3_diagnosis.attribute.rivals import Attribution, without_term
-from sher3_diagnosis.attribute.search import Left, Say
-from sher3_diagnosis.attribute.stepwise import grow
+from sher3_diagnosis.attribute.plan import SearchPlan
+from sher3_diagnosis.attribute.stepwise import layers
 from sher3_diagnosis.channel import Channel
-from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.finding import Finding
 from sher3_diagnosis.machine import Policy
 from sher3_diagnosis.quantify.closure import closure
@@ -58,13 +55,16 @@ class KnownArm(NamedTuple):
 class ArmKind(TableKind[ArmDescription]):
     """Serial arms.
 
-    Every joint has a small error of its own: a known cause may leave a share, and the next layer looks for it.
+    Every joint has a small error of its own: a known cause may leave a share, and the next layer looks for it. What
+    plain homing explains is not blamed on the machining. Rivals are not named: the notes say how far the postures tell
+    joints apart.
     """
 
     name, description = "arm", ArmDescription
     stored = ("joints",)
     written_for = ("arm",)
     policy = Policy(carried=True)
+    plan = SearchPlan(layers=True)
     words = Words(
         rows="{n} postures, measured from outside",
         whole="All postures",
@@ -125,24 +125,6 @@ class ArmKind(TableKind[ArmDescription]):
         )
         return [table]
 
-    def attribute(self, evidence: TableEvidence, candidates: Candidates, left_over: Left, say: Say) -> Attribution:
-        """Grow the fit layer by layer where there is a gap.
-
-        Rivals are not named: each of many small errors could be another joint's, and the notes say how far the postures
-        tell them apart.
-        """
-        current = evidence.null()
-        steps = [current]
-        for layer in layers(candidates.effects) if left_over(current) else ():
-            say(f"fitting {', '.join(e.id for e in layer)}")
-            current = grow(candidates, layer, current)
-            steps.append(current)
-        terms = range(len(current.terms))
-        explained = tuple(without_term(evidence, current, i).total - current.total for i in terms)
-        rivals: tuple[tuple[()], ...] = tuple(() for _ in terms)
-        nuisance = len(evidence.nuisance)
-        return Attribution(current, rivals=rivals, explained=explained, nuisance=nuisance, steps=tuple(steps))
-
     def remarks(self, finding: Finding[TableEvidence]) -> list[str]:
         """Say how far held-out postures are off, layer by layer, and where what is left lies."""
         evidence, steps = finding.evidence, finding.attribution.steps
@@ -163,11 +145,6 @@ class ArmKind(TableKind[ArmDescription]):
         """Return the closure of the measured pose, which is the end of the chain."""
         evidence = findings[0].evidence
         return closure(evidence, TIP, evidence.null(), findings[0].attribution.fit)
-
-
-def layers(effects: Sequence[Effect]) -> list[list[Effect]]:
-    """Return effects in the order they are looked for: what plain homing explains is not blamed on the machining."""
-    return [[e for e in effects if e.plain], [e for e in effects if not e.plain]]
 
 
 KIND = ArmKind()

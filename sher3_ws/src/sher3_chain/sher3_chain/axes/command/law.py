@@ -10,9 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from sher3_diagnosis.attribute.candidates import Candidates
-from sher3_diagnosis.attribute.rivals import Attribution
-from sher3_diagnosis.attribute.search import Left, Say, attribute
+from sher3_diagnosis.attribute.plan import SearchPlan
 from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.quantify.polish import polished
@@ -29,6 +27,8 @@ from sher3_chain.readings.signals import signals_of
 
 STAGE = "controller"
 """Stage of the law."""
+LAW = SearchPlan(down_to_floor=True, single=polished)
+"""How the causes of a command are looked for: a law is exact, so that one cause with its best shape may do."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -83,12 +83,6 @@ def unit_of_command(axis: Axis) -> str:
     """Return the unit of the recorded command."""
     column = axis.signals.command
     return (column.unit if column is not None else None) or "1"
-
-
-def causes_of_law(candidates: Candidates, left_over: Left, say: Say) -> Attribution:
-    """Choose the causes of a command; one alone is polished before a second is looked for, since a law is exact."""
-    one = polished(candidates.evidence, attribute(candidates, left_over, say, causes=1))
-    return attribute(candidates, left_over, say) if left_over(one.fit) else one
 
 
 def is_law(evidence: Evidence) -> bool:

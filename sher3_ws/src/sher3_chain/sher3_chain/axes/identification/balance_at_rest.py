@@ -6,19 +6,22 @@ direction alone cannot tell apart, such as a constant force and a constant frict
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
+from sher3_diagnosis.attribute.candidates import Candidates
+from sher3_diagnosis.attribute.rivals import Attribution
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.fit.fitting import Fit, Term
+from sher3_diagnosis.thresholds import NEEDED
 
-from sher3_chain.axes.evidence import AxisEvidence
 from sher3_chain.axes.view import AxisView
-from sher3_chain.search.bounded import Bounded
 from sher3_chain.thresholds import REST_FLOORS, STATIC
 
 
-def rest_loss(evidence: AxisEvidence, fit: Fit) -> float:
+def rest_loss(evidence: Any, fit: Fit) -> float:
     """Return the squares over the floor of what causes leave at rest beyond what dry friction holds; 0 for a servo."""
     axis = evidence.axis
     channel = Channel("motor_mechanics", axis.name)
@@ -47,12 +50,18 @@ def _left(view: AxisView, fit: Fit, channel: Channel) -> Array:
     return left
 
 
-class DryFirst(Bounded):
-    """Candidates of which a friction that holds an axis at rest is the first cause."""
+def leaves_at_rest(candidates: Candidates, found: Fit) -> bool:
+    """Return whether causes leave a force at rest that nothing holds."""
+    return rest_loss(candidates.evidence, found) > 0.0
 
-    def search(self, channels: Collection[Channel], given: Sequence[Term] = ()) -> list[Fit]:
-        """Search as the engine does, but among dry frictions alone as long as none is given."""
-        found = super().search(channels, given)
-        if any(term.effect.dry for term in given):
-            return found
-        return [trial for trial in found if trial.terms[-1].effect.dry]
+
+def dry_first(candidates: Candidates, trials: list[Fit], given: Sequence[Term]) -> list[Fit]:
+    """Return the trials of a step: of dry frictions alone as long as none is given."""
+    return trials if any(t.effect.dry for t in given) else [x for x in trials if x.terms[-1].effect.dry]
+
+
+def rivals_at_rest(evidence: Any, found: Attribution) -> Attribution:
+    """Return the causes with the rivals that leave no more at rest than they do: what motion cannot tell, rest may."""
+    most = rest_loss(evidence, found.fit) + NEEDED
+    kept = tuple(tuple(f for f in rivals if rest_loss(evidence, f) < most) for rivals in found.rivals)
+    return replace(found, rivals=kept)

@@ -14,6 +14,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from sher3_diagnosis.attribute.rivals import Attribution
+from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import Fit, Term
 from sher3_diagnosis.thresholds import NEEDED
 from sher3_diagnosis.verdict import Cause
@@ -25,7 +26,7 @@ def indistinct() -> dict[str, tuple[str, ...]]:
     return {e.id: e.indistinct for e in pages("servo") if e.indistinct}
 
 
-def told_by_travel(found: Attribution) -> Attribution:
+def told_by_travel(evidence: Evidence, found: Attribution) -> Attribution:
     """Return the causes without the spring, or the weight at an arm, that leaves markedly more than the other one.
 
     Both laws are exact, and over a travel of 2 rad they part by 0.4 % of the gap: what a further cause must be worth.

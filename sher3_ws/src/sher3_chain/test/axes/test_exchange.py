@@ -1,9 +1,9 @@
 """Shapes searched again beside the other causes, which keep their order."""
 
 from sher3_chain.axes.evidence import gather_axis
-from sher3_chain.axes.identification.search import polished
 from sher3_chain.axes.machine import facts_of
 from sher3_diagnosis.attribute.candidates import Candidates
+from sher3_diagnosis.attribute.exchange import exchanged
 from sher3_diagnosis.attribute.rivals import Attribution
 from sher3_diagnosis.fit.fitting import fit
 from sher3_effects import pages
@@ -23,7 +23,7 @@ def test_a_shape_is_searched_again_beside_the_others():
             candidates.term(effects["viscous_friction"], "slide", {}),
         ],
     )
-    found = polished(candidates, Attribution(worst, ((), ()), (0.0, 0.0)))
+    found = exchanged(candidates, Attribution(worst, ((), ()), (0.0, 0.0)))
     assert found.total < worst.total
     assert [t.key for t in found.terms] == [t.key for t in worst.terms]
     assert found.terms[0].shape in shapes

@@ -1,0 +1,27 @@
+"""How the causes of one axis are looked for."""
+
+from __future__ import annotations
+
+from sher3_diagnosis.attribute.plan import Opening, SearchPlan
+from sher3_diagnosis.thresholds import WORTH
+
+from sher3_chain.axes.identification.balance_at_rest import dry_first, leaves_at_rest, rest_loss, rivals_at_rest
+from sher3_chain.axes.identification.behind_encoder import friction_then_hidden, something_hides
+from sher3_chain.axes.identification.confounded_laws import told_by_travel
+from sher3_chain.search.away_from_reversals import borne_out
+from sher3_chain.search.one_joint import of_one_joint
+
+AXIS = SearchPlan(
+    down_to_floor=True,
+    possible=of_one_joint,
+    together=True,
+    beyond=rest_loss,
+    openings=(
+        Opening(dry_first, leaves_at_rest),
+        Opening(friction_then_hidden, something_hides, worth=WORTH, unseen=True),
+    ),
+    reviews=(rivals_at_rest, told_by_travel, borne_out),
+)
+"""Plain laws at once, then richer ones. Where the choice leaves a force at rest that nothing holds, a second search
+starts with a dry friction; where an axis has one encoder, a third with what may hide behind it. In the end rest and
+travel tell rivals apart, and what only reversals show is no cause."""
