@@ -1,6 +1,6 @@
 """Bench: axes and servos with three to six causes drawn at once: which are named, with which interval, what is wrong.
 
-Machines are those of `sher3_chain/test/drawn_machines.py`: their friction sticks and slips, their integrator is
+Machines are those of `sher3_chain/test/drawn_axes.py`: their friction sticks and slips, their integrator is
 Heun's; the diagnosis has other laws. Beside it, on the same records, stand two fits of the same dictionary: all its
 columns by least squares, and the lasso whose weight is chosen on the last third of the record.
 
@@ -26,7 +26,7 @@ from sher3_diagnosis import diagnose
 from sher3_diagnosis.verdict import Verdict
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "sher3_ws/src/sher3_chain/test"))
-from drawn_machines import Drawn, drawn_axis, drawn_servo
+from drawn_axes import Drawn, drawn_axis, drawn_servo
 
 ALIKE = {
     "presliding_friction": {"coulomb_friction"},

@@ -1,6 +1,6 @@
 """Bench: whether the odds hold on machines that are not SHER, and what labelled cases of such machines make of them.
 
-Chains are drawn axes and servos (`sher3_chain/test/drawn_machines.py`: Karnopp's friction, Heun's steps), such axes
+Chains are drawn axes and servos (`sher3_chain/test/drawn_axes.py`: Karnopp's friction, Heun's steps), such axes
 with a force that the library lacks, and arms of MuJoCo (`sher3_arms`); tables are serial arms seen from outside, force
 sensors under known weights, and positioning tests (`sher3_static/test`). Every case is judged with the whole library
 and without one of its effects.
@@ -38,7 +38,7 @@ from sher3_diagnosis.judge.calibration.calibration import in_force
 from sher3_diagnosis.machine import Machine
 
 SOURCES = Path(__file__).parents[1] / "sher3_ws/src"
-sys.path[:0] = [  # before this folder, which has a `drawn_machines` of its own
+sys.path[:0] = [
     str(SOURCES / x)
     for x in (
         "sher3_chain/test",
@@ -88,7 +88,7 @@ def one_of(rng: np.random.Generator, names: Sequence[str]) -> list[tuple[str, ..
 
 def axis(seed: int) -> Case:
     """Return a drawn axis, or a servo at odd seeds."""
-    from drawn_machines import drawn_axis, drawn_servo
+    from drawn_axes import drawn_axis, drawn_servo
 
     drawn = (drawn_servo if seed % 2 else drawn_axis)(seed)
     effects = sorted("command_delay" if name == "delay" else name for name in drawn.truth)
@@ -102,7 +102,7 @@ def foreign_axis(seed: int) -> Case:
 
     The force is added to what the drive gives: the same motion needs that much more.
     """
-    from drawn_machines import drawn_axis
+    from drawn_axes import drawn_axis
 
     drawn, rng = drawn_axis(seed), np.random.default_rng([seed, 3])
     signals = drawn.run.signals["axis"]

@@ -1,7 +1,7 @@
 """No cause of a drawn machine is of no size, and none misses its own estimate."""
 
 import pytest
-from drawn_machines import drawn_axis, drawn_servo
+from drawn_axes import drawn_axis, drawn_servo
 from meaning import meaningless
 from sher3_diagnosis import diagnose
 

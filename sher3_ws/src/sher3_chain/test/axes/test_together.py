@@ -1,7 +1,7 @@
 """Several ordinary causes at once: each has its own number, none takes a part of another's."""
 
 import pytest
-from drawn_machines import drawn_axis, drawn_servo
+from drawn_axes import drawn_axis, drawn_servo
 from sher3_diagnosis import diagnose
 
 
