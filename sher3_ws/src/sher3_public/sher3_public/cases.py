@@ -87,7 +87,7 @@ def _case(data: dict[str, Any], tables: Sequence[Tables], source: Source | None,
         raise MachineError(f"{place}: {first['msg']}", remedy="correct what was stated") from error
     runs, notes = [], []
     for name, table in zip(names, tables, strict=True):
-        parts, note = kind.parts(name, table, description)
+        parts, note = kind.parts(name, table, description, len(tables))
         notes += [note] if note else []
         runs += [kind.read(part, x, description) for part, x in parts.items()]
     if source is not None and isinstance(description, ManipulatorDescription):

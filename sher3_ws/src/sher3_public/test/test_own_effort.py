@@ -48,6 +48,28 @@ def test_a_rotor_beside_what_the_step_adds_is_named_with_its_own_size():
     assert cause.parameters["inertia"].value == pytest.approx(0.03, rel=0.05)
 
 
+JUMPING = """<mujoco><option timestep="0.001" integrator="implicitfast"/><worldbody><body>
+<joint name="wrist" axis="0 0 1" armature="0.002" damping="0.05"/><geom type="capsule" fromto="0 0 0 .2 0 0" size=".02"
+mass=".3"/></body></worldbody><actuator><position joint="wrist" kp="240" kv="16"/></actuator></mujoco>"""
+
+
+def test_a_start_with_a_jump_at_a_thousand_samples_a_second_is_still_the_simulators_own():
+    """The first samples are faster than what readings are smoothed over; what is left there is no other drive."""
+    model = mujoco.MjModel.from_xml_string(JUMPING)
+    state, time = mujoco.MjData(model), 0.001 * np.arange(4000)
+    told = 0.4 + 0.5 * np.sin(3.0 * time) + 0.2 * np.sin(7.0 * time)
+    rows = []
+    for u in told:
+        state.ctrl[0] = u
+        mujoco.mj_forward(model, state)
+        rows.append([state.qpos[0], state.actuator_force[0]])
+        mujoco.mj_step(model, state)
+    q, force = np.array(rows).T
+    q = q + 1e-5 * np.random.default_rng(1).normal(size=len(q))
+    found = gap.diagnose(JUMPING, time, told[:, None], q[:, None], force[:, None])
+    assert found.status == "no_gap" and "a simulator's own" in " ".join(found.guessed)
+
+
 def test_what_is_stated_holds():
     xml = arm("RK4")
     assert diagnosed(xml, logged(xml, SEEDS["RK4"]), simulated=False).status != "no_gap"

@@ -10,7 +10,8 @@ from sher3_diagnosis.channel import Array
 from sher3_machines.intake.kind import Kind
 from sher3_machines.intake.tables import Tables
 
-from sher3_chain.joint.record import AxesRun, ChainDescription, axes_run, parts_of_record
+from sher3_chain.joint.parts import parts_of_record
+from sher3_chain.joint.record import AxesRun, ChainDescription, axes_run
 
 D = TypeVar("D", bound=ChainDescription)
 
@@ -22,9 +23,9 @@ class ChainKind(Kind[D, AxesRun]):
         """Bring a data file onto a uniform clock; raises MachineError."""
         return axes_run(name, tables, description)
 
-    def parts(self, name: str, tables: Tables, description: D) -> tuple[dict[str, Tables], str]:
-        """Return the parts of a record whose clock has holes or jumps back; repeats stay whole."""
-        return ({name: tables}, "") if description.repeats else parts_of_record(name, tables, description)
+    def parts(self, name: str, tables: Tables, description: D, records: int = 1) -> tuple[dict[str, Tables], str]:
+        """Return the parts of a record with holes, and stretches of a long one; repeats stay whole."""
+        return ({name: tables}, "") if description.repeats else parts_of_record(name, tables, description, records)
 
     def pack(self, run: AxesRun) -> Mapping[str, Array]:
         """Return the period and every signal."""

@@ -12,7 +12,7 @@ from sher3_machines.errors import MachineError
 from sher3_machines.intake.columns import MOTION, clock_beside, find, pick, stamps_of
 from sher3_machines.intake.fields import Clock, Column
 from sher3_machines.intake.mending.motion import check_speed, counts_backwards, is_magnitude, signs_of, speed_ratio
-from sher3_machines.intake.mending.parts import LONGEST_HOLE, cut
+from sher3_machines.intake.mending.parts import LONGEST_HOLE
 from sher3_machines.intake.mending.readings import glitches, known_readings
 from sher3_machines.intake.mending.repeats import (
     LONGEST_HOLD,
@@ -328,17 +328,3 @@ def _onto(clock: Array, t: Array | None, x: Array, smooth: bool) -> Array:
     if t is None:
         return np.asarray(x, dtype=float)
     return np.asarray(CubicSpline(t, x)(clock) if smooth else np.interp(clock, t, x), dtype=float)
-
-
-def parts_of_record(name: str, tables: Tables, machine: ChainDescription) -> tuple[dict[str, Tables], str]:
-    """Return the parts of a record whose clock has holes or jumps back, and a note; else the record itself."""
-    columns = [c for axis in machine.chain for c in _columns(axis).values()]
-    one = len({table_of(c.column) for c in columns}) == 1
-    clock = machine.time.column
-    if clock is None or not one:
-        return {name: tables}, ""
-    table = table_of(columns[0].column)
-    try:
-        return cut(name, tables, find(f"{table}/{clock}" if table else clock, tables, name))
-    except MachineError:
-        return {name: tables}, ""  # the reader names what is missing

@@ -52,8 +52,9 @@ def import_case(data: Sequence[Path], description: Path, out: Path) -> list[str]
         raise MachineError(f"{out}: is not empty and no case", remedy="choose another --out")
     kind = kinds()[machine.kind]
     runs, notes = [], []
-    for name, table in runs_of(data).items():
-        parts, note = kind.parts(name, table, machine)
+    records = runs_of(data)
+    for name, table in records.items():
+        parts, note = kind.parts(name, table, machine, len(records))
         notes += [note] if note else []
         runs += [kind.read(part, x, machine) for part, x in parts.items()]
     notes += [note for run in runs for note in run.notes]

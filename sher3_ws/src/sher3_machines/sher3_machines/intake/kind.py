@@ -54,8 +54,8 @@ class Kind(ABC, Generic[D, R]):
     def read(self, name: str, tables: Tables, description: D) -> R:
         """Check a data file's columns and return them as a run in SI units; raises MachineError."""
 
-    def parts(self, name: str, tables: Tables, description: D) -> tuple[dict[str, Tables], str]:
-        """Return the records that a data file holds by name, and a note; default one."""
+    def parts(self, name: str, tables: Tables, description: D, records: int = 1) -> tuple[dict[str, Tables], str]:
+        """Return the records that a data file, one of several, holds by name, and a note; default one."""
         return {name: tables}, ""
 
     def draft(self, path: Path, tables: Tables, rate: float | None, model: Path | None) -> Draft | None:

@@ -17,7 +17,11 @@ LIKE_ITS_LAW = 0.02
 """Share of an effort's scatter by which it may differ from the law of its drive and be the simulator's own. Recorded
 torques of real drives differ by a tenth and more; rounding and an encoder's noise by less than a hundredth."""
 WINDOW = 21
-"""Samples over which readings are smoothed before they are held against a law; a run has at least 20."""
+"""Samples over which readings are smoothed before they are held against a law, at least; a run has as many."""
+SMOOTH = 0.04
+"""Seconds of that at least: readings that come faster bring more noise to a speed."""
+USUAL = 0.9
+"""Share of the samples that are held against a law: a start with a jump is faster than what is smoothed."""
 LOOKED_AT = 4000
 """Samples at most at which an effort without a control is held against the model."""
 LIKE_A_STEP = 0.2
@@ -68,9 +72,12 @@ def from_law(time: Array, q: Array, drive: Drive, control: Array, effort: Array)
     is taken off.
     """
     period, limit = float(np.median(np.diff(time))), np.inf if drive.limit is None else drive.limit
-    v, a = (savgol_filter(q, WINDOW, 3, deriv=k, delta=period) for k in (1, 2))
+    window = min(max(WINDOW, 2 * round(0.5 * SMOOTH / period) + 1), 2 * ((len(q) - 1) // 2) + 1)
+    v, a = (savgol_filter(q, window, 3, deriv=k, delta=period) for k in (1, 2))
     law = drive.law(drive.asked(control), q, v)
-    left = savgol_filter(effort - np.clip(law, -limit, limit), WINDOW, 3)
+    left = savgol_filter(effort - np.clip(law, -limit, limit), window, 3)
+    usual = np.abs(left) <= np.quantile(np.abs(left), USUAL)
+    left, a = left[usual], a[usual]
     left = left - a * (left @ a) / max(a @ a, np.finfo(float).tiny)
     return float(np.std(left) / max(np.std(effort), np.finfo(float).tiny))
 

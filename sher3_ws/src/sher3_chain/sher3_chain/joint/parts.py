@@ -1,0 +1,74 @@
+"""The parts of a record that are read as runs of their own."""
+
+from __future__ import annotations
+
+import numpy as np
+from sher3_diagnosis.channel import Array
+from sher3_machines.errors import MachineError
+from sher3_machines.intake.columns import find
+from sher3_machines.intake.fields import Column
+from sher3_machines.intake.mending.parts import cut
+from sher3_machines.intake.mending.stretches import MOST_READINGS, spread
+from sher3_machines.intake.spelling import table_of
+from sher3_machines.intake.tables import Tables
+
+from sher3_chain.joint.description import ChainDescription
+
+
+def parts_of_record(
+    name: str, tables: Tables, machine: ChainDescription, records: int = 1
+) -> tuple[dict[str, Tables], str]:
+    """Return the parts of a record by name, and a note; the record itself where it is read whole.
+
+    It is cut where its clock has holes or jumps back; of more readings than an answer needs stretches are taken.
+
+    Args:
+        name: of the run.
+        tables: its columns.
+        machine: whose columns count.
+        records: that are judged together.
+    """
+    columns = [c for axis in machine.chain for c in vars(axis.signals).values() if isinstance(c, Column)]
+    parts, note = _cut_at_holes(name, tables, columns, machine.time.column)
+    most, rows = MOST_READINGS // (len(columns) * records), sum(map(_rows, parts.values()))
+    out: dict[str, Tables] = {}
+    notes = [note] if note else []
+    for part, own in parts.items():
+        found, said = spread(part, own, _stamps(own, machine.time.column), most * _rows(own) // max(rows, 1))
+        out |= found
+        notes += [said] if said else []
+    return out, "; ".join(notes)
+
+
+def _cut_at_holes(name: str, tables: Tables, columns: list[Column], clock: str | None) -> tuple[dict[str, Tables], str]:
+    if clock is None or len({table_of(c.column) for c in columns}) != 1:
+        return {name: tables}, ""
+    table = table_of(columns[0].column)
+    try:
+        return cut(name, tables, find(f"{table}/{clock}" if table else clock, tables, name))
+    except MachineError:
+        return {name: tables}, ""  # the reader names what is missing
+
+
+def _rows(tables: Tables) -> int:
+    return max((len(x) for x in tables.values() if x.ndim), default=0)
+
+
+def _stamps(tables: Tables, clock: str | None) -> dict[str, Array]:
+    """Return column -> stamps of its table, or the number of each sample where the clock is a rate."""
+    if clock is None:
+        return {name: np.arange(len(x), dtype=float) for name, x in tables.items() if x.ndim}
+    clocks = {home: _clock(tables, home, clock) for home in {table_of(name) for name in tables}}
+    beside = {name: clocks[table_of(name)] for name, x in tables.items() if x.ndim}
+    return {name: t for name, t in beside.items() if t is not None and len(t) == len(tables[name])}
+
+
+def _clock(tables: Tables, home: str, clock: str) -> Array | None:
+    """Return the stamps of a table, its own or those of all; None where there are none."""
+    for name in (f"{home}/{clock}" if home else clock, clock):
+        try:
+            found = tables[find(name, tables, "")]
+        except MachineError:
+            continue
+        return found if found.ndim == 1 and np.isfinite(found).all() else None
+    return None
