@@ -14,11 +14,11 @@ export PYTHONDONTWRITEBYTECODE =
 demo: $(READY)  ## scripted surgeon on mocks: recorded, analysed, shown
 	$(BIN)/sher3 demo
 
-test: test-all-but-wall test-wall  ## lint, types and every test but the slow ones
+test: test-wall lint test-all-but-wall  ## lint, types and every test but the slow ones
 
-# Tests in wall time (graph and flaky) run beside all others, which give way to them: processes of a robot that wake up
-# a thousand times a second leave most of two cores idle, and `nice` lets them have a core the moment they want it.
-# In the order of the files: long ones come first, so that neither of the two waits for the other at the end.
+# Tests in wall time (graph and flaky) run beside lint and all others, which give way to them: processes of a robot that
+# wake up a thousand times a second leave most of two cores idle, and `nice` lets them have a core the moment they want
+# it. In the order of the files: long ones come first, so that neither of the two waits for the other at the end.
 .PHONY: test-all-but-wall test-wall
 test-all-but-wall: $(READY) lint
 	nice -n 5 $(BIN)/pytest -n 2 --dist loadscope --no-loadscope-reorder --durations 10 \
@@ -26,7 +26,7 @@ test-all-but-wall: $(READY) lint
 
 # Reads only the files that name the mark it asks for (`conftest.py` sees to it that they do): a quarter of the time to
 # collect. What it says is shown at its end, in one piece.
-test-wall: $(READY) lint
+test-wall: $(READY)
 	mkdir -p build
 	$(BIN)/pytest --durations 10 -m "graph and flaky and not slow" \
 		$$(grep -rl flaky --include='test_*.py' tests $(wildcard sher3_ws/src/*/test)) > build/test-wall.log 2>&1; \
@@ -38,7 +38,7 @@ test-slow: $(READY)  ## colcon build and test of the workspace, a sealed challen
 lint: $(INSTALLED)
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
-	$(BIN)/mypy $(wildcard sher3_ws/src/sher3_*/sher3_*)
+	nice -n 5 $(BIN)/mypy $(wildcard sher3_ws/src/sher3_*/sher3_*)
 
 docs: $(READY)  ## the site in build/docs, readable offline; a warning is an error
 	$(BIN)/python -m sphinx -W --keep-going -q -j auto -d build/doctrees docs build/docs
