@@ -20,13 +20,13 @@ from sher3_effects.view import NominalAxis
 from sher3_machines.errors import MachineError
 from sher3_machines.thresholds import BLOCKS
 
+from sher3_chain.axes.causes.confounded_laws import dead_band_note, with_dead_band
+from sher3_chain.axes.causes.detection_limits import unseen_note
+from sher3_chain.axes.causes.plan import AXIS
+from sher3_chain.axes.causes.refine import refine_free
+from sher3_chain.axes.causes.true_force import in_true_force
 from sher3_chain.axes.command.law import LAW, is_law, law_of_axis
 from sher3_chain.axes.evidence import AxisEvidence, gather_axis, levels_of
-from sher3_chain.axes.identification.confounded_laws import dead_band_note, with_dead_band
-from sher3_chain.axes.identification.detection_limits import unseen_note
-from sher3_chain.axes.identification.plan import AXIS
-from sher3_chain.axes.identification.refine import refine_free
-from sher3_chain.axes.identification.true_force import in_true_force
 from sher3_chain.axes.limits import LIMIT, limit_finding
 from sher3_chain.axes.power import least_seen
 from sher3_chain.axes.replay import replay

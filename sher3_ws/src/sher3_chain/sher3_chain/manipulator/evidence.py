@@ -18,10 +18,10 @@ from sher3_chain.constants import ZERO, constants
 from sher3_chain.joint.own_unit import RECORDED
 from sher3_chain.joint.record import AxesRun
 from sher3_chain.manipulator.description import PER_RUN, ManipulatorDescription
-from sher3_chain.manipulator.gains import backwards, share_of
-from sher3_chain.manipulator.identify import with_identified_inertias
+from sher3_chain.manipulator.encoders import links_of
+from sher3_chain.manipulator.identification.gains import backwards, share_of
+from sher3_chain.manipulator.identification.inertias import with_identified_inertias
 from sher3_chain.manipulator.model import ArmModel
-from sher3_chain.manipulator.readings.encoders import links_of
 from sher3_chain.manipulator.readings.floors import floors_of
 from sher3_chain.manipulator.readings.senses import against_model
 from sher3_chain.manipulator.readings.senses import turned as turned_round

@@ -23,13 +23,15 @@ from sher3_chain.chain.machine import Chain
 from sher3_chain.joint.bounds import within_bounds
 from sher3_chain.joint.own_unit import RECORDED, in_own_unit
 from sher3_chain.joint.record import AxesRun
-from sher3_chain.manipulator.causes import JOINT, causes_of_arm, centred
-from sher3_chain.manipulator.confounding import GAIN, PAYLOAD, WEIGHT, confounding_notes, same_force
+from sher3_chain.manipulator.causes.confounding import GAIN, PAYLOAD, WEIGHT, confounding_notes, same_force
+from sher3_chain.manipulator.causes.lateness import LATE, late_efforts, with_closure
+from sher3_chain.manipulator.causes.payload import centred
+from sher3_chain.manipulator.causes.plan import JOINT
+from sher3_chain.manipulator.causes.search import causes_of_arm
 from sher3_chain.manipulator.description import ManipulatorDescription
 from sher3_chain.manipulator.evidence import ArmMotionEvidence, gather_arm_motion
 from sher3_chain.manipulator.library import of_joints
 from sher3_chain.manipulator.model import ArmModel
-from sher3_chain.manipulator.readings.lateness import LATE, late_efforts, with_closure
 from sher3_chain.manipulator.readings.wrong import level_notes
 from sher3_chain.power import unjudged
 from sher3_chain.readings.wrong import wrong_readings

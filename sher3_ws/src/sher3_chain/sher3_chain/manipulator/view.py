@@ -14,8 +14,8 @@ from sher3_effects.view import NominalAxis
 
 from sher3_chain.chain.view import LEAD_OF_STROKE, SLIP, ChainView, Loads
 from sher3_chain.manipulator.description import Joint
+from sher3_chain.manipulator.encoders import crossing
 from sher3_chain.manipulator.model import PARAMETERS, ArmModel
-from sher3_chain.manipulator.readings.encoders import crossing
 from sher3_chain.manipulator.signals import JointSignals
 from sher3_chain.readings.level import at_a_level, off
 from sher3_chain.readings.orders import orders_in

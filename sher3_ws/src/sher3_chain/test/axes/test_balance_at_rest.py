@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
+from sher3_chain.axes.causes.balance_at_rest import dry_first, rest_loss
 from sher3_chain.axes.evidence import gather_axis
-from sher3_chain.axes.identification.balance_at_rest import dry_first, rest_loss
 from sher3_chain.axes.machine import facts_of
 from sher3_chain.joint.record import AxesRun
 from sher3_chain.thresholds import REST_FLOORS, STATIC

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
+from sher3_chain.axes.causes.refine import refine_free, scaled
 from sher3_chain.axes.evidence import gather_axis
-from sher3_chain.axes.identification.refine import refine_free, scaled
 from sher3_chain.axes.replay import replay
 from sher3_chain.axes.simulate import Law, simulate
 from sher3_chain.joint.record import AxesRun

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from causes_at import caused
 from lifts import machine, motion, needed, run_of
-from sher3_chain.manipulator.confounding import confounded, confounded_in, known_weights
+from sher3_chain.manipulator.causes.confounding import confounded, confounded_in, known_weights
 
 
 def test_columns_that_nearly_cancel_are_named():

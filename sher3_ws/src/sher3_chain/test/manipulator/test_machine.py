@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from lifts import L, described, friction, machine, motion, needed, run_of, values
-from sher3_chain.manipulator.gains import backwards
+from sher3_chain.manipulator.identification.gains import backwards
 from sher3_chain.readings.slip_of_unit import Share
 from sher3_diagnosis import diagnose
 from sher3_machines import MachineError

@@ -20,7 +20,7 @@ class DryFriction(Page):
     """A friction with a level. In sliding it has that level; at rest it is any force up to it.
 
     Coulomb's inequality: how a bristle bends below the resolution of the encoders is not recorded. On other machines
-    the balance at rest is a rule of its own (`sher3_chain.axes.identification.balance_at_rest`).
+    the balance at rest is a rule of its own (`sher3_chain.axes.causes.balance_at_rest`).
     """
 
     DISPLACEMENTS: ClassVar[tuple[float, ...]] = ()

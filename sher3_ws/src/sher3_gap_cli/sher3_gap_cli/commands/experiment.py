@@ -60,7 +60,7 @@ def experiment(
 
 def motion_command(verdict: Path, case: Path, output: Path, as_json: bool, bet: bool) -> str:
     """Design a motion for another machine, write its file and return what to print."""
-    from sher3_chain.manipulator.confounding import known_weights
+    from sher3_chain.manipulator.causes.confounding import known_weights
     from sher3_export.excitation.design import designed
     from sher3_export.excitation.forms import save
     from sher3_export.verdicts import read_verdict

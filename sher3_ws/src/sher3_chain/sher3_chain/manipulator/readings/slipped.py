@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from sher3_diagnosis.channel import Array
 
-from sher3_chain.manipulator.gains import equations, friction_columns
+from sher3_chain.manipulator.identification.gains import equations, friction_columns
 from sher3_chain.manipulator.view import MotionView
 from sher3_chain.readings.slip_of_unit import Share, share_in
 

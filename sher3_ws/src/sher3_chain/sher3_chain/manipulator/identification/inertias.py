@@ -12,7 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from sher3_chain.manipulator.gains import friction_columns
+from sher3_chain.manipulator.identification.gains import friction_columns
 from sher3_chain.manipulator.model import ArmModel
 from sher3_chain.manipulator.view import MotionView
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from sher3_diagnosis.attribute.plan import Opening, SearchPlan
 from sher3_diagnosis.thresholds import WORTH
 
-from sher3_chain.axes.identification.balance_at_rest import dry_first, leaves_at_rest, rest_loss, rivals_at_rest
-from sher3_chain.axes.identification.behind_encoder import friction_then_hidden, something_hides
-from sher3_chain.axes.identification.confounded_laws import told_by_travel
+from sher3_chain.axes.causes.balance_at_rest import dry_first, leaves_at_rest, rest_loss, rivals_at_rest
+from sher3_chain.axes.causes.behind_encoder import friction_then_hidden, something_hides
+from sher3_chain.axes.causes.confounded_laws import told_by_travel
 from sher3_chain.search.away_from_reversals import borne_out
 from sher3_chain.search.one_joint import of_one_joint
 

@@ -25,7 +25,7 @@ from sher3_effects.delay import LONGEST_DELAY
 from sher3_machines.thresholds import BLOCKS
 
 from sher3_chain.manipulator.evidence import ArmMotionEvidence, channel_of
-from sher3_chain.manipulator.gains import friction_columns
+from sher3_chain.manipulator.identification.gains import friction_columns
 from sher3_chain.manipulator.view import MotionView
 
 LATE = "effort_delay"

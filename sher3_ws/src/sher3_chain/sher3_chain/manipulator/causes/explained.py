@@ -1,0 +1,75 @@
+"""One set of causes of a whole arm, and what would explain as much in the place of each."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from sher3_diagnosis.attribute.candidates import Candidates
+from sher3_diagnosis.attribute.rivals import Attribution, without_term
+from sher3_diagnosis.fit.fitting import Fit, Term, fit
+from sher3_diagnosis.thresholds import NEEDED, RIVAL
+
+from sher3_chain.manipulator.causes.plan import spent
+from sher3_chain.manipulator.evidence import ArmMotionEvidence
+
+
+@dataclass(frozen=True)
+class Explained:
+    """One set of causes of the whole arm.
+
+    Attributes:
+        fit: all terms together; the payload first of the causes where there is one.
+        alone: what the engine's search said of each force balance, and of each pair of encoders, alone.
+    """
+
+    fit: Fit
+    alone: Sequence[Attribution]
+
+    @property
+    def cost(self) -> float:
+        """Held-out loss and the price of every number."""
+        return spent(self.fit)
+
+
+def with_rivals(
+    evidence: ArmMotionEvidence, candidates: Candidates, best: Explained, second: Explained | None
+) -> Attribution:
+    """Add to every cause what would explain as much: rivals at its joint, and for a payload what takes its place."""
+    terms, rivals, ranking = best.fit.terms, [], []
+    alike = second is not None and _alike(evidence, best, second)
+    of_joints = {_name(t): (found, i) for found in best.alone for i, t in enumerate(found.fit.terms)}
+    for i, term in enumerate(terms):
+        others = [t for j, t in enumerate(terms) if j != i]
+        if _name(term) in of_joints:
+            found, k = of_joints[_name(term)]
+            own = [f.terms[-1] for f in found.rivals[k]]
+            ranking.append(found.ranking[k])
+        else:
+            own = []
+            ranking.append(())
+        trials = [fit(evidence.data, [*others, candidates.term(t.effect, t.site, t.shape)]) for t in own]
+        if alike and second is not None:
+            taken = {t.key for t in terms}
+            new = [t for t in second.fit.terms if t.key not in taken]
+            kept = {t.key for t in second.fit.terms}
+            if term.key not in kept:
+                trials += [fit(evidence.data, [*others, t]) for t in new]
+        rivals.append(tuple(trials))
+    explained = tuple(without_term(evidence, best.fit, i).total - best.fit.total for i in range(len(terms)))
+    return Attribution(best.fit, tuple(rivals), explained, tuple(ranking), len(evidence.nuisance))
+
+
+def _name(term: Term) -> tuple[object, ...]:
+    """Return what tells a term from all others: a late effort and a late encoder of one joint differ by shape alone."""
+    return (*term.key, *sorted(term.shape.items()))
+
+
+def _alike(evidence: ArmMotionEvidence, best: Explained, second: Explained) -> bool:
+    """Whether a second set of causes explains as much as the best one, but for the share that a rival may leave.
+
+    The share is of what those causes explain that the second set does not have.
+    """
+    kept = {t.key for t in second.fit.terms}
+    without = fit(evidence.data, [t for t in best.fit.terms if t.key in kept])
+    return second.fit.total - best.fit.total < max(NEEDED, RIVAL * (without.total - best.fit.total))

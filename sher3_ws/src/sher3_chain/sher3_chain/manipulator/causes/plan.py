@@ -1,0 +1,53 @@
+"""How the causes of one joint of an arm are looked for."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from sher3_diagnosis.attribute.candidates import Candidates, price
+from sher3_diagnosis.attribute.plan import SearchPlan
+from sher3_diagnosis.fit.fitting import Fit, Term, fit
+
+from sher3_chain.search.away_from_reversals import borne_out
+from sher3_chain.search.one_joint import of_one_joint
+from sher3_chain.thresholds import CAUSES_OF_JOINT
+
+
+def spent(found: Fit) -> float:
+    """Return the held-out loss of a fit and the price of every number."""
+    return found.total + sum(price(t) for t in found.terms)
+
+
+def plain_before_richer(candidates: Candidates, trials: list[Fit], given: Sequence[Term]) -> list[Fit]:
+    """Return the trials of a step; a plain law first where it and another plain one are as cheap as the best trial.
+
+    Friction that varies with the position takes up a viscous one as long as that is not there. It is a cause where it
+    is worth its numbers beside both plain laws.
+    """
+    if not trials:
+        return trials
+    best = trials[0].terms[-1]
+    own = [f for f in trials if f.terms[-1].site == best.site]
+    first = next((f for f in own if f.terms[-1].effect.id in best.effect.extends), None)
+    if first is None:
+        return trials
+    plain = [f.terms[-1] for f in own if f is not first and f.terms[-1].effect.plain]
+    pairs = [fit(candidates.evidence.data, [*first.terms, term]) for term in plain]
+    cheaper = any(pair.admissible and spent(pair) <= spent(trials[0]) for pair in pairs)
+    return [first, *(f for f in trials if f is not first)] if cheaper else trials
+
+
+def beside_links(trial: Fit) -> bool:
+    """Return whether a trial is possible beside links found from the data: a share of what the model says is not."""
+    term = trial.terms[-1]
+    return not term.effect.of_model(term.shape) and of_one_joint(trial)
+
+
+JOINT = SearchPlan(
+    causes=CAUSES_OF_JOINT,
+    down_to_floor=True,
+    possible=of_one_joint,
+    order=plain_before_richer,
+    reviews=(borne_out,),
+)
+"""How the causes of one force balance, or of one pair of encoders, are looked for."""

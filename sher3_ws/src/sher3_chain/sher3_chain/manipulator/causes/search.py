@@ -1,0 +1,152 @@
+"""How the causes of a serial arm are looked for: joint by joint, without and with a payload that all joints carry.
+
+What a joint does alone is a matter of its own force balance. A payload shows on several joints at once; it is taken
+where it and what the joints then still need are cheaper than what the joints need without it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+from sher3_diagnosis.attribute.candidates import Candidates
+from sher3_diagnosis.attribute.planned import planned
+from sher3_diagnosis.attribute.rivals import Attribution
+from sher3_diagnosis.attribute.search import Say
+from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.effect import Effect
+from sher3_diagnosis.evidence import Evidence
+from sher3_diagnosis.fit.fitting import Fit, Term, fit, make_term
+from sher3_diagnosis.judge.left_over import down_to_floor
+from sher3_diagnosis.thresholds import NEEDED
+from sher3_diagnosis.tolerance import NUISANCE
+from sher3_effects import computed
+
+from sher3_chain.manipulator.causes.confounding import GAIN
+from sher3_chain.manipulator.causes.explained import Explained, with_rivals
+from sher3_chain.manipulator.causes.lateness import LATE, Late, lateness
+from sher3_chain.manipulator.causes.links import clearly_less, wrong_links
+from sher3_chain.manipulator.causes.payload import closes, middle, payload
+from sher3_chain.manipulator.causes.plan import JOINT, beside_links
+from sher3_chain.manipulator.evidence import ArmMotionEvidence, channel_of, channels_of, of_channel
+from sher3_chain.search.friction_in_motion import without_slow
+
+TIMING = "timing"
+"""Family of what is late."""
+
+
+def causes_of_arm(evidence: ArmMotionEvidence, candidates: Candidates, say: Say) -> Attribution:
+    """Choose the causes of an arm in motion, with their rivals; none where no joint has a gap."""
+    if not down_to_floor(evidence.channels, evidence, evidence.null()):
+        return Attribution(evidence.null(), (), (), nuisance=len(evidence.nuisance))
+    found = _explained(evidence, candidates, (), None, say)
+    best, second = found, None
+    loaded = payload(evidence, candidates)
+    if loaded is not None:
+        other = _explained(evidence, candidates, loaded.terms[-1:], loaded, say)
+        better = other.cost < found.cost and closes(evidence, other.fit)
+        best, second = (other, found) if better else (found, other)
+    linked = _linked(evidence, candidates, best, say)
+    return with_rivals(evidence, candidates, *((best, second) if linked is None else (linked, None)))
+
+
+def _linked(evidence: ArmMotionEvidence, candidates: Candidates, best: Explained, say: Say) -> Explained | None:
+    """Return the causes beside links with wrong inertial parameters; None where links do not leave clearly less.
+
+    Plain laws of the joints come with the links; richer ones are looked for in what is left.
+    """
+    page = next((e for e in candidates.effects if e.free() is not None), None)
+    if page is None:
+        return None
+    plain = [e for e in candidates.effects if e.plain and e.scales != GAIN]
+    laws = [(e, j, middle(e, evidence, j)) for j in evidence.judged for e in plain]
+    links = wrong_links(evidence, page, laws)
+    if not links:
+        return None
+    loads = [candidates.term(*link) for link in links]
+    other = _explained(evidence, candidates, loads, fit(evidence.data, loads), say)
+    return other if clearly_less(evidence, other.fit, best.fit, page) else None
+
+
+def _explained(
+    evidence: ArmMotionEvidence, candidates: Candidates, loads: Sequence[Term], loaded: Fit | None, say: Say
+) -> Explained:
+    """Search every joint for causes beside `loads` on links, as `loaded` has them, and fit all of them together.
+
+    What lies between two encoders says nothing of a force balance, since the links move as their own encoders say.
+    """
+    effects = [e for e in candidates.effects if e.places == ("axis",)]
+    beside = _added(evidence, loaded, loads) if loaded is not None else ()
+    links = any(load.effect.free() is not None for load in loads)
+    alone: list[Attribution] = []
+    for channel in (c for joint in evidence.judged for c in channels_of(joint)):
+        own = of_channel(evidence, channel, beside)
+        say(f"{channel}{' beside ' + ' and '.join(t.site for t in loads) if loads else ''}")
+        balance = channel == channel_of(channel.actuator)
+        late = lateness(evidence, channel.actuator, beside) if balance else None
+        alone.append(_beside_delay(own, late, effects, say, links) if balance else _searched(own, effects, say))
+    terms = [*evidence.nuisance, *loads]
+    for found in alone:
+        terms += [candidates.term(t.effect, t.site, t.shape) for t in _causes(found)]
+    return Explained(fit(evidence.data, terms), alone)
+
+
+def _causes(found: Attribution) -> list[Term]:
+    return [t for t in found.fit.terms if t.effect.family != NUISANCE]
+
+
+def _searched(own: Evidence, effects: Sequence[Effect], say: Say, links: bool = False) -> Attribution:
+    """Search one channel for causes, beside links that were found from the data or not."""
+    plan = replace(JOINT, possible=beside_links) if links else JOINT
+    return planned(Candidates(own, effects), plan, partial(down_to_floor, own.channels, own), say)
+
+
+def _beside_delay(own: Evidence, late: Late | None, effects: Sequence[Effect], say: Say, links: bool) -> Attribution:
+    """Search the force balance of a joint without and beside a late effort; return what is cheaper.
+
+    The delay is told by its shape: causes may be at the floor without it, and a fit would take up a viscous friction or
+    how a dry one turns. Where the shape tells none, none is looked for. They are compared away from reversals, where a
+    dry friction is no matter of a moment.
+    """
+    others = [e for e in effects if e.family != TIMING]
+    if late is not None and late.told and not late.sure:
+        others = list(effects)
+    found = _searched(own, others, say, links)
+    if late is None or not late.sure or len(others) == len(effects):
+        return found
+    site = own.places["axis"][0]
+    page = computed(LATE).told()
+    trials = [make_term(own.data, page, site, shape) for shape in late.shapes]
+    best = min(trials, key=lambda term: fit(own.data, [*found.fit.terms, term]).total)
+    beside = _searched(replace(own, nuisance=(best,)), others, say, links)
+    return beside if beside.fit.admissible and _worth(own, site, found.fit, beside.fit) > NEEDED else found
+
+
+def _worth(own: Evidence, site: str, without: Fit, beside: Fit) -> float:
+    """Return by how much a fit lowers the loss away from reversals, in units of what it leaves there.
+
+    The floor of an arm counts the noise of all encoders at their worst; a delay shows in what is really left.
+    """
+    away = without_slow(own, {site}).data
+    again = ([make_term(away, t.effect, t.site, t.shape) for t in found.terms] for found in (without, beside))
+    first, second = (fit(away, terms).total for terms in again)
+    return (first - second) * sum(away.samples.values()) / max(second, 1.0)
+
+
+def _added(evidence: ArmMotionEvidence, loaded: Fit, loads: Sequence[Term]) -> list[dict[Channel, Array]]:
+    """Return what terms of a fit that sit on links add to the residuals of every block, (g, 1) in SI units."""
+    at = [i for i, term in enumerate(loaded.terms) if any(term is load for load in loads)]
+    seen: dict[int, dict[Channel, Array]] = {}
+    for view in evidence.views:
+        if id(view) in seen:
+            continue
+        added: dict[Channel, Array] = {}
+        for i in at:
+            term, coefficients = loaded.terms[i], loaded.of(i)
+            own = term.effect.signature(view, term.site, term.shape)
+            for c, x in [*own.fixed.items(), *((c, x @ coefficients) for c, x in own.columns.items())]:
+                added[c] = added.get(c, np.zeros(1)) + x
+        seen[id(view)] = added
+    return [seen[id(view)] for view in evidence.views]
