@@ -18,6 +18,7 @@ from sher3_machines.intake.fields import Description
 from sher3_machines.intake.kinds import kinds, load_description
 from sher3_machines.intake.tables import Tables
 
+from sher3_public.arrays import of_tables
 from sher3_public.arrays.describing import described
 from sher3_public.arrays.stating import Stated
 from sher3_public.errors import InputError
@@ -54,14 +55,17 @@ def case_of_arrays(model: object, arrays: Sequence[Arrays], stated: Stated, tags
     return _case(found.data, found.tables, source, found.guesses, tags)
 
 
-def case_of_tables(model: object, tables: Sequence[Tables], rate: float | None, tags: Any) -> Case:
+def case_of_tables(model: object, tables: Sequence[Tables], rate: float | None, stated: Stated, tags: Any) -> Case:
     """Return an arm, or axes by themselves without a model, whose columns have telling names; raises as above."""
     guesses: list[str] = []
+    tables = of_tables.in_si(tables, drafted(RECORD, tables[0], rate, []), stated)
     data = drafted(RECORD, tables[0], rate, guesses)
-    if model is None:
-        return _case(data, tables, None, guesses, tags)
-    source = source_of(model)
-    return _case(of_arm(data, source.bodies, guesses), tables, source, guesses, tags)
+    source = None if model is None else source_of(model)
+    if source is not None:
+        drives = of_tables.drives_of(source.bodies, tables[0], data, stated)
+        data = of_arm(data, source.bodies, guesses, drives, stated.simulated)
+    of_tables.put_right(data["axes" if source is None else "joints"], stated, guesses)
+    return _case(data, tables, source, guesses, tags)
 
 
 def case_of_description(model: Any, tables: Sequence[Tables], tags: Any) -> Case:

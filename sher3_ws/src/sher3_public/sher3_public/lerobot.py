@@ -62,7 +62,7 @@ def from_lerobot(
     scale = UNITS[unit or _guessed(found, guesses)]
     runs = [{n: x if n == CLOCK else scale * x for n, x in tables.items()} for tables in found.episodes.values()]
     if model is None:
-        case = case_of_tables(None, runs, None, tags)
+        case = case_of_tables(None, runs, None, Stated(), tags)
     else:
         case = case_of_arrays(model, [_arrays(tables) for tables in runs], Stated(tuple(joints)), tags)
     notes = list(case.notes)

@@ -53,7 +53,7 @@ def diagnose(
         position: (n, k), of the joints in the order of the model.
         effort: (n, k), forces at the joints; without it those of the model's motors and servos follow from `control`.
         load: (n, k), second encoders behind the gears; NaN where a joint has none.
-        joints: names of the columns of `position`, where the guess is wrong.
+        joints: names of the columns of `position`, where the guess is wrong; those of a table have names.
         gain: N m (N) per unit of the effort, for all joints or by name; `unknown`: told by the model's inertias.
         resolution: one count of the encoders, rad or m; default what the readings say.
         simulated: whether the effort is a simulator's own, computed at the beginning of its steps; default guessed.
@@ -97,13 +97,13 @@ def _case(
         return case_of_arrays(model, arrays_of(time, control, position, effort, load), stated, tags)
     if any(x is not None for x in arrays):
         raise InputError("a table and arrays", remedy="give either a table or time, control, position, effort")
-    if stated != Stated():
-        remedy = "give arrays; what is known of a table stands in the names of its columns, or in a description"
-        raise InputError("joints, gain, units and the like are stated of arrays", value="a table", remedy=remedy)
     columns = [columns_of(table) for table in tables]
-    if is_description(model):
-        return case_of_description(model, columns, tags)
-    return case_of_tables(model, columns, rate, tags)
+    if not is_description(model):
+        return case_of_tables(model, columns, rate, stated, tags)
+    if stated != Stated():
+        remedy = "write it into the description"
+        raise InputError("gain, units and the like are stated twice", value="a description", remedy=remedy)
+    return case_of_description(model, columns, tags)
 
 
 def is_description(model: object) -> bool:

@@ -63,6 +63,36 @@ def test_what_cannot_be_stated_is_said(log, stated, words):
         gap.diagnose(XML, log.time, log.ctrl, log.qpos, **stated)
 
 
-def test_a_table_says_by_its_columns_what_it_holds(log):
-    with pytest.raises(gap.InputError, match="stated of arrays"):
-        gap.diagnose(XML, {"time": log.time, "ctrl": log.ctrl, "qpos": log.qpos}, gain=2.0)
+def table(log, scale=1.0):
+    return {"time": log.time, "ctrl": scale * log.ctrl, "qpos": scale * log.qpos}
+
+
+def test_units_of_a_table(log):
+    degrees = table(log, np.degrees(1.0))
+    assert gap.diagnose(XML, degrees, units={"position": "deg", "control": "deg"}).status == "no_gap"
+
+
+def test_a_delay_of_a_table(log):
+    early = np.vstack([log.ctrl[LATE:], np.repeat(log.ctrl[-1:], LATE, axis=0)])
+    assert gap.diagnose(XML, {**table(log), "ctrl": early}, delay=LATE * 0.001).status == "no_gap"
+
+
+def test_the_gains_of_servos_of_a_table(log):
+    model = mujoco.MjModel.from_xml_string(XML)
+    motors = re.sub(r'<position joint="(\w+)" [^>]*/>', r'<motor joint="\1"/>', XML)
+    laws = {model.joint(i).name: tuple(-model.actuator_biasprm[i][1:3]) for i in range(model.nu)}
+    assert gap.diagnose(motors, table(log), servo=laws).status == "no_gap"
+
+
+@pytest.mark.parametrize(
+    ("stated", "words"),
+    [
+        ({"joints": ["a", "b", "c"]}, "by that which joint"),
+        ({"units": {"position": "ells"}}, "unit of position"),
+        ({"delay": {"nobody": 0.01}}, "delay of no such joint"),
+        ({"servo": {"nobody": (1.0, 1.0)}}, "servo of no such joint"),
+    ],
+)
+def test_what_cannot_be_stated_of_a_table_is_said(log, stated, words):
+    with pytest.raises(gap.InputError, match=words):
+        gap.diagnose(XML, table(log), **stated)

@@ -16,6 +16,7 @@ from sher3_machines.intake.runs import longest
 from sher3_machines.intake.tables import Tables
 
 from sher3_chain.manipulator.bodies import Bodies, read_bodies
+from sher3_chain.manipulator.mjcf.drives import Driven
 from sher3_chain.manipulator.mjcf.joint import OWN_EFFORT, drive_joint
 
 TORQUES = EFFORT - frozenset(("iq", "strom", "amps"))
@@ -47,15 +48,23 @@ def draft_arm(path: Path, model: Path, rate: float | None = None, tables: Tables
     return written(as_recorded(of_arm(chain, bodies, guesses), names), guesses)
 
 
-def of_arm(data: Mapping[str, Any], model: Bodies, guesses: list[str]) -> dict[str, Any]:
+def of_arm(
+    data: Mapping[str, Any],
+    model: Bodies,
+    guesses: list[str],
+    drives: Mapping[str, Driven] | None = None,
+    simulated: bool | None = None,
+) -> dict[str, Any]:
     """Return a drafted chain of axes as the joints of a model; raises MachineError where they do not fit.
 
     Args:
         data: of the chain.
         model: of the arm.
         guesses: so far; those on driving and mass of single axes are taken out.
+        drives: in place of the model's.
+        simulated: whether efforts are a simulator's own; default by the names of their columns.
     """
-    slides = model.joints
+    slides, drives = model.joints, model.drives if drives is None else drives
     axes = {axis["name"]: axis for axis in data["axes"]}
     found = fitted(list(axes), list(slides), model.label)
     guesses[:] = [g for g in guesses if not OF_AXIS.search(g)]
@@ -64,13 +73,13 @@ def of_arm(data: Mapping[str, Any], model: Bodies, guesses: list[str]) -> dict[s
     ]
     joints = [_joint(axes[axis], joint, slides[joint], guesses) for axis, (joint, _) in found.items()]
     for joint in joints:
-        if joint["name"] in model.drives:
+        if joint["name"] in drives:
             effort = joint["signals"].get("effort", {})
             words = set(words_of(effort.get("column", "")))
-            own = model.drives[joint["name"]]
+            own = drives[joint["name"]]
             if "actuator" in words and "qfrc" not in words and own.drive is not None and own.drive.gear != 1.0:
                 effort["factor"] = own.drive.gear
-            drive_joint(joint, own, bool(words & OWN_EFFORT), guesses)
+            drive_joint(joint, own, bool(words & OWN_EFFORT) if simulated is None else simulated, guesses)
     left = [joint for joint in slides if joint not in {j for j, _ in found.values()}]
     if left:
         guesses.append(f"joints that were not recorded stay at zero: {', '.join(left)}")

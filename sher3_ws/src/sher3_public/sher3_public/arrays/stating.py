@@ -53,19 +53,22 @@ class Stated:
     servo: Gains | Mapping[str, Gains] | None = None
     delay: float | Mapping[str, float] = 0.0
 
-    def in_si(self, run: Arrays) -> Arrays:
-        """Return a run in SI units; raises InputError for an array or a unit that is not known."""
-        scaled = {}
+    def factors(self) -> dict[str, float]:
+        """Return array -> factor to SI units; raises InputError for an array or a unit that is not known."""
+        found = {}
         for name, unit in self.units.items():
             if name not in TAKES:
                 raise InputError("units of no such array", value=name, limit=", ".join(TAKES))
             known = spelled(unit)
             if known not in TAKES[name]:
                 raise InputError(f"unit of {name} is not known", value=unit, limit=", ".join(TAKES[name]))
-            x = getattr(run, name)
-            if x is not None:
-                scaled[name] = {**UNITS, **TIME_UNITS}[known] * x
-        return replace(run, **scaled)
+            found[name] = {**UNITS, **TIME_UNITS}[known]
+        return found
+
+    def in_si(self, run: Arrays) -> Arrays:
+        """Return a run in SI units; raises InputError as `factors` does."""
+        given = {name: (factor, getattr(run, name)) for name, factor in self.factors().items()}
+        return replace(run, **{name: factor * x for name, (factor, x) in given.items() if x is not None})
 
     def drives(self, bodies: Bodies, names: Sequence[str], run: Arrays) -> Mapping[str, Driven]:
         """Return joint -> its drive: the model's, or the servo that is stated; raises InputError for a wrong name.
