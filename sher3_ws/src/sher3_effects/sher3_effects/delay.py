@@ -7,6 +7,8 @@ from sher3_diagnosis.channel import Array
 
 LONGEST_DELAY = 0.25
 """Largest delay, s, that is searched; two recordings further apart are taken for two different moments."""
+EARLIEST, OF_PERIODS = 0.02, 3.0
+"""By how much an effort may come before the motion because a filter delays the position, s or in periods."""
 
 
 def shifted(x: Array, clock: Array, delay: float) -> Array:

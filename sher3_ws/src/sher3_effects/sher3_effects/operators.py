@@ -232,6 +232,12 @@ def held_lag(x: Array, time_constant: float, period: float) -> Array:
     return _follow(np.ascontiguousarray(x, dtype=float), keep)
 
 
+def lagged(x: Array, time_constant: float, period: float) -> Array:
+    """First-order lag of x (n,), exact for an input that is linear between samples; settled at first."""
+    before = np.concatenate([x[:1], x[:-1]])
+    return first_order(before, 0.5 * (before + x), x, time_constant, period)
+
+
 @compiled
 def rate_limited(x: Array, start: float, limit: float, time_constant: float, period: float) -> Array:
     """Path (n,) from `start` that follows x (n,), held between samples: a first-order lag, no faster than `limit`."""

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import ClassVar, NamedTuple
 
 from sher3_description import Robot
+from sher3_diagnosis.channel import Array
 from sher3_diagnosis.effect import ROTARY, Effect, Shape
 from sher3_sim.effect import Parameter, PlantEffect
 
@@ -116,6 +117,7 @@ class Page(Effect):
         breaks: which relation of the signal chain the effect breaks, where that is not the one named like its stage:
             "load_encoder", "both_encoders" or "force_sensor", the readings.
         on_axis: fitted parameter -> constant of `CONSTANTS` that it sets, beyond the nominal one.
+        after_effort: whether it makes a force of the recorded effort, see `acting`.
         computed: the parameter that is read off a record without a fit, as in an exact stage; "" where there is none.
     """
 
@@ -124,6 +126,11 @@ class Page(Effect):
     breaks: ClassVar[str] = ""
     on_axis: ClassVar[Mapping[str, str]] = {}
     computed: ClassVar[str] = ""
+    after_effort: ClassVar[bool] = False
+
+    def acting(self, given: Array, clock: Array, period: float, shape: Shape) -> Array:
+        """Return the force (n,) that acts where an effort was recorded, with its stamps, s; by default that effort."""
+        return given
 
     def on(self, axis: NominalAxis) -> Page:
         """Return the page with those constants of the axis that it needs; by default the page itself."""

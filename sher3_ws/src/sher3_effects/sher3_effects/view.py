@@ -26,6 +26,7 @@ class NominalAxis(NamedTuple):
         rotary: whether the axis turns.
         load_mass: part of the mass that moves with a second encoder, kg or kg m^2; 0 where it is not known.
         seen: one count of the encoder or its noise, the larger, m or rad; 0 where nothing asks for it.
+        told: whether its effort is what the drive was told, a voltage or a duty, and no force yet.
     """
 
     mass: float
@@ -38,6 +39,7 @@ class NominalAxis(NamedTuple):
     load_mass: float = 0.0
     rotary: bool = False
     seen: float = 0.0
+    told: bool = False
 
 
 class StatedLaw(NamedTuple):

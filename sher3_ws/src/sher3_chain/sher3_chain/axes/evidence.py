@@ -11,6 +11,7 @@ from sher3_machines.intake.fields import VELOCITIES
 from sher3_machines.thresholds import BLOCKS
 
 from sher3_chain.axes.floors import floors_of
+from sher3_chain.axes.identification.acting import acting
 from sher3_chain.axes.identification.align import aligned
 from sher3_chain.axes.identification.identify import identify_mass, load_mass_of, share_of_inertia
 from sher3_chain.axes.scale import slip_of
@@ -74,8 +75,9 @@ def _gathered(runs: Sequence[AxesRun], axis: Axis, repeats: bool) -> AxisEvidenc
     untold, load_mass = slip, 0.0
     if axis.mass == "unknown" and all(s.effort is not None for s in signals):
         try:
-            load_mass = load_mass_of([AxisView(s, axis, 0.0) for s in signals])
-            mass, interval = identify_mass([AxisView(s, axis, 0.0, load_mass) for s in signals])
+            acts = acting(signals, axis)
+            load_mass = load_mass_of([AxisView(s, axis, 0.0) for s in acts])
+            mass, interval = identify_mass([AxisView(s, axis, 0.0, load_mass) for s in acts])
         except MachineError as error:
             share = share_of_inertia([AxisView(s, axis, 0.0) for s in signals])
             if share < NO_INERTIA:

@@ -264,6 +264,8 @@ def blind_spots(finding: Finding[AxisEvidence]) -> list[str]:
     axis = finding.evidence.axis
     out = [] if axis.signals.load is not None else [unseen_note(finding.evidence, finding.attribution.fit)]
     if axis.servo:
-        out.append(f"{axis.name}: force not recorded: forces are given in units of the servo's stiffness")
+        unread = axis.signals.effort is not None and not finding.evidence.untold
+        why = "its effort is not looked at (`command_law: {kind: force}` does)" if unread else "force not recorded"
+        out.append(f"{axis.name}: {why}: forces are given in units of the servo's stiffness")
         out.append(dead_band_note(axis.name, finding.causes, axis.unit_of_position))
     return [said for said in out if said]

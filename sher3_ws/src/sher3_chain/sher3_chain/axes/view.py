@@ -68,6 +68,7 @@ class AxisView(ChainView):
             self.load_mass,
             axis.motion == "rotary",
             max(axis.encoder_resolution, self.noise),
+            axis.told,
         )
 
     @property

@@ -13,7 +13,7 @@ from pydantic import Field, model_validator
 from sher3_machines.intake.fields import Clock, Column, Strict
 
 from sher3_chain.joint.conditions import Tagged
-from sher3_chain.joint.own_unit import OWN_UNITS
+from sher3_chain.joint.own_unit import OWN_UNITS, TOLD
 
 
 class Signals(Strict):
@@ -170,6 +170,12 @@ class Axis(Strict):
             return ""
         stated = source.factor != 1.0 or gain != 1.0 or self.signals.nominal_effort is not None
         return "" if stated else OWN_UNITS.get(source.unit or "", "")
+
+    @property
+    def told(self) -> bool:
+        """Whether what was recorded of the drive is no force yet."""
+        source = self.signals.effort or self.signals.command
+        return source is not None and source.unit in TOLD
 
     @property
     def unit_of_force(self) -> str:

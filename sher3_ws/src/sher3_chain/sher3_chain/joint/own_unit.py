@@ -9,6 +9,9 @@ RECORDED = "eu"
 OWN_UNITS = {"A": "A", "mA": "A", "V": "V", "mV": "V", "%": "%", "count": "count", "1": RECORDED}
 """Unit of an effort that is no force -> the unit its forces are told in."""
 
+TOLD = ("V", "mV", "%", "1")
+"""Units of what a drive is told: a force comes of it behind a coil, a propeller or a valve."""
+
 
 def own_unit_note(axis: str, unit: str) -> str:
     """Return what the unit of an axis' forces is, in words."""

@@ -9,13 +9,15 @@ import numpy as np
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Best, Measured, Shape, Signature, column
 
-from sher3_effects.delay import LONGEST_DELAY, shifted
+from sher3_effects.delay import EARLIEST, LONGEST_DELAY, OF_PERIODS, shifted
 from sher3_effects.page import Page
 from sher3_effects.view import AxisView
 
 
 class SensorDelay(Page):
     """reading(t) = truth(t - delay), of the second encoder or of the effort; below zero the position is the late one.
+
+    By how much a filter may delay a position is bounded: what a drive was told earlier acts late, see `EffortLag`.
 
     To first order a late encoder is off by delay times velocity and a late effort by delay times its slope. The delay
     that is searched is exact, and one coefficient takes up what is left of it.
@@ -58,8 +60,12 @@ class SensorDelay(Page):
         which = [float(k) for k, x in enumerate((run.load, run.effort)) if x is not None and np.any(x[:, row])]
         unsaid = run.UNSTATED * max(self.UNSAID * run.period, self.UNSEEN / run.bandwidth)
         least = run.UNSTATED * self.LEAST * run.period
+        early = max(EARLIEST, OF_PERIODS * run.period) if views[0].axis(site).told else LONGEST_DELAY
         return [
-            {"delay": t, "of_effort": k, "least": k * least} for k in which for t in late if not k or abs(t) >= unsaid
+            {"delay": t, "of_effort": k, "least": k * least}
+            for k in which
+            for t in late
+            if not k or (abs(t) >= unsaid and t >= -early)
         ]
 
     def plain_shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:

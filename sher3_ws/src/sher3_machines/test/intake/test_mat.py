@@ -83,3 +83,16 @@ def test_what_hides_in_cells_and_structs_is_counted_before_it_is_unpacked(tmp_pa
     monkeypatch.setattr(native, "MAX_BYTES", 1_000_000)
     with pytest.raises(MachineError, match="unpacks to too much"):
         read_tables(tmp_path / "a.mat")
+
+
+@pytest.mark.parametrize(("title", "numbers"), [("Name", "Data"), ("label", "values")])
+def test_signals_in_structs_go_by_the_names_that_stand_in_them(tmp_path, title, numbers):
+    """A capture of dSPACE and a structure with time of Simulink keep a signal and its name side by side."""
+    path = tmp_path / "capture.mat"
+    t = np.arange(50) / 100.0
+    rows = np.zeros(2, dtype=[(title, object), (numbers, object), ("Type", object)])
+    rows[0], rows[1] = ('"Model Root"/"position"', np.sin(t), 2), ("duty", np.cos(t), 2)
+    scipy.io.savemat(path, {"run": {"X": {"Data": t}, "Y": rows}})
+    found = read_tables(path)
+    assert set(found) == {"run/X/Data", "run/Y/Model Root/position", "run/Y/duty"}
+    assert found["run/Y/Model Root/position"] == pytest.approx(np.sin(t))

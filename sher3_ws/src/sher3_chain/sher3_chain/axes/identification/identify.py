@@ -151,6 +151,17 @@ def mass_of(views: Sequence[AxisView]) -> float:
     return float(solve(used.T @ used, used.T @ y)[0])
 
 
+def braking_time(views: Sequence[AxisView]) -> float:
+    """Return the mass over the viscous friction that the records tell, s; infinite where there is none."""
+    x, y = _rows(views)
+    if len(y) < BLOCKS:
+        return np.inf
+    columns = _best(_blocks(x, y))[1]
+    used = x[:, columns]
+    found = dict(zip(columns, map(float, solve(used.T @ used, used.T @ y)), strict=True))
+    return max(found[0], 0.0) / found[1] if found.get(1, 0.0) > 0.0 else np.inf
+
+
 def load_mass_of(views: Sequence[AxisView]) -> float:
     """Return the mass that moves with the second encoder, kg or kg m^2; 0 where the records do not tell it."""
     if any(view.run.load is None for view in views):

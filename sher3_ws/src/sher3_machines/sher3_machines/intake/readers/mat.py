@@ -26,6 +26,8 @@ MAX_DEPTH = 8
 """Structs within structs that are opened."""
 CLASS = "_Class"
 """Field of what the reader makes of a class object."""
+NAMES, NUMBERS = ("name", "label"), ("data", "values")
+"""Fields of a struct that holds a signal under its name: captures of dSPACE, structures with time of Simulink."""
 HDF5 = b"MATLAB 7.3"
 """How files of version 7.3 begin."""
 
@@ -62,6 +64,8 @@ def flatten(name: str, value: Any, depth: int = 0) -> dict[str, Array]:
     if depth > MAX_DEPTH or CLASS in (x.dtype.names or ()):
         return {}
     if x.dtype.names:
+        if titled := _titled(x):
+            return {f"{name}/{title}": array for title, array in titled.items()}
         parts = [{n: flatten(n, row[n], depth + 1) for n in x.dtype.names} for row in x.ravel()]
         merged: dict[str, list[Array]] = {}
         for part in parts:
@@ -74,6 +78,19 @@ def flatten(name: str, value: Any, depth: int = 0) -> dict[str, Array]:
     if x.dtype.kind in "fiub" and x.ndim and x.size:
         return {name: plain(x)}
     return {}
+
+
+def _titled(x: Any) -> dict[str, Array]:
+    """Return the signals of an array of structs by the names that stand in them; empty where one has none."""
+    fields = {n.lower(): n for n in x.dtype.names}
+    title, numbers = (next((fields[n] for n in known if n in fields), None) for known in (NAMES, NUMBERS))
+    if title is None or numbers is None:
+        return {}
+    said = ["".join(map(str, np.ravel(row[title]))).replace('"', "").strip("/ ") for row in x.ravel()]
+    arrays = [np.asarray(row[numbers]) for row in x.ravel()]
+    if not all(said) or len(set(said)) < len(said) or any(a.dtype.kind not in "fiub" or not a.size for a in arrays):
+        return {}
+    return {title: plain(array) for title, array in zip(said, arrays, strict=True)}
 
 
 def unpacked_size(raw: bytes, limit: int) -> int:
