@@ -1,6 +1,7 @@
 """Bench: what it changes that a bend of a right law is expected, and that the causes of a gap share what they leave.
 
     python bench/bent_laws.py EVIDENCE      # folder of `sher3 gap calibrate --drawn --kept`, seconds
+    nice python bench/bent_laws.py EVIDENCE --draw 120000:120100 --seconds 900      # draws cases of bent laws first
 
 Printed is the table of all cases, of robots with bent and with close laws, and of each plant, by the weights in force:
 once with all that is left of a gap held against its cause (`all left`), once as if each cause stood alone, and once as
@@ -13,14 +14,17 @@ from __future__ import annotations
 
 import argparse
 import math
+import time
 from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-from sher3_challenge.calibration.held_out import by_plant, by_shape, groups, judged_by
+from sher3_challenge.calibration.drawn import draw
+from sher3_challenge.calibration.held_out import by_plant, by_shape, groups, judged_by, middle
 from sher3_challenge.calibration.labels import answer_of
 from sher3_challenge.calibration.observe import stored, without_evidence
 from sher3_challenge.calibration.table import rates, written
+from sher3_challenge.plants.level import SHAPE, Level
 from sher3_diagnosis.finding import LIBRARY, OUTSIDE
 from sher3_diagnosis.judge.calibration.calibration import in_force
 from sher3_diagnosis.judge.evidence.scales import strange
@@ -34,11 +38,29 @@ def area(right: Sequence[float], foreign: Sequence[float]) -> float:
     return float(np.mean([(r < f) + 0.5 * (r == f) for r in right for f in foreign]))
 
 
+PLANTS = ("lumped", "tables", "mujoco")
+
+
+def draw_bent(seeds: range, kept: Path, seconds: float) -> None:
+    """Keep the evidence of robots whose laws are bent, of the seeds that draw such; none is begun after `seconds`."""
+    bent = [seed for seed in seeds if Level.drawn(seed).shape >= middle(SHAPE)]
+    for rows in draw(PLANTS, bent, kept):
+        print(rows[0].plant, rows[0].case, flush=True)
+        if time.process_time() > seconds:
+            return
+
+
 def main() -> None:
     """Print the tables."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path)
-    found = [o for file in sorted(parser.parse_args().folder.rglob("*.json")) for o in stored(file)]
+    parser.add_argument("--draw", help="A:B, seeds of robots of which those with bent laws are drawn")
+    parser.add_argument("--seconds", type=float, default=900.0, help="of the processor, after which none is drawn")
+    options = parser.parse_args()
+    if options.draw:
+        first, last = map(int, options.draw.split(":"))
+        draw_bent(range(first, last), options.folder, options.seconds)
+    found = [o for file in sorted(options.folder.rglob("*.json")) for o in stored(file)]
     alike = {
         "all left": [without_evidence(o, "stray") for o in found],
         "each cause alone": [without_evidence(o, "part") for o in found],

@@ -17,6 +17,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from sher3_challenge.calibration.drawn import GAP, sized
+from sher3_challenge.calibration.held_out import item_of
 from sher3_challenge.calibration.labels import answer_of
 from sher3_challenge.calibration.observe import Observation, observed_on, stored
 from sher3_challenge.cases.plan import RUN_SPACING_NS, CasePlan, draw_plan
@@ -24,8 +25,7 @@ from sher3_challenge.plants.plant import RunPlan
 from sher3_challenge.plants.registry import truth_plant
 from sher3_common.shares import wilson
 from sher3_description import Robot, load_robot
-from sher3_diagnosis.channel import Channel
-from sher3_diagnosis.finding import LIBRARY, Candidate, Item
+from sher3_diagnosis.finding import LIBRARY
 from sher3_diagnosis.judge.calibration.calibration import in_force
 from sher3_diagnosis.judge.probabilities import judged
 from sher3_effects import library
@@ -40,8 +40,7 @@ MORE, REPEATS = 2, 2
 
 def odds_of(row: dict) -> float:
     """Return the probability that a kept cause is the library's."""
-    item = Item(Channel(*row["channel"].split("/")), 0, row["numbers"], [Candidate(**c) for c in row["candidates"]])
-    return judged(item, in_force()).library
+    return judged(item_of(row), in_force()).library
 
 
 def doubts(folder: Path) -> Iterator[tuple[Observation, Observation, dict]]:

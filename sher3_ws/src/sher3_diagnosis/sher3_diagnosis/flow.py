@@ -65,7 +65,7 @@ def diagnose(
     notes += [n for f in findings for n in f.notes]
     say("judging")
     weigh = partial(weighed, costs=costs) if machine.policy.calibrated else with_odds
-    findings = [weigh(f, calibration=in_force()) for f in findings]
+    findings = weigh(findings, in_force(), machine.policy.own_level)
     verdict = judge(machine, findings, exact, notes, costs)
     versions = {p: importlib.metadata.version(p) for p in machine.sources}
     verdict = verdict.model_copy(update={"seconds": time.perf_counter() - started, "versions": versions})

@@ -7,8 +7,8 @@ from sher3_diagnosis.flow import diagnose
 from sher3_diagnosis.judge.bets import NONE, exact_place, placed, shares
 from sher3_diagnosis.judge.probabilities import of_first
 from sher3_diagnosis.machine import Policy
-from sher3_diagnosis.report.odds import odds, places_of_bets
-from sher3_diagnosis.verdict import Answer, Cause, Interval, Residual, Verdict, Where
+from sher3_diagnosis.report.odds import beside_rules, odds, places_of_bets
+from sher3_diagnosis.verdict import Answer, Cause, Interval, Residual, Unexplained, Verdict, Where
 from toy import DIRECTION, Column, Toy, case
 
 WHERE = Where(stage="transport", actuator="all", gap=1e-3, floor=1e-9, unit="m/s", regime="", confidence=1.0)
@@ -94,3 +94,22 @@ def test_the_headline_speaks_the_odds():
     sure = bet.model_copy(update={"probability": 0.99})
     assert spoken(sure, lacks.model_copy(update={"probability": 0.01}), status="attributed")[0] == ""
     assert spoken(rare.model_copy(update={"probability": 0.01}), lacks)[0] == ""
+
+
+def ruled(status, *answers, **more):
+    verdict = {"places": [placed(WHERE, answers)], "costs": {}, "causes": [], "unexplained": None, **more}
+    return beside_rules(Verdict.model_construct(status=status, **verdict))
+
+
+def test_where_rules_decide_and_odds_would_not_both_are_told():
+    bet, lacks = Answer(causes=[cause()], probability=0.3), Answer(answer="outside_library", probability=0.7)
+    named = {"causes": [cause()]}
+    assert ruled("attributed", bet, lacks, **named) == "; named by rules, at odds of 30 % in transport, all axes"
+    assert ruled("attributed", bet, lacks, **named, costs={"name": 1.0}) == ""
+    assert ruled("attributed", bet, lacks, causes=[cause("axis_skew")]) == ""
+    likely, rare = bet.model_copy(update={"probability": 0.7}), lacks.model_copy(update={"probability": 0.3})
+    assert ruled("attributed", likely, rare, **named) == ""
+    left = Unexplained(stage="transport", actuator="all", signature="")
+    text = ruled("outside_library", likely, rare, unexplained=left)
+    assert text == "; so say rules, at odds of 70 % for command delay on all axes"
+    assert ruled("outside_library", bet, lacks, unexplained=left) == ""

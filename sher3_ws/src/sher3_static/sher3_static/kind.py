@@ -39,7 +39,7 @@ class TableKind(Kind[D, Readings]):
     stored: tuple[str, ...] = ()
     written_for: tuple[str, ...]
     words: Words
-    policy = Policy(calibrated=True)
+    policy = Policy(calibrated=True, own_level=True)
     plan = SearchPlan(causes=6, down_to_floor=True)
 
     @abstractmethod

@@ -28,7 +28,7 @@ ITERATIONS, EXCITATIONS = 2, 2
 """By which a fault is brought to its size; what it has then stands in the label."""
 
 
-def draw(plants: Iterable[str], seeds: range, kept: Path) -> Iterator[list[Observation]]:
+def draw(plants: Iterable[str], seeds: Iterable[int], kept: Path) -> Iterator[list[Observation]]:
     """Yield the observations of drawn cases, plants and kinds dealt in turn; those in `kept` are not computed again."""
     dealt, robot = list(plants), load_robot()
     for n, seed in zip(count(), seeds, strict=False):

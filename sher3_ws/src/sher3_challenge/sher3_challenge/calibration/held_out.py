@@ -12,7 +12,7 @@ from sher3_diagnosis.finding import LIBRARY, Candidate, Item, Judged
 from sher3_diagnosis.judge.calibration.calibration import Calibration
 from sher3_diagnosis.judge.costs import DEFAULT, Costs
 from sher3_diagnosis.judge.evidence.scales import scaled_exact
-from sher3_diagnosis.judge.probabilities import judged
+from sher3_diagnosis.judge.probabilities import judged_together
 from sher3_diagnosis.judge.status import answer_to, answer_to_exact, status_of
 from sher3_diagnosis.verdict import Interval
 
@@ -126,8 +126,8 @@ def judged_by(calibration: Calibration, observations: Sequence[Observation], cos
 
 
 def _judgement(seen: Observation, whole: Observation, calibration: Calibration, costs: Costs) -> Judgement:
-    items = [_judged(row, calibration) for row in seen.items]
-    exact = [_reproduced(stage, calibration) for stage in seen.exact]
+    items = _judged(seen, calibration)
+    exact = [reproduced(stage, calibration) for stage in seen.exact]
     named, sets, right, causes = [], [], [], []
     for row, j in zip(seen.items, items, strict=True):
         if answer_to(j, costs) == LIBRARY:
@@ -162,14 +162,19 @@ def _no_mistake(named: Sequence[str], seen: Observation, whole: Observation) -> 
     return all(contains(name, seen.without) or twins(name, whole) or name in company(seen) for name in named)
 
 
-def _judged(row: Mapping[str, Any], calibration: Calibration) -> Judged:
-    """Return an item that was kept as plain data with its odds."""
-    item = Item(
-        Channel(*row["channel"].split("/")), row["index"], row["numbers"], [Candidate(**c) for c in row["candidates"]]
-    )
-    return judged(item, calibration, Interval(**row["closure"]) if row.get("closure") else None)
+def _judged(seen: Observation, calibration: Calibration) -> list[Judged]:
+    """Return the items of an observation, which were kept as plain data, with their odds."""
+    items = [item_of(row) for row in seen.items]
+    closures = [Interval(**row["closure"]) if row.get("closure") else None for row in seen.items]
+    return judged_together(items, closures, calibration, seen.own_level)
 
 
-def _reproduced(stage: Mapping[str, Any], calibration: Calibration) -> float:
+def item_of(row: Mapping[str, Any]) -> Item:
+    """Return an item that was kept as plain data."""
+    candidates = [Candidate(**c) for c in row["candidates"]]
+    return Item(Channel(*row["channel"].split("/")), row["index"], row["numbers"], candidates)
+
+
+def reproduced(stage: Mapping[str, Any], calibration: Calibration) -> float:
     """Return the probability that the causes of an exact stage are those at work; 0 without one."""
     return calibration.exact.probabilities(scaled_exact(stage["closure"]))[LIBRARY] if stage["causes"] else 0.0

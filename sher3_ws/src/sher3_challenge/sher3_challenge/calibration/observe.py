@@ -34,6 +34,7 @@ class Observation:
         items: the causes and gaps, plain: channel, numbers, candidates; of a cause its family and closure too.
         exact: the exact stages: stage, actuator, closure and causes.
         places: channels with a gap, most significant first.
+        own_level: whether the machine tells by itself how imperfect it is (`Policy.own_level`).
     """
 
     plant: str
@@ -43,6 +44,7 @@ class Observation:
     items: tuple[dict[str, Any], ...]
     exact: tuple[dict[str, Any], ...]
     places: tuple[str, ...]
+    own_level: bool = False
 
     @property
     def ratio(self) -> float | None:
@@ -152,18 +154,30 @@ def observed_on(
     for without in libraries:
         findings = [find(machine, part, without, lambda _: None).with_all for part in parts]
         exact = machine.exact(runs, parts, without)
-        out.append(
-            Observation(
-                plant,
-                name,
-                truth,
-                tuple(without),
-                tuple(_plain(finding, item) for finding in findings for item in items_of(finding)),
-                tuple(_stage(stage) for stage in exact),
-                tuple(str(c) for finding in findings for c in finding.significant),
-            )
-        )
+        out.append(observed_findings(machine, findings, exact, plant, name, truth, without))
     return out
+
+
+def observed_findings(
+    machine: Machine,
+    findings: Sequence[Finding],
+    exact: Sequence[ExactFinding],
+    plant: str,
+    name: str,
+    truth: dict[str, Any],
+    without: Collection[str],
+) -> Observation:
+    """Return the observation of a case from what was found, with every cause."""
+    return Observation(
+        plant,
+        name,
+        truth,
+        tuple(without),
+        tuple(_plain(finding, item) for finding in findings for item in items_of(finding)),
+        tuple(_stage(stage) for stage in exact),
+        tuple(str(c) for finding in findings for c in finding.significant),
+        machine.policy.own_level,
+    )
 
 
 def _libraries(truth: dict[str, Any]) -> list[Collection[str]]:

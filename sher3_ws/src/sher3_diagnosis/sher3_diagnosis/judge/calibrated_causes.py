@@ -11,29 +11,41 @@ from sher3_diagnosis.finding import LIBRARY, OUTSIDE, Finding, Item, Judged
 from sher3_diagnosis.judge.calibration.calibration import Calibration
 from sher3_diagnosis.judge.costs import Costs
 from sher3_diagnosis.judge.items import items_of
-from sher3_diagnosis.judge.probabilities import judged
+from sher3_diagnosis.judge.probabilities import judged_together
 from sher3_diagnosis.judge.status import answer_to
 from sher3_diagnosis.verdict import Cause, Imitation, Interval
 
 
-def with_odds(finding: Finding, calibration: Calibration) -> Finding:
-    """Add the odds of every cause and gap to a finding that rules judge.
+def with_odds(findings: Sequence[Finding], calibration: Calibration, own_level: bool) -> list[Finding]:
+    """Add the odds of every cause and gap to the findings on a machine that rules judge.
 
     The weights are those of the robot they were set on; evidence that a machine does not tell speaks neither way.
     """
-    whole = finding.with_all
-    return replace(
-        finding, judged=tuple(judged(i, calibration, _closure(whole, i)) for i in items_of(whole)), whole=whole
-    )
+    wholes = [f.with_all for f in findings]
+    odds = _odds(wholes, calibration, own_level)
+    return [replace(f, judged=j, whole=w) for f, j, w in zip(findings, odds, wholes, strict=True)]
 
 
-def weighed(finding: Finding, calibration: Calibration, costs: Costs) -> Finding:
-    """Judge every cause and gap of a finding; keep the causes that are named, and the gaps that need an answer."""
-    items = [judged(i, calibration, _closure(finding, i)) for i in items_of(finding)]
+def weighed(findings: Sequence[Finding], calibration: Calibration, own_level: bool, costs: Costs) -> list[Finding]:
+    """Judge all causes and gaps of a machine; keep those causes that are named, and the gaps that need an answer."""
+    odds = _odds(findings, calibration, own_level)
+    return [_kept_of(f, j, calibration.reach, costs) for f, j in zip(findings, odds, strict=True)]
+
+
+def _odds(findings: Sequence[Finding], calibration: Calibration, own_level: bool) -> list[tuple[Judged, ...]]:
+    """Return the odds of the causes and gaps of each finding, of all parts of a machine together."""
+    items = [[(f, i) for i in items_of(f)] for f in findings]
+    every = [x for own in items for x in own]
+    told = iter(judged_together([i for _, i in every], [_closure(*x) for x in every], calibration, own_level))
+    return [tuple(next(told) for _ in own) for own in items]
+
+
+def _kept_of(finding: Finding, items: Sequence[Judged], reach: float, costs: Costs) -> Finding:
+    """Return a finding with the causes that are named and the gaps that need an answer."""
     answers = [answer_to(j, costs) for j in items]
     named = [j for j, a in zip(items, answers, strict=True) if a == LIBRARY]
     outside = [j for j, a in zip(items, answers, strict=True) if a == OUTSIDE]
-    attribution, causes = _kept(finding, named, calibration.reach)
+    attribution, causes = _kept(finding, named, reach)
     touched = {c for j in (*named, *outside) for c in _touches(finding, j)}
     return replace(
         finding,

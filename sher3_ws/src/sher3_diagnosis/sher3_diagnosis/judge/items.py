@@ -49,13 +49,18 @@ def gaps_of(finding: Finding, taken: set[Channel]) -> list[Item]:
 
 
 def candidates_of(attribution: Attribution, index: int) -> list[Candidate]:
-    """Return the cause and those that come closest to it in its place, each effect and site once."""
+    """Return the cause and those that come closest to it in its place, each effect and site once.
+
+    What explains as much and is no rival of it was ruled out by the machine's own search.
+    """
     term = attribution.fit.terms[index]
     out = {term.key: _candidate(term, 0.0)}
     ranking, total = attribution.ranked(index)
+    rivals = {f.terms[-1].effect.id for f in attribution.rivals[index]} | {term.effect.id}
     for f in ranking:
         far = max(0.0, unlikeness(f, total, attribution.explained[index]))
-        out.setdefault(f.terms[-1].key, _candidate(f.terms[-1], far))
+        if far >= 1.0 or f.terms[-1].effect.id in rivals:
+            out.setdefault(f.terms[-1].key, _candidate(f.terms[-1], far))
     return list(out.values())
 
 

@@ -4,18 +4,51 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
+from sher3_diagnosis.channel import Array
 from sher3_diagnosis.finding import LIBRARY, NO_GAP, OUTSIDE, ExactFinding, Item, Judged
 from sher3_diagnosis.judge.calibration.calibration import Calibration
 from sher3_diagnosis.judge.calibration.typical import trust
 from sher3_diagnosis.judge.evidence.scales import scaled_cause, scaled_exact, scaled_gap
+from sher3_diagnosis.judge.level import LEVELS, at_level, levels_told
 from sher3_diagnosis.verdict import Interval, Place
 
 
+def judged_together(
+    items: Sequence[Item], closures: Sequence[Interval | None], calibration: Calibration, own_level: bool
+) -> list[Judged]:
+    """Return the items of one machine with their probabilities.
+
+    Args:
+        items: causes and gaps of all its parts.
+        closures: of each cause; None of a gap.
+        calibration: the weights.
+        own_level: whether the machine is as far from its pages as it tells by itself (`judge.level`), and not as far
+            as the robots that set the weights.
+    """
+    if not own_level:
+        return [judged(i, calibration, c) for i, c in zip(items, closures, strict=True)]
+    return [
+        _over_levels(i, calibration, c, weight)
+        for i, c, weight in zip(items, closures, levels_told(items), strict=True)
+    ]
+
+
+def _over_levels(item: Item, calibration: Calibration, closure: Interval | None, weight: Array) -> Judged:
+    """Return an item with its probabilities over all levels of its machine, (k,) weights."""
+    if item.index is None:
+        return judged(item, calibration)
+    each = [judged(replace(item, numbers=at_level(item.numbers, x)), calibration, closure) for x in LEVELS]
+    effects = weight @ np.array([j.effects for j in each])
+    outside, no_gap = (float(weight @ x) for x in ([j.outside for j in each], [j.no_gap for j in each]))
+    return replace(each[0], item=item, effects=tuple(effects.tolist()), outside=outside, no_gap=no_gap)
+
+
 def judged(item: Item, calibration: Calibration, closure: Interval | None = None) -> Judged:
-    """Return an item with its probabilities and, of a cause, its closure.
+    """Return an item of a machine like the labelled ones with its probabilities and, of a cause, its closure.
 
     A closure of exactly 0 says that over all runs there is nothing above the floor that could be closed: no gap.
     """

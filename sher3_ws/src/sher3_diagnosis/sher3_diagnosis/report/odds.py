@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from sher3_diagnosis.verdict import Answer, Cause, Parameter, Place, Verdict
+from sher3_diagnosis.verdict import Answer, Cause, Parameter, Place, Unexplained, Verdict
 from sher3_diagnosis.words import listed, lower, place, quantity, range_text, ratio_text, share, words
 
 SURE = 0.95
@@ -50,9 +50,26 @@ def odds(verdict: Verdict) -> str:
     if ranked[0].probability >= SURE or not any(a.causes for a in ranked):
         return ""
     text = "; or ".join(_said(a, first, i) for i, a in enumerate(ranked))
-    told = {(c.effect, c.actuator) for c in first.bet.causes}
+    told = _names(first.bet)
     beside = [sized(c) for c in verdict.causes if (c.effect, c.actuator) not in told]
     return text + (f"; besides {listed(beside)}" if beside else "")
+
+
+def beside_rules(verdict: Verdict) -> str:
+    """Return what the odds say where rules decided and the odds would not; empty where they agree, or decided.
+
+    Rules decide where a verdict has no costs. An attribution is doubted where a cause that it names is not what one
+    would bet on; of several places the least probable is told.
+    """
+    explained = [] if verdict.costs else [(p, p.bet) for p in verdict.places if p.bet is not None]
+    if verdict.status == "attributed":
+        named = _names(verdict)
+        own = [(b.probability, _at(p)) for p, b in explained if p.answers[0] is not b and named & _names(b)]
+        return f"; named by rules, at odds of {share(min(own)[0])} in {min(own)[1]}" if own else ""
+    left = verdict.unexplained
+    likely = [b for p, b in explained if p.answers[0] is b and left and _at(p) == _at(left)]
+    text = [f"{share(b.probability)} for {listed([name_of(c) for c in b.causes])}" for b in likely]
+    return f"; so say rules, at odds of {text[0]}" if text else ""
 
 
 def places_of_bets(verdict: Verdict) -> list[PlaceOfBets]:
@@ -71,6 +88,16 @@ def places_of_bets(verdict: Verdict) -> list[PlaceOfBets]:
 def name_of(cause: Cause) -> str:
     """Return effect and place of a cause."""
     return f"{lower(cause.effect)} on {place(cause.actuator)}"
+
+
+def _at(where: Place | Unexplained) -> str:
+    """Return stage and place."""
+    return f"{lower(where.stage)}, {place(where.actuator)}"
+
+
+def _names(of: Answer | Verdict) -> set[tuple[str, str]]:
+    """Return effects and places of causes."""
+    return {(c.effect, c.actuator) for c in of.causes}
 
 
 def sized(cause: Cause) -> str:
@@ -106,7 +133,7 @@ def _said(answer: Answer, first: Place, rank: int) -> str:
     if answer.answer == "no_gap":
         return f"no gap, {likely}"
     if answer.answer is not None:
-        where = f" in {lower(first.stage)}, {place(first.actuator)}" if not rank else ""
+        where = f" in {_at(first)}" if not rank else ""
         return f"{LACKS.format('like it ' if rank else '')}{where}, {likely}"
     if answer is not first.bet:
         return f"{listed([name_of(c) for c in answer.causes])}, {likely}"

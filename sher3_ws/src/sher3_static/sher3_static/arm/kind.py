@@ -63,7 +63,7 @@ class ArmKind(TableKind[ArmDescription]):
     name, description = "arm", ArmDescription
     stored = ("joints",)
     written_for = ("arm",)
-    policy = Policy(carried=True)
+    policy = Policy(carried=True, own_level=True)
     plan = SearchPlan(layers=True)
     words = Words(
         rows="{n} postures, measured from outside",

@@ -18,6 +18,9 @@ of what labelled robots are drawn with (`sher3_challenge.calibration.drawn.GAP`)
 BENT = 0.10
 """Share of a gap that a right law leaves at most by its own shape, which differs from machine to machine: the upper end
 of what labelled robots are drawn with (`sher3_challenge.plants.level.SHAPE`). So much is as likely another law's."""
+WHOLE = 0.75
+"""Say of the share of the whole gap in what several causes leave. Of 0.5, 0.6, 0.75 and 1 the likeliest on labelled
+axes, arms and robots (`bench/imperfect.py`, `bench/other_odds.py`)."""
 LEAST_LAW = 0.02
 """Share that own inputs leave below which it does not matter what explains it; nor does it below the floor."""
 
@@ -65,10 +68,15 @@ def beside_others(left: float, numbers: Mapping[str, float]) -> float:
     """Return what a share that is left of a cause's part of a gap weighs beside the causes of the other parts.
 
     What several causes leave is one remainder. Were all of them right, it would be the bends of all of them, a share of
-    the whole gap; were one foreign, a share of that one's part. Both are asked of each cause, and the logarithms
-    averaged: a sixth of a small part and a thousandth of the whole weigh as much as a hundredth of a lone cause's gap.
+    the whole gap; were one foreign, a share of that one's part. The odds fall with both, and more with the first: in
+    logarithms the share of the whole counts `WHOLE`, that of the part the rest.
     """
-    return left * math.sqrt(numbers.get("part", 1.0))
+    return float(left * numbers.get("part", 1.0) ** WHOLE)
+
+
+def of_whole(numbers: Mapping[str, float]) -> float:
+    """Return what is left that is strange to a cause, as a share of the whole gap, no less than what is told."""
+    return min(max(strange(numbers) * numbers.get("part", 1.0), LEAST_SHARE), 1.0)
 
 
 def strange(numbers: Mapping[str, float]) -> float:

@@ -1,0 +1,63 @@
+"""How far one machine is from its pages: nobody knows beforehand, and what its places leave tells each of the others.
+
+Weights were set on robots that are imperfect to 0.3 to 10 %. A machine that is known by its drawing may be worse, all
+of it: then what a right cause leaves is measured by that machine, not by those robots. With the level L of a machine
+
+    P(right | left) = sum over L of P(L | what its other places leave) P(right | left, L),
+
+where what is left counts in units of the level. What a place leaves tells no level of its own: it would excuse itself.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.finding import Item
+from sher3_diagnosis.judge.evidence.scales import of_whole
+
+LEVELS = (0.003, 0.01, 0.03, 0.1, 0.3)
+"""Levels of a machine, equally likely beforehand: from the best labelled robots to three times the worst."""
+USUAL = 0.017
+"""Level that the weights take for granted: the middle of what labelled robots are drawn with (`SHAPE`)."""
+SPREAD = 1.0
+"""Standard deviation of the logarithm of what one place leaves about its machine's level. On labelled axes it is 0.5, on
+arms in motion 1.1 and on arms seen from outside 0.4 (`bench/imperfect.py`)."""
+FOREIGN = (0.3, 0.2, 1.0)
+"""Share of places whose cause is foreign, and middle and spread of what is left there: it tells no level."""
+SHARES = ("left", "stray", "law", "place", "anything")
+"""Evidence that is a share of the gap."""
+
+
+def levels_told(items: Sequence[Item]) -> list[Array]:
+    """Return for each cause or gap the weight of each level, as the causes of the other places tell, (k,)."""
+    left: dict[Channel, list[float]] = {}
+    for item in (i for i in items if i.index is not None):
+        left.setdefault(item.channel, []).append(math.log(of_whole(item.numbers)))
+    likely = {channel: _likely(float(np.mean(x))) for channel, x in left.items()}
+    return [_told([x for channel, x in likely.items() if channel != item.channel]) for item in items]
+
+
+def at_level(numbers: Mapping[str, float], level: float) -> dict[str, float]:
+    """Return the evidence of a cause with its shares in units of a level, that of labelled robots or a worse one."""
+    worse = max(1.0, level / USUAL)
+    return {name: x / worse if name in SHARES else x for name, x in numbers.items()}
+
+
+def _told(likely: Sequence[Array]) -> Array:
+    weight = np.prod([np.ones(len(LEVELS)), *likely], axis=0)
+    return np.asarray(weight / weight.sum())
+
+
+def _likely(log_left: float) -> Array:
+    """Return how likely each level makes what is left of a place, (k,)."""
+    share, middle, spread = FOREIGN
+    right = _bell((log_left - np.log(LEVELS)) / SPREAD) / SPREAD
+    return (1.0 - share) * right + share * _bell((log_left - math.log(middle)) / spread) / spread
+
+
+def _bell(x: Array | float) -> Array:
+    return np.exp(-0.5 * np.square(x))

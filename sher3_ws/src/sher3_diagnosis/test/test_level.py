@@ -1,0 +1,55 @@
+"""The level of one machine: told by its other places, and the unit of what is left."""
+
+import math
+
+import numpy as np
+import pytest
+from sher3_diagnosis.channel import Channel
+from sher3_diagnosis.finding import Candidate, Item
+from sher3_diagnosis.judge.calibration.calibration import in_force
+from sher3_diagnosis.judge.level import LEVELS, USUAL, at_level, levels_told
+from sher3_diagnosis.judge.probabilities import judged, judged_together
+from sher3_diagnosis.verdict import Interval
+
+NUMBERS = {
+    "left": 0.2, "part": 1.0, "spread": 0.01, "mismatch": 0.03, "ratio": 8.0, "power": 60.0, "idealised": 1.0,
+}  # fmt: skip
+
+
+def item(joint, **numbers):
+    found = (Candidate("coulomb_friction", joint, "friction", (), 0.0),)
+    return Item(Channel("motor_mechanics", joint), 0, NUMBERS | numbers, found)
+
+
+def odds(*items):
+    return [j.library for j in judged_together(items, [Interval(value=0.8)] * len(items), in_force(), True)]
+
+
+def middle(weights):
+    return math.exp(float(weights @ np.log(LEVELS)))
+
+
+def test_a_place_alone_tells_no_level():
+    assert levels_told([item("a"), item("a", left=0.01)])[0] == pytest.approx(np.ones(5) / 5)
+
+
+def test_other_places_tell_the_level():
+    well, badly = (levels_told([item("a"), *(item(j, left=left) for j in "bcd")])[0] for left in (0.005, 0.2))
+    assert middle(well) < 0.01 and middle(badly) > 0.1
+
+
+def test_what_is_left_counts_in_units_of_the_level():
+    assert at_level(NUMBERS, 10.0 * USUAL) == pytest.approx(NUMBERS | {"left": 0.02})
+    assert at_level(NUMBERS, 0.003) == NUMBERS  # none is better than the labelled robots
+
+
+def test_twenty_per_cent_are_right_on_a_machine_that_leaves_them_everywhere_and_not_on_a_good_one():
+    bad, good = odds(item("a"), *(item(j) for j in "bcd"))[0], odds(item("a"), *(item(j, left=0.003) for j in "bcd"))[0]
+    assert good == pytest.approx(judged(item("a"), in_force()).library, abs=0.1)
+    assert bad > good + 0.2
+
+
+def test_the_odds_over_all_levels_add_up_to_one():
+    for j in judged_together([item("a"), item("b")], [Interval(value=0.8)] * 2, in_force(), True):
+        assert sum(j.odds.values()) == pytest.approx(1.0)
+        assert j.item.numbers["left"] == 0.2
