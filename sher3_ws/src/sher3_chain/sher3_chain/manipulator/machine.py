@@ -15,6 +15,7 @@ from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.finding import ExactFinding, Finding
 from sher3_diagnosis.fit.fitting import Fit
 from sher3_diagnosis.localise.gaps import localise
+from sher3_diagnosis.machine import Policy
 from sher3_diagnosis.verdict import Cause
 from sher3_effects import computed, pages
 from sher3_machines.intake.notes import told_once

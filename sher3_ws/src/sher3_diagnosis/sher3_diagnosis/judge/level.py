@@ -24,8 +24,8 @@ LEVELS = (0.003, 0.01, 0.03, 0.1, 0.3)
 USUAL = 0.017
 """Level that the weights take for granted: the middle of what labelled robots are drawn with (`SHAPE`)."""
 SPREAD = 1.0
-"""Standard deviation of the logarithm of what one place leaves about its machine's level. On labelled axes it is 0.5, on
-arms in motion 1.1 and on arms seen from outside 0.4 (`bench/imperfect.py`)."""
+"""Standard deviation of the logarithm of what one place leaves about its machine's level: 0.5 on labelled axes, 0.7 on
+arms in motion, 0.3 on arms seen from outside (`bench/imperfect.py`), and more on machines whose parts are unlike."""
 FOREIGN = (0.3, 0.2, 1.0)
 """Share of places whose cause is foreign, and middle and spread of what is left there: it tells no level."""
 SHARES = ("left", "stray", "law", "place", "anything")
