@@ -113,3 +113,13 @@ def test_what_others_need_for_their_size_stays_in_the_fit_without_a_name(size):
     told = [cause(size=(1.0, 2.0)), cause(size=(-1.0, 2.0))]
     kept = without_empty(Candidates(evidence, [DIRECTION, second]), found, told)
     assert [kept.fit.terms[i].effect for i in kept.causes] == [DIRECTION] and kept.nuisance == 1
+
+
+def test_a_law_of_no_size_gives_its_place_to_a_rival_that_explains_as_much():
+    """A spring of no stiffness is a constant force, which it does not contain where a weight may hang at an arm."""
+    other = Column("other", "spring", "direction")
+    evidence = evidence_of(case(6.0))
+    candidates = Candidates(evidence, [DIRECTION, other])
+    found = with_rivals(candidates, fit(evidence.data, [make_term(evidence.data, other, "axis", {})]))
+    kept = without_empty(candidates, found, [cause(size=(-1.0, 2.0))])
+    assert [t.effect.id for t in kept.fit.terms] == ["direction"]

@@ -11,6 +11,8 @@ from sher3_diagnosis.channel import Array
 
 NEAR_LIMIT = 0.95
 """Share of a force limit from which a reported force may be clamped by it: the noise of the report is a few percent."""
+AT_ONCE = 1e-12
+"""Displacement, m or rad, over which a force turns at once: less than any encoder shows."""
 
 
 @compiled
@@ -36,19 +38,20 @@ def dahl_turned(x: Array, v: Array, displacement: float, period: float) -> Array
     """Dahl's state as `dahl`, of a path x (n,) with velocities v (n,) that turns round between its samples.
 
     Where the velocity changes its sign from one sample to the next, the path goes on to where it is zero and comes back
-    from there. By the samples alone the state would turn half a period late on average.
+    from there. By the samples alone the state would turn half a period late on average. Over a displacement of 0 it
+    turns at once.
     """
     out = np.zeros(len(x))
-    z = 0.0
+    z, reach = 0.0, max(displacement, AT_ONCE)
     for k in range(1, len(x)):
         on = 0.0
         if v[k - 1] * v[k] < 0.0:
             on = 0.5 * period * v[k - 1] * v[k - 1] / (v[k - 1] - v[k])
         for step in (on, x[k] - x[k - 1] - on):
             if step > 0.0:
-                z = 1.0 - (1.0 - z) * math.exp(-step / displacement)
+                z = 1.0 - (1.0 - z) * math.exp(-step / reach)
             elif step < 0.0:
-                z = -1.0 + (1.0 + z) * math.exp(step / displacement)
+                z = -1.0 + (1.0 + z) * math.exp(step / reach)
         out[k] = z
     return out
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 from sher3_diagnosis.attribute.candidates import Candidates, price
 from sher3_diagnosis.attribute.exchange import exchanged
 from sher3_diagnosis.attribute.plan import Opening, SearchPlan
+from sher3_diagnosis.attribute.richer import beside_richer, pays
 from sher3_diagnosis.attribute.rivals import Attribution, with_rivals
 from sher3_diagnosis.attribute.search import Left, Say, attribute
 from sher3_diagnosis.attribute.stepwise import layered
@@ -56,16 +57,21 @@ def _first(candidates: Candidates, plan: SearchPlan, left_over: Left, say: Say) 
 def _plain_first(candidates: Candidates, plan: SearchPlan, left_over: Left, say: Say) -> Attribution:
     """Fit the plain laws at once and look for richer ones in what they leave; where a gap is left, search by steps too.
 
-    Of the two the one is taken whose loss, with the price of its numbers, is smaller.
+    Of the two the one is taken whose loss, with the price of its numbers, is smaller; then the one with a richer dry
+    friction from the start, where that pays.
     """
     say("fitting the plain laws together")
     null = candidates.evidence.null()
     plain = together(candidates, candidates.evidence.channels, left_over) if left_over(null) else null
     found = _refined(candidates, attribute(candidates, left_over, say, plan.causes, plain), left_over)
-    if not left_over(found.fit):
+    if left_over(found.fit):
+        stepped = _refined(candidates, attribute(candidates, left_over, say, plan.causes), left_over)
+        found = min((found, stepped), key=_priced)
+    start = beside_richer(candidates, plain, left_over)
+    if start is None:
         return found
-    stepped = _refined(candidates, attribute(candidates, left_over, say, plan.causes), left_over)
-    return min((found, stepped), key=_priced)
+    rich = _refined(candidates, attribute(candidates, left_over, say, plan.causes, start), left_over)
+    return rich if pays(candidates.evidence, rich, found) else found
 
 
 def _refined(candidates: Candidates, found: Attribution, left_over: Left) -> Attribution:

@@ -7,7 +7,7 @@ none of several alike explains enough of the gap alone. Together each has its ow
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Sequence
 
 from sher3_diagnosis.attribute.candidates import Candidates, complexity
 from sher3_diagnosis.attribute.rivals import without_term
@@ -24,7 +24,9 @@ PASSES = 3
 """Rounds over the laws at most: each is searched again beside the others as they are by then."""
 
 
-def together(candidates: Candidates, gaps: Collection[Channel], left_over: Left) -> Fit:
+def together(
+    candidates: Candidates, gaps: Collection[Channel], left_over: Left, beside: Sequence[Term] = ()
+) -> Fit:
     """Return the plain laws that are worth their numbers, fitted at once; the null fit where none is.
 
     A law whose shape is searched is tried beside all linear ones too: a ratio that is impossible by itself, because a
@@ -34,32 +36,37 @@ def together(candidates: Candidates, gaps: Collection[Channel], left_over: Left)
         candidates: the evidence and the effects, of which the plain ones are taken.
         gaps: channels of which at least one must show a law.
         left_over: says which gaps are left under a fit.
+        beside: richer laws that they are fitted beside; the plain ones that these contain are left out.
     """
     laws = [(e, site) for e in candidates.effects if e.ordinary for site in candidates.sites(e)]
-    laws = [(e, site) for e, site in laws if set(e.channels(site)) & set(gaps)]
-    every = _linear(candidates, laws)
+    laws = [(e, site) for e, site in laws if set(e.channels(site)) & set(gaps) and not _contained(e, site, beside)]
+    every = _linear(candidates, laws, beside)
     current = _possible(candidates.evidence, every)
-    beside = {(e.id, site): [every] for e, site in laws} | {t.key: [] for t in every.terms}
+    starts = {(e.id, site): [every] for e, site in laws} | {t.key: [] for t in every.terms}
     for _ in range(PASSES):
         before = current
         for effect, site in laws:
-            for start in [current, *beside[effect.id, site]]:
+            for start in [current, *starts[effect.id, site]]:
                 others = [t for t in start.terms if t.key != (effect.id, site)]
                 trial = candidates.best_plain(effect, site, others)
                 if trial and (start is not every or trial.admissible) and trial.total < current.total - TIE:
                     current = trial
         if current is before:
             break
-        beside = {key: [] for key in beside}
+        starts = {key: [] for key in starts}
     return pruned(candidates.evidence, current, left_over, relative=True)
 
 
-def _linear(candidates: Candidates, laws: list[tuple[Effect, str]]) -> Fit:
+def _contained(effect: Effect, site: str, beside: Sequence[Term]) -> bool:
+    return any(effect.id in t.effect.extends for t in beside if t.site == site)
+
+
+def _linear(candidates: Candidates, laws: list[tuple[Effect, str]], beside: Sequence[Term]) -> Fit:
     """Return the laws that a coefficient of zero takes away, in their first shape; some may be impossible alone."""
     evidence = candidates.evidence
     shapes = [(e, site, next(iter(e.plain_shapes(evidence.views, site)), None)) for e, site in laws]
     terms = [candidates.term(e, site, shape) for e, site, shape in shapes if shape is not None]
-    return fit(evidence.data, [*evidence.nuisance, *(t for t in terms if _vanishes(t))])
+    return fit(evidence.data, [*evidence.nuisance, *beside, *(t for t in terms if _vanishes(t))])
 
 
 def _possible(evidence: Evidence, current: Fit) -> Fit:
@@ -74,15 +81,17 @@ def _vanishes(term: Term) -> bool:
     return term.width > 0 and bool(term.channels) and not any(term.fixed)
 
 
-def worth_of(term: Term, explained: float, left: float) -> float:
-    """Return by how much a cause must lower the held-out loss: its parameters' price and the error laws are allowed.
+def law_error(evidence: Evidence, current: Fit, plain: bool) -> float:
+    """Return the held-out loss that laws are allowed to be off by.
 
-    Laws are off by a share of what they explain, but of plain ones together hardly by more than they leave.
+    They are off by a share of what they explain, but plain ones together hardly by more than they leave above the floor.
     """
-    return NEEDED * complexity(term) + min(PARSIMONY * explained, OF_THE_REST * left)
+    samples = sum(evidence.data.samples.values())
+    rest = OF_THE_REST * max(0.0, current.total - samples) if plain else math.inf
+    return min(PARSIMONY * (evidence.null().total - current.total), rest)
 
 
-def _is_plain(evidence: Evidence, term: Term) -> bool:
+def is_plain(evidence: Evidence, term: Term) -> bool:
     """Return whether a cause is one of the laws that are fitted at once, on this evidence."""
     return term.effect.ordinary and bool(term.effect.plain_shapes(evidence.views, term.site))
 
@@ -97,12 +106,12 @@ def pruned(evidence: Evidence, current: Fit, left_over: Left, relative: bool) ->
         relative: whether an ordinary cause may be worth little beside what all explain, if it is much of what they
             leave.
     """
-    first, base = len(evidence.nuisance), evidence.null().total
+    first = len(evidence.nuisance)
     while len(current.terms) > first + 1:
         reduced = {i: without_term(evidence, current, i) for i in range(first, len(current.terms))}
         i = first_of_least({j: reduced[j].total for j in sorted(reduced, reverse=True)})
-        plain = relative and _is_plain(evidence, current.terms[i])
-        price = worth_of(current.terms[i], base - current.total, current.total if plain else math.inf)
+        plain = relative and is_plain(evidence, current.terms[i])
+        price = NEEDED * complexity(current.terms[i]) + law_error(evidence, current, plain)
         if reduced[i].total - current.total > price or set(left_over(reduced[i])) - set(left_over(current)):
             return current
         current = reduced[i]

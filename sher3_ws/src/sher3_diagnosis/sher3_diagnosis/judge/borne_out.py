@@ -11,13 +11,14 @@ from collections.abc import Callable, Collection
 from dataclasses import replace
 
 from sher3_diagnosis.attribute.rivals import Attribution
+from sher3_diagnosis.attribute.together import is_plain, law_error
 from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.finding import Finding
 from sher3_diagnosis.fit.fitting import Fit
 from sher3_diagnosis.judge.foreign_inputs import foreign_in
 from sher3_diagnosis.quantify.closure import closure
-from sher3_diagnosis.thresholds import AT_FLOOR, FOREIGN_SHARE, FOREIGN_SIZE, PARSIMONY, PART_CLOSED
+from sher3_diagnosis.thresholds import AT_FLOOR, FOREIGN_SHARE, FOREIGN_SIZE, PART_CLOSED
 from sher3_diagnosis.verdict import Imitation
 
 
@@ -41,8 +42,8 @@ def untold(evidence: Evidence, attribution: Attribution, index: int) -> bool:
     """Return whether a cause gains less than laws may be off by, and no more than one of another family would."""
     family = attribution.fit.terms[index].effect.family
     others = any(f.terms[-1].effect.family != family for f in attribution.rivals[index])
-    whole = evidence.null().total - attribution.fit.total
-    return others and attribution.explained[index] < PARSIMONY * whole
+    plain = is_plain(evidence, attribution.fit.terms[index])
+    return others and attribution.explained[index] < law_error(evidence, attribution.fit, plain)
 
 
 def without_imitations(finding: Finding, free_laws: bool) -> Finding:

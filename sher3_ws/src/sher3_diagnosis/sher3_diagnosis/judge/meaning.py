@@ -152,13 +152,17 @@ def _unnamed(evidence: Evidence, attribution: Attribution, indices: Sequence[int
 
 
 def _simpler(candidates: Candidates, attribution: Attribution, index: int) -> Attribution:
-    """Return the attribution with the best simpler law in the place of a cause; without it where there is none."""
+    """Return the attribution with the best simpler law in the place of a cause, or the best of its rivals there.
+
+    Without the cause where there is neither.
+    """
     found, evidence = attribution.fit, candidates.evidence
     term = found.terms[index]
     others = [t for i, t in enumerate(found.terms) if i != index]
     beside = {t.effect.id for t in others if t.site == term.site}
     plain = [e for e in candidates.effects if e.id in term.effect.extends and e.id not in beside]
     trials = [f for e in plain if (f := candidates.best(e, term.site, others)) is not None]
+    trials = trials or [f for f in attribution.rivals[index] if f.terms[-1].site == term.site]
     if not trials:
         return attribution.kept(evidence, [i for i in attribution.causes if i != index])
     simpler = min(trials, key=lambda f: f.total).terms[-1]

@@ -64,10 +64,11 @@ class CoulombOnAxis(CoulombFriction):
     """In motor revolutions, or shares of what stands for one: too long a one reverses the force too late."""
 
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
-        """Return those displacements, m or rad, and one count: a force that builds up slower breaks away too late."""
+        """Return those displacements, m or rad, and one count, and 0: a force that builds up slower turns too late."""
         count = min(view.axis(site).seen for view in views)
         found = super().shapes(views, site)
-        return [{"displacement": count}, *found] if 0.0 < count < found[0]["displacement"] else found
+        counted = [{"displacement": count}] if 0.0 < count < found[0]["displacement"] else []
+        return [{"displacement": 0.0}, *counted, *found]
 
 
 class ServoStiction(CoulombFriction):
