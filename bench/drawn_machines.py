@@ -1,22 +1,28 @@
-"""Bench: axes and servos with three to six causes drawn at once: which are named, with which interval, what is wrong.
+"""Bench: machines with three to six causes drawn at once: which are named, with which interval, what is wrong.
 
-Machines are those of `sher3_chain/test/drawn_axes.py`: their friction sticks and slips, their integrator is
-Heun's; the diagnosis has other laws. Beside it, on the same records, stand two fits of the same dictionary: all its
-columns by least squares, and the lasso whose weight is chosen on the last third of the record.
+Axes and servos are those of `sher3_chain/test/drawn_axes.py`: their friction sticks and slips, their integrator is
+Heun's; the diagnosis has other laws. Arms are those of `ladder_arms.py`, run by MuJoCo. Beside it, on the same
+records, stand two fits of the same dictionary: all its columns by least squares, and the lasso whose weight is chosen
+on the last third of the record; of an arm the first alone.
 
-    nice python bench/drawn_machines.py                  # 50 axes and 50 servos
-    nice python bench/drawn_machines.py --seeds 7:9      # others
+    nice python bench/drawn_machines.py                                 # 50 axes and 50 servos
+    nice python bench/drawn_machines.py --seeds 7:9 --kinds arm         # others
+    nice python bench/drawn_machines.py --kept ladder.jsonl             # goes on where it was stopped
 
 Printed are recall and precision of the causes, how many 95 % intervals hold the truth, and the share of verdicts with a
-wrong cause; then what was missed and what was wrong, by name.
+wrong cause; then what was missed, apart where a fit that knows the true structure (`true_structure.py`) does not see it
+either, what was wrong, and what was impossible, by name.
 """
 
 from __future__ import annotations
 
 import argparse
+import json
 import sys
 import time
 from collections import Counter
+from collections.abc import Collection, Mapping
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -24,9 +30,13 @@ from sher3_chain.readings.signals import signals_of
 from sher3_common.shares import wilson
 from sher3_diagnosis import diagnose
 from sher3_diagnosis.verdict import Verdict
+from true_structure import powerless
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "sher3_ws/src/sher3_chain/test"))
+sys.path.append(str(Path(__file__).parents[1] / "sher3_ws/src/sher3_chain/test"))
+sys.path.append(str(Path(__file__).parents[1] / "tests"))
 from drawn_axes import Drawn, drawn_axis, drawn_servo
+from ladder_arms import row_of_arm
+from meaning import meaningless
 
 ALIKE = {
     "presliding_friction": {"coulomb_friction"},
@@ -119,6 +129,44 @@ def by_fit(drawn: Drawn, how) -> set[str]:
     return {n for n, s in zip(names, shares, strict=True) if s > NOTICED}
 
 
+WIDTHS = ("width", "displacement", "reach", "amplitude")
+"""Parameters of a lost motion or a friction that no travel is smaller than."""
+
+
+def impossible(drawn: Drawn, verdict: Verdict) -> list[str]:
+    """Return what no verdict may say: an interval that holds zero or misses its estimate, a width beyond the travel."""
+    travel = float(np.ptp(drawn.run.signals["axis"]["position"]))
+    told = ((c.effect, n, p) for c in verdict.causes for n, p in c.parameters.items() if n in WIDTHS)
+    wide = [f"{e} {n} {p.value:.3g} of a travel of {travel:.3g}" for e, n, p in told if p.value > travel]
+    return [*meaningless(verdict), *wide]
+
+
+def row_of_axis(draw, seed: int) -> dict:
+    """Return what is kept of one axis or servo."""
+    drawn = draw(seed)
+    begun = time.perf_counter()
+    verdict = diagnose(drawn.machine, [drawn.run]).verdict
+    return {
+        "seconds": time.perf_counter() - begun,
+        "status": verdict.status,
+        "truth": sorted(truths(drawn)),
+        "powerless": sorted(powerless(drawn)),
+        "held": covered(drawn, verdict),
+        "impossible": impossible(drawn, verdict),
+        "sher3": [sorted(x) for x in named(verdict)],
+        "least squares": [[x] for x in sorted(by_fit(drawn, plain_fit))],
+        "lasso": [[x] for x in sorted(by_fit(drawn, lasso))],
+    }
+
+
+ROWS = {
+    "axis": partial(row_of_axis, drawn_axis),
+    "servo": partial(row_of_axis, drawn_servo),
+    "arm": row_of_arm,
+}
+"""Kind of machine -> what draws one from a seed, diagnoses it and returns what is kept of it."""
+
+
 class Score:
     """Counts over machines."""
 
@@ -126,23 +174,27 @@ class Score:
         self.right = self.true = self.good = self.all = self.machines = self.spoilt = 0
         self.drawn: Counter[str] = Counter()
         self.missed: Counter[str] = Counter()
+        self.blind: Counter[str] = Counter()
         self.wrong: Counter[str] = Counter()
 
-    def add(self, truth: set[str], found: list[set[str]]) -> None:
-        """Count one machine: what is true, and the names that each of its causes stands for."""
+    def add(self, truth: set[str], found: list[set[str]], unseen: Collection[str] = ()) -> None:
+        """Count one machine: what is true, the names that each of its causes stands for, what its record lacks."""
         seen = set().union(*found) if found else set()
         bad = [f for f in found if not f & truth]
         self.right, self.true = self.right + len(truth & seen), self.true + len(truth)
         self.good, self.all = self.good + len(found) - len(bad), self.all + len(found)
         self.machines, self.spoilt = self.machines + 1, self.spoilt + bool(bad)
         self.drawn.update(truth)
-        self.missed.update(truth - seen)
+        self.missed.update(truth - seen - set(unseen))
+        self.blind.update((truth - seen) & set(unseen))
         self.wrong.update(sorted(f)[0] for f in bad)
 
     def line(self) -> str:
-        """Return recall, precision and the share of machines with a wrong cause."""
-        parts = (self.right, self.true), (self.good, self.all), (self.spoilt, self.machines)
-        return "recall {}  precision {}  machines with a wrong cause {}".format(*(share(k, n) for k, n in parts))
+        """Return recall, of all and of what has power, precision and the share of machines with a wrong cause."""
+        blind = sum(self.blind.values())
+        parts = (self.right, self.true), (self.right, self.true - blind), (self.good, self.all)
+        words = "recall {}  of what has power {}  precision {}  machines with a wrong cause {}"
+        return words.format(*(share(k, n) for k, n in (*parts, (self.spoilt, self.machines))))
 
 
 def share(count: int, of: int) -> str:
@@ -153,34 +205,58 @@ def share(count: int, of: int) -> str:
     return f"{count / of:.3f} ({low:.3f} .. {high:.3f}) of {of}"
 
 
+def rows_of(kind: str, seeds: range, kept: Path | None) -> list[dict]:
+    """Return a row for each seed; those in the file are taken from there, others are added to it."""
+    known: Mapping[int, dict] = {}
+    if kept is not None and kept.exists():
+        lines = map(json.loads, kept.read_text(encoding="utf-8").splitlines())
+        known = {row["seed"]: row for row in lines if row["kind"] == kind}
+    out = []
+    for seed in seeds:
+        row = known.get(seed) or {"kind": kind, "seed": seed, **ROWS[kind](seed)}
+        out.append(row)
+        if kept is not None and seed not in known:
+            with kept.open("a", encoding="utf-8") as file:
+                file.write(json.dumps(row) + "\n")
+    return out
+
+
+def told(kind: str, rows: list[dict]) -> str:
+    """Return the page of one kind of machine."""
+    scores = {name: Score() for name in ("sher3", "least squares", "lasso") if name in rows[0]}
+    for row in rows:
+        for name, score in scores.items():
+            score.add(set(row["truth"]), [set(x) for x in row[name]], row["powerless"])
+    held = [x for row in rows for x in row["held"]]
+    odd = [f"{row['seed']}: {x}" for row in rows for x in row["impossible"]]
+    ours = scores["sher3"]
+    lost = ours.missed + ours.blind
+    seconds, status = sum(row["seconds"] for row in rows), dict(Counter(row["status"] for row in rows))
+    lines = [
+        f"{kind}: {len(rows)} machines, {seconds:.0f} s, {status}",
+        f"  intervals that hold the truth: {share(sum(held), len(held))}",
+        f"  impossible or meaningless: {len(odd)} {odd}",
+        "  told: " + ", ".join(f"{x} {n - lost[x]} of {n}" for x, n in sorted(ours.drawn.items())),
+    ]
+    for name, score in scores.items():
+        lines.append(f"  {name:14} {score.line()}")
+        missed = f"missed {dict(score.missed)}, for lack of power {dict(score.blind)}"
+        lines.append(f"  {'':14} {missed}, wrong {dict(score.wrong)}")
+    return "\n".join(lines)
+
+
 def main() -> None:
-    """Print the ladder."""
+    """Print the ladder; nothing impossible may be in it."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--seeds", default="1000:1050")
     parser.add_argument("--kinds", default="axis,servo")
+    parser.add_argument("--kept", type=Path, help="file of results, from which the bench goes on")
     arguments = parser.parse_args()
-    first, last = map(int, arguments.seeds.split(":"))
-    for kind in arguments.kinds.split(","):
-        draw = {"axis": drawn_axis, "servo": drawn_servo}[kind]
-        scores = {name: Score() for name in ("sher3", "least squares", "lasso")}
-        held: list[bool] = []
-        begun, status = time.perf_counter(), Counter()
-        for seed in range(first, last):
-            drawn = draw(seed)
-            verdict = diagnose(drawn.machine, [drawn.run]).verdict
-            status[verdict.status] += 1
-            held += covered(drawn, verdict)
-            scores["sher3"].add(truths(drawn), named(verdict))
-            for name, how in (("least squares", plain_fit), ("lasso", lasso)):
-                scores[name].add(truths(drawn), [{x} for x in sorted(by_fit(drawn, how))])
-        taken = time.perf_counter() - begun
-        print(f"{kind}: {last - first} machines, {taken:.0f} s, {dict(status)}")
-        print(f"  intervals that hold the truth: {share(sum(held), len(held))}")
-        each = sorted(scores["sher3"].drawn.items())
-        print("  told:", ", ".join(f"{x} {n - scores['sher3'].missed[x]} of {n}" for x, n in each))
-        for name, score in scores.items():
-            print(f"  {name:14} {score.line()}")
-            print(f"  {'':14} missed {dict(score.missed)}, wrong {dict(score.wrong)}", flush=True)
+    seeds = range(*map(int, arguments.seeds.split(":")))
+    found = {kind: rows_of(kind, seeds, arguments.kept) for kind in arguments.kinds.split(",")}
+    for kind, rows in found.items():
+        print(told(kind, rows), flush=True)
+    sys.exit(any(row["impossible"] for rows in found.values() for row in rows))
 
 
 if __name__ == "__main__":

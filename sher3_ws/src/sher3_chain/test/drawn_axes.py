@@ -26,12 +26,17 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Drawn:
-    """A machine, its record and what is true of it: effect id -> parameter -> value (empty: only the id counts)."""
+    """A machine, its record and what is true of it: effect id -> parameter -> value (empty: only the id counts).
+
+    How late the effort is read or the reference acts, s, and the speed at which friction has fallen, 0 for neither.
+    """
 
     machine: Axes
     run: AxesRun
     truth: Mapping[str, Mapping[str, float]]
     kind: str
+    late: float = 0.0
+    falls: float = 0.0
 
 
 @compiled
@@ -80,8 +85,11 @@ def reference_of(rng: np.random.Generator, time: Array, size: float) -> Array:
     return np.convolve(np.interp(time, times, places), smooth / smooth.sum(), "same")
 
 
-def drawn_axis(seed: int) -> Drawn:
-    """Return an axis under a position controller whose force is recorded."""
+def drawn_axis(seed: int, motion: int = 0) -> Drawn:
+    """Return an axis under a position controller whose force is recorded.
+
+    The same axis is recorded in another motion, of other pace and size, where `motion` is not 0.
+    """
     rng = np.random.default_rng([seed, 1])
     rotary = bool(rng.random() < 0.5)
     size = float(rng.uniform(0.5, 1.5)) if rotary else float(rng.uniform(0.03, 0.3))
@@ -118,7 +126,9 @@ def drawn_axis(seed: int) -> Drawn:
     pace = 2 * np.pi * float(rng.uniform(4.0, 9.0))
     count = float(2 * np.pi / rng.choice([2**14, 2**17, 2**20])) if rotary else float(rng.choice([1e-7, 1e-6, 5e-6]))
     gains = (pace**2 * mass, 1.4 * pace * mass)
-    rows = played(reference, DRIVE, FINE, law, gains, STICKS * top, count, gain if known else 1.0)
+    other = np.random.default_rng([seed, 1, motion])
+    asked = reference_of(other, time, size * float(other.uniform(0.5, 1.2))) if motion else reference
+    rows = played(asked, DRIVE, FINE, law, gains, STICKS * top, count, gain if known else 1.0)
     every = int(rng.choice([1, 2, 5, 10]))
     late = int(rng.integers(2, 6)) * every if "sensor_delay" in chosen else 0
     effort = np.concatenate([np.full(late, rows[0, 1]), rows[:, 1]])[: len(rows)]
@@ -142,7 +152,9 @@ def drawn_axis(seed: int) -> Drawn:
         "gravity": {"arm": weight if known else 0.0},
     }
     signals = {"position": rows[::every, 0], "effort": effort[::every]}
-    return Drawn(_machine(axis), AxesRun("run", DRIVE * every, {"axis": signals}), truth, "axis")
+    lag = truth.get("sensor_delay", {}).get("delay", 0.0)
+    falls = slow if "stribeck_friction" in truth else 0.0
+    return Drawn(_machine(axis), AxesRun("run", DRIVE * every, {"axis": signals}), truth, "axis", lag, falls)
 
 
 def drawn_servo(seed: int) -> Drawn:
@@ -174,7 +186,8 @@ def drawn_servo(seed: int) -> Drawn:
     truth |= {"delay": {}} if late else {}
     axis = {**_axis(rotary, count, ("position", "reference")), "command_law": {"kind": "position"}}
     signals = {"position": rows[::every, 0], "reference": reference[::every]}
-    return Drawn(_machine(axis), AxesRun("run", period, {"axis": signals}), truth, "servo")
+    run = AxesRun("run", period, {"axis": signals})
+    return Drawn(_machine(axis), run, truth, "servo", late * DRIVE)
 
 
 def _axis(rotary: bool, count: float, names: tuple[str, ...]) -> dict:

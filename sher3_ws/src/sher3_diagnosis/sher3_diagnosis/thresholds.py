@@ -73,9 +73,9 @@ PARSIMONY = 0.004
 leaves is not worth a second cause. Set on and measured as `PRICE`."""
 
 OF_THE_REST = 0.2
-"""Share of what is left that a plain law beside other plain laws must be worth where that is less than `PARSIMONY`
-asks. Set by the argument that what two laws leave is a law's own error as soon as a third takes less than half of its
-amplitude's error. Measure: `python bench/drawn_machines.py`."""
+"""Share of what is left above the floor that a plain law beside other plain laws must be worth where that is less than
+`PARSIMONY` asks. Set by the argument that what two laws leave is a law's own error as soon as a third takes less than
+half of its amplitude's error. Measure: `python bench/drawn_machines.py`."""
 
 WORTH = 0.35
 """Share of a remaining gap that a further cause must explain. Set on: compound development seeds.

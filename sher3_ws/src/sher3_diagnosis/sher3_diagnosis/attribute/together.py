@@ -24,9 +24,7 @@ PASSES = 3
 """Rounds over the laws at most: each is searched again beside the others as they are by then."""
 
 
-def together(
-    candidates: Candidates, gaps: Collection[Channel], left_over: Left, beside: Sequence[Term] = ()
-) -> Fit:
+def together(candidates: Candidates, gaps: Collection[Channel], left_over: Left, beside: Sequence[Term] = ()) -> Fit:
     """Return the plain laws that are worth their numbers, fitted at once; the null fit where none is.
 
     A law whose shape is searched is tried beside all linear ones too: a ratio that is impossible by itself, because a
@@ -84,7 +82,8 @@ def _vanishes(term: Term) -> bool:
 def law_error(evidence: Evidence, current: Fit, plain: bool) -> float:
     """Return the held-out loss that laws are allowed to be off by.
 
-    They are off by a share of what they explain, but plain ones together hardly by more than they leave above the floor.
+    They are off by a share of what they explain, but plain ones together hardly by more than they leave above the
+    floor.
     """
     samples = sum(evidence.data.samples.values())
     rest = OF_THE_REST * max(0.0, current.total - samples) if plain else math.inf
