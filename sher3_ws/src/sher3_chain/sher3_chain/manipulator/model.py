@@ -82,10 +82,13 @@ class ArmModel:
         return self._rigid(q, v, a) + at_rest
 
     def inertia_matrix(self, q: Array) -> Array:
-        """Return the joint-space inertia of the recorded joints in one posture q (k,), (k, k)."""
-        unit, still = np.eye(len(q)), np.zeros((len(q), len(q)))
-        posture = np.tile(q, (len(q), 1))
-        return self._rigid(posture, still, unit) - self._rigid(posture, still, still)
+        """Return the joint-space inertia of the recorded joints in postures q (..., k), (..., k, k)."""
+        k = q.shape[-1]
+        unit = np.tile(np.eye(k), (q.size // k, 1))
+        posture = np.repeat(q.reshape(-1, k), k, axis=0)
+        still = np.zeros_like(unit)
+        columns = self._rigid(posture, still, unit) - self._rigid(posture, still, still)
+        return np.swapaxes(columns.reshape(*q.shape, k), -1, -2)
 
     def _rigid(self, q: Array, v: Array, a: Array) -> Array:
         own = self.inertial if self.parameters is None else self.parameters

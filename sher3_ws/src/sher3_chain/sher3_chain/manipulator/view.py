@@ -60,14 +60,18 @@ class MotionView(ChainView):
         self.coupling = coupling
         self.shares = shares
         self._payload: dict[tuple[str, tuple[float, ...]], dict[str, Array]] = {}
+        self._orders: dict[tuple[str, int], list[float]] = {}
 
     # what the effects read
 
     def axis(self, site: str) -> NominalAxis:
         """Return the nominal constants of a joint."""
-        row = self.row(site)
-        viscous = max(self.joints[row].viscous, SLIP)
-        return NominalAxis(float(self.inertia[row]), viscous, self.lead(site), float(self.tops[row]))
+        return self._axes[self.row(site)]
+
+    @cached_property
+    def _axes(self) -> list[NominalAxis]:
+        each = zip(self.joints, self.inertia, self.tops, strict=True)
+        return [NominalAxis(float(m), max(j.viscous, SLIP), self.lead(j.name), float(top)) for j, m, top in each]
 
     def lead(self, site: str) -> float:
         """Return the travel per motor revolution, m or rad; what stands for it where it is not known."""
@@ -109,10 +113,12 @@ class MotionView(ChainView):
             joint: whose effort is looked at.
             count: of them at most.
         """
-        row = self.row(joint)
-        ok = self.in_motion(row)
-        left = self.effort[:, row] - self.inertial[:, row]
-        return orders_in(left[ok], self.position[ok, row], self.velocity[ok, row], count)
+        if (joint, count) not in self._orders:
+            row = self.row(joint)
+            ok = self.in_motion(row)
+            left = self.effort[:, row] - self.inertial[:, row]
+            self._orders[joint, count] = orders_in(left[ok], self.position[ok, row], self.velocity[ok, row], count)
+        return self._orders[joint, count]
 
     def _parameters_of(self, link: str) -> slice:
         """Return where the inertial parameters of a link are."""
@@ -202,10 +208,10 @@ class MotionView(ChainView):
         """Inertia that each joint moves in the middle posture, (k,)."""
         return self.shares * np.diag(self.model.inertia_matrix(np.median(self._joint_position, axis=0)))
 
-    def inertia_matrix(self, sample: int) -> Array:
-        """Return motor force by motor acceleration in the posture of a sample of the residual grid, (k, k)."""
+    def inertia_matrix(self, samples: int | Array) -> Array:
+        """Return motor force by motor acceleration in the postures of samples of the residual grid, (..., k, k)."""
         back = np.linalg.inv(self.coupling)
-        return np.asarray(back.T @ self.model.inertia_matrix(self._joint_position[sample]) @ back)
+        return np.asarray(back.T @ self.model.inertia_matrix(self._joint_position[samples]) @ back)
 
     # which samples can be judged
 

@@ -28,23 +28,30 @@ class Share(NamedTuple):
         value: as found; negative where the effort was recorded with the opposite sign.
         error: its standard error, from a jackknife over blocks.
         backwards: whether the effort was recorded with the opposite sign.
+        work: that friction takes in the motion, over its standard error; below zero where it would give it.
     """
 
     value: float
     error: float
     backwards: bool
+    work: float = 0.0
 
     def turned(self) -> Share:
         """Return the share of the effort with its sign put right."""
-        return Share(abs(self.value), self.error, self.backwards)
+        return self._replace(value=abs(self.value))
 
-    def opposite(self, stated: bool) -> bool:
-        """Return whether the sign is to be turned.
+    def sense(self, stated: bool) -> int:
+        """Return 1 where the sign is surely as stated, -1 where it is surely the opposite one, else 0.
 
         With a stated gain a wrong sign alone makes the share about minus one; another one below zero is a force that
-        the model lacks, such as that of a payload on a light joint.
+        the model lacks, such as that of a payload on a light joint. Of a link that the model hardly has the share is
+        any number, and friction tells the sign.
         """
-        return self.backwards and (not (stated and self.told) or 1.0 / WRONG_SIGN < -self.value < WRONG_SIGN)
+        if not self.told or (stated and abs(self.value) > SLIPPED):
+            return int(self.work > LEAST_EXCITED) - int(self.work < -LEAST_EXCITED)
+        if not self.backwards:
+            return 1
+        return -1 if not stated or 1.0 / WRONG_SIGN < -self.value < WRONG_SIGN else 0
 
     def off(self, most: float) -> bool:
         """Return whether the share is surely more than `most`, or less than a fifth."""
@@ -76,8 +83,9 @@ def share_in(x: Array, y: Array) -> Share:
     told = abs(float(found[0])) > LEAST_EXCITED * error
     speed = x[:, 1]
     lost = draws[:, 1] * (speed @ speed) + draws[:, 2] * (speed @ x[:, 2])
-    gives = bool(lost.mean() < -LEAST_EXCITED * standard_error(lost))
-    return Share(float(found[0]) if told else 0.0, error, bool(found[0] < 0.0) if told else gives)
+    work = float(lost.mean()) / max(float(standard_error(lost)), float(np.finfo(float).tiny))
+    backwards = bool(found[0] < 0.0) if told else work < -LEAST_EXCITED
+    return Share(float(found[0]) if told else 0.0, error, backwards, work)
 
 
 def _left_out(x: Array, y: Array) -> Array:

@@ -109,11 +109,18 @@ def test_an_unknown_gain_is_found_and_what_hides_in_it_is_said(path):
         ({"a": -1.2, "b": -0.3, "c": 1.1}, ("a",)),  # signs differ by joint: each by itself
         ({"a": 1.2, "b": -0.3}, ()),
         ({"b": -0.3}, ()),
+        ({"a": -1.2, "b": 0.0}, ("a", "b")),  # neither its weight nor its friction tells a sign
     ],
 )
 def test_a_doubtful_sign_follows_those_of_the_other_joints(shares, turned):
     found = {name: Share(x, 0.01, x < 0.0) for name, x in shares.items()}
     assert backwards(found, set(shares)) == turned
+
+
+@pytest.mark.parametrize(("share", "work", "sense"), [(0.0, 9.0, 1), (0.0, -9.0, -1), (0.0, 1.0, 0), (119.0, -9.0, -1)])
+def test_friction_tells_a_sign_where_the_model_does_not(share, work, sense):
+    """A share of 119 is that of a link that the model hardly has: any number."""
+    assert Share(share, 0.01, share < 0.0, work).sense(stated=True) == sense
 
 
 @pytest.mark.parametrize("size", [0.2, 0.5, 1.5])

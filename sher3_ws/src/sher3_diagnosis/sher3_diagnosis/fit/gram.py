@@ -7,6 +7,7 @@ the products of a fit are at hand.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import accumulate
 
 import numpy as np
 
@@ -14,35 +15,53 @@ from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.fit.term import Term
 from sher3_diagnosis.fit.whitened import Whitened
 
+Products = tuple[Array, Array, Array]
+"""Normal matrices (runs, p, p), right sides (runs, p) and energies (runs,)."""
 
-def products(data: Whitened, terms: Sequence[Term], channel: Channel) -> tuple[Array, Array, Array]:
-    """Return normal matrices (runs, p, p), right sides (runs, p) and energies (runs,) of a channel.
 
-    The energy is that of the target less the fixed parts of all terms; runs without the channel have zeros.
+def products(data: Whitened, terms: Sequence[Term], channel: Channel) -> Products:
+    """Return the normal matrices, right sides and energies of a channel.
+
+    The energy is that of the target less the fixed parts of all terms; runs without the channel have zeros. Those of
+    the leading terms are kept from the fit before: a search tries many last terms beside the same others.
     """
-    widths = [t.width for t in terms]
-    starts = np.cumsum([0, *widths])
-    runs, p = len(data.target), int(starts[-1])
-    normal, right = np.zeros((runs, p, p)), np.zeros((runs, p))
+    trail = data.trails.setdefault(channel, [(None, _without_terms(data, channel))])
+    same = next((i for i, (a, (b, _)) in enumerate(zip(terms, trail[1:], strict=False)) if a is not b), len(trail) - 1)
+    same = min(same, len(terms))
+    del trail[same + 1 :]
+    for i, term in enumerate(terms[same:], start=same):
+        trail.append((term, _extended(data, trail[-1][1], terms[:i], term, channel)))
+    found: Products = trail[-1][1]
+    return found
+
+
+def _without_terms(data: Whitened, channel: Channel) -> Products:
+    runs = len(data.target)
     energy = np.array([data.null_loss.get((r, channel), 0.0) for r in range(runs)])
-    fixed = []
-    for i, a in enumerate(terms):
-        cols = slice(starts[i], starts[i + 1])
-        own = _with_target(data, a, channel)
-        right[:, cols] += own[:, :-1]
-        energy -= 2.0 * own[:, -1]
-        for j, b in enumerate(terms[: i + 1]):
-            both = _pair(a, b, channel, runs)
-            others = slice(starts[j], starts[j + 1])
-            normal[:, cols, others] = both[:, :-1, :-1]
-            normal[:, others, cols] = np.swapaxes(both[:, :-1, :-1], 1, 2)
-            energy += both[:, -1, -1] * (1.0 if i == j else 2.0)
-            fixed.append((cols, both[:, :-1, -1]))
-            if i != j:
-                fixed.append((others, both[:, -1, :-1]))
-    for cols, part in fixed:
-        right[:, cols] -= part
-    return normal, right, np.maximum(energy, 0.0)
+    return np.zeros((runs, 0, 0)), np.zeros((runs, 0)), energy
+
+
+def _extended(data: Whitened, found: Products, others: Sequence[Term], term: Term, channel: Channel) -> Products:
+    """Return the products of terms and one more, from those of the others."""
+    runs, q = found[1].shape
+    p = q + term.width
+    normal, right, energy = np.zeros((runs, p, p)), np.zeros((runs, p)), found[2]
+    normal[:, :q, :q], right[:, :q] = found[0], found[1]
+    if channel not in term.channels:
+        return normal, right, energy
+    own, alone = _with_target(data, term, channel), _pair(term, term, channel, runs)
+    normal[:, q:, q:] = alone[:, :-1, :-1]
+    right[:, q:] = own[:, :-1] - alone[:, :-1, -1]
+    energy = energy - 2.0 * own[:, -1] + alone[:, -1, -1]
+    starts = accumulate((t.width for t in others), initial=0)
+    for other, start in ((t, s) for t, s in zip(others, starts, strict=False) if channel in t.channels):
+        both, at = _pair(term, other, channel, runs), slice(start, start + other.width)
+        normal[:, q:, at] = both[:, :-1, :-1]
+        normal[:, at, q:] = both[:, :-1, :-1].transpose(0, 2, 1)
+        right[:, q:] -= both[:, :-1, -1]
+        right[:, at] -= both[:, -1, :-1]
+        energy = energy + 2.0 * both[:, -1, -1]
+    return normal, right, energy
 
 
 def _block(term: Term, run: int, channel: Channel, samples: int) -> Array | None:

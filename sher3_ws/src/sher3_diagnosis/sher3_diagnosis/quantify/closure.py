@@ -99,25 +99,26 @@ def interval_of(rows: Array) -> Interval:
     say how much of what is left is floor, and a machine as built differs from its model by more.
     """
     row = rows.mean(axis=0)
-    value = _kappa(row)
+    value = float(_kappa(row))
     if len(rows) < MIN_RUNS:
         return Interval(value=value)
     rng = np.random.default_rng(0)
     picks = rng.integers(0, len(rows), (RESAMPLES, len(rows)))
-    resampled = [rows[p].mean(axis=0) for p in picks]
-    draws = np.array([_kappa(r) for r in resampled if _gap(r) >= SHOWN * _gap(row)])
+    resampled = rows[picks].mean(axis=1)
+    draws = _kappa(resampled[_gap(resampled) >= SHOWN * _gap(row)])
     if len(draws) < RESAMPLES // 4:
         return Interval(value=value)
     low, high = np.percentile(draws, [2.5, 97.5])
     return Interval(value=value, low=float(min(low, 1.0 - row[1] / row[0], value)), high=float(max(high, value)))
 
 
-def _gap(row: Array) -> float:
-    return float(row[0] - row[2])
+def _gap(rows: Array) -> Array:
+    """Return L0 - F of rows (..., 3)."""
+    return np.asarray(rows[..., 0] - rows[..., 2])
 
 
-def _kappa(row: Array) -> float:
-    before, after, floor = row
-    if before <= floor:
-        return 0.0
-    return float(np.clip((before - after) / (before - floor), -1.0, 1.0))
+def _kappa(rows: Array) -> Array:
+    """Return the closure of rows (..., 3); zero where there is no gap above the floor."""
+    gap = _gap(rows)
+    share = np.divide(rows[..., 0] - rows[..., 1], gap, out=np.zeros_like(gap), where=gap > 0.0)
+    return np.clip(share, -1.0, 1.0)

@@ -1,17 +1,18 @@
 """An arm in measured postures drafted from a table without a clock: a column for each joint, and x, y, z of a point.
 
-Columns are joints of the model by their names. The chain runs from the link that carries the first recorded joint to
-the one that the last moves.
+Columns are joints of the model by their names, or by their numbers where there are as many as joints that move. The
+chain runs from the link that carries the first recorded joint to the one that the last moves.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
+import numpy as np
 from sher3_machines.drafting.draft import written
 from sher3_machines.drafting.guesses import position_unit
 from sher3_machines.drafting.names import bare_and_unit, tells_time
@@ -27,6 +28,10 @@ NOISE = 1e-4
 """Noise of a measured position, m, that a draft states until somebody does: that of a good tracker in a hall."""
 FEWEST = 2
 """Joints that must be named, so that a table is one of postures."""
+NUMBERED = re.compile(r"(?P<stem>.*?[a-z])[_ ]?(?P<number>\d+)", re.IGNORECASE)
+"""Name of one of several joints: `q1`, `theta_3`, `joint 6`."""
+MOVES = ("revolute", "continuous", "prismatic")
+"""Types of joint that a posture has a value of."""
 
 
 def draft_arm(path: Path, tables: Tables, model: Path) -> Draft | None:
@@ -37,10 +42,12 @@ def draft_arm(path: Path, tables: Tables, model: Path) -> Draft | None:
     """
     columns = {name: x for name, x in tables.items() if x.ndim == 1}
     point = next(iter(points(columns).values()), None)
-    if point is None or model.suffix.lower() != ".urdf" or any(tells_time(name) for name in columns):
+    clock = any(tells_time(name) and bool((np.diff(x) > 0.0).all()) for name, x in columns.items())
+    if point is None or model.suffix.lower() != ".urdf" or clock:
         return None
-    above = {child: (joint, parent) for joint, parent, child in joints_of(read_urdf(model))}
-    named = {_plain(bare_and_unit(bare(name))[0]): name for name in columns}
+    root = read_urdf(model)
+    above = {child: (joint, parent) for joint, parent, child in joints_of(root)}
+    named = {_plain(bare_and_unit(bare(name))[0]): name for name in columns} | numbered(columns, moving(root))
     chain = [(joint, parent, child) for child, (joint, parent) in above.items() if _plain(joint) in named]
     if len(chain) < FEWEST:
         return None
@@ -67,6 +74,24 @@ def points(columns: Mapping[str, Any]) -> dict[tuple[str, str], list[str]]:
         if match := PLACE.fullmatch(bare_and_unit(bare(name))[0]):
             found.setdefault((match["before"], match["behind"]), {})[match["axis"].lower()] = name
     return {key: [each[axis] for axis in "xyz"] for key, each in found.items() if len(each) == len("xyz")}
+
+
+def numbered(columns: Mapping[str, Any], joints: Sequence[str]) -> dict[str, str]:
+    """Return plain name of a joint -> column, where as many columns of one name are numbered as joints move."""
+    groups: dict[str, list[tuple[int, str]]] = {}
+    for name in columns:
+        if match := NUMBERED.fullmatch(bare_and_unit(bare(name))[0]):
+            groups.setdefault(match["stem"].lower(), []).append((int(match["number"]), name))
+    each = next((sorted(group) for group in groups.values() if len(group) == len(joints)), [])
+    return {_plain(joint): name for joint, (_, name) in zip(joints, each, strict=False)}
+
+
+def moving(root: ElementTree.Element) -> list[str]:
+    """Return the names of the joints of a URDF that move, from the root outwards."""
+    above = {child: (joint, parent) for joint, parent, child in joints_of(root)}
+    kinds = {joint.get("name", ""): joint.get("type", "") for joint in root.iter("joint")}
+    found = [(_depth(child, above), joint) for child, (joint, _) in above.items() if kinds[joint] in MOVES]
+    return [joint for _, joint in sorted(found, key=lambda each: each[0])]
 
 
 def joints_of(root: ElementTree.Element) -> list[tuple[str, str, str]]:

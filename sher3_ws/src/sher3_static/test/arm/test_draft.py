@@ -72,3 +72,17 @@ def test_what_has_a_clock_or_no_joints_or_no_point_is_no_table_of_postures(tmp_p
     (tmp_path / "arm.urdf").write_text(URDF)
     columns = {name: np.arange(30.0) for name in header.split(",")}
     assert draft_arm(tmp_path / "a.csv", columns, tmp_path / "arm.urdf") is None
+
+
+def test_numbered_columns_are_the_joints_that_move_in_order(tmp_path):
+    described = parse_yaml(table(tmp_path, "x,y,z,q3,q1,q2,q4", seed=3).text)
+    assert [c["column"] for c in described["joint_positions"]] == ["q1", "q2", "q3", "q4"]
+    assert (described["base_link"], described["tip_link"]) == ("base", "roll_link")
+
+
+def test_a_joint_called_t_that_goes_both_ways_is_no_clock(tmp_path):
+    (tmp_path / "arm.urdf").write_text(URDF.replace("roll_joint", "t"))
+    rng = np.random.default_rng(4)
+    columns = {name: rng.normal(size=30) for name in ("x", "y", "z", "lift_joint", "elbow_joint", "t")}
+    found = draft_arm(tmp_path / "a.csv", columns, tmp_path / "arm.urdf")
+    assert found is not None and [c["column"] for c in parse_yaml(found.text)["joint_positions"]][-1] == "t"

@@ -51,12 +51,12 @@ def backwards(found: Mapping[str, Share], stated: Collection[str]) -> tuple[str,
     """Return the joints whose efforts are to be turned.
 
     One controller counts all its efforts alike: where some are surely of the opposite sign and none is surely right,
-    those are turned too that only seem so.
+    those are turned too whose sign nothing tells.
 
     Args:
         found: joint -> share of its effort.
         stated: joints whose gain is stated.
     """
-    sure = {name for name, share in found.items() if share.opposite(name in stated)}
-    right = any(share.told and not share.backwards for share in found.values())
-    return tuple(n for n, share in found.items() if n in sure or (sure and not right and share.backwards))
+    senses = {name: share.sense(name in stated) for name, share in found.items()}
+    all_alike = -1 in senses.values() and 1 not in senses.values()
+    return tuple(name for name, sense in senses.items() if sense < 0 or all_alike)

@@ -46,5 +46,5 @@ def coarseness(view: MotionView) -> Array:
     white = np.random.default_rng(0).normal(size=(max(run.ticks, NOISE_SAMPLES), 1))
     bend = float(run.filtered(np.diff(white, 2, axis=0)).std()) / run.period**2
     rows = np.linspace(0, len(view.position) - 1, min(POSTURES, len(view.position))).astype(int)
-    squares = [(view.inertia_matrix(row) * np.array(noise)) ** 2 for row in rows]
+    squares = (view.inertia_matrix(rows) * np.array(noise)) ** 2
     return np.asarray(bend * view.shares * np.sqrt(np.mean(squares, axis=0).sum(axis=1)))
