@@ -61,7 +61,7 @@ def _linked(evidence: ArmMotionEvidence, candidates: Candidates, best: Explained
     if page is None:
         return None
     plain = [e for e in candidates.effects if e.plain and e.scales != GAIN]
-    laws = [(e, j, middle(e, evidence, j)) for j in evidence.judged for e in plain]
+    laws = [(e, j, middle(e, evidence, j)) for j in evidence.judged for e in plain if e.shapes(evidence.views, j)]
     links = wrong_links(evidence, page, laws)
     if not links:
         return None
