@@ -50,6 +50,30 @@ def test_a_control_beyond_its_range_acts_as_its_bound():
     assert gap.diagnose(xml, time, control, position, effort).status == "no_gap"
 
 
+def test_a_joint_at_its_stop_is_not_judged_there():
+    """Its servo asks for twice what the range allows: the stop's force is in no law."""
+    xml = ARM.format(body="", range="").replace('name="elbow" axis', 'name="elbow" limited="true" range="-20 20" axis')
+    time, control, position, _ = log_of(xml)
+    found = gap.diagnose(xml, time, control, position)
+    assert found.status == "no_gap" and any("elbow: lies beyond the range" in note for note in found.verdict.notes)
+
+
+def test_a_joint_that_is_drawn_where_it_does_not_read_zero():
+    """A healthy arm whose shoulder reads 0.3 rad, and whose elbow -0.5 rad, as drawn."""
+    xml = ARM.format(body="", range="").replace("<option", '<compiler angle="radian"/><option')
+    for name, ref in (("shoulder", 0.3), ("elbow", -0.5)):
+        xml = xml.replace(f'name="{name}" axis', f'name="{name}" ref="{ref}" axis')
+    time, control, position, _ = log_of(xml)
+    assert gap.diagnose(xml, time, control, position).status == "no_gap"
+
+
+def test_forces_of_actuators_before_their_gear_are_not_taken_for_degrees():
+    xml = ARM.format(body="", range="").replace('position joint="shoulder"', 'position gear="40" joint="shoulder"')
+    time, _, position, effort = log_of(xml.replace('kp="400" kv="20"', 'kp="0.25" kv="0.0125"'), size=1.5)
+    with pytest.raises(MachineError, match="state `factor` of a column or `gain`"):
+        gap.diagnose(xml, time, None, position, effort / np.array([40.0, 40.0]))
+
+
 def test_efforts_as_wide_as_mujoco_s_speeds():
     time, control, position, effort = log_of(ARM.format(body=CUBE, range=""))
     assert (position.shape[1], effort.shape[1]) == (9, 8)

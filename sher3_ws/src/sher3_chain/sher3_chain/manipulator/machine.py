@@ -6,6 +6,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
 from sher3_diagnosis.attribute.candidates import Candidates
 from sher3_diagnosis.attribute.plan import SearchPlan
 from sher3_diagnosis.attribute.rivals import Attribution
@@ -144,6 +145,7 @@ class Manipulator(Chain[ArmMotionEvidence]):
                 "inertias identified from the data: drive gain, weight and payload are in them, cannot be told apart "
                 "and are not looked for"
             )
+        notes += stop_notes(evidence)
         notes += change_notes(evidence, finding.attribution, self.parted(evidence))
         levels = [x for run in evidence.runs for x in level_notes(run, self.described.joints, evidence.judged)]
         notes += told_once(levels, [run.name for run in evidence.runs])
@@ -189,6 +191,17 @@ def scale_note(evidence: ArmMotionEvidence, joint: str) -> str:
         f"{joint}: recorded units per newton metre, run by run, inertias as modelled: {told}; drive gain, weight and "
         "payload are in them and are not looked for"
     )
+
+
+def stop_notes(evidence: ArmMotionEvidence) -> list[str]:
+    """Return a sentence for each joint that lay at a stop of its model."""
+    stopped = {j: np.concatenate([v.at_a_stop[:, v.row(j)] for v in evidence.records]) for j in evidence.judged}
+    return [
+        f"{joint}: lies beyond the range of its model for {x.mean():.0%} of the record, where a stop pushes it back: "
+        "not judged there"
+        for joint, x in stopped.items()
+        if x.any()
+    ]
 
 
 def slip_notes(evidence: ArmMotionEvidence) -> list[str]:

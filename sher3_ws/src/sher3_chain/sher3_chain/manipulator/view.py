@@ -27,6 +27,8 @@ LINKS_OF_PAYLOAD = 4
 """Leading inertial parameters of a body that a payload changes linearly: its mass, and mass times centre."""
 ROUNDED = 1e-9
 """Force on a joint over that on the joint that feels most, below which it is what rounding leaves of nothing."""
+MOSTLY = 0.9
+"""Share of a record beyond its range from which a joint has another zero than its model."""
 DEVELOPED = 0.95
 """Share of its full size above which a soft dry friction of MuJoCo no longer depends on the exact speed."""
 
@@ -218,7 +220,20 @@ class MotionView(ChainView):
     def in_motion(self, row: int) -> Mask:
         """Return (g,) True where the force balance of a joint can be judged: well inside a stretch of its motion."""
         still = settled(self.moving[:, row] & ~self.at_a_level[:, row] & ~self.turning[:, row], 1)
-        return self.run.inner & still & ~self.impacts
+        return self.run.inner & still & ~self.impacts & settled(~self.at_a_stop[:, row], AROUND_IMPACT)
+
+    @cached_property
+    def at_a_stop(self) -> Mask:
+        """(g, k) True where a joint lies beyond the range that its MJCF model leaves it: there a stop pushes it back.
+
+        A joint that lies beyond for most of a record has another zero, and no stop there.
+        """
+        if self.model.losses is None:
+            return np.zeros_like(self.velocity, dtype=bool)
+        low, high = self.model.losses.ranges.T
+        beyond = (self._joint_position < low) | (self._joint_position > high)
+        stopped = beyond & (beyond.mean(axis=0) < MOSTLY)
+        return np.asarray(stopped @ (np.linalg.inv(self.coupling) != 0.0))
 
     @cached_property
     def impacts(self) -> Mask:

@@ -31,6 +31,9 @@ def check_degrees(
 ) -> None:
     """Raise InputError where the model explains the efforts far better with angles in degrees.
 
+    Efforts in a unit of their own, as before a gear, are proportional to what the model needs in radians: that is no
+    reason for degrees.
+
     Where the forces are those of servos, which grow with the unit, weight alone tells them apart, and a robot may have
     another one: within half a turn that is a guess.
 
@@ -71,7 +74,7 @@ def left(
 ) -> Array:
     """Return the share of each joint's effort that model and friction leave, with angles times a scale.
 
-    NaN where no effort is known.
+    NaN where no effort is known. In radians recorded efforts may be in a unit of their own.
     """
     period = float(np.median(np.diff(run.time)))
     sizes = np.array([1.0 if bodies.joints[name] else scale for name in names])
@@ -83,15 +86,15 @@ def left(
         column, drive = controls[i], drives[name].drive if name in drives else None
         added = 0.0
         if run.effort is not None:
-            effort = run.effort[:, i]
+            effort, own = run.effort[:, i], ([needed[:, i]] if scale == 1.0 else [])
         elif run.control is None or column is None or drive is None:
             continue
         else:
             asked = drive.asked(run.control[:, column]) * (sizes[i] if drive.servo else 1.0)
             effort = drive.law(asked, q[:, i], v[:, i])
-            added = drives[name].of_law.inertia if drive.servo else 0.0
+            added, own = drives[name].of_law.inertia if drive.servo else 0.0, []
         effort = savgol_filter(effort, WINDOW, 3)[inner]
-        beside = np.column_stack([v[inner, i], np.sign(v[inner, i]), np.ones(len(inner))])
+        beside = np.column_stack([v[inner, i], np.sign(v[inner, i]), np.ones(len(inner)), *own])
         rest = effort - needed[:, i] - added * a[inner, i]
         rest = rest - beside @ np.linalg.lstsq(beside, rest, rcond=None)[0]
         out[i] = np.std(rest) / max(float(np.std(effort)), np.finfo(float).tiny)

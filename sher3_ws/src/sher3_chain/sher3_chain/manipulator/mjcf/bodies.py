@@ -49,10 +49,12 @@ def tree_from_mjcf(source: Any, label: str) -> Tree:
                 value = floats.get(root, "a ball joint")
                 raise MachineError(f"{label}: joint {name} neither turns nor slides", value=value, remedy=refused)
             anchor, rotor = np.array(source.jnt_pos[joint]), float(source.dof_armature[source.jnt_dofadr[joint]])
-            axis = np.array(source.jnt_axis[joint])
+            axis, zero = np.array(source.jnt_axis[joint]), float(source.qpos0[source.jnt_qposadr[joint]])
+            slides = kind == SLIDE
             reach = float(np.abs(source.jnt_range[joint]).max()) if source.jnt_limited[joint] else np.inf
-            at = place + turn @ anchor
-            links.append(Link(name, "", parent, turn, at, axis, kind == SLIDE, rotor=rotor, reach=reach))
+            at = place + turn @ (anchor - zero * axis if slides else anchor)  # drawn where the joint reads `ref`
+            turn = turn if slides else turn @ Rotation.from_rotvec(-zero * axis).as_matrix()
+            links.append(Link(name, "", parent, turn, at, axis, slides, rotor=rotor, reach=reach))
             parent, turn, place = len(links) - 1, np.eye(3), -anchor
         carriers.append((parent, turn, place))
         if parent != WORLD:
