@@ -8,6 +8,7 @@ _R = Reason
 _WIRE = "look at the sensor's cable and power"
 _ENCODER = "do not move this axis; check its encoder, coupling and cable"
 _BUS = "check the CAN cable, its ends and the adapter"
+_UNHEARD = f"{_BUS}; on mocks end other work on this computer, or start with `--layout composed`"
 _DRIVE = "read the drive's own error code; switch the drives off and on"
 _BUSY = "stop other work on this computer, or give real-time priority; on mocks `--patient`"
 _SILENT = "the node that sends it has ended or is held up; see its lines above"
@@ -39,7 +40,7 @@ REMEDY: dict[Reason, str] = {
     _R.LEG_SLIPPED: "check the legs' joints and their calibration",
     _R.POSITION_LEFT: "look for what pushed the axis, and at its drive",
     _R.MOVED_DISABLED: "look for what moved the axis, and at its brake",
-    _R.FEEDBACK_STALE: _BUS,
+    _R.FEEDBACK_STALE: _UNHEARD,
     _R.FEEDBACK_SWAPPED: "check the drives' node ids and channels",
     _R.FEEDBACK_GARBLED: _BUS,
     _R.CLOCK: "let the clock of this computer be slewed and never stepped",
@@ -54,7 +55,7 @@ REMEDY: dict[Reason, str] = {
     _R.TIP_SPEED: "push less, send a slower command, or choose another regime",
     _R.DRIVE_EMERGENCY: _DRIVE,
     _R.DRIVE_OVER_TEMPERATURE: "let the drives cool down",
-    _R.DRIVE_SILENT: _BUS,
+    _R.DRIVE_SILENT: _UNHEARD,
     _R.DRIVE_RESTARTED: _DRIVE,
     _R.DRIVE_FELL: _DRIVE,
     _R.DRIVE_STUCK: _DRIVE,
