@@ -68,9 +68,9 @@ def unfiltered(signals: Sequence[AxisSignals], axis: Axis) -> tuple[Sequence[Axi
     plain = balance.loss([s.effort for s in signals if s.effort is not None])
     if not plain or not corners:
         return signals, ""
-    late = min(loss(0, f) for f in corners)
-    best = min((_best(partial(loss, order), order, corners, top) for order in (1, 2)), key=lambda found: found[0])
-    if not best[0] < (1.0 - ALIGNED) * min(plain, late):
+    late, *filters = (_best(partial(loss, order), order, corners, top) for order in (0, 1, 2))
+    best = min(filters, key=lambda found: found[0])
+    if not best[0] < (1.0 - ALIGNED) * min(plain, late[0]):
         return signals, ""
     found = best[1]
     order = "first" if found.order == 1 else "second"
