@@ -126,6 +126,8 @@ def _numbers(name: str, x: ArrayLike) -> Array:
         found = np.asarray(x)
         if found.dtype.kind in "Mm":
             return (found - found[0] if found.dtype.kind == "M" else found) / np.timedelta64(1, "s")
+        if found.dtype.kind == "b":
+            raise TypeError("true and false")
         return np.asarray(x, dtype=float)
     except (TypeError, ValueError) as error:
         raise InputError(f"{name} is no array of numbers", value=str(error)[:80], remedy="give numbers") from error

@@ -97,6 +97,15 @@ def test_a_control_that_is_no_place_and_one_that_is_no_force(log):
         gap.diagnose(MOTORS, time, control, position)
 
 
+def test_controls_without_numbers_and_one_that_never_changes(log):
+    time, control, position = log
+    for given, words in ((np.full_like(control, np.nan), "has no number"), (control > 0.0, "no array of numbers")):
+        with pytest.raises(InputError, match=words):
+            gap.diagnose(MODEL, time, given, position)
+    with pytest.raises(InputError, match="moves while no control changes"):
+        gap.diagnose(MODEL, time, np.full_like(control, 0.1), position)
+
+
 def test_columns_in_another_order(log):
     """Stated joints order both; where nothing is stated, servos that follow each other's control are refused."""
     time, control, position = log

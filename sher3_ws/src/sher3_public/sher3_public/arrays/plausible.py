@@ -15,6 +15,8 @@ SLOWEST = 0.5
 BEYOND = 5.0
 """Times a joint's own scatter that the places it was told may scatter. A servo follows; only a torque is in a unit that
 has nothing to do with the place."""
+SETTLED = 0.5
+"""Share of its scatter that a servo may keep in the second half of a record in which nothing was told."""
 FOLLOWS = 0.98
 """Correlation of a motor's force with the place of its joint from which it is taken for the place itself."""
 SAME = 2.0
@@ -44,6 +46,9 @@ def control_of(name: str, control: Array, position: Array, drive: Drive) -> None
         InputError: it cannot be that.
     """
     known = np.isfinite(control) & np.isfinite(position)
+    if not known.any():
+        remedy = "give what its actuator was told, or leave control out and give efforts"
+        raise InputError(f"{name}: its control has no number", value="NaN or infinite alone", remedy=remedy)
     told, q = drive.asked(control[known]), position[known]
     wide, own = float(np.std(told)), float(np.std(q))
     if not wide or not own:
@@ -64,6 +69,19 @@ def control_of(name: str, control: Array, position: Array, drive: Drive) -> None
             value=f"correlation {alike:.3f}",
             remedy=remedy,
         )
+
+
+def held(names: Sequence[str], columns: Sequence[int | None], run: Arrays, drives: Mapping[str, Driven]) -> None:
+    """Raise InputError where no control ever changes and a servo goes on moving all the same."""
+    if run.control is None or any(np.ptp(x[np.isfinite(x)]) for x in run.control.T if np.isfinite(x).any()):
+        return
+    for place, (name, column) in enumerate(zip(names, columns, strict=True)):
+        drive = drives[name].drive if name in drives else None
+        q = run.position[:, place]
+        late, whole = float(np.nanstd(q[len(q) // 2 :])), float(np.nanstd(q))
+        if drive is not None and drive.servo and column is not None and late > SETTLED * whole > 0.0:
+            remedy = "give what the actuators were told, or leave control out and give efforts"
+            raise InputError(f"{name}: moves while no control changes", value=f"{late:.3g}", remedy=remedy)
 
 
 def places(names: Sequence[str], run: Arrays, reach: Mapping[str, float]) -> list[str]:
