@@ -16,12 +16,15 @@ from typing import Any
 from sher3_challenge.cases.builder import Request, build_case
 from sher3_description import load_robot
 from sher3_diagnosis.attribute.steadiness import steadiness_of
-from sher3_diagnosis.localise.pattern import AGREEMENT, pattern_of
+from sher3_diagnosis.localise.pattern import pattern_of
 from sher3_gap.case.loading import load_case
 from sher3_gap.sher import diagnose_runs
 
 KINDS = ("single", "single", "compound", "outside")
 """Kinds of the cases, in turn."""
+AGREEMENT = 0.9
+"""Agreement below which a cause is counted as a stand-in: of 51 true causes of the development seeds 50 have more, of
+37 stand-ins 20 have. No verdict depends on it: the agreement itself is an item of the odds."""
 
 
 def measure(seed: int) -> Iterator[dict[str, Any]]:

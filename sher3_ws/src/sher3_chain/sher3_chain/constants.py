@@ -1,4 +1,4 @@
-"""Constants of a record that nobody knows: the zero of an encoder, what an integral held when the record began.
+"""Unknown constants of a record: the zero of an encoder, the content of an integral when the record began.
 
 They differ from record to record and are no part of the machine. Every fit carries one for each record, of which all
 that is known is that it is no larger than what was recorded.
@@ -45,12 +45,12 @@ class ConstantOfRecord(Effect):
 
 
 def constants(data: Whitened, name: str, channels: Sequence[Channel]) -> tuple[Term, ...]:
-    """Return the constants of all records on some channels; none on a channel that nothing was recorded of."""
+    """Return a term for each channel that was recorded, with one constant for each record."""
     return tuple(_constant(data, name, c) for c in channels if any(c in target for target in data.target))
 
 
 def zeros_of(found: Fit, channel: Channel) -> Array:
-    """Return the constant of each record of a channel under a fit, in its unit; empty where it has none."""
+    """Return the constant of each record (r,) of a channel under a fit, in its unit; empty where it has none."""
     for i, term in enumerate(found.terms):
         if isinstance(term.effect, ConstantOfRecord) and channel in term.channels:
             return term.effect.size * found.of(i)

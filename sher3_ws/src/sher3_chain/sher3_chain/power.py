@@ -1,4 +1,4 @@
-"""Whether an absence can be told at all: the floor of a force balance, or a tracking error, over its signal."""
+"""Whether a verdict of no gap has any power: the floor of a force balance, or of a tracking error, over its signal."""
 
 from __future__ import annotations
 
@@ -39,6 +39,6 @@ def unjudged(finding: Finding, signal: Signal) -> dict[Channel, str]:
 
 
 def said(channel: Channel, share: float) -> str:
-    """Return in words what hides an absence, and what helps."""
+    """Return in words why the absence of a cause cannot be shown, and which record would show it."""
     hidden = f"what nobody can foresee at {channel.actuator} is {share:.2g} of its signal, and a cause would hide in it"
     return f"{hidden}; a higher rate, larger or slower motion, or repeats of one motion would tell"

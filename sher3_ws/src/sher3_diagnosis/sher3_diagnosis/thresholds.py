@@ -103,10 +103,6 @@ Measure: `python bench/gap_pattern.py`."""
 CERTAIN = 100.0
 """Loss that a varying size must explain before it counts. Set on and measured as `CONSTANT`."""
 
-AGREEMENT = 0.9
-"""Agreement of a gap's places with its cause below which the cause stands in for another: of 51 true causes of the
-development seeds 50 have more, of 37 stand-ins 20 have. Measure: `python bench/gap_pattern.py`."""
-
 # -- judge: what may be left? --------------------------------------------------------------------------------------
 
 REMAINDER = 0.10

@@ -23,14 +23,14 @@ def agreement(evidence, effect):
 
 def test_the_gap_of_a_true_cause_lives_where_it_predicts(evidence):
     found = agreement(evidence, "coulomb_friction")
-    assert found.credible and found.agreement > 0.95
+    assert found.agreement > 0.95
     assert set(found.mismatch) >= {"speed", "direction", "reversal", "phase", "excitation"}
 
 
 @pytest.mark.parametrize("stand_in", ["viscous_friction", "cogging"])
 def test_a_stand_in_takes_off_loss_in_other_places(evidence, stand_in):
     found = agreement(evidence, stand_in)
-    assert not found.credible
+    assert found.agreement < 0.9
     assert found.worst is not None and abs(found.worst.realised - found.worst.predicted) > 0.03
 
 

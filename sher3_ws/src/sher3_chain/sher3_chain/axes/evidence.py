@@ -107,7 +107,7 @@ def _gathered(runs: Sequence[AxesRun], axis: Axis, repeats: bool) -> AxisEvidenc
 
 
 def with_zeros(axis: Axis) -> list[Channel]:
-    """Return the channels whose zero nobody states: two encoders, and a servo of which a speed was recorded or asked.
+    """Return the channels of unknown zero: of two encoders, and of a servo of which a speed was recorded or asked.
 
     A speed adds up to a place from any zero on.
     """
@@ -130,7 +130,7 @@ def levels_of(signals: Sequence[AxisSignals], axis: Axis) -> list[str]:
 
 
 def _judged(found: Residuals, untold: str) -> Residuals:
-    """Leave the force balance out where its mass is not told."""
+    """Return the residuals without the force balance where the mass could not be identified."""
     return {c: x for c, x in found.items() if not untold or c.stage != "motor_mechanics"}
 
 

@@ -21,10 +21,11 @@ def floors_of(records: Sequence[AxisView], found: Sequence[Residuals], repeats: 
 
 
 def unforeseen(view: AxisView, residual: Residual, channel: Channel) -> Array:
-    """Return the noise, (1,), of which as much cannot be foreseen as of a residual.
+    """Return the standard deviation (1,) of white noise with the innovation of a residual, in the residual's unit.
 
-    Where a straight line leaves more than `EATEN`, the past of the motion and known inputs are asked as well. What they
-    foresee of the encoder's own noise, which two differences make alike from sample to sample, is noise all the same.
+    Where a straight line leaves more than `EATEN` of the signal, the past motion and known inputs predict it too.
+    They also predict a part of the encoder's own noise, since differences correlate its samples; the floor keeps that
+    part.
     """
     plain = plain_innovation(view, residual, channel)
     signal = np.sqrt(np.mean(residual.values[residual.ok] ** 2, axis=0))

@@ -18,8 +18,10 @@ from sher3_chain.joint.description import Axis
 from sher3_chain.readings.signals import AxisSignals
 
 LEAD_OF_STROKE = 0.02
-"""Share of the stroke that stands for the lead of a linear axis where it is not known. Effects search displacements in
+"""Share of the stroke that replaces the lead of a linear axis where it is not known. Effects search displacements in
 shares of the lead; of a turning axis one turn stands for it."""
+BUILDS_UP = 2.5e-3
+"""Share of the lead over which dry friction builds up after a reversal: the middle one that the effects search."""
 SLIP = 1e-9
 """Viscous coefficient in place of none, N/(m/s) or N m/(rad/s): effects take it as a scale."""
 REFERENCE = 20.0
@@ -27,7 +29,7 @@ REFERENCE = 20.0
 STILL = 1e-12
 """Top speed in place of none, m/s or rad/s: shares of the top speed are taken."""
 CREEPS = 0.01
-"""Share of the top speed of a slow motion: what moves more slowly is not told from a stop."""
+"""Share of the top speed of a slow motion: a slower one cannot be distinguished from a stop."""
 TURNS_BY = 4.0
 """Counts by which a turn differs from a stop: fewer are rounding."""
 

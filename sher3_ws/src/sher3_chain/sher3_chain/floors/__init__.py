@@ -1,1 +1,1 @@
-"""Floors of a chain: what nobody can foresee of a residual, and what repeats differ by."""
+"""Floors of a chain: the innovation of a residual, and the difference between repeats of one motion."""

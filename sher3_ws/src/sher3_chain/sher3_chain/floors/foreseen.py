@@ -2,8 +2,8 @@
 
 A second difference foresees a signal that bends slowly. Of one that is driven faster, by steps of a reference or about
 a resonance, it leaves most, and a floor made of that hides the gap itself. Known inputs foresee such a signal: a
-residual is fitted to its own past, to that of the motion and to what was asked, on one half of the record, and told for
-the other (an ARX model: Ljung 1999).
+residual is predicted from its own past, the motion's and the reference, by a model that was fitted to the other half of
+the record (ARX: Ljung 1999, section 4.2).
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from sher3_chain.readings.signals import AxisSignals
 
 Rows = NDArray[np.signedinteger]
 PAST = 4
-"""Samples of the residual grid that are looked back on: two resonances, or a lag and a delay."""
+"""Samples of the residual grid that the predictor sees: four are enough for two resonances, or a lag and a delay."""
 ENOUGH = 5
 """Samples for each number of the predictor at least."""
 
@@ -46,7 +46,15 @@ def foreseen(run: AxisSignals, residual: Residual) -> float:
 
 
 def _left(x: Array, y: Array, told: Rows, judged: Rows, noise: Array) -> float:
-    """Return what a predictor fitted on some rows leaves of others, as noise (n,) of the same innovation has a size."""
+    """Return the standard deviation of white noise with the innovation that a predictor leaves on `judged` rows.
+
+    Args:
+        x: inputs, (g, p), its own past first.
+        y: residual, (g,).
+        told: rows that the predictor is fitted to.
+        judged: the others.
+        noise: white noise after the filter of the residuals, (n,), of a known standard deviation.
+    """
     size = np.linalg.norm(x[told], axis=0)
     size[size == 0.0] = 1.0
     beta = np.linalg.lstsq(x[told] / size, y[told], rcond=1e-9)[0] / size

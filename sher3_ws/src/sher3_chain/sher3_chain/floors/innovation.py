@@ -1,4 +1,4 @@
-"""Floors between repeats where there are any, else what no model could foresee, and never below the least there is."""
+"""Floors of residuals: between repeats where there are any, else their innovation; never below the resolution."""
 
 from __future__ import annotations
 
@@ -38,8 +38,8 @@ def chain_floors(
         records: views of a chain.
         found: residuals of each record.
         repeats: whether the records are repeats of one motion.
-        least: floors that the readings' own resolution makes.
-        unforeseen: what cannot be foreseen of a residual.
+        least: floors that the readings' own resolution makes, (1,) each in the unit of the residual.
+        unforeseen: the part (1,) of a residual that its past and known inputs cannot foresee.
     """
     pooled = repeat_floors([view.excitation for view in records], found) if repeats else {}
     out = []
@@ -50,14 +50,14 @@ def chain_floors(
 
 
 def plain_innovation(view: ChainView, residual: Residual, channel: Channel) -> Array:
-    """Return the noise, (1,), of which a straight line leaves as much as of a residual."""
+    """Return the standard deviation (1,) of white noise whose innovation is that of a residual, in its unit."""
     return innovation(residual) / foresight(view.run)
 
 
 def foresight(run: AxisSignals) -> float:
     """Return the innovation of white noise after the filter of the residuals over its standard deviation, 0.7 to 1.
 
-    The filter makes neighbours alike, so that a part of what is noise could be foreseen from them.
+    The filter makes neighbours alike, so that they foresee a part of the noise.
     """
     return _of_clock(run.ticks, run.stride, run.period, run.bandwidth)
 
@@ -70,5 +70,5 @@ def _of_clock(ticks: int, stride: int, period: float, bandwidth: float) -> float
 
 
 def innovation(residual: Residual) -> Array:
-    """Return what samples of a residual differ by beyond a straight line, (d,): what cannot be foreseen."""
+    """Return the rms (d,) by which samples of a residual depart from a straight line through their neighbours."""
     return noise_of_bends(np.diff(residual.values[residual.ok], 2, axis=0))

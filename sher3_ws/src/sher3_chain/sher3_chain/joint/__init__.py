@@ -1,1 +1,1 @@
-"""What a joint is, in which units it is told, under which conditions it was recorded, and how a file becomes a run."""
+"""A joint: its description and units, the conditions under which it was recorded, and how a file becomes a run."""

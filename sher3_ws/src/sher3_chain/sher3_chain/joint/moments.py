@@ -1,7 +1,7 @@
-"""When samples were taken: at their stamps, or evenly, while the stamps are those of a busy logger.
+"""When samples were taken: at their stamps, or evenly, where the stamps are those of a busy logger.
 
-A drive samples by a timer, and a program stamps what it receives when it comes to it. Which of both a record has, its
-motion tells: a path goes on smoothly in the time in which it was sampled.
+A drive samples by a timer; a program stamps a sample when it gets round to it. The motion shows which of the two a
+record has: the path is smooth over the times at which it was really sampled.
 """
 
 from __future__ import annotations
@@ -15,10 +15,10 @@ from sher3_machines.intake.mending.stamps import missing_at
 JITTER = 0.01
 """Share of the period by which stamps may be off before the record is resampled."""
 CLEARLY = 0.7
-"""Roughness in even time over that by the stamps below which the samples were taken evenly: with none told both are
-alike."""
+"""Roughness over even times, as a share of that over the stamps, below which the samples were taken evenly. Where the
+motion shows nothing the share is 1."""
 FEWEST = 20
-"""Samples from which a path tells."""
+"""Samples that a path must have for its roughness to be compared."""
 
 Stamped = tuple[Array | None, Array]
 """Stamps in s, where there are any, and the samples."""

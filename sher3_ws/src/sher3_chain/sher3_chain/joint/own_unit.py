@@ -1,4 +1,4 @@
-"""Forces in the unit they were recorded in, where nobody said how many newtons it is: amperes, per cent, volts."""
+"""Forces in the unit in which they were recorded, where its value in newtons is unknown: amperes, per cent, volts."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from sher3_diagnosis.verdict import Cause
 RECORDED = "eu"
 """Unit of the effort as recorded: of a force whose gain nobody stated, and whose column has no unit either."""
 OWN_UNITS = {"A": "A", "mA": "A", "V": "V", "mV": "V", "%": "%", "count": "count", "1": RECORDED}
-"""Unit of an effort that is no force -> the unit its forces are told in."""
+"""Unit of an effort that is no force -> the unit in which forces are then given."""
 
 TOLD = ("V", "mV", "%", "1")
-"""Units of what a drive is told: a force comes of it behind a coil, a propeller or a valve."""
+"""Units of a drive's input: a coil, a propeller or a valve turns it into a force."""
 
 
 def own_unit_note(axis: str, unit: str) -> str:

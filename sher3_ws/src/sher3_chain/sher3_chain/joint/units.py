@@ -16,7 +16,7 @@ SLIP_TOLERANCE = 1.25
 FURTHEST = {"linear": 10.0, "rotary": 40.0}
 """Travel, m or rad, beyond which an axis without a stated range is taken for a unit slip."""
 TURNS = ("count", "rev", *VELOCITIES)
-"""Units of a position in which nobody slips to degrees: a motor may well make a hundred turns."""
+"""Units of a position that are not checked for a slip to degrees: a motor may well make a hundred turns."""
 BEYOND = 0.1
 """Share of the range by which a position may leave it: stated ranges are rounded."""
 COUNTS_MOVED = 100.0

@@ -16,7 +16,7 @@ from sher3_diagnosis.localise.floors import GAUSSIAN
 from sher3_effects.delay import LONGEST_DELAY, shifted
 from sher3_effects.operators import dahl
 
-from sher3_chain.chain.view import LEAD_OF_STROKE
+from sher3_chain.chain.view import BUILDS_UP, LEAD_OF_STROKE
 from sher3_chain.manipulator.description import Joint
 from sher3_chain.manipulator.model import ArmModel
 from sher3_chain.manipulator.signals import JointSignals
@@ -35,8 +35,6 @@ FLIGHT = 5.0
 delays stays below two."""
 AT_REST = 0.2
 """Speed of a link over that of the two encoders against each other below which friction holds it."""
-BUILDS_UP = 2.5e-3
-"""Share of a lead over which the side of a play builds up."""
 
 
 def links_of(run: JointSignals, joints: Sequence[Joint], model: ArmModel, coupling: Array) -> AxisSignals:

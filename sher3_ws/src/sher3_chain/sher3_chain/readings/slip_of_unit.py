@@ -1,4 +1,4 @@
-"""How many of its units an effort has per unit of a force that is known: the slip of a unit, told before any cause.
+"""How many of its units an effort has per unit of a known force: a wrong unit is found before any cause.
 
 effort = share * (known force) + friction. A share of a thousand is an effort in mN that was stated in N; friction and
 payload of a thousand times their size would explain it as well.

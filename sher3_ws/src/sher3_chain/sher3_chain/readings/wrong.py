@@ -115,21 +115,21 @@ def stays_over(load: Array, position: Array) -> float:
     """Return the share of an axis' travel over which a second encoder stays at one reading, (n,) each.
 
     Behind a play or at a reversal the load rests too, but only after the motor has turned round. A motor that goes on
-    the way it went does not leave its load: only what it does so counts, or what is beyond half of the travel.
+    in its direction takes its load along: a rest counts where the motor went on, or over more than half of the travel.
     """
     travel, most = max(float(np.ptp(position)), np.finfo(float).tiny), 0.0
     for first, last in stays(load):
         stay = position[first:last]
         before = np.flatnonzero(position[:first] != position[first])
-        way = float(np.sign(position[first] - position[before[-1]])) if len(before) else 0.0
-        onward, whole = float(np.max(way * (stay - stay[0]))) / travel, float(np.ptp(stay)) / travel
+        direction = float(np.sign(position[first] - position[before[-1]])) if len(before) else 0.0
+        onward, whole = float(np.max(direction * (stay - stay[0]))) / travel, float(np.ptp(stay)) / travel
         if onward > STAYS or whole > HALF:
             most = max(most, whole)
     return most
 
 
 def stays(x: Array) -> list[tuple[int, int]]:
-    """Return the first sample of every long stretch at one reading, and the first sample after it."""
+    """Return, for each long stretch of a signal (n,) at one reading, its first sample and the first one after it."""
     edges = np.concatenate([[0], np.flatnonzero(np.diff(x) != 0.0) + 1, [len(x)]])
     return [(int(a), int(b)) for a, b in pairwise(edges) if b - a >= LONGEST]
 

@@ -1,1 +1,1 @@
-"""What every search for the causes of a joint keeps to: what is possible, away from reversals, under conditions."""
+"""Rules of every search for causes of joints: what is possible together, what reversals and conditions tell."""

@@ -27,13 +27,13 @@ from sher3_chain.thresholds import CHANGES
 
 E = TypeVar("E", bound=Evidence)
 Finish = Callable[[Candidates, Fit], Fit]
-"""Improves the fit of a change by what its search does not do."""
+"""Improves the fit of a change beyond its search: the inertia of a payload about its own centre, for one."""
 
 SAME_AS_ALWAYS = (
     *("id", "family", "stage", "explanation", "places", "units"),
     *("companion", "shown_by", "dry", "slow", "best"),
 )
-"""What a page says of an effect that is so under a condition too."""
+"""Attributes of a page that hold for the effect under a condition as well."""
 
 
 class Changed(Effect):
@@ -71,11 +71,11 @@ class Changed(Effect):
         return Signature({c: 0.0 * x for c, x in found.columns.items()}, {c: 0.0 * x for c, x in found.fixed.items()})
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the change of the parameters."""
+        """Return the change of the parameters for coefficients (p,), SI units."""
         return self.of.parameters(shape, coefficients)
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether what then acts, the common part and the change together, is physically possible."""
+        """Return whether common part and change together, coefficients (p,), are physically possible."""
         together = coefficients + self.common.coefficients if self.common else coefficients
         return self.of.admissible(shape, together)
 

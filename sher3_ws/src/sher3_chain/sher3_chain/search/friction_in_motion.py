@@ -60,9 +60,9 @@ def requantified(evidence: Evidence, attribution: Attribution, causes: Sequence[
 
 
 def with_unseen(evidence: Evidence, attribution: Attribution, causes: Sequence[Cause]) -> list[Cause]:
-    """Return the causes with intervals of dry friction that hold what it is beside a viscous one too slight to be seen.
+    """Return the causes with intervals of dry friction widened by a viscous friction that is too small to be found.
 
-    Under noise the one stands in for a part of the other: at one speed they are the same.
+    At one speed the two are the same force, so that the one is a proxy for a part of the other.
     """
     terms = attribution.fit.terms
     viscous = next(e for e in pages("axis") if e.plain and e.family == FRICTION and not e.dry)

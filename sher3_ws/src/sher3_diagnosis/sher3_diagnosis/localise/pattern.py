@@ -16,7 +16,6 @@ from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import Fit
 from sher3_diagnosis.localise.regimes import regime_masks
-from sher3_diagnosis.thresholds import AGREEMENT
 
 
 @dataclass(frozen=True)
@@ -45,11 +44,6 @@ class Pattern:
     def agreement(self) -> float:
         """One less the largest mismatch; 1 where there is nothing to compare."""
         return 1.0 - max(self.mismatch.values(), default=0.0)
-
-    @property
-    def credible(self) -> bool:
-        """Whether the gap lives where the cause says it does."""
-        return self.agreement >= AGREEMENT
 
     @property
     def worst(self) -> Share | None:

@@ -26,7 +26,7 @@ from sher3_effects.view import NominalAxis
 from sher3_chain.axes.evidence import AxisEvidence
 
 BEHIND = 0.5
-"""Share of mass and friction that is put behind the gap: nobody says how much is there. Set by that argument."""
+"""Share of mass and friction that is put behind the gap, since its true share is unknown. Set by that argument."""
 
 
 def unseen_note(evidence: AxisEvidence, after: Fit) -> str:

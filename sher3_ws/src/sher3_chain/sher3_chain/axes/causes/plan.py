@@ -23,5 +23,5 @@ AXIS = SearchPlan(
     reviews=(rivals_at_rest, told_by_travel, borne_out),
 )
 """Plain laws at once, then richer ones. Where the choice leaves a force at rest that nothing holds, a second search
-starts with a dry friction; where an axis has one encoder, a third with what may hide behind it. In the end rest and
-travel tell rivals apart, and what only reversals show is no cause."""
+starts with a dry friction; where an axis has one encoder, a third with what may hide behind it. In the end the
+forces at rest and the travel tell rivals apart, and causes that only reversals show are left out."""

@@ -1,8 +1,8 @@
 """The recorded command against the law that its description states: an exact stage, judged by itself.
 
 The law needs no model of the machine: reference and reading in, command out. Nobody states how a controller takes its
-speed from its encoder, nor at which sample within a period it reads; of the usual ways that one is taken which leaves
-least, whatever the gains are.
+speed from its encoder, nor at which sample within a period it reads: of the usual samplings the one is taken whose law
+leaves least, whatever the gains are.
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.quantify.polish import polished
 
-from sher3_chain.axes.command.best_way import backwards, best_way
+from sher3_chain.axes.command.best_sampling import backwards, best_sampling
 from sher3_chain.axes.command.residual import LawView, floor_of, residual_of
-from sher3_chain.axes.command.way import Way
+from sher3_chain.axes.command.sampling import Sampling
 from sher3_chain.axes.evidence import AxisEvidence
 from sher3_chain.chain.evidence import in_blocks
 from sher3_chain.constants import INTEGRAL, constants
@@ -41,11 +41,11 @@ def law_of_axis(runs: Sequence[AxesRun], axis: Axis) -> LawEvidence | None:
     if not compared(axis) or not all({"reference", "command"} <= run.signals[axis.name].keys() for run in runs):
         return None
     signals = [signals_of(run, axis, run.name) for run in runs]
-    way = best_way(signals, axis)
-    turned = backwards(signals, axis, way)
+    sampling = best_sampling(signals, axis)
+    turned = backwards(signals, axis, sampling)
     if turned:
         signals = [replace(s, command=-s.command) for s in signals if s.command is not None]
-    views = [LawView(s, axis, way) for s in signals]
+    views = [LawView(s, axis, sampling) for s in signals]
     channel = Channel(STAGE, axis.name)
     found = [{channel: residual_of(view)} for view in views]
     floors = [{channel: floor_of(view, x[channel])} for view, x in zip(views, found, strict=True)]
@@ -61,13 +61,15 @@ def law_of_axis(runs: Sequence[AxesRun], axis: Axis) -> LawEvidence | None:
         runs=list(runs),
         records=views,
         mass=0.0,
-        notes=notes_of(axis, way, turned),
+        notes=notes_of(axis, sampling, turned),
     )
 
 
-def notes_of(axis: Axis, way: Way, turned: bool) -> list[str]:
+def notes_of(axis: Axis, sampling: Sampling, turned: bool) -> list[str]:
     """Return how a command was read."""
-    notes = [f"{axis.name}: the speed in its law is taken {way.pace.words}"] if axis.command_law.velocity_gain else []
+    notes = (
+        [f"{axis.name}: the speed in its law is taken {sampling.pace.words}"] if axis.command_law.velocity_gain else []
+    )
     sign = f"{axis.name}: the command has the opposite sign of the law that was stated; it was turned"
     return [*notes, sign] if turned else notes
 

@@ -6,7 +6,7 @@ import numpy as np
 from sher3_diagnosis.channel import Array, Residual
 from sher3_machines.thresholds import BLOCKS
 
-from sher3_chain.axes.command.way import Way, stated_law
+from sher3_chain.axes.command.sampling import Sampling, stated_law
 from sher3_chain.axes.view import AxisView
 from sher3_chain.floors.innovation import UNIFORM, foresight, innovation
 from sher3_chain.joint.description import Axis
@@ -19,17 +19,17 @@ class LawView(AxisView):
 
     Attributes:
         stated: the law on what was recorded.
-        way: in which it is read.
+        sampling: of its encoder.
     """
 
-    def __init__(self, run: AxisSignals, axis: Axis, way: Way) -> None:
+    def __init__(self, run: AxisSignals, axis: Axis, sampling: Sampling) -> None:
         super().__init__(run, axis, 0.0)
-        self.stated = stated_law(run, axis, way)
-        self.way = way
+        self.stated = stated_law(run, axis, sampling)
+        self.sampling = sampling
 
 
 def residual_of(view: LawView) -> Residual:
-    """Return command less law."""
+    """Return command less law, (g, 1) in the command's unit."""
     run = view.run
     assert run.command is not None
     left = run.to_grid(run.command - view.stated.command[:, None])
@@ -37,7 +37,11 @@ def residual_of(view: LawView) -> Residual:
 
 
 def floor_of(view: LawView, left: Residual) -> Array:
-    """Return the floor of a command, (1,): what no one foresees, never below counts, rounded gains and speeds."""
+    """Return the floor (1,) of command less law, in the command's unit.
+
+    It is the innovation of the residual, and never less than what encoder counts, the command's own steps, gains of few
+    digits and unknown readings between two samples make together.
+    """
     run, law = view.run, view.described.command_law
     assert run.command is not None and law.position_gain is not None
     noise = np.random.default_rng(0).normal(size=(max(run.ticks, 4 * BLOCKS), 1))
@@ -51,12 +55,12 @@ def floor_of(view: LawView, left: Residual) -> Array:
 
 
 def unread_speed(view: LawView) -> float:
-    """Return what differences about a sample are off from a speed that a controller knows otherwise, rms, m/s or rad/s.
+    """Return the rms error of a speed taken by differences about a sample, m/s or rad/s.
 
     Differences over h are off by a term in h^2: those over 2 h, less those over h, are three times it (Richardson).
     A controller that reads at the rate of the log, or slower, knows no more than the log.
     """
-    if view.way.pace.over >= 1.0:
+    if view.sampling.pace.over >= 1.0:
         return 0.0
     run, q = view.run, view.run.motor[:, 0]
     wide = np.gradient(q, run.period)

@@ -19,6 +19,7 @@ from sher3_machines.errors import MachineError
 from sher3_machines.thresholds import BLOCKS
 
 from sher3_chain.axes.view import AxisView
+from sher3_chain.chain.view import BUILDS_UP, LEAD_OF_STROKE
 from sher3_chain.thresholds import LEAST_EXCITED, NOISE_SHARE, SLOW
 
 LEFT = 1e-3
@@ -39,11 +40,8 @@ CHOICES = [
 """Every choice of columns."""
 OTHERS = 1.0 - np.eye(BLOCKS)
 """Of each block all others."""
-DAHL_SHARE = 2.5e-3
-"""Displacement over which dry friction builds up, in shares of the lead: the middle one that the effects search."""
-
-DAHL_TRAVEL = 5e-5
-"""The same in shares of the travel, where the lead is not known."""
+BUILDS_UP_OF_TRAVEL = BUILDS_UP * LEAD_OF_STROKE
+"""Share of the travel over which dry friction builds up, where the lead is not known."""
 
 
 def identify_mass(views: Sequence[AxisView]) -> tuple[float, tuple[float, float]]:
@@ -218,7 +216,7 @@ def _columns(view: AxisView) -> tuple[Array, Mask]:
     if ok.any():
         ok = ok & (speed > SLOW * np.sqrt(np.mean(speed[ok] ** 2)))
     nominal = view.axis(site)
-    reach = DAHL_SHARE * nominal.lead if nominal.lead_known else DAHL_TRAVEL * nominal.travel
+    reach = BUILDS_UP * nominal.lead if nominal.lead_known else BUILDS_UP_OF_TRAVEL * nominal.travel
     direction = run.to_grid(view.sliding(0, max(reach, view.described.encoder_resolution))[:, None])[:, 0]
     q = view.position[:, 0]
     spring = q - q.mean() if view.described.motion == "linear" else np.zeros_like(q)

@@ -31,18 +31,18 @@ from sher3_chain.manipulator.view import MotionView
 LATE = "effort_delay"
 """Parameter that these findings give, see `Page.computed`."""
 WITHIN_PERIOD = 0.5
-"""Periods of the record within which nobody states when an effort was taken."""
+"""Uncertainty of the moment at which an effort was taken, in periods of the record, where no description states it."""
 SLOWER = 5.0
 """Cut-off, Hz, of what is compared: arms move more slowly, and the slope of a noisy acceleration is noise beyond."""
 SURE = 2.0
-"""Half widths of the 95 % interval that a delay must lie beyond that."""
+"""Half widths of its 95 % interval by which a delay must exceed that uncertainty."""
 
 IDEAL = 0.015
 """Relative standard error of a delay beside its scatter: noise in the slope makes it too small, by a few per cent."""
 
 WITHIN = (0.0, -1.0, -0.5, 0.5, 1.0)
-"""Shares of the half width by which the delay that is taken off may differ from the one told: a dry friction, whose
-step is many floors high, turns at a moment."""
+"""Shares of the half width by which the delay that is taken off may differ from the estimate: the step of a dry
+friction is many floors high, and an error within the interval shows in it."""
 
 
 class Late(NamedTuple):
@@ -53,7 +53,7 @@ class Late(NamedTuple):
         half: half width of its 95 % interval, s, from a jackknife over blocks.
         slope: rms of the slope of the needed force, N/s or N m/s.
         each: (BLOCKS,) the delay of each block, all else as over the whole record, s.
-        unstated: delay within which nobody states when an effort was taken, s.
+        unstated: uncertainty of the moment at which an effort was taken, s.
     """
 
     delay: float
@@ -64,7 +64,7 @@ class Late(NamedTuple):
 
     @property
     def shapes(self) -> list[Shape]:
-        """What is told, the delay and its standard error, s; and delays within its interval that may be taken off."""
+        """Estimate and standard error of the delay, s, each with another delay within the interval to take off."""
         told = {"told": self.delay, "error": float(np.hypot(self.half / JACKKNIFE, IDEAL * self.delay))}
         return [{**told, "delay": self.delay + share * self.half} for share in WITHIN]
 

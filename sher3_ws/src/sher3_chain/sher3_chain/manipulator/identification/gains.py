@@ -1,4 +1,4 @@
-"""What the data say of an effort before causes are looked for: its sign, and how many of its units a newton metre is.
+"""Sign and scale of a recorded effort, found before causes are looked for: how many of its units a newton metre is.
 
 effort = share * (needed force) + friction, with the inertias of the model taken as true. The gain, the weight and a
 payload can then not be told apart, which the notes say. A negative share is an effort recorded with the opposite sign;
@@ -12,11 +12,9 @@ from collections.abc import Collection, Mapping, Sequence
 import numpy as np
 from sher3_diagnosis.channel import Array
 
+from sher3_chain.chain.view import BUILDS_UP
 from sher3_chain.manipulator.view import MotionView
 from sher3_chain.readings.slip_of_unit import Share, share_in
-
-DAHL_SHARE = 2.5e-3
-"""Displacement over which dry friction builds up, in shares of the lead: the middle one that the effects search."""
 
 
 def share_of(views: Sequence[MotionView], joint: str) -> Share:
@@ -43,7 +41,7 @@ def equations(views: Sequence[MotionView], joint: str) -> tuple[Array, Array]:
 def friction_columns(view: MotionView, joint: str) -> Array:
     """Return velocity, direction and one on the residual grid, (g, 3)."""
     row = view.row(joint)
-    direction = view.run.to_grid(view.sliding(row, DAHL_SHARE * view.lead(joint))[:, None])[:, 0]
+    direction = view.run.to_grid(view.sliding(row, BUILDS_UP * view.lead(joint))[:, None])[:, 0]
     return np.column_stack([view.velocity[:, row], direction, np.ones(len(direction))])
 
 

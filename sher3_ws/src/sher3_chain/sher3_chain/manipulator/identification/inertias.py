@@ -17,7 +17,7 @@ from sher3_chain.manipulator.model import ArmModel
 from sher3_chain.manipulator.view import MotionView
 
 UNSEEN = 1e-3
-"""Singular value over the largest below which a combination of parameters is not told by the motion."""
+"""Singular value, as a share of the largest, below which the motion does not determine a combination of parameters."""
 
 
 def with_identified_inertias(views: Sequence[MotionView], model: ArmModel, judged: Sequence[str]) -> ArmModel:

@@ -52,7 +52,14 @@ class Link:
     mimics: str = ""
 
     def carrying(self, inertia: Array, turn: Array, place: Array, body: str) -> Link:
-        """Return the link with a body more, whose frame is at a pose in the joint's frame."""
+        """Return the link with one more body.
+
+        Args:
+            inertia: parameters (10,) in the frame of the body.
+            turn: (3, 3) rotation of that frame in the joint's frame.
+            place: (3,) its origin, m.
+            body: name.
+        """
         added = moved(inertia, turn, place)
         more = replace(self, inertia=self.inertia + added)
         return more if self.body else replace(more, body=body, own=added, at=place)
@@ -112,7 +119,13 @@ def parameters(mass: float, centre: Array, inertia: Array) -> Array:
 
 
 def moved(inertial: Array, turn: Array, place: Array) -> Array:
-    """Return inertial parameters (10,) of a body's frame in a frame where that one is at a pose."""
+    """Return the inertial parameters (10,) of a body in another frame (Featherstone 2008, section 2.13).
+
+    Args:
+        inertial: (10,) in the frame of the body.
+        turn: (3, 3) rotation of that frame in the other one.
+        place: (3,) its origin there, m.
+    """
     mass, moment = inertial[0], turn @ inertial[1:4]
     about = turn @ inertial[4:][np.array(MATRIX)] @ turn.T
     double = np.outer(place, moment) + np.outer(moment, place) + mass * np.outer(place, place)

@@ -1,4 +1,4 @@
-"""The way in which a command was made of its readings: the one that leaves least, whatever the gains are."""
+"""Which sampling of the encoder a recorded command was made with: the one whose law leaves least, at any gains."""
 
 from __future__ import annotations
 
@@ -11,61 +11,67 @@ from sher3_diagnosis.channel import Array
 from sher3_effects.view import StatedLaw
 
 from sher3_chain.axes.command.residual import LawView, floor_of, residual_of
-from sher3_chain.axes.command.way import CENTRAL, FASTER, LAST, TWO, Pace, Way, behind, stated_law
+from sher3_chain.axes.command.sampling import CENTRAL, FASTER, LAST, TWO, Pace, Sampling, behind, stated_law
 from sher3_chain.joint.description import Axis
 from sher3_chain.readings.signals import AxisSignals
 
 LAGS = (0.7, 1.0, 1.5, 2.0, 3.0, 5.0, 8.0, 12.0)
 """Low-passes behind a speed that are tried, in periods."""
 PLAIN = 0.3
-"""Share of the noise of a plain way that a low-pass must leave at most: it has a number that is fitted, and smooths."""
+"""Largest noise that a low-pass may leave, as a share of a plain sampling's: it smooths, and its corner is fitted."""
 ALIKE = 1.2
-"""Noise over the least up to which two ways are alike: a median over thousands of samples is known to some per cent."""
+"""Noise over the least noise up to which two samplings count as equal: medians of thousands of samples scatter by some
+per cent."""
 NOTHING_LEFT = 2.0
-"""Power over the floor up to which a plain way leaves no gap that another could explain: no other is tried."""
+"""Power over the floor up to which a plain sampling leaves no gap: no other sampling is then tried."""
 FINER = 9
 """Halvings of the step between two of them."""
 SHIFTS = (0, 1, 2, 3, 4, 6, 8, 12, 16, 24)
-"""Samples by which a command may answer an earlier reading: within one period nobody states it, more is a delay."""
+"""Samples by which a command may lag its reading. A lag within one period is never stated; more is a delay."""
 
 
-def best_way(signals: Sequence[AxisSignals], axis: Axis) -> Way:
-    """Return the way to read the encoder: the one that leaves least of the steps, and of those alike of the command.
+def best_sampling(signals: Sequence[AxisSignals], axis: Axis) -> Sampling:
+    """Return the sampling whose law leaves least of the command's steps; of equal ones, least of the command itself.
 
-    A plain way that leaves hardly anything of the command as stated, for a reference that may be late, goes before
-    it: a controller that knows its speed from elsewhere brings no counts, and the way with the fewest of them is
-    then only the smoothest. Nor do the counts of a log that is slower than its controller tell: it read others.
+    A plain sampling comes first where the stated law, with a reference that may be late, leaves hardly anything. The
+    steps would mislead there: a controller that knows its speed from elsewhere shows no encoder counts in them, and a
+    log that is slower than its controller shows counts that the controller did not read.
+
+    Args:
+        signals: of one axis, a record each.
+        axis: as described; its command law has a position gain.
     """
 
     @lru_cache(maxsize=1)  # all shifts of one pace are tried in turn
     def read(pace: Pace) -> list[StatedLaw]:
-        return [stated_law(s, axis, Way(pace, 0)) for s in signals]
+        return [stated_law(s, axis, Sampling(pace, 0)) for s in signals]
 
     @cache
-    def left(way: Way) -> Array:
-        laws = read(way.pace)
-        return np.sum([left_by(s, behind(x.parts, way.shift)) for s, x in zip(signals, laws, strict=True)], axis=0)
+    def left(sampling: Sampling) -> Array:
+        laws = read(sampling.pace)
+        return np.sum([left_by(s, behind(x.parts, sampling.shift)) for s, x in zip(signals, laws, strict=True)], axis=0)
 
-    def noise(way: Way) -> float:
-        return float(left(way)[1])
+    def noise(sampling: Sampling) -> float:
+        return float(left(sampling)[1])
 
-    def least(ways: Sequence[Way]) -> Way:
-        quietest = min(noise(way) for way in ways)
-        return min((way for way in ways if noise(way) <= ALIKE * quietest), key=lambda way: float(left(way)[0]))
+    def least(samplings: Sequence[Sampling]) -> Sampling:
+        quietest = min(noise(s) for s in samplings)
+        return min((s for s in samplings if noise(s) <= ALIKE * quietest), key=lambda s: float(left(s)[0]))
 
     if not axis.command_law.velocity_gain:
-        return _within(least([Way(LAST, shift) for shift in SHIFTS]))
-    found = {way: excess(signals, axis, way) for way in (Way(pace, 0) for pace in (LAST, TWO, CENTRAL, *FASTER))}
+        return _within(least([Sampling(LAST, shift) for shift in SHIFTS]))
+    tried = [Sampling(pace, 0) for pace in (LAST, TWO, CENTRAL, *FASTER)]
+    found = {sampling: excess(signals, axis, sampling) for sampling in tried}
     plainest = _least_of(found)
     if found[plainest].late <= NOTHING_LEFT:
         return plainest
-    plain = least([Way(pace, shift) for pace in (LAST, TWO, CENTRAL) for shift in SHIFTS])
-    best = least([Way(pace, shift) for pace in (Pace(1.0, lag) for lag in LAGS) for shift in SHIFTS])
+    plain = least([Sampling(pace, shift) for pace in (LAST, TWO, CENTRAL) for shift in SHIFTS])
+    best = least([Sampling(pace, shift) for pace in (Pace(1.0, lag) for lag in LAGS) for shift in SHIFTS])
     step = LAGS[1] / LAGS[0]
     for _ in range(FINER):
         step = float(np.sqrt(step))
         near = [Pace(1.0, best.pace.lag * f) for f in (1.0, step, 1.0 / step)]
-        best = least([Way(pace, shift) for pace in near for shift in SHIFTS])
+        best = least([Sampling(pace, shift) for pace in near for shift in SHIFTS])
     quiet = _within(best if noise(best) < PLAIN * noise(plain) else plain)
     found[quiet] = excess(signals, axis, quiet)
     stated = _least_of(found)
@@ -73,22 +79,21 @@ def best_way(signals: Sequence[AxisSignals], axis: Axis) -> Way:
     return stated if better else quiet
 
 
-def _least_of(found: Mapping[Way, Excess]) -> Way:
-    """Return the way that leaves least: of a law with gains of its own, of those alike of one that may be late, of
-    those alike of the law as stated.
+def _least_of(found: Mapping[Sampling, Excess]) -> Sampling:
+    """Return the sampling that leaves least of a law with free gains; of equals, of a late law, then of the stated one.
 
-    The freest law is settled first, since it tells the way alone: the counts of its speeds are there, or are not.
+    The law with free gains is compared first, since nothing but the sampling changes what it leaves.
     """
-    ways = list(found)
+    samplings = list(found)
     for left in (lambda x: x.freed, lambda x: x.late):
-        least = min(left(found[way]) for way in ways)
-        ways = [way for way in ways if left(found[way]) <= ALIKE * least]
-    return min(ways, key=lambda way: found[way].stated)
+        least = min(left(found[sampling]) for sampling in samplings)
+        samplings = [sampling for sampling in samplings if left(found[sampling]) <= ALIKE * least]
+    return min(samplings, key=lambda sampling: found[sampling].stated)
 
 
-def _within(way: Way) -> Way:
-    """Return a way within the period that nobody states: what is more is a delay."""
-    return way if way.shift <= 1 else way._replace(shift=0)
+def _within(sampling: Sampling) -> Sampling:
+    """Return the sampling with its lag where that is one sample at most: a longer lag is a delay."""
+    return sampling if sampling.shift <= 1 else sampling._replace(shift=0)
 
 
 class Excess(NamedTuple):
@@ -97,8 +102,8 @@ class Excess(NamedTuple):
     Attributes:
         stated: of the law as it is stated.
         late: of the law as it is stated for a reference that may be late.
-        freed: of the law with gains of its own for its parts as well: neither is a matter of the way in which the
-            encoder is read.
+        freed: of the law with free gains of its parts as well: neither gains nor a late reference are matters of the
+            sampling.
     """
 
     stated: float
@@ -106,11 +111,11 @@ class Excess(NamedTuple):
     freed: float
 
 
-def excess(signals: Sequence[AxisSignals], axis: Axis, way: Way) -> Excess:
-    """Return what a way leaves of a command, over the floor."""
+def excess(signals: Sequence[AxisSignals], axis: Axis, sampling: Sampling) -> Excess:
+    """Return the power of command less law over its floor under a sampling, a mean over the records."""
     powers = []
     for run in signals:
-        view = LawView(run, axis, way)
+        view = LawView(run, axis, sampling)
         left = residual_of(view)
         if left.ok.any():
             late, y = _lateness(run), left.values[left.ok, 0]
@@ -120,7 +125,7 @@ def excess(signals: Sequence[AxisSignals], axis: Axis, way: Way) -> Excess:
     return Excess(*np.mean(powers, axis=0).tolist()) if powers else Excess(0.0, 0.0, 0.0)
 
 
-def backwards(signals: Sequence[AxisSignals], axis: Axis, way: Way) -> bool:
+def backwards(signals: Sequence[AxisSignals], axis: Axis, sampling: Sampling) -> bool:
     """Return whether the commands go against their law over the whole records, an integral beside it left free.
 
     A sign is a matter of the fit: at the rate of the samples the counts of an encoder, which come back at the next
@@ -129,7 +134,7 @@ def backwards(signals: Sequence[AxisSignals], axis: Axis, way: Way) -> bool:
     shares = []
     for run in signals:
         if run.command is not None:
-            law = stated_law(run, axis, way)
+            law = stated_law(run, axis, sampling)
             shares.append(_solved(np.column_stack([law.command, *_slow(law.error)]), run.command[:, 0])[0])
     return sum(shares) < 0.0
 
@@ -153,9 +158,9 @@ def _lateness(run: AxisSignals) -> Array:
 def left_by(run: AxisSignals, parts: Array) -> Array:
     """Return what the parts (n, 3) of a law, each with a gain of its own, leave of the command and its steps; medians.
 
-    Steps are second differences: the counts of the encoder stand out in them, which the right way brings as they are,
+    Steps are second differences: the counts of the encoder stand out in them, which the right sampling has as well,
     and what else a controller may do, as a dead zone, is slow beside them. The gains are fitted to the command itself:
-    in steps a way that reads the counts a period late is bettered by a gain of nothing.
+    in steps a sampling that reads the counts a period late is bettered by a gain of zero.
     """
     assert run.command is not None
     command = run.command[:, 0]

@@ -1,4 +1,4 @@
-"""How a controller reads its encoder, which nobody states, and the law it then follows on what was recorded."""
+"""How a controller samples its encoder, which descriptions do not state, and the law it then follows on a record."""
 
 from __future__ import annotations
 
@@ -41,31 +41,36 @@ FASTER = tuple(Pace(1.0 / k) for k in (2, 3, 4, 6, 10, 20))
 """Paces of a controller that runs faster than the log; a wrong one of two neighbours is off by 3 % of a period."""
 
 
-class Way(NamedTuple):
-    """How a controller reads its encoder: the pace it takes, and by how many samples it is behind."""
+class Sampling(NamedTuple):
+    """How a controller samples its encoder.
+
+    Attributes:
+        pace: how it takes a speed.
+        shift: samples by which it is behind.
+    """
 
     pace: Pace
     shift: int
 
 
-def stated_law(run: AxisSignals, axis: Axis, way: Way) -> StatedLaw:
-    """Return the stated law on the readings of a run, read in one of the ways."""
+def stated_law(run: AxisSignals, axis: Axis, sampling: Sampling) -> StatedLaw:
+    """Return the stated law on the readings of a run under a sampling; its parts (n, 3) are P, D and I."""
     law, q = axis.command_law, run.motor[:, 0]
     assert run.reference is not None and law.position_gain is not None
     error = run.reference[:, 0] - q
-    parts = [law.position_gain * error, -law.velocity_gain * speed_of(q, run.period, way.pace)]
+    parts = [law.position_gain * error, -law.velocity_gain * speed_of(q, run.period, sampling.pace)]
     parts.append(law.integral_gain * np.cumsum(error) * run.period)
-    late = behind(np.column_stack([*parts, error]), way.shift)
+    late = behind(np.column_stack([*parts, error]), sampling.shift)
     return StatedLaw(late[:, 3], late[:, :3], law.limit or np.inf, law.position_gain)
 
 
 def behind(x: Array, shift: int) -> Array:
-    """Return columns (n, k) by so many samples late, the first held before."""
+    """Return columns (n, k) that are `shift` samples late; before that they hold their first value."""
     return np.concatenate([x[:1].repeat(shift, axis=0), x])[: len(x)]
 
 
 def speed_of(q: Array, period: float, pace: Pace) -> Array:
-    """Return the speed of a path (n,) taken in one of the ways.
+    """Return the speed of a path (n,) as a controller takes it.
 
     Over a part of a period the speed is that about the sample, late by half of that part: of a difference over one
     period, which is late by half of it, the same share is taken.
