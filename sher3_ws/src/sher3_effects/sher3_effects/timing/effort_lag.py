@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 from sher3_diagnosis.channel import Array, Channel
-from sher3_diagnosis.effect import Shape, Signature
+from sher3_diagnosis.effect import Shape, Signature, column
 
 from sher3_effects.delay import EARLIEST, LONGEST_DELAY, OF_PERIODS, shifted
 from sher3_effects.operators import lagged
@@ -19,7 +19,7 @@ class EffortLag(DriveLag):
     """A force that follows the recorded effort through a filter of first order, or a dead time later.
 
     A voltage, a duty or a valve is recorded; a propeller, a coil or a chamber that fills comes between it and the axis.
-    A recorded force acts at once.
+    A recorded force acts at once. The mass was identified behind one such lag: what another one changes of it is free.
     """
 
     kinds, needs = ("axis",), ("drive",)
@@ -37,6 +37,8 @@ class EffortLag(DriveLag):
     """Shortest time that is tried, in periods of the record and of the cut-off: less is the moment of a reading."""
     STEP = 1.6
     """Ratio of two times that are tried, up to the longest delay."""
+    HEAVIER = 0.4
+    """Share by which the mass may change at most beside another lag."""
     finer: ClassVar[Mapping[str, tuple[float, ...]]] = {
         name: (0.8, 0.9, 0.95, 1.05, 1.1, 1.25) for name in ("time_constant", "delay")
     }
@@ -56,17 +58,24 @@ class EffortLag(DriveLag):
         count = int(np.log(LONGEST_DELAY / least) / np.log(self.STEP)) + 1 if least < LONGEST_DELAY else 0
         return [float(least * self.STEP**k) for k in range(count)]
 
-    def parameters(self, shape: Shape, coefficients: object) -> dict[str, float]:
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Return the time constant, or the dead time."""
         return dict(shape)
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
-        """Return the recorded effort less the one that acts; nothing is left to fit."""
+        """Return the recorded effort less the one that acts, and what the mass changes."""
         run = view.run
         assert run.effort is not None
         given = run.effort[:, view.row(site)]
         acting = self.acting(given, run.stage_clock, run.period, shape)
-        return Signature({}, {Channel("motor_mechanics", site): run.to_grid((given - acting)[:, None])})
+        channel = Channel("motor_mechanics", site)
+        inertia = view.axis(site).mass * view.acceleration[:, view.row(site)]
+        heavier = {channel: column(inertia)} if inertia.any() else {}
+        return Signature(heavier, {channel: run.to_grid((given - acting)[:, None])})
+
+    def admissible(self, shape: Shape, coefficients: Array) -> bool:
+        """Return whether the mass is about the identified one: a lag and a mass may change places."""
+        return all(abs(share) < self.HEAVIER for share in coefficients)
 
     def acting(self, given: Array, clock: Array, period: float, shape: Shape) -> Array:
         """Return the force (n,) that follows a recorded one in a shape."""

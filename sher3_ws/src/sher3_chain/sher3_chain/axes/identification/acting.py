@@ -20,6 +20,9 @@ from sher3_chain.joint.description import Axis
 from sher3_chain.readings.signals import AxisSignals
 from sher3_chain.thresholds import ALIGNED
 
+FINER = 3
+"""Rounds of a finer search for the lag."""
+
 
 def acting(signals: Sequence[AxisSignals], axis: Axis) -> Sequence[AxisSignals]:
     """Return the signals with the effort behind the lag that saves most; as they were where it saves too little.
@@ -33,19 +36,30 @@ def acting(signals: Sequence[AxisSignals], axis: Axis) -> Sequence[AxisSignals]:
     if not lags:
         return signals
     balance = ForceBalance(views)
-    plain = balance.loss([s.effort for s in signals if s.effort is not None])
-    tried = [[_behind(*lag, s) for s in signals] for lag in lags]
-    losses = [balance.loss([s.effort for s in acts if s.effort is not None]) for acts in tried]
-    for k in sorted(range(len(lags)), key=losses.__getitem__):
-        if not losses[k] < (1.0 - ALIGNED) * plain:
-            break
-        if max(lags[k][1].values()) < braking_time([AxisView(s, axis, 0.0) for s in tried[k]]):
-            return tried[k]
-    return signals
+
+    def loss(acts: Sequence[AxisSignals]) -> float:
+        return balance.loss([s.effort for s in acts if s.effort is not None])
+
+    def tried(some: Sequence[tuple[Page, Shape]]) -> list[tuple[float, tuple[Page, Shape], list[AxisSignals]]]:
+        behind = [(lag, _behind(*lag, signals)) for lag in some]
+        return [(loss(acts), lag, acts) for lag, acts in behind if _brakes_later(acts, axis, lag)]
+
+    best = min(tried(lags), key=lambda found: found[0], default=None)
+    if best is None or not best[0] < (1.0 - ALIGNED) * loss(signals):
+        return signals
+    for _ in range(FINER):
+        page, shape = best[1]
+        near = tried([(page, finer) for finer in page.refine(shape)])
+        best = min((best, *near), key=lambda found: found[0])
+    return best[2]
 
 
-def _behind(page: Page, shape: Shape, signals: AxisSignals) -> AxisSignals:
+def _brakes_later(acts: Sequence[AxisSignals], axis: Axis, lag: tuple[Page, Shape]) -> bool:
+    """Return whether a lag is shorter than the time in which friction brakes the mass that is then found."""
+    return max(lag[1].values()) < braking_time([AxisView(s, axis, 0.0) for s in acts])
+
+
+def _behind(page: Page, shape: Shape, signals: Sequence[AxisSignals]) -> list[AxisSignals]:
     """Return the signals with the effort as it acts."""
-    assert signals.effort is not None
-    acts = page.acting(signals.effort[:, 0], signals.stage_clock, signals.period, shape)
-    return replace(signals, effort=acts[:, None])
+    acts = [page.acting(s.effort[:, 0], s.stage_clock, s.period, shape) for s in signals if s.effort is not None]
+    return [replace(s, effort=x[:, None]) for s, x in zip(signals, acts, strict=True)]

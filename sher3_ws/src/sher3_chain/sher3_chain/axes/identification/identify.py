@@ -150,11 +150,16 @@ def mass_of(views: Sequence[AxisView]) -> float:
 
 
 def braking_time(views: Sequence[AxisView]) -> float:
-    """Return the mass over the viscous friction that the records tell, s; infinite where there is none."""
+    """Return the mass over the viscous friction that the records tell, s; infinite where there is none, or a weight.
+
+    A weight or a spring tells the mass from a lag.
+    """
     x, y = _rows(views)
     if len(y) < BLOCKS:
         return np.inf
     columns = _best(_blocks(x, y))[1]
+    if BY_PLACE[0] in columns:
+        return np.inf
     used = x[:, columns]
     found = dict(zip(columns, map(float, solve(used.T @ used, used.T @ y)), strict=True))
     return max(found[0], 0.0) / found[1] if found.get(1, 0.0) > 0.0 else np.inf
