@@ -28,15 +28,16 @@ def import_data(
     codes: 0 written, 2 data or description are wrong (one sentence says why).
     """
     from sher3_machines import MachineError
-    from sher3_machines.intake.case import described, import_case
+    from sher3_machines.intake.case import RUNS, described, import_case
 
     with reported(as_json):
         if len(paths) < 2:
             raise MachineError("data and a description are needed", value=len(paths), remedy=IMPORT_EXAMPLE)
         check_writable(folders=[out])
         notes = import_case(paths[:-1], described(paths[-1]), out)
-        text = "\n".join([f"{out}: {len(paths) - 1} run{'s' * (len(paths) > 2)}", *notes])
-        shown(as_json, {"case": str(out), "runs": len(paths) - 1, "notes": notes}, text)
+        number = len(list((out / RUNS).glob("*.npz")))
+        text = "\n".join([f"{out}: {number} run{'s' * (number > 1)}", *notes])
+        shown(as_json, {"case": str(out), "runs": number, "notes": notes}, text)
 
 
 def describe(

@@ -1,4 +1,4 @@
-"""What a path holds as runs: a file or a folder is one; episodes of a data set, and of a file, one each."""
+"""What a path holds as runs: a file or a folder is one; episodes of a data set, of a file and of a folder, one each."""
 
 from __future__ import annotations
 
@@ -54,9 +54,9 @@ def runs_of(data: Sequence[Path]) -> dict[str, Tables]:
 
 
 def episodes_in(tables: Tables) -> dict[str, Tables]:
-    """Return the runs of one file by name: groups that are numbered as runs are and hold the same columns.
+    """Return the runs of a file or folder by name: groups, or files, numbered as runs are with the same columns.
 
-    What stands beside them belongs to each of them. Empty where a file has no two such groups.
+    What stands beside them belongs to each of them. Empty where there are no two such groups.
     """
     parts: dict[str, Tables] = defaultdict(dict)
     for name, x in tables.items():
@@ -72,9 +72,7 @@ def _runs(path: Path) -> Mapping[str, Tables]:
     if is_data_set(path):
         return {name: dict(tables) for name, tables in read_data_set(path).episodes.items()}
     tables = read_tables(path)
-    if path.is_dir():
-        return {path.resolve().name: tables}
-    return episodes_in(tables) or {path.stem: tables}
+    return episodes_in(tables) or {path.resolve().name if path.is_dir() else path.stem: tables}
 
 
 def longest(path: Path) -> Tables:

@@ -157,3 +157,13 @@ def test_descriptions_of_the_package_are_valid():
     assert len(files) >= 5
     for file in files:
         load_description(file)
+
+
+def test_files_of_a_folder_that_are_numbered_as_runs_are_a_run_each(tmp_path):
+    _, description = written(tmp_path, record())
+    folder = tmp_path / "log"
+    folder.mkdir()
+    for name in ("run1", "run 2"):
+        np.savez(folder / f"{name}.npz", **record())
+    import_case([folder], description, tmp_path / "case")
+    assert [run.name for run in open_case(tmp_path / "case")[1]] == ["run 2", "run1"]
