@@ -111,25 +111,35 @@ def test_a_command_of_joints_is_put_in_the_order_of_the_actuators():
 
 @pytest.mark.graph
 @pytest.mark.flaky(reruns=2)
-def test_a_plain_publisher_s_friction_is_named_on_diagnostics(tmp_path, monkeypatch):
+@pytest.mark.parametrize(
+    ("quality", "words"),
+    [
+        ({"reliability": "RELIABLE", "durability": "TRANSIENT_LOCAL"}, []),
+        ({"reliability": "BEST_EFFORT", "durability": "VOLATILE"}, ["--best-effort"]),
+    ],
+)
+def test_a_plain_publisher_s_friction_is_named_on_diagnostics(tmp_path, monkeypatch, quality, words):
     """A recorded arm is played at 100 Hz by an ordinary node; the causes come back as diagnostics."""
     import rclpy
     from diagnostic_msgs.msg import DiagnosticArray
     from processes import child_environment, sher3_command
     from rclpy.executors import SingleThreadedExecutor
+    from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
     from sensor_msgs.msg import JointState
 
     (tmp_path / "arm.urdf").write_text(ARM)
     for name, value in child_environment().items():
         monkeypatch.setenv(name, value)
-    words = ["gap", "watch", "--model", tmp_path / "arm.urdf", "--window", "6", "--every", "2"]
+    words = ["gap", "watch", "--model", tmp_path / "arm.urdf", "--window", "6", "--every", "2", *words]
     watched = subprocess.Popen(sher3_command(*words), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     context, heard = rclpy.Context(), {}
     rclpy.init(context=context)  # of its own: other tests of this process start and stop the common one
     node, executor = rclpy.create_node("player", context=context), SingleThreadedExecutor(context=context)
     executor.add_node(node)
     try:
-        publisher = node.create_publisher(JointState, "/joint_states", 10)
+        policies = (ReliabilityPolicy[quality["reliability"]], DurabilityPolicy[quality["durability"]])
+        profile = QoSProfile(depth=10, reliability=policies[0], durability=policies[1])
+        publisher = node.create_publisher(JointState, "/joint_states", profile)
         node.create_subscription(
             DiagnosticArray, "/diagnostics", lambda m: heard.update({s.name: s.message for s in m.status}), 10
         )
