@@ -19,6 +19,7 @@ from sher3_control.motion.speed_cap import Regime
 from sher3_description import ACTUATORS, load_robot
 from sher3_drivers.bus.frame import iter_frames, pack_frames
 from sher3_drivers.canopen import objects as od
+from sher3_drivers.mock.drive import AxisReading
 from sher3_drivers.sensor.device import WrenchRecord
 from sher3_runtime import Graph
 from sher3_safety.rows.row import IDLE, LIMIT, MOVING, SIDEWAYS, State
@@ -86,6 +87,22 @@ def explained(speed: float) -> Callable[[MatrixRun], None]:
     return attack
 
 
+def all_alike(scale: float) -> Callable[[MatrixRun], None]:
+    """Return an attack of a leg that takes commands times a scale, and gives both its positions back without it."""
+
+    def attack(run: MatrixRun) -> None:
+        drive, began = run.rig.plant.drives.drives[LEGS[0]], list[AxisReading]()
+
+        def tamper(said: AxisReading) -> AxisReading:
+            began.append(said) if not began else None
+            motor, load = (b + (x - b) / scale for b, x in zip(began[0][:2], said[:2], strict=True))
+            return said._replace(motor_position=motor, load_position=load)
+
+        drive.stray, drive.tamper = (lambda velocity: scale * velocity), tamper
+
+    return attack
+
+
 def mirrored(run: MatrixRun) -> None:
     """Let one channel of the force sensor have the other sign."""
     run.rig.force.tamper = lambda said: [said._replace(wrench=(-said.wrench[0], *said.wrench[1:]))]
@@ -130,6 +147,11 @@ CASES = (
     Case("legs at 2 mm/s, each drive heard in one tick of three", BY_TURNS, IDLE),
     Case("tilt at 0.9 mm/s, channel 1 hears no SYNC", without_sync, IDLE),
     *(Case(f"delta_1 at {v * 1e3:g} mm/s with the force that explains it", explained(v), IDLE) for v in SPEEDS),
+    *(
+        Case(f"commands and both positions of delta_1 times {k:g}", all_alike(k), state)
+        for k in (1.02, 1.1, -1.0)
+        for state in (MOVING, SIDEWAYS)
+    ),
     Case("x channel of the force sensor with the other sign", mirrored, SIDEWAYS),
     Case("force sensor behind 0.3 s, the hand leaves", slow_sensor, MOVING),
     Case("tilt at 9 mm/s, all reports lost but in one tick of ten", NINE_LOST, IDLE, FREE),
