@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 from sher3_diagnosis.channel import Array
 
-from sher3_machines.intake.fields import TIME_UNITS
+from sher3_machines.drafting.names import named
+from sher3_machines.intake.fields import TIME_UNITS, VELOCITIES
 from sher3_machines.intake.mending.motion import AGREES, likely_unit, speed_ratio
 from sher3_machines.intake.tables import SAMPLES, Tables
 from sher3_machines.intake.units import UNITS
@@ -22,6 +23,11 @@ def told_by_speed(
     for axis in axes:
         if (column := axis["signals"].get("velocity")) is not None:
             ratios[axis["name"]] = _ratio(axis["signals"]["position"], column, time, tables, stamps)
+    for axis in axes:
+        counts = ratios.get(axis["name"]) or 0.0
+        if counts > 0.0 and _counted(axis["signals"]):
+            _count_told(axis, counts, guesses)
+            ratios[axis["name"]] = 1.0
     units = {likely_unit(r, time.get("unit")) if r is not None else None for r in ratios.values()}
     if len(units) == 1 and (unit := units.pop()) is not None and unit != time["unit"]:
         guesses.append(f"time in {unit} and not in {time['unit']}, because the recorded speed says so")
@@ -33,6 +39,24 @@ def told_by_speed(
             guesses.append(f"{axis['name']}: velocity is {axis['signals']['velocity']['column']!r}; the clock agrees")
         elif axis["signals"].pop("velocity", None) is not None:
             guesses.append(f"{axis['name']}: its recorded velocity is not used, because it does not agree")
+
+
+def _counted(signals: Mapping[str, Any]) -> bool:
+    """Return whether a place is in counts of a turn that nobody knows, beside a speed whose name has its unit."""
+    stated = named(signals["velocity"]["column"]).unit in VELOCITIES
+    return signals["position"]["unit"] == "count" and stated and "load" not in signals
+
+
+def _count_told(axis: dict[str, Any], ratio: float, guesses: list[str]) -> None:
+    """Take the count of a place from a recorded speed, of which the place moves `ratio` times the integral."""
+    signals = axis["signals"]
+    for signal in ("position", "reference"):
+        if signal in signals and signals[signal]["unit"] == "count":
+            signals[signal]["factor"] = float(f"{signals[signal]['factor'] / ratio:.6g}")
+    axis["encoder_resolution"] = float(f"{abs(axis['encoder_resolution'] / ratio):.6g}")
+    guesses.append(
+        f"{axis['name']}: `factor` of a count {signals['position']['factor']:.6g}: the recorded speed says so"
+    )
 
 
 def _ratio(

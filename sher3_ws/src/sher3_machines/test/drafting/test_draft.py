@@ -155,3 +155,17 @@ def test_what_a_drive_is_told_or_reports_is_no_place(tmp_path):
 def test_a_measured_speed_is_no_place(tmp_path):
     found = columns_of(tmp_path, "time_s,angle_deg,feedback_deg_s", TIME, 40.0 * np.sin(TIME), 40.0 * np.cos(TIME))
     assert found["position"] == "angle_deg"
+
+
+@pytest.mark.parametrize(("header", "scale"), [("speed_rpm", 60.0 / (2.0 * np.pi)), ("omega [rad/s]", 1.0)])
+@pytest.mark.parametrize("turn", [1000, 4096, 131072])
+def test_a_speed_with_a_unit_tells_what_a_count_is(tmp_path, header, scale, turn):
+    """An encoder of any count beside a speed: the count is no placeholder."""
+    t = np.arange(2000) / 200.0
+    place, speed = 12.0 * np.sin(t), 12.0 * np.cos(t)
+    count = 2.0 * np.pi / turn
+    columns = (t, np.round(place / count), scale * speed, np.sin(t))
+    (tmp_path / "a.yaml").write_text(written(tmp_path, f"t [s],encoder,{header},duty", *columns).text, encoding="utf-8")
+    (axis,) = load_description(tmp_path / "a.yaml").axes
+    assert axis.signals.position.factor == pytest.approx(count, rel=2e-3)
+    assert axis.encoder_resolution == pytest.approx(count, rel=2e-3) and axis.signals.velocity is not None
