@@ -94,3 +94,10 @@ def test_what_is_no_pair_is_said(change, said):
 def test_numbered_columns_are_put_in_order():
     table = {f"q_{i}": np.full(3, i) for i in (10, 2, 0)}
     assert columns_named(table, ("qpos", "q"))[0].tolist() == [0, 2, 10] and columns_named(table, ("x",)) is None
+
+
+def test_a_model_in_the_place_of_a_trace_is_named():
+    table = {"time": np.arange(30.0), "ctrl": np.zeros((30, 1)), "qpos": np.zeros((30, 1))}
+    for given in ("<mujoco/>", np.zeros((30, 2))):
+        with pytest.raises(gap.InputError, match="a trace is no table"):
+            gap.compare_simulators(given, table, table)

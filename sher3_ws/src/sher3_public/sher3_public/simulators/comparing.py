@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from os import PathLike
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,7 @@ from sher3_public.answer import Answer
 from sher3_public.errors import InputError
 from sher3_public.models import source_of
 from sher3_public.one_call import diagnose
-from sher3_public.records import columns_named, columns_of
+from sher3_public.records import columns_named, columns_of, is_table, tables_at
 from sher3_public.simulators.settings import played, setting_of
 
 TAG = "simulator"
@@ -70,7 +71,7 @@ def compare_simulators(
 
     Args:
         first: table of the reference: `time` (n,), s; `ctrl` (or `reference`) and `qpos` (or `position`), (n, k); what
-            `diagnose` takes besides, as `effort`.
+            `diagnose` takes besides, as `effort`; or the path of such a log.
         second: table of the other one, on the same stamps.
         model: of the robot, as `diagnose` takes it. With MJCF, settings of MuJoCo are tried first: integrator, friction
             cone, time step. None: axes by themselves.
@@ -80,13 +81,23 @@ def compare_simulators(
         InputError: the tables have not the same stamps or not the same commands, or no positions.
         MachineError: as `diagnose` does.
     """
-    tables = columns_of(first), columns_of(second)
+    tables = _trace(first), _trace(second)
     apart = _apart(*tables)
     found = _settings(model, *tables) if apart.any() else ("", "")
     if all(found) or not apart.any():
         return Comparison(names, apart, found, None)
     impossible = {page.id for page in every().values() if page.of_recorder}
     return Comparison(names, apart, ("", ""), diagnose(model, list(tables), tags={TAG: names}, without=impossible))
+
+
+def _trace(given: Any) -> dict[str, Array]:
+    """Return the columns of a table, or of the log at a path; raises InputError for anything else."""
+    found = tables_at(given) if isinstance(given, PathLike) or (isinstance(given, str) and "<" not in given) else given
+    found = found[0] if isinstance(found, list) and len(found) == 1 else found
+    if not is_table(found):
+        remedy = "give a table, or a log of one run, for each: compare_simulators(first, second, model)"
+        raise InputError("a trace is no table", value=type(given).__name__, remedy=remedy)
+    return columns_of(found)
 
 
 def _apart(first: Mapping[str, Array], second: Mapping[str, Array]) -> Array:
