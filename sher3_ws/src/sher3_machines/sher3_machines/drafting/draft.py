@@ -112,7 +112,7 @@ def drafted(path: Path, tables: Tables, rate: float | None, guesses: list[str]) 
     if left:
         more = f" and {len(left) - LISTED} more" if len(left) > LISTED else ""
         guesses.append(f"not used: {', '.join(left[:LISTED])}{more}")
-    return {"kind": "axes", "name": re.sub(r"\W+", "_", path.stem), "time": time, "axes": axes}
+    return {"kind": "axes", "name": re.sub(r"\W+", "_", path.resolve().stem), "time": time, "axes": axes}
 
 
 def _moves(x: Array) -> bool:

@@ -1,5 +1,7 @@
 """A description drafted from a file, and what is guessed for it."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from sher3_machines import MachineError, import_case, load_description, open_case
@@ -169,3 +171,13 @@ def test_a_speed_with_a_unit_tells_what_a_count_is(tmp_path, header, scale, turn
     (axis,) = load_description(tmp_path / "a.yaml").axes
     assert axis.signals.position.factor == pytest.approx(count, rel=2e-3)
     assert axis.encoder_resolution == pytest.approx(count, rel=2e-3) and axis.signals.velocity is not None
+
+
+def test_a_draft_of_the_folder_one_stands_in_has_its_name(tmp_path, monkeypatch):
+    t = 0.01 * np.arange(300)
+    rows = np.column_stack([t, np.sin(t), np.sin(t)])
+    folder = tmp_path / "slide"
+    folder.mkdir()
+    np.savetxt(folder / "log.csv", rows, delimiter=",", header="t,q,ref", comments="")
+    monkeypatch.chdir(folder)
+    assert "name: slide" in draft(Path()).text
