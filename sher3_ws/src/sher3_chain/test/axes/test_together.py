@@ -68,3 +68,8 @@ def test_a_late_effort_beside_friction_that_falls_with_speed(seed):
     assert {"stribeck_friction", "sensor_delay", "viscous_friction"} < set(found)
     delay = drawn.truth["sensor_delay"]["delay"]
     assert found["sensor_delay"].parameters["effort_delay"].value == pytest.approx(delay, rel=0.05)
+
+
+def test_viscous_friction_that_a_plain_dry_one_hides_is_beside_the_one_that_falls_with_speed():
+    """Neither is possible without the other; both went, and another motion was foretold seven times worse."""
+    assert set(told(drawn_axis(7504))) == {"stribeck_friction", "viscous_friction", "gravity_load", "sensor_delay"}
