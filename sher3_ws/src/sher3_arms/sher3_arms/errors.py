@@ -14,4 +14,4 @@ class ArmsError(Sher3Error):
 
 
 class NeverStable(ArmsError):
-    """No draw of a kind of fault lets the arm follow its motion; the case is left out."""
+    """No draw of a kind of fault lets the arm follow its motion and shows; the case is left out."""

@@ -103,6 +103,14 @@ def test_a_fault_that_makes_the_arm_unstable_is_drawn_again(tmp_path, monkeypatc
         seal(0, [OWN], tmp_path / "again", 12.0, ["late_drive"])
 
 
+def test_a_gap_that_is_never_crossed_is_drawn_again(tmp_path, monkeypatch):
+    """The weight of the lower arm holds its joint at one stop in this motion; nothing holds that of the turn."""
+    drawn = iter([Fault("backlash", 2, 0.005, {"rotor": 0.003}), Fault("backlash", 0, 0.005, {"rotor": 0.02})])
+    monkeypatch.setattr(cases, "deal", lambda *_: next(drawn))
+    label = seal(929, [OWN], tmp_path / "case", 12.0, ["backlash"])
+    assert label.drawn == 2 and label.fault.joint == 0
+
+
 def test_an_arm_that_is_not_there_is_refused():
     with pytest.raises(ArmsError, match="no such arm"):
         urdf_of("atlas")

@@ -13,10 +13,10 @@ from sher3_arms.errors import NeverStable, Unstable
 from sher3_arms.files import write_case
 from sher3_arms.truth.faults import ORDER, Fault, deal
 from sher3_arms.truth.robots import urdf_of
-from sher3_arms.truth.world import COUNT, inertias, inverse, load, motion, record
+from sher3_arms.truth.world import COUNT, inertias, inverse, load, motion, record, shows
 
 DRAWS = 50
-"""Faults drawn for a case at most, until the arm follows its motion in spite of one."""
+"""Faults drawn for a case at most, until the arm follows its motion in spite of one that shows."""
 SIZING = 20.0
 """Seconds of a motion from which the size of a fault is taken."""
 
@@ -32,7 +32,7 @@ class Label:
         joint: name of its joint; empty for a healthy arm.
         link: the link behind that joint.
         second: the joint of the other fault of a compound case.
-        drawn: faults drawn until the arm followed its motion.
+        drawn: faults drawn until the arm followed its motion and the fault showed.
     """
 
     seed: int
@@ -47,11 +47,12 @@ class Label:
 def seal(seed: int, robots: Sequence[str], folder: Path, seconds: float, kinds: Sequence[str] = ORDER) -> Label:
     """Write the case of a seed into a new folder and return its label; arms and kinds of fault are taken in turn.
 
-    A fault under which the arm does not follow its motion is drawn again: nobody keeps such a record.
+    A fault under which the arm does not follow its motion is drawn again: nobody keeps such a record. So is a gap that
+    is never crossed: the record is that of an arm with soft stops.
 
     Raises:
         ArmsError: no such arm, or MuJoCo or the wheel with the arms is missing.
-        NeverStable: no draw is stable.
+        NeverStable: no draw is stable and shows.
     """
     robot = robots[seed % len(robots)]
     urdf = urdf_of(robot)
@@ -63,11 +64,12 @@ def seal(seed: int, robots: Sequence[str], folder: Path, seconds: float, kinds: 
     drawn, found = 0, None
     while found is None:
         if drawn == DRAWS:
-            text = f"seed {seed}: {robot} is unstable with every {kind}"
+            text = f"seed {seed}: {robot} is unstable with every {kind}, or none shows"
             raise NeverStable(text, value=f"{DRAWS} draws", remedy="choose another seed or arm")
         drawn, fault = drawn + 1, deal(rng, kind, torque, speed, inertia)
         with suppress(Unstable):
-            found = record(urdf, fault, seconds, rng)
+            made = record(urdf, fault, seconds, rng)
+            found = made if shows(fault, made) else None
     arrays = {"time": found.time, "position": found.position, "effort": found.effort, "link": found.link}
     write_case(folder, urdf, found.names, arrays, COUNT, found.noise)
     if fault.joint < 0:

@@ -36,6 +36,9 @@ STOPS = (0.001, 1.0)
 """Time constant, s, and damping of a stop."""
 LOSS = 0.002
 """Damping over stiffness of a spring behind a motor, s."""
+CROSSED, RARE = 0.5, 0.01
+"""Share of a gap between the places behind which a load is, on either side, for that share of the record: less is a
+load that rests on one stop."""
 DUST = 1e-5
 """Inertia of a payload about its own centre, kg m^2: it is small and heavy."""
 ASTRAY = 0.5
@@ -201,6 +204,13 @@ def record(urdf: str, fault: Fault, seconds: float, rng: np.random.Generator) ->
     noise = NOISE * np.sqrt(np.mean(effort**2, axis=0))
     effort = effort + noise * rng.standard_normal(effort.shape)
     return Record(names, time, COUNT * np.round(position / COUNT), effort, noise, COUNT * np.round(link / COUNT))
+
+
+def shows(fault: Fault, found: Record) -> bool:
+    """Return whether a fault shows in a record: a gap does where its load is seen at both stops."""
+    gaps = [part for part in fault.parts if part.kind == "backlash"]
+    apart = np.quantile(found.link - found.position, (RARE, 1.0 - RARE), axis=0)
+    return all(np.ptp(apart[:, part.joint]) > CROSSED * part.size for part in gaps)
 
 
 def _of_link(real: Any, data: Any, fault: Fault, position: np.ndarray) -> np.ndarray:
