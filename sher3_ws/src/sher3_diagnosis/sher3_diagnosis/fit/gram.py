@@ -31,8 +31,8 @@ def products(data: Whitened, terms: Sequence[Term], channel: Channel) -> Product
     del trail[same + 1 :]
     for i, term in enumerate(terms[same:], start=same):
         trail.append((term, _extended(data, trail[-1][1], terms[:i], term, channel)))
-    found: Products = trail[-1][1]
-    return found
+    normal, right, energy = trail[-1][1]
+    return normal, right, np.maximum(energy, 0.0)
 
 
 def _without_terms(data: Whitened, channel: Channel) -> Products:
