@@ -11,6 +11,11 @@ EARLIEST, OF_PERIODS = 0.02, 3.0
 """By how much an effort may come before the motion because a filter delays the position, s or in periods."""
 
 
+def earliest(period: float) -> float:
+    """Return by how much, s, an effort may come before a motion of that period at most: more is no filter's delay."""
+    return max(EARLIEST, OF_PERIODS * period)
+
+
 def shifted(x: Array, clock: Array, delay: float) -> Array:
     """Return x (n,) delayed by `delay` [s], linear between samples at `clock` (n,) [s]; its ends are held."""
     return np.interp(clock - delay, clock, x)

@@ -58,7 +58,9 @@ def case_of_arrays(model: object, arrays: Sequence[Arrays], stated: Stated, tags
 def case_of_tables(model: object, tables: Sequence[Tables], rate: float | None, stated: Stated, tags: Any) -> Case:
     """Return an arm, or axes by themselves without a model, whose columns have telling names; raises as above."""
     guesses: list[str] = []
-    tables = of_tables.in_si(tables, drafted(RECORD, tables[0], rate, []), stated)
+    of_tables.check_names(stated)
+    if stated.units:
+        tables = of_tables.in_si(tables, drafted(RECORD, tables[0], rate, []), stated)
     data = drafted(RECORD, tables[0], rate, guesses)
     source = None if model is None else source_of(model)
     if source is not None:

@@ -12,7 +12,7 @@ from sher3_diagnosis.effect import Best, Shape, Signature, column
 from sher3_sim.effect import EVERYWHERE, PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
-from sher3_effects.operators import first_order, held_lag, oscillator, taken_by_limit
+from sher3_effects.operators import first_order, held_lag, lagged, oscillator, taken_by_limit
 from sher3_effects.page import Page
 from sher3_effects.view import AxisView, RobotView
 
@@ -59,16 +59,15 @@ class DriveLag(Page):
             change = first_order(demand, demand, demand, time, run.period) - demand
             behind = np.diff(demand, prepend=demand[0]) - np.concatenate([[0.0], change[:-1]])
             missed = np.cumsum(behind) * time * -np.expm1(-run.period / time)
-            lagged = drive.kp * change - drive.ki * missed
+            late = drive.kp * change - drive.ki * missed
         else:
             law, (start, middle) = view.law[:, axis], self._between(view, axis, drive.kp)
             second = min(shape.get("second", 0.0), 0.5) * time
             force = first_order(start, middle, law, time - second, run.period)
             if second:
-                before = np.concatenate([force[:1], force[:-1]])
-                force = first_order(before, 0.5 * (before + force), force, second, run.period)
-            lagged = force - law + self._ended(view, axis, time)
-        return Signature({}, {Channel(self.stage, site): run.to_grid(lagged)[:, None]})
+                force = lagged(force, second, run.period)
+            late = force - law + self._ended(view, axis, time)
+        return Signature({}, {Channel(self.stage, site): run.to_grid(late)[:, None]})
 
     def _ended(self, view: RobotView, axis: int, time: float) -> Array:
         """Return what the drive's own limit adds to a late force (n,): nothing where it is never reached."""

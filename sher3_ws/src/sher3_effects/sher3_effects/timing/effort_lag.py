@@ -9,7 +9,7 @@ import numpy as np
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Shape, Signature, column
 
-from sher3_effects.delay import EARLIEST, LONGEST_DELAY, OF_PERIODS, shifted
+from sher3_effects.delay import LONGEST_DELAY, earliest, shifted
 from sher3_effects.operators import lagged
 from sher3_effects.timing.drive_lag import DriveLag
 from sher3_effects.view import AxisView
@@ -48,8 +48,7 @@ class EffortLag(DriveLag):
         run, row = views[0].run, views[0].row(site)
         if run.effort is None or not np.any(run.effort[:, row]) or not views[0].axis(site).told:
             return []
-        late = max(EARLIEST, OF_PERIODS * run.period)
-        times = self.times(run.period, run.bandwidth)
+        late, times = earliest(run.period), self.times(run.period, run.bandwidth)
         return [*({"time_constant": t} for t in times), *({"delay": t} for t in times if t > late)]
 
     def times(self, period: float, bandwidth: float) -> list[float]:

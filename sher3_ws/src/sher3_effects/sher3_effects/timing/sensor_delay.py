@@ -9,7 +9,7 @@ import numpy as np
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Best, Measured, Shape, Signature, column
 
-from sher3_effects.delay import EARLIEST, LONGEST_DELAY, OF_PERIODS, shifted
+from sher3_effects.delay import LONGEST_DELAY, earliest, shifted
 from sher3_effects.page import Page
 from sher3_effects.view import AxisView
 
@@ -60,7 +60,7 @@ class SensorDelay(Page):
         which = [float(k) for k, x in enumerate((run.load, run.effort)) if x is not None and np.any(x[:, row])]
         unsaid = run.UNSTATED * max(self.UNSAID * run.period, self.UNSEEN / run.bandwidth)
         least = run.UNSTATED * self.LEAST * run.period
-        early = max(EARLIEST, OF_PERIODS * run.period) if views[0].axis(site).told else LONGEST_DELAY
+        early = earliest(run.period) if views[0].axis(site).told else LONGEST_DELAY
         return [
             {"delay": t, "of_effort": k, "least": k * least}
             for k in which

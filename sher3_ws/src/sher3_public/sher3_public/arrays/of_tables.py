@@ -22,6 +22,12 @@ SIGNALS: Mapping[str, str] = {"reference": "control", "command": "control"}
 BY_NAME = "name the columns as the model names its joints: a table says by that which joint each is"
 
 
+def check_names(stated: Stated) -> None:
+    """Raise InputError where joints or controls are stated: the columns of a table say which they are."""
+    if stated.joints or stated.controls:
+        raise InputError("joints and controls are stated of arrays", value="a table", remedy=BY_NAME)
+
+
 def in_si(tables: Sequence[Tables], chain: Mapping[str, Any], stated: Stated) -> list[Tables]:
     """Return tables whose columns are in SI units, as far as units are stated.
 
@@ -31,10 +37,8 @@ def in_si(tables: Sequence[Tables], chain: Mapping[str, Any], stated: Stated) ->
         stated: by the caller.
 
     Raises:
-        InputError: joints are stated, a unit is not known, or a column says its own.
+        InputError: a unit is not known, or a column says its own.
     """
-    if stated.joints or stated.controls:
-        raise InputError("joints and controls are stated of arrays", value="a table", remedy=BY_NAME)
     factors = stated.factors()
     scales = {name: factors[array] for name, array in _columns(chain) if array in factors}
     for name in scales:
