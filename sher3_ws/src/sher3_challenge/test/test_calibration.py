@@ -18,10 +18,11 @@ from sher3_challenge.calibration.fit import (
 )
 from sher3_challenge.calibration.held_out import by_build, by_shape, groups, held_out, judged_by
 from sher3_challenge.calibration.labels import answer_of, same_data
-from sher3_challenge.calibration.observe import Observation, labelled, truth_of
+from sher3_challenge.calibration.observe import Observation, keep, labelled, stored, truth_of
 from sher3_challenge.calibration.table import rates, written
 from sher3_challenge.errors import ChallengeError
 from sher3_challenge.score.reliability import bins, calibration_error, diagram
+from sher3_common import FileError
 from sher3_diagnosis.judge.calibration.calibration import Calibration
 
 NUMBERS = {
@@ -60,7 +61,7 @@ def seen(
         "status": status, "effects": [] if status == "no_gap" else effects, "rivals": [],
         "oracle": {"x": {"gap_over_floor": 5.0}},
     }  # fmt: skip
-    return Observation(plant, case, truth, tuple(without), tuple(items), (), ())
+    return Observation(plant, case, truth, tuple(without), tuple(items), (), (), False)
 
 
 def test_a_cause_is_right_when_it_or_one_that_explains_the_data_alike_is_true():
@@ -227,6 +228,16 @@ def test_a_calibration_survives_its_file(tmp_path):
     assert [p.model_dump(exclude_none=True) for p in found.provenance] == [
         {"plant": "a", "cases": 24, "causes": 18, "gaps": 12}
     ]
+
+
+def test_evidence_of_another_version_is_refused_by_name(tmp_path):
+    file, row = tmp_path / "kept" / "1.json", seen(items=[cause()])
+    assert stored(file) == []
+    keep([row], file)
+    assert stored(file) == [row]
+    file.write_text(json.dumps({**json.loads(file.read_text()), "version": 8}))
+    with pytest.raises(FileError, match=r"1\.json: holds evidence of another version.*value 8.*delete it"):
+        stored(file)
 
 
 def test_the_diagram_is_a_picture(tmp_path):

@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from sher3_common import read_text, read_yaml
+from sher3_common import FileError, read_text, read_yaml
 from sher3_description import Robot
 from sher3_diagnosis.finding import ExactFinding, Finding, Item
 from sher3_diagnosis.flow import find
@@ -19,8 +19,8 @@ from sher3_gap.signals import RunSignals
 from sher3_challenge.cases.seal import CASES, LABELS
 
 LABEL = "truth.yaml"
-VERSION = 8
-"""Of the evidence: rows of another version are computed again."""
+VERSION = 9
+"""Of the evidence: what another version told is refused."""
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ class Observation:
     items: tuple[dict[str, Any], ...]
     exact: tuple[dict[str, Any], ...]
     places: tuple[str, ...]
-    own_level: bool = False
+    own_level: bool
 
     @property
     def ratio(self) -> float | None:
@@ -117,9 +117,16 @@ def keep(found: Sequence[Observation], file: Path) -> None:
 
 
 def stored(file: Path) -> list[Observation]:
-    """Return the observations of a file; none where it is not there or of another version."""
-    kept = json.loads(read_text(file)) if file.exists() else {}
-    return [_again(row) for row in kept["rows"]] if kept.get("version") == VERSION else []
+    """Return the observations of a file, none where it is not there; raises FileError for those of another version."""
+    if not file.exists():
+        return []
+    kept = json.loads(read_text(file))
+    if kept.get("version") != VERSION:
+        remedy = "delete it: what it tells is computed again"
+        raise FileError(
+            "holds evidence of another version", path=file, value=kept.get("version"), limit=VERSION, remedy=remedy
+        )
+    return [_again(row) for row in kept["rows"]]
 
 
 def _again(row: dict[str, Any]) -> Observation:
