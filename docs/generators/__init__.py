@@ -1,4 +1,4 @@
-"""Pages of the reference that are written from the sources: one module a page, `write_pages` for all of them."""
+"""Pages of the reference that are written from the sources: a module for a page or a folder of them; `write_pages`."""
 
 from __future__ import annotations
 
@@ -8,19 +8,30 @@ from pathlib import Path
 from generators import api, commands, effects, hazards, robot_file, targets, thresholds, topics
 
 PAGES = {
-    "commands": commands.page,
-    "effects": effects.page,
     "hazards": hazards.page,
     "robot-file": robot_file.page,
-    "targets": targets.page,
-    "thresholds": thresholds.page,
     "topics": topics.page,
 }
+FOLDERS = {
+    "commands": commands.pages,
+    "effects": effects.pages,
+    "targets": targets.pages,
+    "thresholds": thresholds.pages,
+}
+"""What is too much for one page: an index of the folder's name, and in the folder the pages that it links to."""
+ORPHAN = "---\norphan: true\n---\n\n"
+"""Of a page that an index links to and that stands in no menu."""
 
 
 def committed_pages(reference: Path) -> dict[Path, str]:
     """Return the pages below the folder `reference` that are committed, by their paths."""
-    return {reference / "generated" / f"{name}.md": page() for name, page in PAGES.items()}
+    generated = reference / "generated"
+    found = {generated / f"{name}.md": page() for name, page in PAGES.items()}
+    for folder, pages in FOLDERS.items():
+        index, parts = pages()
+        found[generated / f"{folder}.md"] = index
+        found |= {generated / folder / f"{part}.md": ORPHAN + text for part, text in parts.items()}
+    return found
 
 
 def write_pages(reference: Path) -> None:

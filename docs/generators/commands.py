@@ -1,4 +1,4 @@
-"""Every command with its arguments, options and examples, from the command line itself."""
+"""Every command with its arguments, options and examples, a page each, from the command line itself."""
 
 from __future__ import annotations
 
@@ -16,13 +16,26 @@ and an exit code ([operation](../operation.md)).
 """
 
 
-def page() -> str:
-    """Return the page."""
-    return INTRODUCTION + "\n".join(_section(name, command) for name, command in commands())
+def pages() -> tuple[str, dict[str, str]]:
+    """Return the list of all commands, and a page for each by its file's name."""
+    found = dict(commands())
+    parts = {_file(name): _page(name, command) for name, command in found.items()}
+    rows = [(f"[`{name}`](commands/{_file(name)}.md)", _first(command.help or "")) for name, command in found.items()]
+    return INTRODUCTION + table(("command", "what it does"), rows), parts
 
 
-def _section(name: str, command: Any) -> str:
-    text = f"## {name}\n\n{_paragraphs(command.help or '')}\n\n"
+def _file(name: str) -> str:
+    """Return the path of a command's page: those of a group stand in a folder of its name."""
+    return "/".join(name.split()[1:])
+
+
+def _first(text: str) -> str:
+    """Return the first sentence of a help text."""
+    return _paragraphs(text).partition("\n")[0]
+
+
+def _page(name: str, command: Any) -> str:
+    text = f"# {name}\n\n{_paragraphs(command.help or '')}\n\n"
     context = command.context_class(command, info_name=name)
     rows = [row for parameter in command.get_params(context) if (row := _parameter(parameter))]
     text += table(("argument or option", "meaning", "default"), rows) + "\n" if rows else ""

@@ -1,4 +1,4 @@
-"""The library of effects as a page, from `sher3 gap library --json`."""
+"""The library of effects, a page a family, from `sher3 gap library --json`."""
 
 from __future__ import annotations
 
@@ -15,21 +15,31 @@ signal chain at which the effect enters; *on* says which actuators or parts may 
 """
 
 
-def page() -> str:
-    """Return the page."""
+def pages() -> tuple[str, dict[str, str]]:
+    """Return the index, and a page for each family by its file's name."""
     families = defaultdict(list)
     for effect in run_json("gap", "library", "--json")["effects"]:
         families[effect["family"]].append(effect)
-    text = INTRODUCTION
-    for family, effects in sorted(families.items()):
-        text += f"## {family.replace('_', ' ').capitalize()}\n\n" + "\n".join(_effect(effect) for effect in effects)
-    return text
+    parts = {family.replace("_", "-"): _family(family, families[family]) for family in sorted(families)}
+    rows = [
+        (f"[{_title(family)}](effects/{part}.md)", ", ".join(effect["effect"] for effect in families[family]))
+        for part, family in zip(parts, sorted(families), strict=True)
+    ]
+    return INTRODUCTION + table(("family", "effects"), rows), parts
+
+
+def _title(family: str) -> str:
+    return family.replace("_", " ").capitalize()
+
+
+def _family(family: str, effects: list[dict]) -> str:
+    return f"# {_title(family)}\n\n" + "\n".join(_effect(effect) for effect in effects)
 
 
 def _effect(effect: dict) -> str:
     sites = ", ".join(f"`{site}`" for site in effect["sites"] or effect["places"])
     stage = effect["stage"].replace("_", " ")
-    text = f"### {effect['effect']}\n\nStage {stage}, on {sites}. {effect['explanation']}\n\n"
+    text = f"## {effect['effect']}\n\nStage {stage}, on {sites}. {effect['explanation']}\n\n"
     text += f"- Law: {effect['law']}\n- In the simulator: {effect['simulated']}\n"
     text += f"- Shows best in {effect['best']['excitation']}: {effect['best']['why']}\n\n" if effect["best"] else "\n"
     parameters = effect["parameters"].items()

@@ -1,8 +1,7 @@
-"""What each target of an export can say, and why it cannot say the rest, as a page."""
+"""What each target of an export can say; on a page for each, why it cannot say the rest."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from itertools import groupby
 
 from sher3_effects.page import CONSTANTS
@@ -24,13 +23,14 @@ a joint and are listed for every target. A `dcmotor` without input needs MuJoCo 
 SHOWN = [name for name in TARGETS if name != "yaml"]
 
 
-def page() -> str:
-    """Return the page."""
+def pages() -> tuple[str, dict[str, str]]:
+    """Return the table of all targets, and a page for each by its file's name."""
     rows = [
         (meaning, *(_shown(TARGETS[name].fields.get(constant, "–")) for name in SHOWN))
         for constant, meaning in CONSTANTS.items()
     ]
-    return HEAD + table(("constant", *SHOWN), rows) + "\n## Why not\n\n" + "\n".join(_reasons())
+    why = ", ".join(f"[{name}](targets/{name}.md)" for name in SHOWN)
+    return HEAD + table(("constant", *SHOWN), rows) + f"\nWhy not: {why}.\n", {name: _reasons(name) for name in SHOWN}
 
 
 def _shown(field: str) -> str:
@@ -38,11 +38,11 @@ def _shown(field: str) -> str:
     return f"`{field}`" if field.replace("_", "").isalpha() else field
 
 
-def _reasons() -> Iterator[str]:
-    for name in SHOWN:
-        target = TARGETS[name]
-        missing = [(reason, CONSTANTS[c]) for c, reason in target.refuses.items() if c not in target.fields]
-        yield f"### {name}\n"
-        for reason, group in groupby(sorted(missing), key=lambda x: x[0]):
-            yield f"- {', '.join(meaning for _, meaning in group)}: {reason}"
-        yield ""
+def _reasons(name: str) -> str:
+    target = TARGETS[name]
+    missing = [(reason, CONSTANTS[c]) for c, reason in target.refuses.items() if c not in target.fields]
+    lines = [
+        f"- {', '.join(meaning for _, meaning in group)}: {reason}"
+        for reason, group in groupby(sorted(missing), key=lambda x: x[0])
+    ]
+    return "\n".join([f"# What {name} cannot express\n", *lines, ""])

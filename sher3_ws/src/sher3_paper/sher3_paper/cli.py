@@ -60,7 +60,7 @@ def design(
 @app.command()
 def paper(
     out: Annotated[Path | None, typer.Option(help="Folder for report.html; made if missing.")] = None,
-    markdown: Annotated[Path | None, typer.Option(help="Write the tables as Markdown to this file.")] = None,
+    markdown: Annotated[Path | None, typer.Option(help="Folder for the tables as Markdown, a page a part.")] = None,
     only: Annotated[list[str] | None, typer.Option(help="Only this part; may be repeated.")] = None,
     benchtop: Annotated[Path | None, typer.Option(help="Results of a bench-top evaluation (JSON).")] = None,
     as_json: JsonOption = False,
@@ -83,7 +83,9 @@ def paper(
 
         sections = build(only, benchtop)
         if markdown is not None:
-            markdown.write_text(as_markdown(sections), encoding="utf-8")
+            make_folder(markdown)
+            for name, text in as_markdown(sections).items():
+                (markdown / f"{name}.md").write_text(text, encoding="utf-8")
         if out is not None:
             make_folder(out)
             (out / "report.html").write_text(html(sections), encoding="utf-8")

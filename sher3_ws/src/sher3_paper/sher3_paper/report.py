@@ -1,10 +1,11 @@
-"""The report: one HTML file with everything in it, and a Markdown table for the documentation."""
+"""The report: one HTML file with everything in it, and Markdown pages for the documentation."""
 
 from __future__ import annotations
 
 import base64
 from collections import Counter
 from pathlib import Path
+from typing import Any
 
 import jinja2
 from sher3_description import load_robot
@@ -40,26 +41,31 @@ def html(sections: list[Section]) -> str:
     )
 
 
-def markdown(sections: list[Section]) -> str:
-    """Return the comparisons and the inconsistencies as Markdown tables."""
-    lines = ["# The paper recomputed: printed and computed values", "", "Written by `sher3 paper --markdown FILE`.", ""]
-    for section in sections:
-        lines += [f"## {section.title}", "", "| quantity | unit | printed | computed | verdict | note | command |"]
-        lines.append("|---|---|---|---|---|---|---|")
-        for c in section.comparisons:
-            cells = [c.quantity, c.unit, number(c.printed), number(c.computed), c.verdict, c.note, f"`{c.command}`"]
-            lines.append("| " + " | ".join(cells) + " |")
-        for table in section.tables:
-            lines += [
-                "",
-                f"{table.title}:",
-                "",
-                "| " + " | ".join(table.columns) + " |",
-                "|---" * len(table.columns) + "|",
-            ]
-            lines += ["| " + " | ".join(str(cell) for cell in row) + " |" for row in table.rows]
-        lines.append("")
-    lines += ["## Inconsistencies of the paper and the position taken", ""]
-    lines += ["| id | the paper | what we find | position |", "|---|---|---|---|"]
-    lines += [f"| {i['id']} | {i['says']} | {i['finds']} | {i['position']} |" for i in inconsistencies()]
-    return "\n".join(lines) + "\n"
+def markdown(sections: list[Section]) -> dict[str, str]:
+    """Return Markdown pages by their names: the comparisons of each part, and the inconsistencies of the paper."""
+    pages = {section.name: _page(section.title, _tables(section)) for section in sections}
+    rows = [[i["id"], i["says"], i["finds"], i["position"]] for i in inconsistencies()]
+    table = _table(["id", "the paper", "what we find", "position"], rows)
+    return {**pages, "inconsistencies": _page("Inconsistencies of the paper and the position taken", table)}
+
+
+def _page(title: str, lines: list[str]) -> str:
+    return "\n".join([f"# {title}", "", "Written by `sher3 paper --markdown FOLDER`.", "", *lines]) + "\n"
+
+
+def _tables(section: Section) -> list[str]:
+    lines = _table(
+        ["quantity", "unit", "printed", "computed", "verdict", "note", "command"],
+        [
+            [c.quantity, c.unit, number(c.printed), number(c.computed), c.verdict, c.note, f"`{c.command}`"]
+            for c in section.comparisons
+        ],
+    )
+    for table in section.tables:
+        lines += ["", f"{table.title}:", "", *_table(table.columns, table.rows)]
+    return lines
+
+
+def _table(columns: list[str], rows: list[list[Any]]) -> list[str]:
+    head = ["| " + " | ".join(columns) + " |", "|---" * len(columns) + "|"]
+    return head + ["| " + " | ".join(str(cell) for cell in row) + " |" for row in rows]

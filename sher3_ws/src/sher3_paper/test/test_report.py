@@ -46,8 +46,11 @@ def test_every_comparison_names_its_command() -> None:
 
 def test_markdown_has_every_line() -> None:
     sections = build(["geometry", "design"])
-    text = markdown(sections)
-    assert all(f"| {line.quantity} |" in text for section in sections for line in section.comparisons)
+    pages = markdown(sections)
+    assert [*pages] == ["geometry", "design", "inconsistencies"]
+    for section in sections:
+        assert all(f"| {line.quantity} |" in pages[section.name] for line in section.comparisons)
+    assert all(f"| {item['id']} |" in pages["inconsistencies"] for item in inconsistencies())
 
 
 def test_benchtop_says_that_it_has_not_run(tmp_path: Path) -> None:
