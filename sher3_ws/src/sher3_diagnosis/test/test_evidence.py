@@ -11,7 +11,7 @@ from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.fit.fitting import fit
 from sher3_diagnosis.fit.term import make_term
 from sher3_diagnosis.judge.evidence.cause import cause_evidence
-from toy import AXIS, DIRECTION, OFFSET, ToyRun, case, evidence_of
+from toy import AXIS, DIRECTION, OFFSET, Column, ToyRun, case, evidence_of
 
 
 def run(excitation, value):
@@ -54,3 +54,12 @@ def test_two_causes_of_one_gap_share_what_they_leave():
     assert (first.part, second.part) == (pytest.approx(0.9, abs=0.02), pytest.approx(0.1, abs=0.02))
     assert first.left * first.part == pytest.approx(second.left * second.part)
     assert first.law is None  # the toy tells no quantities
+
+
+def test_what_a_complete_law_leaves_beside_a_rough_one_may_be_the_rough_ones():
+    rough = Column("direction", "friction", "direction", leaves_out="how it varies")
+    evidence = evidence_of([replace(r, values=r.values + 2.0) for r in case(6.0)])
+    for effects, idealised in (((DIRECTION, OFFSET), 0.0), ((rough, OFFSET), 1.0)):
+        terms = [make_term(evidence.data, effect, "axis", {}) for effect in effects]
+        found = with_rivals(Candidates(evidence, effects), fit(evidence.data, terms))
+        assert [cause_evidence(evidence, found, i).idealised for i in found.causes] == [idealised] * 2

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from sher3_diagnosis.attribute.rivals import Attribution, without_term
 from sher3_diagnosis.attribute.steadiness import steadiness_of
 from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import Fit, Term
 from sher3_diagnosis.judge.evidence.bent import added, stray_share
@@ -61,7 +62,8 @@ class CauseEvidence:
         ratio: gap over floor, with the mean of every run.
         power: of the gap over the floor, less one, of the component with most: without what a free mean takes.
         samples: that tell of it.
-        idealised: 1 where a real machine adds to the law (`Effect.leaves_out`), 0 where the law is complete.
+        idealised: 1 where a real machine adds to the law of a cause of this gap (`Effect.leaves_out`), 0 where all are
+            complete: what several causes leave may be of any of them.
     """
 
     left: float
@@ -124,7 +126,7 @@ def cause_evidence(evidence: Evidence, attribution: Attribution, index: int) -> 
         ratio=whole.ratio,
         power=power_of(evidence, channel, before),
         samples=float(samples),
-        idealised=float(bool(term.effect.leaves_out)),
+        idealised=float(any(e.leaves_out for e in _effects_on(attribution, channel))),
     )
 
 
@@ -144,9 +146,15 @@ OF_FAMILY: Mapping[str, tuple[str, ...]] = {"friction": ("direction", "velocity"
 
 def inputs_of(attribution: Attribution, channel: Channel) -> frozenset[str]:
     """Return the quantities that the laws of the causes of a channel depend on."""
+    return frozenset(
+        x for e in _effects_on(attribution, channel) for x in (*e.inputs, *OF_FAMILY.get(e.family, ()))
+    )
+
+
+def _effects_on(attribution: Attribution, channel: Channel) -> list[Effect]:
+    """Return the effects of the causes that show on a channel."""
     terms = [attribution.fit.terms[i] for i in attribution.causes]
-    effects = [term.effect for term in terms if channel in term.channels]
-    return frozenset(x for e in effects for x in (*e.inputs, *OF_FAMILY.get(e.family, ())))
+    return [term.effect for term in terms if channel in term.channels]
 
 
 def free_laws(
