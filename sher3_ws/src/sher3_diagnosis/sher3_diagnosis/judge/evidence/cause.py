@@ -146,9 +146,7 @@ OF_FAMILY: Mapping[str, tuple[str, ...]] = {"friction": ("direction", "velocity"
 
 def inputs_of(attribution: Attribution, channel: Channel) -> frozenset[str]:
     """Return the quantities that the laws of the causes of a channel depend on."""
-    return frozenset(
-        x for e in _effects_on(attribution, channel) for x in (*e.inputs, *OF_FAMILY.get(e.family, ()))
-    )
+    return frozenset(x for e in _effects_on(attribution, channel) for x in (*e.inputs, *OF_FAMILY.get(e.family, ())))
 
 
 def _effects_on(attribution: Attribution, channel: Channel) -> list[Effect]:
