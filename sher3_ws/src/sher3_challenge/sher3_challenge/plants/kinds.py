@@ -9,9 +9,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
+from operator import attrgetter
 from typing import Any, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 from sher3_common import Sher3Error
 
 from sher3_challenge.plants.declared import DECLARED, Row
@@ -23,9 +25,12 @@ class FaultError(Sher3Error):
     """An unknown fault, or one on an actuator where it cannot sit."""
 
 
+Array = NDArray[np.floating[Any]]
 Apply = Callable[[Any, Site, float], Parameters]
 Law = TypeVar("Law", bound=Callable[..., Any])
 """Law of a fault: rig, site and its parameters as they are told -> more of them that it drew itself, or nothing."""
+Change = Callable[[Array, float], Any]
+"""What was there, and the parameter of a fault -> what is there then."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -80,10 +85,17 @@ class Catalogue(dict[str, Kind]):
 
     def known(self, law: Law) -> Law:
         """Register the decorated law as the kind that is declared under its name."""
-        name = law.__name__
+        self._declared(law.__name__, law)
+        return law
+
+    def changes(self, change: Change, **arrays: str) -> None:
+        """Register declared kinds of one parameter that change rows of an array: name -> its path in the rig."""
+        for name, path in arrays.items():
+            self._declared(name, partial(_changed, attrgetter(path), change))
+
+    def _declared(self, name: str, law: Callable[..., Any]) -> None:
         apply = partial(_as_told, law, TOLD[name]) if name in TOLD else law
         self[name] = Kind(**vars(DECLARED[name]), name=name, apply=apply)
-        return law
 
     def add(
         self, family: str, stage: str, places: tuple[str, ...], start: float, least: float, most: float,
@@ -97,6 +109,23 @@ class Catalogue(dict[str, Kind]):
             return apply
 
         return register
+
+
+def set_to(now: Array, value: float) -> float:
+    """Return the value, whatever was there."""
+    return value
+
+
+def scaled_by(now: Array, relative: float) -> Array:
+    """Return an array that is larger by a share."""
+    return now * (1 + relative)
+
+
+def _changed(of: Callable[[Any], Array], change: Change, rig: Any, site: Site, **told: float) -> None:
+    """Write the one parameter of a fault into its rows of an array of the rig."""
+    (value,) = told.values()
+    array = of(rig)
+    array[site.rows] = change(array[site.rows], value)
 
 
 def _as_told(law: Callable[..., Parameters | None], told: Told, rig: Any, site: Site, x: float) -> Parameters:

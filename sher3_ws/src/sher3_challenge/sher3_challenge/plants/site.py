@@ -32,8 +32,8 @@ class Site:
 
     @property
     def rows(self) -> slice:
-        """Rows of the per-actuator arrays that the fault changes."""
-        return slice(None) if self.actuator == "all" else slice(self.index, self.index + 1)
+        """Rows of an array that the fault changes: of one actuator, or all."""
+        return slice(self.index, self.index + 1) if self.actuator in ACTUATORS else slice(None)
 
     def scaled(self, value: float, dimension: str) -> float:
         """Return a slider's value in the actuator's unit."""

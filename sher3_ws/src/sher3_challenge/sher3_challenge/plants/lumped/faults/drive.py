@@ -3,22 +3,27 @@
 from __future__ import annotations
 
 import math
+import operator
 
 from sher3_description.contract import GRAVITY
 
 from sher3_challenge.plants.declared import DELTAS
-from sher3_challenge.plants.kinds import Catalogue
+from sher3_challenge.plants.kinds import Catalogue, scaled_by, set_to
 from sher3_challenge.plants.lumped.rig import Rig
 from sher3_challenge.plants.site import Site
 
 CATALOGUE = Catalogue()
 known = CATALOGUE.known
 
-
-@known
-def command_delay(rig: Rig, site: Site, delay: float) -> None:
-    """Every command arrives later."""
-    rig.delay += delay
+CATALOGUE.changes(
+    operator.add,
+    command_delay="delay",
+    axis_skew="delay",
+    lead_error="truth.transmission.lead_error",
+    viscous_friction="truth.motor.viscous",
+)
+CATALOGUE.changes(scaled_by, controller_gain="truth.host.gain", torque_constant="truth.motor.torque_gain")
+CATALOGUE.changes(set_to, force_saturation="truth.drive.limit", backlash="truth.transmission.backlash")
 
 
 @known
@@ -34,40 +39,10 @@ def dropped_commands(rig: Rig, site: Site, probability: float) -> None:
 
 
 @known
-def axis_skew(rig: Rig, site: Site, skew: float) -> None:
-    """Commands of one axis arrive later than those of the others."""
-    rig.delay[site.index] += skew
-
-
-@known
 def drive_lag(rig: Rig, site: Site, time_constant: float) -> None:
     """A first-order lag of the force (three of four) or of the demand."""
     lag = rig.truth.drive.current_lag if site.rng.random() < 0.75 else rig.truth.drive.demand_lag
     lag[site.rows] += time_constant
-
-
-@known
-def controller_gain(rig: Rig, site: Site, relative: float) -> None:
-    """The host works with another position gain."""
-    rig.truth.host.gain[site.rows] *= 1 + relative
-
-
-@known
-def torque_constant(rig: Rig, site: Site, relative: float) -> None:
-    """Real force over reported effort is not 1."""
-    rig.truth.motor.torque_gain[site.rows] *= 1 + relative
-
-
-@known
-def lead_error(rig: Rig, site: Site, relative: float) -> None:
-    """The load travels more or less than the motor."""
-    rig.truth.transmission.lead_error[site.rows] += relative
-
-
-@known
-def force_saturation(rig: Rig, site: Site, limit: float) -> None:
-    """The force ends early: at a share of 12 N, more on roll, whose accelerations are larger."""
-    rig.truth.drive.limit[site.rows] = limit
 
 
 @known
@@ -93,12 +68,6 @@ def stribeck_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
     rig.truth.motor.coulomb[site.rows] += level * static
     rig.truth.motor.stribeck_velocity[site.rows] = velocity
     return {"static": static, "force": level * static, "velocity": velocity}
-
-
-@known
-def viscous_friction(rig: Rig, site: Site, extra: float) -> None:
-    """More drag in proportion to speed."""
-    rig.truth.motor.viscous[site.rows] += extra
 
 
 @known
@@ -160,12 +129,6 @@ def transmission_ripple(rig: Rig, site: Site, amplitude: float, periods_per_rev:
     t = rig.truth.transmission
     t.ripple[site.rows], t.ripple_order[site.rows] = amplitude, periods_per_rev
     t.ripple_phase[site.rows] = site.rng.uniform(0, 2 * math.pi)
-
-
-@known
-def backlash(rig: Rig, site: Site, width: float) -> None:
-    """A gap with soft flanks."""
-    rig.truth.transmission.backlash[site.rows] = width
 
 
 @known

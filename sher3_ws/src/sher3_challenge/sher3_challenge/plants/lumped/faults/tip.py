@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
+import operator
 
 import numpy as np
 
 from sher3_challenge.plants.declared import DELTAS
-from sher3_challenge.plants.kinds import Catalogue
+from sher3_challenge.plants.kinds import Catalogue, scaled_by, set_to
 from sher3_challenge.plants.lumped.rig import Rig
 from sher3_challenge.plants.lumped.tip import OUTER_HINGE
 from sher3_challenge.plants.site import Site
@@ -16,11 +17,14 @@ CATALOGUE = Catalogue()
 add = CATALOGUE.add
 known = CATALOGUE.known
 
-
-@known
-def encoder_scale(rig: Rig, site: Site, relative: float) -> None:
-    """The load encoder's ratio is off."""
-    rig.truth.host.encoder_scale[site.rows] += relative
+CATALOGUE.changes(
+    operator.add,
+    encoder_scale="truth.host.encoder_scale",
+    encoder_offset="truth.host.offset",
+    tool_gravity="truth.sensors.tool_mass",
+)
+CATALOGUE.changes(scaled_by, force_scale="truth.sensors.force_scale")
+CATALOGUE.changes(set_to, tool_bending="truth.geometry.bending", thermal_expansion="truth.geometry.expansion")
 
 
 @known
@@ -52,12 +56,6 @@ def link_compliance(rig: Rig, site: Site, fraction: float) -> None:
     """The six links give way by their published law; `fraction` is that of it."""
     delta = rig.robot.delta
     rig.truth.geometry.link_law[0] = fraction * delta.link_compliance.a * delta.spring_factor
-
-
-@known
-def tool_bending(rig: Rig, site: Site, compliance: float) -> None:
-    """The tool bends across its axis."""
-    rig.truth.geometry.bending[0] = compliance
 
 
 @known
@@ -118,18 +116,6 @@ def tool_offset(rig: Rig, site: Site, x: float, y: float, z: float) -> None:
 
 
 @known
-def encoder_offset(rig: Rig, site: Site, offset: float) -> None:
-    """The axis was homed wrongly: both encoders read too much or too little."""
-    rig.truth.host.offset[site.rows] += offset
-
-
-@known
-def thermal_expansion(rig: Rig, site: Site, coefficient: float) -> None:
-    """The structure grows with its temperature."""
-    rig.truth.geometry.expansion[0] = coefficient
-
-
-@known
 def force_drift(rig: Rig, site: Site, fx: float, fy: float, fz: float) -> None:
     """The force sensor's zero moves with temperature."""
     rig.truth.sensors.force_drift[:3] = fx, fy, fz
@@ -142,18 +128,6 @@ def force_bias(rig: Rig, site: Site, x: float) -> dict[str, float]:
     rig.truth.sensors.force_bias[:3] += bias
     rig.truth.sensors.force_bias[3:] += 0.01 * x * site.direction()
     return dict(zip(("fx", "fy", "fz"), bias.tolist(), strict=True))
-
-
-@known
-def tool_gravity(rig: Rig, site: Site, mass: float) -> None:
-    """The tool on the sensor is heavier or lighter than its data."""
-    rig.truth.sensors.tool_mass[0] += mass
-
-
-@known
-def force_scale(rig: Rig, site: Site, relative: float) -> None:
-    """The force sensor's gain is off."""
-    rig.truth.sensors.force_scale[0] *= 1 + relative
 
 
 @known

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+import operator
 
 import numpy as np
 from sher3_description.contract import GRAVITY
 
 from sher3_challenge.plants.declared import DELTAS
-from sher3_challenge.plants.kinds import Catalogue
+from sher3_challenge.plants.kinds import Catalogue, scaled_by, set_to
 from sher3_challenge.plants.site import Site
 from sher3_challenge.plants.tables.curves import CURVE, ring, teeth, wobble
 from sher3_challenge.plants.tables.plant import Rig
@@ -16,11 +17,14 @@ from sher3_challenge.plants.tables.plant import Rig
 CATALOGUE = Catalogue()
 known = CATALOGUE.known
 
-
-@known
-def command_delay(rig: Rig, site: Site, delay: float) -> None:
-    """Every command arrives later, by a time that wavers by two per cent."""
-    rig.transport.delay += delay
+CATALOGUE.changes(
+    operator.add,
+    command_delay="transport.delay",  # wavers
+    axis_skew="transport.delay",
+    drive_lag="truth.drive.lag",  # of two equal poles: their sum
+)
+CATALOGUE.changes(scaled_by, controller_gain="truth.host.gain")
+CATALOGUE.changes(set_to, velocity_deadband="truth.drive.band")  # with a rounded edge
 
 
 @known
@@ -33,24 +37,6 @@ def command_jitter(rig: Rig, site: Site, sigma: float) -> None:
 def dropped_commands(rig: Rig, site: Site, probability: float) -> None:
     """Some commands never arrive, often a few in a row."""
     rig.transport.loss = probability
-
-
-@known
-def axis_skew(rig: Rig, site: Site, skew: float) -> None:
-    """Commands of one axis arrive later than those of the others."""
-    rig.transport.delay[site.index] += skew
-
-
-@known
-def drive_lag(rig: Rig, site: Site, time_constant: float) -> None:
-    """The force comes late, behind two equal poles; `time_constant` is their sum."""
-    rig.truth.drive.lag[site.rows] += time_constant
-
-
-@known
-def controller_gain(rig: Rig, site: Site, relative: float) -> None:
-    """The host works with another position gain."""
-    rig.truth.host.gain[site.rows] *= 1 + relative
 
 
 @known
@@ -74,12 +60,6 @@ def force_saturation(rig: Rig, site: Site, limit: float) -> None:
     """The force bends from 80 % of its limit on and ends there: at a share of 12 N, more on roll."""
     rig.truth.drive.limit[site.rows] = limit
     rig.truth.drive.soft[site.rows] = 1.0
-
-
-@known
-def velocity_deadband(rig: Rig, site: Site, width: float) -> None:
-    """Small demands do nothing, with a rounded edge."""
-    rig.truth.drive.band[site.rows] = width
 
 
 @known

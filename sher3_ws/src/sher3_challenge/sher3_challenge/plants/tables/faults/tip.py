@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
+import operator
 
 import numpy as np
 
 from sher3_challenge.plants.declared import DELTAS
-from sher3_challenge.plants.kinds import Catalogue
+from sher3_challenge.plants.kinds import Catalogue, set_to
 from sher3_challenge.plants.site import Site
 from sher3_challenge.plants.tables.curves import CURVE, RING, ring, wobble
 from sher3_challenge.plants.tables.mechanism import angle_table
@@ -18,11 +19,14 @@ CATALOGUE = Catalogue()
 add = CATALOGUE.add
 known = CATALOGUE.known
 
-
-@known
-def encoder_scale(rig: Rig, site: Site, relative: float) -> None:
-    """The load encoder's ratio is off."""
-    rig.truth.host.scale[site.rows] += relative
+CATALOGUE.changes(
+    operator.add,
+    encoder_scale="truth.host.scale",
+    encoder_offset="truth.host.offset",
+    link_length_error="truth.mechanism.length",
+    thermal_expansion="truth.tip.expansion",  # of a body that lags behind the thermometer
+)
+CATALOGUE.changes(set_to, tool_bending="truth.tip.bending")  # hardens
 
 
 @known
@@ -59,12 +63,6 @@ def link_compliance(rig: Rig, site: Site, fraction: float) -> None:
 
 
 @known
-def tool_bending(rig: Rig, site: Site, compliance: float) -> None:
-    """The tool bends across its axis and hardens."""
-    rig.truth.tip.bending[0] = compliance
-
-
-@known
 def structural_vibration(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """A mode of the structure rings when the tip accelerates, and a second, higher one a little."""
     frequency, damping = site.rng.uniform(8.0, 22.0), site.rng.uniform(0.02, 0.08)
@@ -73,12 +71,6 @@ def structural_vibration(rig: Rig, site: Site, x: float) -> dict[str, float]:
     rig.truth.tip.modes[:] = [[frequency, damping, x], [second, 0.7 * damping, 1.6 * x]]
     rig.truth.tip.mode_axis[:] = axis, axis
     return {"frequency": frequency, "damping": damping, "gain": x}
-
-
-@known
-def link_length_error(rig: Rig, site: Site, length: float) -> None:
-    """Both links of a leg are longer or shorter."""
-    rig.truth.mechanism.length[site.index] += length
 
 
 @known
@@ -120,18 +112,6 @@ def tilt_linkage_error(rig: Rig, site: Site, x: float) -> dict[str, float]:
 def tool_offset(rig: Rig, site: Site, x: float, y: float, z: float) -> None:
     """The tool's tip is elsewhere."""
     rig.truth.mechanism.arm[3:] += x, y, z
-
-
-@known
-def encoder_offset(rig: Rig, site: Site, offset: float) -> None:
-    """The axis was homed wrongly: both encoders read too much or too little."""
-    rig.truth.host.offset[site.rows] += offset
-
-
-@known
-def thermal_expansion(rig: Rig, site: Site, coefficient: float) -> None:
-    """The structure grows with its temperature, which lags behind the thermometer."""
-    rig.truth.tip.expansion[0] += coefficient
 
 
 @known
