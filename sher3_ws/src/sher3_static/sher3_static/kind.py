@@ -18,7 +18,7 @@ from sher3_machines.intake.fields import Description
 from sher3_machines.intake.kind import Kind
 from sher3_machines.intake.tables import Tables
 
-from sher3_static.readings import Readings
+from sher3_static.readings import Readings, whole_rows
 from sher3_static.reporter import TableReporter, Words
 from sher3_static.table import Table, TableEvidence, eaten, evidence_of, zeros_in_words
 
@@ -61,6 +61,11 @@ class TableKind(Kind[D, Readings]):
     def end_to_end(self, findings: Sequence[Finding[TableEvidence]]) -> Interval | None:
         """Return the closure at the end of the chain; default none."""
         return None
+
+    def parts(self, name: str, tables: Tables, description: D, records: int = 1) -> tuple[dict[str, Tables], str]:
+        """Return a file without the rows that lack a number, and a note on them: each row stands by itself."""
+        whole, note = whole_rows(name, tables, description)
+        return {name: whole}, note
 
     def machine(self, description: D) -> StaticTest:
         """Return the tables as a machine; raises MachineError where a file of the description cannot be used."""

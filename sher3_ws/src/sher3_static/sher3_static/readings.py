@@ -2,21 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import BaseModel
+from scipy.constants import g
 from sher3_diagnosis.channel import Array
 from sher3_machines.errors import MachineError
-from sher3_machines.intake.columns import pick_beside
+from sher3_machines.intake.columns import IN_HEADER, pick_beside
 from sher3_machines.intake.fields import Column
 from sher3_machines.intake.tables import Tables
+from sher3_machines.intake.units import spelled
 
 Labels = NDArray[Any]
 """(g,) a number for each row: of its run, or of the part that is held out together."""
 
+LACKING = 0.25
+"""Share of the rows that may lack a number: with more of them a column is wrong, and no reading."""
 MOST_ROWS = 5000
 """Readings that are used; of more every n-th counts, since neighbours tell the same."""
 
@@ -43,6 +48,36 @@ def joined(runs: Sequence[Readings]) -> dict[str, Array]:
     """Return the columns of all runs after each other, and as `run` (g,) the number of each row's run."""
     columns = {name: np.concatenate([run[name] for run in runs]) for name in runs[0].columns}
     return {**columns, "run": np.repeat(np.arange(len(runs)), [len(next(iter(r.columns.values()))) for r in runs])}
+
+
+def whole_rows(name: str, tables: Tables, description: BaseModel) -> tuple[Tables, str]:
+    """Return a table without the rows that lack a number of a column that the description names, and a note on them."""
+    named = [tables[c.column] for c in columns_in(description) if c.column in tables]
+    if len({len(x) for x in named}) != 1:
+        return tables, ""
+    rows = len(named[0])
+    kept = np.all([np.isfinite(x.reshape(rows, -1)).all(axis=1) for x in named], axis=0)
+    lacking = rows - int(kept.sum())
+    if not 0 < lacking <= LACKING * rows:
+        return tables, ""
+    note = f"{name}: {lacking} of {rows} rows lack a number and are no readings"
+    return {n: x[kept] if len(x) == rows else x for n, x in tables.items()}, note
+
+
+def columns_in(part: object) -> Iterator[Column]:
+    """Yield the columns that a part of a description names."""
+    if isinstance(part, Column):
+        yield part
+    inner = part.__dict__.values() if isinstance(part, BaseModel) else part if isinstance(part, tuple) else ()
+    for x in inner:
+        yield from columns_in(x)
+
+
+def as_weight(column: Column) -> float:
+    """Return what makes a weight of a known load, N per unit of the column: g, m/s^2, of kilograms without a factor."""
+    header = IN_HEADER.fullmatch(column.column)
+    unit = column.unit or (spelled(header["unit"]) if header else None)
+    return g if unit == "kg" and column.factor == 1.0 else 1.0
 
 
 def enough(what: str, found: int, least: int, remedy: str) -> None:

@@ -13,7 +13,7 @@ VELOCITIES = ("m/s", "cm/s", "mm/s", "rad/s", "deg/s", "rev/s", "rpm")
 """Units of a velocity: a place that was recorded as one is its integral."""
 TIME_UNITS: Mapping[str, float] = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0, "h": 3600.0}
 """Units of a clock -> s."""
-PRESSURES = ("Pa", "kPa", "bar", "MPa")
+PRESSURES = ("Pa", "kPa", "bar", "MPa", "psi")
 """Units that become a force by the area they act on."""
 
 

@@ -12,6 +12,8 @@ UNITS: Mapping[str, float] = {
     "mm": 1e-3,
     "um": 1e-6,
     "nm": 1e-9,
+    "inch": 0.0254,
+    "ft": 0.3048,
     "rad": 1.0,
     "mrad": 1e-3,
     "deg": math.pi / 180.0,
@@ -27,12 +29,17 @@ UNITS: Mapping[str, float] = {
     "rpm": math.pi / 30.0,
     "N": 1.0,
     "kN": 1e3,
+    "mN": 1e-3,
+    "gf": 9.80665e-3,
+    "kgf": 9.80665,
+    "lbf": 4.4482216152605,
     "N*m": 1.0,
     "mN*m": 1e-3,
     "Pa": 1.0,
     "kPa": 1e3,
     "bar": 1e5,
     "MPa": 1e6,
+    "psi": 6894.757293168,
     "kg": 1.0,
     "V": 1.0,
     "mV": 1e-3,
@@ -49,7 +56,7 @@ UNITS: Mapping[str, float] = {
     "min": 60.0,
     "h": 3600.0,
 }
-"""Unit -> factor to SI; a percentage stays one, of a rated value that nobody stated."""
+"""Unit -> factor to SI; a percentage stays one, of a rated value that nobody stated, and a gram is a weight."""
 SHARE = re.compile(r"-?[01]\s*(:|\.\.+|to|bis)\s*\+?1")
 """A range that stands for a unit: `[-1:1]` is a share of the largest value."""
 SPELLINGS = {
@@ -65,6 +72,10 @@ SPELLINGS = {
     "rev/s": "turns/s turn/s rps",
     "rad/s": "rad/sec rads/s",
     "N": "newton newtons",
+    "gf": "g gram grams gramforce",
+    "lbf": "lb lbs pound pounds",
+    "inch": "inches",
+    "ft": "feet foot",
     "N*m": "Nm N·m N⋅m N.m N-m newton-meter",
     "mN*m": "mNm mN·m mN.m Nmm N·mm N.mm N*mm",
     "A": "amp amps ampere amperes Arms",

@@ -80,7 +80,7 @@ def test_a_name_says_signal_and_axis(column, signal, axis):
         ("i_mA", "mA"),
         ("tau (Nm)", "N*m"),
         ("q_1", None),
-        ("x (inch)", None),
+        ("x (inch)", "inch"),
         ("M_Nmm", "mN*m"),
         ("force_N", "N"),
         ("q_A", None),

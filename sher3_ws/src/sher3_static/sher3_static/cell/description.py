@@ -13,7 +13,7 @@ class CellDescription(Description):
 
     Attributes:
         measures: force or torque.
-        applied: known load: a weight, or a better sensor.
+        applied: known load: a weight, in N, kg, gf or lbf, or a better sensor.
         reading: of the cell; `factor` makes N (N m) of its unit by the data sheet, such as N per V.
         temperature: deg C, where it was recorded.
         noise: standard deviation of a reading, N or N m; left out: from what repeats.

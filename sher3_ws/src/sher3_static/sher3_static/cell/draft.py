@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -12,26 +11,20 @@ from sher3_diagnosis.channel import Array
 from sher3_machines.drafting.draft import written
 from sher3_machines.drafting.names import bare_and_unit, named, tells_time, vocabulary, words_of
 from sher3_machines.intake.columns import IN_HEADER
+from sher3_machines.intake.fields import Column
 from sher3_machines.intake.kind import Draft
 from sher3_machines.intake.spelling import bare
 from sher3_machines.intake.tables import Tables
 from sher3_machines.intake.units import spelled
 
+from sher3_static.readings import LACKING, as_weight
+
 STATED = vocabulary("applied known weight weights mass masses reference ref true truth gewicht gewichte masse")
 """Words for what is laid on a cell."""
 FORCE = vocabulary("force load torque kraft last drehmoment")
 """Words for it that a reading may have as well."""
-LOADS: Mapping[str, tuple[str, float]] = {
-    "N": ("N", 1.0),
-    "kN": ("kN", 1.0),
-    "N*m": ("N*m", 1.0),
-    "kg": ("kg", 9.80665),
-    "g": ("1", 9.80665e-3),
-    "lb": ("1", 4.4482216),
-    "lbf": ("1", 4.4482216),
-    "lbs": ("1", 4.4482216),
-}
-"""Unit of a load -> that of its column, and the factor to N or N m."""
+LOADS = ("N", "kN", "mN", "N*m", "mN*m", "kg", "gf", "kgf", "lbf")
+"""Units of a known load."""
 FOLLOWS = 0.95
 """Correlation of load and reading from which the second one reads the first: single readings scatter by a tenth."""
 FEWEST, LEVELS = 8, 3
@@ -42,7 +35,7 @@ PLACES = ("position", "reference", "velocity", "temperature")
 
 def loads_of(tables: Tables) -> tuple[str, str] | None:
     """Return the columns of known load and reading of a table without a time; None where it has no such."""
-    flat = {n: x for n, x in tables.items() if x.ndim == 1 and np.isfinite(x).all()}
+    flat = {n: x for n, x in tables.items() if x.ndim == 1 and np.isfinite(x).mean() >= 1.0 - LACKING}
     if any(tells_time(n) for n in tables):
         return None
     told = [n for words in (STATED, FORCE) for n in flat if words & set(words_of(_name_and_unit(n)[0]))]
@@ -50,7 +43,7 @@ def loads_of(tables: Tables) -> tuple[str, str] | None:
         x = flat[load]
         for other, y in flat.items():
             alike = other != load and len(y) == len(x) >= FEWEST and named(other).signal not in PLACES
-            if alike and len(np.unique(x)) >= LEVELS and np.ptp(y) > 0.0 and _follows(x, y):
+            if alike and _follows(*_both(x, y)):
                 return load, other
     return None
 
@@ -67,23 +60,31 @@ def draft_cell(path: Path, tables: Tables) -> Draft:
     load, read = found
     guesses = ["a load cell: a table of known loads and what was read; a record in time needs a column named t or time"]
     said = _name_and_unit(load)[1]
-    unit, factor = LOADS.get(said or "N", LOADS["N"])
+    applied = Column(column=load, unit=said or "N")
     why = "its name says so" if said else "nobody states it"
-    guesses.append(f"loads are {load!r}, in {said or 'N'}, because {why}")
-    x, y = factor * tables[load], tables[read]
+    guesses.append(f"loads are {load!r}, in {applied.unit}, because {why}")
+    x, y = _both(as_weight(applied) * applied.scale * tables[load], tables[read])
     slope = float(f"{np.polyfit(y, x, 1)[0]:.6g}")
     guesses.append(f"the reading is {read!r}; its `factor` is the slope of this table: state that of the data sheet")
     left = [n for n in tables if n not in found]
     guesses += [f"not used: {', '.join(left)}"] if left else []
-    applied: dict[str, Any] = {"column": load, "unit": unit, **({"factor": factor} if factor != 1.0 else {})}
-    measures = "torque" if unit == "N*m" else "force"
-    data = {"kind": "load_cell", "name": re.sub(r"\W+", "_", path.stem), "measures": measures, "applied": applied}
+    measures = "torque" if str(applied.unit).endswith("N*m") else "force"
+    data: dict[str, Any] = {"kind": "load_cell", "name": re.sub(r"\W+", "_", path.stem), "measures": measures}
+    data["applied"] = {"column": load, "unit": applied.unit}
     data["reading"] = {"column": read, "unit": "1", "factor": slope, "override": True}
     return written(data, guesses)
 
 
+def _both(x: Array, y: Array) -> tuple[Array, Array]:
+    """Return the rows of two columns that have both numbers."""
+    known = np.isfinite(x) & np.isfinite(y)
+    return x[known], y[known]
+
+
 def _follows(x: Array, y: Array) -> bool:
-    return bool(abs(np.corrcoef(x, y)[0, 1]) > FOLLOWS)
+    """Return whether one of two columns reads the other, of enough different loads."""
+    moves = len(np.unique(x)) >= LEVELS and np.ptp(y) > 0.0
+    return bool(moves and abs(np.corrcoef(x, y)[0, 1]) > FOLLOWS)
 
 
 def _name_and_unit(column: str) -> tuple[str, str | None]:

@@ -10,7 +10,17 @@ from sher3_machines.intake.tables import Tables
 
 from sher3_static.cell.description import CellDescription
 from sher3_static.cell.view import ForcesView
-from sher3_static.readings import Labels, Readings, enough, one_hot, same, scatter_beyond, temperature, thinned
+from sher3_static.readings import (
+    Labels,
+    Readings,
+    as_weight,
+    enough,
+    one_hot,
+    same,
+    scatter_beyond,
+    temperature,
+    thinned,
+)
 
 LEAST_ROWS = 12
 """Readings that a record must have: six forces, going and coming."""
@@ -30,7 +40,7 @@ def read_cell(name: str, tables: Tables, description: CellDescription) -> Readin
     Raises:
         MachineError: a column is missing, too few readings or forces, a dead channel, or a factor that is far off.
     """
-    applied = pick(description.applied, tables, name)
+    applied = pick(description.applied, tables, name) * as_weight(description.applied)
     reading = pick_beside((len(applied),), description.reading, tables, name)
     warm = temperature(description.temperature, len(applied), tables, name)
     remedy = "record more readings: six forces with growing and with falling load are enough"

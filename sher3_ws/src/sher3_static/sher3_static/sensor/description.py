@@ -28,7 +28,7 @@ class Applied(Strict):
     """Known weights that pull at known levers on a sensor that stays as it is; vectors are in the sensor's frame.
 
     Attributes:
-        weight: of each reading, kg or N.
+        weight: of each reading, N, kg, gf or lbf.
         direction: which way it pulls, columns or one direction of any length for all readings.
         lever: from the sensor's origin to where it pulls, columns or one place, m.
     """

@@ -13,7 +13,17 @@ from sher3_machines.intake.columns import pick
 from sher3_machines.intake.poses import together, turns_of
 from sher3_machines.intake.tables import Tables
 
-from sher3_static.readings import Labels, Readings, alive, enough, one_hot, scatter_beyond, temperature, thinned
+from sher3_static.readings import (
+    Labels,
+    Readings,
+    alive,
+    as_weight,
+    enough,
+    one_hot,
+    scatter_beyond,
+    temperature,
+    thinned,
+)
 from sher3_static.sensor.description import Applied, SensorDescription, Three
 from sher3_static.sensor.frames import Frame, frames
 from sher3_static.sensor.view import SensorView, TurnedView
@@ -71,7 +81,7 @@ def _conditions(name: str, tables: Tables, described: SensorDescription) -> dict
 
 def applied_wrench(applied: Applied, tables: Tables, name: str) -> Array:
     """Return the wrench (n, 6) of known weights about the sensor's origin; raises MachineError for columns."""
-    weight = pick(applied.weight, tables, name) * (g if applied.weight.unit == "kg" else 1.0)
+    weight = pick(applied.weight, tables, name) * as_weight(applied.weight)
     direction, lever = (_vectors(x, tables, name, len(weight)) for x in (applied.direction, applied.lever))
     size = np.linalg.norm(direction, axis=1, keepdims=True)
     if not size.all():

@@ -1,10 +1,13 @@
 """Drafts of load cells: tables of weights and readings as people write them."""
 
+import re
+
 import numpy as np
 import pytest
 from sher3_diagnosis import diagnose
 from sher3_machines import MachineError, import_case, open_case
 from sher3_machines.drafting.drafts import draft_of
+from sher3_machines.intake.kind import Draft
 
 LEVELS = np.tile([0.0, 10.0, 20.0, 30.0, 40.0, 30.0, 20.0, 10.0], 6)
 COUNTS = 5800.0 + 1000.0 * LEVELS + 90.0 * np.random.default_rng(1).normal(size=len(LEVELS))
@@ -29,6 +32,8 @@ def bias(tmp_path, found):
         ("weight_g,counts", 9.80665e-3),
         ("mass (kg),reading", 9.80665),
         ("applied_N,signal_mV", 1.0),
+        ("load [mN],counts", 1e-3),
+        ("weight (lb),counts", 4.4482216),
         ("Gewicht [kg],Messwert", 9.80665),
     ],
 )
@@ -37,6 +42,37 @@ def test_a_table_of_weights_and_readings_is_a_load_cell(tmp_path, header, newton
     found = drafted(tmp_path, header, LEVELS, COUNTS)
     assert "kind: load_cell" in found.text
     assert bias(tmp_path, found) == {"force_bias": pytest.approx(5.8 * newton, rel=0.02)}
+
+
+@pytest.mark.parametrize(
+    ("unit", "newton"), [("g", 9.80665e-3), ("gf", 9.80665e-3), ("kg", 9.80665), ("kgf", 9.80665), ("lb", 4.4482216)]
+)
+def test_a_unit_of_weights_may_be_stated_where_no_header_has_it(tmp_path, unit, newton):
+    """`unit: g` in place of the drafted N, and the sensitivity of the data sheet for it."""
+    found = drafted(tmp_path, "Weight,Reading", LEVELS, COUNTS)
+    text = re.sub("factor: .*", f"factor: {newton / 1000.0:.8g}", found.text.replace("unit: N\n", f"unit: {unit}\n"))
+    assert bias(tmp_path, Draft(text, [])) == {"force_bias": pytest.approx(5.8 * newton, rel=0.02)}
+
+
+def test_a_row_without_a_reading_is_no_reading(tmp_path):
+    counts = COUNTS.copy()
+    counts[[3, 17]] = np.nan
+    found = drafted(tmp_path, "weight_g,counts", LEVELS, counts)
+    assert bias(tmp_path, found) == {"force_bias": pytest.approx(5.8 * 9.80665e-3, rel=0.02)}
+    assert "a: 2 of 48 rows lack a number and are no readings" in open_case(tmp_path / "case")[1][0].notes
+
+
+def test_a_reading_that_lacks_often_is_refused(tmp_path):
+    found = drafted(tmp_path, "weight_g,counts", LEVELS, COUNTS)
+    np.savetxt(
+        tmp_path / "a.csv",
+        np.column_stack([LEVELS, np.where(np.arange(48) % 2, COUNTS, np.nan)]),
+        delimiter=",",
+        header="weight_g,counts",
+        comments="",
+    )
+    with pytest.raises(MachineError, match="is not finite at sample 0; value 24 of 48 samples"):
+        bias(tmp_path, found)
 
 
 @pytest.mark.parametrize("noise", [0.0, 500.0, 2000.0])
