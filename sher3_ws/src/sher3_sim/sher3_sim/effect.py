@@ -6,7 +6,8 @@ The plant knows no effect by name. The page of an effect, in `sher3_effects`, ho
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+import operator
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, fields
 from typing import Any, ClassVar, NamedTuple, cast
 
@@ -38,6 +39,20 @@ REVOLUTE: Mapping[str, tuple[str, float]] = {
 """Unit on the revolute axis, and what bounds and defaults are multiplied by there: leads and rated forces differ so."""
 
 
+Change = Callable[[Any, float], Any]
+"""What is there, over the axes that an effect sits on, and a parameter of it -> what is there then."""
+
+
+def set_to(now: Any, value: float) -> Any:
+    """Return the value, whatever was there."""
+    return value
+
+
+def scaled_by(now: Any, relative: float) -> Any:
+    """Return what is larger by a share."""
+    return now * (1.0 + relative)
+
+
 class Parameter(NamedTuple):
     """Specification of one parameter.
 
@@ -47,6 +62,8 @@ class Parameter(NamedTuple):
         low, high: smallest and largest value the plant takes.
         text: what it is.
         fixed_unit: whether the unit stays the same on an axis that turns.
+        on: constant of the axis, of `sher3_sim.parameters.AXIS`, that it changes; "" where the effect says itself how.
+        change: how, from what is there and the value.
     """
 
     unit: str
@@ -55,8 +72,10 @@ class Parameter(NamedTuple):
     high: float
     text: str
     fixed_unit: bool = False
+    on: str = ""
+    change: Change = operator.add
 
-    def on(self, actuator: str) -> Parameter:
+    def at(self, actuator: str) -> Parameter:
         """Return the specification on an actuator: units of the roll axis are rotary."""
         if actuator != "roll" or self.fixed_unit or self.unit not in REVOLUTE:
             return self
@@ -67,9 +86,9 @@ class Parameter(NamedTuple):
 _UNSET = cast(float, object())
 
 
-def parameter(unit: str, default: float, low: float, high: float, text: str, *, fixed_unit: bool = False) -> Any:
-    """Declare a parameter of an effect: a float field with its specification."""
-    return field(default=_UNSET, metadata={"parameter": Parameter(unit, default, low, high, text, fixed_unit)})
+def parameter(unit: str, default: float, low: float, high: float, text: str, **more: Any) -> Any:
+    """Declare a parameter of an effect: a float field with its specification, the `more` of it by name."""
+    return field(default=_UNSET, metadata={"parameter": Parameter(unit, default, low, high, text, **more)})
 
 
 @dataclass(frozen=True)
@@ -77,7 +96,8 @@ class PlantEffect:
     """One effect in the plant, on one actuator (or `tip`, `force_sensor`, `all`), with its parameters in SI units.
 
     A parameter that is not given takes its default. A subclass names the page of the effect, from which it has id,
-    family and stage, and says how it changes PlantParameters: `class BacklashInPlant(PlantEffect, page=Backlash)`.
+    family and stage, and says how it changes PlantParameters, where its parameters do not say that themselves:
+    `class BacklashInPlant(PlantEffect, page=Backlash)`.
 
     Raises:
         EffectError: the actuator is not one of `sites`, or a parameter is not finite or out of its bounds.
@@ -120,7 +140,7 @@ class PlantEffect:
     @classmethod
     def specification(cls, actuator: str) -> dict[str, Parameter]:
         """Return the parameters by name, with the units, bounds and defaults they have on an actuator."""
-        return {f.name: f.metadata["parameter"].on(actuator) for f in fields(cls) if "parameter" in f.metadata}
+        return {f.name: f.metadata["parameter"].at(actuator) for f in fields(cls) if "parameter" in f.metadata}
 
     @property
     def parameters(self) -> dict[str, float]:
@@ -133,8 +153,10 @@ class PlantEffect:
         return [ACTUATORS.index(self.actuator)] if self.actuator in ACTUATORS else list(range(len(ACTUATORS)))
 
     def apply(self, p: PlantParameters) -> None:
-        """Write the effect into the plant's parameters."""
-        raise NotImplementedError
+        """Write the effect into the plant's parameters; default what its own parameters say of the axis."""
+        for name, spec in self.specification(self.actuator).items():
+            if spec.on:
+                p.axis[spec.on][self.rows] = spec.change(p.axis[spec.on][self.rows], getattr(self, name))
 
 
 def with_effects(robot: Robot, effects: Iterable[PlantEffect]) -> PlantParameters:

@@ -58,6 +58,7 @@ class SensorDrift(Page):
     id, family, stage, best = ForceDrift.id, ForceDrift.family, ForceDrift.stage, ForceDrift.best
     kinds, places = ("sensor",), ForceDrift.places
     inputs = ("temperature", "time")
+    gives = ("fx", "fy", "fz", "tx", "ty", "tz", "with_time")
     explanation = "The zero of the force sensor wanders during the test, in every orientation alike."
     siblings = {"force_bias": "does not wander"}
     discrete = frozenset({"with_time"})
@@ -73,16 +74,12 @@ class SensorDrift(Page):
         share = view.elapsed if shape["with_time"] else (view.warmth - view.warmth.min()) / span
         return Signature({Channel(self.stage, site): share[:, None, None] * np.eye(6)})
 
-    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the drift over the whole test by component."""
-        names = ("fx", "fy", "fz", "tx", "ty", "tz")
-        return {**{n: float(c) for n, c in zip(names, coefficients, strict=True)}, "with_time": shape["with_time"]}
-
 
 class CellDrift(SensorDrift):
     """The zero of a load cell wanders, with its temperature or with time."""
 
     kinds, places = ("cell",), ("load_cell",)
+    gives = ("over_test", "with_time")
     explanation = "The zero of the load cell wanders during the test, under every force alike."
     units = {"over_test": "N"}
 
@@ -90,10 +87,6 @@ class CellDrift(SensorDrift):
         """Return one column: the share of the test that has passed, or of the warming."""
         (columns,) = super().signature(view, site, shape).columns.values()
         return Signature({Channel(self.stage, site): column(columns[:, 0, 0])})
-
-    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the drift over the whole test."""
-        return {"over_test": float(coefficients[0]), "with_time": shape["with_time"]}
 
 
 @dataclass(frozen=True)

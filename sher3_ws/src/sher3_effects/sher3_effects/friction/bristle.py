@@ -24,3 +24,10 @@ def deflection(default: float = SHORT) -> Any:
 def soften(p: PlantParameters, rows: list[int], displacement: float) -> None:
     """Let the bristle of some axes bend by at least `displacement` (m or rad) before it slides."""
     p.axis["displacement"][rows] = np.maximum(p.axis["displacement"][rows], displacement)
+
+
+def rub(p: PlantParameters, rows: list[int], force: float, displacement: float) -> None:
+    """Raise the friction of some axes by `force` (N or N m), in sliding and at rest, and soften their bristles."""
+    p.axis["coulomb"][rows] += force
+    p.axis["static"][rows] += force
+    soften(p, rows, displacement)

@@ -13,7 +13,7 @@ from sher3_diagnosis.effect import Best, Shape, Signature
 from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
-from sher3_effects.friction.bristle import deflection, soften
+from sher3_effects.friction.bristle import deflection, rub
 from sher3_effects.friction.dry import DryFriction
 from sher3_effects.operators import held_lag, play
 from sher3_effects.page import Tolerated
@@ -150,6 +150,4 @@ class CoulombFrictionInPlant(PlantEffect, page=CoulombFriction):
 
     def apply(self, p: PlantParameters) -> None:
         """Raise the sliding and static level alike."""
-        p.axis["coulomb"][self.rows] += self.force
-        p.axis["static"][self.rows] += self.force
-        soften(p, self.rows, self.displacement)
+        rub(p, self.rows, self.force, self.displacement)

@@ -12,7 +12,7 @@ from sher3_diagnosis.effect import Best, Shape, Signature, column
 from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
-from sher3_effects.friction.bristle import deflection, soften
+from sher3_effects.friction.bristle import deflection, rub
 from sher3_effects.friction.dry import DryFriction
 from sher3_effects.page import Part, Values
 from sher3_effects.view import AxisView
@@ -112,9 +112,7 @@ class PositionFrictionInPlant(PlantEffect, page=PositionFriction):
 
     def apply(self, p: PlantParameters) -> None:
         """Raise the level and modulate it."""
-        p.axis["coulomb"][self.rows] += self.force
-        p.axis["static"][self.rows] += self.force
         p.axis["friction_amplitude"][self.rows] = self.amplitude
         p.axis["friction_periods"][self.rows] = self.periods_per_rev
         p.axis["friction_phase"][self.rows] = self.phase
-        soften(p, self.rows, self.displacement)
+        rub(p, self.rows, self.force, self.displacement)

@@ -12,7 +12,7 @@ from sher3_diagnosis.effect import Best, Shape
 from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
 
-from sher3_effects.friction.bristle import deflection, soften
+from sher3_effects.friction.bristle import deflection, rub
 from sher3_effects.friction.dry import DryFriction
 from sher3_effects.view import AxisView
 
@@ -79,6 +79,4 @@ class PreslidingFrictionInPlant(PlantEffect, page=PreslidingFriction):
 
     def apply(self, p: PlantParameters) -> None:
         """Raise the level and soften the bristle."""
-        p.axis["coulomb"][self.rows] += self.force
-        p.axis["static"][self.rows] += self.force
-        soften(p, self.rows, self.displacement)
+        rub(p, self.rows, self.force, self.displacement)

@@ -9,7 +9,6 @@ from sher3_description import ACTUATORS, Robot
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Best, Shape, Signature, column
 from sher3_sim.effect import PlantEffect, parameter
-from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.page import Page, Tolerated
 from sher3_effects.view import AxisView, NominalAxis
@@ -70,8 +69,4 @@ class ViscousOnAxis(ViscousFriction):
 class ViscousFrictionInPlant(PlantEffect, page=ViscousFriction):
     """Friction in proportion to speed beyond the nominal one: lubricant, seals, back-EMF."""
 
-    extra: float = parameter("N/(m/s)", 60.0, -60.0, 2000.0, "added to the nominal viscous coefficient")
-
-    def apply(self, p: PlantParameters) -> None:
-        """Add damping."""
-        p.axis["viscous"][self.rows] += self.extra
+    extra: float = parameter("N/(m/s)", 60.0, -60.0, 2000.0, "added to the nominal viscous coefficient", on="viscous")

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 from sher3_diagnosis.effect import Best, Shape, Signature
 from sher3_sim.effect import PlantEffect, parameter
-from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.page import TIP_POSE, Page
 from sher3_effects.view import ArmView, RobotView
@@ -61,8 +60,4 @@ class JointOffset(Page):
 class EncoderOffsetInPlant(PlantEffect, page=EncoderOffset):
     """A homing error: both encoders of the axis read too much by the offset."""
 
-    offset: float = parameter("m", 20e-6, -5e-3, 5e-3, "reading less true position")
-
-    def apply(self, p: PlantParameters) -> None:
-        """Shift both readings."""
-        p.axis["encoder_offset"][self.rows] += self.offset
+    offset: float = parameter("m", 20e-6, -5e-3, 5e-3, "reading less true position", on="encoder_offset")

@@ -54,6 +54,7 @@ class JointTilt(Page):
 
     id, family, stage, best = RailTilt.id, RailTilt.family, RailTilt.stage, RailTilt.best
     kinds, places = ("arm",), ("joint",)
+    gives = ("tilt_1", "tilt_2")
     explanation = "The axis of one joint does not point where the drawing says."
     siblings = {"encoder_offset": "a turn about the joint's own axis", "link_length_error": "a shift, not a turn"}
     units = {"tilt_1": "rad", "tilt_2": "rad"}
@@ -65,10 +66,6 @@ class JointTilt(Page):
         across = np.linalg.svd(view.own_axis(site)[None])[2][1:]
         parts = [view.turned(frame @ u, view.place(site)) for u in across]
         return Signature({self.channels(site)[0]: np.stack(parts, axis=-1)})
-
-    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return the two angles, rad."""
-        return dict(zip(("tilt_1", "tilt_2"), map(float, coefficients), strict=True))
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from sher3_description import Robot
-from sher3_diagnosis.channel import Array
 from sher3_diagnosis.effect import Best, Shape, Signature
 from sher3_sim.effect import PlantEffect
 from sher3_sim.parameters import PlantParameters
@@ -25,6 +24,7 @@ class ToolOffset(Page):
     seen_at = TIP_POSE
     best = Best("postures", "well-spread postures separate geometric errors")
     places = ("tip",)
+    gives = ("x", "y", "z")
     explanation = (
         "The needle is bent or seated differently: the tip error is constant in the tool's own frame and "
         "turns with roll and tilt."
@@ -44,10 +44,6 @@ class ToolOffset(Page):
     def tolerated(self, robot: Robot, site: str) -> Sequence[Tolerated]:
         """Return where the tip is in the tool's frame."""
         return (Tolerated({}, {f"tool length, {a}": (robot.tolerances.tool, "m") for a in "xyz"}),)
-
-    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Offset in the tool frame."""
-        return {n: float(c) for n, c in zip("xyz", coefficients, strict=True)}
 
 
 @dataclass(frozen=True)

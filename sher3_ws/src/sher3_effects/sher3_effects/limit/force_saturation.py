@@ -9,7 +9,6 @@ import numpy as np
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Best, Measured, Shape, Signature
 from sher3_sim.effect import PlantEffect, parameter
-from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.operators import frozen_integral
 from sher3_effects.page import Page
@@ -109,8 +108,4 @@ def _held(force: Array, limit: float) -> Array:
 class ForceSaturationInPlant(PlantEffect, page=ForceSaturation):
     """The drive's force ends earlier than its data sheet says: current limit, supply, temperature derating."""
 
-    limit: float = parameter("N", 20.0, 0.5, 200.0, "largest force of the drive")
-
-    def apply(self, p: PlantParameters) -> None:
-        """Lower the force limit."""
-        p.axis["limit"][self.rows] = np.minimum(p.axis["limit"][self.rows], self.limit)
+    limit: float = parameter("N", 20.0, 0.5, 200.0, "largest force of the drive", on="limit", change=np.minimum)

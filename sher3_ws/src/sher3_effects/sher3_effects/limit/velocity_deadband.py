@@ -9,7 +9,6 @@ import numpy as np
 from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.effect import Best, Shape, Signature
 from sher3_sim.effect import EVERYWHERE, PlantEffect, parameter
-from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.page import Page
 from sher3_effects.view import RobotView
@@ -52,8 +51,4 @@ class VelocityDeadband(Page):
 class VelocityDeadbandInPlant(PlantEffect, page=VelocityDeadband, sites=EVERYWHERE):
     """The drive takes a demand within +-width for zero, behind the echo: resolution or a standstill window."""
 
-    width: float = parameter("m/s", 1e-4, 0.0, 5e-3, "half width of the dead zone")
-
-    def apply(self, p: PlantParameters) -> None:
-        """Widen the dead zone of the demand."""
-        p.axis["deadband"][self.rows] = np.maximum(p.axis["deadband"][self.rows], self.width)
+    width: float = parameter("m/s", 1e-4, 0.0, 5e-3, "half width of the dead zone", on="deadband", change=np.maximum)

@@ -11,7 +11,6 @@ from sher3_description import Robot
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Best, Measured, Shape, Signature, column
 from sher3_sim.effect import PlantEffect, parameter
-from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.compliance.transmission_compliance import carried
 from sher3_effects.lost_motion.plateau import plateau
@@ -268,8 +267,4 @@ class CircleReversal(TableReversal):
 class BacklashInPlant(PlantEffect, page=Backlash):
     """A gap between motor and load: after a reversal the load waits until the motor has crossed it."""
 
-    width: float = parameter("m", 5e-6, 0.0, 1e-3, "of the gap")
-
-    def apply(self, p: PlantParameters) -> None:
-        """Widen the gap."""
-        p.axis["backlash"][self.rows] += self.width
+    width: float = parameter("m", 5e-6, 0.0, 1e-3, "of the gap", on="backlash")

@@ -9,8 +9,7 @@ from typing import ClassVar
 import numpy as np
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Best, Shape, Signature, column
-from sher3_sim.effect import PlantEffect, parameter
-from sher3_sim.parameters import PlantParameters
+from sher3_sim.effect import PlantEffect, parameter, set_to
 
 from sher3_effects.operators import dahl_turned
 from sher3_effects.page import Page
@@ -103,10 +102,7 @@ class HysteresisOnAxis(TransmissionHysteresis):
 class TransmissionHysteresisInPlant(PlantEffect, page=TransmissionHysteresis):
     """After a reversal the load lags and catches up gradually: friction inside an elastic transmission."""
 
-    width: float = parameter("m", 5e-6, 0.0, 1e-3, "of the loop, between the two directions")
-    displacement: float = parameter("m", 20e-6, 1e-8, 1e-2, "travel over which it turns to 1/e")
-
-    def apply(self, p: PlantParameters) -> None:
-        """Widen the loop."""
-        p.axis["hysteresis"][self.rows] += self.width
-        p.axis["hysteresis_displacement"][self.rows] = self.displacement
+    width: float = parameter("m", 5e-6, 0.0, 1e-3, "of the loop, between the two directions", on="hysteresis")
+    displacement: float = parameter(
+        "m", 20e-6, 1e-8, 1e-2, "travel over which it turns to 1/e", on="hysteresis_displacement", change=set_to
+    )

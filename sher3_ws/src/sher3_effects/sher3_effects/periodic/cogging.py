@@ -9,8 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Best, Shape, Signature, column
-from sher3_sim.effect import PlantEffect, parameter
-from sher3_sim.parameters import PlantParameters
+from sher3_sim.effect import PlantEffect, parameter, set_to
 
 from sher3_effects.page import Page
 from sher3_effects.periodic.phase import phase_at_zero, sine_of
@@ -94,12 +93,6 @@ class CoggingOnJoint(Cogging):
 class CoggingInPlant(PlantEffect, page=Cogging):
     """Magnets pull the rotor towards the teeth: a force that repeats with the motor's angle, alike both ways."""
 
-    amplitude: float = parameter("N", 0.5, 0.0, 50.0, "of the force")
-    periods_per_rev: float = parameter("1", 12.0, 0.5, 200.0, "periods per lead")
-    phase: float = phase_at_zero()
-
-    def apply(self, p: PlantParameters) -> None:
-        """Add the force."""
-        p.axis["cogging_amplitude"][self.rows] = self.amplitude
-        p.axis["cogging_periods"][self.rows] = self.periods_per_rev
-        p.axis["cogging_phase"][self.rows] = self.phase
+    amplitude: float = parameter("N", 0.5, 0.0, 50.0, "of the force", on="cogging_amplitude", change=set_to)
+    periods_per_rev: float = parameter("1", 12.0, 0.5, 200.0, "periods per lead", on="cogging_periods", change=set_to)
+    phase: float = phase_at_zero("cogging_phase")

@@ -8,8 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Best, Shape, Signature
-from sher3_sim.effect import PlantEffect, parameter
-from sher3_sim.parameters import PlantParameters
+from sher3_sim.effect import PlantEffect, parameter, set_to
 
 from sher3_effects.page import Page
 from sher3_effects.periodic.phase import phase_at_zero
@@ -96,10 +95,5 @@ class EccentricityOnAxis(EncoderEccentricity):
 class EncoderEccentricityInPlant(PlantEffect, page=EncoderEccentricity):
     """The load encoder's code is off centre and reads ahead and behind once per lead; the load itself does not move."""
 
-    amplitude: float = parameter("m", 3e-6, 0.0, 1e-3, "of the reading")
-    phase: float = phase_at_zero()
-
-    def apply(self, p: PlantParameters) -> None:
-        """Add the reading error."""
-        p.axis["eccentricity"][self.rows] = self.amplitude
-        p.axis["eccentricity_phase"][self.rows] = self.phase
+    amplitude: float = parameter("m", 3e-6, 0.0, 1e-3, "of the reading", on="eccentricity", change=set_to)
+    phase: float = phase_at_zero("eccentricity_phase")

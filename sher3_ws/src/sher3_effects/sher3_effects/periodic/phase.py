@@ -7,12 +7,12 @@ from typing import Any
 import numpy as np
 from sher3_diagnosis.channel import Array
 from sher3_diagnosis.effect import Shape
-from sher3_sim.effect import parameter
+from sher3_sim.effect import parameter, set_to
 
 
-def phase_at_zero() -> Any:
+def phase_at_zero(on: str) -> Any:
     """Declare the phase at zero position as a parameter, rad; a little over a whole turn either way is allowed."""
-    return parameter("rad", 0.0, -7.0, 7.0, "at zero position", fixed_unit=True)
+    return parameter("rad", 0.0, -7.0, 7.0, "at zero position", fixed_unit=True, on=on, change=set_to)
 
 
 def sine_of(shape: Shape, coefficients: Array, order: str = "periods_per_rev") -> dict[str, float]:

@@ -10,8 +10,7 @@ import numpy as np
 from sher3_description import Robot
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Best, Shape, Signature, column
-from sher3_sim.effect import PlantEffect, parameter
-from sher3_sim.parameters import PlantParameters
+from sher3_sim.effect import PlantEffect, parameter, set_to
 
 from sher3_effects.page import Page, Tolerated
 from sher3_effects.periodic.phase import phase_at_zero, sine_of
@@ -146,16 +145,10 @@ class TableRipple(Page):
 class TransmissionRippleInPlant(PlantEffect, page=TransmissionRipple):
     """The load runs ahead and behind within a revolution: screw drunkenness, kinematic error of the harmonic drive."""
 
-    amplitude: float = parameter("m", 3e-6, 0.0, 1e-3, "of the load's motion")
-    periods_per_rev: float = parameter("1", 1.0, 0.5, 200.0, "periods per lead")
-    phase: float = phase_at_zero()
-    base_amplitude: float = parameter("m", 0.0, 0.0, 1e-3, "of a companion with one period per lead")
-    base_phase: float = phase_at_zero()
-
-    def apply(self, p: PlantParameters) -> None:
-        """Add the motion."""
-        p.axis["ripple_amplitude"][self.rows] = self.amplitude
-        p.axis["ripple_periods"][self.rows] = self.periods_per_rev
-        p.axis["ripple_phase"][self.rows] = self.phase
-        p.axis["ripple_base_amplitude"][self.rows] = self.base_amplitude
-        p.axis["ripple_base_phase"][self.rows] = self.base_phase
+    amplitude: float = parameter("m", 3e-6, 0.0, 1e-3, "of the load's motion", on="ripple_amplitude", change=set_to)
+    periods_per_rev: float = parameter("1", 1.0, 0.5, 200.0, "periods per lead", on="ripple_periods", change=set_to)
+    phase: float = phase_at_zero("ripple_phase")
+    base_amplitude: float = parameter(
+        "m", 0.0, 0.0, 1e-3, "of a companion with one period per lead", on="ripple_base_amplitude", change=set_to
+    )
+    base_phase: float = phase_at_zero("ripple_base_phase")

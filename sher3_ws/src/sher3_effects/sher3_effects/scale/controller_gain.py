@@ -8,8 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from sher3_diagnosis.channel import Array
 from sher3_diagnosis.effect import Best, Shape, Signature, column
-from sher3_sim.effect import EVERYWHERE, PlantEffect, parameter
-from sher3_sim.parameters import PlantParameters
+from sher3_sim.effect import EVERYWHERE, PlantEffect, parameter, scaled_by
 
 from sher3_effects.page import NOWHERE, Page
 from sher3_effects.view import LawView
@@ -68,8 +67,6 @@ class GainOfLaw(ControllerGain):
 class ControllerGainInPlant(PlantEffect, page=ControllerGain, sites=EVERYWHERE):
     """The host's position gain is not the one configured: wrong unit, wrong file, rounding."""
 
-    relative: float = parameter("1", 0.1, -0.9, 4.0, "gain over nominal gain, less one")
-
-    def apply(self, p: PlantParameters) -> None:
-        """Scale the position gain."""
-        p.axis["position_gain"][self.rows] *= 1.0 + self.relative
+    relative: float = parameter(
+        "1", 0.1, -0.9, 4.0, "gain over nominal gain, less one", on="position_gain", change=scaled_by
+    )

@@ -9,7 +9,6 @@ import numpy as np
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Best, Shape, Signature
 from sher3_sim.effect import PlantEffect, parameter
-from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.page import Page
 from sher3_effects.scale.varying_ratio import gentle, lines, mean_ratio
@@ -56,8 +55,4 @@ class EncoderScale(Page):
 class EncoderScaleInPlant(PlantEffect, page=EncoderScale):
     """The load encoder's scale is wrong: it reads more than the load moves."""
 
-    relative: float = parameter("1", 1e-3, -0.05, 0.05, "reading over load travel, less one")
-
-    def apply(self, p: PlantParameters) -> None:
-        """Scale the load encoder."""
-        p.axis["encoder_scale"][self.rows] += self.relative
+    relative: float = parameter("1", 1e-3, -0.05, 0.05, "reading over load travel, less one", on="encoder_scale")

@@ -9,7 +9,6 @@ from sher3_description import Robot
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Best, Shape, Signature, column
 from sher3_sim.effect import PlantEffect, parameter
-from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.page import Page, Tolerated
 from sher3_effects.scale.varying_ratio import gentle, lines, mean_ratio
@@ -91,8 +90,4 @@ class TableScale(Page):
 class LeadErrorInPlant(PlantEffect, page=LeadError):
     """The load moves by a constant ratio more than the motor encoder says: lead of the screw, reduction."""
 
-    relative: float = parameter("1", 1e-3, -0.05, 0.05, "load over motor travel, less one")
-
-    def apply(self, p: PlantParameters) -> None:
-        """Scale the load's travel."""
-        p.axis["lead_error"][self.rows] += self.relative
+    relative: float = parameter("1", 1e-3, -0.05, 0.05, "load over motor travel, less one", on="lead_error")

@@ -8,8 +8,7 @@ from dataclasses import dataclass
 from sher3_description import Robot
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Best, Shape, Signature, column
-from sher3_sim.effect import EVERYWHERE, PlantEffect, parameter
-from sher3_sim.parameters import PlantParameters
+from sher3_sim.effect import EVERYWHERE, PlantEffect, parameter, scaled_by
 
 from sher3_effects.page import Page, Tolerated
 from sher3_effects.view import AxisView
@@ -60,8 +59,6 @@ class TorqueConstant(Page):
 class TorqueConstantInPlant(PlantEffect, page=TorqueConstant, sites=EVERYWHERE):
     """The force on the axis is not the force the drive reports: weak magnets, wrong constant, losses."""
 
-    relative: float = parameter("1", 0.05, -0.5, 1.0, "force over reported effort, less one")
-
-    def apply(self, p: PlantParameters) -> None:
-        """Scale the force on the motor."""
-        p.axis["torque_scale"][self.rows] *= 1.0 + self.relative
+    relative: float = parameter(
+        "1", 0.05, -0.5, 1.0, "force over reported effort, less one", on="torque_scale", change=scaled_by
+    )

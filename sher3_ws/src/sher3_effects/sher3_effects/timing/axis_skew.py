@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 from sher3_diagnosis.effect import Best
 from sher3_sim.effect import PlantEffect, parameter
-from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.page import NOWHERE, Page
 
@@ -26,8 +25,4 @@ class AxisSkew(Page):
 class AxisSkewInPlant(PlantEffect, page=AxisSkew):
     """One axis acts later than the others: its frame is the last of the bus cycle."""
 
-    skew: float = parameter("s", 1e-3, 0.0, 0.03, "lateness against the other axes")
-
-    def apply(self, p: PlantParameters) -> None:
-        """Delay one axis."""
-        p.axis["delay"][self.rows] += self.skew
+    skew: float = parameter("s", 1e-3, 0.0, 0.03, "lateness against the other axes", on="delay")

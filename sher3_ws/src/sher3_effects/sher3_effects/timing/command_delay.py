@@ -9,7 +9,6 @@ import numpy as np
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Best, Shape, Signature
 from sher3_sim.effect import EVERYWHERE, PlantEffect, parameter
-from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.page import NOWHERE, Page
 from sher3_effects.view import AxisView, LawView
@@ -93,8 +92,4 @@ class DelayOfLaw(CommandDelay):
 class CommandDelayInPlant(PlantEffect, page=CommandDelay, sites=EVERYWHERE):
     """Every command acts a constant time after it was published: bus cycle, buffers, computing time."""
 
-    delay: float = parameter("s", 1e-3, 0.0, 0.03, "dead time of the command")
-
-    def apply(self, p: PlantParameters) -> None:
-        """Delay the commands."""
-        p.axis["delay"][self.rows] += self.delay
+    delay: float = parameter("s", 1e-3, 0.0, 0.03, "dead time of the command", on="delay")

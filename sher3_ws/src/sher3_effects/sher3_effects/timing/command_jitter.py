@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 from sher3_diagnosis.effect import Best
 from sher3_sim.effect import EVERYWHERE, PlantEffect, parameter
-from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.page import NOWHERE, Page
 
@@ -28,8 +27,4 @@ class CommandJitter(Page):
 class CommandJitterInPlant(PlantEffect, page=CommandJitter, sites=EVERYWHERE):
     """Commands arrive late by a random time, half-normal and the same for all axes of a tick; order is kept."""
 
-    sigma: float = parameter("s", 3e-4, 0.0, 0.01, "scale of the lateness |N(0, sigma)|")
-
-    def apply(self, p: PlantParameters) -> None:
-        """Scatter the arrival times."""
-        p.axis["jitter"][self.rows] += self.sigma
+    sigma: float = parameter("s", 3e-4, 0.0, 0.01, "scale of the lateness |N(0, sigma)|", on="jitter")

@@ -10,7 +10,6 @@ import numpy as np
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Best, Shape, Signature, column
 from sher3_sim.effect import EVERYWHERE, PlantEffect, parameter
-from sher3_sim.parameters import PlantParameters
 
 from sher3_effects.operators import first_order, held_lag, lagged, oscillator, taken_by_limit
 from sher3_effects.page import Page
@@ -194,8 +193,4 @@ def _ago(view: AxisView, x: Array, delay: float) -> Array:
 class DriveLagInPlant(PlantEffect, page=DriveLag, sites=EVERYWHERE):
     """The drive's force follows its law with a first-order lag: current loop or filter."""
 
-    time_constant: float = parameter("s", 1e-3, 0.0, 0.02, "of the lag")
-
-    def apply(self, p: PlantParameters) -> None:
-        """Lag the force."""
-        p.axis["lag"][self.rows] += self.time_constant
+    time_constant: float = parameter("s", 1e-3, 0.0, 0.02, "of the lag", on="lag")

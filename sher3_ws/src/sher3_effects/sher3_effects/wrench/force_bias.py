@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from sher3_description import Robot
-from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.effect import Best, Shape, Signature, column
 from sher3_sim.effect import PlantEffect, parameter
 from sher3_sim.parameters import PlantParameters
@@ -26,6 +26,7 @@ class ForceBias(Page):
     seen_at = (("sensing", "force_sensor"),)
     best = Best("loads", "known loads in several orientations separate bias, weight and cross-talk")
     places = ("force_sensor",)
+    gives = ("fx", "fy", "fz", "tx", "ty", "tz")
     explanation = "The force sensor is off by a constant in its own frame, in every pose and under every load."
     siblings = {"tool_gravity": "turns with roll and tilt", "force_drift": "grows with temperature"}
 
@@ -40,10 +41,6 @@ class ForceBias(Page):
         return (
             Tolerated({}, force | {f"force sensor bias, {n}": (limits.torque_bias, "N*m") for n in ("tx", "ty", "tz")}),
         )
-
-    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Bias per component."""
-        return {n: float(c) for n, c in zip(self.specification, coefficients, strict=True)}
 
 
 class CellBias(Page):
