@@ -19,8 +19,7 @@ from sher3_machines.drafting.names import bare_and_unit, tells_time
 from sher3_machines.intake.kind import Draft
 from sher3_machines.intake.spelling import bare
 from sher3_machines.intake.tables import Tables
-
-from sher3_static.arm.urdf import read_urdf
+from sher3_machines.urdf import read_urdf
 
 PLACE = re.compile(r"(?P<before>.*?)(?P<axis>[xyz])(?P<behind>[_ ]?\d*)", re.IGNORECASE)
 """Name of one of three coordinates: `x1`, `tip_y`, `pos z`."""
@@ -45,7 +44,7 @@ def draft_arm(path: Path, tables: Tables, model: Path) -> Draft | None:
     clock = any(tells_time(name) and bool((np.diff(x) > 0.0).all()) for name, x in columns.items())
     if point is None or model.suffix.lower() != ".urdf" or clock:
         return None
-    root = read_urdf(model)
+    root = read_urdf(model).root
     above = {child: (joint, parent) for joint, parent, child in joints_of(root)}
     named = {_plain(bare_and_unit(bare(name))[0]): name for name in columns} | numbered(columns, moving(root))
     chain = [(joint, parent, child) for child, (joint, parent) in above.items() if _plain(joint) in named]

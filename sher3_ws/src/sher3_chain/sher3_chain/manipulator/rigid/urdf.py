@@ -4,22 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from xml.etree import ElementTree
+from xml.etree.ElementTree import Element
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 from sher3_diagnosis.channel import Array
 from sher3_machines.errors import MachineError
+from sher3_machines.urdf import Urdf, urdf_of
 
 from sher3_chain.manipulator.rigid.tree import WORLD, Link, Tree, moved, parameters
 
 GRAVITY = (0.0, 0.0, -9.81)
 """Of a URDF, which states none: what simulators and Pinocchio take, m/s^2."""
-LARGEST, SHORTEST = 1e9, 1e-9
-"""Largest number of a file, and shortest axis that has a direction."""
 TURNING, SLIDING, FIXED = ("revolute", "continuous"), ("prismatic",), ("fixed",)
-DEFAULT_AXIS = "1 0 0"
-"""Axis of a joint that states none, as the format has it."""
 MACRO = "xacro:"
 """What an unexpanded file of macros holds."""
 
@@ -34,16 +30,12 @@ def tree_from_urdf(text: str, label: str) -> Tree:
     Raises:
         MachineError: it is no URDF, or its links are no tree.
     """
-    try:
-        root = ElementTree.fromstring(text)
-    except ElementTree.ParseError as error:
-        raise MachineError(f"{label}: cannot be read", value=str(error), remedy="give a URDF or MJCF file") from error
-    if root.tag != "robot":
-        value = f"<{root.tag}>"
-        raise MachineError(f"{label}: cannot be read", value=value, limit="<robot>", remedy="give a URDF or MJCF file")
-    if MACRO in text and any(element.tag.startswith("{") for element in root.iter()):
+    urdf = urdf_of(text, label)
+    if urdf.root.tag != "robot":
+        raise urdf.error("cannot be read", f"<{urdf.root.tag}>", "<robot>", "give a URDF or MJCF file")
+    if MACRO in text and any(element.tag.startswith("{") for element in urdf.root.iter()):
         raise MachineError(f"{label}: holds macros", value=MACRO, remedy="expand it: xacro robot.xacro > robot.urdf")
-    return _Reader(root, label).tree()
+    return _Reader(urdf).tree()
 
 
 @dataclass
@@ -58,12 +50,12 @@ class _Carrier:
 class _Reader:
     """Walks from the root link outwards."""
 
-    def __init__(self, root: ElementTree.Element, label: str) -> None:
-        self._label = label
-        self._bodies = {self._word(x, "name"): x for x in root.findall("link")}
-        self._below: dict[str, list[ElementTree.Element]] = {}
+    def __init__(self, urdf: Urdf) -> None:
+        self._urdf, self._error = urdf, urdf.error
+        self._bodies = {urdf.word(x, "name"): x for x in urdf.root.findall("link")}
+        self._below: dict[str, list[Element]] = {}
         moved_by: set[str] = set()
-        self._joints = root.findall("joint")
+        self._joints = urdf.root.findall("joint")
         for joint in self._joints:
             parent, child = (self._end(joint, which) for which in ("parent", "child"))
             if child in moved_by:
@@ -97,10 +89,10 @@ class _Reader:
             waiting += [(further, at) for further in reversed(self._below.get(name, []))]
             yield name
 
-    def _placed(self, joint: ElementTree.Element, at: _Carrier) -> _Carrier:
+    def _placed(self, joint: Element, at: _Carrier) -> _Carrier:
         """Add a joint that moves, and return where its child is."""
-        name, kind = self._word(joint, "name"), self._word(joint, "type")
-        turn, place = self._pose(joint)
+        name, kind = self._urdf.word(joint, "name"), self._urdf.word(joint, "type")
+        turn, place = self._urdf.pose(joint)
         turn, place = at.turn @ turn, at.place + at.turn @ place
         if kind not in (*TURNING, *SLIDING):
             if kind not in FIXED:
@@ -109,72 +101,37 @@ class _Reader:
         slides, reach = kind in SLIDING, np.inf if kind == "continuous" else self._reach(joint)
         follows = joint.find("mimic")
         mimics = "" if follows is None else follows.get("joint", "")
-        link = Link(name, "", at.joint, turn, place, self._axis(joint), slides, reach=reach, mimics=mimics)
+        link = Link(name, "", at.joint, turn, place, self._urdf.axis(joint), slides, reach=reach, mimics=mimics)
         self._links.append(link)
         return _Carrier(len(self._links) - 1, np.eye(3), np.zeros(3))
 
-    def _reach(self, joint: ElementTree.Element) -> float:
+    def _reach(self, joint: Element) -> float:
         """Return the largest position that a joint allows, infinite where it states no limits."""
         limit = joint.find("limit")
         if limit is None or not {"lower", "upper"} <= limit.attrib.keys():
             return np.inf
-        return max(abs(float(self._numbers(limit, key, 1)[0])) for key in ("lower", "upper"))
+        return max(abs(float(self._urdf.numbers(limit, key, 1)[0])) for key in ("lower", "upper"))
 
-    def _inertial(self, element: ElementTree.Element | None) -> Array:
+    def _inertial(self, element: Element | None) -> Array:
         if element is None:
             return np.zeros(10)
-        turn, centre = self._pose(element)
+        turn, centre = self._urdf.pose(element)
         mass, inertia = element.find("mass"), element.find("inertia")
-        kilograms = 0.0 if mass is None else self._numbers(mass, "value", 1)[0]
+        kilograms = 0.0 if mass is None else self._urdf.numbers(mass, "value", 1)[0]
         about = np.zeros((3, 3)) if inertia is None else self._matrix(inertia)
         return moved(parameters(kilograms, np.zeros(3), about), turn, centre)
 
-    def _matrix(self, element: ElementTree.Element) -> Array:
+    def _matrix(self, element: Element) -> Array:
         keys = (("ixx", "ixy", "ixz"), ("ixy", "iyy", "iyz"), ("ixz", "iyz", "izz"))
-        return np.array([[self._numbers(element, k, 1, "0")[0] for k in row] for row in keys])
+        return np.array([[self._urdf.numbers(element, k, 1, "0")[0] for k in row] for row in keys])
 
-    def _pose(self, element: ElementTree.Element) -> tuple[Array, Array]:
-        origin = element.find("origin")
-        if origin is None:
-            return np.eye(3), np.zeros(3)
-        xyz, rpy = (self._numbers(origin, k, 3, "0 0 0") for k in ("xyz", "rpy"))
-        return Rotation.from_euler("xyz", rpy).as_matrix(), xyz
-
-    def _axis(self, joint: ElementTree.Element) -> Array:
-        element = joint.find("axis")
-        axis = np.array([1.0, 0.0, 0.0]) if element is None else self._numbers(element, "xyz", 3, DEFAULT_AXIS)
-        length = float(np.linalg.norm(axis))
-        if length < SHORTEST:
-            value = axis.tolist()
-            raise self._error(f"axis of joint {joint.attrib['name']}", value, "not zero", "give its direction")
-        return axis / length
-
-    def _end(self, joint: ElementTree.Element, which: str) -> str:
+    def _end(self, joint: Element, which: str) -> str:
         """Return the link before (`parent`) or behind (`child`) a joint."""
         element = joint.find(which)
         name = joint.attrib.get("name", "?")
         if element is None:
             raise self._error(f"joint {name} has no <{which}>", "none", "one", "correct the file")
-        link = self._word(element, "link")
+        link = self._urdf.word(element, "link")
         if link not in self._bodies:
             raise self._error(f"joint {name} names a link that is not there", link, "a link of the file", "correct it")
         return link
-
-    def _word(self, element: ElementTree.Element, key: str) -> str:
-        if key not in element.attrib:
-            raise self._error(f"<{element.tag}> has no {key!r}", element.attrib, f"{key}=...", "correct the file")
-        return element.attrib[key]
-
-    def _numbers(self, element: ElementTree.Element, key: str, count: int, default: str | None = None) -> Array:
-        text = element.attrib.get(key, default) if default is not None else self._word(element, key)
-        try:
-            numbers = np.array([float(word) for word in str(text).split()])
-        except ValueError:
-            numbers = np.empty(0)
-        if numbers.shape != (count,) or not np.all(np.abs(numbers) <= LARGEST):
-            what = "a number" if count == 1 else f"{count} numbers"
-            raise self._error(f"{key} of <{element.tag}>", text, what, "correct the file")
-        return numbers
-
-    def _error(self, what: str, value: object, limit: str, remedy: str) -> MachineError:
-        return MachineError(f"{self._label}: {what}", value=value, limit=limit, remedy=remedy)
