@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from sher3_diagnosis.channel import Array, Channel
@@ -58,7 +58,7 @@ class SensorDrift(Page):
     id, family, stage, best = ForceDrift.id, ForceDrift.family, ForceDrift.stage, ForceDrift.best
     kinds, places = ("sensor",), ForceDrift.places
     inputs = ("temperature", "time")
-    gives = ("fx", "fy", "fz", "tx", "ty", "tz", "with_time")
+    gives: ClassVar[tuple[str, ...]] = ("fx", "fy", "fz", "tx", "ty", "tz", "with_time")
     explanation = "The zero of the force sensor wanders during the test, in every orientation alike."
     siblings = {"force_bias": "does not wander"}
     discrete = frozenset({"with_time"})
