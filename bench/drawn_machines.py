@@ -27,7 +27,7 @@ from pathlib import Path
 
 import numpy as np
 from sher3_chain.readings.signals import signals_of
-from sher3_common.shares import wilson
+from sher3_common.numbers.shares import wilson
 from sher3_diagnosis import diagnose
 from sher3_diagnosis.verdict import Verdict
 from true_structure import powerless

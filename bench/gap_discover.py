@@ -23,7 +23,7 @@ from typing import Any
 from sher3_challenge.cases.builder import Request, build_case, withhold
 from sher3_challenge.plants.registry import plant_names, truth_plant
 from sher3_common import read_yaml
-from sher3_common.shares import wilson
+from sher3_common.numbers.shares import wilson
 from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.discover.discover import discover
 from sher3_diagnosis.discover.feature import FormulaError

@@ -24,7 +24,7 @@ from sher3_challenge.calibration.observe import truth_of
 from sher3_challenge.cases.builder import Request, build_case
 from sher3_challenge.plants.registry import plant_names, truth_plant
 from sher3_challenge.score.intervals import SYNONYMS
-from sher3_common.shares import wilson
+from sher3_common.numbers.shares import wilson
 from sher3_diagnosis.quantify.parameters import least_widths
 from sher3_gap import diagnose_case
 from sher3_gap_cli.commands.challenge import plants_of

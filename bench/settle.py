@@ -23,7 +23,7 @@ from sher3_challenge.calibration.observe import Observation, observed_on, stored
 from sher3_challenge.cases.plan import RUN_SPACING_NS, CasePlan, draw_plan
 from sher3_challenge.plants.plant import RunPlan
 from sher3_challenge.plants.registry import truth_plant
-from sher3_common.shares import wilson
+from sher3_common.numbers.shares import wilson
 from sher3_description import Robot, load_robot
 from sher3_diagnosis.finding import LIBRARY
 from sher3_diagnosis.judge.calibration.calibration import in_force

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 
-from sher3_common.shares import wilson
+from sher3_common.numbers.shares import wilson
 from sher3_diagnosis import Verdict
 
 from sher3_arms.truth.cases import Label

@@ -2,7 +2,7 @@
 
 import pytest
 from sher3_challenge.score.intervals import parameter_coverage
-from sher3_common.shares import Z, wilson
+from sher3_common.numbers.shares import Z, wilson
 
 
 def test_wilson_of_a_half_of_four():

@@ -11,7 +11,7 @@ import yaml
 from sher3_challenge.score.case import same_place, score_case
 from sher3_challenge.score.intervals import parameter_coverage
 from sher3_challenge.score.rates import summarise
-from sher3_common.shares import wilson
+from sher3_common.numbers.shares import wilson
 
 SHARED = Path(os.environ.get("SHER3_SHARED", Path(__file__).resolve().parents[5] / "shared"))
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from sher3_bags.run import Run
 from sher3_common.compiled import compiled
+from sher3_common.numbers.smoothing import savitzky_golay
 from sher3_description import Robot
 from sher3_description.contract import GRAVITY, REFERENCE_TEMPERATURE
 from sher3_kinematics.kernel import (
@@ -39,14 +40,12 @@ def contact_wrench(run: Run, robot: Robot, smoothing: int = SMOOTHING) -> Array:
     Raises:
         MissingTopicError: `measured_js` or `force/measured_cf` was not recorded.
     """
-    from scipy.signal import savgol_filter  # a second to import, and the running robot never needs it
-
     sensed = run["force/measured_cf"]
     joints, sensor = run["measured_js"], robot.force_sensor
     readings, q = held(np.column_stack([sensed.force, sensed.torque]), sensed.stamp, joints.stamp), joints.position
     place, com = np.array(sensor.position), np.array(sensor.tool_com)
     raw = _to_tip(kernel_parameters(robot), q, readings, sensor.tool_mass * GRAVITY, com, place)
-    return savgol_filter(raw, min(smoothing, (len(raw) - 1) // 2 * 2 + 1), min(2, len(raw) - 1), axis=0)
+    return savitzky_golay(raw, min(smoothing, (len(raw) - 1) // 2 * 2 + 1), min(2, len(raw) - 1))
 
 
 def held(values: Array, stamp: NDArray[np.int64], at: NDArray[np.int64]) -> Array:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from sher3_common.shares import wilson
+from sher3_common.numbers.shares import wilson
 
 from sher3_challenge.calibration.held_out import Judgement
 from sher3_challenge.score.rates import Rate

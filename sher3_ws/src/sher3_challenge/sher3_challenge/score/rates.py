@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
-from sher3_common.shares import wilson
+from sher3_common.numbers.shares import wilson
 
 from sher3_challenge.score.case import CaseScore
 from sher3_challenge.score.reliability import calibration_error

@@ -6,12 +6,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from scipy.signal import savgol_filter
 from sher3_chain.axes.machine import Axes
 from sher3_chain.joint.description import Axis
 from sher3_chain.joint.record import AxesRun
 from sher3_chain.manipulator.description import Joint
 from sher3_chain.manipulator.machine import Manipulator
+from sher3_common.numbers.smoothing import savitzky_golay
 from sher3_diagnosis.channel import Array
 
 from sher3_export.errors import ExportError
@@ -89,7 +89,7 @@ def track_of(run: AxesRun, axis: Axis, late: bool) -> Track:
     signals = run.signals[axis.name]
     q = signals["position"]
     half = max(LEAST, round(SMOOTH / run.period))
-    smooth = [savgol_filter(q, 2 * half + 1, 2, deriv=k, delta=run.period) for k in (0, 1)]
+    smooth = [savitzky_golay(q, 2 * half + 1, 2, k, run.period) for k in (0, 1)]
     load = signals.get("load")
     behind = None if load is None else load - q
     servo = axis.servo or (late and isinstance(axis, Joint) and axis.follows)

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from scipy.signal import savgol_filter
 from sher3_chain.manipulator.bodies import Bodies
 from sher3_chain.manipulator.mjcf.drives import Driven
 from sher3_chain.manipulator.model import arm_model
+from sher3_common.numbers.smoothing import savitzky_golay
 
 from sher3_public.arrays.own_effort import LOOKED_AT, WINDOW
 from sher3_public.errors import InputError
@@ -78,7 +78,7 @@ def left(
     """
     period = float(np.median(np.diff(run.time)))
     sizes = np.array([1.0 if bodies.joints[name] else scale for name in names])
-    q, v, a = (sizes * savgol_filter(run.position, WINDOW, 3, deriv=k, delta=period, axis=0) for k in (0, 1, 2))
+    q, v, a = (sizes * savitzky_golay(run.position, WINDOW, 3, k, period) for k in (0, 1, 2))
     inner = np.arange(WINDOW, len(q) - WINDOW, max(1, len(q) // LOOKED_AT))
     needed = arm_model(bodies, names, None).needed(*(x[inner] for x in (q, v, a)))
     out = np.full(len(names), np.nan)
@@ -93,7 +93,7 @@ def left(
             asked = drive.asked(run.control[:, column]) * (sizes[i] if drive.servo else 1.0)
             effort = drive.law(asked, q[:, i], v[:, i])
             added, own = drives[name].of_law.inertia if drive.servo else 0.0, []
-        effort = savgol_filter(effort, WINDOW, 3)[inner]
+        effort = savitzky_golay(effort, WINDOW, 3)[inner]
         beside = np.column_stack([v[inner, i], np.sign(v[inner, i]), np.ones(len(inner)), *own])
         rest = effort - needed[:, i] - added * a[inner, i]
         rest = rest - beside @ np.linalg.lstsq(beside, rest, rcond=None)[0]

@@ -7,9 +7,9 @@ from copy import copy
 from typing import Any
 
 import numpy as np
-from scipy.signal import savgol_filter
 from sher3_chain.manipulator.mjcf.drives import Drive, Driven
 from sher3_chain.manipulator.mjcf.reading import mujoco
+from sher3_common.numbers.smoothing import savitzky_golay
 
 from sher3_public.records import Array, Arrays
 
@@ -73,9 +73,9 @@ def from_law(time: Array, q: Array, drive: Drive, control: Array, effort: Array)
     """
     period, limit = float(np.median(np.diff(time))), np.inf if drive.limit is None else drive.limit
     window = min(max(WINDOW, 2 * round(0.5 * SMOOTH / period) + 1), 2 * ((len(q) - 1) // 2) + 1)
-    v, a = (savgol_filter(q, window, 3, deriv=k, delta=period) for k in (1, 2))
+    v, a = (savitzky_golay(q, window, 3, k, period) for k in (1, 2))
     law = drive.law(drive.asked(control), q, v)
-    left = savgol_filter(effort - np.clip(law, -limit, limit), window, 3)
+    left = savitzky_golay(effort - np.clip(law, -limit, limit), window, 3)
     usual = np.abs(left) <= np.quantile(np.abs(left), USUAL)
     left, a = left[usual], a[usual]
     left = left - a * (left @ a) / max(a @ a, np.finfo(float).tiny)
@@ -105,10 +105,10 @@ def beyond_model(names: Sequence[str], run: Arrays, model: Any, late: float = 0.
     flags = api.mjtDisableBit
     held.opt.disableflags |= int(flags.mjDSBL_CONTACT) | int(flags.mjDSBL_LIMIT)
     held.opt.enableflags &= ~int(api.mjtEnableBit.mjENBL_INVDISCRETE)
-    q, v, a = (savgol_filter(run.position, WINDOW, 3, deriv=k, delta=period, axis=0) for k in (0, 1, 2))
+    q, v, a = (savitzky_golay(run.position, WINDOW, 3, k, period) for k in (0, 1, 2))
     assert run.effort is not None
     acted = np.column_stack([np.interp(run.time, run.time + late, x) for x in run.effort.T])
-    effort = savgol_filter(acted, WINDOW, 3, axis=0)
+    effort = savitzky_golay(acted, WINDOW, 3)
     joints = [held.joint(name) for name in names]
     places, rows = [int(j.qposadr[0]) for j in joints], [int(j.dofadr[0]) for j in joints]
     state, inner = api.MjData(held), np.arange(WINDOW, len(q) - WINDOW, max(1, len(q) // LOOKED_AT))
