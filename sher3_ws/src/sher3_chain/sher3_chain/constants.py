@@ -11,9 +11,9 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from sher3_diagnosis.channel import Array, Channel
+from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.effect import Effect, Shape, Signature
-from sher3_diagnosis.fit.fitting import Fit, Term, make_term
+from sher3_diagnosis.fit.fitting import Term, make_term
 from sher3_diagnosis.fit.whitened import Whitened
 from sher3_diagnosis.tolerance import NUISANCE, SIGMAS
 
@@ -47,14 +47,6 @@ class ConstantOfRecord(Effect):
 def constants(data: Whitened, name: str, channels: Sequence[Channel]) -> tuple[Term, ...]:
     """Return a term for each channel that was recorded, with one constant for each record."""
     return tuple(_constant(data, name, c) for c in channels if any(c in target for target in data.target))
-
-
-def zeros_of(found: Fit, channel: Channel) -> Array:
-    """Return the constant of each record (r,) of a channel under a fit, in its unit; empty where it has none."""
-    for i, term in enumerate(found.terms):
-        if isinstance(term.effect, ConstantOfRecord) and channel in term.channels:
-            return term.effect.size * found.of(i)
-    return np.zeros(0)
 
 
 def _constant(data: Whitened, name: str, channel: Channel) -> Term:

@@ -1,7 +1,7 @@
 """Structural isolability: what each further topic tells apart."""
 
 from sher3_effects import library
-from sher3_gap.stages.isolability import isolability, structure
+from sher3_gap.stages.isolability import structure
 
 FULL = (
     "setpoint_js",
@@ -15,7 +15,7 @@ FULL = (
 
 
 def group(topics, effect):
-    return next((g for g in isolability(topics) if effect in g), set())
+    return next((g for g in structure(topics).groups if effect in g), set())
 
 
 def test_every_effect_is_somewhere():
@@ -39,7 +39,7 @@ def test_without_a_tracker_the_tip_is_invisible():
 
 def test_a_load_that_nothing_measures_mixes_mechanics_and_structure():
     without = tuple(t for t in FULL if t != "force/measured_cf")
-    hand = next(g for g in isolability(without, known_load=False) if "coulomb_friction" in g)
+    hand = next(g for g in structure(without, known_load=False).groups if "coulomb_friction" in g)
     assert "structural_compliance" in hand
     assert "structural_compliance" not in group(without, "coulomb_friction")
 
@@ -57,7 +57,7 @@ def test_without_motor_side_readings_mechanics_and_transmission_are_one():
 
 
 def test_the_load_side_splits_stages_as_measured_on_a_plain_axis():
-    groups = isolability(FULL)
+    groups = structure(FULL).groups
     assert {"command_delay", "command_jitter", "dropped_commands", "axis_skew"} in groups
     assert {"drive_lag", "force_saturation", "velocity_deadband"} in groups
     assert {"controller_gain"} in groups

@@ -54,15 +54,14 @@ def needed(risk: float, wrong: int = 0, confidence: float = CONFIDENCE) -> int:
     return enough
 
 
-def certified(stated: Sequence[Stated], risk: float, confidence: float = CONFIDENCE) -> Certified:
-    """Return the loosest threshold of the grid whose names are wrong with at most the risk, at a confidence.
+def certified(stated: Sequence[Stated], risk: float) -> Certified:
+    """Return the loosest threshold of the grid whose names are wrong with at most the risk, at that confidence.
 
     Args:
         stated: per labelled cause the probability that it is the library's, and whether it is.
         risk: share of wrong names.
-        confidence: that every threshold certified keeps the risk.
     """
-    level = (1.0 - confidence) / len(GRID)
+    level = (1.0 - CONFIDENCE) / len(GRID)
     for threshold in GRID:
         named = [right for p, right in stated if p >= threshold]
         wrong = len(named) - sum(named)

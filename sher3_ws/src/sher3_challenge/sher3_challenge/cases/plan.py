@@ -74,7 +74,6 @@ class Recipe:
     repeated: tuple[str, str]
     singles: tuple[str, ...]
     tracker: bool = False
-    one_posture: bool = True
 
 
 RECIPES = (
@@ -218,7 +217,7 @@ def _draw_runs(
     labels = [pair[0]] * 3 + [pair[1]] * 3 + list(singles)
     jumps = bool(rng.random() < 0.6)
     posture = {label: str(rng.choice(list(POSTURES))) for label in dict.fromkeys(labels)}
-    if recipe is not None and recipe.one_posture:
+    if recipe is not None:
         posture = dict.fromkeys(labels, next(iter(posture.values())))
     repeats: dict[str, int] = {}
     plans = []

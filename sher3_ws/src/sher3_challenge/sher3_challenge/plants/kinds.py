@@ -8,12 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
-from operator import attrgetter
+from functools import partial, reduce
 from typing import Any, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 from sher3_common import Sher3Error
 
 from sher3_challenge.plants.declared import DECLARED, Row
@@ -25,11 +23,10 @@ class FaultError(Sher3Error):
     """An unknown fault, or one on an actuator where it cannot sit."""
 
 
-Array = NDArray[np.floating[Any]]
 Apply = Callable[[Any, Site, float], Parameters]
 Law = TypeVar("Law", bound=Callable[..., Any])
 """Law of a fault: rig, site and its parameters as they are told -> more of them that it drew itself, or nothing."""
-Change = Callable[[Array, float], Any]
+Change = Callable[[Any, float], Any]
 """What was there, and the parameter of a fault -> what is there then."""
 
 
@@ -88,10 +85,10 @@ class Catalogue(dict[str, Kind]):
         self._declared(law.__name__, law)
         return law
 
-    def changes(self, change: Change, **arrays: str) -> None:
-        """Register declared kinds of one parameter that change rows of an array: name -> its path in the rig."""
-        for name, path in arrays.items():
-            self._declared(name, partial(_changed, attrgetter(path), change))
+    def changes(self, change: Change, **values: str) -> None:
+        """Register declared kinds of one parameter that change one value of the rig: name -> path of that value."""
+        for name, path in values.items():
+            self._declared(name, partial(_changed, path, change))
 
     def _declared(self, name: str, law: Callable[..., Any]) -> None:
         apply = partial(_as_told, law, TOLD[name]) if name in TOLD else law
@@ -111,21 +108,30 @@ class Catalogue(dict[str, Kind]):
         return register
 
 
-def set_to(now: Array, value: float) -> float:
+def set_to(now: Any, value: float) -> Any:
     """Return the value, whatever was there."""
     return value
 
 
-def scaled_by(now: Array, relative: float) -> Array:
-    """Return an array that is larger by a share."""
+def scaled_by(now: Any, relative: float) -> Any:
+    """Return what is larger by a share."""
     return now * (1 + relative)
 
 
-def _changed(of: Callable[[Any], Array], change: Change, rig: Any, site: Site, **told: float) -> None:
-    """Write the one parameter of a fault into its rows of an array of the rig."""
+def _changed(path: str, change: Change, rig: Any, site: Site, **told: float) -> None:
+    """Write the one parameter of a fault into a value of the rig: its rows of an array, or a number.
+
+    A list on the way holds an object for each actuator.
+    """
     (value,) = told.values()
-    array = of(rig)
-    array[site.rows] = change(array[site.rows], value)
+    *owners, last = path.split(".")
+    owner = reduce(getattr, owners, rig)
+    owner = owner[site.index] if isinstance(owner, list) else owner
+    now = getattr(owner, last)
+    if isinstance(now, np.ndarray):
+        now[site.rows] = change(now[site.rows], value)
+    else:
+        setattr(owner, last, change(now, value))
 
 
 def _as_told(law: Callable[..., Parameters | None], told: Told, rig: Any, site: Site, x: float) -> Parameters:

@@ -17,6 +17,8 @@ SPECTRUM = 512
 """Samples of the discrete spectrum: a resolution of 0.2 Hz at 100 Hz."""
 PERIODS = (*np.arange(0.25, 4.0, 0.25), *np.arange(4.0, 25.0))
 """Periods per motor revolution that are tried."""
+ROUNDS, BINS, RATE = 60, 24, 0.3
+"""Rounds of the boosted fit, bins of each of its inputs, and the share of a round that is taken."""
 FEW = 100
 """Samples below which a free function is not trained."""
 
@@ -97,23 +99,23 @@ def ceiling(evidence: Evidence, channel: Channel, left: Mapping[int, Array]) -> 
     return float(np.clip((before - after) / max(before - 1.0, 1e-9), 0.0, 1.0))
 
 
-def boosted(x: Array, y: Array, new: Array, rounds: int = 60, bins: int = 24, rate: float = 0.3) -> Array:
+def boosted(x: Array, y: Array, new: Array) -> Array:
     """Fit y (n,) by a sum of functions of pairs of the inputs x (n, k) and predict it at `new` (m, k) -> (m,).
 
-    Each round fits the means of what is left over the cells of one pair of binned inputs, shrunk by `rate`. Small,
+    Each round fits the means of what is left over the cells of one pair of binned inputs, shrunk by `RATE`. Small,
     fast, and without an assumption on the shape.
     """
-    edges = [np.unique(np.quantile(c, np.linspace(0, 1, bins + 1)[1:-1])) for c in x.T]
+    edges = [np.unique(np.quantile(c, np.linspace(0, 1, BINS + 1)[1:-1])) for c in x.T]
     codes = [np.searchsorted(e, c) for e, c in zip(edges, x.T, strict=True)]
     fresh = [np.searchsorted(e, c) for e, c in zip(edges, new.T, strict=True)]
     out, left = np.zeros(len(new)), y.copy()
     pairs = [(i, j) for i in range(x.shape[1]) for j in range(i, x.shape[1])]
-    size = (bins + 1) ** 2
-    for k in range(rounds):
+    size = (BINS + 1) ** 2
+    for k in range(ROUNDS):
         i, j = pairs[k % len(pairs)]
-        cell, other = codes[i] * (bins + 1) + codes[j], fresh[i] * (bins + 1) + fresh[j]
+        cell, other = codes[i] * (BINS + 1) + codes[j], fresh[i] * (BINS + 1) + fresh[j]
         count = np.bincount(cell, minlength=size)
         mean = np.bincount(cell, left, minlength=size) / (count + 5.0)
-        left -= rate * mean[cell]
-        out += rate * mean[other]
+        left -= RATE * mean[cell]
+        out += RATE * mean[other]
     return out

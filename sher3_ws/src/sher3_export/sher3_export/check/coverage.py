@@ -105,9 +105,9 @@ def without_each(verdict: Verdict, case: Path) -> list[Verdict]:
     return [diagnose(machine, runs, [effect]).verdict for effect in rivalled]
 
 
-def windows_of(bench: Bench, text: str, ranges: Ranges, joints: Mapping[str, str], seed: int = 0) -> dict[str, Windows]:
+def windows_of(bench: Bench, text: str, ranges: Ranges, joints: Mapping[str, str]) -> dict[str, Windows]:
     """Run the corrected model and drawn ones over all windows, by joint."""
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng(0)
     central, forces = run_all(bench, bench.compiled(text)), {}
     pushed = {}
     for joint, parts in central.items():
@@ -167,9 +167,9 @@ def scatter_of(windows: Windows, narrowed: bool = True) -> Scatter:
     return usual.times(high)
 
 
-def inside(windows: Windows, scatter: Scatter, seed: int = 1) -> Mask:
+def inside(windows: Windows, scatter: Scatter) -> Mask:
     """Return whether the band of the drawn models holds the measured motion, (N,)."""
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng(1)
     speed, force = (rng.standard_normal((DRAWS, int(windows.window.max()) + 1))[:, windows.window] for _ in range(2))
     reading = rng.standard_normal(windows.errors.shape)
     moved = scatter.speed * speed * windows.time + scatter.force * force * windows.answer + scatter.reading * reading

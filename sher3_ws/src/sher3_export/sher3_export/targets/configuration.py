@@ -16,6 +16,14 @@ STEP = 0.005
 """
 ALONE = "Values are what the machine has beyond its model: add what your asset has, or give --model."
 NO_GAINS = "the gains are not known here: give --model with position actuators, or multiply them by one plus this"
+GAINS: Mapping[str, tuple[str, ...]] = {
+    **dict.fromkeys(("drive", "servo"), ("stiffness", "damping")),
+    "servo_position": ("stiffness",),
+    "servo_velocity": ("damping",),
+}
+"""Constant of a servo -> gains that it scales."""
+OF_GAINS = {constant: ", ".join(names) for constant, names in GAINS.items()}
+"""The same as text."""
 Nominal = Mapping[str, Mapping[str, float]]
 """Joint -> constant -> what the nominal model says of it."""
 
@@ -30,7 +38,6 @@ class Configuration(Target):
         joints: field that names the joints, and the type of its list as written.
         delays: fields of the shortest and the longest delay, steps.
         always: fields that a group states anyway.
-        gains: constant of a servo -> the fields that it scales.
         version: of the library whose fields these are.
     """
 
@@ -42,7 +49,6 @@ class Configuration(Target):
     joints: ClassVar[str]
     delays: ClassVar[tuple[str, str]]
     always: ClassVar[Mapping[str, object]] = {}
-    gains: ClassVar[Mapping[str, tuple[str, ...]]] = {}
     version: ClassVar[str]
 
     def __init__(self, nominal: Nominal | None = None) -> None:
@@ -61,7 +67,7 @@ class Configuration(Target):
             shortest, longest = self.delays
             group |= {shortest: math.floor(change.value / STEP), longest: math.ceil(change.value / STEP)}
             return ""
-        if change.constant in self.gains:
+        if change.constant in GAINS:
             return self._scale(change, group, ranges)
         name = self.fields[change.constant]
         known = (self.nominal or {}).get(change.joint, {}).get(change.constant, 0.0)
@@ -74,7 +80,7 @@ class Configuration(Target):
     def _scale(self, change: Change, group: dict[str, float], ranges: dict[str, tuple[float, float]]) -> str:
         """Multiply the gains that the model's servo has; the verdict knows them as shares alone."""
         known = (self.nominal or {}).get(change.joint, {})
-        fields = [name for name in self.gains[change.constant] if name in known]
+        fields = [name for name in GAINS[change.constant] if name in known]
         for name in fields:
             before = group.get(name, known[name])
             group[name] = before * (1.0 + change.value)
@@ -104,7 +110,7 @@ class Configuration(Target):
         """Bring the groups into order before they are written; default nothing."""
 
     def _class(self, group: Mapping[str, float]) -> str:
-        if self.servo and group.keys() & {name for names in self.gains.values() for name in names}:
+        if self.servo and group.keys() & {name for names in GAINS.values() for name in names}:
             return self.servo
         return self.delayed if self.delays[1] in group else self.plain
 

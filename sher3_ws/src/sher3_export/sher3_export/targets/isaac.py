@@ -12,7 +12,7 @@ from typing import ClassVar
 
 from sher3_common import dump_yaml
 
-from sher3_export.targets.configuration import DELAYS, Configuration
+from sher3_export.targets.configuration import DELAYS, OF_GAINS, Configuration
 from sher3_export.targets.links import INERTIAL
 from sher3_export.targets.target import NOT_TOLD, each
 
@@ -34,14 +34,7 @@ class IsaacLab(Configuration):
         "inertia": "armature",
         "limit": "actuator_effort_limit",
         **dict.fromkeys(DELAYS, "min_delay, max_delay"),
-        **dict.fromkeys(("drive", "servo"), "stiffness, damping"),
-        "servo_position": "stiffness",
-        "servo_velocity": "damping",
-    }
-    gains: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        **dict.fromkeys(("drive", "servo"), ("stiffness", "damping")),
-        "servo_position": ("stiffness",),
-        "servo_velocity": ("damping",),
+        **OF_GAINS,
     }
     refuses: ClassVar[Mapping[str, str]] = {
         **NOT_TOLD,

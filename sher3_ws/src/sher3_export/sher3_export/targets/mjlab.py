@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import ClassVar
 
-from sher3_export.targets.configuration import DELAYS, Configuration
+from sher3_export.targets.configuration import DELAYS, GAINS, OF_GAINS, Configuration
 from sher3_export.targets.mjcf import Mjcf
 
 MODEL = "it stands in the MJCF that mjlab loads: write it there with --to mjcf"
@@ -20,17 +20,9 @@ FIELDS: Mapping[str, str] = {
     "viscous": "viscous_damping",
     "inertia": "armature",
     **dict.fromkeys(DELAYS, "delay_min_lag, delay_max_lag"),
-    **dict.fromkeys(("drive", "servo"), "stiffness, damping"),
-    "servo_position": "stiffness",
-    "servo_velocity": "damping",
+    **OF_GAINS,
 }
 """Constant -> field that takes it."""
-GAINS: Mapping[str, tuple[str, ...]] = {
-    **dict.fromkeys(("drive", "servo"), ("stiffness", "damping")),
-    "servo_position": ("stiffness",),
-    "servo_velocity": ("damping",),
-}
-"""Constant of a servo -> gains that it scales."""
 TWICE = "A BuiltinPositionActuatorCfg adds its own <position>: take that of its joint out of the MJCF."
 
 
@@ -44,7 +36,6 @@ class Mjlab(Configuration):
     joints = "target_names_expr=({!r},)"
     servo = "BuiltinPositionActuatorCfg"
     delays = ("delay_min_lag", "delay_max_lag")
-    gains: ClassVar[Mapping[str, tuple[str, ...]]] = GAINS
     fields = FIELDS
     refuses: ClassVar[Mapping[str, str]] = {
         **dict.fromkeys((name for name in Mjcf.fields if name not in FIELDS), MODEL),

@@ -104,8 +104,3 @@ def structure(topics: Collection[str], known_load: bool = True) -> Structure:
     """
     used = {e.topic for e in _chain() if e.topic} & set(topics)
     return _analyse(frozenset(used | ({PAYLOAD} if known_load else set())))
-
-
-def isolability(topics: Collection[str], known_load: bool = True) -> list[set[str]]:
-    """Return the groups of effect ids that these topics cannot tell apart by where they show; see `structure`."""
-    return [set(group) for group in structure(topics, known_load).groups]

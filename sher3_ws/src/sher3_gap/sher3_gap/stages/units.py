@@ -23,7 +23,6 @@ ROTARY_AXES = frozenset({"roll"})
 """Actuators that turn."""
 PLACES: Mapping[str, tuple[str, ...]] = SITES
 """Kind of place -> sites of the robot."""
-FORCE_SENSOR = Channel("sensing", "force_sensor")
 TIP, LOADED_TIP = Channel("mechanism", "tip"), Channel("structure", "tip")
 
 

@@ -22,8 +22,6 @@ from sher3_challenge.plants.lumped.parameters import (
     TruthParameters,
 )
 
-ROLL = 3
-
 
 def scaled(robot: Robot, linear: float, angular: float) -> Array:
     """Return (5,) one value per actuator: `linear` for the sliders, `angular` for roll."""

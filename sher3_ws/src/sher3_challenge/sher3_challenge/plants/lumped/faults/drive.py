@@ -23,19 +23,13 @@ CATALOGUE.changes(
     viscous_friction="truth.motor.viscous",
 )
 CATALOGUE.changes(scaled_by, controller_gain="truth.host.gain", torque_constant="truth.motor.torque_gain")
-CATALOGUE.changes(set_to, force_saturation="truth.drive.limit", backlash="truth.transmission.backlash")
-
-
-@known
-def command_jitter(rig: Rig, site: Site, sigma: float) -> None:
-    """Commands arrive late by a half-normal time."""
-    rig.jitter = sigma
-
-
-@known
-def dropped_commands(rig: Rig, site: Site, probability: float) -> None:
-    """Some commands never arrive."""
-    rig.loss = probability
+CATALOGUE.changes(
+    set_to,
+    command_jitter="jitter",
+    dropped_commands="loss",
+    force_saturation="truth.drive.limit",
+    backlash="truth.transmission.backlash",
+)
 
 
 @known

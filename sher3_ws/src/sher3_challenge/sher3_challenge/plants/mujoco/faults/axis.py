@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
+import operator
 
 from sher3_challenge.plants.declared import DELTAS
-from sher3_challenge.plants.kinds import Catalogue
+from sher3_challenge.plants.kinds import Catalogue, scaled_by
 from sher3_challenge.plants.mujoco.axes.laws import Film, Grease, Guide, Poles
 from sher3_challenge.plants.mujoco.axes.parts import ELEMENTS, Axis, Bristle
 from sher3_challenge.plants.mujoco.axes.wheels import Eccentric
@@ -14,6 +15,15 @@ from sher3_challenge.plants.site import Site
 
 CATALOGUE = Catalogue()
 known = CATALOGUE.known
+
+CATALOGUE.changes(
+    operator.add,
+    lead_error="axes.lead_error",
+    coulomb_friction="axes.coulomb",  # MuJoCo's dry friction on the motor's joint
+    viscous_friction="axes.viscous",
+    backlash="axes.gap",  # between whose sides the load's guide is pushed, against MuJoCo's own soft contact
+)
+CATALOGUE.changes(scaled_by, torque_constant="axes.torque_gain")
 
 
 def bristles(force: float, reach: float) -> tuple[Bristle, ...]:
@@ -32,24 +42,6 @@ def axis_of(rig: Rig, site: Site) -> Axis:
 
 
 @known
-def torque_constant(rig: Rig, site: Site, relative: float) -> None:
-    """Real force over reported effort is not one."""
-    axis_of(rig, site).torque_gain *= 1 + relative
-
-
-@known
-def lead_error(rig: Rig, site: Site, relative: float) -> None:
-    """The load travels more or less than the motor."""
-    axis_of(rig, site).lead_error += relative
-
-
-@known
-def coulomb_friction(rig: Rig, site: Site, force: float) -> None:
-    """MuJoCo's dry friction on the motor's joint."""
-    axis_of(rig, site).coulomb += force
-
-
-@known
 def stribeck_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
     """Dry friction less what the film carries, which falls with the square of speed and not as a Gaussian."""
     static, level = site.scaled(x, "force"), float(site.rng.uniform(0.1, 0.4))
@@ -59,12 +51,6 @@ def stribeck_friction(rig: Rig, site: Site, x: float) -> dict[str, float]:
     # where a Gaussian has fallen to 1/e, the film's law has too
     axis.levels += (Film((1 - level) * static, velocity / math.sqrt(math.e - 1)),)
     return {"static": static, "force": level * static, "velocity": velocity}
-
-
-@known
-def viscous_friction(rig: Rig, site: Site, extra: float) -> None:
-    """More damping of the motor's joint."""
-    axis_of(rig, site).viscous += extra
 
 
 @known
@@ -120,12 +106,6 @@ def transmission_ripple(rig: Rig, site: Site, amplitude: float, periods_per_rev:
     """An eccentric wheel between motor and load."""
     axis = axis_of(rig, site)
     axis.ripples += (Eccentric(amplitude, axis.lead / periods_per_rev, phase(site)),)
-
-
-@known
-def backlash(rig: Rig, site: Site, width: float) -> None:
-    """The load's guide is pushed from one side of a gap to the other, against MuJoCo's own soft contact."""
-    axis_of(rig, site).gap += width
 
 
 @known

@@ -6,7 +6,7 @@ import math
 import operator
 from dataclasses import replace
 
-from sher3_challenge.plants.kinds import Catalogue, scaled_by
+from sher3_challenge.plants.kinds import Catalogue, scaled_by, set_to
 from sher3_challenge.plants.mujoco.axes.parts import Drive
 from sher3_challenge.plants.mujoco.axes.wheels import Eccentric
 from sher3_challenge.plants.mujoco.rig import Rig
@@ -23,18 +23,7 @@ CATALOGUE.changes(
     encoder_offset="host.offset",
 )
 CATALOGUE.changes(scaled_by, controller_gain="host.gain")
-
-
-@known
-def command_jitter(rig: Rig, site: Site, sigma: float) -> None:
-    """Commands arrive late by a half-normal time."""
-    rig.host.jitter = sigma
-
-
-@known
-def dropped_commands(rig: Rig, site: Site, probability: float) -> None:
-    """Some commands never arrive; the drive holds the one before."""
-    rig.host.loss = probability
+CATALOGUE.changes(set_to, command_jitter="host.jitter", dropped_commands="host.loss", velocity_deadband="axes.deadband")
 
 
 @known
@@ -49,12 +38,6 @@ def force_saturation(rig: Rig, site: Site, limit: float) -> None:
     """The force ends at a share of 12 N, of 0.3 N m on roll."""
     axis = rig.axes[site.index]
     axis.drive = replace(axis.drive or Drive(), limit=limit)
-
-
-@known
-def velocity_deadband(rig: Rig, site: Site, width: float) -> None:
-    """Demands below a width do nothing."""
-    rig.axes[site.index].deadband = width
 
 
 @known

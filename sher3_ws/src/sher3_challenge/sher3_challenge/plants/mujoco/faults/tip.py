@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import operator
 
 import numpy as np
 
@@ -16,6 +17,13 @@ from sher3_challenge.plants.site import Site
 CATALOGUE = Catalogue()
 add = CATALOGUE.add
 known = CATALOGUE.known
+
+CATALOGUE.changes(
+    operator.add,
+    link_compliance="yielding.links",  # seated by a preload
+    thermal_expansion="mechanism.expansion",  # some seconds behind the thermometer
+    tool_gravity="sensor.tool_mass",
+)
 RUBBING = 0.015
 """Friction of a spring of the structure, as a share of what one newton at its usual lever does."""
 
@@ -35,12 +43,6 @@ def structural_compliance(rig: Rig, site: Site, fraction: float) -> None:
         Spring("turn_z", fraction / YAW, 42.0, rub=0.2 * RUBBING),
     )  # fmt: skip
     rig.yielding.springs += springs
-
-
-@known
-def link_compliance(rig: Rig, site: Site, fraction: float) -> None:
-    """The six links give way by their published law, seated by a preload; `fraction` is that of it."""
-    rig.yielding.links += fraction
 
 
 @known
@@ -108,12 +110,6 @@ def tool_offset(rig: Rig, site: Site, x: float, y: float, z: float) -> None:
 
 
 @known
-def thermal_expansion(rig: Rig, site: Site, coefficient: float) -> None:
-    """The structure grows with its temperature, some seconds behind the thermometer."""
-    rig.mechanism.expansion += coefficient
-
-
-@known
 def force_drift(rig: Rig, site: Site, fx: float, fy: float, fz: float) -> None:
     """The force sensor's zero moves with temperature."""
     rig.sensor.drift = np.array([fx, fy, fz, 0.0, 0.0, 0.0])
@@ -125,12 +121,6 @@ def force_bias(rig: Rig, site: Site, x: float) -> dict[str, float]:
     bias = x * site.direction()
     rig.sensor.bias = rig.sensor.bias + np.array([*bias, *(0.01 * x * site.direction())])
     return dict(zip(("fx", "fy", "fz"), bias.tolist(), strict=True))
-
-
-@known
-def tool_gravity(rig: Rig, site: Site, mass: float) -> None:
-    """The tool on the sensor is heavier or lighter than its data."""
-    rig.sensor.tool_mass += mass
 
 
 @known

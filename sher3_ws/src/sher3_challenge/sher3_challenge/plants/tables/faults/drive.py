@@ -24,19 +24,12 @@ CATALOGUE.changes(
     drive_lag="truth.drive.lag",  # of two equal poles: their sum
 )
 CATALOGUE.changes(scaled_by, controller_gain="truth.host.gain")
-CATALOGUE.changes(set_to, velocity_deadband="truth.drive.band")  # with a rounded edge
-
-
-@known
-def command_jitter(rig: Rig, site: Site, sigma: float) -> None:
-    """Commands are late as on a busy bus: seldom punctual, sometimes very late; `sigma` is the rms."""
-    rig.transport.lateness = sigma
-
-
-@known
-def dropped_commands(rig: Rig, site: Site, probability: float) -> None:
-    """Some commands never arrive, often a few in a row."""
-    rig.transport.loss = probability
+CATALOGUE.changes(
+    set_to,
+    command_jitter="transport.lateness",  # its rms, as on a busy bus: seldom punctual, sometimes very late
+    dropped_commands="transport.loss",  # often a few in a row
+    velocity_deadband="truth.drive.band",  # with a rounded edge
+)
 
 
 @known
