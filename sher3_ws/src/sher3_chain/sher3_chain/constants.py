@@ -14,8 +14,8 @@ import numpy as np
 from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.effect import Effect, Shape, Signature
 from sher3_diagnosis.fit.fitting import Term, make_term
+from sher3_diagnosis.fit.tolerance import NUISANCE, SIGMAS
 from sher3_diagnosis.fit.whitened import Whitened
-from sher3_diagnosis.tolerance import NUISANCE, SIGMAS
 
 ZERO, INTEGRAL = "zero_of_the_encoders", "start_of_the_integral"
 """Ids of the two constants."""

@@ -106,7 +106,7 @@ def test_faults_refuse_places_where_they_cannot_sit():
 def test_a_fault_is_the_same_in_every_run_and_its_scale_is_bounded():
     fault = Fault(LUMPED.kind("cogging"), "roll", 0.3, 9)
     plant = LUMPED.make(ROBOT, 3, (fault,), WARM)
-    one, two = plant.rig(1).truth, plant.rig(2).truth
+    one, two = plant.faulty(1).truth, plant.faulty(2).truth
     assert one.motor.cogging_phase[3] == two.motor.cogging_phase[3]
     assert one.motor.weight[3] != two.motor.weight[3]
     assert fault.scaled_by(1e6).magnitude == fault.kind.most and fault.scaled_by(0.0).magnitude == fault.kind.least

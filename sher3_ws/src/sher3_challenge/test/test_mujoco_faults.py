@@ -134,7 +134,7 @@ def test_what_a_bristle_holds_does_not_slip_back():
 def test_faults_on_one_axis_do_not_undo_each_other():
     """A drive that is late and clamped; a force of the motor's poles before a spring that carries the load."""
     late, clamped = (Fault(MUJOCO.kind(name), "tilt", 1e-3, 3) for name in ("drive_lag", "force_saturation"))
-    drive = MUJOCO.make(ROBOT, 0, (late, clamped), WARM, built=False).rig().axes[4].drive
+    drive = MUJOCO.make(ROBOT, 0, (late, clamped), WARM, built=False).faulty().axes[4].drive
     assert drive.lag == 1e-3 and drive.limit == pytest.approx(12.0, rel=2e-3)
     poles, spring = (
         Fault(MUJOCO.kind("cogging"), "delta_1", 0.3, 3),

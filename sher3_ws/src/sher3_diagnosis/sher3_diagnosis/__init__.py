@@ -11,11 +11,11 @@ from sher3_common.faces import lazy
 if TYPE_CHECKING:
     from sher3_diagnosis.channel import Channel as Channel
     from sher3_diagnosis.channel import Residual as Residual
-    from sher3_diagnosis.diagnosis import Diagnosis as Diagnosis
     from sher3_diagnosis.effect import Effect as Effect
     from sher3_diagnosis.effect import Signature as Signature
     from sher3_diagnosis.evidence import Evidence as Evidence
     from sher3_diagnosis.flow import diagnose as diagnose
+    from sher3_diagnosis.machine import Diagnosis as Diagnosis
     from sher3_diagnosis.machine import Machine as Machine
     from sher3_diagnosis.verdict import Verdict as Verdict
 
@@ -25,9 +25,8 @@ __getattr__, __dir__ = lazy(
         "channel": ("Channel", "Residual"),
         "effect": ("Effect", "Signature"),
         "evidence": ("Evidence",),
-        "diagnosis": ("Diagnosis",),
         "flow": ("diagnose",),
-        "machine": ("Machine",),
+        "machine": ("Diagnosis", "Machine"),
         "verdict": ("Verdict",),
     },
 )

@@ -9,10 +9,10 @@ from dataclasses import replace
 from functools import partial
 from typing import TypeVar
 
+from sher3_common import Sher3Error
+
 from sher3_diagnosis.attribute.candidates import Candidates
 from sher3_diagnosis.channel import Array, Channel
-from sher3_diagnosis.diagnosis import Diagnosis
-from sher3_diagnosis.errors import UnknownEffect
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.finding import Finding
 from sher3_diagnosis.judge.borne_out import significant_causes, without_imitations
@@ -24,7 +24,7 @@ from sher3_diagnosis.judge.judge import judge
 from sher3_diagnosis.judge.left_over import down_to_floor, left_over
 from sher3_diagnosis.judge.meaning import without_empty
 from sher3_diagnosis.localise.gaps import localise
-from sher3_diagnosis.machine import Machine
+from sher3_diagnosis.machine import Diagnosis, Machine
 from sher3_diagnosis.quantify.closure import residual_after
 from sher3_diagnosis.quantify.motion import in_motion
 from sher3_diagnosis.quantify.polish import polished
@@ -32,6 +32,10 @@ from sher3_diagnosis.quantify.polish import polished
 R = TypeVar("R")
 E = TypeVar("E", bound=Evidence)
 Say = Callable[[str], None]
+
+
+class UnknownEffect(Sher3Error):
+    """An effect id that the library does not have."""
 
 
 def diagnose(

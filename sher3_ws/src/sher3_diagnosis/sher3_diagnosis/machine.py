@@ -9,7 +9,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
 from sher3_diagnosis.attribute.candidates import Candidates
 from sher3_diagnosis.attribute.plan import SearchPlan
@@ -19,9 +19,9 @@ from sher3_diagnosis.attribute.search import Left, Say
 from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.evidence import Evidence
-from sher3_diagnosis.finding import ExactFinding, Finding
+from sher3_diagnosis.finding import ExactFinding, Finding, Findings
+from sher3_diagnosis.fit.tolerance import within
 from sher3_diagnosis.reporter import Reporter
-from sher3_diagnosis.tolerance import within
 from sher3_diagnosis.verdict import Cause, Interval, Within
 
 R = TypeVar("R")
@@ -118,3 +118,10 @@ class Machine(ABC, Generic[R, E]):
     def reporter(self) -> Reporter[E]:
         """Return the machine's own sections of the report; default none."""
         return Reporter()
+
+
+@dataclass(frozen=True)
+class Diagnosis(Findings[E]):
+    """A verdict with what it rests on, and the machine that was diagnosed, for reports and further experiments."""
+
+    machine: Machine[Any, E]

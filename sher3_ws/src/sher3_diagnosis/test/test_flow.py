@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import pytest
 from sher3_diagnosis import diagnose
-from sher3_diagnosis.errors import UnknownEffect
 from sher3_diagnosis.fit.fitting import make_term
+from sher3_diagnosis.flow import UnknownEffect
 from toy import DIRECTION, OFFSET, SPEED, Toy, case
 
 

@@ -7,7 +7,7 @@ import pytest
 from sher3_diagnosis import diagnose
 from sher3_diagnosis.fit.fitting import fit
 from sher3_diagnosis.fit.solving import solve_within
-from sher3_diagnosis.tolerance import as_built, tolerance, within
+from sher3_diagnosis.fit.tolerance import as_built, tolerance, within
 from toy import DIRECTION, OFFSET, Toy, ToyRun, evidence_of, stroke
 
 

@@ -9,8 +9,8 @@ import numpy as np
 from sher3_description import ACTUATORS, Robot
 from sher3_diagnosis.channel import Array, Channel, Floors, Residual, Residuals
 from sher3_diagnosis.evidence import Evidence
+from sher3_diagnosis.fit.tolerance import Tolerance, as_built, tolerance
 from sher3_diagnosis.fit.whitened import Whitened
-from sher3_diagnosis.tolerance import Tolerance, as_built, tolerance
 from sher3_effects import library
 
 from sher3_gap.nominal_replay import driven_as, followed

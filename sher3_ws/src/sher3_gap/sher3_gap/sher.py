@@ -10,12 +10,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from sher3_description import Robot
-from sher3_diagnosis.diagnosis import Diagnosis
 from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.finding import ExactFinding, Finding
 from sher3_diagnosis.flow import Say, diagnose
 from sher3_diagnosis.judge.costs import DEFAULT, Costs
-from sher3_diagnosis.machine import Machine, Policy
+from sher3_diagnosis.machine import Diagnosis, Machine, Policy
 from sher3_diagnosis.verdict import Cause, Interval
 from sher3_effects import library
 

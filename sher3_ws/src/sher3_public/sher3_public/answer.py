@@ -8,8 +8,8 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from sher3_diagnosis.diagnosis import Diagnosis
 from sher3_diagnosis.flow import diagnose
+from sher3_diagnosis.machine import Diagnosis
 from sher3_diagnosis.report.summary import cause_text, five_lines, headline
 from sher3_diagnosis.verdict import Cause, Verdict, Where
 from sher3_diagnosis.words import place, quantity, words

@@ -10,8 +10,8 @@ import numpy as np
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 from sher3_diagnosis.channel import Channel
-from sher3_diagnosis.diagnosis import Diagnosis
 from sher3_diagnosis.finding import Finding
+from sher3_diagnosis.machine import Diagnosis
 from sher3_diagnosis.quantify.closure import residual_after
 from sher3_diagnosis.report.drawing import STYLE
 from sher3_diagnosis.report.traces import traces

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
@@ -29,6 +29,7 @@ class TableKind(Kind[D, Readings]):
     """A kind of table; a case stores the columns of its readings.
 
     Attributes:
+        reader: checks the columns of a data file, by name, tables and description, and brings them to SI units.
         stored: columns that a case of this kind has at least.
         written_for: words of `Effect.kinds` whose pages it may have.
         words: how a report speaks of it.
@@ -36,11 +37,16 @@ class TableKind(Kind[D, Readings]):
         plan: how causes are looked for: up to six, since a table may have one of each page.
     """
 
+    reader: Callable[..., Readings]
     stored: tuple[str, ...] = ()
     written_for: tuple[str, ...]
     words: Words
     policy = Policy(calibrated=True, own_level=True)
     plan = SearchPlan(causes=6, down_to_floor=True)
+
+    def read(self, name: str, tables: Tables, description: D) -> Readings:
+        """Check a data file; raises MachineError."""
+        return self.reader(name, tables, description)
 
     @abstractmethod
     def tables(self, known: Any, runs: Sequence[Readings]) -> Sequence[Table]:

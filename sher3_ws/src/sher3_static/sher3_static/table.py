@@ -11,9 +11,9 @@ from sher3_diagnosis.channel import Array, Channel, Residual
 from sher3_diagnosis.effect import Effect, Shape, Signature
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import Fit, make_term
+from sher3_diagnosis.fit.tolerance import NUISANCE
 from sher3_diagnosis.fit.whitened import Whitened
 from sher3_diagnosis.thresholds import EATEN
-from sher3_diagnosis.tolerance import NUISANCE
 from sher3_diagnosis.words import quantity
 
 from sher3_static.readings import Labels

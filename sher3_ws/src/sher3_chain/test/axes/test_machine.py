@@ -6,7 +6,7 @@ from sher3_chain.axes.machine import Axes, facts_of
 from sher3_chain.chain.machine import NO_REPEATS
 from sher3_chain.joint.record import AxesRun
 from sher3_diagnosis import diagnose
-from sher3_diagnosis.errors import UnknownEffect
+from sher3_diagnosis.flow import UnknownEffect
 from slides import COUNT, MASS, PERIOD, axis_of, columns, described, driven, effects, machine, run_of, servo, verdict_of
 
 NO_LAW = {"kind": "force", "held": True}

@@ -16,8 +16,8 @@ from sher3_challenge.baselines.inputs import Candidate, Inputs, Stage, Traces
 
 if TYPE_CHECKING:
     from sher3_diagnosis.channel import Channel
-    from sher3_diagnosis.diagnosis import Diagnosis
     from sher3_diagnosis.fit.fitting import Fit
+    from sher3_diagnosis.machine import Diagnosis
     from sher3_gap.evidence import SherEvidence
 
 Array = NDArray[np.floating[Any]]

@@ -108,8 +108,13 @@ class Plant(ABC):
         """Run a plan; `ideal` leaves out noise and rounding of the sensors and tracks the tip, all else the same."""
 
     @abstractmethod
+    def rig(self) -> Any:
+        """Return the robot as built between its runs, a copy that its faults are written into."""
+
     def parameters(self) -> list[dict[str, float]]:
         """Return the parameters of each fault by the contract's names."""
+        rig = self.rig()
+        return [fault.apply(rig) for fault in self.faults]
 
 
 @dataclass(frozen=True)

@@ -10,12 +10,12 @@ from sher3_diagnosis.attribute.rivals import Attribution, without_term
 from sher3_diagnosis.channel import AT_TIP, Channel
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.finding import Finding
+from sher3_diagnosis.fit.tolerance import NUISANCE
 from sher3_diagnosis.judge.evidence.cause import shown_at
 from sher3_diagnosis.localise.gaps import Gap
 from sher3_diagnosis.localise.regimes import regime
 from sher3_diagnosis.quantify.closure import closure
 from sher3_diagnosis.quantify.parameters import parameters
-from sher3_diagnosis.tolerance import NUISANCE
 from sher3_diagnosis.verdict import Cause, Where
 
 

@@ -6,10 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from sher3_diagnosis.attribute.rivals import Attribution
-from sher3_diagnosis.diagnosis import Diagnosis
 from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.finding import Finding
 from sher3_diagnosis.localise.pattern import Pattern, pattern_of
+from sher3_diagnosis.machine import Diagnosis
 from sher3_diagnosis.report.odds import significant
 from sher3_diagnosis.report.summary import told
 from sher3_diagnosis.reporter import Isolability

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from sher3_diagnosis.diagnosis import Diagnosis
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.localise.gaps import Gap
+from sher3_diagnosis.machine import Diagnosis
 from sher3_diagnosis.reporter import Reporter
 from sher3_diagnosis.verdict import Where
 from sher3_diagnosis.words import place, quantity, ratio_text, words

@@ -5,8 +5,8 @@ from __future__ import annotations
 import jinja2
 from matplotlib import rc_context
 
-from sher3_diagnosis.diagnosis import Diagnosis
 from sher3_diagnosis.discover.formula import Discovery
+from sher3_diagnosis.machine import Diagnosis
 from sher3_diagnosis.report.causes import cause_cards
 from sher3_diagnosis.report.chain import chain
 from sher3_diagnosis.report.closures import closure_bars

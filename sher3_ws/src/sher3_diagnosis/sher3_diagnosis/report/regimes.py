@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from sher3_diagnosis.diagnosis import Diagnosis
 from sher3_diagnosis.localise.regimes import regime_powers
+from sher3_diagnosis.machine import Diagnosis
 from sher3_diagnosis.words import place, words
 
 SHOWN = 4

@@ -9,10 +9,10 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from sher3_diagnosis.channel import Array, Channel
-from sher3_diagnosis.diagnosis import Diagnosis
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.finding import Finding
 from sher3_diagnosis.localise.gaps import PARTS
+from sher3_diagnosis.machine import Diagnosis
 from sher3_diagnosis.quantify.closure import residual_after
 from sher3_diagnosis.report.drawing import ABOVE, CORRECTED, FLOOR, MARGINS, NOMINAL, REAL, figure, to_svg
 from sher3_diagnosis.reporter import Reporter, Trace

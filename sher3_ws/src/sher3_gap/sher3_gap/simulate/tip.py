@@ -12,9 +12,9 @@ import numpy as np
 from sher3_description import Robot
 from sher3_diagnosis.channel import Array
 from sher3_diagnosis.fit.fitting import Fit, Term
+from sher3_diagnosis.fit.tolerance import NUISANCE
 from sher3_diagnosis.quantify.closure import interval_of, up_to_whole
 from sher3_diagnosis.thresholds import NO_TIP_GAP
-from sher3_diagnosis.tolerance import NUISANCE
 from sher3_diagnosis.verdict import Cause, Interval
 from sher3_effects import to_effects
 

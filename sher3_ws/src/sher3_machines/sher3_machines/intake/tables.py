@@ -12,7 +12,7 @@ import numpy as np
 from sher3_common import FileError
 from sher3_diagnosis.channel import Array
 
-from sher3_machines.errors import MachineError
+from sher3_machines.errors import MachineError, no_reader
 from sher3_machines.intake.readers.excel import read_workbook
 from sher3_machines.intake.readers.hdf5 import ENDINGS as OF_HDF5
 from sher3_machines.intake.readers.hdf5 import read_hdf5
@@ -42,8 +42,7 @@ def read_bag(path: Path) -> Tables:
     try:
         from sher3_machines.intake.readers.bags import read_bag
     except ImportError as error:
-        value, remedy = f"{error.name} is not installed", "install sher3[bags]"
-        raise MachineError(f"{path}: no reader for bags", value=value, remedy=remedy) from error
+        raise no_reader(path, "bags", str(error.name), "install sher3[bags]") from error
     return read_bag(path)
 
 

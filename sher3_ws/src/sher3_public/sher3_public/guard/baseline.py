@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from sher3_common import FileError, read_text
-from sher3_diagnosis.diagnosis import Diagnosis
+from sher3_diagnosis.machine import Diagnosis
 from sher3_diagnosis.verdict import Verdict
 
 from sher3_public.errors import InputError

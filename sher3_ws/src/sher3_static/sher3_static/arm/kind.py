@@ -61,6 +61,7 @@ class ArmKind(TableKind[ArmDescription]):
     """
 
     name, description = "arm", ArmDescription
+    reader = staticmethod(read_arm)
     stored = ("joints",)
     written_for = ("arm",)
     policy = Policy(carried=True, own_level=True)
@@ -89,10 +90,6 @@ class ArmKind(TableKind[ArmDescription]):
     def draft(self, path: Path, tables: Tables, rate: float | None, model: Path | None) -> Draft | None:
         """Draft an arm of postures where a model and no clock is given; None of any other table."""
         return draft_arm(path, tables, model) if model is not None and rate is None else None
-
-    def read(self, name: str, tables: Tables, description: ArmDescription) -> Readings:
-        """Check a data file; raises MachineError."""
-        return read_arm(name, tables, description)
 
     def tables(self, known: KnownArm, runs: Sequence[Readings]) -> Sequence[Table]:
         """Return all postures as one table with the frames fitted to all; a tenth is held out in turn.

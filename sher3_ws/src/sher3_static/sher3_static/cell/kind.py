@@ -31,6 +31,7 @@ class CellKind(TableKind[CellDescription]):
     """Load cells: what a cell read under known forces."""
 
     name, description = "load_cell", CellDescription
+    reader = staticmethod(read_cell)
     stored = ("applied", "reading", "temperature")
     written_for = ("cell",)
     words = Words(
@@ -42,10 +43,6 @@ class CellKind(TableKind[CellDescription]):
         flows={"sensing": "force → reading"},
         residual={"sensing": "reading − force"},
     )
-
-    def read(self, name: str, tables: Tables, description: CellDescription) -> Readings:
-        """Check a data file; raises MachineError."""
-        return read_cell(name, tables, description)
 
     def draft(self, path: Path, tables: Tables, rate: float | None, model: Path | None) -> Draft | None:
         """Draft a table of known loads and readings; None where the file is none."""

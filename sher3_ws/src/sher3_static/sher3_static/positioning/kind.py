@@ -25,6 +25,7 @@ class PositioningKind(TableKind[PositioningDescription]):
     """Axes and planes of a machine tool or stage, each a table of its own."""
 
     name, description = "positioning", PositioningDescription
+    reader = staticmethod(read_tests)
     written_for = ("table", "circle")
     words = Words(
         rows="{name}: {n} rows",
@@ -35,10 +36,6 @@ class PositioningKind(TableKind[PositioningDescription]):
         flows={"transmission": "target → position", "mechanism": "circle → radius"},
         residual={"transmission": "reading − target", "mechanism": "radius − nominal"},
     )
-
-    def read(self, name: str, tables: Tables, description: PositioningDescription) -> Readings:
-        """Check a data file; raises MachineError."""
-        return read_tests(name, tables, description)
 
     def draft(self, path: Path, tables: Tables, rate: float | None, model: Path | None) -> Draft | None:
         """Draft a test of a table without a clock that has targets and readings; None without them."""

@@ -8,7 +8,6 @@ import numpy as np
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.finding import Finding
 from sher3_effects import pages
-from sher3_machines.intake.tables import Tables
 from sher3_machines.thresholds import BLOCKS
 
 from sher3_static.kind import TableKind
@@ -29,6 +28,7 @@ class SensorKind(TableKind[SensorDescription]):
     """Force sensors of six components."""
 
     name, description = "force_sensor", SensorDescription
+    reader = staticmethod(read_sensor)
     stored = ("wrench", "temperature")
     written_for = ("sensor",)
     words = Words(
@@ -40,10 +40,6 @@ class SensorKind(TableKind[SensorDescription]):
         flows={"sensing": "load → reading"},
         residual={"sensing": "reading − nominal"},
     )
-
-    def read(self, name: str, tables: Tables, description: SensorDescription) -> Readings:
-        """Check a data file; raises MachineError."""
-        return read_sensor(name, tables, description)
 
     def tables(self, known: SensorDescription, runs: Sequence[Readings]) -> Sequence[Table]:
         """Return all readings as one table; every eighth is held out in turn."""

@@ -19,9 +19,9 @@ from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import Fit, Term, fit, make_term
+from sher3_diagnosis.fit.tolerance import NUISANCE
 from sher3_diagnosis.judge.left_over import down_to_floor
 from sher3_diagnosis.thresholds import NEEDED
-from sher3_diagnosis.tolerance import NUISANCE
 from sher3_effects import computed
 
 from sher3_chain.manipulator.causes.confounding import GAIN

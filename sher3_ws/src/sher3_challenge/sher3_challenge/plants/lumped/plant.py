@@ -28,9 +28,13 @@ class LumpedPlant(Plant):
             return nominal(self.robot)
         return individual(self.robot, np.random.default_rng(self.seed), self.level)
 
-    def rig(self, run_seed: int) -> Rig:
+    def rig(self) -> Rig:
+        """Return a copy of the robot as built."""
+        return Rig(self.robot, copied(self.individual), region=np.array(self.region))
+
+    def faulty(self, run_seed: int) -> Rig:
         """Return robot and transport of one run: a copy with the faults in it and the run's scatter."""
-        rig = Rig(self.robot, copied(self.individual), region=np.array(self.region))
+        rig = self.rig()
         for fault in self.faults:
             fault.apply(rig)
         if self.built:
@@ -40,7 +44,7 @@ class LumpedPlant(Plant):
 
     def run(self, plan: RunPlan, *, ideal: bool = False) -> Run:
         """Run a plan; `ideal` leaves out noise and rounding of the sensors, all else being the same."""
-        rig = self.rig(plan.seed)
+        rig = self.faulty(plan.seed)
         if ideal:
             rig.truth.host.motor_resolution[:] = 0.0
             rig.truth.host.load_resolution[:] = 0.0
@@ -49,8 +53,3 @@ class LumpedPlant(Plant):
         warmth = self.climate.course(plan.stamp)(plan.excitation.time)
         signals = signals_of(self, rig, timing, plan.excitation, warmth, rng)
         return recorded(self.robot, plan, signals, rng, tracker=self.tracker or ideal, ideal=ideal)
-
-    def parameters(self) -> list[dict[str, float]]:
-        """Return the parameters of each fault by the contract's names."""
-        rig = Rig(self.robot, copied(self.individual), region=np.array(self.region))
-        return [fault.apply(rig) for fault in self.faults]

@@ -29,28 +29,27 @@ class MujocoPlant(Plant):
     """The truth plant whose axes and structure are moved by MuJoCo."""
 
     def rig(self) -> Rig:
-        """Return the robot with its faults, as it is between the runs."""
-        return self._faulty()[0]
-
-    def _faulty(self) -> tuple[Rig, list[dict[str, float]]]:
+        """Return the robot as built."""
         rig = as_drawn(self.robot)
         rig.region = np.array(self.region)
         if self.built:
             deviate(rig, np.random.default_rng(self.seed), self.level)
+        return rig
+
+    def faulty(self) -> Rig:
+        """Return the robot with its faults, as it is between the runs."""
+        rig = self.rig()
         friction = [axis.coulomb for axis in rig.axes]
-        told = [fault.apply(rig) for fault in self.faults]
+        for fault in self.faults:
+            fault.apply(rig)
         if self.built:
             bend(rig, self.level.bend(self.seed), friction)
         rig.host.foreign = rig.foreign
-        return rig, told
-
-    def parameters(self) -> list[dict[str, float]]:
-        """Return the parameters of each fault by the contract's names."""
-        return self._faulty()[1]
+        return rig
 
     def run(self, plan: RunPlan, *, ideal: bool = False) -> Run:
         """Run a plan; `ideal` leaves out noise and rounding of the sensors, all else being the same."""
-        rig = self.rig()
+        rig = self.faulty()
         if self.built:
             on_the_day(rig, np.random.default_rng((self.seed, plan.seed)))
         if ideal:

@@ -46,7 +46,7 @@ class TablesPlant(Plant):
         return individual(self.robot, np.random.default_rng((3, self.seed)), self.level)
 
     def rig(self) -> Rig:
-        """Return a copy of the robot with the faults in it."""
+        """Return a copy of the robot as built."""
         return Rig(self.robot, copied(self.individual), region=np.array(self.region))
 
     def run(self, plan: RunPlan, *, ideal: bool = False) -> Run:
@@ -77,8 +77,3 @@ class TablesPlant(Plant):
             room,
         )  # fmt: skip
         return recorded(self.robot, plan, signals, rng, tracker=self.tracker or ideal, ideal=ideal)
-
-    def parameters(self) -> list[dict[str, float]]:
-        """Return the parameters of each fault by the contract's names."""
-        rig = self.rig()
-        return [fault.apply(rig) for fault in self.faults]

@@ -9,7 +9,7 @@ from typing import Any
 
 from sher3_diagnosis.channel import Array
 
-from sher3_machines.errors import MachineError
+from sher3_machines.errors import no_reader
 from sher3_machines.intake.readers.rows import columns_of
 
 
@@ -23,11 +23,7 @@ def read_workbook(path: Path) -> dict[str, Array]:
     try:
         openpyxl = import_module("openpyxl")
     except ImportError as error:
-        raise MachineError(
-            f"{path}: no reader for workbooks",
-            value="openpyxl is not installed",
-            remedy="install sher3[excel], or save the sheet as csv",
-        ) from error
+        raise no_reader(path, "workbooks", "openpyxl", "install sher3[excel], or save the sheet as csv") from error
     try:
         book = openpyxl.load_workbook(path, read_only=True, data_only=True)
     except Exception as error:  # whatever the reader makes of a bad file

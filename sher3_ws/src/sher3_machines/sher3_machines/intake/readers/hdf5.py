@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from sher3_diagnosis.channel import Array
 
-from sher3_machines.errors import MachineError
+from sher3_machines.errors import no_reader
 from sher3_machines.intake.readers.native import read_in_child, whole
 from sher3_machines.intake.readers.shapes import plain, stacked
 
@@ -45,11 +45,8 @@ def read_hdf5(path: Path) -> dict[str, Array]:
 def read_raw(path: Path, raw: bytes) -> dict[str, Array]:
     """Return what `read_hdf5` does, of a file that is in memory."""
     if find_spec("h5py") is None:
-        raise MachineError(
-            f"{path}: no reader for HDF5",
-            value="h5py is not installed",
-            remedy="install sher3[hdf5], or save it as npz or csv, in MATLAB with the option -v7",
-        )
+        remedy = "install sher3[hdf5], or save it as npz or csv, in MATLAB with the option -v7"
+        raise no_reader(path, "HDF5", "h5py", remedy)
     return read_in_child("hdf5", raw)
 
 

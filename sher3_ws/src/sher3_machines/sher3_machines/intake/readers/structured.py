@@ -12,7 +12,7 @@ from sher3_common import parse_json, read_json
 from sher3_common.array_files import read_array, read_arrays
 from sher3_diagnosis.channel import Array
 
-from sher3_machines.errors import MachineError
+from sher3_machines.errors import no_reader
 from sher3_machines.intake.readers.epics import is_archive, tables_of_archive
 from sher3_machines.intake.readers.shapes import plain
 from sher3_machines.intake.readers.text import decoded
@@ -89,11 +89,7 @@ def read_parquet(path: Path) -> dict[str, Array]:
     try:
         parquet = import_module("pyarrow.parquet")
     except ImportError as error:
-        raise MachineError(
-            f"{path}: no reader for Parquet",
-            value="pyarrow is not installed",
-            remedy="install sher3[lerobot], or convert to csv",
-        ) from error
+        raise no_reader(path, "Parquet", "pyarrow", "install sher3[lerobot], or convert to csv") from error
     table = parquet.read_table(path)
     return numeric({name: _plain(table[name]) for name in table.column_names})
 
