@@ -92,9 +92,11 @@ class GridView:
 
     Attributes:
         run: its signals, a `FilteredRun` with what was recorded besides.
+        holds_at_rest: whether a dry friction holds any force up to its level in samples at rest.
     """
 
     run: Any
+    holds_at_rest = False
 
     @cached_property
     def position(self) -> Array:

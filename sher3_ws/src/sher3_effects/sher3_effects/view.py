@@ -115,6 +115,8 @@ class AxisView(Protocol):
 
     run: Any
     """Signals of the run: see `RecordedRun`."""
+    holds_at_rest: bool
+    """Whether a dry friction holds any force up to its level in samples at rest."""
 
     def row(self, site: str) -> int:
         """Return the column of an actuator in the run's arrays."""

@@ -16,9 +16,8 @@ def view(seen=1e-6):
     run = SimpleNamespace(ticks=4, to_grid=lambda x: x, velocity=MOVES[:, None])
     axis = NominalAxis(1.0, 0.0, 2e-3, 0.01, seen=seen)
     back = np.full(4, -0.3)
-    return SimpleNamespace(
-        run=run, velocity=MOVES[:, None], row=lambda site: 0, axis=lambda site: axis, sliding=lambda i, d: back
-    )
+    facts = {"run": run, "velocity": MOVES[:, None], "holds_at_rest": True}
+    return SimpleNamespace(**facts, row=lambda site: 0, axis=lambda site: axis, sliding=lambda i, d: back)
 
 
 def test_at_rest_it_holds_any_force_up_to_its_level_whatever_it_slid_before():

@@ -13,8 +13,8 @@ from sher3_chain.joint.bounds import least_of
 from sher3_chain.joint.record import AxesRun
 from sher3_diagnosis.effect import Effect
 from sher3_effects import pages
-from sher3_effects.compliance.unseen_compliance import ComplianceBehindMotor
-from sher3_effects.lost_motion.unseen_backlash import BacklashBeforeEncoder, BacklashBehindMotor
+from sher3_effects.compliance.compliance_of_one_encoder import ComplianceBehindMotor
+from sher3_effects.lost_motion.backlash_of_one_encoder import BacklashBeforeEncoder, BacklashBehindMotor
 from slides import MASS, PERIOD, axis_of, columns, driven
 
 SIGNALS = {**columns("position", "reference", "load"), **columns("command", "effort", unit="N")}

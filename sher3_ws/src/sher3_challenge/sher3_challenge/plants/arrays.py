@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -27,3 +27,15 @@ def copied(whole: T) -> T:
 def axis_slice(part: Any, j: int) -> Any:
     """Return a part of the robot for one axis: the same fields as numbers, and as the tables of that axis."""
     return type(part)(*(float(x[j]) if x.ndim == 1 else np.ascontiguousarray(x[j]) for x in part))
+
+
+class Course(NamedTuple):
+    """What the loop of a plant in compiled code leaves behind, all (n, 5) per tick."""
+
+    command: Array  # host's velocity command
+    echo: Array  # demand the drive executed in the interval that ended here
+    motor: Array  # true motor position
+    load: Array  # true load position
+    force: Array  # force the drive makes, before noise
+    motor_reading: Array
+    load_reading: Array

@@ -15,8 +15,8 @@ import numpy as np
 from sher3_common import Sher3Error
 
 from sher3_challenge.plants.declared import DECLARED, Row
+from sher3_challenge.plants.drawn import DRAWN, Drawn, Parameters
 from sher3_challenge.plants.site import Site
-from sher3_challenge.plants.told import TOLD, Parameters, Told
 
 
 class FaultError(Sher3Error):
@@ -25,7 +25,7 @@ class FaultError(Sher3Error):
 
 Apply = Callable[[Any, Site, float], Parameters]
 Law = TypeVar("Law", bound=Callable[..., Any])
-"""Law of a fault: rig, site and its parameters as they are told -> more of them that it drew itself, or nothing."""
+"""Law of a fault: rig, site and its parameters as they are drawn -> more of them that it drew itself, or nothing."""
 Change = Callable[[Any, float], Any]
 """What was there, and the parameter of a fault -> what is there then."""
 
@@ -91,7 +91,7 @@ class Catalogue(dict[str, Kind]):
             self._declared(name, partial(_changed, path, change))
 
     def _declared(self, name: str, law: Callable[..., Any]) -> None:
-        apply = partial(_as_told, law, TOLD[name]) if name in TOLD else law
+        apply = partial(_as_drawn, law, DRAWN[name]) if name in DRAWN else law
         self[name] = Kind(**vars(DECLARED[name]), name=name, apply=apply)
 
     def add(
@@ -118,12 +118,12 @@ def scaled_by(now: Any, relative: float) -> Any:
     return now * (1 + relative)
 
 
-def _changed(path: str, change: Change, rig: Any, site: Site, **told: float) -> None:
+def _changed(path: str, change: Change, rig: Any, site: Site, **drawn: float) -> None:
     """Write the one parameter of a fault into a value of the rig: its rows of an array, or a number.
 
     A list on the way holds an object for each actuator.
     """
-    (value,) = told.values()
+    (value,) = drawn.values()
     *owners, last = path.split(".")
     owner = reduce(getattr, owners, rig)
     owner = owner[site.index] if isinstance(owner, list) else owner
@@ -134,7 +134,7 @@ def _changed(path: str, change: Change, rig: Any, site: Site, **told: float) -> 
         setattr(owner, last, change(now, value))
 
 
-def _as_told(law: Callable[..., Parameters | None], told: Told, rig: Any, site: Site, x: float) -> Parameters:
+def _as_drawn(law: Callable[..., Parameters | None], draw: Drawn, rig: Any, site: Site, x: float) -> Parameters:
     """Write a fault of a magnitude into a rig by its law; return its parameters."""
-    drawn = told(site, x)
+    drawn = draw(site, x)
     return {**drawn, **(law(rig, site, **drawn) or {})}

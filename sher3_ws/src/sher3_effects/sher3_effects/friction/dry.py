@@ -36,9 +36,9 @@ class DryFriction(Page):
         return Signature({Channel(self.stage, site): column(z)})
 
     def held(self, view: AxisView, site: str, shape: Shape, coefficients: Array) -> Array | None:
-        """Return the level (g,) where the axis of a robot rests, 0 where it moves; None if no count is known."""
+        """Return the level (g,) where an axis rests, 0 where it moves; None if no count is known."""
         count = view.axis(site).seen
-        if "robot" not in self.kinds or count == 0.0:
+        if not view.holds_at_rest or count == 0.0:
             return None
         rests = np.abs(view.velocity[:, view.row(site)]) < count / STILL
         columns = self.signature(_Slid(view), site, shape).columns[Channel(self.stage, site)]

@@ -28,6 +28,7 @@ class PositionFriction(DryFriction):
 
     id, family, stage = "position_friction", "friction", "motor_mechanics"
     inputs = ("direction", "position")
+    kinds = ("robot", "axis")
     needs = ("lead",)
     settles = True
     best = Best("reversals", "reversals of several amplitudes and speeds separate friction laws")
@@ -92,12 +93,6 @@ def least_of(coefficients: Array) -> float:
         [second.conjugate(), first.conjugate(), mean],
     ]
     return float(np.linalg.eigvalsh(np.array(rows))[0])
-
-
-class PositionFrictionOnAxis(PositionFriction):
-    """The same on one axis of any machine."""
-
-    kinds = ("axis",)
 
 
 @dataclass(frozen=True)

@@ -25,6 +25,8 @@ from sher3_gap.stages.residuals import drive_law
 class SherView(GridView):
     """A run of the robot with its kinematics and the features that several effects share."""
 
+    holds_at_rest = True
+
     def __init__(self, run: RunSignals, robot: Robot, geometry: Geometry) -> None:
         self.run = run
         self.robot = robot

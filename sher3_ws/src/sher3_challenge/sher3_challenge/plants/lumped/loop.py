@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sher3_challenge.plants.arrays import axis_slice
+from sher3_challenge.plants.arrays import Course, axis_slice
 from sher3_challenge.plants.compiled import compiled, compiled_inner
 from sher3_challenge.plants.grammar import ON_FORCE, ON_READING, Foreign, foreign
 from sher3_challenge.plants.lumped.axis import (
@@ -43,18 +43,6 @@ HISTORY = 8
 Motors = tuple[Motor, ...]
 Drives = tuple[Drive, ...]
 Transmissions = tuple[Transmission, ...]
-
-
-class Course(NamedTuple):
-    """What the loop leaves behind, all (n, 5) per tick unless noted."""
-
-    command: Array  # host's velocity command
-    echo: Array  # demand the drive executed in the interval that ended here
-    motor: Array  # true motor position
-    load: Array  # true load position
-    force: Array  # force the drive makes, before noise
-    motor_reading: Array
-    load_reading: Array
 
 
 class Script(NamedTuple):

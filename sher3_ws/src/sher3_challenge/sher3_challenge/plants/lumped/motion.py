@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-
 import numpy as np
 from sher3_description.contract import REFERENCE_TEMPERATURE
 from sher3_gap.excitation import Excitation
@@ -17,28 +15,9 @@ from sher3_challenge.plants.plant import Plant
 from sher3_challenge.plants.recorder import Signals
 
 
-@dataclass(frozen=True)
-class Timing:
-    """Transport of commands: fixed delay per axis [s], spread of a random one [s], probability of loss."""
-
-    delay: Array = field(default_factory=lambda: np.zeros(AXES))
-    jitter: float = 0.0
-    loss: float = 0.0
-
-    def draw(self, ticks: int, period: float, rng: np.random.Generator) -> Array:
-        """Return (ticks, 5) delays from tick to arrival; inf where the command is lost. Commands never overtake."""
-        common = np.minimum(np.abs(self.jitter * rng.standard_normal(ticks)), 5 * period)
-        arrival = np.arange(ticks)[:, None] * period + common[:, None] + self.delay
-        arrival = np.maximum.accumulate(arrival, axis=0) - np.arange(ticks)[:, None] * period
-        arrival[rng.random(ticks) < self.loss] = np.inf
-        arrival[0] = np.where(np.isinf(arrival[0]), 0.0, arrival[0])
-        return np.asarray(arrival)
-
-
 def signals_of(
     plant: Plant,
     rig: Rig,
-    timing: Timing,
     excitation: Excitation,
     temperature: Array,
     rng: np.random.Generator,
@@ -55,7 +34,7 @@ def signals_of(
         np.ascontiguousarray(excitation.position),
         np.ascontiguousarray(excitation.velocity),
         contact,
-        timing.draw(n, period, rng),
+        rig.timing.draw(n, period, rng),
         glitches,
         np.where(rng.random(AXES) < 0.5, -1.0, 1.0),
         period,

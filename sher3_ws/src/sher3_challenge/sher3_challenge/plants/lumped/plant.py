@@ -9,7 +9,7 @@ import numpy as np
 from sher3_bags import Run
 
 from sher3_challenge.plants.arrays import copied
-from sher3_challenge.plants.lumped.motion import Timing, signals_of
+from sher3_challenge.plants.lumped.motion import signals_of
 from sher3_challenge.plants.lumped.parameters import TruthParameters
 from sher3_challenge.plants.lumped.rig import Rig
 from sher3_challenge.plants.lumped.robot import bend, individual, nominal, scatter
@@ -49,7 +49,6 @@ class LumpedPlant(Plant):
             rig.truth.host.motor_resolution[:] = 0.0
             rig.truth.host.load_resolution[:] = 0.0
         rng = np.random.default_rng(plan.seed)
-        timing = Timing(rig.delay, rig.jitter, rig.loss)
         warmth = self.climate.course(plan.stamp)(plan.excitation.time)
-        signals = signals_of(self, rig, timing, plan.excitation, warmth, rng)
+        signals = signals_of(self, rig, plan.excitation, warmth, rng)
         return recorded(self.robot, plan, signals, rng, tracker=self.tracker or ideal, ideal=ideal)

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sher3_challenge.plants.arrays import axis_slice
+from sher3_challenge.plants.arrays import Course, axis_slice
 from sher3_challenge.plants.compiled import compiled, compiled_inner
 from sher3_challenge.plants.grammar import ON_FORCE, ON_READING, Foreign, foreign
 from sher3_challenge.plants.plant import AXES, Array
@@ -52,18 +52,6 @@ Drives = tuple[Drive, ...]
 Odds = tuple[Odd, ...]
 Transmissions = tuple[Transmission, ...]
 Hosts = tuple[Host, ...]
-
-
-class Course(NamedTuple):
-    """What the loop leaves behind, all (n, 5) per tick."""
-
-    command: Array
-    echo: Array
-    motor: Array  # true positions
-    load: Array
-    force: Array  # reported, without noise
-    motor_reading: Array
-    load_reading: Array
 
 
 class Script(NamedTuple):

@@ -17,16 +17,16 @@ known = CATALOGUE.known
 
 CATALOGUE.changes(
     operator.add,
-    command_delay="delay",
-    axis_skew="delay",
+    command_delay="timing.delay",
+    axis_skew="timing.delay",
     lead_error="truth.transmission.lead_error",
     viscous_friction="truth.motor.viscous",
 )
 CATALOGUE.changes(scaled_by, controller_gain="truth.host.gain", torque_constant="truth.motor.torque_gain")
 CATALOGUE.changes(
     set_to,
-    command_jitter="jitter",
-    dropped_commands="loss",
+    command_jitter="timing.jitter",
+    dropped_commands="timing.loss",
     force_saturation="truth.drive.limit",
     backlash="truth.transmission.backlash",
 )

@@ -1,4 +1,4 @@
-"""What a fault of a kind is told as: parameters, drawn alike on every truth plant. Their laws are each plant's own."""
+"""Parameters of a fault of a kind, drawn alike on every truth plant. Their laws are each plant's own."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from sher3_challenge.plants.site import Site
 
 Parameters = dict[str, float]
-Told = Callable[[Site, float], Parameters]
+Drawn = Callable[[Site, float], Parameters]
 """Site, and magnitude in a slider's unit -> parameters by the contract's names."""
 
 LARGEST_FORCE = 12.0
@@ -17,22 +17,22 @@ HEAVIEST = 0.015
 """Mass by which a tool may differ from its data [kg]."""
 
 
-def as_given(name: str) -> Told:
+def as_given(name: str) -> Drawn:
     """The magnitude itself."""
     return lambda site, x: {name: x}
 
 
-def either_way(name: str) -> Told:
+def either_way(name: str) -> Drawn:
     """The magnitude with a sign."""
     return lambda site, x: {name: site.sign() * x}
 
 
-def scaled(name: str, dimension: str) -> Told:
+def scaled(name: str, dimension: str) -> Drawn:
     """The magnitude in the actuator's unit."""
     return lambda site, x: {name: site.scaled(x, dimension)}
 
 
-def waves(dimension: str, *orders: int) -> Told:
+def waves(dimension: str, *orders: int) -> Drawn:
     """An amplitude and a number of periods per revolution."""
     return lambda site, x: {
         "amplitude": site.scaled(x, dimension),
@@ -40,7 +40,7 @@ def waves(dimension: str, *orders: int) -> Told:
     }
 
 
-def along(*names: str) -> Told:
+def along(*names: str) -> Drawn:
     """A vector in any direction."""
     return lambda site, x: dict(zip(names, (x * site.direction()).tolist(), strict=True))
 
@@ -59,7 +59,7 @@ def gives_way(site: Site, x: float) -> Parameters:
 
 RELATIVE, FORCE, WIDTH = either_way("relative"), scaled("force", "force"), scaled("width", "length")
 
-TOLD: Mapping[str, Told] = {
+DRAWN: Mapping[str, Drawn] = {
     "command_delay": as_given("delay"),
     "command_jitter": as_given("sigma"),
     "dropped_commands": as_given("probability"),
