@@ -245,6 +245,10 @@ class Effect:
         """Return whether a fit is physically possible; default where its first coefficient is large enough."""
         return self.above == -math.inf or bool(coefficients[0] > self.above)
 
+    def plainer(self, views: Sequence[Any], site: str, shape: Shape) -> list[Shape]:
+        """Return shapes of fewer numbers that take a shape's place where its numbers have no size; default none."""
+        return []
+
     def limits(self, shape: Shape) -> Mapping[str, tuple[float, float]]:
         """Return parameter -> smallest and largest value that may be in its interval; default the bounds."""
         return self.bounds

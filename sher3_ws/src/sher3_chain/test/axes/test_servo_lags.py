@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from drawn_axes import drawn_servo
 from scipy.signal import lfilter
 from sher3_chain.joint.record import AxesRun
 from sher3_diagnosis import diagnose
@@ -49,3 +50,23 @@ def test_a_load_that_rings_tells_its_frequency_without_a_force():
     ).verdict
     assert [c.effect for c in verdict.causes] == ["transmission_compliance"]
     assert verdict.causes[0].parameters["frequency"].value == pytest.approx(12.0, rel=0.02)
+
+
+@pytest.mark.parametrize("seed", [8020, 8070])
+def test_a_dead_time_beside_a_lag_and_a_friction_is_told(seed):
+    """Drawn servos of 100 and 50 Hz, 30 and 80 ms late: half a period more, since they hold what they are asked.
+
+    Before, two numbers of the lag changed places, so that neither had a size.
+    """
+    drawn = drawn_servo(seed)
+    causes = {c.effect: c for c in diagnose(drawn.machine, [drawn.run]).verdict.causes}
+    assert set(causes) == {*drawn.truth} - {"delay"}
+    delay = causes["drive_lag"].parameters["delay"]
+    assert delay.low < drawn.late + 0.5 * drawn.run.period < delay.high
+
+
+def test_no_number_of_a_servo_is_below_zero():
+    """A slope of the error that would make a loop later is a dead time: drawn at 200 Hz, 10 ms late."""
+    drawn = drawn_servo(8004)
+    causes = {c.effect: c for c in diagnose(drawn.machine, [drawn.run]).verdict.causes}
+    assert "delay" in causes["drive_lag"].parameters and "rate" not in causes["drive_lag"].parameters

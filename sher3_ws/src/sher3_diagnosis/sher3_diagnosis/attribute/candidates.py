@@ -81,6 +81,11 @@ class Candidates:
         """Fit the best shape of a plain law beside the terms given; None where none is possible."""
         return self._searched(effect, site, given, effect.plain_shapes(self.evidence.views, site))
 
+    def best_plainer(self, term: Term, given: Sequence[Term]) -> Fit | None:
+        """Fit the best shape of a term's effect with fewer numbers than its own; None where it has none."""
+        shapes = term.effect.plainer(self.evidence.views, term.site, term.shape)
+        return self._searched(term.effect, term.site, given, shapes)
+
     def _searched(self, effect: Effect, site: str, given: Sequence[Term], shapes: list[Shape]) -> Fit | None:
         """Fit the best of some shapes and of those near it."""
         found: Fit | None = None

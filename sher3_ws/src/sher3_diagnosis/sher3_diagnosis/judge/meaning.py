@@ -49,6 +49,9 @@ def without_empty(
         if says_nothing(evidence, attribution.fit, i, cause):
             least = empty.setdefault(site, i)
             empty[site] = i if worth < attribution.explained[least] else least
+    for i in empty.values():
+        if (fewer := _plainer(candidates, attribution, i)) is not None:
+            return fewer
     at = dict(zip(attribution.causes, causes, strict=True))
     small = [i for i in empty.values() if _small(attribution, i, at)]
     small = small if carried else [i for i in small if _bears(evidence, attribution, i, at)]
@@ -149,6 +152,18 @@ def _unnamed(evidence: Evidence, attribution: Attribution, indices: Sequence[int
     rest = [i for i in attribution.causes if i not in indices]
     put = attribution.arranged(evidence, [*range(attribution.nuisance), *indices, *rest])
     return replace(put, nuisance=attribution.nuisance + len(indices))
+
+
+def _plainer(candidates: Candidates, attribution: Attribution, index: int) -> Attribution | None:
+    """Return the attribution with a cause of the same effect in fewer numbers; None where its page has none.
+
+    Two numbers that change places have no size each, and one of them alone has one.
+    """
+    terms = attribution.fit.terms
+    found = candidates.best_plainer(terms[index], [t for i, t in enumerate(terms) if i != index])
+    if found is None:
+        return None
+    return attribution.arranged(candidates.evidence, range(len(terms)), {index: found.terms[-1]})
 
 
 def _simpler(candidates: Candidates, attribution: Attribution, index: int) -> Attribution:

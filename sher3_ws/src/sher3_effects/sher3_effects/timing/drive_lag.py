@@ -117,6 +117,7 @@ class ServoLag(DriveLag):
     MOST_DAMPED = 0.99
     """Beyond it a filter of second order is two of the first."""
     units = {"time_constant": "s", "delay": "s", "inertia": "s^2", "rate": "s"}
+    bounds = {"rate": (0.0, np.inf)}
     finer = {
         "time_constant": (0.8, 0.9, 0.95, 1.05, 1.1, 1.25),
         "damping": (0.8, 0.9, 1.1),
@@ -140,6 +141,12 @@ class ServoLag(DriveLag):
         late = [{"delay": n * views[0].run.period} for n in self.LATE]
         return [{"balance": n, **after} for n in (1.0, 2.0) for after in ({}, *late)]
 
+    def plainer(self, views: Sequence[AxisView], site: str, shape: Shape) -> list[Shape]:
+        """Return the balance without its last number; a slope of the error may have stood for a dead time."""
+        fewer = shape.get("balance", 1.0) - 1.0
+        late = [x for x in self.plain_shapes(views, site) if x["balance"] == fewer]
+        return ([{**shape, "balance": fewer}] if fewer == 1.0 else late) if fewer else []
+
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
         """Return the time constant, and the damping of a filter of second order or the numbers of a balance."""
         if "balance" not in shape:
@@ -148,10 +155,12 @@ class ServoLag(DriveLag):
         return {**told, **{name: shape[name] for name in ("delay",) if name in shape}}
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether a filter of second order is one, and mass and time of a balance are above zero."""
+        """Return whether a filter of second order is one, and every number of a balance is above zero.
+
+        A loop that looks at the error's slope answers earlier for it; one that answered later would have a dead time.
+        """
         if "balance" in shape:
-            time, *inertia = coefficients[:2]
-            return bool(time + sum(coefficients[2:]) > 0.0 and min(inertia, default=1.0) > 0.0)
+            return bool(np.min(coefficients) > 0.0)
         return shape.get("damping", 0.0) < self.MOST_DAMPED
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
