@@ -205,6 +205,8 @@ class SupervisorSettings(Settings):
         hand_settling: how long after enabling all of it is [s]; drives take up a hand of 6 N in half of it.
         hand_level: what may be taken for granted [N]: the weight of 20 g that the robot file does not know, or a sensor
             that drifts by as much after its tare.
+        hand_way: low pass on what sensor and drives feel together along one way [s], and the change of it that is too
+            much [N]: seven times its noise of 11 mN.
         hand_arm: lever at which a torque counts as a force [m]: at this arm torques of healthy running come as near to
             `hand_limits` as its forces.
         hand_least: hand that the drives feel for certain behind `hand_notice` [N]: 3.5 times their noise there, and
@@ -236,6 +238,7 @@ class SupervisorSettings(Settings):
     hand_memory: Annotated[Number, Field(ge=1e-2, le=100.0)] = 2.0
     hand_settling: Seconds = 0.36
     hand_level: Force = 0.2
+    hand_way: tuple[Seconds, Force] = (0.8, 0.08)
     hand_arm: Annotated[Number, Field(gt=0.0, le=1.0)] = 0.015
     hand_least: Force = 0.07
     hand_notice: Seconds = 0.25

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from sher3_common.reasons import Reason
+from sher3_common.reasons import Action, Reason
 from sher3_control.settings import ControlSettings
 from sher3_control.supervision.hand import HandDetector
 from sher3_description import load_robot
@@ -69,9 +69,9 @@ def test_a_small_false_force_is_no_doubt_while_it_moves_nothing(detector):
 
 @pytest.mark.parametrize("along", [UP, ABOUT_ROLL])
 def test_a_force_that_moves_the_tip_while_the_drives_feel_nobody_is_bounded(detector, along):
-    """0.15 N moves the tip at 50 um/s, and 60 um are over after 1.2 s; a hand of 0.15 N may go on."""
+    """60 um at 50 um/s are over after 1.2 s, of a force too small for all else; a hand of that size may go on."""
     _, stamp = feel(detector, 1.0, 0.0, 0.0)
-    objected, _ = feel(detector, 3.0, 0.15, 0.0, stamp, along, speed=50e-6)
+    objected, _ = feel(detector, 3.0, 0.075, 0.0, stamp, along, speed=50e-6)
     assert (objected - stamp) * 1e-9 == pytest.approx(1.2, abs=0.01)
     found = detector.check(objected)
     assert (found.reason, found.unit, found.limit) == (Reason.HAND_DOUBTFUL, "um", pytest.approx(60.0))
@@ -92,7 +92,7 @@ def test_a_firm_hand_is_forgotten_as_soon_as_a_light_one(detector):
 def test_a_hand_that_is_felt_ends_the_travel_without_one(detector):
     _, stamp = feel(detector, 1.0, 0.0, 0.0)
     for _ in range(5):
-        objected, stamp = feel(detector, 0.9, 0.15, 0.0, stamp, speed=50e-6)
+        objected, stamp = feel(detector, 0.9, 0.075, 0.0, stamp, speed=50e-6)
         assert objected is None, "45 um"
         objected, stamp = feel(detector, 0.5, 0.3, 0.3, stamp, speed=50e-6)
         assert objected is None
@@ -108,6 +108,18 @@ def test_a_travel_that_a_hand_ends_before_the_supervisor_looks_is_told_with_its_
     found = detector.check(stamp)
     assert (found.unit, found.limit) == ("um", pytest.approx(60.0)) and 62.0 < found.value < 80.0
     assert "force sensor 0 " not in str(found) and detector.check(stamp) is None
+
+
+def test_along_one_way_a_gain_that_grows_is_found_early(detector):
+    """0.6 N that become 0.72: behind 0.8 s their change passes 0.08 N after 0.8 s ln 3 = 0.88 s; standing, never."""
+    _, stamp = feel(detector, 2.0, 0.6, 0.6, speed=50e-6)
+    objected, _ = feel(detector, 2.0, 0.72, 0.6, stamp, speed=50e-6)
+    assert (objected - stamp) * 1e-9 == pytest.approx(0.88, abs=0.01)
+    found = detector.check(objected)
+    assert (found.reason, found.unit, found.limit) == (Reason.HAND_DOUBTFUL, "N", pytest.approx(0.08))
+    detector.begin()
+    _, stamp = feel(detector, 2.0, 0.6, 0.6, objected + TICK)
+    assert feel(detector, 5.0, 0.72, 0.6, stamp)[0] is None
 
 
 def test_a_bias_that_drifts_is_taken_for_granted_up_to_its_level(detector):
@@ -230,10 +242,21 @@ def test_what_the_legs_own_motion_takes_is_no_hand(detector):
     assert not drive_legs(detector, 800, acceleration=1.83, force=0.0)
 
 
-@pytest.mark.parametrize(("strays", "objects"), [(0.0, True), (0.012, False)])
-def test_a_leg_that_leaves_its_command_is_no_false_hand(strays, objects):
-    """At rest 20 N more on a leg are a hand that nobody feels; of a leg that runs away they are its own force."""
-    assert drive_legs(HandDetector(KINEMATICS, CONTROL), 500, 0.0, 20.0, strays) is objects
+@pytest.mark.parametrize(("strays", "force", "objects"), [(0.0, 20.0, True), (0.012, 20.0, True), (0.012, 1.0, False)])
+def test_a_leg_that_leaves_its_command_is_judged_coarsely(strays, force, objects):
+    """At rest 1 N more on a leg is a hand that nobody feels; of a leg that runs away it may be its own force."""
+    assert drive_legs(HandDetector(KINEMATICS, CONTROL), 500, 0.0, force, strays) is objects
+
+
+def test_a_drive_that_holds_what_nobody_feels_loses_its_power(detector):
+    """A sensor that feels what no drive holds is no reason for that."""
+    _, stamp = feel(detector, 1.0, 0.0, 0.0)
+    assert feel(detector, 0.1, 0.0, 2.0, stamp)[0] is not None
+    assert detector.check(0).action is Action.POWER_OFF
+    detector.begin()
+    _, stamp = feel(detector, 1.0, 0.0, 0.0, stamp + 10**9)
+    assert feel(detector, 0.1, 2.0, 0.0, stamp)[0] is not None
+    assert detector.check(0).action is Action.QUICK_STOP
 
 
 def test_while_a_leg_strays_the_law_does_not_go_far(detector):

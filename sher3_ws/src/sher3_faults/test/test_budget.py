@@ -138,10 +138,10 @@ def test_a_creep_by_hand():
 
 
 def test_a_false_force_is_stated():
-    """1 N is found in time for the budget of 25 um, and 0.2 N by the travel that nobody leads: 60 um, and 30 before."""
+    """1 N is found in time for the budget of 25 um, and 0.2 N along its way, which 0.1 mm/s make 50 um."""
     near = {f.force: f for f in budget().false_forces(Regime.NEAR_TISSUE)}
     assert near[1.0].travel <= 25e-6 and near[0.6].travel <= 50e-6
-    assert 60e-6 <= near[0.2].travel <= 100e-6 and near[0.2].detection < 1.0
+    assert 40e-6 <= near[0.2].travel <= 60e-6 and near[0.2].detection < 0.6
     assert all(f.travel <= 250e-6 for f in budget().false_forces(Regime.FREE) if f.force >= 0.3)
     assert budget().false_forces(Regime.BENCH) == []
     json.dumps(budget().to_dict(), allow_nan=False)

@@ -69,10 +69,10 @@ HAZARDS = (
          "sher3_ws/src/sher3_control/test/test_zero.py"),
         ("force sensor silent, dead", "force sensor frozen", "force not finite, out of range",
          "force to and fro every other tick", FALSE_FORCE),
-        "beside a true hand a false force of 0.2 N and less, or below 12 % of the hand: 0.2 mm/s more, since the "
-        "drives know a level no better: 20 g on the tool, and what friction in the screws holds, look the same; so a "
-        "gain that grows by 10 % a second under 0.6 N: 1.5 mm further along the hand in 8.7 s, of 5.9 mm; a sensor "
-        "turned by 20 degrees under a hand that grows over 15 s: 202 um sideways on 3.2 mm (`python "
+        "beside a true hand a false force of 0.2 N and less, or below 12 % of the hand, that was there when the axes "
+        "last turned round: 0.2 mm/s more, since the drives know a level no better: 20 g on the tool, and what "
+        "friction in the screws holds, look the same; a gain that grows by 10 % a second under 0.6 N: 0.22 mm further "
+        "along the hand; a sensor turned by 10 degrees as a hand comes at once: 67 um sideways on 1.5 mm (`python "
         "bench/slow_forces.py`); without a hand 0.2 to 0.9 N are noticed so late that the travel near tissue is "
         "beyond the budget of 25 um, since a leg's force has a noise of 0.17 N and a light hand takes time",
     ),
@@ -83,9 +83,9 @@ HAZARDS = (
         ("*.power", "*.demand", "*.echo", "*.motor", "*.statusword"),
         (f"{_DRIVERS}/test_position.py", f"{_DRIVERS}/test_speed_limits.py"),
         ("axis leaves its commands", RUNAWAY),
-        "a drive that creeps and reports the force that would explain it: 0.2 mm of the axis, up to 268 um near "
-        "tissue (`python bench/attacks.py`), since the driver does not hear the force sensor, whose range is 26 N at "
-        "a leg; one that neither hears nor is heard: 98 and 712 um (`sher3 safety budget`); one that turns its motor "
+        "a drive that creeps and reports the force that would explain it: 115 um near tissue (`python "
+        "bench/attacks.py`), until the watch of the hand, which hears the force sensor, takes its power; "
+        "one that neither hears nor is heard: 98 and 712 um (`sher3 safety budget`); one that turns its motor "
         "without being enabled: only safe torque off stops it",
     ),
     Hazard(

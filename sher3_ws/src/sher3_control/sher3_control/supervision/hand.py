@@ -3,7 +3,12 @@
 What sensor and drives feel (`felt_twice`) adds up to zero, whoever pushes. So the sum does not change when the hand
 does; a sensor that stands, or is scaled, turned, or pushes by itself changes it. Noise does too, and friction: hence
 several low passes, the slower the finer, and limits that grow with the hand that both feel. The sum is judged as change
-against its own slow mean, and that mean as level against zero. Forces, and torques at an arm, are judged apart.
+against its own slow mean, that mean as level against zero, and along one way against its begin (`one_way`). Forces,
+and torques at an arm, are judged apart.
+
+While a leg strays nothing can be compared so finely. A firm force that its drive holds for long and the sensor does not
+feel is no hand all the same: a drive that goes by itself may report the force that would explain it. Where the drives
+hold what the sensor does not feel, one of them is not believed, and all lose their power.
 
 A false force below those limits moves the tip while the drives feel nobody: that travel is bounded. So is the time for
 which the law moves the tip while nothing can be compared, as beside an encoder that jitters.
@@ -15,7 +20,7 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
-from sher3_common.reasons import Reason
+from sher3_common.reasons import Action, Reason
 from sher3_common.stamps import nanoseconds, seconds
 from sher3_common.vectors import Vector
 from sher3_kinematics import RobotKinematics
@@ -23,6 +28,7 @@ from sher3_kinematics import RobotKinematics
 from sher3_control.settings import ControlSettings
 from sher3_control.supervision.detectors import Finding, PlainDetector
 from sher3_control.supervision.felt_twice import AXES, LEGS, FeltTwice, Motion
+from sher3_control.supervision.one_way import OneWay
 
 Array = NDArray[np.float64]
 CALM = 0.02
@@ -37,7 +43,11 @@ FELT = 1.5
 """How many times the least hand the drives are taken to feel at most: behind 0.25 s it is forgotten 0.1 s after the
 hand has left, in which the law takes the tip by 50 um near tissue. By their noise a hand that stays falls from there
 to the least one with 1.75 standard deviations, and the next tick that feels it ends the travel."""
-NOWHERE = np.zeros(6)
+NOWHERE, HOME = np.zeros(6), np.zeros(AXES)
+ONLY_FORCE = (1.0, 0.0)
+ROUGH = 0.1
+"""Low pass [s] on the sum while a leg strays: `FIRM` is passed 75 ms after a drive begins to go at 0.5 mm/s and to
+report the force that would explain it, 40 um; a minute of a healthy surgeon came to 0.3 N."""
 GROUPS = (LEGS, AXES - LEGS)
 """Numbers of channels of force and of torque."""
 TINY, GRIP = 1e-9, 5.0
@@ -70,6 +80,8 @@ class HandDetector(PlainDetector):
         lags, limits = zip(*self._settings.hand_limits, strict=True)
         self._lags = np.array([*lags, self._settings.hand_memory])[:, None]
         self._limits = np.array([*limits, self._settings.hand_level])[:, None]
+        lag, self._way_limit = self._settings.hand_way
+        self._way = OneWay(lag, self._settings.hand_memory)
         self._force_deadband, self._torque_deadband = law.force_deadband, law.torque_deadband
         self._reach = np.repeat((1.0, self._settings.hand_reach), 3)
         self._nothing = self._found = self._worst = Finding(Reason.HAND_DOUBTFUL, 0.0, min(limits), "N", "force sensor")
@@ -82,6 +94,8 @@ class HandDetector(PlainDetector):
         self._since, self._astray, self._begun, self._settled, self._blind = -1, -1, False, False, 0.0
         self._quick, self._slow = np.zeros((len(self._lags) - 1, AXES)), np.zeros(AXES)
         self._sum = np.zeros(AXES)
+        self._rough = np.zeros(AXES)
+        self._way.begin()
         self._both, self._hand, self._alone = np.zeros((len(self._lags), 2)), np.zeros(AXES), NOWHERE
         self._found = self._worst = self._nothing
 
@@ -116,20 +130,22 @@ class HandDetector(PlainDetector):
         if astray > self._settings.hand_astray:
             self._astray = stamp + nanoseconds(CALM)
         if stamp > self._astray:
-            self.follow(stamp, self._felt, held, moved)
+            self.follow(stamp, self._felt, held, moved, joints)
         else:
             self._last = stamp
-            firm = sizes(held) * (1.0, 0.0) > FIRM
+            firm = sizes(held) * ONLY_FORCE > FIRM
+            self._stray(self._felt, held, span)
             self._count(_at_most(FIRM, held) * np.repeat(firm, GROUPS), span, moved)
             self._miss(span * bool(moved.any()))
             self._keep()
 
-    def follow(self, stamp: int, felt: Array, held: Array, moved: Array = NOWHERE) -> None:
+    def follow(self, stamp: int, felt: Array, held: Array, moved: Array = NOWHERE, joints: Array = HOME) -> None:
         """Take what the sensor feels and the drives hold (5,), N, of the tick `stamp` [ns].
 
-        `moved`: how far the law took the tip (3,) and by turning a point above it (3,) in this tick, m.
+        `moved`: how far the law took the tip (3,) and by turning a point above it (3,) in this tick, m. `joints`: load
+        encoders (5,), m and rad.
         """
-        total, settings = felt + held, self._settings
+        total, settings, self._rough = felt + held, self._settings, np.zeros(AXES)
         step, self._last = min(settings.hand_gap, seconds(stamp - self._last)), stamp
         if self._since < 0:
             self._since, self._slow = stamp, total
@@ -144,8 +160,9 @@ class HandDetector(PlainDetector):
         self._sum = self._sum + min(1.0, step / self._lags[0, 0]) * (total - self._sum)
         both = np.minimum(sizes(felt), sizes(self._sum - felt))
         self._both = np.maximum(both, np.exp(-step / self._lags) * self._both)
+        self._accuse(self._sum, felt)
         if settled:
-            self._compare(step)
+            self._compare(step, self._way.follow(step, felt, held, joints, bool(moved.any())))
         else:
             self._settle()
         self._count(held, step, moved)
@@ -157,12 +174,14 @@ class HandDetector(PlainDetector):
         limits = self._limits[:-1] + self._settings.hand_level + self._settings.hand_share * self._both[:-1]
         self._tell(sizes(self._quick), limits)
 
-    def _compare(self, step: float) -> None:
-        """Judge the sum as a change against its mean, and that mean."""
+    def _compare(self, step: float, along: Array) -> None:
+        """Judge the sum as a change against its mean, that mean, and what changed along the way (2, 5)."""
         if not self._settled:
             self._quick, self._settled = np.tile(self._slow, (len(self._quick), 1)), True
-        doubt = sizes(np.vstack([self._quick - self._slow, self._slow]))
-        self._tell(doubt, self._limits + self._settings.hand_share * self._both)
+        doubt, (strange, hand) = sizes(np.vstack([self._quick - self._slow, self._slow])), sizes(along)
+        limits = self._limits + self._settings.hand_share * self._both
+        way = self._way_limit + self._settings.hand_share * hand
+        self._tell(np.vstack([doubt, strange]), np.vstack([limits, way]))
         self._blind = max(0.0, self._blind - step)
 
     def _count(self, held: Array, step: float, moved: Array) -> None:
@@ -176,15 +195,29 @@ class HandDetector(PlainDetector):
         self._hand = _at_most(FELT * settings.hand_least, hand)
         self._alone = NOWHERE if (sizes(hand) > settings.hand_least).any() else self._alone + moved
         travel = float(np.linalg.norm(self._alone.reshape(2, 3), axis=1).sum())
-        if travel / settings.hand_travel > self._found.value / self._found.limit:
-            self._found = self._found._replace(value=1e6 * travel, limit=1e6 * settings.hand_travel, unit="um")
+        self._add(1e6 * travel, 1e6 * settings.hand_travel, "um")
+
+    def _stray(self, felt: Array, held: Array, span: float) -> None:
+        """Judge coarsely what a straying leg's drive holds and the sensor does not feel."""
+        self._rough = self._rough + min(1.0, span / ROUGH) * (felt + held - self._rough)
+        self._accuse(self._rough, felt)
+        hand = self._settings.hand_share * sizes(felt)
+        self._tell(sizes(self._rough)[None] * ONLY_FORCE, FIRM + hand[None])
 
     def _miss(self, span: float) -> None:
         """Add up for how long the law moves the tip while nothing is compared; as long of comparing makes up for it."""
         self._blind += span
-        limit = self._settings.hand_blind
-        if self._blind / limit > self._found.value / self._found.limit:
-            self._found = self._found._replace(value=self._blind, limit=limit, unit="s")
+        self._add(self._blind, self._settings.hand_blind, "s")
+
+    def _add(self, value: float, limit: float, unit: str) -> None:
+        """Report another quantity where it is nearer its limit."""
+        if value / limit > self._found.value / self._found.limit:
+            self._found = self._found._replace(value=value, limit=limit, unit=unit, harder=Action.NONE)
+
+    def _accuse(self, total: Array, felt: Array) -> None:
+        """Note how hard to stop: where the drives hold more than the sensor feels, they may go by themselves."""
+        held = sizes(total - felt)[0] > sizes(felt)[0]
+        self._found = self._found._replace(harder=Action.POWER_OFF if held else Action.NONE)
 
     def _tell(self, doubts: Array, limits: Array) -> None:
         """Report the doubt (n, 2) that is nearest its limit: a force, or a torque back from its arm."""
