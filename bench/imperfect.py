@@ -1,4 +1,4 @@
-"""Bench: what decides better on machines that differ from their pages, rules or odds: axes, arms in motion, arms seen.
+"""Bench: what odds make of machines that differ from their pages: axes, arms in motion, arms seen from outside.
 
 Every machine has a level of its own, the share of power by which what it does beyond its nominal is another than its
 pages say, drawn log-uniform from 0.3 to 30 %: bent from place to place, drifting slowly, with ripples along the travel.
@@ -139,29 +139,25 @@ SOURCES = {"axes": axis, "arms of MuJoCo": moving_arm, "arms from outside": seen
 
 @dataclass(frozen=True)
 class Seen:
-    """What the engine says of one machine or of one of its axes, and what the verdict says of it.
+    """What the engine says of one machine or of one of its axes.
 
     Attributes:
         source: of the case; `machine`: which one; `share`: its level, 0 where it is not known.
         seen: the evidence.
-        status, named: of the verdict in force.
     """
 
     source: str
     machine: str
     share: float
     seen: Observation
-    status: str
-    named: tuple[tuple[str, str], ...]
 
 
 def seen_of(source: str, number: str, share: float, case: plain.Case, without: Sequence[str]) -> Seen:
     """Diagnose a case without some effects."""
     found = diagnose(case.machine, case.runs, without=without)
     wholes = [f.with_all for f in found.findings]
-    row = observed_findings(case.machine, wholes, found.exact, source, number, case.truth, without)
     return Seen(
-        source, number, share, row, found.verdict.status, tuple((c.effect, c.actuator) for c in found.verdict.causes)
+        source, number, share, observed_findings(case.machine, wholes, found.exact, source, number, case.truth, without)
     )
 
 
@@ -176,9 +172,7 @@ def read(folder: Path) -> Iterator[Seen]:
     for file in sorted(folder.rglob("*.json")):
         for row in json.loads(file.read_text(encoding="utf-8")):
             listed = {name: tuple(row["seen"][name]) for name in ("without", "items", "exact", "places")}
-            yield Seen(
-                **{**row, "seen": Observation(**{**row["seen"], **listed}), "named": tuple(map(tuple, row["named"]))}
-            )
+            yield Seen(**{**row, "seen": Observation(**{**row["seen"], **listed})})
 
 
 class Judgement(NamedTuple):
@@ -268,22 +262,18 @@ def spread_of(rows: Sequence[Seen]) -> str:
 
 
 def table(options: argparse.Namespace) -> None:
-    """Print what rules and odds make of the cases, and of the measured sets."""
+    """Print what odds make of the cases, and of the measured sets."""
     kept = list(read(options.folder))
     for source in SOURCES:
         rows = settled([r for r in kept if r.source == source])
         print(f"{source}: what a place leaves, over the level: {spread_of(rows)}")
-        print(f"{source}: rules: {rates_of([(r, r.status) for r in rows])}")
         for name, own in (("labelled robots' level", False), ("own level", True)):
             judged = list(judgements(rows, own))
             print(f"{source}: odds, {name}: {rates_of([(j.row, j.status) for j in judged])}; {surprise(judged)}")
     for row in (r for r in kept if r.source == "measured"):
         known = next(m for m in measured.SETS if m.name == row.machine)
-        told = [f"rules {row.status} {sum(measured.kept(known, row.named))}"]
-        told += [
-            f"odds {j.status} {sum(measured.kept(known, j.named))}"
-            for own in (False, True)
-            for j in judgements([row], own)
+        told = [
+            f"{j.status} {sum(measured.kept(known, j.named))}" for own in (False, True) for j in judgements([row], own)
         ]
         print(f"{row.machine}, {len(known.known)} known causes: {', '.join(told)}")
 

@@ -15,8 +15,8 @@ from sher3_diagnosis.attribute.candidates import Candidates
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.finding import Finding
-from sher3_diagnosis.judge.borne_out import significant_causes, without_imitations
-from sher3_diagnosis.judge.calibrated_causes import weighed, with_odds
+from sher3_diagnosis.judge.borne_out import significant_causes
+from sher3_diagnosis.judge.calibrated_causes import weighed
 from sher3_diagnosis.judge.calibration.calibration import in_force
 from sher3_diagnosis.judge.causes import causes_of
 from sher3_diagnosis.judge.costs import DEFAULT, Costs
@@ -54,7 +54,7 @@ def diagnose(
         without: effect ids that are left out of the library.
         say: takes a line of progress.
         started: value of `time.perf_counter` at which the work began, s; default now.
-        costs: of wrong answers; on machines whose judgement is not calibrated rules decide and costs say nothing.
+        costs: of wrong answers.
 
     Raises:
         UnknownEffect: an id in `without` is none of the machine's effects.
@@ -68,8 +68,7 @@ def diagnose(
     findings = [find(machine, part, without, say) for part in parts]
     notes += [n for f in findings for n in f.notes]
     say("judging")
-    weigh = partial(weighed, costs=costs) if machine.policy.calibrated else with_odds
-    findings = weigh(findings, in_force(), machine.policy.own_level)
+    findings = weighed(findings, in_force(), machine.policy.own_level, costs)
     verdict = judge(machine, findings, exact, notes, costs)
     versions = {p: importlib.metadata.version(p) for p in machine.sources}
     verdict = verdict.model_copy(update={"seconds": time.perf_counter() - started, "versions": versions})
@@ -88,7 +87,7 @@ def find(machine: Machine[R, E], evidence: E, without: Collection[str], say: Say
     attribution = replace(attribution, moving=in_motion(evidence, attribution.fit))
     refined, causes = machine.refine(evidence, causes_of(evidence, attribution), attribution)
     remains = partial(left_over, significant, evidence)
-    while not machine.policy.calibrated:
+    while machine.policy.swept:
         fewer = without_empty(candidates, attribution, causes, machine.policy.carried)
         fewer = significant_causes(evidence, attribution, remains) if fewer is attribution else fewer
         if fewer is attribution:
@@ -96,8 +95,6 @@ def find(machine: Machine[R, E], evidence: E, without: Collection[str], say: Say
         attribution = fewer
         refined, causes = machine.refine(evidence, causes_of(evidence, attribution), attribution)
     finding = Finding(refined, gaps, attribution, causes, remains(attribution.fit))
-    if not machine.policy.calibrated:
-        finding = replace(without_imitations(finding, machine.policy.free_laws), whole=finding)
     return replace(finding, notes=machine.remarks(finding))
 
 

@@ -35,18 +35,15 @@ class Policy:
     """What a machine's descriptions allow the judgement to lean on.
 
     Attributes:
-        calibrated: odds decide which causes and gaps are named: the calibration was set on machines of this kind, or is
-            shown to hold on them (`bench/other_odds.py`). Otherwise rules decide, and odds are only shown.
+        swept: causes that say nothing are left out before they are weighed (`judge.meaning`, `judge.borne_out`).
         own_level: in the odds the machine itself tells how far it is from its pages; otherwise it is as far as the
             robots that set the weights.
-        free_laws: what causes leave must not follow quantities that none of them depends on.
         carried: an effect whose size may be zero stays in the fit without a name. For machines of which every part has
             a small error of its own; otherwise it is left out.
     """
 
-    calibrated: bool = False
+    swept: bool = False
     own_level: bool = False
-    free_laws: bool = False
     carried: bool = False
 
 

@@ -119,19 +119,6 @@ SMALL_SHARE = 0.25
 SMALL_REMAINDER = 2.5
 """Power over floor of what is left up to which it is small. Set on and measured as `REMAINDER`."""
 
-PART_CLOSED = 0.25
-"""Closure of a gap that is not closed, at the lower end of its interval, from which its causes are named with their
-part: a quarter is no accident, and what follows other quantities is asked beside it. Set by that argument.
-Measure: `pytest sher3_ws/src/sher3_chain/test/axes/test_foreign_law.py`."""
-
-FOREIGN_SIZE = 0.05
-"""Size, over that of the gap, of what follows quantities that no cause may depend on, from which another law is at
-work: laws are off by a few per cent. Set by that argument and measured as `PART_CLOSED`."""
-
-FOREIGN_SHARE = 0.5
-"""Share of what a free law of the causes' own inputs leaves that such quantities must tell: most of it. Set by that
-argument and measured as `PART_CLOSED`."""
-
 REPRODUCED = 0.9
 """Share of an exact stage's error that its causes must reproduce. Set on: development seeds with faults of transport
 and controller. Measure: `sher3 gap challenge --seeds 0:40` (status)."""

@@ -6,9 +6,8 @@ from sher3_diagnosis.finding import Candidate, ExactFinding, Item, Judged
 from sher3_diagnosis.flow import diagnose
 from sher3_diagnosis.judge.bets import NONE, exact_place, placed, shares
 from sher3_diagnosis.judge.probabilities import of_first
-from sher3_diagnosis.machine import Policy
-from sher3_diagnosis.report.odds import beside_rules, odds, places_of_bets
-from sher3_diagnosis.verdict import Answer, Cause, Interval, Residual, Unexplained, Verdict, Where
+from sher3_diagnosis.report.odds import odds, places_of_bets
+from sher3_diagnosis.verdict import Answer, Cause, Interval, Residual, Verdict, Where
 from toy import DIRECTION, Column, Toy, case
 
 WHERE = Where(stage="transport", actuator="all", gap=1e-3, floor=1e-9, unit="m/s", regime="", confidence=1.0)
@@ -57,23 +56,17 @@ def test_an_exact_stage_without_causes_is_outside():
     assert of_first([]) == {"no_gap": 1.0}
 
 
-@pytest.mark.parametrize("calibrated", [True, False])
 @pytest.mark.parametrize("size, without", [(5.0, ()), (5.0, ("direction",)), (5.0, ("direction", "speed")), (0.0, ())])
-def test_on_every_machine_what_one_would_bet_adds_up_to_one(size, without, calibrated):
-    class Judged(Toy):
-        policy = Policy(calibrated=calibrated)
-
+def test_on_every_machine_what_one_would_bet_adds_up_to_one(size, without):
     twin = Column("twin", "inertia", "direction")
-    verdict = diagnose(Judged((DIRECTION, twin)) if not without else Judged(), case(size), without).verdict
+    verdict = diagnose(Toy((DIRECTION, twin)) if not without else Toy(), case(size), without).verdict
     assert len(verdict.places) >= len(verdict.where)
     for place in verdict.places:
         assert total(place) == pytest.approx(1.0)
         assert place.answers == sorted(place.answers, key=lambda a: -a.probability)
     named = {c.effect for c in verdict.causes}
     assert named <= {c.effect for p in verdict.places for a in p.answers for c in a.causes}
-    assert bool(verdict.costs) == calibrated
-    if calibrated:
-        assert sum(verdict.probabilities.values()) == pytest.approx(1.0, abs=0.05)
+    assert sum(verdict.probabilities.values()) == pytest.approx(1.0, abs=0.05)
 
 
 def spoken(*answers, status="outside_library"):
@@ -94,22 +87,3 @@ def test_the_headline_speaks_the_odds():
     sure = bet.model_copy(update={"probability": 0.99})
     assert spoken(sure, lacks.model_copy(update={"probability": 0.01}), status="attributed")[0] == ""
     assert spoken(rare.model_copy(update={"probability": 0.01}), lacks)[0] == ""
-
-
-def ruled(status, *answers, **more):
-    verdict = {"places": [placed(WHERE, answers)], "costs": {}, "causes": [], "unexplained": None, **more}
-    return beside_rules(Verdict.model_construct(status=status, **verdict))
-
-
-def test_where_rules_decide_and_odds_would_not_both_are_told():
-    bet, lacks = Answer(causes=[cause()], probability=0.3), Answer(answer="outside_library", probability=0.7)
-    named = {"causes": [cause()]}
-    assert ruled("attributed", bet, lacks, **named) == "; named by rules, at odds of 30 % in transport, all axes"
-    assert ruled("attributed", bet, lacks, **named, costs={"name": 1.0}) == ""
-    assert ruled("attributed", bet, lacks, causes=[cause("axis_skew")]) == ""
-    likely, rare = bet.model_copy(update={"probability": 0.7}), lacks.model_copy(update={"probability": 0.3})
-    assert ruled("attributed", likely, rare, **named) == ""
-    left = Unexplained(stage="transport", actuator="all", signature="")
-    text = ruled("outside_library", likely, rare, unexplained=left)
-    assert text == "; so say rules, at odds of 70 % for command delay on all axes"
-    assert ruled("outside_library", bet, lacks, unexplained=left) == ""

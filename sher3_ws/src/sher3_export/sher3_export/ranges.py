@@ -77,7 +77,7 @@ def worlds_of(verdict: Verdict, others: Sequence[Verdict] = ()) -> list[Sequence
 def shares_of(verdict: Verdict, worlds: Sequence[Sequence[Cause]]) -> list[float]:
     """Return how probable each world is, over the verdict's own: by the causes in which the two differ.
 
-    Without probabilities (they are calibrated on the robot alone) rivals explain as much, and each world counts alike.
+    Without probabilities (in a verdict of before) rivals explain as much, and each world counts alike.
     """
     own, known = {_key(c) for c in verdict.causes}, _known(verdict)
 
@@ -91,8 +91,8 @@ def shares_of(verdict: Verdict, worlds: Sequence[Sequence[Cause]]) -> list[float
 
 
 def _known(verdict: Verdict) -> dict[str, float]:
-    """Return how probable each cause is: at the place where it is most probable; nothing where odds do not decide."""
-    if not (verdict.costs and verdict.places):
+    """Return how probable each cause is: at the place where it is most probable."""
+    if not verdict.places:
         return verdict.probabilities
     out: dict[str, float] = {}
     for place in verdict.places:

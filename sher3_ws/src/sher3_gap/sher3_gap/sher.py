@@ -14,7 +14,7 @@ from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.finding import ExactFinding, Finding
 from sher3_diagnosis.flow import Say, diagnose
 from sher3_diagnosis.judge.costs import DEFAULT, Costs
-from sher3_diagnosis.machine import Diagnosis, Machine, Policy
+from sher3_diagnosis.machine import Diagnosis, Machine
 from sher3_diagnosis.verdict import Cause, Interval
 from sher3_effects import library
 
@@ -41,7 +41,6 @@ class Sher(Machine[RunSignals, SherEvidence]):
     """
 
     robot: Robot
-    policy = Policy(calibrated=True)
 
     def library(self) -> Sequence[Effect]:
         """Return every effect of the robot."""

@@ -33,7 +33,7 @@ class TableKind(Kind[D, Readings]):
         stored: columns that a case of this kind has at least.
         written_for: words of `Effect.kinds` whose pages it may have.
         words: how a report speaks of it.
-        policy: what the judgement may lean on: odds decide, which hold on tables that set no weight.
+        policy: what the judgement may lean on.
         plan: how causes are looked for: up to six, since a table may have one of each page.
     """
 
@@ -41,7 +41,7 @@ class TableKind(Kind[D, Readings]):
     stored: tuple[str, ...] = ()
     written_for: tuple[str, ...]
     words: Words
-    policy = Policy(calibrated=True, own_level=True)
+    policy = Policy(own_level=True)
     plan = SearchPlan(causes=6, down_to_floor=True)
 
     def read(self, name: str, tables: Tables, description: D) -> Readings:

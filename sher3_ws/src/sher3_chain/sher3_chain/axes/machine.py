@@ -50,7 +50,7 @@ class Axes(Chain[AxisEvidence]):
     """Axes that move independently of each other."""
 
     described: AxesDescription
-    policy = Policy(own_level=True, free_laws=True)
+    policy = Policy(swept=True, own_level=True)
 
     def library(self) -> Sequence[Effect]:
         """Return the pages for these kinds of axes, and that of the limit, which is read off without a fit."""

@@ -61,7 +61,7 @@ class Manipulator(Chain[ArmMotionEvidence]):
 
     described: ManipulatorDescription
     model: ArmModel
-    policy = Policy(own_level=True)
+    policy = Policy(swept=True, own_level=True)
 
     def library(self) -> Sequence[Effect]:
         """Return the pages of an axis and those of a joint of an arm, and those of a servo's law."""

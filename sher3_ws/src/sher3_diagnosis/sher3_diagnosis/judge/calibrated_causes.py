@@ -16,28 +16,14 @@ from sher3_diagnosis.judge.status import answer_to
 from sher3_diagnosis.verdict import Cause, Imitation, Interval
 
 
-def with_odds(findings: Sequence[Finding], calibration: Calibration, own_level: bool) -> list[Finding]:
-    """Add the odds of every cause and gap to the findings on a machine that rules judge.
-
-    The weights are those of the robot they were set on; evidence that a machine does not tell speaks neither way.
-    """
-    wholes = [f.with_all for f in findings]
-    odds = _odds(wholes, calibration, own_level)
-    return [replace(f, judged=j, whole=w) for f, j, w in zip(findings, odds, wholes, strict=True)]
-
-
 def weighed(findings: Sequence[Finding], calibration: Calibration, own_level: bool, costs: Costs) -> list[Finding]:
     """Judge all causes and gaps of a machine; keep those causes that are named, and the gaps that need an answer."""
-    odds = _odds(findings, calibration, own_level)
-    return [_kept_of(f, j, calibration.reach, costs) for f, j in zip(findings, odds, strict=True)]
-
-
-def _odds(findings: Sequence[Finding], calibration: Calibration, own_level: bool) -> list[tuple[Judged, ...]]:
-    """Return the odds of the causes and gaps of each finding, of all parts of a machine together."""
     items = [[(f, i) for i in items_of(f)] for f in findings]
     every = [x for own in items for x in own]
     told = iter(judged_together([i for _, i in every], [_closure(*x) for x in every], calibration, own_level))
-    return [tuple(next(told) for _ in own) for own in items]
+    return [
+        _kept_of(f, [next(told) for _ in own], calibration.reach, costs) for f, own in zip(findings, items, strict=True)
+    ]
 
 
 def _kept_of(finding: Finding, items: Sequence[Judged], reach: float, costs: Costs) -> Finding:

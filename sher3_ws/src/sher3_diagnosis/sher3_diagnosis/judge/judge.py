@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from sher3_diagnosis.channel import Channel
-from sher3_diagnosis.effect import Effect
-from sher3_diagnosis.finding import LIBRARY, OUTSIDE, ExactFinding, Finding
+from sher3_diagnosis.finding import LIBRARY, ExactFinding, Finding
 from sher3_diagnosis.judge.bets import exact_place, place_of, untold_place
 from sher3_diagnosis.judge.calibration.calibration import Calibration, in_force
 from sher3_diagnosis.judge.calibration.typical import RARE
@@ -18,7 +17,7 @@ from sher3_diagnosis.judge.costs import DEFAULT, Costs
 from sher3_diagnosis.judge.next_experiment import next_experiment
 from sher3_diagnosis.judge.probabilities import of_first, reproduced
 from sher3_diagnosis.judge.remainder import remainder
-from sher3_diagnosis.judge.status import answer_to_exact, combined, status_of
+from sher3_diagnosis.judge.status import answer_to_exact, status_of
 from sher3_diagnosis.localise.gaps import Gap, component_rms
 from sher3_diagnosis.machine import Machine
 from sher3_diagnosis.quantify.closure import closure, residual_after
@@ -36,7 +35,7 @@ def judge(
     costs: Costs = DEFAULT,
 ) -> Verdict:
     """Build the verdict of a machine from what was found on its parts and in its exact stages."""
-    calibration = in_force() if machine.policy.calibrated else None
+    calibration = in_force()
     causes = [c for f in exact for c in _probable(f, calibration)] + [c for f in findings for c in f.causes]
     gaps = [f.significant for f in findings]
     located = _located(findings)
@@ -44,8 +43,8 @@ def judge(
     told: dict[str, Any] = {
         "places": places,
         "within_tolerance": [w for f in findings for w in machine.within(f)],
-        "probabilities": {} if calibration is None else of_first(places),
-        "costs": {} if calibration is None else costs.as_dict(),
+        "probabilities": of_first(places),
+        "costs": costs.as_dict(),
         "notes": [*notes, *_unusual(places)],
     }
     if not any(gaps) and not exact:
@@ -55,11 +54,8 @@ def judge(
     stage, residual = _first(findings, gaps, exact, where[0].gap)
     unexplained = _unexplained(findings, gaps, exact, calibration, costs)
     proposals = [p for f in findings if (p := next_experiment(f.evidence, f.attribution)) is not None]
-    by_rules = {LIBRARY if unexplained is None else OUTSIDE}
     return Verdict(
-        status=combined(by_rules, bool(proposals) and _poor(machine, causes))
-        if calibration is None
-        else _status(findings, exact, calibration, costs),
+        status=_status(findings, exact, calibration, costs),
         where=where,
         causes=causes,
         closure=Closure(stage=stage, tip=machine.end_to_end(findings, causes)),
@@ -118,10 +114,8 @@ def _unusual(places: Sequence[Place]) -> list[str]:
     ]
 
 
-def _probable(stage: ExactFinding, calibration: Calibration | None) -> list[Cause]:
+def _probable(stage: ExactFinding, calibration: Calibration) -> list[Cause]:
     """Return the causes of an exact stage with the probability that they are the true ones."""
-    if calibration is None:
-        return list(stage.causes)
     known = reproduced(stage, calibration)
     return [c.model_copy(update={"probability": known}) for c in stage.causes]
 
@@ -132,12 +126,6 @@ def _status(
     """Return the status that follows from odds and costs."""
     items = [j for f in findings for j in f.judged]
     return status_of(items, [reproduced(e, calibration) for e in exact], calibration.same, costs)
-
-
-def _poor(machine: Machine, causes: Sequence[Cause]) -> bool:
-    """Whether, by the rules, the runs are too poor to tell a cause from one of another family."""
-    library = {e.id: e for e in machine.library()}
-    return any(_crossing(library, c) for c in causes)
 
 
 def _ratio(where: Where) -> float:
@@ -165,12 +153,12 @@ def _unexplained(
     findings: Sequence[Finding],
     gaps: Sequence[Gaps],
     exact: Sequence[ExactFinding],
-    calibration: Calibration | None,
+    calibration: Calibration,
     costs: Costs,
 ) -> Unexplained | None:
     """What is left that no effect explains: in an exact stage, or of a gap."""
     for stage in exact:
-        if not _reproduced(stage, calibration, costs):
+        if answer_to_exact(reproduced(stage, calibration), costs) != LIBRARY:
             reason = f"an exact stage is not reproduced: {stage.note or 'no timing or gain error fits'}"
             return Unexplained(stage=stage.where.stage, actuator=stage.where.actuator, signature=reason)
     for finding, own in zip(findings, gaps, strict=True):
@@ -183,20 +171,7 @@ def _unexplained(
     return None
 
 
-def _reproduced(stage: ExactFinding, calibration: Calibration | None, costs: Costs) -> bool:
-    """Whether the causes named at an exact stage reproduce its error."""
-    if calibration is None:
-        return stage.closed
-    return answer_to_exact(reproduced(stage, calibration), costs) == LIBRARY
-
-
 def _described(finding: Finding, channel: Channel) -> Unexplained:
     text = remainder(finding.evidence, channel, finding.attribution.fit)
     imitated = sorted(finding.imitations, key=lambda i: -i.closure.value)
     return Unexplained(stage=channel.stage, actuator=channel.actuator, signature=text, imitated_by=imitated)
-
-
-def _crossing(library: Mapping[str, Effect], cause: Cause) -> bool:
-    """Whether a rival is of another family; an effect that the cause contains was found to explain markedly less."""
-    contained = library[cause.effect].extends if cause.effect in library else ()
-    return any(library[r].family != cause.family for r in set(cause.rivals) - set(contained))

@@ -28,8 +28,9 @@ SPREAD = 1.0
 arms in motion, 0.3 on arms seen from outside (`bench/imperfect.py`), and more on machines whose parts are unlike."""
 FOREIGN = (0.3, 0.2, 1.0)
 """Share of places whose cause is foreign, and middle and spread of what is left there: it tells no level."""
-SHARES = ("left", "stray", "law", "place", "anything")
-"""Evidence that is a share of the gap."""
+SHARES = ("left", "stray")
+"""Evidence that is a share of the gap. What free laws take off what is left is looked at as it is: whose law it
+follows is no matter of a level."""
 
 
 def levels_told(items: Sequence[Item]) -> list[Array]:

@@ -1,6 +1,6 @@
 """Which causes say nothing: of no size, impossible, or of no use to parts of the data that they were not fitted to.
 
-This is asked of every cause of every machine whose judgement is not calibrated, in one place, whatever found it. A law
+This is asked of every cause of a machine whose policy says so (`Policy.swept`), in one place, whatever found it. A law
 that contains a simpler one and is no more than that is replaced by it; anything else that says nothing is left out,
 even if its gap is open then: a gap without a name is an answer, a wrong name is none.
 """

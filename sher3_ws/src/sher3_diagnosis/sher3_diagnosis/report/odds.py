@@ -41,9 +41,9 @@ class PlaceOfBets:
 def odds(verdict: Verdict) -> str:
     """Return the answers to the first place with their probabilities; empty where they need not be spoken of.
 
-    They are where the odds are calibrated (only then a verdict has costs), an effect is in play, and none is sure.
+    They are where an effect is in play, and none is sure.
     """
-    first = verdict.places[0] if verdict.places and verdict.costs else None
+    first = verdict.places[0] if verdict.places else None
     if first is None or first.bet is None or verdict.status not in ("attributed", "outside_library"):
         return ""
     ranked = _spoken(first, verdict.status == "attributed")
@@ -53,23 +53,6 @@ def odds(verdict: Verdict) -> str:
     told = _names(first.bet)
     beside = [sized(c) for c in verdict.causes if (c.effect, c.actuator) not in told]
     return text + (f"; besides {listed(beside)}" if beside else "")
-
-
-def beside_rules(verdict: Verdict) -> str:
-    """Return what the odds say where rules decided and the odds would not; empty where they agree, or decided.
-
-    Rules decide where a verdict has no costs. An attribution is doubted where a cause that it names is not what one
-    would bet on; of several places the least probable is told.
-    """
-    explained = [] if verdict.costs else [(p, p.bet) for p in verdict.places if p.bet is not None]
-    if verdict.status == "attributed":
-        named = _names(verdict)
-        own = [(b.probability, _at(p)) for p, b in explained if p.answers[0] is not b and named & _names(b)]
-        return f"; named by rules, at odds of {share(min(own)[0])} in {min(own)[1]}" if own else ""
-    left = verdict.unexplained
-    likely = [b for p, b in explained if p.answers[0] is b and left and _at(p) == _at(left)]
-    text = [f"{share(b.probability)} for {listed([name_of(c) for c in b.causes])}" for b in likely]
-    return f"; so say rules, at odds of {text[0]}" if text else ""
 
 
 def places_of_bets(verdict: Verdict) -> list[PlaceOfBets]:

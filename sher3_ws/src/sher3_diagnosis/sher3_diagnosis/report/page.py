@@ -77,7 +77,6 @@ def _sections(diagnosis: Diagnosis, title: str, folder: str, case: str, in_memor
         traces=traces(diagnosis, reporter),
         bets=places_of_bets(verdict),
         with_bet=any(p.bet is not None for p in verdict.places),
-        calibrated=bool(verdict.costs),
         closures=closure_bars(verdict, reporter.end),
         table=reporter.table(diagnosis),
         causes=cause_cards(diagnosis, isolability),

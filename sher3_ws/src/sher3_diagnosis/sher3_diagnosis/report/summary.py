@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any
 
-from sher3_diagnosis.report.odds import beside_rules, name_of, odds, significant, sized
+from sher3_diagnosis.report.odds import name_of, odds, significant, sized
 from sher3_diagnosis.reporter import Reporter, Table
 from sher3_diagnosis.verdict import Cause, Interval, Parameter, Verdict
 from sher3_diagnosis.words import listed, lower, place, quantity, range_text, ratio_text, share, words
@@ -28,11 +28,11 @@ def headline(verdict: Verdict, rests: Mapping[str, str] = MappingProxyType({})) 
     names = [name_of(c) for c in verdict.causes]
     if verdict.status == "no_gap":
         return "No gap: the machine does what its model says, to within its own repeatability."
-    spoken, doubt = odds(verdict), beside_rules(verdict)
+    spoken = odds(verdict)
     if spoken:
         return _sentence(f"{spoken}.")
     if verdict.status == "attributed":
-        return _sentence(f"{_finding(verdict)}: {_share(verdict)}{doubt or _rest(verdict, rests)}.")
+        return _sentence(f"{_finding(verdict)}: {_share(verdict)}{_rest(verdict, rests)}.")
     if verdict.status == "under_excited":
         open_ones = [f"{name_of(c)} or {listed([lower(r) for r in c.rivals])}" for c in verdict.causes if c.rivals]
         return _sentence(f"{listed(open_ones or names)}: these runs cannot tell.")
@@ -40,8 +40,8 @@ def headline(verdict: Verdict, rests: Mapping[str, str] = MappingProxyType({})) 
     where = "" if left is None else f" in {lower(left.stage)}, {place(left.actuator)}"
     if verdict.causes:
         rest = f"no effect of the library explains the rest{where}"
-        return _sentence(f"{_finding(verdict)}: {_share(verdict)}; {rest}{doubt}.")
-    return f"No effect of the library explains the gap{where}{doubt}."
+        return _sentence(f"{_finding(verdict)}: {_share(verdict)}; {rest}.")
+    return f"No effect of the library explains the gap{where}."
 
 
 def five_lines(

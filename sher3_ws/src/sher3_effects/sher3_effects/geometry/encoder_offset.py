@@ -39,6 +39,7 @@ class JointOffset(Page):
 
     id, family, stage, best = EncoderOffset.id, EncoderOffset.family, EncoderOffset.stage, EncoderOffset.best
     kinds, places = ("arm",), ("joint",)
+    leaves_out = "small errors of the other joints"
     explanation = "The zero of one joint is off by a constant angle."
     siblings = {
         "link_length_error": "the error does not turn with the joint",

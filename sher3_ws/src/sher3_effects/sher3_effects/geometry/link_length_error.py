@@ -66,6 +66,7 @@ class JointPlace(Page):
 
     id, family, stage, best = LinkLengthError.id, LinkLengthError.family, LinkLengthError.stage, LinkLengthError.best
     kinds, places = ("arm",), ("joint",)
+    leaves_out = "small errors of the other joints"
     explanation = "One link of the arm is longer, shorter or bent: a joint sits elsewhere than drawn."
     siblings = {"encoder_offset": "a turn about the joint's axis", "rail_tilt": "a turn across the joint's axis"}
     units = {"x": "m", "y": "m", "z": "m"}

@@ -55,6 +55,7 @@ class JointTilt(Page):
     id, family, stage, best = RailTilt.id, RailTilt.family, RailTilt.stage, RailTilt.best
     kinds, places = ("arm",), ("joint",)
     gives = ("tilt_1", "tilt_2")
+    leaves_out = "small errors of the other joints"
     explanation = "The axis of one joint does not point where the drawing says."
     siblings = {"encoder_offset": "a turn about the joint's own axis", "link_length_error": "a shift, not a turn"}
     units = {"tilt_1": "rad", "tilt_2": "rad"}
