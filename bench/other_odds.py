@@ -42,6 +42,7 @@ sys.path[:0] = [
     str(SOURCES / x)
     for x in (
         "sher3_chain/test",
+        "sher3_chain/test/axes",
         "sher3_static/test",
         "sher3_static/test/positioning",
         "sher3_static/test/arm",
@@ -123,6 +124,24 @@ def foreign_axis(seed: int) -> Case:
     dry = ["coulomb_friction"] if "stribeck_friction" in drawn.truth else []
     truth = label(drawn.machine, [*known, ("outside_library", "axis")], outside=True, company=dry)
     return Case(drawn.machine, [run], truth, [])
+
+
+def magnet(seed: int) -> Case:
+    """Return a mass that a magnet holds, as in `test_foreign_law.py`: a gain and a payload imitate its law to 98 %."""
+    from sher3_chain.joint.record import AxesRun
+    from slides import columns
+    from slides import machine as slide
+
+    rng, time = np.random.default_rng([31, seed]), np.arange(0.0, 15.0, 0.005)
+    waves = [(rng.uniform(0.5e-3, 3e-3), rng.uniform(1.0, 14.0), rng.uniform(0.0, 6.0)) for _ in range(2)]
+    gap = 0.010 + sum(size * np.sin(w * time + phase) for size, w, phase in waves)
+    bend = sum(-size * w * w * np.sin(w * time + phase) for size, w, phase in waves)
+    current = gap * np.sqrt(0.3 * np.maximum(9.81 - bend, 0.1) / 2.1e-4) + rng.normal(0.0, 2e-3, len(time))
+    signals = {**columns("position"), **columns("effort", unit="N")}
+    machine = slide(signals=signals, mass=0.3, gravity={"constant": -2.943}, encoder_resolution=5e-7)
+    read = {"position": gap + rng.normal(0.0, 5e-7, len(time)), "effort": -1.4 * current}
+    truth = label(machine, [("outside_library", "slide")], outside=True)
+    return Case(machine, [AxesRun("run", 0.005, {"slide": read})], truth, [])
 
 
 def mujoco_arm(seed: int) -> Case:
@@ -217,7 +236,12 @@ def positioning(seed: int) -> Case:
 
 
 KINDS = {
-    "chain": {"drawn axes": axis, "axes with a foreign force": foreign_axis, "arms of MuJoCo": mujoco_arm},
+    "chain": {
+        "drawn axes": axis,
+        "axes with a foreign force": foreign_axis,
+        "magnets": magnet,
+        "arms of MuJoCo": mujoco_arm,
+    },
     "table": {"arms from outside": seen_arm, "force sensors": sensor, "positioning": positioning},
 }
 
