@@ -6,9 +6,11 @@ import contextlib
 import io
 import pickle
 from dataclasses import dataclass, field
+from enum import Enum
 from struct import Struct
 from typing import Any
 
+import numpy as np
 from sher3_common.operating_state import OperatingState
 from sher3_common.reasons import Reason
 from sher3_control.errors import StateCommandRefused
@@ -183,18 +185,21 @@ class Driver(MotorDriver):
             end.set_up()
 
 
-SHARED = [ROBOT, SETTINGS, LAW, CONTROL, *SCALES]
+SHARED: list[Any] = [ROBOT, SETTINGS, LAW, CONTROL, *SCALES]
+"""What never changes is no part of a frozen world, which has its number here."""
 _NUMBERS = {id(constant): number for number, constant in enumerate(SHARED)}
 
 
 class _Freezer(pickle.Pickler):
-    def persistent_id(self, thing: Any) -> int | str | None:
-        return thing.format if isinstance(thing, Struct) else _NUMBERS.get(id(thing))
+    def persistent_id(self, thing: Any) -> int | None:
+        if isinstance(thing, (Enum, Struct, np.dtype)) and id(thing) not in _NUMBERS:
+            _NUMBERS[id(thing)] = len(SHARED)
+            SHARED.append(thing)
+        return _NUMBERS.get(id(thing))
 
 
 class _Thawer(pickle.Unpickler):
-    def persistent_load(self, number: int | str) -> Any:
-        return Struct(number) if isinstance(number, str) else SHARED[number]
+    persistent_load = staticmethod(SHARED.__getitem__)
 
 
 @dataclass

@@ -46,8 +46,10 @@ def read_case(path: str | Path, topics: Iterable[str] | None = None, *, check: b
     """
     folder = Path(path)
     file = folder / CASE_FILE
-    if not folder.is_dir():
+    if not folder.exists():
         raise CaseError("no such folder", path=folder, remedy="name a case folder")
+    if not folder.is_dir():
+        raise CaseError("a file, no case folder", path=folder, remedy=_remedy(folder))
     if not file.is_file():
         raise CaseError("no case.yaml", path=folder, remedy=_remedy(folder))
     document = read_yaml(file)
@@ -63,9 +65,12 @@ def read_case(path: str | Path, topics: Iterable[str] | None = None, *, check: b
     return Case([_read_entry(folder, file, entry, wanted, check) for entry in entries], robot, folder)
 
 
-def _remedy(folder: Path) -> str:
-    if any(folder.glob("*.mcap")):
-        return f"this is a recording; `sher3 gap case {folder} --out CASE` makes a case of it"
+def _remedy(path: Path) -> str:
+    """Return how a case is made of what was named in its place: a recording of this robot, a log of any other."""
+    if path.suffix == ".mcap" or any(path.glob("*.mcap")):
+        return f"this is a recording; `sher3 gap case {path} --out CASE` makes a case of it"
+    if path.is_file():
+        return f"a log becomes a case by `sher3 gap describe {path}` and `sher3 gap import`"
     return "name a case folder"
 
 

@@ -260,6 +260,9 @@ def test_cases(tmp_path, build):
         read_case(tmp_path)
     with pytest.raises(CaseError, match=r"this is a recording; `sher3 gap case .*bag --out CASE`"):
         read_case(write_run(tmp_path / "bag", build(10)))
+    (tmp_path / "log.npz").touch()
+    with pytest.raises(CaseError, match=r"a file, no case folder; .*`sher3 gap describe .*log\.npz`"):
+        read_case(tmp_path / "log.npz")
     folder = write_case(tmp_path / "case", [build(10)], load_robot())
     file = folder / "case.yaml"
     good = file.read_text()
