@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import sys
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -18,7 +19,9 @@ from sher3_challenge.plants.registry import truth_plant
 from sher3_description import load_robot
 from sher3_diagnosis.words import quantity, share
 from sher3_gap.case.loading import load_case
-from sher3_gap.closing import close_loop
+
+sys.path.append(str(Path(__file__).parents[1] / "sher3_ws/src/sher3_gap/test"))
+from closing import close_loop
 
 GAP = (6.0, 12.0)
 

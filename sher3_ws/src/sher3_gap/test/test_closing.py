@@ -1,8 +1,8 @@
 """Every effect: into the simulated robot, diagnosed, applied, and the corrected simulator shows a smaller gap."""
 
 import pytest
+from closing import close_loop
 from sher3_effects import plants
-from sher3_gap.closing import close_loop
 from sher3_gap.excitation import excite
 from sher3_gap.experiments.rehearsal import rehearse
 from simulated import ROBOT, SCATTER, signals

@@ -53,9 +53,9 @@ def joined(runs: Sequence[Readings]) -> dict[str, Array]:
 def whole_rows(name: str, tables: Tables, description: BaseModel) -> tuple[Tables, str]:
     """Return a table without the rows that lack a number of a column that the description names, and a note on them."""
     named = [tables[c.column] for c in columns_in(description) if c.column in tables]
-    if len({len(x) for x in named}) != 1:
+    rows = len(named[0]) if named else 0
+    if not rows or any(len(x) != rows for x in named):
         return tables, ""
-    rows = len(named[0])
     kept = np.all([np.isfinite(x.reshape(rows, -1)).all(axis=1) for x in named], axis=0)
     lacking = rows - int(kept.sum())
     if not 0 < lacking <= LACKING * rows:

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from sher3_description import Robot
 from sher3_diagnosis.verdict import Verdict
 from sher3_effects import to_effects
-
 from sher3_gap.sher import diagnose_runs
 from sher3_gap.signals import RunSignals
 from sher3_gap.simulate.apply import StageGap, compare_case
