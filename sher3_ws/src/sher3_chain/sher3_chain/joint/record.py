@@ -96,7 +96,8 @@ def axes_run(name: str, tables: Tables, machine: ChainDescription) -> AxesRun:
             which: _mended(column, tables, machine.time, name, (axis.name, which), mended)
             for which, column in _columns(axis).items()
         }
-        over[axis.name], joints = _unwrap(axis, raw[axis.name], name)
+        summed = {which for which, column in _columns(axis).items() if is_speed(column, tables, name)}
+        over[axis.name], joints = _unwrap(axis, raw[axis.name], name, summed)
         mended += joints
         mended += _without_glitches(axis, raw[axis.name], name)
         _check_velocity(axis, raw[axis.name]["position"], tables, machine.time, name)
@@ -224,13 +225,17 @@ def _without_glitches(axis: Axis, raw: dict[str, Stamped], run: str) -> list[str
     return notes
 
 
-def _unwrap(axis: Axis, raw: dict[str, Stamped], run: str) -> tuple[float, list[str]]:
+def _unwrap(axis: Axis, raw: dict[str, Stamped], run: str, summed: Collection[str]) -> tuple[float, list[str]]:
     """Join places whose counter starts again; return the range of the position's, 0 for none, and a note for each.
 
     A reference that jumps back may have been told to: it is joined over the range of the encoder that follows it.
+    What is `summed` from a speed has no counter.
     """
     notes, rotary = [], axis.motion == "rotary"
-    over = {which: wrapped_over(raw[which][1], axis.encoder_resolution, rotary) for which in POSITIONS if which in raw}
+    places = [which for which in POSITIONS if which in raw and which not in summed]
+    over = {which: wrapped_over(raw[which][1], axis.encoder_resolution, rotary) for which in places}
+    if "position" not in over:
+        return 0.0, []
     if over.get("reference") != TURN:
         over["reference"] = over["position"]
     for which in raw.keys() & over.keys():

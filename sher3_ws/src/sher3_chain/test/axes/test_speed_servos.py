@@ -38,3 +38,15 @@ def test_a_lag_is_found_whatever_the_positions_count_from(zeros):
     found = verdict.causes[0].parameters
     late = found["time_constant"].value + (found["delay"].value if "delay" in found else 0.0)
     assert late == pytest.approx(LAG, rel=0.1)
+
+
+@pytest.mark.parametrize("fastest", [3.0, 900.0])
+def test_the_sum_of_a_speed_has_no_counter(fastest):
+    """A wheel at 200 Hz that turns by more than half a turn a sample, or hardly: its place is the sum, to the end."""
+    t = PERIOD * np.arange(2000)
+    speed = fastest * np.sign(np.sin(1.3 * t)) * (1.0 - np.exp(-((1.3 * t) % np.pi)))
+    axis = {**SPEED, "signals": {"position": {"column": "w", "unit": "rad/s"}}, "command_law": {"kind": "none"}}
+    run = axes_run("run", {"t": t, "w": speed}, described(**axis))
+    assert not [note for note in run.notes if "wraps" in note]
+    place = run.signals["slide"]["position"]
+    assert np.diff(place) == pytest.approx(0.5 * PERIOD * (speed[1:] + speed[:-1]), abs=1e-9 * fastest)

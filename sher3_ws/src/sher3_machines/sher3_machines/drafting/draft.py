@@ -20,7 +20,18 @@ from sher3_machines.drafting.guesses import (
     time_unit,
     travel,
 )
-from sher3_machines.drafting.names import ASKED, DERIVED, DRIVING, MEASURED, POSITION, counts_samples, named, words_of
+from sher3_machines.drafting.names import (
+    ASKED,
+    ASKED_SPEED,
+    DERIVED,
+    DRIVING,
+    MEASURED,
+    POSITION,
+    VELOCITY,
+    counts_samples,
+    named,
+    words_of,
+)
 from sher3_machines.drafting.speeds import told_by_speed
 from sher3_machines.errors import MachineError
 from sher3_machines.intake.fields import TIME_UNITS, VELOCITIES
@@ -48,6 +59,10 @@ FOLLOWS = 0.9
 """Correlation of two encoders below which one does not move with the other: a held axis."""
 TOLD = {"command", "commanded", "cmd", "action"}
 """Words for what a drive is told, whether a place or a force."""
+ASKED_FOR = ("reference", ASKED_SPEED)
+"""Signals that may stay as they are all along."""
+EVERY = "*"
+"""Axis of a signal that all axes share: one speed is asked of both wheels."""
 LISTED = 12
 """Columns that a sentence lists at most."""
 
@@ -144,7 +159,7 @@ def _living(
 
     What an axis is asked for may stay.
     """
-    dead = [p for p, (signal, _) in placed.items() if signal != "reference" and not _moves(values_of(p, tables))]
+    dead = [p for p, (signal, _) in placed.items() if signal not in ASKED_FOR and not _moves(values_of(p, tables))]
     alive = {p: what for p, what in placed.items() if p not in dead}
     if not any(signal in ("position", "load", "velocity") for signal, _ in alive.values()):
         return dict(placed)
@@ -162,11 +177,24 @@ def with_output(placed: Mapping[Place, tuple[str, str]], tables: Tables) -> dict
 
 
 def with_speeds(placed: Mapping[Place, tuple[str, str]]) -> dict[Place, tuple[str, str]]:
-    """Return the signals with velocities as places, where no place was recorded at all: they are integrated."""
+    """Return the signals with velocities as places, where no place was recorded at all: they are integrated.
+
+    What is asked of a speed is then the reference, and anything else that is asked what the drive is told.
+    """
     if any(signal in ("position", "load") for signal, _ in placed.values()):
         return dict(placed)
-    speeds = {p: axis for p, (signal, axis) in placed.items() if signal == "velocity"}
-    return {**placed, **{p: ("position", axis) for p, axis in speeds.items()}}
+    several = len({axis for signal, axis in placed.values() if signal == "velocity"}) > 1
+    asked = any(signal == ASKED_SPEED for signal, _ in placed.values())
+    out = {}
+    for p, (signal, axis) in placed.items():
+        if signal == "velocity":
+            out[p] = "position", axis
+        elif signal == ASKED_SPEED:
+            out[p] = "reference", axis or (EVERY if several else "")
+        else:
+            told = asked and signal == "reference" and set(words_of(bare(p[0]))) & TOLD
+            out[p] = "command" if told else signal, axis
+    return out
 
 
 def with_loads(placed: Mapping[Place, tuple[str, str]]) -> dict[Place, tuple[str, str]]:
@@ -200,6 +228,10 @@ def together(placed: Mapping[Place, tuple[str, str]]) -> tuple[dict[str, dict[st
     table = tables.pop() if len(tables) == 1 else ""
     left = []
     for place, (signal, axis) in sorted(placed.items(), key=lambda item: _rank(item[0], table)):
+        if axis == EVERY:
+            for signals in groups.values():
+                signals.setdefault(signal, place)
+            continue
         home = axis if axis in groups else _home(axis, groups)
         if signal not in SIGNALS or home is None or groups[home].setdefault(signal, place) != place:
             left.append(place[0])
@@ -211,7 +243,7 @@ def _rank(place: Place, table: str) -> tuple[bool, bool, bool, bool]:
     what is asked for a place.
     """
     words = set(words_of(bare(place[0])))
-    vague = bool(words & ASKED) and not words & POSITION
+    vague = bool(words & ASKED) and not words & (POSITION | VELOCITY)
     return bool(table) and table_of(place[0]) != table, not words & MEASURED, bool(words & DERIVED), vague
 
 

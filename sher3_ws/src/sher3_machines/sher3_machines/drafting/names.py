@@ -22,15 +22,16 @@ def vocabulary(text: str) -> frozenset[str]:
 
 POSITION = vocabulary(
     "position positions pos posn q qpos theta angle angles ang encoder enc lage weg winkel qm x dist displacement "
-    "displ stroke gap hub verschiebung schrittzähler steps schritte"
+    "displ stroke gap hub verschiebung schrittzähler steps schritte posición posicion posição posizione ángulo angulo"
 )
 VELOCITY = vocabulary(
-    "velocity velocities vel speed qd dq omega qdot qvel gyro drehzahl geschwindigkeit rate dot thetadot xdot"
+    "velocity velocities vel speed qd dq omega qdot qvel gyro drehzahl geschwindigkeit rate dot thetadot xdot "
+    "velocidad velocidade vitesse velocità"
 )
 EFFORT = vocabulary("effort efforts torque torques tau taus force iq trq moment drehmoment strom kraft amps qfrc")
-CURRENT = vocabulary("current currents curr cur i")
+CURRENT = vocabulary("current currents curr cur i corriente courant corrente")
 """A current is an effort, but the current position is the measured one."""
-COMMAND = vocabulary("control ctrl u input eingang voltage volt spannung pwm duty vir valve ventil")
+COMMAND = vocabulary("control ctrl u input eingang voltage volt voltaje spannung pwm duty vir valve ventil")
 ASKED = vocabulary(
     "ref reference set setpoint sp desired des target goal soll demand commanded cmd command action qg d"
 )
@@ -57,7 +58,9 @@ PLAIN = DERIVED | vocabulary(
 """Words that tell one axis from another only where nothing else does."""
 TURNING = vocabulary("az azimuth el elevation pan tilt yaw pitch roll")
 """Names of axes that, with a unit of an angle, are a position."""
-TIME = vocabulary("t time stamp timestamp timestamps timestep zeit date datetime utc received elapsed clock")
+TIME = vocabulary(
+    "t time stamp timestamp timestamps timestep zeit tiempo temps tempo date datetime utc received elapsed clock"
+)
 COUNTERS = vocabulary("sample samples index idx frame step n nr row")
 FORCES = ("%", "A", "mA", "N", "kN", "N*m", "mN*m")
 """Units of an effort."""
@@ -86,8 +89,10 @@ SHORT = vocabulary("x i u n d q t")
 """Words of one letter: beside a longer word for the quantity they are the name of the axis."""
 FORCEFUL = EFFORT | CURRENT | COMMAND | APPLIED
 """Words beside which a single letter at the end is a unit: `force_N`, `iq_A`, `u_V`; `enc_A` is the encoder of A."""
-PREFIXES = re.compile(r"(soll|ist)(?=\w{3})")
-"""Who asks or measures, as German joins it to the quantity: `Sollposition`, `Istwert`."""
+PREFIXES = re.compile(r"(soll|ist)(?=\w{3})|[lr](?=\w{4})")
+"""What is joined to a quantity: who asks or measures in German, `Sollposition`, or the side, `Rspeed`."""
+ASKED_SPEED = "asked speed"
+"""Signal of a speed that is asked for: the reference of an axis of which speeds alone were recorded."""
 
 
 @dataclass(frozen=True)
@@ -134,13 +139,15 @@ def named(column: str) -> Named:
         signal = None  # a bridge in mV, no place
     if signal == "position" and unit in VELOCITIES:
         signal = "velocity"
+    if signal == "reference" and unit in VELOCITIES:
+        signal = ASKED_SPEED
     if signal == "reference" and unit in DRIVES and not set(words) & POSITION:
         signal = "command"
     rest = rest or [w for w in table if w not in WORDS and w not in PLAIN and w not in SECOND] or table
     if signal is None and not set(words) & IGNORED:
         plain = unit == "count" or (unit in PLACES and set(words) <= PLAIN | TURNING)
         signal = "position" if plain else "effort" if unit in FORCES and not set(words) & WORDS else None
-        signal = "velocity" if not words and unit in VELOCITIES else signal
+        signal = "velocity" if unit in VELOCITIES and not set(words) & WORDS else signal
     return Named(signal, "_".join(rest), unit)
 
 
@@ -151,7 +158,7 @@ def _signal(words: set[str], above: set[str]) -> str | None:
     if words & IGNORED:
         return None
     if words & VELOCITY:
-        return None if asked else "velocity"
+        return ASKED_SPEED if asked else "velocity"
     if words & EFFORT or (words & CURRENT and not place):
         return "command" if asked else "effort"
     if words & COMMAND:

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from sher3_common import parse_yaml
 from sher3_machines import MachineError, import_case, load_description, open_case
 from sher3_machines.drafting.draft import draft
 
@@ -181,3 +182,26 @@ def test_a_draft_of_the_folder_one_stands_in_has_its_name(tmp_path, monkeypatch)
     np.savetxt(folder / "log.csv", rows, delimiter=",", header="t,q,ref", comments="")
     monkeypatch.chdir(folder)
     assert "name: slide" in draft(Path()).text
+
+
+@pytest.mark.parametrize(
+    "header",
+    [
+        "time, targetSpeed, leftSpeed, leftCommand, rightSpeed, rightCommand",
+        "time,set_rpm,Lspeed,LControl,Rspeed,RControl",
+        "t,desired_speed,left [rpm],left_pwm,right [rpm],right_pwm",
+    ],
+)
+def test_a_speed_that_is_asked_of_both_wheels_is_the_reference_of_each(tmp_path, header):
+    t = np.arange(0.0, 10.0, 0.01)
+    asked = 200.0 * np.sign(np.sin(t))
+    speeds = [150.0 * np.sin(t + 0.1), 160.0 * np.sin(t + 0.2)]
+    columns = (t, asked, speeds[0], 10.0 * np.cos(t), speeds[1], 12.0 * np.cos(t))
+    np.savetxt(tmp_path / "a.csv", np.column_stack(columns), delimiter=",", header=header, comments="")
+    names = [name.strip() for name in header.split(",")]
+    drafted = parse_yaml(draft(tmp_path / "a.csv").text)["axes"]
+    told = [{k: v["column"] for k, v in axis["signals"].items()} for axis in drafted]
+    assert told == [
+        {"position": names[2], "reference": names[1], "command": names[3]},
+        {"position": names[4], "reference": names[1], "command": names[5]},
+    ]

@@ -65,6 +65,12 @@ from sher3_machines.drafting.names import bare_and_unit, named, tells_time
         ("leftSpeedRpm", "velocity", "left"),
         ("rpm", "velocity", ""),
         ("deg", "position", ""),
+        ("Velocidad (rad/s)", "velocity", ""),
+        ("wheel 1 [rpm]", "velocity", "wheel_1"),
+        ("Rspeed", "velocity", "r"),
+        ("LControl", "command", "l"),
+        ("reset", None, ""),
+        ("targetSpeed", "asked speed", ""),
     ],
 )
 def test_a_name_says_signal_and_axis(column, signal, axis):
