@@ -48,10 +48,34 @@ def test_a_pause_says_how_it_ends():
 
 def test_a_refusal_is_said_once_and_again_after_it_was_settled():
     told, refused = Told(), {"mode": None, "refused": {"text": "move_jp rejected: joint names differ"}}
+    told.hear("motion/status", {"mode": None, "refused": None})
     assert told.hear("motion/status", refused) == ["refused  move_jp rejected: joint names differ"]
     assert told.hear("motion/status", refused) == []
     assert told.hear("motion/status", {"mode": None, "refused": None}) == []
     assert len(told.hear("motion/status", refused)) == 1
+
+
+def test_what_was_refused_before_is_not_said():
+    told = Told()
+    assert told.hear("motion/status", {"mode": None, "refused": {"text": "of another client"}}) == []
+    assert told.hear("motion/status", {"mode": None, "refused": {"text": "mine"}}) == ["refused  mine"]
+
+
+def test_an_enabled_robot_that_does_not_follow_says_why_once():
+    told, frozen = Told(), {"reason": "WRENCH_FROZEN", "text": "the wrench repeats bit for bit", "since": 5}
+    assert told.hear("admittance/status", frozen) == told.hear("admittance/status", frozen) == []
+    told.hear("supervisor/status", ENABLED)
+    (line,) = told.hear("admittance/status", frozen)
+    assert line.startswith("at rest  WRENCH_FROZEN: the wrench repeats bit for bit; ") and "add noise" in line
+    for status in (frozen, {**frozen, "since": 6}, {**frozen, "since": 6}):
+        assert told.hear("admittance/status", status) == []
+
+
+def test_what_lasts_no_second_and_a_released_pedal_are_no_reasons_to_say_so():
+    told = Told()
+    told.hear("supervisor/status", ENABLED)
+    for status in (("WRENCH_FROZEN", 5), ("MOVING", 6), ("WRENCH_FROZEN", 7), *[("PEDAL_RELEASED", 8)] * 3):
+        assert told.hear("admittance/status", dict(zip(("reason", "since"), status, strict=True))) == []
 
 
 def test_the_status_line_has_state_mode_force_speed_and_lost_cycles():

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from sher3_common.operating_state import OperatingState
-from sher3_common.reasons import TEXT, Reason
+from sher3_common.reasons import ACTION, TEXT, Action, Reason
 from sher3_common.remedies import RECOVER, remedy
 from sher3_view.live.snapshot import REFUSING, fault_text
 
@@ -34,6 +34,8 @@ class Told:
         self._since: object = None
         self._refused: dict[str, str] = {}
         self._mode, self._why = "", ""
+        self._law: tuple[str, object] | None = None
+        self._objected = ""
         self._force = self._speed = math.nan
         self._lost: dict[str, int] = {}
 
@@ -54,6 +56,7 @@ class Told:
             self._mode = str(data.get("mode") or "")
         else:
             self._why = str(data.get("text", ""))
+            lines += self._objection(data)
         return lines
 
     def status(self) -> str:
@@ -69,15 +72,30 @@ class Told:
     def _new_state(self, data: Mapping[str, Any]) -> list[str]:
         if (data["state"], data["since"]) == (self.state, self._since):
             return []
-        self.state, self._since = str(data["state"]), data["since"]
+        self.state, self._since, self._objected = str(data["state"]), data["since"], ""
         line = state_line(data)
         self.fault = line if self.state == OperatingState.FAULT else ""
         return [line]
 
+    def _objection(self, data: Mapping[str, Any]) -> list[str]:
+        """Return why an enabled robot does not follow a hand, each reason once until the state changes.
+
+        The status comes once a second and at each change: what it says twice lasts.
+        """
+        law = str(data.get("reason")), data.get("since")
+        lasts, self._law = law == self._law, law
+        reason = Reason.__members__.get(law[0], Reason.MOVING)
+        enabled, known = self.state == OperatingState.ENABLED, law[0] == self._objected
+        if known or not (lasts and enabled and ACTION[reason] > Action.ZERO):
+            return []
+        self._objected = law[0]
+        return [f"at rest  {reason.name}: {TEXT[reason]}; {remedy(reason)}"]
+
     def _new_refusal(self, topic: str, data: Mapping[str, Any]) -> list[str]:
+        """Return a refusal that came since the first status of a topic: that one may hold what was refused before."""
         refused = data.get("refused")
         text = "" if not isinstance(refused, Mapping) else str(refused.get("text") or refused)
-        before, self._refused[topic] = self._refused.get(topic, ""), text
+        before, self._refused[topic] = self._refused.get(topic, text), text
         return [f"refused  {text}"] if text and text != before else []
 
     def _note(self, name: str, values: Mapping[str, str]) -> None:
