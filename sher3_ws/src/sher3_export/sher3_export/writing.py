@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from xml.etree.ElementTree import Element
 
+from sher3_chain.manipulator.description import BEHIND
 from sher3_diagnosis.verdict import Cause, Verdict
 
 from sher3_export.changes import Change, Untold, changes_of
@@ -22,6 +23,8 @@ from sher3_export.targets.target import Target, XmlTarget
 from sher3_export.targets.urdf import Urdf
 from sher3_export.xml_file import read_xml
 
+Motors = Mapping[str, Mapping[str, float]]
+"""Motor, by the joint of its name -> joint of the model -> travel of the motor per travel of the joint."""
 TARGETS: Mapping[str, type[Target]] = {
     kind.name: kind for kind in (Mjcf, Urdf, Sdf, Isaac, IsaacLab, Mjlab, Ros2Control, Plain)
 }
@@ -44,7 +47,11 @@ class Exported:
 
 
 def export(
-    verdict: Verdict, target: str, model: Path | Element | None = None, joints: Mapping[str, str] | None = None
+    verdict: Verdict,
+    target: str,
+    model: Path | Element | None = None,
+    joints: Mapping[str, str] | None = None,
+    motors: Motors | None = None,
 ) -> Exported:
     """Write the causes of a verdict into a model.
 
@@ -53,16 +60,25 @@ def export(
         target: one of `TARGETS`.
         model: file of the nominal model, or its root element; those in XML are changed in place of being made anew.
         joints: axis of the verdict -> joint of the model, where their names differ.
+        motors: how motors that move several joints travel, where the case has a `coupling`.
 
     Raises:
-        ExportError: no such target, the model is needed and missing, or it cannot be read or has none of the joints.
+        ExportError: no such target, the model is needed and missing, it cannot be read or has none of the joints, or
+            the case has a `coupling` and `motors` are not stated.
     """
-    done, text = put(verdict.causes, target, model, joints)
+    if motors is None and verdict.causes and any(note.startswith(BEHIND) for note in verdict.notes):
+        remedy = "state each motor's travel, as --motor wrist=wrist:1,elbow:0.5; for `coupling` [[1, 0], [0.5, 1]]"
+        raise ExportError("causes of motors behind a coupling", value="no --motor", limit="one each", remedy=remedy)
+    done, text = put(verdict.causes, target, model, joints, motors)
     return replace(done, text=text(remarks(verdict, done.applied, done.untold)))
 
 
 def put(
-    causes: Sequence[Cause], target: str, model: Path | Element | None, joints: Mapping[str, str] | None
+    causes: Sequence[Cause],
+    target: str,
+    model: Path | Element | None,
+    joints: Mapping[str, str] | None,
+    motors: Motors | None = None,
 ) -> tuple[Exported, Callable[[Sequence[str]], str]]:
     """Write causes into a model; return what was done, still without a text, and what makes the text of remarks.
 
@@ -75,7 +91,8 @@ def put(
     writer = opened(TARGETS[target], model)
     applied: list[Change] = []
     for change in changes:
-        if reason := writer.apply(change):
+        travel = (motors or {}).get(change.joint)
+        if reason := writer.apply(change) if travel is None else writer.apply_at_motor(change, travel):
             untold.append(Untold(change.effect, change.joint, change.constant, change.value, reason))
         else:
             applied.append(change)

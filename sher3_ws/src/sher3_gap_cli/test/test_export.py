@@ -59,6 +59,12 @@ def test_a_model_is_written_and_what_it_cannot_express_is_listed(call, tmp_path)
     assert 'frictionloss="2"' in (tmp_path / "exported.xml").read_text()
 
 
+def test_a_motor_behind_a_coupling_is_a_tendon(call, tmp_path):
+    found = call("--to", "mjcf", "--model", "m.xml", "--joint", "a=j", "--motor", "j=j:0.5")
+    assert found.exit_code == 0, found.output
+    assert '<joint joint="j" coef="0.5"' in (tmp_path / "exported.xml").read_text()
+
+
 def test_ranges_are_written(call, tmp_path):
     assert call("--ranges", "--out", "r.yaml").exit_code == 0
     assert "sher3.ranges/1" in (tmp_path / "r.yaml").read_text()
@@ -73,6 +79,8 @@ def test_ranges_are_written(call, tmp_path):
         (("--to", "mjcf", "--model", "none.xml"), "none.xml"),
         (("--to", "yaml", "--check", "."), "--to mjcf"),
         (("--joint", "a"), "AXIS=JOINT"),
+        (("--motor", "a=j"), "MOTOR=JOINT:SHARE"),
+        (("--to", "mjcf", "--motor", "a=j:1", "--check", "."), "--motor, --check"),
         (("--out", "no/such/folder"), "--out"),
     ],
 )

@@ -52,6 +52,10 @@ class Joint(Axis):
         return self
 
 
+BEHIND = "behind `coupling`: "
+"""How the note of a verdict begins whose causes sit on motors that move several joints."""
+
+
 class ManipulatorDescription(ChainDescription):
     """A serial arm whose joints move together.
 

@@ -30,7 +30,7 @@ from sher3_chain.manipulator.causes.lateness import LATE, late_efforts, with_clo
 from sher3_chain.manipulator.causes.payload import centred
 from sher3_chain.manipulator.causes.plan import JOINT
 from sher3_chain.manipulator.causes.search import causes_of_arm
-from sher3_chain.manipulator.description import ManipulatorDescription
+from sher3_chain.manipulator.description import BEHIND, ManipulatorDescription
 from sher3_chain.manipulator.evidence import ArmMotionEvidence, gather_arm_motion
 from sher3_chain.manipulator.library import of_joints
 from sher3_chain.manipulator.model import ArmModel
@@ -137,7 +137,7 @@ class Manipulator(Chain[ArmMotionEvidence]):
             )
         if self.described.coupling is not None:
             notes.append(
-                "behind `coupling`: forces, frictions and rotors are those of the motors, by their own travel; of a "
+                f"{BEHIND}forces, frictions and rotors are those of the motors, by their own travel; of a "
                 "gear of n alone, a joint has n times the dry friction and n^2 times the viscous one and the rotor"
             )
         if self.described.inertias == "identified":

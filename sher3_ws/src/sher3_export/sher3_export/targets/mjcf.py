@@ -12,6 +12,7 @@ from sher3_export.targets import mjcf_motor
 from sher3_export.targets.links import INERTIAL, WrongLinks
 from sher3_export.targets.mjcf_body import controlled, moved, payloads_on, set_inertial, skeleton, together
 from sher3_export.targets.mjcf_ranges import write_range
+from sher3_export.targets.mjcf_tendon import at_motor
 from sher3_export.targets.target import NOT_TOLD, XmlTarget, each, field
 from sher3_export.xml_file import elements, number, numbers, parents, written
 
@@ -41,8 +42,7 @@ ACTUATORS = ("motor", "position", "velocity", "intvelocity", "general", "damper"
 class Mjcf(XmlTarget):
     """A MuJoCo model; attributes that come from <default> classes are read there and written at the joint."""
 
-    name, root_tag = "mjcf", "mujoco"
-    suffix = "xml"
+    name, root_tag, suffix = "mjcf", "mujoco", "xml"
     fields: ClassVar[Mapping[str, str]] = {
         "coulomb": "frictionloss",
         **dict.fromkeys(("static", "stribeck"), "dcmotor without input, lugre"),
@@ -60,8 +60,7 @@ class Mjcf(XmlTarget):
         "limit": "forcerange",
         "zero": "ref",
         **dict.fromkeys(mjcf_motor.COGGING, "dcmotor without input, cogging"),
-        "backlash": "a body of the motor's own and a second joint",
-        "compliance": "a body of the motor's own and a second joint",
+        **dict.fromkeys(("backlash", "compliance"), "a body of the motor's own and a second joint"),
         "spring": "stiffness",
         "rest": "springref",
         "link": "inertial, or mass or density of the geoms",
@@ -71,6 +70,7 @@ class Mjcf(XmlTarget):
         ),
     }
     refuses: ClassVar[Mapping[str, str]] = NOT_TOLD
+    apply_at_motor = at_motor
 
     def __init__(self, root: Element) -> None:
         super().__init__(root)

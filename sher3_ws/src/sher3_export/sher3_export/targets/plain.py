@@ -29,6 +29,10 @@ class Plain(Target):
         )
         return ""
 
+    def apply_at_motor(self, change: Change, travel: Mapping[str, float]) -> str:
+        """Keep a change of a motor, by the motor's own travel."""
+        return self.apply(change)
+
     def text(self, remarks: Sequence[str]) -> str:
         """Return the constants."""
         data = {"schema": "sher3.model/1", "joints": self.joints}

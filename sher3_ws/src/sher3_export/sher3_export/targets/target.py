@@ -46,6 +46,15 @@ class Target(ABC):
     def apply(self, change: Change) -> str:
         """Write a change; return why it cannot be written, or nothing."""
 
+    def apply_at_motor(self, change: Change, travel: Mapping[str, float]) -> str:
+        """Write a change of a motor that moves several joints; return why it cannot be written, or nothing.
+
+        Args:
+            change: by the motor's own travel.
+            travel: joint of the model -> travel of the motor per travel of the joint.
+        """
+        return f"{self.name} has no field for a motor that moves several joints; --to mjcf has"
+
     @abstractmethod
     def text(self, remarks: Sequence[str]) -> str:
         """Return the model with remarks as a comment on top."""

@@ -42,6 +42,9 @@ def export(
     joint: Annotated[
         list[str] | None, typer.Option(help="AXIS=JOINT where the model has another name; repeat for more.")
     ] = None,
+    motor: Annotated[
+        list[str] | None, typer.Option(help="MOTOR=JOINT:SHARE,JOINT:SHARE behind a coupling; repeat for more.")
+    ] = None,
     bet: Bet = False,
     own: Library = None,
     trust: Trust = False,
@@ -61,21 +64,31 @@ def export(
         target = out or Path(f"exported.{'yaml' if ranges else _suffix(to)}")
         check_writable([target])
         given, names = read_verdict(verdict, bet), _names(joint or [])
-        data = _ranges(given, check, model, names) if ranges else _model(given, to, check, model, names)
+        data = (
+            _ranges(given, check, model, names)
+            if ranges
+            else _model(given, to, check, model, names, _motors(motor or []))
+        )
         written(target, data.pop("text"))
         data = {"file": str(target), **data, "bets": bet_lines(verdict, bet)}
         shown(as_json, data, with_bets(data["bets"], _told(data)))
 
 
-def _model(given: Any, to: str, check: Path | None, model: Path | None, names: dict[str, str]) -> dict[str, Any]:
+def _model(
+    given: Any, to: str, check: Path | None, model: Path | None, names: dict[str, str], motors: Any
+) -> dict[str, Any]:
     """Return the exported model with what was written, and the gaps that are left where it was checked."""
     from sher3_export.check.check import check as checked
     from sher3_export.writing import export as written
 
     if check is None:
-        return _exported(written(given, to, model, names), [])
+        return _exported(written(given, to, model, names, motors), [])
     if to != "mjcf":
         raise RequestError("only MJCF is checked in MuJoCo", value=f"--to {to}", limit="mjcf", remedy="use --to mjcf")
+    if motors:
+        raise RequestError(
+            "motors are not checked in MuJoCo", value="--motor, --check", limit="one", remedy="export alone"
+        )
     found = checked(given, check, model, names)
     return _exported(found.exported, found.gaps)
 
@@ -123,6 +136,21 @@ def _names(pairs: list[str]) -> dict[str, str]:
         if pair.count("=") != 1 or not all(pair.split("=")):
             raise RequestError("--joint is no pair", value=pair, limit="AXIS=JOINT", remedy="as in --joint slide=j1")
     return dict(pair.split("=") for pair in pairs)
+
+
+def _motors(texts: list[str]) -> dict[str, dict[str, float]] | None:
+    """Return MOTOR=JOINT:SHARE,... as a mapping; raises RequestError for any other text."""
+    found: dict[str, dict[str, float]] = {}
+    for text in texts:
+        name, _, shares = text.partition("=")
+        try:
+            found[name] = {joint: float(share) for joint, share in (x.split(":") for x in shares.split(","))}
+        except ValueError as error:
+            limit = "MOTOR=JOINT:SHARE,JOINT:SHARE"
+            raise RequestError(
+                "--motor is none", value=text, limit=limit, remedy="as in --motor b=a:0.5,b:1"
+            ) from error
+    return found or None
 
 
 def _suffix(to: str) -> str:
