@@ -17,7 +17,8 @@ import mujoco
 import numpy as np
 import sher3.gap as gap
 from numpy.typing import NDArray
-from sher3_diagnosis.filter import low_pass
+from sher3_diagnosis.verdict import Verdict
+from true_arm import Motion, motion_of, needed, powerless_on
 
 sys.path.append(str(Path(__file__).parents[1] / "sher3_ws/src/sher3_chain/test"))
 sys.path.append(str(Path(__file__).parents[1] / "tests"))
@@ -25,7 +26,7 @@ from drawn_arms import METHODS, NOISE, asked, drawn_xml, served
 from meaning import meaningless
 
 Array = NDArray[np.float64]
-KINDS = {
+EFFECTS = {
     "viscous": "viscous_friction",
     "coulomb": "coulomb_friction",
     "spring": "spring_torque",
@@ -33,8 +34,14 @@ KINDS = {
     "payload": "payload_mass",
 }
 """What is drawn -> the effect that it is."""
-SECONDS, BAND = 10.0, 20.0
-"""Length of a motion, s, and cut-off of the fits, Hz."""
+PARAMETERS = {"viscous": "extra", "coulomb": "force", "spring": "stiffness", "rotor": "inertia", "payload": "mass"}
+"""What is drawn -> the parameter that says its size."""
+LARGEST = {"viscous": 2.0, "coulomb": 1.0, "spring": 6.0, "rotor": 0.1, "payload": 0.5}
+"""What is drawn -> its largest size at the first joint, SI units."""
+SECONDS = 10.0
+"""Length of a motion, s."""
+UNIT = 0.1
+"""Mass of a payload with which its column is reckoned, kg: it is linear."""
 NOTICED = 0.05
 """Share of the signal from which a column of a fit is called a cause."""
 CONTAINS = {"presliding_friction": "coulomb_friction", "stribeck_friction": "coulomb_friction"}
@@ -52,27 +59,33 @@ class Cause(NamedTuple):
 
 def drawn_causes(rng: np.random.Generator, joints: int) -> list[Cause]:
     """Return three to six causes, no two alike at one joint; a payload is at the last link."""
-    places = [(k, j) for k in KINDS for j in range(joints) if k != "payload" or j == joints - 1]
+    places = [(k, j) for k in EFFECTS for j in range(joints) if k != "payload" or j == joints - 1]
     chosen = rng.choice(len(places), int(rng.integers(3, 7)), replace=False)
     return [Cause(*places[i], float(rng.uniform(0.4, 1.0))) for i in sorted(chosen)]
+
+
+def amount(cause: Cause) -> float:
+    """Return the size of a cause in SI units: those of the joints fall as their links do."""
+    return LARGEST[cause.kind] * cause.size * (1.0 if cause.kind == "payload" else 0.5**cause.joint)
 
 
 def with_causes(xml: str, causes: Sequence[Cause]) -> mujoco.MjModel:
     """Return the plant."""
     spec = mujoco.MjSpec.from_string(xml)
     for cause in causes:
-        joint, size = spec.joints[cause.joint], cause.size * 0.5**cause.joint
+        joint, size = spec.joints[cause.joint], amount(cause)
         if cause.kind == "viscous":
-            joint.damping[0] += 2.0 * size
+            joint.damping[0] += size
         elif cause.kind == "coulomb":
             joint.frictionloss += size
         elif cause.kind == "spring":
-            joint.stiffness[0] += 6.0 * size
+            joint.stiffness[0] += size
         elif cause.kind == "rotor":
-            joint.armature += 0.1 * size
+            joint.armature += size
         else:
-            ball = {"type": mujoco.mjtGeom.mjGEOM_SPHERE, "size": [0.01, 0, 0], "pos": [0.25, 0, 0]}
-            spec.bodies[-1].add_geom(**ball, mass=0.5 * cause.size, contype=0, conaffinity=0)
+            ball = {"type": mujoco.mjtGeom.mjGEOM_SPHERE, "size": [0.01, 0, 0], "mass": size}
+            own = spec.bodies[-1].add_body(pos=[0.25, 0, 0])  # what holds the link up does not hold its payload
+            own.add_geom(**ball, contype=0, conaffinity=0)
     return spec.compile()
 
 
@@ -92,16 +105,33 @@ def row_of_arm(seed: int) -> dict:
     verdict = gap.diagnose(xml, {"time": stamps, "ctrl": ctrl, "qpos": qpos, "actuator_force": force}).verdict
     told = [{at(x, c.actuator) for e in (c.effect, *c.rivals) for x in (e, CONTAINS.get(e, e))} for c in verdict.causes]
     seconds = time.perf_counter() - begun
+    motion = motion_of(nominal, qpos, force)
+    called = [at(EFFECTS[c.kind], names[c.joint]) for c in causes]
+    loaded = with_causes(xml, [Cause("payload", nominal.nv - 1, UNIT / LARGEST["payload"])])
+    carried = (needed(loaded, *motion[:3]) - needed(nominal, *motion[:3])) / UNIT
+    places = [(c.kind, c.joint) for c in causes]
     return {
         "seconds": seconds,
         "status": verdict.status,
-        "truth": sorted(at(KINDS[c.kind], names[c.joint]) for c in causes),
-        "powerless": [],
-        "held": [],
+        "truth": sorted(called),
+        "powerless": sorted(powerless_on(motion, carried, places, called)),
+        "held": held(causes, names, verdict),
         "impossible": meaningless(verdict),
         "sher3": [sorted(x) for x in told],
-        "least squares": [[x] for x in fitted(nominal, names, qpos, force)],
+        "least squares": [[x] for x in fitted(motion, force, names)],
     }
+
+
+def held(causes: Sequence[Cause], names: Sequence[str], verdict: Verdict) -> list[bool]:
+    """Return whether each interval of a size that was drawn holds it."""
+    drawn = {at(EFFECTS[c.kind], names[c.joint]): (PARAMETERS[c.kind], amount(c)) for c in causes}
+    out = []
+    for cause in verdict.causes:
+        name, value = drawn.get(at(cause.effect, cause.actuator), ("", 0.0))
+        p = cause.parameters.get(name)
+        if p is not None and p.low is not None and p.high is not None:
+            out.append(p.low <= value <= p.high)
+    return out
 
 
 def at(effect: str, joint: str) -> str:
@@ -109,27 +139,16 @@ def at(effect: str, joint: str) -> str:
     return effect if effect == "payload_mass" else f"{effect} {joint}"
 
 
-def fitted(nominal: mujoco.MjModel, names: Sequence[str], qpos: Array, force: Array) -> list[str]:
+def fitted(m: Motion, force: Array, names: Sequence[str]) -> list[str]:
     """Return what least squares of all plain laws of each joint calls a cause."""
-    data, period = mujoco.MjData(nominal), float(nominal.opt.timestep)
-    q = low_pass(qpos, period, BAND)
-    v = np.gradient(q, period, axis=0)
-    a = np.gradient(v, period, axis=0)
-    need = np.empty_like(q)
-    for row in range(len(q)):
-        data.qpos[:], data.qvel[:], data.qacc[:] = q[row], v[row], a[row]
-        mujoco.mj_inverse(nominal, data)
-        need[row] = data.qfrc_inverse
-    left = low_pass(force * nominal.actuator_gear[:, 0] - need, period, BAND)
-    inside = slice(len(q) // 20, -len(q) // 20)
+    inside = slice(len(m.q) // 20, -len(m.q) // 20)
     out = []
     for j, name in enumerate(names):
-        soft = np.tanh(v[:, j] / (0.02 * np.abs(v[:, j]).max()))
-        laws = {"rotor_inertia": a[:, j], "viscous_friction": v[:, j], "coulomb_friction": soft}
-        laws |= {"spring_torque": q[:, j], "payload_mass": np.sin(q.sum(axis=1))}
-        x = np.column_stack([*laws.values(), np.ones(len(q))])[inside]
-        y = left[inside, j]
-        beta = np.linalg.lstsq(x, y, rcond=None)[0]
+        soft = np.tanh(m.v[:, j] / (0.02 * np.abs(m.v[:, j]).max()))
+        laws = {"rotor_inertia": m.a[:, j], "viscous_friction": m.v[:, j], "coulomb_friction": soft}
+        laws |= {"spring_torque": m.q[:, j], "payload_mass": np.sin(m.q.sum(axis=1))}
+        x = np.column_stack([*laws.values(), np.ones(len(m.q))])[inside]
+        beta = np.linalg.lstsq(x, m.left[inside, j], rcond=None)[0]
         shares = np.abs(beta) * np.sqrt(np.mean(x**2, axis=0)) / np.sqrt(np.mean(force[:, j] ** 2))
         out += [at(law, name) for law, s in zip(laws, shares, strict=False) if s > NOTICED]
     return sorted(set(out))

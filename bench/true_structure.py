@@ -7,6 +7,8 @@ without it, by two standard errors over the parts, and where its size is as far 
 
 from __future__ import annotations
 
+from collections.abc import Collection
+
 import numpy as np
 from numpy.typing import NDArray
 from sher3_chain.joint.description import Axis
@@ -29,14 +31,20 @@ ENDS = 0.3
 def powerless(drawn) -> set[str]:
     """Return the causes of a drawn machine (`Drawn`) that its record does not show."""
     x, y, ok = balance(drawn, drawn.late)
-    whole, beta, error = left_out(x, y, ok)
-    out = {n for n, b, e in zip(x, beta, error, strict=True) if n in drawn.truth and abs(b) < SURE * e}
-    for name in (n for n in x if n in drawn.truth):
-        out |= set() if _better(left_out({k: v for k, v in x.items() if k != name}, y, ok)[0], whole) else {name}
+    out = not_shown(x, y, ok, drawn.truth)
     if drawn.late:
         punctual, said, judged = balance(drawn, 0.0)
         late = {"sensor_delay", "delay"} & set(drawn.truth)
         out |= set() if _better(left_out(punctual, said, ok & judged)[0], left_out(x, y, ok & judged)[0]) else late
+    return out
+
+
+def not_shown(x: dict[str, Array], y: Array, ok: NDArray[np.bool_], sought: Collection[str]) -> set[str]:
+    """Return the sought columns that parts left out are told no better with, or whose size is not told from zero."""
+    whole, beta, error = left_out(x, y, ok)
+    out = {n for n, b, e in zip(x, beta, error, strict=True) if n in sought and abs(b) < SURE * e}
+    for name in (n for n in x if n in sought):
+        out |= set() if _better(left_out({k: v for k, v in x.items() if k != name}, y, ok)[0], whole) else {name}
     return out
 
 

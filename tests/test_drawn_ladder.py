@@ -4,9 +4,12 @@ import json
 import sys
 from pathlib import Path
 
+import numpy as np
+
 sys.path.insert(0, str(Path(__file__).parents[1] / "bench"))
 from drawn_machines import drawn_axis, rows_of, told
 from predicts import ALIKE, HALF, predicted
+from true_arm import Motion, powerless_on
 from true_structure import powerless
 
 
@@ -14,6 +17,17 @@ def test_a_cause_without_power_is_one_that_the_true_structure_does_not_see():
     """A log of 200 Hz has three samples of the rise of friction in each reversal, under noise."""
     assert powerless(drawn_axis(3000)) == {"stribeck_friction"}
     assert powerless(drawn_axis(3003)) == set()
+
+
+def test_a_cause_of_an_arm_without_power_is_one_that_its_forces_do_not_show():
+    """Two joints, of which the first has a viscous friction alone; a rotor of the second one is a millionth."""
+    clock = np.arange(0.0, 10.0, 0.005)
+    q = np.column_stack([np.sin(2.0 * clock), np.sin(3.0 * clock + 1.0)])
+    v, a = np.gradient(q, 0.005, axis=0), np.gradient(np.gradient(q, 0.005, axis=0), 0.005, axis=0)
+    left = np.column_stack([0.5 * v[:, 0], 1e-6 * a[:, 1]]) + 0.01 * np.random.default_rng(0).normal(size=q.shape)
+    causes, names = [("viscous", 0), ("rotor", 1), ("payload", 1)], ["viscous first", "rotor second", "payload"]
+    carried = np.column_stack([np.cos(q[:, 0]), np.cos(q.sum(axis=1))])
+    assert powerless_on(Motion(q, v, a, left, 0.005), carried, causes, names) == {"rotor second", "payload"}
 
 
 def test_kept_results_are_taken_and_misses_without_power_are_counted_apart(tmp_path):

@@ -129,6 +129,8 @@ class Effect:
         dry: whether it is a friction that holds an axis at rest.
         slow: whether its law lives at low speed, so that samples in quick motion tell nothing of its parameters.
         unseen: whether it is behind the only encoder of an axis, where the effort alone shows it.
+        about: values of a shape that the fit finds again by itself, since its columns are linear about them; no more
+            numbers of its own.
         scales: the known force that it multiplies, in words ("drive gain", "weight", "payload"); no motion tells such
             effects of one joint apart while its drive gain is not known.
         indistinct: ids of effects that give the same readings where the force was not recorded.
@@ -170,6 +172,7 @@ class Effect:
     dry: ClassVar[bool] = False
     slow: ClassVar[bool] = False
     unseen: ClassVar[bool] = False
+    about: ClassVar[tuple[str, ...]] = ()
     scales: ClassVar[str] = ""
     indistinct: ClassVar[tuple[str, ...]] = ()
     told_by_travel: ClassVar[float] = 0.0

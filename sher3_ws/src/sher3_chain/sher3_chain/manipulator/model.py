@@ -18,7 +18,10 @@ from sher3_chain.manipulator.mjcf.losses import Losses
 from sher3_chain.manipulator.rigid import dynamics
 from sher3_chain.manipulator.rigid.tree import PARAMETERS, Tree
 
-__all__ = ["PARAMETERS", "ArmModel", "arm_model"]
+__all__ = ["PARAMETERS", "ROUNDED", "ArmModel", "arm_model"]
+
+ROUNDED = 1e-9
+"""Force on a joint over that on the joint that feels most, below which it is what rounding leaves of nothing."""
 
 
 @dataclass(frozen=True)
@@ -80,6 +83,17 @@ class ArmModel:
         """Return the force that each recorded joint needs, (n, k): inverse dynamics, with rotors and springs."""
         at_rest = 0.0 if self.losses is None else self.losses.at_rest(q)
         return self._rigid(q, v, a) + at_rest
+
+    def weight(self, q: Array) -> Array:
+        """Return the force that each recorded joint needs to hold the bodies up, (n, k), less what is compensated.
+
+        A spring of the model is no weight. Of a joint that holds none, rounding leaves none either.
+        """
+        still = np.zeros_like(q)
+        bodies = self._rigid(q, still, still)
+        held = bodies + (0.0 if self.losses is None else self.losses.compensated(q))
+        most = np.abs(bodies).max(initial=0.0)
+        return np.where(np.abs(held).max(axis=0, initial=0.0) > ROUNDED * most, held, 0.0)
 
     def inertia_matrix(self, q: Array) -> Array:
         """Return the joint-space inertia of the recorded joints in postures q (..., k), (..., k, k)."""

@@ -15,7 +15,7 @@ from sher3_effects.view import NominalAxis
 from sher3_chain.chain.view import LEAD_OF_STROKE, SLIP, ChainView, Loads
 from sher3_chain.manipulator.description import Joint
 from sher3_chain.manipulator.encoders import crossing
-from sher3_chain.manipulator.model import PARAMETERS, ArmModel
+from sher3_chain.manipulator.model import PARAMETERS, ROUNDED, ArmModel
 from sher3_chain.manipulator.signals import JointSignals
 from sher3_chain.readings.level import at_a_level, off
 from sher3_chain.readings.orders import orders_in
@@ -25,8 +25,6 @@ AROUND_IMPACT = 2
 """Samples of the residual grid around one at which a gap is crossed: the filter smears the impact at its end."""
 LINKS_OF_PAYLOAD = 4
 """Leading inertial parameters of a body that a payload changes linearly: its mass, and mass times centre."""
-ROUNDED = 1e-9
-"""Force on a joint over that on the joint that feels most, below which it is what rounding leaves of nothing."""
 MOSTLY = 0.9
 """Share of a record beyond its range from which a joint has another zero than its model."""
 DEVELOPED = 0.95
@@ -88,13 +86,16 @@ class MotionView(ChainView):
 
         Args:
             link: that carries the payload.
-            centre: about which its mass is taken to lie when its inertia is reckoned, m, in the frame of the link's
-                joint; the inertia of a point there is quadratic in it and goes with the mass.
+            centre: near which its mass is taken to lie, m, in the frame of the link's joint. The inertia of a point
+                mass is h h^T / m, with h its mass times centre: it is linear in both about a centre c, where it is
+                c h^T + h c^T - m c c^T.
         """
         if (link, centre) not in self._payload:
             columns = self.regressor_of_joints[..., self._parameters_of(link)]
             out = columns[..., :LINKS_OF_PAYLOAD].copy()
-            out[..., 0] += columns[..., LINKS_OF_PAYLOAD:] @ point_inertia(np.array(centre))
+            own = point_inertia(np.array(centre))
+            both = [point_inertia(np.array(centre) + e) - own - point_inertia(e) for e in np.eye(3)]
+            out += columns[..., LINKS_OF_PAYLOAD:] @ np.column_stack([-own, *both])
             self._payload[link, centre] = self._of_joints(out)
         return self._payload[link, centre]
 
@@ -136,8 +137,7 @@ class MotionView(ChainView):
     @cached_property
     def path(self) -> Loads:
         """Weight on every joint along the motion, (g, k); no contact."""
-        still = np.zeros_like(self._joint_position)
-        weight = self._on_motors(self.model.needed(self._joint_position, still, still)[..., None])[..., 0] * self.shares
+        weight = self._on_motors(self.model.weight(self._joint_position)[..., None])[..., 0] * self.shares
         return Loads(weight, np.zeros_like(weight))
 
     @cached_property

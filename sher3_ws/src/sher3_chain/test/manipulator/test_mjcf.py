@@ -6,10 +6,12 @@ import mujoco
 import numpy as np
 import pytest
 from drawn_arms import drawn_xml
+from sher3_chain.manipulator.bodies import bodies_of_mujoco
 from sher3_chain.manipulator.description import ManipulatorDescription
 from sher3_chain.manipulator.kind import KIND
 from sher3_chain.manipulator.mjcf.drives import Step, driven
 from sher3_chain.manipulator.mjcf.joint import drive_joint
+from sher3_chain.manipulator.model import arm_model
 
 XML = """<mujoco><option timestep="0.002" integrator="implicitfast"/><worldbody>
 <body><joint name="a" axis="0 1 0" damping="0.5"/><geom size="0.1" mass="2" pos="0.2 0 0"/></body></worldbody>
@@ -97,3 +99,16 @@ def test_a_stated_damping_stands_in_place_of_the_model_s(tmp_path):
     data = {"kind": "manipulator", "name": "arm", "model": str(tmp_path / "arm.xml"), "time": {"rate": 100.0}}
     arm = KIND.machine(ManipulatorDescription.model_validate({**data, "joints": [joint]})).model
     np.testing.assert_allclose(arm.losses.in_motion(np.zeros((1, 1)), np.ones((1, 1))), 0.0)
+
+
+@pytest.mark.parametrize("held", [0.0, 0.25])
+def test_a_spring_is_no_weight_and_compensation_takes_weight_off(held):
+    """A ball of 2 kg at 0.2 m behind a plumb joint, which holds none of it, and a level one."""
+    joints = f'<body gravcomp="{held}"><joint name="b" stiffness="9"/><joint name="a"'
+    source = mujoco.MjModel.from_xml_string(XML.format("").replace('<body><joint name="a"', joints))
+    model = arm_model(bodies_of_mujoco(source, "arm"), ["b", "a"], None)
+    q = np.array([[0.5, 0.3], [-1.0, 1.2]])
+    weight = model.weight(q)
+    assert (weight[:, 0] == 0.0).all()
+    np.testing.assert_allclose(weight[:, 1], -(1.0 - held) * 2.0 * 9.81 * 0.2 * np.cos(q[:, 1]), rtol=1e-9)
+    np.testing.assert_allclose(model.needed(q, 0.0 * q, 0.0 * q)[:, 0], 9.0 * q[:, 0], rtol=1e-9)

@@ -130,7 +130,7 @@ class Candidates:
 
 def complexity(term: Term) -> int:
     """Return the number of free numbers of a term."""
-    return term.width + len(term.shape)
+    return term.width + len(term.shape.keys() - set(term.effect.about))
 
 
 def inputs_of(trial: Fit) -> int:

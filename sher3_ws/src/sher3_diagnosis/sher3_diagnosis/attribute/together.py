@@ -39,7 +39,7 @@ def together(candidates: Candidates, gaps: Collection[Channel], left_over: Left,
     laws = [(e, site) for e in candidates.effects if e.ordinary for site in candidates.sites(e)]
     laws = [(e, site) for e, site in laws if set(e.channels(site)) & set(gaps) and not _contained(e, site, beside)]
     every = _linear(candidates, laws, beside)
-    current = _possible(candidates.evidence, every)
+    current = without_impossible(candidates.evidence, every)
     starts = {(e.id, site): [every] for e, site in laws} | {t.key: [] for t in every.terms}
     for _ in range(PASSES):
         before = current
@@ -67,7 +67,7 @@ def _linear(candidates: Candidates, laws: list[tuple[Effect, str]], beside: Sequ
     return fit(evidence.data, [*evidence.nuisance, *beside, *(t for t in terms if _vanishes(t))])
 
 
-def _possible(evidence: Evidence, current: Fit) -> Fit:
+def without_impossible(evidence: Evidence, current: Fit) -> Fit:
     """Return a fit without impossible laws, of which the one that explains least goes first."""
     while wrong := [i for i, t in enumerate(current.terms) if not t.effect.admissible(t.shape, current.of(i))]:
         reduced = {i: without_term(evidence, current, i) for i in wrong}

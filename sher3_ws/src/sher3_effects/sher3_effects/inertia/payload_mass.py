@@ -107,6 +107,7 @@ class PayloadOnLink(PayloadMass):
     """
 
     kinds, places = ("joint",), ("link",)
+    about = ("x", "y", "z")
     on_axis = {"mass": "payload", "x": "payload_x", "y": "payload_y", "z": "payload_z"}
     units = {"mass": "kg", "x": "m", "y": "m", "z": "m"}
     explanation = "A body on a link that the model does not know: weight and inertia on every joint that carries it."

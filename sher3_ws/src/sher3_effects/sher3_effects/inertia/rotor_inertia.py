@@ -16,6 +16,7 @@ class RotorInertia(Page):
     inputs = ("acceleration",)
     above = 0.0
     kinds = ("joint",)
+    plain = True
     shown_by = ("lost_motion", "compliance")  # a rotor that moves otherwise than its link is told from it
     best = Best("steps", "accelerations separate mass from weight")
     explanation = (

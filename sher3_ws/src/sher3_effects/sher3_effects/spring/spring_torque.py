@@ -22,6 +22,7 @@ class SpringTorque(Page):
     inputs = ("position",)
     above = 0.0
     kinds: ClassVar[tuple[str, ...]] = ("joint",)
+    plain = True
     best = Best("sweep", "long constant-speed strokes separate ratios from offsets")
     extends: ClassVar[tuple[str, ...]] = ("gravity_load",)
     told_by = ("stiffness",)

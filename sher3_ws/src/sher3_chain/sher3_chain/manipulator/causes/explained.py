@@ -10,6 +10,7 @@ from sher3_diagnosis.attribute.rivals import Attribution, without_term
 from sher3_diagnosis.fit.fitting import Fit, Term, fit
 from sher3_diagnosis.thresholds import NEEDED, RIVAL
 
+from sher3_chain.manipulator.causes.payload import centred, on_links
 from sher3_chain.manipulator.causes.plan import spent
 from sher3_chain.manipulator.evidence import ArmMotionEvidence
 
@@ -49,6 +50,7 @@ def with_rivals(
             own = []
             ranking.append(())
         trials = [fit(evidence.data, [*others, candidates.term(t.effect, t.site, t.shape)]) for t in own]
+        trials += _other_loads(evidence, candidates, best, i)
         if alike and second is not None:
             taken = {t.key for t in terms}
             new = [t for t in second.fit.terms if t.key not in taken]
@@ -58,6 +60,20 @@ def with_rivals(
         rivals.append(tuple(trials))
     explained = tuple(without_term(evidence, best.fit, i).total - best.fit.total for i in range(len(terms)))
     return Attribution(best.fit, tuple(rivals), explained, tuple(ranking), len(evidence.nuisance))
+
+
+def _other_loads(evidence: ArmMotionEvidence, candidates: Candidates, best: Explained, index: int) -> list[Fit]:
+    """Return the fits with another load on the same link in the place of one, that explain as much."""
+    term, others = best.fit.terms[index], [t for j, t in enumerate(best.fit.terms) if j != index]
+    pages = on_links(candidates)
+    if term.effect not in pages:
+        return []
+    loads = [
+        candidates.term(e, term.site, {}) for e in pages if e is not term.effect and e.shapes(evidence.views, term.site)
+    ]
+    trials = [centred(candidates, fit(evidence.data, [*others, load])) for load in loads if load.channels]
+    room = max(NEEDED, RIVAL * (without_term(evidence, best.fit, index).total - best.fit.total))
+    return [t for t in trials if t.admissible and t.total - best.fit.total < room]
 
 
 def _name(term: Term) -> tuple[object, ...]:

@@ -6,12 +6,12 @@ from collections.abc import Sequence
 
 from sher3_diagnosis.attribute.candidates import Candidates, cost, possible
 from sher3_diagnosis.attribute.rivals import without_term
+from sher3_diagnosis.attribute.together import law_error, without_impossible
 from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.fit.fitting import Fit, Term, fit
-from sher3_diagnosis.thresholds import NEEDED, PARSIMONY
+from sher3_diagnosis.thresholds import NEEDED
 
 from sher3_chain.manipulator.evidence import ArmMotionEvidence
-from sher3_chain.search.friction_in_motion import FRICTION
 from sher3_chain.thresholds import LEAST_CLOSURE
 
 ON_LINK = "link"
@@ -20,24 +20,42 @@ CENTRE = ("x", "y", "z")
 """Parameters of the centre of a payload."""
 HEAVIEST = 2.0
 """Mass of a payload over that of the whole arm at most: what is heavier is no body on a link."""
-CENTRE_ROUNDS = 3
-"""Rounds on the centre of a payload: its inertia is that of a point there, and small beside its weight."""
+CENTRE_ROUNDS = 6
+"""Rounds on the centre of a payload, each linear about the one before, so that few are needed."""
 
 
-def payload(evidence: ArmMotionEvidence, candidates: Candidates) -> Fit | None:
-    """Return the fit of a payload at the link that needs it most, beside plain friction; None where none is needed."""
-    pages = [e for e in candidates.effects if ON_LINK in e.places]
-    rubbing = [(e, j) for j in evidence.judged for e in plain_frictions(candidates)]
-    plain = [*evidence.nuisance, *(candidates.term(e, j, middle(e, evidence, j)) for e, j in rubbing)]
-    base, null = fit(evidence.data, plain), evidence.null().total
-    places = [(page, link) for page in pages for link in evidence.places["link"] if page.shapes(evidence.views, link)]
-    trials = [t for page, link in places if (t := _at(evidence, candidates, page, link, plain)) is not None]
-    if not trials:
-        return None
-    best = min(trials, key=cost)
-    worth = NEEDED * best.terms[-1].width + PARSIMONY * (null - base.total)
-    worthy = base.total - best.total > worth and shows_on_enough(base, best)
-    return best if worthy else None
+def payloads(evidence: ArmMotionEvidence, candidates: Candidates) -> list[Fit]:
+    """Return for each law of a load the fit at the link that needs it most, beside plain laws of all joints.
+
+    None of a law that is not needed.
+    """
+    plain = beside(evidence, candidates)
+    base, found = without_impossible(evidence, fit(evidence.data, plain)), []
+    for page in on_links(candidates):
+        links = [link for link in evidence.places["link"] if page.shapes(evidence.views, link)]
+        trials = [t for link in links if (t := _at(evidence, candidates, page, link, plain)) is not None]
+        if trials:
+            best = min(trials, key=cost)
+            worth = NEEDED * best.terms[-1].width + law_error(evidence, best, plain=True)
+            found += [best] if base.total - best.total > worth and shows_on_enough(base, best) else []
+    return found
+
+
+def on_links(candidates: Candidates) -> list[Effect]:
+    """Return the laws of what sits on a link."""
+    return [e for e in candidates.effects if ON_LINK in e.places]
+
+
+def beside(evidence: ArmMotionEvidence, candidates: Candidates) -> list[Term]:
+    """Return the plain laws of every joint's own; a dry friction in the shape that leaves least beside the others."""
+    laws = [(e, j) for j in evidence.judged for e in own_laws(candidates) if e.shapes(evidence.views, j)]
+    plain = [*evidence.nuisance, *(candidates.term(e, j, middle(e, evidence, j)) for e, j in laws)]
+    for dry in [t for t in plain if t.effect.dry]:
+        others = [t for t in plain if t is not dry]
+        shapes = dry.effect.plain_shapes(evidence.views, dry.site)
+        trials = [fit(evidence.data, [*others, candidates.term(dry.effect, dry.site, shape)]) for shape in shapes]
+        plain = list(min(trials, key=lambda trial: trial.total).terms)
+    return plain
 
 
 def shows_on_enough(base: Fit, best: Fit) -> bool:
@@ -54,16 +72,20 @@ def shows_on_enough(base: Fit, best: Fit) -> bool:
 
 
 def closes(evidence: ArmMotionEvidence, loaded: Fit) -> bool:
-    """Return whether a payload, the first term, shrinks the gaps of joints that carry it by a share worth a name."""
+    """Return whether a payload, the first term, shrinks the gaps of joints that carry it by a share worth a name.
+
+    Beside large gaps of other causes that is a small one: it is also worth a name where it takes more than all leave.
+    """
     first = len(evidence.nuisance)
     carrying = loaded.terms[first].channels
     gap = sum(loss for (_, channel), loss in evidence.null().loss.items() if channel in carrying)
-    return without_term(evidence, loaded, first).total - loaded.total > LEAST_CLOSURE * gap
+    rest = max(0.0, loaded.total - sum(evidence.data.samples.values()))
+    return without_term(evidence, loaded, first).total - loaded.total > min(LEAST_CLOSURE * gap, rest)
 
 
-def plain_frictions(candidates: Candidates) -> list[Effect]:
-    """Return the plain laws of friction."""
-    return [e for e in candidates.effects if e.plain and e.family == FRICTION]
+def own_laws(candidates: Candidates) -> list[Effect]:
+    """Return the plain laws of a joint that scale nothing of what the model says: friction, spring and rotor."""
+    return [e for e in candidates.effects if e.plain and not e.scales and "axis" in e.places]
 
 
 def middle(effect: Effect, evidence: ArmMotionEvidence, joint: str) -> dict[str, float]:
@@ -77,23 +99,34 @@ def _at(
 ) -> Fit | None:
     """Fit a payload at a link."""
     trial = fit(evidence.data, [*plain, candidates.term(page, link, {})])
-    if not possible(trial):  # friction that is not there may fit below zero
+    if not possible(trial):
         return None
-    found = centred(candidates, trial)
-    model, values = evidence.records[0].model, page.parameters({}, found.of(len(plain)))
+    found = without_impossible(evidence, centred(candidates, trial))
+    if found.terms[-1].effect is not page:
+        return None
+    model, values = evidence.records[0].model, page.parameters({}, found.of(len(found.terms) - 1))
     mass = values.get("mass", values.get("relative", 0.0) * model.mass_of(link))
     return found if not model.mass or mass < HEAVIEST * model.mass else None
 
 
-def centred(candidates: Candidates, found: Fit) -> Fit:
-    """Return a fit with the inertia of its last term, where that has a centre, about the centre of the round before."""
-    last = len(found.terms) - 1
-    page, link = found.terms[last].effect, found.terms[last].site
+def centred(candidates: Candidates, found: Fit, at: int = -1) -> Fit:
+    """Return a fit with the inertia of a term, where that has a centre, about the centre that the fit itself finds.
+
+    Args:
+        candidates: that evaluate terms.
+        found: the fit.
+        at: which of its terms; default the last.
+    """
+    at %= len(found.terms)
+    page, link = found.terms[at].effect, found.terms[at].site
     for _ in range(CENTRE_ROUNDS if set(CENTRE) <= page.units.keys() else 0):
-        values = page.parameters({}, found.of(last))
+        values = page.parameters({}, found.of(at))
         shape = {name: round(values[name], 4) for name in CENTRE}
-        trial = fit(candidates.evidence.data, [*found.terms[:last], candidates.term(page, link, shape)])
-        if not possible(trial):
+        if shape == found.terms[at].shape:
+            break
+        term = candidates.term(page, link, shape)
+        trial = fit(candidates.evidence.data, [*found.terms[:at], term, *found.terms[at + 1 :]])
+        if not page.admissible(shape, trial.of(at)):
             break
         found = trial
     return found

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
-from sher3_diagnosis.attribute.candidates import Candidates, price
+from sher3_diagnosis.attribute.candidates import Candidates, complexity, price
 from sher3_diagnosis.attribute.plan import SearchPlan
+from sher3_diagnosis.attribute.rivals import without_term
+from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import Fit, Term, fit
+from sher3_diagnosis.thresholds import NEEDED
 
 from sher3_chain.search.away_from_reversals import borne_out
 from sher3_chain.search.one_joint import of_one_joint
@@ -16,6 +20,23 @@ from sher3_chain.thresholds import CAUSES_OF_JOINT
 def spent(found: Fit) -> float:
     """Return the held-out loss of a fit and the price of every number."""
     return found.total + sum(price(t) for t in found.terms)
+
+
+def bought(evidence: Evidence, found: Fit, first: int) -> Fit:
+    """Return a fit of a whole arm without the terms from `first` on that are not worth their numbers beside the others.
+
+    A joint searched alone has use for laws that a load takes over.
+    """
+    while len(found.terms) > first:
+        fewer = [without_term(evidence, found, i) for i in range(first, len(found.terms))]
+        gains = [
+            x.total - found.total - NEEDED * complexity(t) for x, t in zip(fewer, found.terms[first:], strict=True)
+        ]
+        least = min(range(len(gains)), key=gains.__getitem__)
+        if gains[least] > 0.0:
+            break
+        found = fewer[least]
+    return found
 
 
 def plain_before_richer(candidates: Candidates, trials: list[Fit], given: Sequence[Term]) -> list[Fit]:
@@ -51,3 +72,10 @@ JOINT = SearchPlan(
     reviews=(borne_out,),
 )
 """How the causes of one force balance, or of one pair of encoders, are looked for."""
+
+BESIDE_LINKS = replace(JOINT, possible=beside_links)
+"""The same beside links found from the data."""
+
+BESIDE_LOAD = replace(JOINT, together=True)
+"""The same beside a payload or a wrong mass, with plain laws at once and by what they are worth: what a joint leaves
+below its own floor the load would take up, and the other joints with it."""

@@ -12,6 +12,7 @@ from functools import partial
 
 import numpy as np
 from sher3_diagnosis.attribute.candidates import Candidates
+from sher3_diagnosis.attribute.plan import SearchPlan
 from sher3_diagnosis.attribute.planned import planned
 from sher3_diagnosis.attribute.rivals import Attribution
 from sher3_diagnosis.attribute.search import Say
@@ -28,11 +29,13 @@ from sher3_chain.manipulator.causes.confounding import GAIN
 from sher3_chain.manipulator.causes.explained import Explained, with_rivals
 from sher3_chain.manipulator.causes.lateness import LATE, Late, lateness
 from sher3_chain.manipulator.causes.links import clearly_less, wrong_links
-from sher3_chain.manipulator.causes.payload import closes, middle, payload
-from sher3_chain.manipulator.causes.plan import JOINT, beside_links
+from sher3_chain.manipulator.causes.payload import centred, closes, middle, payloads
+from sher3_chain.manipulator.causes.plan import BESIDE_LINKS, BESIDE_LOAD, JOINT, bought
 from sher3_chain.manipulator.evidence import ArmMotionEvidence, channel_of, channels_of, of_channel
 from sher3_chain.search.friction_in_motion import without_slow
 
+BODILY = {"acceleration", "position"}
+"""Inputs of a joint's own laws that a rigid body has too."""
 TIMING = "timing"
 """Family of what is late."""
 
@@ -43,11 +46,10 @@ def causes_of_arm(evidence: ArmMotionEvidence, candidates: Candidates, say: Say)
         return Attribution(evidence.null(), (), (), nuisance=len(evidence.nuisance))
     found = _explained(evidence, candidates, (), None, say)
     best, second = found, None
-    loaded = payload(evidence, candidates)
-    if loaded is not None:
+    for loaded in payloads(evidence, candidates):
         other = _explained(evidence, candidates, loaded.terms[-1:], loaded, say)
-        better = other.cost < found.cost and closes(evidence, other.fit)
-        best, second = (other, found) if better else (found, other)
+        better = other.cost < best.cost and closes(evidence, other.fit)
+        best, second = (other, found) if better else (best, other if best is found else second)
     linked = _linked(evidence, candidates, best, say)
     return with_rivals(evidence, candidates, *((best, second) if linked is None else (linked, None)))
 
@@ -60,7 +62,7 @@ def _linked(evidence: ArmMotionEvidence, candidates: Candidates, best: Explained
     page = next((e for e in candidates.effects if e.free() is not None), None)
     if page is None:
         return None
-    plain = [e for e in candidates.effects if e.plain and e.scales != GAIN]
+    plain = [e for e in candidates.effects if e.plain and e.scales != GAIN and not BODILY & set(e.inputs)]
     laws = [(e, j, middle(e, evidence, j)) for j in evidence.judged for e in plain if e.shapes(evidence.views, j)]
     links = wrong_links(evidence, page, laws)
     if not links:
@@ -79,48 +81,53 @@ def _explained(
     """
     effects = [e for e in candidates.effects if e.places == ("axis",)]
     beside = _added(evidence, loaded, loads) if loaded is not None else ()
-    links = any(load.effect.free() is not None for load in loads)
+    plan = JOINT if not loads else BESIDE_LINKS if any(t.effect.free() is not None for t in loads) else BESIDE_LOAD
     alone: list[Attribution] = []
     for channel in (c for joint in evidence.judged for c in channels_of(joint)):
         own = of_channel(evidence, channel, beside)
         say(f"{channel}{' beside ' + ' and '.join(t.site for t in loads) if loads else ''}")
         balance = channel == channel_of(channel.actuator)
         late = lateness(evidence, channel.actuator, beside) if balance else None
-        alone.append(_beside_delay(own, late, effects, say, links) if balance else _searched(own, effects, say))
+        alone.append(_beside_delay(own, late, effects, say, plan) if balance else _searched(own, effects, say))
     terms = [*evidence.nuisance, *loads]
     for found in alone:
         terms += [candidates.term(t.effect, t.site, t.shape) for t in _causes(found)]
-    return Explained(fit(evidence.data, terms), alone)
+    whole, first = fit(evidence.data, terms), len(evidence.nuisance)
+    for at in range(first, first + len(loads)):
+        whole = centred(candidates, whole, at)
+    return Explained(bought(evidence, whole, first + len(loads)), alone)
 
 
 def _causes(found: Attribution) -> list[Term]:
     return [t for t in found.fit.terms if t.effect.family != NUISANCE]
 
 
-def _searched(own: Evidence, effects: Sequence[Effect], say: Say, links: bool = False) -> Attribution:
-    """Search one channel for causes, beside links that were found from the data or not."""
-    plan = replace(JOINT, possible=beside_links) if links else JOINT
+def _searched(own: Evidence, effects: Sequence[Effect], say: Say, plan: SearchPlan = JOINT) -> Attribution:
+    """Search one channel for causes."""
     return planned(Candidates(own, effects), plan, partial(down_to_floor, own.channels, own), say)
 
 
-def _beside_delay(own: Evidence, late: Late | None, effects: Sequence[Effect], say: Say, links: bool) -> Attribution:
+def _beside_delay(
+    own: Evidence, late: Late | None, effects: Sequence[Effect], say: Say, plan: SearchPlan
+) -> Attribution:
     """Search the force balance of a joint without and beside a late effort; return what is cheaper.
 
     The delay is told by its shape: causes may be at the floor without it, and a fit would take up a viscous friction or
-    how a dry one turns. Where the shape tells none, none is looked for. They are compared away from reversals, where a
-    dry friction is no matter of a moment.
+    how a dry one turns. Where the shape tells none, none is looked for; one within the doubt of the record's own clock
+    is looked for only in what is left, since laws fitted at once would share it. They are compared away from reversals,
+    where a dry friction is no matter of a moment.
     """
     others = [e for e in effects if e.family != TIMING]
     if late is not None and late.told and not late.sure:
-        others = list(effects)
-    found = _searched(own, others, say, links)
-    if late is None or not late.sure or len(others) == len(effects):
+        return _searched(own, effects, say, replace(plan, together=False))
+    found = _searched(own, others, say, plan)
+    if late is None or not late.sure:
         return found
     site = own.places["axis"][0]
     page = computed(LATE).told()
     trials = [make_term(own.data, page, site, shape) for shape in late.shapes]
     best = min(trials, key=lambda term: fit(own.data, [*found.fit.terms, term]).total)
-    beside = _searched(replace(own, nuisance=(best,)), others, say, links)
+    beside = _searched(replace(own, nuisance=(best,)), others, say, plan)
     return beside if beside.fit.admissible and _worth(own, site, found.fit, beside.fit) > NEEDED else found
 
 

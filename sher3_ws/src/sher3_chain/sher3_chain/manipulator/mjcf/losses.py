@@ -56,6 +56,15 @@ class Losses:
         still = np.zeros_like(q)
         return -self._forces(q, still, still)[0] - self._passive.force(q, still)
 
+    def compensated(self, q: Array) -> Array:
+        """Return the force that gravity compensation takes off the drives at q (n, k), (n, k)."""
+        still, pull = np.zeros_like(q), self._model.opt.gravity.copy()
+        with_gravity = self._forces(q, still, still)[0]
+        self._model.opt.gravity[:] = 0.0
+        without = self._forces(q, still, still)[0]
+        self._model.opt.gravity[:] = pull
+        return without - with_gravity
+
     def in_motion(self, q: Array, v: Array) -> Array:
         """Return the force that damping and drag need at positions and velocities (n, k), (n, k)."""
         return -self._forces(q, v, np.zeros_like(q))[0] - self._passive.force(q, v) - self.at_rest(q)
