@@ -3,6 +3,8 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 READY := $(VENV)/.ready
+# Why a test in wall time was run again is printed: a rerun hides no cause.
+PYTEST := $(BIN)/pytest --durations 10 -raR --rerun-show-tracebacks
 
 # Two targets at a time: kernels are compiled beside typed messages and the checks of `make lint`.
 MAKEFLAGS += --jobs=2
@@ -21,14 +23,14 @@ test: test-wall lint test-all-but-wall  ## lint, types and every test but the sl
 # it. In the order of the files: long ones come first, so that neither of the two waits for the other at the end.
 .PHONY: test-all-but-wall test-wall
 test-all-but-wall: $(READY) lint
-	nice -n 5 $(BIN)/pytest -n 2 --dist loadscope --no-loadscope-reorder --durations 10 \
+	nice -n 5 $(PYTEST) -n 2 --dist loadscope --no-loadscope-reorder \
 		-m "not slow and not (graph and flaky)"
 
 # Reads only the files that name the mark it asks for (`conftest.py` sees to it that they do): a quarter of the time to
 # collect. What it says is shown at its end, in one piece.
 test-wall: $(READY)
 	mkdir -p build
-	$(BIN)/pytest --durations 10 -m "graph and flaky and not slow" \
+	$(PYTEST) -m "graph and flaky and not slow" \
 		$$(grep -rl flaky --include='test_*.py' tests $(wildcard sher3_ws/src/*/test)) > build/test-wall.log 2>&1; \
 	status=$$?; cat build/test-wall.log; exit $$status
 
