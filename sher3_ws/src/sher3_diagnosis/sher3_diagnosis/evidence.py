@@ -131,7 +131,7 @@ class Evidence:
         return unit if component < TURNS else ROTARY[unit]
 
     def component(self, channel: Channel, component: int) -> str | None:
-        """Return the name of a component: `x` to `rz` of a pose, `fx` to `tz` of a wrench; None where there is one."""
+        """Return the name of a component: `x` to `rz` of a pose, `fx` to `tz` of a wrench; None for a single one."""
         residual = next(r[channel] for r in self.data.residuals if channel in r)
         if residual.values.shape[1] == 1:
             return None

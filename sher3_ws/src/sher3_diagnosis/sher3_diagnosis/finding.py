@@ -21,7 +21,7 @@ OUTSIDE, NO_GAP, LIBRARY = "outside_library", "no_gap", "library"
 
 @dataclass(frozen=True)
 class Candidate:
-    """An effect at a site that may be a cause, and how far it is from explaining as much as the one named.
+    """An effect at a site that may be a cause, and how far it is from explaining as much as the named cause.
 
     Attributes:
         effect, site, family: of the effect; `contains`: the simpler effects that it contains.

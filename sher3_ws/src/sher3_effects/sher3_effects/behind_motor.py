@@ -1,4 +1,4 @@
-"""What pages have in common that look for a load behind the only encoder of an axis: the effort shows it."""
+"""Common part of the pages that look for a load behind the only encoder of an axis: the effort shows it."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from sher3_effects.view import AxisView, NominalAxis
 
 
 class BehindMotor(Page):
-    """effort = mass a + load_mass times what the load accelerates beyond the motor, as the effect has it.
+    """effort = mass a + load_mass (a_load - a), where the law of the effect gives the load's acceleration.
 
     Attributes:
         mass: all that moves, kg or kg m^2; that of the load is a part of it.

@@ -12,7 +12,7 @@ EARLIEST, OF_PERIODS = 0.02, 3.0
 
 
 def earliest(period: float) -> float:
-    """Return by how much, s, an effort may come before a motion of that period at most: more is no filter's delay."""
+    """Return the longest lead, s, of an effort over a motion of a period, s: a longer lead is no delay of a filter."""
     return max(EARLIEST, OF_PERIODS * period)
 
 

@@ -86,7 +86,7 @@ class FoundPage(Page):
 
     @cached_property
     def shape(self) -> dict[str, float]:
-        """Name -> value of every shape that may be refined: equal values of one name are one."""
+        """Name -> value of every shape that may be refined: equal values of a name count once."""
         found: dict[tuple[str, float], None] = {}
         for term in self.terms:
             for factor in term.feature.factors:

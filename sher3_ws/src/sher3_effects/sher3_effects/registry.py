@@ -40,7 +40,7 @@ def library() -> Mapping[str, Page]:
 
 
 def every() -> Mapping[str, Page]:
-    """Return a page for each effect of any kind of machine by id, alphabetically; the robot's form where it has one."""
+    """Return a page for each effect of any kind of machine by id, alphabetically; the robot's form if it has one."""
     found: dict[str, Page] = {}
     for page in _pages(os.environ.get(VARIABLE, "")):
         if page.id not in found or "robot" in page.kinds:

@@ -135,7 +135,7 @@ class StaticTest(Machine[Readings, TableEvidence]):
         return {table.channel: why} if why else {}
 
     def end_to_end(self, findings: Sequence[Finding[TableEvidence]], causes: Sequence[Cause]) -> Interval | None:
-        """Return the closure at the end of the chain, where the table is of that end."""
+        """Return the closure at the end of the chain, where the table holds readings of this end."""
         return self.kind.end_to_end(findings)
 
     def reporter(self) -> TableReporter:

@@ -45,7 +45,7 @@ class Condition(NamedTuple):
 
 
 def conditions_of(stated: Conditions, runs: Sequence[str]) -> list[Condition]:
-    """Return every condition that differs from the one of the first run; none where nothing was stated.
+    """Return every condition that differs from the condition of the first run; none where nothing was stated.
 
     Raises:
         MachineError: a stated run was not imported, or a run lacks a tag that another one has.

@@ -15,7 +15,7 @@ from sher3_diagnosis.thresholds import NEEDED
 
 
 def beside_richer(candidates: Candidates, plain: Fit, left_over: Left) -> Fit | None:
-    """Fit the plain laws at once beside the richer law of dry friction that does best in the place of the plain one.
+    """Fit the plain laws at once beside the richer law of dry friction that fits best in place of the plain law.
 
     Laws whose shape was searched beside the plain friction, such as a delay, are not beside the richer one at first. A
     law that the plain friction hides may be: without a viscous friction the other does not fall with speed.

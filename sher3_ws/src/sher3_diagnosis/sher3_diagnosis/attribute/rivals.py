@@ -50,7 +50,7 @@ class Attribution:
     """The fit where no friction rests, where a cause is one that does."""
 
     def arranged(self, evidence: Evidence, order: Sequence[int], new: Mapping[int, Term] | None = None) -> Attribution:
-        """Return some of the terms in an order, fitted again; what was found of each stays with it.
+        """Return some of the terms in a new order, fitted again; the rivals of each term stay with it.
 
         Args:
             evidence: that the fit is of.

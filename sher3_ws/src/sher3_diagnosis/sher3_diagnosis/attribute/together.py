@@ -68,7 +68,7 @@ def _linear(candidates: Candidates, laws: list[tuple[Effect, str]], beside: Sequ
 
 
 def without_impossible(evidence: Evidence, current: Fit) -> Fit:
-    """Return a fit without impossible laws, of which the one that explains least goes first."""
+    """Return a fit without impossible laws, removed one at a time, the law that explains least first."""
     while wrong := [i for i, t in enumerate(current.terms) if not t.effect.admissible(t.shape, current.of(i))]:
         reduced = {i: without_term(evidence, current, i) for i in wrong}
         current = reduced[first_of_least({i: f.total for i, f in reduced.items()})]

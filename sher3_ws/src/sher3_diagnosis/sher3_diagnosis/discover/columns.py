@@ -58,7 +58,7 @@ class Columns:
         return {name: q.unit for name, q in self.quantities[0].items()}
 
     def floor(self, run: int, component: int) -> Array:
-        """Return the floor of every sample of a run, (N,): channels of one place may have different ones."""
+        """Return the floor of every sample of a run, (N,): channels of one place may have different floors."""
         counts = [int(self.evidence.data.residuals[run][c].ok.sum()) for c in self._of(run)]
         floors = [self.evidence.floors[run][c][component] for c in self._of(run)]
         return np.repeat(floors, counts)

@@ -65,7 +65,7 @@ class Factor:
 
 @dataclass(frozen=True, order=True)
 class Feature:
-    """A product of factors; without any it is the constant one."""
+    """A product of factors; without factors it is the constant 1."""
 
     factors: tuple[Factor, ...] = ()
 

@@ -121,7 +121,7 @@ class ComplianceOnAxis(TransmissionCompliance):
     """Value of the shape `recorded` for the force that the mass of the load needs."""
 
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
-        """Return the shapes of a modelled force, and one of the recorded one where there is one."""
+        """Return the shapes of the modelled force, and a shape of the recorded force where it was recorded."""
         recorded = any(v.run.effort is not None and v.run.effort.any() for v in views)
         held: Shape = {"load_mass": 0.0, "frequency": 0.0, "damping": 0.0, "recorded": 1.0}
         modelled: list[Shape] = [{**held, "recorded": 0.0}]

@@ -23,7 +23,7 @@ FINER = (0.75, 0.88, 0.95, 1.05, 1.14, 1.33)
 
 
 def knees(forces: Iterable[Array], shape: Shape) -> list[Shape]:
-    """Return a shape with a knee in shares of the rms of some forces, each (g,); none where no force tells one.
+    """Return a shape with a knee in shares of the rms of some forces, each (g,); none where no force tells a knee.
 
     Loads that come in steps have no samples below the first step, where a soft spring cannot be told from a gap.
     """
@@ -41,7 +41,7 @@ def finer(shape: Shape) -> list[Shape]:
 
 
 def is_told(shape: Shape) -> bool:
-    """Return whether a shape has no knee, or one above the smallest force at which the records would show it."""
+    """Return whether a shape has no knee, or a knee above the smallest force at which the records would show it."""
     return "knee" not in shape or shape["knee"] >= LEAST * shape["least"]
 
 

@@ -47,7 +47,7 @@ class CoulombFriction(DryFriction):
     """In motor revolutions: 2, 5 and 10 um on a 2 mm lead."""
 
     def tolerated(self, robot: Robot, site: str) -> Sequence[Tolerated]:
-        """Return the friction of the axis beyond the nominal one."""
+        """Return the friction of the axis beyond its nominal friction."""
         axis = robot.actuators[ACTUATORS.index(site)]
         limit, unit = robot.tolerances.friction * axis.drive.rated, self.unit("force", site, site == "roll")
         return (Tolerated({"displacement": self.DISPLACEMENTS[1] * axis.lead}, {f"friction of {site}": (limit, unit)}),)

@@ -17,7 +17,7 @@ STILL = 0.1
 
 
 class DryFriction(Page):
-    """A friction with a level. In sliding it has that level; at rest it is any force up to it.
+    """A friction with a level: in sliding it is the level, at rest any force up to the level.
 
     Coulomb's inequality: how a bristle bends below the resolution of the encoders is not recorded. On other machines
     the balance at rest is a rule of its own (`sher3_chain.axes.causes.balance_at_rest`).

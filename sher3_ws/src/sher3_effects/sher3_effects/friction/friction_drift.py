@@ -51,7 +51,7 @@ class FrictionDrift(DryFriction):
         return [{"time_constant": 0.0, "displacement": fine, "coldest": cold, "warmest": hot}, *running_in]
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
-        """Two columns: the constant part and the changing one."""
+        """Two columns: the constant part and the changing part."""
         z = view.sliding(view.row(site), shape["displacement"])
         run = view.run
         if shape["time_constant"] == 0.0:

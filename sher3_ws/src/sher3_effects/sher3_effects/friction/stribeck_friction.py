@@ -112,7 +112,7 @@ class StribeckOnAxis(StribeckFriction):
         return [{"stribeck_velocity": v, **shape} for v in found for shape in sliding]
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether friction resists, falls with speed, and is at rest below `HIGHEST` times the sliding one."""
+        """Return whether friction resists, falls with speed, and holds at rest less than `HIGHEST` times sliding."""
         sliding, more = map(float, coefficients)
         return super().admissible(shape, coefficients) and sliding + more < self.HIGHEST * sliding
 

@@ -43,7 +43,7 @@ class GravityLoad(Page):
         return [*scaled, {"constant": 1.0}]
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
-        """One column: the modelled gravity force, or one."""
+        """One column: the modelled gravity force, or ones."""
         gravity = view.path.gravity[:, view.row(site)]
         return Signature({Channel(self.stage, site): column(np.ones_like(gravity) if shape["constant"] else gravity)})
 
@@ -97,7 +97,7 @@ class GravityOnAxis(GravityLoad):
         return [{**shape, "constant": 3.0}] if shape["constant"] == 2.0 else []
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
-        """Return one column; for a weight at an arm sine and cosine of the position, and for a force beside it one.
+        """Return one column; for a weight at an arm sine and cosine of the position, and ones for a force beside it.
 
         They are filtered as forces are: the sine of a filtered angle is not the filtered sine.
         """

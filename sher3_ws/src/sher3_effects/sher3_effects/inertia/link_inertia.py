@@ -103,7 +103,7 @@ class FreeLinkInertia(LinkInertia):
     kinds = ()
 
     def free(self) -> None:
-        """Return None: this is it."""
+        """Return None: this page is the free law itself."""
 
     def signature(self, view: Any, site: str, shape: Shape) -> Signature:
         """Return a column for each parameter."""

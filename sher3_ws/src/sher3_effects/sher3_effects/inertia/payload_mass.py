@@ -95,7 +95,7 @@ class MassOnAxis(PayloadMass):
         return bool(shape["stated"] + coefficients[0] > 0.0)
 
     def unlikely(self, shape: Shape, coefficients: Array) -> bool:
-        """Return False: a description may state too large a mass as well as too small a one."""
+        """Return False: a description may state a mass that is too large as well as too small."""
         return False
 
 

@@ -90,7 +90,7 @@ class ForceSaturation(Page):
 
 
 def bent(force: Array, limit: float, knee: float) -> Array:
-    """Return forces (n,) held within a limit: straight up to 1 - knee of it, then a parabola that ends level at it."""
+    """Return forces (n,) held within a limit: straight up to (1 - knee) limit, then a parabola that ends level."""
     size = np.abs(force)
     over = np.clip(size / limit - (1.0 - knee), 0.0, 2.0 * knee)
     soft = np.minimum(size, limit * (1.0 - knee)) + limit * (over - over**2 / (4.0 * knee) if knee > 0.0 else 0.0)

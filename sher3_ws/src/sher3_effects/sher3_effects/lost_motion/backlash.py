@@ -75,7 +75,7 @@ class Backlash(Page):
         return [{**shape, "stick": stick, "release": r * shape["width"]} for r in self.RELEASES]
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
-        """No coefficient: the width is the shape. The side at the start is the one that fits the first samples."""
+        """No coefficient: the width is the shape. The side at the start is the side that fits the first samples."""
         axis, run = view.row(site), view.run
         clock, stick, release = run.stage_clock, shape["stick"], shape.get("release", 0.0)
         pull = np.interp(clock, clock[run.grid], view.path.contact_force[:, axis] - view.path.gravity[:, axis])
@@ -148,7 +148,7 @@ class BacklashOnAxis(Backlash):
         return [s for s in found if s.get("damping") == np.inf and s["stick"] == 0.0]
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
-        """Return the lag behind a gap; a load with a `braking` (m/s^2) keeps its speed in it but for that.
+        """Return the lag behind a gap; a load with a `braking` (m/s^2) keeps its speed in the gap but for this braking.
 
         Where a known force says on which flank the load lies, one column: minus half its side.
         """

@@ -78,7 +78,7 @@ class HysteresisOnAxis(TransmissionHysteresis):
         return [*super().shapes(views, site), *({"reach": r * usual} for r in self.REACHES if usual)]
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
-        """Return minus the Dahl state of the path, or the one of the force."""
+        """Return minus the Dahl state of the path, or that state of the force."""
         if "reach" not in shape:
             return super().signature(view, site, shape)
         run = view.run

@@ -51,7 +51,7 @@ class EncoderEccentricity(Page):
         }
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:
-        """Return whether once per lead is the larger of the two waves: the second is that of a code tilted as well."""
+        """Return whether once per lead is the larger wave: the second belongs to a code disc that is tilted as well."""
         return len(coefficients) < 4 or bool(np.hypot(*coefficients[:2]) > np.hypot(*coefficients[2:]))
 
 
@@ -81,7 +81,7 @@ class EccentricityOnAxis(EncoderEccentricity):
         return np.stack([f(n * turn) for n in orders for f in (np.sin, np.cos)], axis=-1)
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Return amplitude, phase, and the turn where it is that of the load."""
+        """Return amplitude, phase, and the turn where the load's turn counts."""
         turn = {"turn": shape["turn"]} if "turn" in shape else {}
         return {**super().parameters(shape, coefficients), **turn}
 

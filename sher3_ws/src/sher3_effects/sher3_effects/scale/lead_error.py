@@ -60,7 +60,7 @@ class LeadError(Page):
 
 
 class LeadErrorOnAxis(LeadError):
-    """The same on one axis of any machine: the ratio is one."""
+    """The same on one axis of any machine, with a ratio of 1."""
 
     kinds = ("axis", "servo")
     plain = True

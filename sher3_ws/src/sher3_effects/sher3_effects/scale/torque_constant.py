@@ -1,4 +1,4 @@
-"""Torque constant: the real force is not the one the drive reports."""
+"""Torque constant: the real force is not the force that the drive reports."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class TorqueConstant(Page):
         return (Tolerated({}, {f"torque constant of {site}": (robot.tolerances.torque_constant, "1")}),)
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Force over reported effort, minus one."""
+        """Force over reported effort, minus 1."""
         c = float(coefficients[0])
         return {"relative": c / (1.0 - c)}
 

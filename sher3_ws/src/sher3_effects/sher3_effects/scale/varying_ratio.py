@@ -1,4 +1,4 @@
-"""A ratio that varies along the travel: a broken line beside the straight one."""
+"""A ratio that varies along the travel: a broken line beside the straight line."""
 
 from __future__ import annotations
 
@@ -31,6 +31,6 @@ def gentle(coefficients: Array) -> bool:
 
 
 def mean_ratio(coefficients: Array) -> float:
-    """Return the slope of the straight line nearest to a broken one."""
+    """Return the slope of the straight line nearest to a broken line."""
     beside = np.concatenate([[0.0], coefficients[1:], [0.0]]) if len(coefficients) > 1 else np.zeros_like(NODES)
     return float(coefficients[0] + NODES @ beside / (NODES @ NODES))

@@ -38,7 +38,7 @@ class SpringTorque(Page):
     on_axis = {"stiffness": "spring", "rest": "rest"}
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
-        """Return two columns: the position, and one."""
+        """Return two columns: the position, and ones."""
         q = view.position[:, view.row(site)]
         return Signature({Channel(self.stage, site): column(q, np.ones_like(q))})
 
@@ -62,7 +62,7 @@ class SpringOnAxis(SpringTorque):
     told_by_travel = BENT_FROM
 
     def on(self, axis: NominalAxis) -> Page:
-        """Return the page beside a weight at an arm where the axis may carry one."""
+        """Return the page beside a weight at an arm where the axis may carry a weight."""
         return SpringBesideWeight() if axis.weighed else self
 
     def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:

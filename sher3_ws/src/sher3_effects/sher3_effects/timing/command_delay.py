@@ -51,7 +51,7 @@ class ServoDelay(CommandDelay):
 
 
 class DelayOfLaw(CommandDelay):
-    """The recorded command is that of the stated law some time ago, or of the reference some time ago."""
+    """The recorded command follows the stated law late, or follows its reference late."""
 
     kinds = ("law",)
     seen_at = (("controller", ""),)
@@ -73,7 +73,7 @@ class DelayOfLaw(CommandDelay):
         return [{"delay": n * views[0].run.period, "of_reference": k} for n in self.PERIODS for k in (0.0, 1.0)]
 
     def signature(self, view: LawView, site: str, shape: Shape) -> Signature:
-        """Return the law of a while ago less the law, or what the reference of a while ago changes in it."""
+        """Return the delayed law less the law, or the change of the law by a delayed reference."""
         clock, law = view.run.stage_clock, view.stated
         if shape["of_reference"]:
             asked = view.run.reference[:, 0]

@@ -24,7 +24,7 @@ class DroppedCommands(Page):
 
 @dataclass(frozen=True)
 class DroppedCommandsInPlant(PlantEffect, page=DroppedCommands, sites=EVERYWHERE):
-    """Some ticks' commands never arrive, for all axes at once; the drives hold the last one."""
+    """Some ticks' commands never arrive, for all axes at once; the drives hold the last command."""
 
     probability: float = parameter("1", 0.01, 0.0, 0.9, "chance that the command of a tick is lost")
 

@@ -62,7 +62,7 @@ class EffortLag(DriveLag):
         return dict(shape)
 
     def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
-        """Return the recorded effort less the one that acts, and what the mass changes."""
+        """Return the recorded effort less the effort that acts, and the force on the mass."""
         run = view.run
         assert run.effort is not None
         given = run.effort[:, view.row(site)]

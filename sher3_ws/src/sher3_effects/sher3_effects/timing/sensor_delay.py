@@ -15,7 +15,7 @@ from sher3_effects.view import AxisView
 
 
 class SensorDelay(Page):
-    """reading(t) = truth(t - delay), of the second encoder or of the effort; below zero the position is the late one.
+    """reading(t) = truth(t - delay), of the second encoder or of the effort; below zero the position is late.
 
     By how much a filter may delay a position is bounded: what a drive was told earlier acts late, see `EffortLag`.
 

@@ -54,7 +54,7 @@ class CellBias(Page):
     siblings = {"force_scale": "grows with the force", "force_drift": "wanders during the test"}
 
     def signature(self, view: CellView, site: str, shape: Shape) -> Signature:
-        """Return one column: one."""
+        """Return one column of ones."""
         return Signature({Channel(self.stage, site): column(np.ones(len(view.applied)))})
 
 

@@ -67,7 +67,7 @@ class ForceCrosstalk(Page):
         return (Tolerated({"source": -2.0, "target": -2.0}, limits),)
 
     def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
-        """Largest pair of forces; where all were free, each of them: the axis that reads, then the loaded one."""
+        """Largest pair of forces; where all were free, each of them: the axis that reads, then the loaded axis."""
         k = int(np.argmax(np.abs(coefficients[: len(self.FORCES)])))
         j, i = self.FORCES[k] if len(coefficients) > 1 else (shape["source"], shape["target"])
         out = {"coefficient": float(coefficients[k]), "source": float(j), "target": float(i)}
@@ -76,7 +76,7 @@ class ForceCrosstalk(Page):
         return out
 
     def to_simulator(self, actuator: str, values: Values, robot: Robot) -> list[Part]:
-        """Return the pairs of forces by name: every one where all were free, else the one fitted."""
+        """Return the pairs of forces by name: every pair where all were free, else the fitted pair."""
         free = {name: value for name, value in values.items() if name in self.PAIRS}
         pair = "xyz"[int(values["target"])] + "xyz"[int(values["source"])]
         return [Part(self.id, actuator, free or {pair: values["coefficient"]})]
@@ -97,7 +97,7 @@ class SensorCrosstalk(ForceCrosstalk):
 
 
 def coupling(pair: str, default: float = 0.0) -> Any:
-    """Declare one pair of forces as a parameter: the axis that reads, then the loaded one."""
+    """Declare one pair of forces as a parameter: the axis that reads, then the loaded axis."""
     return parameter("1", default, -0.5, 0.5, f"share of the force along {pair[1]} read along {pair[0]}")
 
 

@@ -53,7 +53,7 @@ class SensorFrame(Page):
         return {"frame": shape["frame"], **turned}
 
     def in_words(self, view: SensorView, values: Mapping[str, float]) -> str:
-        """Return the frame of the readings, unless it is the stated one."""
+        """Return the frame of the readings, unless it is the stated frame."""
         return view.frame_in_words(round(values["frame"]), [values[name] for name in ("rx", "ry", "rz")])
 
     def admissible(self, shape: Shape, coefficients: Array) -> bool:

@@ -83,7 +83,7 @@ def diagnostic(stamp: int, status: StageStatus) -> DiagnosticSample:
 
 
 def cause_diagnostic(stamp: int, named: Named) -> DiagnosticSample:
-    """Return what is named as a diagnostic: status, causes, and their probability where the verdict states one."""
+    """Return the verdict as a diagnostic: status, causes, and their probability where the verdict states it."""
     causes = [f"{c.effect} on {c.actuator}" for c in named.verdict.causes]
     known = () if named.probability is None else (("probability", f"{named.probability:.3g}"),)
     values = (("status", named.verdict.status), ("causes", "; ".join(causes)), *known)

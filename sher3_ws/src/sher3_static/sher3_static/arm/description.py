@@ -64,5 +64,5 @@ class ArmDescription(Description):
         return self
 
     def named_files(self) -> tuple[str, ...]:
-        """Return the URDF, where there is one."""
+        """Return the path of the URDF, where the description names it."""
         return () if self.urdf is None else (self.urdf,)

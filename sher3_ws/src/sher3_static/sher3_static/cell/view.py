@@ -26,7 +26,7 @@ class ForcesView(Still):
 
     @cached_property
     def share(self) -> Array:
-        """(g,) place of the force between the least and the largest one."""
+        """(g,) place of the force between the least and the largest force."""
         return (self.applied - self.applied.min()) / float(np.ptp(self.applied))
 
     def inputs(self, actuator: str) -> Array:

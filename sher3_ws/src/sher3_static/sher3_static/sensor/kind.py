@@ -65,7 +65,7 @@ class SensorKind(TableKind[SensorDescription]):
         return [table]
 
     def remarks(self, finding: Finding[TableEvidence]) -> list[str]:
-        """Say what is known of the load, and in which frame the readings are where that is not the stated one."""
+        """Say what is known of the load, and in which frame the readings are where this is not the stated frame."""
         view = finding.evidence.table.view
         assert isinstance(view, SensorView)
         return view.in_words()

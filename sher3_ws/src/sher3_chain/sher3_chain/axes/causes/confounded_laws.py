@@ -27,7 +27,7 @@ def indistinct() -> dict[str, tuple[str, ...]]:
 
 
 def told_by_travel(evidence: Evidence, found: Attribution) -> Attribution:
-    """Return the causes without the spring, or the weight at an arm, that leaves markedly more than the other one.
+    """Return the causes without the spring, or the weight at an arm, whichever leaves markedly more than the other.
 
     Both laws are exact, and over a travel of 2 rad they part by 0.4 % of the gap: what a further cause must be worth.
     """

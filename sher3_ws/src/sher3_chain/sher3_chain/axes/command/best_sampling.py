@@ -1,4 +1,4 @@
-"""Which sampling of the encoder a recorded command was made with: the one whose law leaves least, at any gains."""
+"""Which sampling of the encoder a recorded command was made with: the sampling whose law leaves least, at any gains."""
 
 from __future__ import annotations
 

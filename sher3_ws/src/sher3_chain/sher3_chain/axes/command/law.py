@@ -88,5 +88,5 @@ def unit_of_command(axis: Axis) -> str:
 
 
 def is_law(evidence: Evidence) -> bool:
-    """Return whether a piece of evidence is that for a command."""
+    """Return whether a piece of evidence is about a command."""
     return isinstance(evidence, LawEvidence)

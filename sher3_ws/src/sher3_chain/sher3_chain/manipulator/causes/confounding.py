@@ -51,7 +51,7 @@ def confounded(columns: Mapping[str, Array]) -> list[frozenset[str]]:
 
 
 def joined(groups: Sequence[frozenset[str]]) -> list[frozenset[str]]:
-    """Return the groups with those that share a quantity made one."""
+    """Return the groups; groups that share a quantity are joined."""
     out: list[frozenset[str]] = []
     for group in groups:
         meeting = [g for g in out if g & group]

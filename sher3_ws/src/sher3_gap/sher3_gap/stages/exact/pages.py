@@ -1,4 +1,4 @@
-"""Pages that were discovered in an exact stage: found again by a fit, where no law of time or gain reproduces it."""
+"""Pages that were discovered in an exact stage: a fit finds them where no law of time or gain reproduces the gap."""
 
 from __future__ import annotations
 

@@ -181,10 +181,10 @@ def usual_of(ticks: Sequence[Array]) -> float:
 
 
 def clockwork(ticks: Sequence[Array]) -> float:
-    """Return the largest share of late ticks, by a period or more, that are as late as the one some ticks before.
+    """Return the share of the late ticks, by a period or more, that are as late as a tick of the cycle before.
 
-    One of 1 is a drive that looks for a demand at every second, third... tick; commands that are lost by chance, each
-    with p, have p at most.
+    Of all lengths of a cycle in `CYCLES` the largest share. A share of 1 is a drive that looks for a demand at every
+    second, third... tick; commands that are lost by chance, each with p, have p at most.
     """
     best = 0.0
     whole = [np.rint(t - np.nanmin(t)) if np.isfinite(t).any() else t for t in ticks]
