@@ -25,17 +25,27 @@ class Load(Strict):
 
 
 class Applied(Strict):
-    """Known weights that pull at known levers on a sensor that stays as it is; vectors are in the sensor's frame.
+    """Known loads of a sensor that stays as it is: weights at levers, or wrenches; vectors are in the sensor's frame.
 
     Attributes:
         weight: of each reading, N, kg, gf or lbf.
         direction: which way it pulls, columns or one direction of any length for all readings.
         lever: from the sensor's origin to where it pulls, columns or one place, m.
+        force, torque: known of each reading, in place of a weight: a reference sensor, or worked out beforehand.
     """
 
-    weight: Column
-    direction: Three | tuple[float, float, float]
+    weight: Column | None = None
+    direction: Three | tuple[float, float, float] | None = None
     lever: Three | tuple[float, float, float] = (0.0, 0.0, 0.0)
+    force: Three | None = None
+    torque: Three | None = None
+
+    @model_validator(mode="after")
+    def _either(self) -> Applied:
+        given = [x is not None for x in (self.weight, self.direction, self.force, self.torque)]
+        if given not in ([True, True, False, False], [False, False, True, True]):
+            raise ValueError("state either `weight` and `direction`, or both `force` and `torque`")
+        return self
 
 
 class SensorDescription(Description):

@@ -80,14 +80,18 @@ def _conditions(name: str, tables: Tables, described: SensorDescription) -> dict
 
 
 def applied_wrench(applied: Applied, tables: Tables, name: str) -> Array:
-    """Return the wrench (n, 6) of known weights about the sensor's origin; raises MachineError for columns."""
+    """Return the wrench (n, 6) of known loads about the sensor's origin; raises MachineError for columns."""
+    if applied.force is not None and applied.torque is not None:
+        return np.hstack([together(x, tables, name, 3) for x in (applied.force, applied.torque)])
+    assert applied.weight is not None and applied.direction is not None
     weight = pick(applied.weight, tables, name) * as_weight(applied.weight)
     direction, lever = (_vectors(x, tables, name, len(weight)) for x in (applied.direction, applied.lever))
     size = np.linalg.norm(direction, axis=1, keepdims=True)
-    if not size.all():
-        at = int(np.argmin(size)) + 1
+    nowhere = (size[:, 0] == 0.0) & (weight != 0.0)
+    if nowhere.any():
+        at = int(np.argmax(nowhere)) + 1
         raise MachineError(f"{name}: a weight pulls nowhere", value=f"row {at}", remedy="give its `direction`")
-    force = weight[:, None] * direction / size
+    force = weight[:, None] * direction / np.where(size, size, 1.0)
     return np.hstack([force, np.cross(lever, force)])
 
 

@@ -116,8 +116,9 @@ def test_weights_that_tell_nothing_are_refused():
     with pytest.raises(MachineError, match="too few different loads; value 1; limit 3; apply more weights"):
         verdict_of(same)
     nowhere = weighed()
-    nowhere["along"][4] = 0.0
-    with pytest.raises(MachineError, match=r"a weight pulls nowhere; value row 5"):
+    row = int(np.flatnonzero(nowhere["kg"])[2])
+    nowhere["along"][row] = 0.0
+    with pytest.raises(MachineError, match=rf"a weight pulls nowhere; value row {row + 1}"):
         verdict_of(nowhere)
 
 
@@ -168,3 +169,36 @@ def test_the_frame_of_readings_is_told_from_how_the_load_turns_whatever_was_stat
 def test_what_cannot_be_told_is_refused(more, said):
     with pytest.raises(ValueError, match=said):
         described(**more)
+
+
+WRENCHES = described(
+    applied={"force": {"column": "known_f", "unit": "N"}, "torque": {"column": "known_t", "unit": "N*m"}}
+)
+
+
+def in_wrenches(data):
+    """The same loads as wrenches."""
+    force = data["kg"][:, None] * g * data["along"] / 3.0
+    return {**data, "known_f": force, "known_t": np.cross(1e-3 * data["at"], force)}
+
+
+@pytest.mark.parametrize("known", [APPLIED, WRENCHES], ids=["weights", "wrenches"])
+def test_known_wrenches_are_as_good_as_weights_at_levers(known):
+    data = in_wrenches(weighed(matrix=np.diag([1.0, 1.0, 1.06, 1.0, 1.0, 1.0])))
+    data["along"][data["kg"] == 0.0] = 0.0  # nothing pulls, and nowhere
+    (cause,) = verdict_of(data, known=known).causes
+    assert cause.effect == "force_scale" and cause.parameters["relative"].value == pytest.approx(0.06, abs=0.005)
+
+
+@pytest.mark.parametrize(
+    "applied",
+    [
+        {"force": COLUMNS["force"]},
+        {"weight": {"column": "kg", "unit": "kg"}},
+        {**APPLIED.applied.__dict__, "force": COLUMNS["force"], "torque": COLUMNS["torque"]},
+    ],
+    ids=["half", "nowhere", "both"],
+)
+def test_either_weights_or_wrenches_are_known(applied):
+    with pytest.raises(ValueError, match="state either `weight` and `direction`, or both `force` and `torque`"):
+        described(applied=applied)
