@@ -127,6 +127,17 @@ def test_stamps_as_numpy_has_times_and_in_nanoseconds(log):
         gap.diagnose(MODEL, [], [], [])
 
 
+def test_infinite_controls_are_no_controls_and_a_guess_counts_them(log):
+    """MuJoCo would clip them to the actuator's range; a simulation that was told so has stopped."""
+    time, control, position = log
+    given = control.copy()
+    given[::2, 0] = np.inf
+    limited = MODEL.replace('kp="400"', 'kp="400" ctrlrange="-2 2"')
+    verdict = gap.diagnose(limited, time, given, position)
+    assert [(c.effect, c.actuator) for c in verdict.causes] == [("coulomb_friction", "elbow")]
+    assert any("3000 of 12000 controls are infinite" in text for text in verdict.guessed)
+
+
 def test_angles_in_degrees_beyond_the_model_s_range(log):
     time, control, position = log
     few = 0.5 * np.degrees(position)

@@ -53,7 +53,7 @@ def pick(column: Column, tables: Tables, run: str, finite: bool = True) -> Array
             value=f"{int(bad.sum())} of {len(x)} samples",
             remedy="cut the record before or after",
         )
-    x = x if column.within is None else np.clip(x, *column.within)
+    x = x if column.within is None else np.clip(np.where(np.isinf(x), np.nan, x), *column.within)
     x = x * scale(column, name, run) + column.offset
     if column.signed_by not in (None, MOTION):
         other = Column(column=str(column.signed_by), unit="1", override=True)

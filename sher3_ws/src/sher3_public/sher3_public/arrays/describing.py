@@ -58,6 +58,7 @@ def described(source: Source, runs: Sequence[Arrays], stated: Stated) -> Describ
         drive = drives[name].drive if name in drives else None
         if drive is not None and column is not None and runs[0].control is not None and runs[0].effort is None:
             plausible.control_of(name, runs[0].control[:, column], runs[0].position[:, place], drive)
+    guesses += plausible.infinite(runs)
     plausible.held(names, controls, runs[0], drives)
     if "position" not in stated.units and not isinstance(stated.gain, str):
         check_degrees(names, runs[0], controls, source.bodies, drives, guesses)

@@ -71,6 +71,13 @@ def control_of(name: str, control: Array, position: Array, drive: Drive) -> None
         )
 
 
+def infinite(runs: Sequence[Arrays]) -> list[str]:
+    """Return a sentence on controls that are infinite, as of a controller that failed; none where all are finite."""
+    given = [run.control for run in runs if run.control is not None]
+    bad, of = sum(int(np.isinf(x).sum()) for x in given), sum(x.size for x in given)
+    return [f"{bad} of {of} controls are infinite: no actuator was told that, so they are left out"] if bad else []
+
+
 def held(names: Sequence[str], columns: Sequence[int | None], run: Arrays, drives: Mapping[str, Driven]) -> None:
     """Raise InputError where no control ever changes and a servo goes on moving all the same."""
     if run.control is None or any(np.ptp(x[np.isfinite(x)]) for x in run.control.T if np.isfinite(x).any()):

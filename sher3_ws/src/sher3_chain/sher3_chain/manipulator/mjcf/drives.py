@@ -59,8 +59,9 @@ class Drive:
     within: tuple[float, float] | None = None
 
     def asked(self, control: Array) -> Array:
-        """Return what a control (n,) asks for: a place, m or rad, or a force, N or N m."""
-        return self.factor * (control if self.within is None else np.clip(control, *self.within))
+        """Return what a control (n,) asks for: a place, m or rad, or a force, N or N m; NaN where it is infinite."""
+        told = np.where(np.isinf(control), np.nan, control)
+        return self.factor * (told if self.within is None else np.clip(told, *self.within))
 
     def law(self, asked: Array, q: Array, v: Array) -> Array:
         """Return the joint's force (n,), N or N m, of what was asked, at a place and a speed; without its limit."""
