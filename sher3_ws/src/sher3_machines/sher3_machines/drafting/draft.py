@@ -316,7 +316,8 @@ def _axis(axis: str, signals: Mapping[str, Place], tables: Tables, period: float
     said = "its smallest step" if count else "its scatter: no step is seen"
     if own in VELOCITIES:
         resolution, said = resolution * period, f"{said}, over a period"
-    guesses.append(f"{label}: encoder_resolution {resolution:.3g}, {said}")
+    si = "rad" if unit in ROTARY else "m"
+    guesses.append(f"{label}: encoder_resolution {resolution:.3g} {si}, {said}; another unit changes it too")
     law = _law(label, columns, guesses)
     out = {"name": label, "motion": "rotary" if unit in ROTARY else "linear", "signals": columns}
     out["command_law"] = law

@@ -205,3 +205,13 @@ def test_a_speed_that_is_asked_of_both_wheels_is_the_reference_of_each(tmp_path,
         {"position": names[2], "reference": names[1], "command": names[3]},
         {"position": names[4], "reference": names[1], "command": names[5]},
     ]
+
+
+@pytest.mark.parametrize(("header", "count"), [("t,q", "0.01 rad"), ("t,q [mm]", "1e-05 m")])
+def test_a_count_is_said_with_its_unit(tmp_path, header, count):
+    """Who writes mm for the rad that was guessed sees that the count is in it too."""
+    t = np.arange(0.0, 10.0, 0.01)
+    columns = np.column_stack([t, np.round(5.0 * np.sin(t), 2)])
+    np.savetxt(tmp_path / "a.csv", columns, delimiter=",", header=header, comments="")
+    said = f"axis: encoder_resolution {count}, its smallest step; another unit changes it too"
+    assert said in draft(tmp_path / "a.csv").guesses
