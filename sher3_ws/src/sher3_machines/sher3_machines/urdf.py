@@ -80,7 +80,7 @@ def urdf_of(text: str, label: str) -> Urdf:
     if "<!DOCTYPE" in text:  # what declares entities can expand without bound or name other files
         raise MachineError(f"{label}: has a document type", value="<!DOCTYPE", remedy="give a plain URDF file")
     try:
-        return Urdf(ElementTree.fromstring(text), label)
+        return Urdf(ElementTree.fromstring(text.lstrip()), label)  # a template may leave a blank line
     except ElementTree.ParseError as error:
         raise MachineError(f"{label}: cannot be read", value=str(error), remedy="give a URDF or MJCF file") from error
 

@@ -117,10 +117,22 @@ def test_a_doubtful_sign_follows_those_of_the_other_joints(shares, turned):
     assert backwards(found, set(shares)) == turned
 
 
-@pytest.mark.parametrize(("share", "work", "sense"), [(0.0, 9.0, 1), (0.0, -9.0, -1), (0.0, 1.0, 0), (119.0, -9.0, -1)])
+@pytest.mark.parametrize(
+    ("share", "work", "sense"),
+    [(0.0, 9.0, 1), (0.0, -9.0, -1), (0.0, 1.0, 0), (119.0, -9.0, -1), (-1.1, -9.0, -1), (-1.1, 9.0, 0)],
+)
 def test_friction_tells_a_sign_where_the_model_does_not(share, work, sense):
-    """A share of 119 is that of a link that the model hardly has: any number."""
+    """A share of 119 is that of a link that the model hardly has: any number; one of -1.1 may be a spring's doing."""
     assert Share(share, 0.01, share < 0.0, work).sense(stated=True) == sense
+
+
+def test_a_spring_stronger_than_the_inertia_turns_no_effort(path):
+    """60 N/m on six kilograms that swing at 0.2 Hz: the force is in proportion to minus the acceleration."""
+    effort = needed(Q, V, A) + friction(V, (8.0, 0.5)) + np.stack([60.0 * (Q[:, 0] - 0.1), 0.0 * Q[:, 1]], axis=1)
+    found = verdict(path, effort)
+    assert not any("opposite sign" in note for note in found.notes)
+    assert values(found)["spring_torque", "lift", "stiffness"] == pytest.approx(60.0, rel=0.05)
+    assert values(found)["coulomb_friction", "lift", "force"] == pytest.approx(8.0, rel=0.06)
 
 
 @pytest.mark.parametrize("size", [0.2, 0.5, 1.5])

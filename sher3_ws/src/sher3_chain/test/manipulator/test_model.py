@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from lifts import M1, M2, MJCF, URDF, L, described, motion, needed
-from sher3_chain.manipulator.bodies import read_bodies
+from sher3_chain.manipulator.bodies import bodies_of, read_bodies
 from sher3_chain.manipulator.kind import KIND
 from sher3_chain.manipulator.model import arm_model
 from sher3_machines import MachineError
@@ -27,6 +27,12 @@ def test_the_regressor_times_the_model_s_inertias_is_the_force(model):
 def test_kinds_links_and_inertias(model):
     assert model.linear == (True, False) and model.links == ("carriage", "pendulum")
     assert np.diag(model.inertia_matrix(np.zeros(2))) == pytest.approx([M1 + M2, 0.01 + M2 * L**2])
+
+
+def test_a_urdf_may_begin_with_a_blank_line():
+    """Macros that are expanded leave one before the declaration, as in published files of an IRB 120."""
+    text = '\n<?xml version="1.0"?>' + URDF
+    assert list(bodies_of(text, "lift").joints) == ["lift", "swing"]
 
 
 def test_a_joint_that_was_not_recorded_is_locked(tmp_path):
