@@ -9,8 +9,8 @@ and without one of its effects.
     nice python bench/other_odds.py chain table --cases 10 30 --kept evidence --beside robots --diagram reliability.png
 
 Printed for each source: log loss and calibration error of the odds by the weights of SHER, as if each cause of a gap
-stood alone and as they are judged, and by weights that the other sources moved; then the table and what is certified,
-by the weights of SHER.
+stood alone and as they are judged, and by weights that the other sources moved; then the table, and what is certified
+of each source, by the weights of SHER.
 """
 
 from __future__ import annotations
@@ -42,7 +42,6 @@ sys.path[:0] = [
     str(SOURCES / x)
     for x in (
         "sher3_chain/test",
-        "sher3_chain/test/axes",
         "sher3_static/test",
         "sher3_static/test/positioning",
         "sher3_static/test/arm",
@@ -287,7 +286,8 @@ def shown(kind: str, found: Sequence[Observation]) -> None:
         print(f"{source}: moved by the other sources: {surprise(left_out[source])}")
     print(f"\n{kind}: status by odds, weights of SHER")
     print(written({name: rates(judged_by(robot, rows)) for name, rows in own.items()}))
-    print("\n" + curve([c for rows in own.values() for j in judged_by(robot, rows) for c in j.causes]) + "\n")
+    for source, rows in own.items():
+        print(f"\n{source}\n" + curve([c for j in judged_by(robot, rows) for c in j.causes]))
 
 
 def main() -> None:

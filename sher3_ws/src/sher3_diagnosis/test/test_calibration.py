@@ -55,9 +55,10 @@ def test_scales_end_where_they_tell_nothing_more():
     numbers = NUMBERS | {"left": -0.2, "law": 0.1, "anything": 0.04}
     scaled = scaled_cause(numbers)
     assert scaled["left"] == pytest.approx(math.log(0.003))
-    assert scaled["foreign"] == pytest.approx(0.6)  # of what its own inputs leave
+    assert scaled["foreign"] == pytest.approx(-math.log(0.4))  # others do not explain 0.4 of what its own inputs leave
     small = scaled_cause(numbers | {"law": 0.01, "anything": 0.0})
-    assert small["foreign"] == pytest.approx(0.01 * 6.0**2)  # of a floor, of which it is a third
+    assert small["foreign"] == pytest.approx(-math.log(1.0 - 0.01 * 6.0**2))  # of a floor, of which it is a third
+    assert scaled_cause(numbers | {"anything": 0.0})["foreign"] == pytest.approx(math.log(50.0))  # all of it
     assert scaled["complete"] == 0.0
     assert scaled["floors"] == pytest.approx(math.log(0.3))
     assert scaled_cause(NUMBERS | {"left": 0.1})["floors"] == pytest.approx(math.log(0.1 * 6.0**2))  # six floors

@@ -40,6 +40,8 @@ def test_other_places_tell_the_level():
 
 def test_what_is_left_counts_in_units_of_the_level():
     assert at_level(NUMBERS, 10.0 * USUAL) == pytest.approx(NUMBERS | {"left": 0.02})
+    free = {"law": 0.1, "anything": 0.01}
+    assert free.items() <= at_level(NUMBERS | free, 10.0 * USUAL).items()  # whose law it follows has no level
     assert at_level(NUMBERS, 0.003) == NUMBERS  # none is better than the labelled robots
 
 

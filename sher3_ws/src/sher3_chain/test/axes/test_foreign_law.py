@@ -36,8 +36,7 @@ def test_a_magnet_whose_force_goes_with_current_over_gap_squared_is_doubted(seed
     seen = gap + noise.normal(0.0, 5e-7, len(T))
     found = driven(-1.4 * current, seen, 0.3, gravity={"constant": -2.943}, encoder_resolution=5e-7)
     (place,) = found.places
-    assert all(a.probability < 0.9 for a in place.answers)
-    assert next(a.probability for a in place.answers if a.answer == "outside_library") > 0.1
+    assert next(a.probability for a in place.answers if a.answer == "outside_library") > 0.5
 
 
 def test_friction_whose_shape_is_another_one_stays_its_cause():

@@ -62,7 +62,8 @@ def diagram(answers: Mapping[str, Sequence[Stated]], path: Path) -> None:
         axes.plot([b.stated for b in found], [b.met for b in found], marker="o")
         for b in found:
             axes.annotate(str(b.n), (b.stated, b.met), textcoords="offset points", xytext=(5, -9), fontsize=7)
-        axes.set(xlim=(0, 1), ylim=(0, 1), title=f"{name}: n {len(given)}, error {calibration_error(given):.3f}")
+        axes.set(xlim=(0, 1), ylim=(0, 1))
+        axes.set_title(f"{name}: n {len(given)}, error {calibration_error(given):.3f}", fontsize="small")
     for axes in panels[len(answers) :]:
         axes.set_visible(False)
     figure.supxlabel("stated probability")

@@ -21,8 +21,10 @@ of what labelled robots are drawn with (`sher3_challenge.plants.level.SHAPE`). S
 WHOLE = 0.75
 """Say of the share of the whole gap in what several causes leave. Of 0.5, 0.6, 0.75 and 1 the likeliest on labelled
 axes, arms and robots (`bench/imperfect.py`, `bench/other_odds.py`)."""
-LEAST_LAW = 0.02
+LEAST_LAW = 0.002
 """Share that own inputs leave below which it does not matter what explains it; nor does it below the floor."""
+LEAST_OWN = 0.02
+"""Share of what own inputs leave that others must not explain, below which the remainder is theirs beyond doubt."""
 
 
 def log_above(x: float, least: float) -> float:
@@ -93,11 +95,16 @@ def strange(numbers: Mapping[str, float]) -> float:
 
 
 def _foreign(numbers: Mapping[str, float], floors: float) -> dict[str, float]:
-    """Return the share of what own inputs leave that others explain; nothing where free laws were not looked at."""
+    """Return how far others explain what own inputs leave; nothing where free laws were not looked at.
+
+    Minus the logarithm of the share that they do not explain, which for little is the share that they do: so that what
+    is all theirs counts for more than what is mostly theirs.
+    """
     if "law" not in numbers:
         return {}
     law, anything = (beside_others(_share(numbers[name]), numbers) for name in ("law", "anything"))
-    return {"foreign": max(0.0, law - anything) / max(law, LEAST_LAW, 1.0 / max(floors, 1.0))}
+    theirs = max(0.0, law - anything) / max(law, LEAST_LAW, 1.0 / max(floors, 1.0))
+    return {"foreign": -log_above(1.0 - theirs, LEAST_OWN)}
 
 
 def _share(x: float) -> float:
