@@ -49,7 +49,8 @@ def on_links(candidates: Candidates) -> list[Effect]:
 def beside(evidence: ArmMotionEvidence, candidates: Candidates) -> list[Term]:
     """Return the plain laws of every joint's own; a dry friction in the shape that leaves least beside the others."""
     laws = [(e, j) for j in evidence.judged for e in own_laws(candidates) if e.shapes(evidence.views, j)]
-    plain = [*evidence.nuisance, *(candidates.term(e, j, middle(e, evidence, j)) for e, j in laws)]
+    own = [candidates.term(e, j, middle(e, evidence, j)) for e, j in laws]
+    plain = [*evidence.nuisance, *(t for t in own if t.channels)]  # what shows nowhere has no number either
     for dry in [t for t in plain if t.effect.dry]:
         others = [t for t in plain if t is not dry]
         shapes = dry.effect.plain_shapes(evidence.views, dry.site)
