@@ -30,12 +30,14 @@ class Ranges:
         remainder: joint -> force that the causes leave, standard deviation over a quarter of a second, N or N m; empty
             where it was not measured.
         width: share of the 90 % intervals that the recorded motion needs; 1 where it was not measured.
+        motors: motor whose causes these are, by the joint of its name -> joint -> its travel per travel of the joint.
     """
 
     worlds: Sequence[Sequence[Cause]]
     shares: Sequence[float] = ()
     remainder: Mapping[str, float] = field(default_factory=dict)
     width: float = 1.0
+    motors: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
 
     def draw(self, rng: np.random.Generator) -> list[Cause]:
         """Return the causes of one world with parameters drawn from their intervals."""
@@ -60,11 +62,13 @@ class Ranges:
             "one_of": worlds,
             "probability": [round(p, 4) for p in self.probabilities],
             "remainder": {j: float(s) for j, s in self.remainder.items()},
-        }
+        } | ({"motors": {motor: dict(travel) for motor, travel in self.motors.items()}} if self.motors else {})
+        whose = "motors: a cause at one of them is the motor's, by its own travel per travel of each joint."
         remarks = (
             "One of these sets of causes is at work, with its probability; values add to the nominal ones.",
             "width: of the verdict's 90 % intervals, as much as the recorded motion needs.",
             "remainder: force that the causes leave, standard deviation, constant for 0.25 s at a time.",
+            *([whose] if self.motors else []),
         )
         return "".join(f"# {line}\n" for line in remarks) + dump_yaml(data)
 

@@ -66,11 +66,17 @@ def export(
         ExportError: no such target, the model is needed and missing, it cannot be read or has none of the joints, or
             the case has a `coupling` and `motors` are not stated.
     """
+    motors = travels_of(verdict, motors)
+    done, text = put(verdict.causes, target, model, joints, motors)
+    return replace(done, text=text(remarks(verdict, done.applied, done.untold)))
+
+
+def travels_of(verdict: Verdict, motors: Motors | None) -> Motors:
+    """Return how motors travel as stated; raises ExportError where the case has a `coupling` and they are not."""
     if motors is None and verdict.causes and any(note.startswith(BEHIND) for note in verdict.notes):
         remedy = "state each motor's travel, as --motor wrist=wrist:1,elbow:0.5; for `coupling` [[1, 0], [0.5, 1]]"
         raise ExportError("causes of motors behind a coupling", value="no --motor", limit="one each", remedy=remedy)
-    done, text = put(verdict.causes, target, model, joints, motors)
-    return replace(done, text=text(remarks(verdict, done.applied, done.untold)))
+    return motors or {}
 
 
 def put(

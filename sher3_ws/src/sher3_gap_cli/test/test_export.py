@@ -3,6 +3,8 @@
 import json
 
 import pytest
+import yaml
+from sher3_chain.manipulator.description import BEHIND
 from sher3_gap_cli.app import app
 from typer.testing import CliRunner
 
@@ -68,6 +70,14 @@ def test_a_motor_behind_a_coupling_is_a_tendon(call, tmp_path):
 def test_ranges_are_written(call, tmp_path):
     assert call("--ranges", "--out", "r.yaml").exit_code == 0
     assert "sher3.ranges/1" in (tmp_path / "r.yaml").read_text()
+
+
+def test_ranges_of_motors_behind_a_coupling_say_whose_they_are(call, tmp_path):
+    (tmp_path / "verdict.json").write_text(json.dumps({**VERDICT, "notes": [f"{BEHIND}forces are the motors'"]}))
+    refused = call("--ranges", "--out", "r.yaml")
+    assert refused.exit_code == 2 and "no --motor" in refused.output and not (tmp_path / "r.yaml").exists()
+    assert call("--ranges", "--motor", "a=j:0.5", "--out", "r.yaml").exit_code == 0
+    assert yaml.safe_load((tmp_path / "r.yaml").read_text())["motors"] == {"a": {"j": 0.5}}
 
 
 @pytest.mark.parametrize(

@@ -63,12 +63,11 @@ def export(
         add_library(own or [], trust)
         target = out or Path(f"exported.{'yaml' if ranges else _suffix(to)}")
         check_writable([target])
-        given, names = read_verdict(verdict, bet), _names(joint or [])
-        data = (
-            _ranges(given, check, model, names)
-            if ranges
-            else _model(given, to, check, model, names, _motors(motor or []))
-        )
+        given, names, motors = read_verdict(verdict, bet), _names(joint or []), _motors(motor or [])
+        if motors and check:
+            remedy, both = "export alone", "--motor, --check"
+            raise RequestError("motors are not checked in MuJoCo", value=both, limit="one", remedy=remedy)
+        data = _ranges(given, check, model, names, motors) if ranges else _model(given, to, check, model, names, motors)
         written(target, data.pop("text"))
         data = {"file": str(target), **data, "bets": bet_lines(verdict, bet)}
         shown(as_json, data, with_bets(data["bets"], _told(data)))
@@ -85,10 +84,6 @@ def _model(
         return _exported(written(given, to, model, names, motors), [])
     if to != "mjcf":
         raise RequestError("only MJCF is checked in MuJoCo", value=f"--to {to}", limit="mjcf", remedy="use --to mjcf")
-    if motors:
-        raise RequestError(
-            "motors are not checked in MuJoCo", value="--motor, --check", limit="one", remedy="export alone"
-        )
     found = checked(given, check, model, names)
     return _exported(found.exported, found.gaps)
 
@@ -102,13 +97,14 @@ def _exported(done: Exported, gaps: Any) -> dict[str, Any]:
     }
 
 
-def _ranges(given: Any, check: Path | None, model: Path | None, names: dict[str, str]) -> dict[str, Any]:
+def _ranges(given: Any, check: Path | None, model: Path | None, names: dict[str, str], motors: Any) -> dict[str, Any]:
     """Return the ranges, and the share of held-out motion they cover where there is a case."""
     from sher3_export.check.coverage import covered
     from sher3_export.ranges import Ranges, worlds_of
+    from sher3_export.writing import travels_of
 
     if check is None:
-        return {"text": Ranges(worlds_of(given)).text(), "coverage": {}}
+        return {"text": Ranges(worlds_of(given), motors=travels_of(given, motors)).text(), "coverage": {}}
     found = covered(given, check, model, names)
     return {"text": found.ranges.text(), "coverage": dict(found.coverage)}
 
