@@ -1,5 +1,6 @@
-"""What no verdict may say: a cause of no size, or an estimate outside its own interval."""
+"""What no verdict may say: a cause of no size, an estimate outside its own interval, a number of no known order."""
 
+from sher3_diagnosis.judge.meaning import SPAN
 from sher3_diagnosis.verdict import Verdict
 
 SIZES = frozenset(
@@ -19,6 +20,8 @@ def meaningless(verdict: Verdict) -> list[str]:
     for c in verdict.causes:
         told = {n: p for n, p in c.parameters.items() if p.low is not None and p.high is not None}
         out += [f"{c.effect} {n} misses {p.value}" for n, p in told.items() if not p.low <= p.value <= p.high]
+        wide = {n for n in SIZES & told.keys() if told[n].low > 0.0 and told[n].high > SPAN * told[n].low}
+        out += [f"{c.effect} {n} of no known order is told as {told[n].value}" for n in wide if told[n].means is None]
         zero = {n for n, p in told.items() if p.low <= 0.0 <= p.high}
         sizes = SIZES & told.keys()
         if (sizes and sizes <= zero) or (TELLS.get(c.effect) in zero):

@@ -22,7 +22,7 @@ from sher3_diagnosis.judge.causes import causes_of
 from sher3_diagnosis.judge.costs import DEFAULT, Costs
 from sher3_diagnosis.judge.judge import judge
 from sher3_diagnosis.judge.left_over import down_to_floor, left_over
-from sher3_diagnosis.judge.meaning import without_empty
+from sher3_diagnosis.judge.meaning import without_empty, without_open_sizes
 from sher3_diagnosis.localise.gaps import localise
 from sher3_diagnosis.machine import Diagnosis, Machine
 from sher3_diagnosis.quantify.closure import residual_after
@@ -94,6 +94,7 @@ def find(machine: Machine[R, E], evidence: E, without: Collection[str], say: Say
             break
         attribution = fewer
         refined, causes = machine.refine(evidence, causes_of(evidence, attribution), attribution)
+    causes = without_open_sizes(attribution, causes)
     finding = Finding(refined, gaps, attribution, causes, remains(attribution.fit))
     return replace(finding, notes=machine.remarks(finding))
 

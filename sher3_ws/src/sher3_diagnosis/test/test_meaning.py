@@ -7,7 +7,16 @@ import pytest
 from sher3_diagnosis.attribute.candidates import Candidates
 from sher3_diagnosis.attribute.rivals import with_rivals
 from sher3_diagnosis.fit.fitting import fit, make_term
-from sher3_diagnosis.judge.meaning import linear_in, of_no_size, says_nothing, sizes_of, without_empty
+from sher3_diagnosis.judge.meaning import (
+    OPEN,
+    linear_in,
+    of_no_size,
+    open_sizes,
+    says_nothing,
+    sizes_of,
+    without_empty,
+    without_open_sizes,
+)
 from sher3_diagnosis.verdict import Cause, Interval, Parameter
 from toy import DIRECTION, Column, case, evidence_of
 
@@ -99,6 +108,21 @@ def test_what_has_no_size_may_stay_in_the_fit_without_a_name():
     assert kept.explained == (found.explained[1], found.explained[0])
     gone = without_empty(candidates, found, told)
     assert [t.effect for t in gone.fit.terms] == [DIRECTION]
+
+
+@pytest.mark.parametrize(
+    ("interval", "means"), [((0.057, 1.6), OPEN), ((-1.6, -0.057), OPEN), ((0.4, 3.6), None), ((-0.1, 3.0), None)]
+)
+def test_a_size_of_no_known_order_is_told_without_its_number_and_with_what_would_tell_it(interval, means):
+    """One that may be zero is another matter: it says that there is nothing."""
+    evidence = evidence_of(case(6.0))
+    candidates = Candidates(evidence, [DIRECTION])
+    found = with_rivals(candidates, fit(evidence.data, [make_term(evidence.data, DIRECTION, "axis", {})]))
+    told = without_open_sizes(found, [cause(size=interval)])
+    size = told[0].parameters["size"]
+    assert (size.low, size.high, size.means) == (*interval, means)
+    notes = open_sizes(found, told)
+    assert len(notes) == (means is not None) and all(n.endswith("what would tell it: steps show it") for n in notes)
 
 
 @pytest.mark.parametrize("size", [15.0, 40.0])

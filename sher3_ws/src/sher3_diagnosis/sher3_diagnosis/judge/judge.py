@@ -14,6 +14,7 @@ from sher3_diagnosis.judge.calibration.calibration import Calibration, in_force
 from sher3_diagnosis.judge.calibration.typical import RARE
 from sher3_diagnosis.judge.causes import ordered, places_of
 from sher3_diagnosis.judge.costs import DEFAULT, Costs
+from sher3_diagnosis.judge.meaning import open_sizes
 from sher3_diagnosis.judge.next_experiment import next_experiment
 from sher3_diagnosis.judge.probabilities import of_first, reproduced
 from sher3_diagnosis.judge.remainder import remainder
@@ -45,7 +46,7 @@ def judge(
         "within_tolerance": [w for f in findings for w in machine.within(f)],
         "probabilities": of_first(places),
         "costs": costs.as_dict(),
-        "notes": [*notes, *_unusual(places)],
+        "notes": [*notes, *_unusual(places), *(n for f in findings for n in open_sizes(f.attribution, f.causes))],
     }
     if not any(gaps) and not exact:
         return _hidden(machine, findings, told) or Verdict(status="no_gap", **told)

@@ -20,11 +20,16 @@ from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import Fit, Term
 from sher3_diagnosis.quantify.parameters import parameters
 from sher3_diagnosis.verdict import Cause, Parameter
+from sher3_diagnosis.words import place, range_text, words
 
 LOST = "lost_motion"
 """Family of which nothing is wider than the travel."""
 HALF = 0.5
 """Factor of all coefficients that shows which parameters they scale."""
+SPAN = 10.0
+"""Factor between the ends of an interval beyond which not even the order of magnitude of a size is told."""
+OPEN = "of unknown size"
+"""What is said in the place of such a number."""
 ALIKE = 1e-9
 """Relative difference of two numbers that are the same but for rounding."""
 
@@ -98,6 +103,38 @@ def of_no_size(term: Term, coefficients: Array, cause: Cause) -> bool:
     sizes = [told[n] for n in sizes_of(term, coefficients) if n in told]
     beyond = [told[n] for n in term.effect.told_by if n in told]
     return (bool(sizes) and all(map(_holds_zero, sizes))) or any(map(_holds_zero, beyond))
+
+
+def without_open_sizes(attribution: Attribution, causes: Sequence[Cause]) -> list[Cause]:
+    """Return the causes of an attribution; a size known to no factor of `SPAN` is told as unknown, with its interval.
+
+    The cause stays: that there is a lag may be certain where its time is not.
+    """
+    out = []
+    for i, cause in zip(attribution.causes, causes, strict=True):
+        sizes = sizes_of(attribution.fit.terms[i], attribution.fit.of(i))
+        told = {n: p.model_copy(update={"means": OPEN}) for n, p in cause.parameters.items() if n in sizes and _open(p)}
+        out.append(cause.model_copy(update={"parameters": {**cause.parameters, **told}}))
+    return out
+
+
+def open_sizes(attribution: Attribution, causes: Sequence[Cause]) -> list[str]:
+    """Say of each size that is told as unknown how far it is open, and what would tell it."""
+    return [
+        f"{words(c.effect)} on {place(c.actuator)}: its {n.replace('_', ' ')} may be "
+        f"{range_text(p.low, p.high, p.unit)}; what would tell it: {attribution.fit.terms[i].effect.best.why}"
+        for i, c in zip(attribution.causes, causes, strict=True)
+        for n, p in c.parameters.items()
+        if p.means == OPEN
+    ]
+
+
+def _open(p: Parameter) -> bool:
+    """Return whether an interval on one side of zero leaves the order of magnitude open."""
+    if p.low is None or p.high is None or _holds_zero(p):
+        return False
+    least, most = sorted((abs(p.low), abs(p.high)))
+    return most > SPAN * least
 
 
 def sizes_of(term: Term, coefficients: Array) -> list[str]:
