@@ -50,6 +50,27 @@ def test_a_control_beyond_its_range_acts_as_its_bound():
     assert gap.diagnose(xml, time, control, position, effort).status == "no_gap"
 
 
+@pytest.mark.parametrize("steps", [5, -10])
+def test_a_control_that_acts_late_is_named_where_no_effort_was_recorded(steps):
+    """Its law stands for the effort; the plant followed the control of ten ms before, or it was logged too late."""
+    xml = ARM.format(body="", range="")
+    time, control, position, _ = log_of(xml)
+    last = len(time) - 1
+    found = gap.diagnose(xml, time, control[np.clip(np.arange(len(time)) + steps, 0, last)], position)
+    assert {(c.effect, c.actuator) for c in found.causes} == {("command_delay", j) for j in ("shoulder", "elbow")}
+    for cause in found.causes:
+        assert cause.parameters["reference_delay"].value == pytest.approx(0.002 * steps, rel=0.02)
+        assert "sensor_delay" in cause.rivals
+    assert any("control and motion lie apart in time" in note for note in found.verdict.notes)
+
+
+def test_friction_is_no_late_control_where_no_effort_was_recorded():
+    xml = ARM.format(body="", range="")
+    time, control, position, _ = log_of(xml.replace('damping="0.5"', 'damping="4.5"'))
+    found = gap.diagnose(xml, time, control, position)
+    assert [(c.effect, c.actuator) for c in found.causes] == [("viscous_friction", "shoulder")]
+
+
 def test_a_joint_at_its_stop_is_not_judged_there():
     """Its servo asks for twice what the range allows: the stop's force is in no law."""
     xml = ARM.format(body="", range="").replace('name="elbow" axis', 'name="elbow" limited="true" range="-20 20" axis')

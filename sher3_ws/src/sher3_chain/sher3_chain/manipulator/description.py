@@ -41,6 +41,11 @@ class Joint(Axis):
         return self.command_law.position_gain is not None and self.signals.reference is not None
 
     @property
+    def by_its_law(self) -> bool:
+        """Whether the law of its servo stands for its effort, since none was recorded."""
+        return self.follows and self.signals.effort is None and self.signals.command is None
+
+    @property
     def needs_force(self) -> bool:
         """Whether a joint without a recorded force is refused: no, it only moves the others."""
         return False

@@ -26,7 +26,7 @@ from sher3_chain.joint.bounds import within_bounds
 from sher3_chain.joint.own_unit import RECORDED, in_own_unit
 from sher3_chain.joint.record import AxesRun
 from sher3_chain.manipulator.causes.confounding import GAIN, PAYLOAD, WEIGHT, confounding_notes, same_force
-from sher3_chain.manipulator.causes.lateness import LATE, late_efforts, with_closure
+from sher3_chain.manipulator.causes.lateness import LATE, late_efforts, timing_notes, with_closure, with_late_readings
 from sher3_chain.manipulator.causes.payload import centred
 from sher3_chain.manipulator.causes.plan import JOINT
 from sher3_chain.manipulator.causes.search import causes_of_arm
@@ -119,6 +119,7 @@ class Manipulator(Chain[ArmMotionEvidence]):
         """Fit friction again away from reversals; give forces of a joint with unknown gain in the recorded unit."""
         causes = requantified(evidence, attribution, causes)
         causes = within_bounds(causes, attribution.told, self.effects(evidence))
+        causes = [with_late_readings(cause) for cause in causes]
         causes = [with_closure(cause, term.shape) for cause, (term, _) in zip(causes, attribution.told, strict=True)]
         return evidence, [with_hidden(in_own_unit(c, RECORDED)) if c.actuator in evidence.shares else c for c in causes]
 
@@ -145,7 +146,7 @@ class Manipulator(Chain[ArmMotionEvidence]):
                 "inertias identified from the data: drive gain, weight and payload are in them, cannot be told apart "
                 "and are not looked for"
             )
-        notes += stop_notes(evidence)
+        notes += [*stop_notes(evidence), *timing_notes(finding.causes)]
         notes += change_notes(evidence, finding.attribution, self.parted(evidence))
         levels = [x for run in evidence.runs for x in level_notes(run, self.described.joints, evidence.judged)]
         notes += told_once(levels, [run.name for run in evidence.runs])

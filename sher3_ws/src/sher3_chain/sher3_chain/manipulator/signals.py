@@ -40,6 +40,7 @@ def joint_signals(run: AxesRun, described: ManipulatorDescription, excitation: s
         period=run.period,
         motor=np.hstack([one.motor for one in each]) @ place.T,
         effort=effort @ force,
+        reference=_beside([one.reference for one in each], each[0].motor, np.eye(len(each))),
         load=_beside([one.load for one in each], each[0].motor, travel),
         bandwidth=min(cut_off(one.motor[:, 0], run.period, one.bandwidth) for one in each),
     )
@@ -52,7 +53,7 @@ def _gained(one: AxisSignals, gain: float | str) -> Array:
 
 
 def _beside(found: Sequence[Array | None], like: Array, travel: Array) -> Array | None:
-    """Return the second encoders (n, k) on the side of the motors, NaN where there is none; None without any."""
+    """Return positions (n, k) on the side of the motors, NaN where there is none; None without any."""
     if not any(x is not None for x in found):
         return None
     side = np.hstack([np.full_like(like, np.nan) if x is None else x for x in found])

@@ -70,8 +70,13 @@ class MotionView(ChainView):
 
     @cached_property
     def _axes(self) -> list[NominalAxis]:
-        each = zip(self.joints, self.inertia, self.tops, strict=True)
-        return [NominalAxis(float(m), max(j.viscous, SLIP), self.lead(j.name), float(top)) for j, m, top in each]
+        alone = np.array_equal(self.coupling, np.eye(len(self.joints)))
+        laws = [(j.command_law.position_gain or 0.0) * (j.by_its_law and alone) for j in self.joints]
+        each = zip(self.joints, self.inertia, self.tops, laws, strict=True)
+        return [
+            NominalAxis(float(m), max(j.viscous, SLIP), self.lead(j.name), float(top), follows=law)
+            for j, m, top, law in each
+        ]
 
     def lead(self, site: str) -> float:
         """Return the travel per motor revolution, m or rad; what stands for it where it is not known."""

@@ -88,6 +88,41 @@ class DelayOfLaw(CommandDelay):
         return {"reference_delay" if shape["of_reference"] else "delay": shape["delay"]}
 
 
+class DelayOfServo(CommandDelay):
+    """The servo of a joint acts on a reference of another moment, where its law stands for the effort.
+
+    The effort is K (r - q) - D v at one moment; a servo that acts late, or a position that is read late, leaves
+    K (r(t) - r(t - delay)) of it. Below zero the reference was logged late.
+    """
+
+    kinds = ("joint",)
+    seen_at = (("motor_mechanics", ""),)
+    gives = ("reference_delay",)
+    explanation = "The servo follows its reference a fixed time late; or its position is read late, which looks alike."
+    siblings = {"viscous_friction": "needs force; where the reference is followed closely, it goes by the speed, too"}
+    units = {"reference_delay": "s"}
+    on_axis = {"reference_delay": "servo_delay"}
+    PERIODS = ServoDelay.PERIODS
+    finer = ServoDelay.finer
+
+    def shapes(self, views: Sequence[AxisView], site: str) -> list[Shape]:
+        """Return delays, s, either way; none where an effort was recorded."""
+        found = [sign * n * views[0].run.period for n in self.PERIODS for sign in (1.0, -1.0)]
+        return [{"delay": delay} for delay in found] if views[0].axis(site).follows else []
+
+    def signature(self, view: AxisView, site: str, shape: Shape) -> Signature:
+        """Return the force by which the law of now differs from that of a delay ago; nothing is left to fit."""
+        assert view.run.reference is not None
+        clock, reference = view.run.stage_clock, view.run.reference[:, view.row(site)]
+        late = np.interp(clock - shape["delay"], clock, reference)
+        own = view.axis(site).follows * (reference - late)
+        return Signature({}, {self.channels(site)[0]: view.run.to_grid(own[:, None])})
+
+    def parameters(self, shape: Shape, coefficients: Array) -> dict[str, float]:
+        """Return the delay of the reference."""
+        return {"reference_delay": shape["delay"]}
+
+
 @dataclass(frozen=True)
 class CommandDelayInPlant(PlantEffect, page=CommandDelay, sites=EVERYWHERE):
     """Every command acts a constant time after it was published: bus cycle, buffers, computing time."""

@@ -30,6 +30,8 @@ from sher3_chain.manipulator.view import MotionView
 
 LATE = "effort_delay"
 """Parameter that these findings give, see `Page.computed`."""
+OF_LAW = "delay"
+"""The same of a servo whose law stands for the effort: its shape is that of the reference, and is searched."""
 WITHIN_PERIOD = 0.5
 """Uncertainty of the moment at which an effort was taken, in periods of the record, where no description states it."""
 SLOWER = 5.0
@@ -91,6 +93,19 @@ def with_closure(cause: Cause, shape: Shape) -> Cause:
     return cause.model_copy(update={"closure": closure})
 
 
+def with_late_readings(cause: Cause) -> Cause:
+    """Return a cause with late readings as rival of a late command, where a law stands for the effort."""
+    rivals = [*cause.rivals, *([computed(LATE).id] if cause.effect == computed(OF_LAW).id else [])]
+    return cause.model_copy(update={"rivals": rivals})
+
+
+def timing_notes(causes: Sequence[Cause]) -> list[str]:
+    """Return the sentence on joints whose control and motion lie apart in time."""
+    late = ", ".join(cause.actuator for cause in causes if cause.effect == computed(OF_LAW).id)
+    said = "without a recorded effort, a command that acts late and a position that is read late are the same records"
+    return [f"{late}: control and motion lie apart in time; {said}"] if late else []
+
+
 def late_efforts(evidence: ArmMotionEvidence) -> list[ExactFinding]:
     """Return the efforts that are late on an arm without any other gap."""
     found = ((joint, lateness(evidence, joint)) for joint in evidence.judged)
@@ -100,13 +115,15 @@ def late_efforts(evidence: ArmMotionEvidence) -> list[ExactFinding]:
 def lateness(evidence: ArmMotionEvidence, joint: str, carried: Sequence[Mapping[Channel, Array]] = ()) -> Late | None:
     """Return how late a joint's effort is, beside a gain, a rotor, a spring, friction and a constant force.
 
-    None where there are too few samples.
+    None where there are too few samples, or the law of a servo stands for the effort: its reference may be late.
 
     Args:
         evidence: of the arm.
         joint: whose effort is looked at.
         carried: per block, what a payload adds to the forces that are needed, (g, 1).
     """
+    if evidence.records[0].axis(joint).follows:
+        return None
     added = {id(view): x.get(channel_of(joint)) for view, x in zip(evidence.views, carried, strict=False)}
     parts = [_equations(view, joint, added.get(id(view))) for view in evidence.records]
     x, y = (np.concatenate([p[i] for p in parts]) for i in (0, 1))

@@ -27,7 +27,7 @@ from sher3_effects import computed
 
 from sher3_chain.manipulator.causes.confounding import GAIN
 from sher3_chain.manipulator.causes.explained import Explained, with_rivals
-from sher3_chain.manipulator.causes.lateness import LATE, Late, lateness
+from sher3_chain.manipulator.causes.lateness import LATE, OF_LAW, Late, lateness
 from sher3_chain.manipulator.causes.links import clearly_less, wrong_links
 from sher3_chain.manipulator.causes.payload import centred, closes, middle, payloads
 from sher3_chain.manipulator.causes.plan import BESIDE_LINKS, BESIDE_LOAD, JOINT, bought
@@ -117,7 +117,7 @@ def _beside_delay(
     is looked for only in what is left, since laws fitted at once would share it. They are compared away from reversals,
     where a dry friction is no matter of a moment.
     """
-    others = [e for e in effects if e.family != TIMING]
+    others = [e for e in effects if e.family != TIMING or e.id == computed(OF_LAW).id]
     if late is not None and late.told and not late.sure:
         return _searched(own, effects, say, replace(plan, together=False))
     found = _searched(own, others, say, plan)
