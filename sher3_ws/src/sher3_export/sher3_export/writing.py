@@ -15,6 +15,7 @@ from sher3_export.errors import ExportError
 from sher3_export.targets.configuration import Configuration
 from sher3_export.targets.isaac import Isaac, IsaacLab
 from sher3_export.targets.mjcf import Mjcf
+from sher3_export.targets.mjcf_whole import read_mjcf
 from sher3_export.targets.mjlab import Mjlab
 from sher3_export.targets.plain import Plain
 from sher3_export.targets.ros2_control import Ros2Control
@@ -114,14 +115,18 @@ def opened(kind: type[Target], model: Path | Element | None) -> Target:
     if model is None:
         remedy = f"give the nominal model with --model FILE.{kind.name}"
         raise ExportError(f"{kind.name} needs a model to write into", value="no --model", remedy=remedy)
-    return kind(read_xml(model, kind.root_tag) if isinstance(model, Path) else model)
+    return kind(_root(model, kind.root_tag) if isinstance(model, Path) else model)
 
 
 def nominal_of(model: Path | Element) -> dict[str, dict[str, float]]:
     """Return what a model says of its joints, MJCF or URDF; raises ExportError where it is neither."""
     kinds = {kind.root_tag: kind for kind in (Mjcf, Urdf)}
-    root = read_xml(model, "robot" if model.suffix == ".urdf" else "mujoco") if isinstance(model, Path) else model
+    root = _root(model, "robot" if model.suffix == ".urdf" else "mujoco") if isinstance(model, Path) else model
     return kinds[root.tag](root).nominal()
+
+
+def _root(path: Path, tag: str) -> Element:
+    return read_mjcf(path) if tag == Mjcf.root_tag else read_xml(path, tag)
 
 
 def remarks(verdict: Verdict, applied: Sequence[Change], untold: Sequence[Untold]) -> list[str]:

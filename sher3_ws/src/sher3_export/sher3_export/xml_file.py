@@ -15,21 +15,21 @@ MAX_BYTES = 20_000_000
 """Largest model that is read: arms and humanoids with every mesh named are below 1 MB."""
 
 
-def read_xml(path: Path, root: str) -> Element:
-    """Return the root of an XML file, comments kept.
+def read_xml(path: Path, *roots: str) -> Element:
+    """Return the root of an XML file, which is one of `roots`, comments kept.
 
     Raises:
         ExportError: the file cannot be read, declares entities, or has another root element.
     """
     try:
-        return parse_xml(read_text(path, MAX_BYTES), root)
+        return parse_xml(read_text(path, MAX_BYTES), *roots)
     except FileError as error:
         raise ExportError(f"{path}: cannot be read", value=error.reason, remedy="check the path") from error
     except ExportError as error:
         raise ExportError(f"{path}: {error.what}", value=error.value, limit=error.limit, remedy=error.remedy) from error
 
 
-def parse_xml(text: str, root: str) -> Element:
+def parse_xml(text: str, *roots: str) -> Element:
     """Return the root of an XML text, comments kept; raises ExportError as `read_xml` does."""
     if "<!DOCTYPE" in text:  # what declares entities can expand without bound or name other files
         raise ExportError("has a document type", value="<!DOCTYPE", remedy="give a plain XML file")
@@ -38,8 +38,10 @@ def parse_xml(text: str, root: str) -> Element:
         found = ElementTree.fromstring(text, parser)
     except (ElementTree.ParseError, ValueError) as error:
         raise ExportError("is not XML", value=str(error), remedy="check the file") from error
-    if found.tag != root:
-        raise ExportError("is another kind of model", value=f"<{found.tag}>", limit=f"<{root}>", remedy="check --to")
+    if found.tag not in roots:
+        raise ExportError(
+            "is another kind of model", value=f"<{found.tag}>", limit=f"<{roots[0]}>", remedy="check --to"
+        )
     return found
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from sher3_diagnosis.verdict import Verdict
 from sher3_export.targets.mjcf import Mjcf
+from sher3_export.targets.mjcf_whole import whole
 from sher3_export.targets.urdf import Urdf
 from sher3_export.writing import export
 from sher3_export.xml_file import parse_xml
@@ -47,5 +48,6 @@ def corrected(verdict: Verdict, source: Source | None, to: str = "") -> Correcte
         raise InputError(f"{target} is written into the model that was given", value=given, remedy=remedy)
     if own in ROOTS and source is not None and source.text is not None:
         root = parse_xml(source.text, ROOTS[own])
+        root = root if source.bodies.mujoco is None else whole(root, source.path)
     done = export(verdict, target, root)
     return Corrected(done.text, [str(x) for x in done.applied], [str(x) for x in done.untold])

@@ -99,7 +99,7 @@ def _root(case: Case) -> Any:
     if case.source.text is None:
         remedy = "give the model as a path, a text or an MjSpec"
         raise InputError("replays need the text of the model", value="an MjModel", remedy=remedy)
-    return model_of_text(case.source.text, case.source.name)
+    return model_of_text(case.source.text, case.source.name, case.source.path)
 
 
 def _of(joint: str, record: Recorded, untuned: Mapping[str, Array], corrected: Mapping[str, Array]) -> Replay:

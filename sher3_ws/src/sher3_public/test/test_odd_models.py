@@ -50,6 +50,27 @@ def test_a_control_beyond_its_range_acts_as_its_bound():
     assert gap.diagnose(xml, time, control, position, effort).status == "no_gap"
 
 
+@pytest.mark.parametrize("as_spec", [False, True])
+def test_a_model_of_several_files_and_macros(tmp_path, as_spec):
+    """A file of the arm, and a scene that includes it beside a copied pendulum that was not recorded."""
+    post = '<body pos="0 2 0"><joint name="post"/><geom size=".1"/></body>'
+    scene = f'<worldbody><frame pos="0 0 .1"><replicate count="2" offset="0 1 0">{post}</replicate></frame></worldbody>'
+    xml = ARM.format(body="", range="")
+    (tmp_path / "arm.xml").write_text(xml)
+    path = tmp_path / "scene.xml"
+    path.write_text(f'<mujoco><include file="arm.xml"/>{scene}</mujoco>')
+    time, control, position, effort = log_of(xml.replace('damping="0.5"', 'damping="2.5"'))
+    model = mujoco.MjSpec.from_file(str(path)) if as_spec else path
+    found = gap.diagnose(model, time, control, position, effort, joints=["shoulder", "elbow"])
+    assert [(c.effect, c.actuator) for c in found.causes] == [("viscous_friction", "shoulder")]
+    done = found.corrected()
+    corrected = mujoco.MjModel.from_xml_string(done.text)
+    assert not done.untold and corrected.njnt == 4
+    assert corrected.joint("shoulder").damping[0] == pytest.approx(2.5, rel=0.02)
+    replay = found.simulate().joints["shoulder"]
+    assert replay.after < 0.2 * replay.before
+
+
 @pytest.mark.parametrize("steps", [5, -10])
 def test_a_control_that_acts_late_is_named_where_no_effort_was_recorded(steps):
     """Its law stands for the effort; the plant followed the control of ten ms before, or it was logged too late."""

@@ -19,9 +19,9 @@ from sher3_machines.thresholds import BLOCKS
 from sher3_export.check.engine import Engine, compiled, copied, prepared
 from sher3_export.check.model_of import model_of, model_of_arm
 from sher3_export.check.recorded import Recorded, recorded
-from sher3_export.targets.mjcf import Mjcf
+from sher3_export.targets.mjcf_whole import read_mjcf
 from sher3_export.writing import Exported, export
-from sher3_export.xml_file import read_xml, write_xml
+from sher3_export.xml_file import write_xml
 
 LATE = ("delay", "lag", "limit", "servo", "servo_position", "servo_velocity", "servo_delay")
 """Constants that act between command and force."""
@@ -59,7 +59,7 @@ def nominal_model(case: Path, model: Path | None) -> tuple[Element, object, Sequ
     """
     machine, runs = open_case(case)
     if model is not None:
-        return read_xml(model, Mjcf.root_tag), machine, runs
+        return read_mjcf(model), machine, runs
     recorded(machine, [], {}, False)  # refuses another kind of machine
     if isinstance(machine, Manipulator):
         return model_of_arm(Path(machine.described.model)), machine, runs

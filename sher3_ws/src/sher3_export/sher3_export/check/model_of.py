@@ -14,6 +14,7 @@ from sher3_description.contract import GRAVITY
 
 from sher3_export.check.engine import mujoco
 from sher3_export.errors import ExportError
+from sher3_export.targets.mjcf_whole import whole
 from sher3_export.xml_file import MAX_BYTES, parse_xml, written
 
 SLENDER = 0.5
@@ -33,13 +34,13 @@ def model_of_arm(path: Path) -> Element:
         text = read_text(path, MAX_BYTES)
     except FileError as error:
         raise ExportError(f"{path}: cannot be read", value=error.reason, remedy="give --model") from error
-    return model_of_text(text, str(path))
+    return model_of_text(text, str(path), path)
 
 
-def model_of_text(text: str, label: str) -> Element:
-    """Return the model of a text, as `model_of_arm` does of a file; `label` names it in errors."""
+def model_of_text(text: str, label: str, path: Path | None = None) -> Element:
+    """Return the model of a text, as `model_of_arm` does of a file at `path`; `label` names it in errors."""
     if "<mujoco" in text and "<robot" not in text:
-        return parse_xml(text, "mujoco")
+        return whole(parse_xml(text, "mujoco"), path)
     root = parse_xml(text, "robot")
     for link in root.iter("link"):
         for shape in [*link.findall("visual"), *link.findall("collision")]:

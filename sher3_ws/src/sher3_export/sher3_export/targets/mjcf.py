@@ -10,7 +10,18 @@ from xml.etree.ElementTree import Element, SubElement
 from sher3_export.changes import Change
 from sher3_export.targets import mjcf_motor
 from sher3_export.targets.links import INERTIAL, WrongLinks
-from sher3_export.targets.mjcf_body import controlled, moved, payloads_on, set_inertial, skeleton, together
+from sher3_export.targets.mjcf_body import (
+    FRAME,
+    body_around,
+    class_value,
+    controlled,
+    inside,
+    moved,
+    payloads_on,
+    set_inertial,
+    skeleton,
+    together,
+)
 from sher3_export.targets.mjcf_ranges import write_range
 from sher3_export.targets.mjcf_tendon import at_motor
 from sher3_export.targets.target import NOT_TOLD, XmlTarget, each, field
@@ -92,7 +103,7 @@ class Mjcf(XmlTarget):
 
     def all_joints(self) -> Sequence[Element]:
         """Return hinges and slides of the bodies."""
-        return [x for body in elements(self.root, "body") for x in body.findall("joint")]
+        return [x for body in elements(self.root, "body") for x in inside(body, "joint")]
 
     @property
     def writers(self) -> Mapping[str, Callable[[Change, Element], str]]:
@@ -173,9 +184,9 @@ class Mjcf(XmlTarget):
 
     def _weight(self, change: Change, joint: Element) -> str:
         """A share of the weight is gravity compensation of the body, where no other joint carries the body's load."""
-        body = parents(self.root)[joint]
-        below = [x for child in body.findall("body") for x in child.iter("joint")]
-        if below or len(body.findall("joint")) > 1:
+        body = body_around(self.root, joint)
+        below = [x for child in inside(body, "body") for x in child.iter("joint")]
+        if below or len([*inside(body, "joint")]) > 1:
             return "the weight behind this joint is carried by other joints too"
         for part in body.iter("body"):
             part.set("gravcomp", written(number(part.get("gravcomp")) - change.value))
@@ -266,7 +277,7 @@ class Mjcf(XmlTarget):
         """Return the body of a name, or the body that a joint of that name moves; one without a name by its number."""
         named = {x.get("name", f"body{n}"): x for n, x in enumerate(elements(self.root, "body"), start=1)}
         found = named.get(place)
-        return parents(self.root)[self.joints[place]] if found is None and place in self.joints else found
+        return body_around(self.root, self.joints[place]) if found is None and place in self.joints else found
 
     def _link(self, change: Change, body: Element) -> str:
         """A link is its body with all that is fixed to it; mass and inertia of each keep their centre."""
@@ -278,7 +289,7 @@ class Mjcf(XmlTarget):
                 for name in ("mass", "diaginertia", "fullinertia"):
                     if name in own.attrib:
                         own.set(name, written(*(scale * x for x in numbers(own.get(name), "0"))))
-            for geom in part.findall("geom") if own is None else []:
+            for geom in inside(part, "geom") if own is None else []:
                 stated = geom.get("mass") or self._class_value(geom, "mass")
                 name = "density" if stated is None else "mass"
                 geom.set(name, written(scale * self._inherited(geom, name, WATER)))
@@ -303,7 +314,7 @@ class Mjcf(XmlTarget):
 
     def _shift(self, change: Change, joint: Element) -> str:
         """A joint that sits elsewhere than drawn: the body moves by as much in its own frame."""
-        body = parents(self.root)[joint]
+        body = body_around(self.root, joint)
         if any(name in body.attrib for name in PLACE[1:]):
             return "the body is turned against its parent; shift its pos along its own axes by hand"
         return moved(body, change)
@@ -316,8 +327,7 @@ class Mjcf(XmlTarget):
             limit += numbers(standing.get("range"), "0 0")[1]
             standing.set("range", written(-limit, limit))
             return ""
-        self._second(change, joint, "play", {"range": written(-limit, limit), "limited": "true"})
-        return ""
+        return self._second(change, joint, "play", {"range": written(-limit, limit), "limited": "true"})
 
     def _compliance(self, change: Change, joint: Element) -> str:
         if change.value <= 0.0:
@@ -327,16 +337,17 @@ class Mjcf(XmlTarget):
         stiffness = 1.0 / (before + change.value)  # springs one behind the other
         law = {"stiffness": written(stiffness), "damping": written(self._step * stiffness)}
         if standing is None:
-            self._second(change, joint, "spring", law)
-        else:
-            standing.attrib.update(law)
+            return self._second(change, joint, "spring", law)
+        standing.attrib.update(law)
         return ""
 
-    def _second(self, change: Change, joint: Element, what: str, law: Mapping[str, str]) -> None:
+    def _second(self, change: Change, joint: Element, what: str, law: Mapping[str, str]) -> str:
         """Part motor from load: a body of the motor's own takes the joint, and the load hangs on it by a second one.
 
         Two parallel joints of one body would do, but MuJoCo takes the joints of a body that only slides for orthogonal.
         """
+        if parents(self.root)[joint].tag == FRAME:
+            return "the joint is in a <frame>, not directly in its body; write it there"
         motor = self._inherited(joint, "armature") or LEAST
         joint.set("armature", written(motor))
         above = parents(self.root)
@@ -357,6 +368,7 @@ class Mjcf(XmlTarget):
         plain = {"armature": written(LIGHT * motor), "frictionloss": "0", "stiffness": "0", "damping": "0"}
         load.insert(0, Element("joint", {"name": f"{change.joint}_{what}", **same, **plain, "limited": "false", **law}))
         body.append(load)
+        return ""
 
     def _actuators(self, joint: str) -> list[Element]:
         return [
@@ -382,19 +394,4 @@ class Mjcf(XmlTarget):
         return number(own if own is not None else self._class_value(element, attribute), default)
 
     def _class_value(self, element: Element, attribute: str) -> str | None:
-        """Return what the innermost class that states an attribute says, up to the model's top class."""
-        above = parents(self.root)
-        name, at = element.get("class"), element
-        while name is None and at in above:
-            at = above[at]
-            name = at.get("childclass")
-        top = self.root.find("default")
-        if top is None:
-            return None
-        found = next((x for x in top.iter("default") if name is not None and x.get("class") == name), top)
-        while found.tag == "default":
-            stated = next((x.get(attribute) for x in found.findall(element.tag) if attribute in x.attrib), None)
-            if stated is not None or found is top:
-                return stated
-            found = above[found]
-        return None
+        return class_value(self.root, element, attribute)

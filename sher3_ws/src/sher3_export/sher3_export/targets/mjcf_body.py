@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from copy import deepcopy
 from pathlib import PurePath
 from xml.etree.ElementTree import Element
 
 from sher3_export.changes import Change
 from sher3_export.targets.links import Inertia
-from sher3_export.xml_file import numbers, written
+from sher3_export.xml_file import numbers, parents, written
 
 BONES = ("compiler", "option", "size", "default", "asset", "worldbody")
 """Sections that say where bodies are and what they weigh."""
+FRAME = "frame"
 
 
 def skeleton(root: Element) -> Element:
@@ -21,8 +23,7 @@ def skeleton(root: Element) -> Element:
     for section in [x for x in bare if x.tag not in BONES]:
         bare.remove(section)
     for body in [x for x in bare.iter() if x.tag == "worldbody" or x.find("inertial") is not None]:
-        for geom in body.findall("geom"):
-            body.remove(geom)
+        _without_geoms(body)
     for element in bare.iter():
         element.attrib.pop("material", None)
     needed = {x.get("mesh") for x in bare.iter("geom")}
@@ -37,9 +38,55 @@ def _called(mesh: Element) -> str:
     return mesh.get("name") or PurePath(mesh.get("file", "")).stem
 
 
+def _without_geoms(part: Element) -> None:
+    """Take the geoms out of a body, those in its frames too."""
+    for child in list(part):
+        if child.tag == "geom":
+            part.remove(child)
+        elif child.tag == FRAME:
+            _without_geoms(child)
+
+
+def inside(body: Element, tag: str) -> Iterator[Element]:
+    """Yield the elements of a tag that a body holds itself or in its frames, which only place what they hold."""
+    for child in body:
+        if child.tag == tag:
+            yield child
+        elif child.tag == FRAME:
+            yield from inside(child, tag)
+
+
+def body_around(root: Element, element: Element) -> Element:
+    """Return the body, or the world, that holds an element, itself or in a frame."""
+    above = parents(root)
+    found = above[element]
+    while found.tag == FRAME:
+        found = above[found]
+    return found
+
+
+def class_value(root: Element, element: Element, attribute: str) -> str | None:
+    """Return what the innermost class of <default> that states an attribute says, up to the model's top class."""
+    above = parents(root)
+    name, at = element.get("class"), element
+    while name is None and at in above:
+        at = above[at]
+        name = at.get("childclass")
+    top = root.find("default")
+    if top is None:
+        return None
+    found = next((x for x in top.iter("default") if name is not None and x.get("class") == name), top)
+    while found.tag == "default":
+        stated = [x.get(attribute) for x in found.findall(element.tag) if attribute in x.attrib]
+        if stated or found is top:
+            return stated[-1] if stated else None
+        found = above[found]
+    return None
+
+
 def together(body: Element) -> list[Element]:
     """Return a body and those below it that no joint parts from it."""
-    below = [x for x in body.findall("body") if x.find("joint") is None and x.find("freejoint") is None]
+    below = [x for x in inside(body, "body") if not [*inside(x, "joint"), *inside(x, "freejoint")]]
     return [body, *(part for x in below for part in together(x))]
 
 

@@ -76,7 +76,7 @@ class XmlTarget(Target):
         self.root = root
         self.joints = {x.attrib["name"]: x for x in self.all_joints() if "name" in x.attrib}
         if not self.joints:
-            remedy = "give the file that holds the joints; files it includes are not followed"
+            remedy = "give the file that holds the joints, each with a name"
             raise ExportError("the model has no joint with a name", value="0 joints", remedy=remedy)
 
     @abstractmethod
