@@ -20,7 +20,7 @@ from sher3_chain.chain.evidence import ChainEvidence, in_blocks
 from sher3_chain.constants import ZERO, constants
 from sher3_chain.joint.description import Axis
 from sher3_chain.joint.record import AxesRun
-from sher3_chain.readings.level import level_note, off, off_note
+from sher3_chain.readings.level import at_a_level, level_note, off, off_note
 from sher3_chain.readings.signals import AxisSignals, signals_of
 from sher3_chain.thresholds import NO_INERTIA
 
@@ -122,8 +122,9 @@ def levels_of(signals: Sequence[AxisSignals], axis: Axis) -> list[str]:
     notes = []
     for s in signals:
         if s.limited is not None and s.effort is not None:
-            silent = off(s.effort[:, 0])
-            flat = s.limited & ~silent
+            effort = s.effort[:, 0]
+            silent = off(effort)
+            flat = s.limited & at_a_level(effort) & ~silent
             notes += [level_note(f"{s.name}: {axis.name}.effort", flat)] if flat.any() else []
             notes += [off_note(f"{s.name}: {axis.name}.effort", silent)] if silent.any() else []
     return notes

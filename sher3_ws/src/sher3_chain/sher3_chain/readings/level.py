@@ -20,7 +20,8 @@ itself."""
 def at_a_level(effort: Array) -> Mask:
     """Return (n,) True where a reading lies at its largest or least value for a stretch: it or the drive is limited.
 
-    One that goes in steps everywhere, as a test with constant forces or few bits does, is at no limit.
+    One that goes in steps everywhere, as a test with constant forces or few bits does, is at no limit; nor is one that
+    only passes from one level to the other, be it in samples between the two, as on a clock that is no drive's.
     """
     out = np.zeros(len(effort), dtype=bool)
     for level in (float(effort.max()), float(effort.min())):
@@ -28,7 +29,7 @@ def at_a_level(effort: Array) -> Mask:
         if at.mean() >= PINNED and longest_run(at) >= LONGEST and not at.all():
             out |= at
     rest = ~out[1:] & ~out[:-1]
-    stepped = not rest.any() or float(np.mean(np.diff(effort)[rest] == 0.0)) > STEPS
+    stepped = longest_run(~out) < LONGEST or float(np.mean(np.diff(effort)[rest] == 0.0)) > STEPS
     return np.zeros_like(out) if stepped else out
 
 

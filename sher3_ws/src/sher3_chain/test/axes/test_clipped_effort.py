@@ -51,6 +51,9 @@ def test_constant_forces_and_few_bits_are_no_level():
     assert not at_a_level(wave).any()
     assert not at_a_level(np.sign(np.sin(t / 100.0 + 0.1))).any(), "a test with constant forces"
     assert not at_a_level(np.round(4.0 * wave)).any(), "few bits"
+    polled = np.clip(60.0 * np.sin(t / 100.0 + 0.1), 0.0, 1.0)
+    assert 0.0 < np.mean((polled > 0.0) & (polled < 1.0)) < 0.02, "it passes from level to level in a few samples"
+    assert not at_a_level(polled).any(), "a duty of two levels, put on another clock"
 
 
 def test_a_command_that_lies_flat_too_is_what_the_drive_gives():

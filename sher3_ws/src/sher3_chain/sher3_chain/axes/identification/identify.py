@@ -54,6 +54,13 @@ def identify_mass(views: Sequence[AxisView]) -> tuple[float, tuple[float, float]
         MachineError: the records do not accelerate enough to tell a mass.
     """
     x, y = _rows(views)
+    if len(y) < BLOCKS:
+        raise MachineError(
+            f"axis {views[0].described.name}: no sample is left in which it moves under a known force",
+            value=f"{len(y)} samples",
+            limit=f"at least {BLOCKS}",
+            remedy="record it in motion under several forces, or state `mass`",
+        )
     blocks = _blocks(x, y)
     _, columns = _best(blocks)
     used = x[:, columns]
