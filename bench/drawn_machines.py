@@ -67,12 +67,16 @@ def named(verdict: Verdict) -> list[set[str]]:
     return out
 
 
+TOLD_AS = {("sensor_delay", "delay"): "effort_delay"}
+"""Effect and name of a truth -> the parameter that tells it."""
+
+
 def covered(drawn: Drawn, verdict: Verdict) -> list[bool]:
     """Return whether each interval of a parameter whose truth is known holds it."""
     out = []
     for c in verdict.causes:
         for name, value in drawn.truth.get(c.effect, {}).items():
-            p = c.parameters.get("effort_delay" if name == "delay" else name)
+            p = c.parameters.get(TOLD_AS.get((c.effect, name), name))
             if p is not None and p.low is not None and p.high is not None:
                 out.append(p.low <= value <= p.high)
     return out

@@ -180,7 +180,8 @@ def drawn_servo(seed: int) -> Drawn:
     law = (mass, dry, lag, 0.0 if arm else weight, weight if arm else 0.0, 0.0, 0.0, 1.0)
     held = np.repeat(asked[::every], every)[: len(asked)]
     rows = played(held, DRIVE, FINE, law, (1.0, 0.0), STICKS * top, count, 1.0)
-    truth: dict[str, dict[str, float]] = {"drive_lag": {}}
+    acts = {"delay": late * DRIVE + 0.5 * period} if late else {}  # what is held acts half a period later on average
+    truth: dict[str, dict[str, float]] = {"drive_lag": acts}
     truth |= {"coulomb_friction": {"force": dry}} if dry else {}
     truth |= {"gravity_load": {"arm": weight} if arm else {"force": weight}} if weight else {}
     truth |= {"delay": {}} if late else {}

@@ -20,7 +20,7 @@ from sher3_effects.view import NominalAxis
 from sher3_machines.errors import MachineError
 from sher3_machines.thresholds import BLOCKS
 
-from sher3_chain.axes.causes.confounded_laws import dead_band_note, with_dead_band
+from sher3_chain.axes.causes.confounded_laws import dead_band_note, with_dead_band, with_second_pole
 from sher3_chain.axes.causes.detection_limits import unseen_note
 from sher3_chain.axes.causes.plan import AXIS
 from sher3_chain.axes.causes.refine import refine_free
@@ -113,7 +113,7 @@ class Axes(Chain[AxisEvidence]):
         causes = within_bounds(causes, attribution.told, self.effects(evidence))
         if free:
             return refine_free(evidence, causes)
-        causes = with_dead_band(causes) if servo else in_true_force(causes)
+        causes = with_second_pole(with_dead_band(causes)) if servo else in_true_force(causes)
         return evidence, [in_own_unit(cause, own) for cause in causes] if own else causes
 
     def remarks(self, finding: Finding[AxisEvidence]) -> list[str]:

@@ -33,3 +33,8 @@ def test_motion_at_constant_speed_tells_no_mass():
     noise = np.random.default_rng(0).normal(size=len(CLOCK))
     with pytest.raises(MachineError, match="does not tell its mass"):
         identify_mass([seen(5.0 + noise, 0.1 * CLOCK)])
+
+
+def test_a_record_without_a_moving_sample_is_refused_without_a_warning():
+    with pytest.raises(MachineError, match="no sample is left in which it moves"):
+        identify_mass([seen(np.zeros(len(CLOCK)), np.zeros(len(CLOCK)))])

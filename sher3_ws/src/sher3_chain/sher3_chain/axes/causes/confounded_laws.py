@@ -6,6 +6,9 @@ are the same at any speed. The force, the command against its law, or a run unde
 
 A spring and the sine of a weight at an arm are the same over a small travel, and each has numbers of its own: neither
 contains the other, as both contain a constant force.
+
+A servo of two poles, T and m / T (its mass over its stiffness is m), looks like one of a first order and a dead time
+m / T. Counts hide accelerations, so that m comes out too small and the dead time too long.
 """
 
 from __future__ import annotations
@@ -13,12 +16,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+import numpy as np
 from sher3_diagnosis.attribute.rivals import Attribution
 from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.fit.fitting import Fit, Term
 from sher3_diagnosis.thresholds import NEEDED
-from sher3_diagnosis.verdict import Cause
+from sher3_diagnosis.verdict import Cause, Parameter
 from sher3_effects import pages
+
+SECOND_POLE = 1.0 / 3.0
+"""Share of a lag T that a second pole hidden in a dead time has at most: a servo of lag T + s and mass s (T + s) does
+not ring where that mass is below a quarter of its lag's square, so that s is below T / 3."""
 
 
 def indistinct() -> dict[str, tuple[str, ...]]:
@@ -53,6 +61,31 @@ def with_dead_band(causes: Sequence[Cause]) -> list[Cause]:
         cause.model_copy(update={"rivals": list(dict.fromkeys([*cause.rivals, *beside.get(cause.effect, ())]))})
         for cause in causes
     ]
+
+
+def with_second_pole(causes: Sequence[Cause]) -> list[Cause]:
+    """Return the causes of a position servo with what a second pole may take of a dead time beside its lag.
+
+    The sum of dead time and lag is what the record tells: where one is shorter, the other is longer by as much.
+    """
+    return [_second_pole(c) if {"time_constant", "delay"} <= c.parameters.keys() else c for c in causes]
+
+
+def _second_pole(cause: Cause) -> Cause:
+    told = cause.parameters
+    lag, delay = told["time_constant"], told["delay"]
+    seen = told["inertia"].value / lag.value if "inertia" in told else 0.0
+    hidden = max(SECOND_POLE * lag.value - seen, 0.0)
+    wider = {"time_constant": _wider(lag, 0.0, hidden), "delay": _wider(delay, min(hidden, delay.value), 0.0)}
+    return cause.model_copy(update={"parameters": {**told, **wider}})
+
+
+def _wider(p: Parameter, below: float, above: float) -> Parameter:
+    """Return a parameter whose interval also holds what lies below and above its value."""
+    if p.low is None or p.high is None:
+        return p
+    low, high = float(np.hypot(p.value - p.low, below)), float(np.hypot(p.high - p.value, above))
+    return p.model_copy(update={"low": p.value - low, "high": p.value + high})
 
 
 def dead_band_note(name: str, causes: Sequence[Cause], unit: str) -> str:
