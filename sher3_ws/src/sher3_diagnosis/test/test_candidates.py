@@ -67,3 +67,15 @@ def test_a_number_costs_its_price():
     evidence = evidence_of(case(5.0))
     term = Candidates(evidence, [DIRECTION]).term(DIRECTION, "axis", {})
     assert price(term) == PRICE
+
+
+def test_an_effect_beside_the_same_causes_is_searched_once(monkeypatch):
+    """Beside other causes it is searched again."""
+    candidates = Candidates(evidence_of(case(5.0)), [DIRECTION, OFFSET])
+    searched, search = [], Candidates._searched
+    monkeypatch.setattr(Candidates, "_searched", lambda *given: searched.append(given) or search(*given))
+    offset = candidates.term(OFFSET, "axis", {})
+    alone = candidates.best(DIRECTION, "axis")
+    beside, times = candidates.best(DIRECTION, "axis", [offset]), len(searched)
+    assert candidates.best(DIRECTION, "axis") is alone and candidates.best(DIRECTION, "axis", (offset,)) is beside
+    assert len(beside.terms) == 2 and len(searched) == times

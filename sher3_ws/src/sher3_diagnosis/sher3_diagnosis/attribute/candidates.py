@@ -41,6 +41,7 @@ class Candidates:
         effects: that may explain it.
         possible: whether a trial may be an answer.
         order: of the trials of a step.
+        found: the best fits so far, with the terms they were found beside: steps and rivals ask for the same again.
     """
 
     evidence: Evidence
@@ -48,6 +49,7 @@ class Candidates:
     possible: Callable[[Fit], bool] = possible
     order: Order = as_found
     terms: dict[tuple, Term] = field(default_factory=dict)
+    found: dict[tuple, tuple[Sequence[Term], Fit | None]] = field(default_factory=dict, init=False, repr=False)
 
     def sites(self, effect: Effect) -> Sequence[str]:
         """Return where an effect may sit."""
@@ -68,6 +70,12 @@ class Candidates:
         Returns:
             None when no shape is physically possible, or the effect does not show in the evidence.
         """
+        key = (effect.id, site, *map(id, given))
+        if key not in self.found:
+            self.found[key] = tuple(given), self._best(effect, site, given)
+        return self.found[key][1]
+
+    def _best(self, effect: Effect, site: str, given: Sequence[Term]) -> Fit | None:
         plain = self._searched(effect, site, given, effect.shapes(self.evidence.views, site))
         base = fit(self.evidence.data, given).total
         if plain is None or base - plain.total < NEEDED:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from contextlib import AbstractContextManager
+from functools import cache
+from typing import Any
 
 
 def one_thread() -> AbstractContextManager[object]:
@@ -10,7 +12,13 @@ def one_thread() -> AbstractContextManager[object]:
 
     Twenty trees of 1600 samples and 100 inputs cost 0.25 s of processor with it, 2 to 19 s without on two busy cores.
     """
-    import sklearn.ensemble  # noqa: F401  its threads are there to be held once it is loaded
-    from threadpoolctl import threadpool_limits
+    return _libraries().limit(limits=1)
 
-    return threadpool_limits(limits=1)
+
+@cache
+def _libraries() -> Any:
+    """Find the libraries once: looking through all that a process has loaded takes 3 ms of processor each time."""
+    import sklearn.ensemble  # noqa: F401  its threads are there to be held once it is loaded
+    from threadpoolctl import ThreadpoolController
+
+    return ThreadpoolController()

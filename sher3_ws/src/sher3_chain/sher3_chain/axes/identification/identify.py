@@ -38,6 +38,8 @@ CHOICES = [
     for group in combinations(RESISTING, n)
 ]
 """Every choice of columns."""
+COLUMNS = 1 + sum(map(len, RESISTING))
+"""Number of columns."""
 OTHERS = 1.0 - np.eye(BLOCKS)
 """Of each block all others."""
 BUILDS_UP_OF_TRAVEL = BUILDS_UP * LEAD_OF_STROKE
@@ -65,9 +67,9 @@ def identify_mass(views: Sequence[AxisView]) -> tuple[float, tuple[float, float]
     _, columns = _best(blocks)
     used = x[:, columns]
     noise = noise_share(views, used[:, 0])
-    _, draws = _held_out(blocks, _others(blocks), columns, noise)
+    _, draws = _held_out(blocks, _others(blocks), _chosen([columns]), noise)
     mass = float(solve(_relieved(used, noise), used.T @ y)[0])
-    error = float(standard_error(draws))
+    error = float(standard_error(draws[:, 0]))
     if not mass > LEAST_EXCITED * error:
         wrong = mass < -LEAST_EXCITED * error
         what = "its mass comes out below zero: the model is wrong" if wrong else "the record does not tell its mass"
@@ -111,8 +113,8 @@ def share_of_inertia(views: Sequence[AxisView]) -> float:
     if len(y) < BLOCKS or not y.any():
         return np.inf
     blocks = _blocks(x, y)
-    _, draws = _held_out(blocks, _others(blocks), _best(blocks)[1])
-    error = float(standard_error(draws))
+    _, draws = _held_out(blocks, _others(blocks), _chosen([_best(blocks)[1]]))
+    error = float(standard_error(draws[:, 0]))
     most = abs(float(draws.mean())) + LEAST_EXCITED * error
     return most * float(np.sqrt(np.mean(x[:, 0] ** 2) / np.mean(y**2)))
 
@@ -135,7 +137,8 @@ class ForceBalance:
 def _best(blocks: Array) -> tuple[float, list[int]]:
     """Return the smallest held-out loss and its columns; those of the position only where they save markedly."""
     others = _others(blocks)
-    tried = [(_held_out(blocks, others, columns)[0], columns) for columns in CHOICES]
+    losses, _ = _held_out(blocks, others, CHOSEN)
+    tried = list(zip(losses.tolist(), CHOICES, strict=True))
     plain = min((t for t in tried if BY_PLACE[0] not in t[1] and BEHIND not in t[1]), key=lambda t: t[0])
     for extra in (BEHIND, BY_PLACE[0]):
         other = min(
@@ -240,14 +243,27 @@ def _columns(view: AxisView) -> tuple[Array, Mask]:
     return np.column_stack(columns), ok
 
 
+def _chosen(choices: Sequence[Sequence[int]]) -> Mask:
+    """Return which columns each choice has, (k, p)."""
+    return np.array([np.isin(np.arange(COLUMNS), columns) for columns in choices])
+
+
+CHOSEN = _chosen(CHOICES)
+"""Of every choice its columns."""
+
+
 def _others(blocks: Array) -> Array:
     """Return the products of columns and target (BLOCKS, p + 1, p + 1), of each block those of all others."""
     return np.tensordot(OTHERS, np.swapaxes(blocks, 1, 2) @ blocks, 1)
 
 
-def _held_out(blocks: Array, others: Array, columns: list[int], noise: float = 0.0) -> tuple[float, Array]:
-    """Loss of every block under the others' coefficients, and the mass without each block, (BLOCKS,)."""
-    normal, right = others[:, columns][..., columns], others[:, columns, -1]
-    normal[:, 0, 0] *= 1.0 - noise
-    beta = solve(normal, right)
-    return float(np.sum((blocks[..., -1] - (blocks[..., columns] @ beta[..., None])[..., 0]) ** 2)), beta[:, 0]
+def _held_out(blocks: Array, others: Array, chosen: Mask, noise: float = 0.0) -> tuple[Array, Array]:
+    """Losses (k,) of all blocks under the others' coefficients, and the mass without each block, (BLOCKS, k).
+
+    Of k choices of columns at once, (k, p): a column that is left out has no data and gets a coefficient of zero.
+    """
+    normal = others[:, None, :-1, :-1] * (chosen[:, :, None] & chosen[:, None, :])
+    normal[..., 0, 0] *= 1.0 - noise
+    beta = solve(normal, others[:, None, :-1, -1] * chosen)
+    left = blocks[..., -1:] - blocks[..., :-1] @ beta.transpose(0, 2, 1)
+    return np.sum(left**2, axis=(0, 1)), beta[..., 0]
