@@ -91,9 +91,11 @@ def _case(data: dict[str, Any], tables: Sequence[Tables], source: Source | None,
         first = error.errors()[0]
         place = ".".join(map(str, first["loc"])) or "the description"
         raise MachineError(f"{place}: {first['msg']}", remedy="correct what was stated") from error
-    runs, notes = [], []
-    for name, table in zip(names, tables, strict=True):
-        parts, note = kind.parts(name, table, description, len(tables))
+    runs = []
+    records, few = kind.chosen(dict(zip(names, tables, strict=True)), description)
+    notes = [few] if few else []
+    for name, table in records.items():
+        parts, note = kind.parts(name, table, description, len(records))
         notes += [note] if note else []
         runs += [kind.read(part, x, description) for part, x in parts.items()]
     if source is not None and isinstance(description, ManipulatorDescription):

@@ -8,9 +8,10 @@ from typing import TypeVar
 import numpy as np
 from sher3_diagnosis.channel import Array
 from sher3_machines.intake.kind import Kind
+from sher3_machines.intake.mending.stretches import repeats_judged
 from sher3_machines.intake.tables import Tables
 
-from sher3_chain.joint.parts import parts_of_record
+from sher3_chain.joint.parts import columns_of, parts_of_record
 from sher3_chain.joint.record import AxesRun, ChainDescription, axes_run
 
 D = TypeVar("D", bound=ChainDescription)
@@ -23,9 +24,15 @@ class ChainKind(Kind[D, AxesRun]):
         """Bring a data file onto a uniform clock; raises MachineError."""
         return axes_run(name, tables, description)
 
+    def chosen(self, records: Mapping[str, Tables], description: D) -> tuple[Mapping[str, Tables], str]:
+        """Return as many repeats as an answer needs; all where they differ in conditions, or are none."""
+        if not description.repeats or description.conditions:
+            return records, ""
+        return repeats_judged(records, len(columns_of(description)))
+
     def parts(self, name: str, tables: Tables, description: D, records: int = 1) -> tuple[dict[str, Tables], str]:
-        """Return the parts of a record with holes, and stretches of a long one; repeats stay whole."""
-        return ({name: tables}, "") if description.repeats else parts_of_record(name, tables, description, records)
+        """Return the parts of a record with holes, and stretches of a long one; a repeat stays one."""
+        return parts_of_record(name, tables, description, records)
 
     def pack(self, run: AxesRun) -> Mapping[str, Array]:
         """Return the period and every signal."""

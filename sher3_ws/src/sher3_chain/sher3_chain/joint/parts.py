@@ -8,7 +8,7 @@ from sher3_machines.errors import MachineError
 from sher3_machines.intake.columns import find
 from sher3_machines.intake.fields import Column
 from sher3_machines.intake.mending.parts import cut
-from sher3_machines.intake.mending.stretches import MOST_READINGS, spread
+from sher3_machines.intake.mending.stretches import MOST_READINGS, beginning, spread
 from sher3_machines.intake.spelling import table_of
 from sher3_machines.intake.tables import Tables
 
@@ -20,7 +20,8 @@ def parts_of_record(
 ) -> tuple[dict[str, Tables], str]:
     """Return the parts of a record by name, and a note; the record itself where it is read whole.
 
-    It is cut where its clock has holes or jumps back; of more readings than an answer needs stretches are taken.
+    It is cut where its clock has holes or jumps back; of more readings than an answer needs stretches are taken. A
+    repeat is one part, and of more readings its beginning: repeats are held against each other from their first sample.
 
     Args:
         name: of the run.
@@ -28,7 +29,11 @@ def parts_of_record(
         machine: whose columns count.
         records: that are judged together.
     """
-    columns = [c for axis in machine.chain for c in vars(axis.signals).values() if isinstance(c, Column)]
+    columns = columns_of(machine)
+    if machine.repeats:
+        most = MOST_READINGS // (len(columns) * records)
+        whole, note = beginning(name, tables, _stamps(tables, machine.time.column), most)
+        return {name: whole}, note
     parts, note = _cut_at_holes(name, tables, columns, machine.time.column)
     most, rows = MOST_READINGS // (len(columns) * records), sum(map(_rows, parts.values()))
     out: dict[str, Tables] = {}
@@ -38,6 +43,11 @@ def parts_of_record(
         out |= found
         notes += [said] if said else []
     return out, "; ".join(notes)
+
+
+def columns_of(machine: ChainDescription) -> list[Column]:
+    """Return the columns of a machine's signals."""
+    return [c for axis in machine.chain for c in vars(axis.signals).values() if isinstance(c, Column)]
 
 
 def _cut_at_holes(name: str, tables: Tables, columns: list[Column], clock: str | None) -> tuple[dict[str, Tables], str]:

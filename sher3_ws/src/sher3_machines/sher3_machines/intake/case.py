@@ -51,8 +51,9 @@ def import_case(data: Sequence[Path], description: Path, out: Path) -> list[str]
     if out.exists() and any(out.iterdir()) and not is_machine_case(out):
         raise MachineError(f"{out}: is not empty and no case", remedy="choose another --out")
     kind = kinds()[machine.kind]
-    runs, notes = [], []
-    records = runs_of(data)
+    runs = []
+    records, few = kind.chosen(runs_of(data), machine)
+    notes = [few] if few else []
     for name, table in records.items():
         parts, note = kind.parts(name, table, machine, len(records))
         notes += [note] if note else []

@@ -54,6 +54,10 @@ class Kind(ABC, Generic[D, R]):
     def read(self, name: str, tables: Tables, description: D) -> R:
         """Check a data file's columns and return them as a run in SI units; raises MachineError."""
 
+    def chosen(self, records: Mapping[str, Tables], description: D) -> tuple[Mapping[str, Tables], str]:
+        """Return the records of several that are judged, by name, and a note; default all."""
+        return records, ""
+
     def parts(self, name: str, tables: Tables, description: D, records: int = 1) -> tuple[dict[str, Tables], str]:
         """Return the records that a data file, one of several, holds by name, and a note; default one."""
         return {name: tables}, ""

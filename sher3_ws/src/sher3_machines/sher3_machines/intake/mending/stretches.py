@@ -16,6 +16,40 @@ minutes of motion at 1 kHz."""
 STRETCHES = 12
 """Stretches that a long record is judged by: each of several seconds, and what changes in an hour is seen."""
 
+FEWEST = 4
+"""Repeats of one motion that are judged at least: six pairs of them say what repeats differ by."""
+
+
+def repeats_judged(records: Mapping[str, Tables], columns: int) -> tuple[dict[str, Tables], str]:
+    """Return as many whole repeats of one motion as an answer needs, evenly spread over all, by name, and a note.
+
+    Args:
+        records: name -> columns of a repeat.
+        columns: whose readings count.
+    """
+    rows = max((len(x) for tables in records.values() for x in tables.values() if x.ndim), default=0)
+    count = max(FEWEST, MOST_READINGS // max(columns * rows, 1))
+    names = list(records)
+    if len(names) <= count:
+        return dict(records), ""
+    kept = [names[i] for i in np.linspace(0, len(names) - 1, count).round().astype(int)]
+    note = (
+        f"{len(names)} repeats have more readings than an answer needs: {count} of them, evenly spread, are judged; "
+        "give other ones by themselves to have them judged"
+    )
+    return {name: records[name] for name in kept}, note
+
+
+def beginning(name: str, tables: Tables, stamps: Mapping[str, Array], most: int) -> tuple[Tables, str]:
+    """Return the beginning of a repeat, where all are alike, and a note; all of it where it has at most `most` rows."""
+    rows = max((len(x) for x in stamps.values()), default=0)
+    if rows <= most:
+        return tables, ""
+    start, end = max(float(np.min(x)) for x in stamps.values()), min(float(np.max(x)) for x in stamps.values())
+    last = start + (end - start) * most / rows
+    found = {c: x[_within(stamps[c], start, last)] if c in stamps else x for c, x in tables.items()}
+    return found, f"{name}: has {rows} rows, more than an answer needs: its first {most / rows:.0%} is judged"
+
 
 def spread(name: str, tables: Tables, stamps: Mapping[str, Array], most: int) -> tuple[dict[str, Tables], str]:
     """Return stretches of a record by name, and a note; the record itself where it has at most `most` rows.
