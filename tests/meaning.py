@@ -20,10 +20,11 @@ def meaningless(verdict: Verdict) -> list[str]:
     for c in verdict.causes:
         told = {n: p for n, p in c.parameters.items() if p.low is not None and p.high is not None}
         out += [f"{c.effect} {n} misses {p.value}" for n, p in told.items() if not p.low <= p.value <= p.high]
-        wide = {n for n in SIZES & told.keys() if told[n].low > 0.0 and told[n].high > SPAN * told[n].low}
-        out += [f"{c.effect} {n} of no known order is told as {told[n].value}" for n in wide if told[n].means is None]
         zero = {n for n, p in told.items() if p.low <= 0.0 <= p.high}
         sizes = SIZES & told.keys()
+        wide = {n for n in sizes if told[n].low > 0.0 and told[n].high > SPAN * told[n].low}
+        if sizes and sizes <= wide and any(told[n].means is None for n in sizes):
+            out.append(f"{c.effect} of {c.actuator} tells numbers of no known order: {sorted(wide)}")
         if (sizes and sizes <= zero) or (TELLS.get(c.effect) in zero):
             out.append(f"{c.effect} of {c.actuator} holds zero in {sorted(zero)}")
         if c.closure.value <= 0.0:
