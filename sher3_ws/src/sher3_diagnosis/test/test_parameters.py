@@ -1,17 +1,21 @@
 """Parameters with intervals, by hand: from runs that differ, from parts of the motion that want another size."""
 
+from dataclasses import replace
 from typing import ClassVar
 
 import numpy as np
 import pytest
 from sher3_diagnosis.attribute.rivals import Attribution
+from sher3_diagnosis.channel import Channel, Residual
 from sher3_diagnosis.effect import Signature
 from sher3_diagnosis.fit.fitting import fit, make_term
+from sher3_diagnosis.fit.whitened import Whitened
 from sher3_diagnosis.quantify.parameters import parameters
 from sher3_diagnosis.quantify.polish import polished
 from sher3_diagnosis.thresholds import BEYOND, HIDDEN, MIN_RUNS, MISFIT, NORMAL
 from toy import AXIS, OFFSET, Column, ToyRun, evidence_of
 
+BEYOND_AXIS = Channel("motor_mechanics", "beyond")
 LEFT = 21.25 / 100.0
 
 
@@ -101,3 +105,32 @@ def test_a_choice_has_no_interval():
 
 def test_units_turn_with_the_axis():
     assert found([1.0] * 5, rotary=frozenset({"axis"})).unit == "N*m"
+
+
+class Load(Column):
+    """What a second channel feels by itself, and the first as it does the offset."""
+
+    def channels(self, site):
+        return frozenset({AXIS, BEYOND_AXIS})
+
+    def signature(self, view, site, shape):
+        n = len(view.run.values)
+        return Signature(
+            {AXIS: np.ones((n, 1, 1)) + 1e-3 * view.run.position[:, None, None], BEYOND_AXIS: np.ones((n, 1, 1))}
+        )
+
+
+def test_a_channel_that_carries_a_load_tells_it_from_what_another_cannot():
+    """On the first channel load and offset are the same but for a thousandth; the second feels the load alone."""
+    rng, n = np.random.default_rng(0), 200
+    runs = [ToyRun("a", rng.normal(size=n) + 9.0, rng.normal(size=n), np.ones(n)) for _ in range(MIN_RUNS)]
+    ok = np.ones(n, dtype=bool)
+    seen = [
+        {AXIS: Residual(r.values[:, None], ok), BEYOND_AXIS: Residual(rng.normal(size=(n, 1)) + 5, ok)} for r in runs
+    ]
+    one = evidence_of(runs)
+    data = Whitened(one.views, seen, [{AXIS: np.ones(1), BEYOND_AXIS: np.ones(1)} for _ in runs])
+    evidence = replace(one, data=data, units={AXIS: "N", BEYOND_AXIS: "N"})
+    terms = [make_term(data, effect, "axis", {}) for effect in (Load("load", "load", "one"), OFFSET)]
+    size = parameters(evidence, fit(data, terms), 1)["size"]
+    assert size.low < 4.0 < size.high < 5.0

@@ -79,9 +79,13 @@ class Local:
 
 
 def local(evidence: Evidence, fit: Fit, index: int) -> Local:
-    """Return the linear model around one term of a fit, on the channels it shows on."""
+    """Return the linear model around one term of a fit, on all channels that terms share with it and with each other.
+
+    What one channel alone cannot tell from a load, another that carries the load may tell.
+    """
     data, term = evidence.data, fit.terms[index]
-    members = [i for i, t in enumerate(fit.terms) if t.channels & term.channels]
+    channels = _joined(fit, term.channels)
+    members = [i for i, t in enumerate(fit.terms) if t.channels & channels]
     slopes = {name: _slope(evidence, fit, index, name) for name in _continuous(term)}
     widths = {i: fit.terms[i].width for i in members}
     order = [i for i in members if i != index]
@@ -92,7 +96,7 @@ def local(evidence: Evidence, fit: Fit, index: int) -> Local:
     runs: dict[int, Array] = defaultdict(lambda: np.zeros(p))
     whole: dict[str, Array] = defaultdict(lambda: np.zeros(p))
     for r, excitation in enumerate(evidence.excitations):
-        for channel in sorted(term.channels & data.target[r].keys()):
+        for channel in sorted(channels & data.target[r].keys()):
             left, columns = data.target[r][channel].copy(), []
             for i in [*order, index]:
                 x = _columns(fit.terms[i], r, channel, len(left))
@@ -112,6 +116,12 @@ def local(evidence: Evidence, fit: Fit, index: int) -> Local:
     prior = np.concatenate([*limited, np.zeros(len(slopes))])
     scores = tuple(np.array(list(cut.values())) for cut in (parts, runs, whole))
     return Local(tuple(slopes), own, information, prior, scores)
+
+
+def _joined(fit: Fit, channels: frozenset[Channel]) -> frozenset[Channel]:
+    """Return channels with all others that terms of a fit share with them, directly or by further terms."""
+    joined = channels.union(*(t.channels for t in fit.terms if t.channels & channels))
+    return channels if joined == channels else _joined(fit, joined)
 
 
 def _continuous(term: Term) -> list[str]:
