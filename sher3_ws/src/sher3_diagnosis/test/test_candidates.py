@@ -69,13 +69,22 @@ def test_a_number_costs_its_price():
     assert price(term) == PRICE
 
 
-def test_an_effect_beside_the_same_causes_is_searched_once(monkeypatch):
+class Counted(Shaped):
+    """Counts how often its shapes are asked for."""
+
+    asked = 0
+
+    def shapes(self, views, site):
+        type(self).asked += 1
+        return super().shapes(views, site)
+
+
+def test_an_effect_beside_the_same_causes_is_searched_once():
     """Beside other causes it is searched again."""
-    candidates = Candidates(evidence_of(case(5.0)), [DIRECTION, OFFSET])
-    searched, search = [], Candidates._searched
-    monkeypatch.setattr(Candidates, "_searched", lambda *given: searched.append(given) or search(*given))
+    effect = Counted("counted", "friction", "direction")
+    candidates = Candidates(evidence_of(case(5.0)), [effect, OFFSET])
     offset = candidates.term(OFFSET, "axis", {})
-    alone = candidates.best(DIRECTION, "axis")
-    beside, times = candidates.best(DIRECTION, "axis", [offset]), len(searched)
-    assert candidates.best(DIRECTION, "axis") is alone and candidates.best(DIRECTION, "axis", (offset,)) is beside
-    assert len(beside.terms) == 2 and len(searched) == times
+    alone, beside = candidates.best(effect, "axis"), candidates.best(effect, "axis", [offset])
+    times = effect.asked
+    assert candidates.best(effect, "axis") is alone and candidates.best(effect, "axis", (offset,)) is beside
+    assert len(beside.terms) == 2 and effect.asked == times == 2
