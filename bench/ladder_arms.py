@@ -17,8 +17,9 @@ import mujoco
 import numpy as np
 import sher3.gap as gap
 from numpy.typing import NDArray
+from sher3_arms.truth.world import inverse
 from sher3_diagnosis.verdict import Verdict
-from true_arm import Motion, motion_of, needed, powerless_on
+from true_arm import Motion, motion_of, powerless_on
 
 sys.path.append(str(Path(__file__).parents[1] / "sher3_ws/src/sher3_chain/test"))
 sys.path.append(str(Path(__file__).parents[1] / "tests"))
@@ -108,7 +109,7 @@ def row_of_arm(seed: int) -> dict:
     motion = motion_of(nominal, qpos, force)
     called = [at(EFFECTS[c.kind], names[c.joint]) for c in causes]
     loaded = with_causes(xml, [Cause("payload", nominal.nv - 1, UNIT / LARGEST["payload"])])
-    carried = (needed(loaded, *motion[:3]) - needed(nominal, *motion[:3])) / UNIT
+    carried = (inverse(loaded, *motion[:3]) - inverse(nominal, *motion[:3])) / UNIT
     places = [(c.kind, c.joint) for c in causes]
     return {
         "seconds": seconds,

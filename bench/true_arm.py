@@ -12,6 +12,7 @@ from typing import NamedTuple
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
+from sher3_arms.truth.world import inverse
 from sher3_diagnosis.filter import low_pass
 from true_structure import ENDS, SPREAD, STILL, not_shown
 
@@ -36,18 +37,8 @@ def motion_of(nominal: mujoco.MjModel, qpos: Array, force: Array) -> Motion:
     q = low_pass(qpos, period, BAND)
     v = np.gradient(q, period, axis=0)
     a = np.gradient(v, period, axis=0)
-    left = low_pass(force * nominal.actuator_gear[:, 0] - needed(nominal, q, v, a), period, BAND)
+    left = low_pass(force * nominal.actuator_gear[:, 0] - inverse(nominal, q, v, a), period, BAND)
     return Motion(q, v, a, left, period)
-
-
-def needed(model: mujoco.MjModel, q: Array, v: Array, a: Array) -> Array:
-    """Return the forces (n, k) of MuJoCo's inverse dynamics."""
-    data, out = mujoco.MjData(model), np.empty_like(q)
-    for row in range(len(q)):
-        data.qpos[:], data.qvel[:], data.qacc[:] = q[row], v[row], a[row]
-        mujoco.mj_inverse(model, data)
-        out[row] = data.qfrc_inverse
-    return out
 
 
 def powerless_on(m: Motion, carried: Array, causes: Sequence[tuple[str, int]], named: Sequence[str]) -> set[str]:

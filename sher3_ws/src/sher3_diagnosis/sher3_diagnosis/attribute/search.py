@@ -60,13 +60,11 @@ def attribute(
     return found if steady is None else with_rivals(candidates, steady)
 
 
-def _gain(before: Fit, after: Fit, left: dict[Channel, float]) -> float:
+def _gain(evidence: Evidence, before: Fit, after: Fit, left: dict[Channel, float]) -> float:
     """Largest share of a remaining gap that a fit explains."""
     best = 0.0
     for channel, excess in left.items():
-        was = sum(v for (_, c), v in before.loss.items() if c == channel)
-        now = sum(v for (_, c), v in after.loss.items() if c == channel)
-        best = max(best, (was - now) / excess)
+        best = max(best, (evidence.loss(channel, before) - evidence.loss(channel, after)) / excess)
     return best
 
 
@@ -77,10 +75,10 @@ def _step(
     if not found:
         return None
     best = found[0]
-    gain = _gain(current, best, left)
+    gain = _gain(candidates.evidence, current, best, left)
     if gain < COMPLETE and len(chosen) + 2 <= most:
         pair = _pair(candidates, current, chosen, found[:RANKED], left)
-        if pair is not None and _gain(current, pair, left) > max(gain + PAIR_GAIN, PAIR_WORTH):
+        if pair is not None and _gain(candidates.evidence, current, pair, left) > max(gain + PAIR_GAIN, PAIR_WORTH):
             return pair
     if gain < WORTH:
         return None

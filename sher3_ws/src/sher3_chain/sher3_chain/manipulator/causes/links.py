@@ -99,10 +99,8 @@ def level(evidence: Evidence, found: Fit) -> dict[Channel, float]:
     """Return the mean square that a fit leaves of every force balance, in floors."""
     out: dict[Channel, float] = {}
     for channel in map(channel_of, evidence.places["axis"]):
-        loss = sum(x for (_, at), x in found.loss.items() if at == channel)
-        number = sum(n for (_, at), n in evidence.data.samples.items() if at == channel)
-        if number:
-            out[channel] = loss / number
+        if number := evidence.samples(channel):
+            out[channel] = evidence.loss(channel, found) / number
     return out
 
 
