@@ -1,4 +1,4 @@
-"""The form of the pages: lines that fit a screen, blocks that say what they hold, links that lead somewhere."""
+"""The form of the pages: lines that fit a screen, blocks that say what they hold."""
 
 from __future__ import annotations
 
@@ -6,12 +6,11 @@ import re
 from pathlib import Path
 
 import pytest
-from documentation.pages import FENCE, MADE, blocks, pages
+from documentation.pages import blocks, pages
 from sources import ROOT
 
 LONGEST, LONGEST_PAGE = 120, 2000
 LANGUAGES = {"sh", "python", "yaml", "toml", "text", "{toctree}"}
-LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
 
 
 @pytest.mark.parametrize("page", pages())
@@ -36,18 +35,6 @@ def test_blocks_name_their_language(page):
 def test_fences_open(page):
     """With a backtick behind its own, a fence is text, and the next one turns the rest of the page into code."""
     assert not re.findall(r"^```[^`\n]+`.*$", (ROOT / page).read_text(), re.M)
-
-
-@pytest.mark.parametrize("page", pages())
-def test_links_lead_to_files(page):
-    """Relative to the page; those to pages that are made from the sources are checked on the built site."""
-    text = FENCE.sub("", (ROOT / page).read_text())
-    for target in LINK.findall(text):
-        if target.startswith(("http:", "https:", "#", "mailto:")):
-            continue
-        path = (ROOT / page).parent / target.partition("#")[0]
-        made = str(Path(ROOT, page).parent.joinpath(target).resolve().relative_to(ROOT)).startswith(MADE)
-        assert made or path.exists(), f"{page}: {target}"
 
 
 EVERY = [*pages(), *(str(path.relative_to(ROOT)) for path in ROOT.glob("docs/reference/generated/**/*.md"))]

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict, replace
 from pathlib import Path
 
 from sher3_common import Sher3Error
+from sher3_common.progress import Say, silent
 
 from sher3_arms.answer.diagnosis import answer
 from sher3_arms.answer.identification import identified, tools
@@ -26,7 +27,7 @@ def run_arms(
     robots: Sequence[str],
     folder: Path,
     seconds: float = SECONDS,
-    say: Callable[[str], None] = lambda _: None,
+    say: Say = silent,
     beside: bool = False,
     kinds: Sequence[str] = ORDER,
 ) -> list[Scored]:

@@ -9,6 +9,7 @@ from typing import Any
 
 import yaml
 from sher3_common import make_folder, read_yaml
+from sher3_common.progress import Say, silent
 from sher3_description import Robot, load_robot
 
 from sher3_bags.errors import CaseError
@@ -37,8 +38,14 @@ class Case:
         return groups
 
 
-def read_case(path: str | Path, topics: Iterable[str] | None = None, *, check: bool = True) -> Case:
-    """Read a case folder; `topics` and `check` as for `read_run`.
+def read_case(path: str | Path, topics: Iterable[str] | None = None, *, check: bool = True, say: Say = silent) -> Case:
+    """Read a case folder.
+
+    Args:
+        path: the folder.
+        topics: as for `read_run`.
+        check: as for `read_run`.
+        say: takes a line of progress, before the first bag is read.
 
     Raises:
         CaseError: `case.yaml` is missing or wrong, or contradicts the runs.
@@ -62,6 +69,7 @@ def read_case(path: str | Path, topics: Iterable[str] | None = None, *, check: b
         raise CaseError("runs must be a list", path=file, value=count, limit=f"1 to {MAX_RUNS} runs")
     wanted = None if topics is None else tuple(topics)
     robot = load_robot(_inside(folder, file, document.get("robot")))
+    say("reading the bags")
     return Case([_read_entry(folder, file, entry, wanted, check) for entry in entries], robot, folder)
 
 

@@ -15,6 +15,7 @@ from typing import Any
 import yaml
 from joblib import delayed
 from joblib.externals.loky import ProcessPoolExecutor
+from sher3_common.progress import Say, silent
 
 from sher3_challenge.answers.diagnosis import Answers, ask
 from sher3_challenge.cases.builder import Request, build_case
@@ -43,7 +44,7 @@ def requests(
     without: str | None = None,
     gap: tuple[float, float] = TARGETS,
     plants: Sequence[str] = (),
-    say: Callable[[str], None] = lambda _: None,
+    say: Say = silent,
 ) -> list[Request]:
     """Return the cases of a seed range.
 
@@ -89,7 +90,7 @@ def run_challenge(
     *,
     jobs: int = 1,
     baselines: bool = True,
-    say: Callable[[str], None] = lambda _: None,
+    say: Say = silent,
 ) -> Outcome:
     """Build, seal, diagnose and score a challenge in the new folder `out`.
 

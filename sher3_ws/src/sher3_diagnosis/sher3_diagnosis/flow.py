@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import importlib.metadata
 import time
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import TypeVar
 
 from sher3_common import Sher3Error
+from sher3_common.progress import Say, silent
 
 from sher3_diagnosis.attribute.candidates import Candidates
 from sher3_diagnosis.channel import Array, Channel
@@ -31,7 +32,6 @@ from sher3_diagnosis.quantify.polish import polished
 
 R = TypeVar("R")
 E = TypeVar("E", bound=Evidence)
-Say = Callable[[str], None]
 
 
 class UnknownEffect(Sher3Error):
@@ -42,7 +42,7 @@ def diagnose(
     machine: Machine[R, E],
     runs: Sequence[R],
     without: Collection[str] = (),
-    say: Say = lambda _: None,
+    say: Say = silent,
     started: float | None = None,
     costs: Costs = DEFAULT,
 ) -> Diagnosis[E]:

@@ -11,11 +11,13 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
+from sher3_common.progress import Say
+
 from sher3_diagnosis.attribute.candidates import Candidates
 from sher3_diagnosis.attribute.plan import SearchPlan
 from sher3_diagnosis.attribute.planned import planned
 from sher3_diagnosis.attribute.rivals import Attribution
-from sher3_diagnosis.attribute.search import Left, Say
+from sher3_diagnosis.attribute.search import Left
 from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.evidence import Evidence

@@ -9,10 +9,11 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from sher3_common.progress import Say, silent
 from sher3_description import Robot
 from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.finding import ExactFinding, Finding
-from sher3_diagnosis.flow import Say, diagnose
+from sher3_diagnosis.flow import diagnose
 from sher3_diagnosis.judge.costs import DEFAULT, Costs
 from sher3_diagnosis.machine import Diagnosis, Machine
 from sher3_diagnosis.verdict import Cause, Interval
@@ -81,7 +82,7 @@ def diagnose_runs(
     runs: Sequence[RunSignals],
     robot: Robot,
     without: Collection[str] = (),
-    say: Say = lambda _: None,
+    say: Say = silent,
     started: float | None = None,
     costs: Costs = DEFAULT,
 ) -> Diagnosis[SherEvidence]:
@@ -93,7 +94,7 @@ def diagnose_case(
     case: Path | str,
     robot: Path | None = None,
     without: Collection[str] = (),
-    say: Say = lambda _: None,
+    say: Say = silent,
     costs: Costs = DEFAULT,
 ) -> Diagnosis[SherEvidence]:
     """Diagnose a case folder.
@@ -110,6 +111,5 @@ def diagnose_case(
         UnknownEffect: an id in `without` is no effect.
     """
     started = time.perf_counter()
-    say("reading the bags")
-    runs, model = load_case(Path(case), robot)
+    runs, model = load_case(Path(case), robot, say)
     return diagnose_runs(runs, model, without, say, started, costs)

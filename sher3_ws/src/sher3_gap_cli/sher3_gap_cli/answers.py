@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from sher3_common.errors import Sher3Error
+from sher3_common.progress import Say, silent
 from sher3_diagnosis.judge.costs import DEFAULT, Costs
 from sher3_diagnosis.verdict import Verdict
 
@@ -18,7 +19,6 @@ if TYPE_CHECKING:
     from sher3_diagnosis import Diagnosis
 
 VERDICT_FILE, REPORT_FILE = "verdict.json", "report.html"
-Say = Callable[[str], None]
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class Answer:
     error: Sher3Error | None = None
 
 
-def answer(task: Task, say: Say = lambda _: None) -> Answer:
+def answer(task: Task, say: Say = silent) -> Answer:
     """Diagnose one case; input errors come back as the answer, mistakes of ours are raised."""
     from sher3_diagnosis.report.summary import five_lines
 

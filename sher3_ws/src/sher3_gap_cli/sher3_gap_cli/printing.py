@@ -8,6 +8,7 @@ from pathlib import Path
 
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+from sher3_common.progress import Say
 from sher3_diagnosis.bet import bets_text
 from sher3_diagnosis.verdict import Verdict
 
@@ -20,7 +21,7 @@ Done = Callable[[Answer, str], None]
 
 
 @contextmanager
-def bar(total: int) -> Iterator[tuple[Callable[[str], None], Callable[[str, str], None]]]:
+def bar(total: int) -> Iterator[tuple[Say, Callable[[str, str], None]]]:
     """Show progress on stderr; yields `say(step)`, and `advance(text, said)`: one more is done.
 
     `text` goes to stdout, `said` to stderr; either may be empty.
@@ -54,7 +55,7 @@ def bar(total: int) -> Iterator[tuple[Callable[[str], None], Callable[[str, str]
 
 
 @contextmanager
-def progress(total: int) -> Iterator[tuple[Callable[[str], None], Done]]:
+def progress(total: int) -> Iterator[tuple[Say, Done]]:
     """Show progress on stderr; yields `say(step)` and `done(answer, text)`, which prints the text on stdout."""
     with bar(total) as (say, advance):
 
@@ -93,7 +94,7 @@ def with_bets(lines: Sequence[str], text: str) -> str:
 
 
 @contextmanager
-def steps() -> Iterator[Callable[[str], None]]:
+def steps() -> Iterator[Say]:
     """Show the steps of one task on stderr."""
     console = Console(stderr=True)
     with console.status("working") as status:

@@ -7,6 +7,8 @@ from contextlib import closing
 from dataclasses import replace
 from typing import Any, Protocol, TypeVar
 
+from sher3_common.progress import Say
+
 from sher3_gap_cli.options import RequestError
 
 
@@ -19,7 +21,6 @@ class Task(Protocol):
 
 Found = TypeVar("Found")
 """What a worker hands back: a frozen dataclass with the task in `task`."""
-Say = Callable[[str], None]
 
 
 def run_here(work: Callable[..., Found], tasks: Sequence[Task], jobs: int, say: Say) -> Iterator[Found]:

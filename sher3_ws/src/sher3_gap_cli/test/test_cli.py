@@ -108,6 +108,7 @@ def test_bad_requests_end_with_one_sentence_and_code_2(arguments, words, tmp_pat
     result = CliRunner().invoke(app, arguments)
     assert result.exit_code == 2
     assert words in result.stderr and "Traceback" not in result.output
+    assert "reading" not in result.stderr
 
 
 @pytest.mark.parametrize(

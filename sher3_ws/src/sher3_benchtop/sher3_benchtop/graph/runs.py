@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 from multiprocessing import get_context
@@ -11,6 +11,7 @@ from pathlib import Path
 from sher3_bags.reading import read_run
 from sher3_bags.recording.live import recorded
 from sher3_bringup.stepped_robot import SteppedRobot
+from sher3_common.progress import Say, silent
 from sher3_control.settings import ControlSettings
 from sher3_description import Robot
 from sher3_runtime import Graph
@@ -78,7 +79,7 @@ def run_tests(
     effects: Sequence[PlantEffect],
     folder: Path,
     control: ControlSettings | None = None,
-    say: Callable[[str], None] = lambda _: None,
+    say: Say = silent,
     again: bool = False,
     jobs: int = 1,
 ) -> dict[str, dict[str, Shots]]:

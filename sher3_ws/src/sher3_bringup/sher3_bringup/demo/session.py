@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from sher3_common import Sher3Error, read_json
+from sher3_common.progress import Say, silent
 from sher3_control.motion.speed_cap import Regime
 from sher3_runtime.ports import STATISTICS_VARIABLE
 
@@ -32,10 +33,10 @@ def run_demo(
     effects: Path | None,
     script_path: Path | None,
     folder: Path,
-    say: Callable[[str], None] = print,
+    say: Say = print,
     patience: Patience = "patient",
     domain: int = DOMAIN,
-    status: Callable[[str], None] = lambda _: None,
+    status: Say = silent,
 ) -> dict[str, Any]:
     """Run the demo and return its figures as plain data.
 
@@ -79,7 +80,7 @@ def _surgeon(script: Script) -> Any:
 class _Progress:
     """Says each step of the script as it begins."""
 
-    def __init__(self, script: Script, say: Callable[[str], None]) -> None:
+    def __init__(self, script: Script, say: Say) -> None:
         self._script, self._say = script, say
         self._step = -1
 
@@ -91,7 +92,7 @@ class _Progress:
 
 
 def _evaluate(
-    settings: RunSettings, script: Script, bag: Path, nodes: dict[str, dict[str, Any]], say: Callable[[str], None]
+    settings: RunSettings, script: Script, bag: Path, nodes: dict[str, dict[str, Any]], say: Say
 ) -> dict[str, Any]:
     from sher3_bags.figures.analysis import analyse
     from sher3_bags.figures.picture import draw

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import partial
 
+from sher3_common.progress import Say, silent
 from sher3_runtime import environment
 from sher3_runtime.composed.ring import Ring, share
 from sher3_runtime.ports import PERIOD_VARIABLE
@@ -30,10 +31,10 @@ BESIDE_BY = 10
 
 def run_graph(
     settings: RunSettings,
-    say: Callable[[str], None] = print,
+    say: Say = print,
     extra: Mapping[str, Callable[[], object]] | None = None,
     progress: Callable[[float], None] | None = None,
-    status: Callable[[str], None] = lambda _: None,
+    status: Say = silent,
 ) -> str:
     """Run the graph until Ctrl-C, SIGTERM or the end of its duration; say each change of state and each refusal.
 

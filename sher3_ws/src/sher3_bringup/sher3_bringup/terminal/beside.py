@@ -5,9 +5,10 @@ from __future__ import annotations
 import json
 import socket
 import time
-from collections.abc import Callable
 from contextlib import suppress
 from typing import Any
+
+from sher3_common.progress import Say
 
 from sher3_bringup.terminal.told import Told
 
@@ -24,7 +25,7 @@ class Beside:
         told: what was heard so far.
     """
 
-    def __init__(self, say: Callable[[str], None], status: Callable[[str], None]) -> None:
+    def __init__(self, say: Say, status: Say) -> None:
         """Take what prints a line and what writes the status line."""
         self.told = Told()
         self._say, self._status = say, status

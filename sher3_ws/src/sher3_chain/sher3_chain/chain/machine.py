@@ -7,9 +7,10 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TypeVar
 
+from sher3_common.progress import Say
 from sher3_diagnosis.attribute.candidates import Candidates
 from sher3_diagnosis.attribute.rivals import Attribution
-from sher3_diagnosis.attribute.search import Left, Say
+from sher3_diagnosis.attribute.search import Left
 from sher3_diagnosis.fit.fitting import Fit
 from sher3_diagnosis.judge.left_over import down_to_floor
 from sher3_diagnosis.machine import Machine

@@ -7,10 +7,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from sher3_common.progress import Say
 from sher3_diagnosis.attribute.candidates import Candidates
 from sher3_diagnosis.attribute.plan import SearchPlan
 from sher3_diagnosis.attribute.rivals import Attribution
-from sher3_diagnosis.attribute.search import Left, Say
+from sher3_diagnosis.attribute.search import Left
 from sher3_diagnosis.channel import Channel
 from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.finding import ExactFinding, Finding

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 
+from sher3_common.progress import silent
 from sher3_diagnosis.finding import ExactFinding, Finding
 from sher3_diagnosis.flow import find
 from sher3_diagnosis.judge.causes import places_of
@@ -42,7 +43,7 @@ def laws_of_servos(
         return []
     axes = Axes(AxesDescription(kind="axes", name=described.name, time=described.time, axes=tuple(known)))
     each = ((j, law_of_axis([with_command(run, j.name, gains[j.name]) for run in runs], j)) for j in known)
-    found = (find(axes, law, without, lambda _: None) for _, law in each if law is not None)
+    found = (find(axes, law, without, silent) for _, law in each if law is not None)
     return [exact_of(finding) for finding in found if finding.significant]
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from sher3_common import FileError, read_text, read_yaml
+from sher3_common.progress import silent
 from sher3_description import Robot
 from sher3_diagnosis.finding import ExactFinding, Finding, Item
 from sher3_diagnosis.flow import find
@@ -159,7 +160,7 @@ def observed_on(
     parts = machine.gather(runs)
     out = []
     for without in libraries:
-        findings = [find(machine, part, without, lambda _: None).with_all for part in parts]
+        findings = [find(machine, part, without, silent).with_all for part in parts]
         exact = machine.exact(runs, parts, without)
         out.append(observed_findings(machine, findings, exact, plant, name, truth, without))
     return out

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import importlib
 import pkgutil
-from collections.abc import Callable
+
+from sher3_common.progress import Say
 
 import sher3_challenge.plants as room
 from sher3_challenge.errors import ChallengeError
@@ -47,7 +48,7 @@ def truth_plant(name: str) -> TruthPlant:
     return plant
 
 
-def truth_plants(say: Callable[[str], None]) -> list[TruthPlant]:
+def truth_plants(say: Say) -> list[TruthPlant]:
     """Return every truth plant whose libraries are installed; `say` is told what is left out and why."""
     found = []
     for name in plant_names():

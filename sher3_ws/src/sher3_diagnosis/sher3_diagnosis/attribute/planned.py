@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from sher3_common.progress import Say
+
 from sher3_diagnosis.attribute.candidates import Candidates, price
 from sher3_diagnosis.attribute.exchange import exchanged
 from sher3_diagnosis.attribute.plan import Opening, SearchPlan
 from sher3_diagnosis.attribute.richer import beside_richer, pays
 from sher3_diagnosis.attribute.rivals import Attribution, with_rivals
-from sher3_diagnosis.attribute.search import Left, Say, attribute
+from sher3_diagnosis.attribute.search import Left, attribute
 from sher3_diagnosis.attribute.stepwise import layered
 from sher3_diagnosis.attribute.together import pruned, together
 from sher3_diagnosis.evidence import Evidence

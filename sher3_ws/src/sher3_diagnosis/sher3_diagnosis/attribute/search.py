@@ -5,8 +5,9 @@ All comparisons are of held-out loss (every run scored with coefficients fitted 
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from itertools import combinations
+
+from sher3_common.progress import Say
 
 from sher3_diagnosis.attribute.candidates import Candidates
 from sher3_diagnosis.attribute.rivals import RANKED, Attribution, with_rivals
@@ -24,8 +25,6 @@ from sher3_diagnosis.thresholds import (
     PAIR_WORTH,
     WORTH,
 )
-
-Say = Callable[[str], None]
 
 
 def attribute(

@@ -8,9 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from sher3_common.progress import Say
+
 from sher3_diagnosis.attribute.candidates import Candidates, complexity
 from sher3_diagnosis.attribute.rivals import Attribution, without_term
-from sher3_diagnosis.attribute.search import Left, Say
+from sher3_diagnosis.attribute.search import Left
 from sher3_diagnosis.attribute.ties import first_of_least
 from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.evidence import Evidence

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import partial
 
 import numpy as np
+from sher3_common.progress import Say, silent
 
 from sher3_diagnosis.channel import AT_TIP, Array, Channel
 from sher3_diagnosis.discover.ceiling import predicted
@@ -25,12 +26,11 @@ from sher3_diagnosis.quantify.jackknife import standard_error
 from sher3_diagnosis.thresholds import JACKKNIFE, LEAST_COMPONENT, MIN_RUNS, SMALL_REMAINDER
 from sher3_diagnosis.verdict import Interval, Parameter
 
-Say = Callable[[str], None]
 Formula = list[tuple[int, Feature, float]]
 """Component, feature and coefficient of every term."""
 
 
-def discover(diagnosis: Findings, channel: Channel | None = None, say: Say = lambda _: None) -> Discovery:
+def discover(diagnosis: Findings, channel: Channel | None = None, say: Say = silent) -> Discovery:
     """Find a formula for the gap that no effect of the library explains.
 
     Args:
@@ -100,7 +100,7 @@ def _shown_at(diagnosis: Findings, place: Channel) -> Channel:
     return same[0] if place not in every and len(same) == 1 else place
 
 
-def discover_at(evidence: Evidence, channel: Channel, say: Say = lambda _: None) -> Discovery:
+def discover_at(evidence: Evidence, channel: Channel, say: Say = silent) -> Discovery:
     """Find a formula for the gap of a channel.
 
     Args:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 from sher3_bags import Case, Run, read_case
+from sher3_common.progress import Say, silent
 from sher3_description import Robot, load_robot
 from sher3_description.contract import GRAVITY
 from sher3_diagnosis.channel import Array
@@ -24,13 +25,13 @@ LOADED = 0.15
 """Force beside the tool's weight [N] from which a tip is not free."""
 
 
-def load_case(path: Path, robot: Path | None = None) -> tuple[list[RunSignals], Robot]:
-    """Read a contract case.
+def load_case(path: Path, robot: Path | None = None, say: Say = silent) -> tuple[list[RunSignals], Robot]:
+    """Read a contract case; `say` takes a line of progress.
 
     Raises:
         CaseError: no run carries the motor encoders, stamps are not a tick grid, values are not finite, runs disagree.
     """
-    case: Case = read_case(path, check=False)
+    case: Case = read_case(path, check=False, say=say)
     model = load_robot(robot) if robot is not None else case.robot
     check_parameters(case)
     runs = [signals_of(run, model, f"run {i}") for i, run in enumerate(case.runs)]

@@ -19,6 +19,7 @@ from sher3_bags.errors import CaseError
 from sher3_bags.recording.recorder_node import RecorderNode
 from sher3_bags.run import CONTRACT_TOPICS
 from sher3_common import FileError, parse_json
+from sher3_common.progress import Say, silent
 from sher3_common.samples import JointSample, TextSample, WrenchSample
 from sher3_description import Robot
 from sher3_runtime import environment
@@ -87,7 +88,7 @@ def excite_graph(
     robot: Robot,
     excitations: Iterable[tuple[Excitation, int]],
     output: Path,
-    say: Callable[[str], None] = lambda _: None,
+    say: Say = silent,
     domain: int = 0,
 ) -> Path:
     """Play and record each (excitation, repeat) on the running graph and write the runs as a new case.
@@ -137,7 +138,7 @@ class _Turns:
     robot: Robot
     scratch: Path
     stopped: Callable[[], bool]
-    say: Callable[[str], None]
+    say: Say
     count: int = 0
 
     def play(self, excitation: Excitation, repeat: int) -> Run:

@@ -8,11 +8,12 @@ is what will decide. The best few are judged again over draws of A's parameters,
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from sher3_common import Sher3Error
+from sher3_common.progress import Say, silent
 from sher3_description import ACTUATORS, Robot
 from sher3_diagnosis.verdict import Cause, Parameter, Verdict
 from sher3_effects import library, to_effects
@@ -91,7 +92,7 @@ def rivals_of(verdict: Verdict) -> tuple[Cause, tuple[str, ...]]:
 def design_experiment(
     verdict: Verdict,
     robot: Robot,
-    say: Callable[[str], None] = lambda _: None,
+    say: Say = silent,
     choices: Choices = CHOICES,
     runs: Sequence[RunSignals] = (),
 ) -> Experiment:
@@ -140,7 +141,7 @@ class _Search:
 
     judge: _Judge
     robot: Robot
-    say: Callable[[str], None]
+    say: Say
 
     def __post_init__(self) -> None:
         self.tried: list[tuple[Separation, Excitation, About]] = []

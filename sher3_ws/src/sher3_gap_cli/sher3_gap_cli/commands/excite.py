@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from sher3_common.commands.options import Domain, InNamespace, Json
 from sher3_common.namespace import NAMESPACE
+from sher3_common.progress import Say
 
 from sher3_gap_cli.options import NominalFile, reported, shown
 
@@ -97,9 +97,7 @@ def _simulate(robot: Robot, wanted: list[tuple[Excitation, int]], out: Path, eff
     write_case(out, rehearse(robot, wanted, given, seed=seed), robot)
 
 
-def _on_graph(
-    robot: Robot, wanted: list[tuple[Excitation, int]], out: Path, say: Callable[[str], None], domain: int
-) -> None:
+def _on_graph(robot: Robot, wanted: list[tuple[Excitation, int]], out: Path, say: Say, domain: int) -> None:
     from sher3_gap.excitation.excite_node import excite_graph
 
     excite_graph(robot, wanted, out, say, domain)

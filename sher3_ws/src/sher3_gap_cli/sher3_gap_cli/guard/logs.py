@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from sher3_common.errors import Sher3Error
+from sher3_common.progress import Say, silent
 from sher3_public.guard.baseline import Entry
 from sher3_public.guard.worse import Worse
 
@@ -40,7 +40,7 @@ class Told:
     worse: tuple[Worse, ...] = ()
 
 
-def told(log: Log, say: Callable[[str], None] = lambda _: None) -> Told:
+def told(log: Log, say: Say = silent) -> Told:
     """Diagnose one log; input errors come back as the answer, mistakes of ours are raised."""
     from sher3_public import diagnose
     from sher3_public.guard.baseline import entry_of

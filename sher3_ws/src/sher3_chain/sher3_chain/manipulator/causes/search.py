@@ -11,11 +11,11 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
+from sher3_common.progress import Say
 from sher3_diagnosis.attribute.candidates import Candidates
 from sher3_diagnosis.attribute.plan import SearchPlan
 from sher3_diagnosis.attribute.planned import planned
 from sher3_diagnosis.attribute.rivals import Attribution
-from sher3_diagnosis.attribute.search import Say
 from sher3_diagnosis.channel import Array, Channel
 from sher3_diagnosis.effect import Effect
 from sher3_diagnosis.evidence import Evidence
