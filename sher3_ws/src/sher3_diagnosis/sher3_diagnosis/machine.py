@@ -24,7 +24,7 @@ from sher3_diagnosis.evidence import Evidence
 from sher3_diagnosis.finding import ExactFinding, Finding, Findings
 from sher3_diagnosis.fit.tolerance import within
 from sher3_diagnosis.reporter import Reporter
-from sher3_diagnosis.verdict import Cause, Interval, Within
+from sher3_diagnosis.verdict import Cause, Identified, Interval, Within
 
 R = TypeVar("R")
 """A run as the machine reads it."""
@@ -102,6 +102,10 @@ class Machine(ABC, Generic[R, E]):
     def remarks(self, finding: Finding[E]) -> list[str]:
         """Return notes on one part; default none."""
         return []
+
+    def identified(self, evidence: E) -> Sequence[Identified]:
+        """Return the inertias of a part that were found from the data, and are no causes; default none."""
+        return ()
 
     def unjudged(self, finding: Finding[E]) -> dict[Channel, str]:
         """Return why channels of a part without a gap cannot be judged: their floor hides what is looked for.

@@ -67,6 +67,13 @@ class Cause(_Model):
     probability: float | None = Field(default=None, ge=0.0, le=1.0)
 
 
+class Identified(_Model):
+    """Constants of a link or joint beyond its model that were found from the data, by name, and are no causes."""
+
+    actuator: str
+    constants: dict[str, Parameter]
+
+
 class Closure(_Model):
     """Closure with all causes added: at the first `where`, and at the tip when there was a tracker."""
 
@@ -182,6 +189,7 @@ class Verdict(_Model):
     unexplained: Unexplained | None = None
     next_experiment: NextExperiment | None = None
     within_tolerance: list[Within] = []
+    identified: list[Identified] = []
     probabilities: dict[str, float] = {}
     costs: dict[str, float] = {}
     seconds: float = 0.0

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from sher3_diagnosis.verdict import Cause, Parameter
+from sher3_diagnosis.verdict import Cause, Identified, Parameter
 from sher3_effects import pages
 from sher3_effects.page import CONSTANTS
 
@@ -13,6 +13,8 @@ KINDS = ("axis", "servo", "joint", "arm", "table", "law", "robot")
 """Kinds of machine whose pages say which constant a parameter sets."""
 NO_FORCE = ("A", "V", "%", "count", "eu")
 """How the units begin of forces that nobody made newtons."""
+IDENTIFIED = "identified"
+"""What stands for the effect of a constant that is no cause."""
 FORCES = ("coulomb", "static", "offset")
 """Constants that a servo without a recorded force gives in units of its stiffness, m or rad."""
 
@@ -26,7 +28,7 @@ class Change:
         constant: of `sher3_effects.page.CONSTANTS`.
         value, low, high: what it is, and its interval, SI units; None where the verdict has no interval.
         unit: of the value.
-        effect: the cause it comes from.
+        effect: the cause it comes from, or `IDENTIFIED`.
     """
 
     joint: str
@@ -88,11 +90,17 @@ def changes_of(causes: Sequence[Cause], joints: Mapping[str, str] | None = None)
             continue
         joint = (joints or {}).get(cause.actuator, cause.actuator)
         known = constants_of(cause)
-        found = [_change(cause, joint, known[name], p) for name, p in cause.parameters.items() if name in known]
+        found = [_change(cause.effect, joint, known[name], p) for name, p in cause.parameters.items() if name in known]
         changes += found
         if not found:
             untold.append(Untold(cause.effect, joint, "", None, "no constant of a joint: no target has a field for it"))
     return changes, untold
+
+
+def identified_changes(found: Sequence[Identified], joints: Mapping[str, str] | None = None) -> list[Change]:
+    """Return the constants that were identified and are no causes; `joints` as in `changes_of`."""
+    named = [((joints or {}).get(x.actuator, x.actuator), x) for x in found]
+    return [_change(IDENTIFIED, joint, name, p) for joint, x in named for name, p in x.constants.items()]
 
 
 def _whole(cause: Cause, joints: Mapping[str, str] | None, reason: str) -> Untold:
@@ -105,6 +113,6 @@ def constants_of(cause: Cause) -> Mapping[str, str]:
     return max(forms, key=lambda form: len(form.keys() & cause.parameters.keys()), default={})
 
 
-def _change(cause: Cause, joint: str, constant: str, p: Parameter) -> Change:
+def _change(effect: str, joint: str, constant: str, p: Parameter) -> Change:
     low, high = (None if x is None else float(x) for x in (p.low, p.high))
-    return Change(joint, constant, float(p.value), low, high, p.unit, cause.effect)
+    return Change(joint, constant, float(p.value), low, high, p.unit, effect)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from sher3_common import dump_yaml
-from sher3_diagnosis.verdict import Cause, Parameter, Verdict
+from sher3_diagnosis.verdict import Cause, Identified, Parameter, Verdict
 
 from sher3_export.changes import constants_of
 
@@ -29,6 +29,7 @@ class Ranges:
         shares: probability of each world; empty: each is as probable as the others.
         remainder: joint -> force that the causes leave, standard deviation over a quarter of a second, N or N m; empty
             where it was not measured.
+        identified: inertias, the same in all worlds.
         width: share of the 90 % intervals that the recorded motion needs; 1 where it was not measured.
         motors: motor whose causes these are, by the joint of its name -> joint -> its travel per travel of the joint.
     """
@@ -36,6 +37,7 @@ class Ranges:
     worlds: Sequence[Sequence[Cause]]
     shares: Sequence[float] = ()
     remainder: Mapping[str, float] = field(default_factory=dict)
+    identified: Sequence[Identified] = ()
     width: float = 1.0
     motors: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
 

@@ -8,9 +8,9 @@ from pathlib import Path
 from xml.etree.ElementTree import Element
 
 from sher3_chain.manipulator.description import BEHIND
-from sher3_diagnosis.verdict import Cause, Verdict
+from sher3_diagnosis.verdict import Cause, Identified, Verdict
 
-from sher3_export.changes import Change, Untold, changes_of
+from sher3_export.changes import Change, Untold, changes_of, identified_changes
 from sher3_export.errors import ExportError
 from sher3_export.targets.configuration import Configuration
 from sher3_export.targets.isaac import Isaac, IsaacLab
@@ -54,7 +54,7 @@ def export(
     joints: Mapping[str, str] | None = None,
     motors: Motors | None = None,
 ) -> Exported:
-    """Write the causes of a verdict into a model.
+    """Write the causes of a verdict, and the inertias it identified, into a model.
 
     Args:
         verdict: of any machine.
@@ -68,7 +68,7 @@ def export(
             the case has a `coupling` and `motors` are not stated.
     """
     motors = travels_of(verdict, motors)
-    done, text = put(verdict.causes, target, model, joints, motors)
+    done, text = put(verdict.causes, target, model, joints, motors, verdict.identified)
     return replace(done, text=text(remarks(verdict, done.applied, done.untold)))
 
 
@@ -86,8 +86,9 @@ def put(
     model: Path | Element | None,
     joints: Mapping[str, str] | None,
     motors: Motors | None = None,
+    identified: Sequence[Identified] = (),
 ) -> tuple[Exported, Callable[[Sequence[str]], str]]:
-    """Write causes into a model; return what was done, still without a text, and what makes the text of remarks.
+    """Write causes and identified inertias into a model; return what was done, and what makes the text of remarks.
 
     Raises:
         ExportError: as `export` does.
@@ -95,6 +96,7 @@ def put(
     if target not in TARGETS:
         raise ExportError("no such target", value=target, limit=", ".join(TARGETS), remedy="choose one of them")
     changes, untold = changes_of(causes, joints)
+    changes += identified_changes(identified, joints)
     writer = opened(TARGETS[target], model)
     applied: list[Change] = []
     for change in changes:

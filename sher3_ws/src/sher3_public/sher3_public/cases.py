@@ -63,9 +63,11 @@ def case_of_tables(model: object, tables: Sequence[Tables], rate: float | None, 
         tables = of_tables.in_si(tables, drafted(RECORD, tables[0], rate, []), stated)
     data = drafted(RECORD, tables[0], rate, guesses)
     source = None if model is None else source_of(model)
+    if source is None and stated.inertias != "nominal":
+        raise InputError("inertias are those of an arm's model", value="no model", remedy="give the arm's MJCF or URDF")
     if source is not None:
         drives = of_tables.drives_of(source.bodies, tables[0], data, stated)
-        data = of_arm(data, source.bodies, guesses, drives, stated.simulated)
+        data = {**of_arm(data, source.bodies, guesses, drives, stated.simulated), "inertias": stated.inertias}
     of_tables.put_right(data["axes" if source is None else "joints"], stated, guesses)
     return _case(data, tables, source, guesses, tags)
 

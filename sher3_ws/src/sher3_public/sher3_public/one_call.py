@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from sher3_machines.errors import MachineError
 
 from sher3_public.answer import Answer
-from sher3_public.arrays.stating import Gains, Stated
+from sher3_public.arrays.stating import Gains, Inertias, Stated
 from sher3_public.cases import Case, case_of_arrays, case_of_description, case_of_tables
 from sher3_public.errors import InputError
 from sher3_public.records import arrays_of, columns_of, is_several, is_table, tables_at
@@ -35,6 +35,7 @@ def diagnose(
     controls: Sequence[str] = (),
     servo: Gains | Mapping[str, Gains] | None = None,
     delay: float | Mapping[str, float] = 0.0,
+    inertias: Inertias = "nominal",
     rate: float | None = None,
     tags: Mapping[str, Sequence[object]] | Sequence[Mapping[str, object]] | None = None,
     without: Collection[str] = (),
@@ -62,6 +63,8 @@ def diagnose(
         servo: stiffness and damping of the servo that follows `control`, N m/rad and N m/(rad/s) (N/m and N/(m/s)), in
             place of the model's: one pair for all joints, or by name. It gives a URDF its drives.
         delay: s after its stamp at which a control acts, beyond the model's: one number, or by name of the joint.
+        inertias: of the links and rotors of an arm: `nominal`, those of the model are compared with the robot;
+            `identified`, they are found from efforts that were recorded, and stand in `corrected()`.
         rate: samples per second, Hz, of tables without stamps.
         tags: what differs between runs: tag -> value for each run, or a mapping for each run. The first run is the
             reference.
@@ -75,7 +78,7 @@ def diagnose(
         MachineError: the model or the record cannot be used; the sentence says why and what to do.
         UnknownEffect: an id in `without` is no effect.
     """
-    stated = Stated(tuple(joints), gain, resolution, simulated, units or {}, tuple(controls), servo, delay)
+    stated = Stated(tuple(joints), gain, resolution, simulated, units or {}, tuple(controls), servo, delay, inertias)
     case = _case(model, time, (control, position, effort, load), stated, rate, tags)
     try:
         return Answer.of(case, tuple(without))

@@ -18,10 +18,10 @@ from sher3_chain.chain.evidence import ChainEvidence, in_blocks
 from sher3_chain.constants import ZERO, constants
 from sher3_chain.joint.own_unit import RECORDED
 from sher3_chain.joint.record import AxesRun
-from sher3_chain.manipulator.description import PER_RUN, ManipulatorDescription
+from sher3_chain.manipulator.description import PER_RUN, Joint, ManipulatorDescription
 from sher3_chain.manipulator.encoders import links_of
 from sher3_chain.manipulator.identification.gains import backwards, share_of
-from sher3_chain.manipulator.identification.inertias import with_identified_inertias
+from sher3_chain.manipulator.identification.inertias import Inertias, identified_inertias
 from sher3_chain.manipulator.model import ArmModel
 from sher3_chain.manipulator.readings.floors import floors_of
 from sher3_chain.manipulator.readings.senses import against_model
@@ -47,6 +47,7 @@ class ArmMotionEvidence(ChainEvidence):
         turned: joints whose effort was recorded with the opposite sign, and was turned.
         scales: joint -> units of its recorded effort per newton metre in each record, where they differ by run.
         against: joints that were recorded in the other sense than the model has, and were turned.
+        inertias: what was identified of links and rotors beyond the model; None: they are taken as modelled.
         slips: joint -> times by which its effort is in another scale than its stated gain says; they are not judged.
     """
 
@@ -60,6 +61,7 @@ class ArmMotionEvidence(ChainEvidence):
     """Floors count the noise of all encoders at their worst."""
     scales: Mapping[str, Sequence[Share]] = field(default_factory=dict)
     against: Sequence[str] = ()
+    inertias: Inertias | None = None
 
 
 def channel_of(joint: str) -> Channel:
@@ -98,9 +100,8 @@ def gather_arm_motion(
     signals = [joint_signals(run, described, "repeats" if repeats else run.name) for run in read]
     links = [links_of(s, described.joints, model, coupling) for s in signals]
 
-    def seen_by(model: ArmModel, shares: Array) -> list[MotionView]:
-        both = zip(signals, links, strict=True)
-        return [MotionView(s, link, described.joints, model, coupling, shares) for s, link in both]
+    def seen_by(model: ArmModel, shares: Array, joints: Sequence[Joint] = described.joints) -> list[MotionView]:
+        return [MotionView(s, link, joints, model, coupling, shares) for s, link in zip(signals, links, strict=True)]
 
     plain = seen_by(model, np.ones(n))
     against = against_model(plain, described, model, judged)
@@ -120,12 +121,12 @@ def gather_arm_motion(
     if turned or own:
         signals = _put_right(signals, described, turned, scales)
         plain = seen_by(model, np.ones(n))
-    if described.inertias == "identified":
-        model = with_identified_inertias(plain, model, judged)
+    inertias = identified_inertias(plain, model, judged) if described.inertias == "identified" else None
     unknown = [j.name for j in described.joints if j.gain == "unknown" and j.name in judged]
     shares = {name: found[name].turned() for name in unknown}
     factors = np.array([shares[j.name].value if j.name in shares else 1.0 for j in described.joints])
-    views = seen_by(model, factors)
+    nominal = (model, factors) if inertias is None else (inertias.model(model), factors, inertias.at(described.joints))
+    views = seen_by(*nominal)
     residuals = [_residuals(view, judged) for view in views]
     if not any(residuals):
         raise not_judged(judged, signals, slips)
@@ -151,6 +152,7 @@ def gather_arm_motion(
         slips=slips,
         scales=scales,
         against=against,
+        inertias=inertias,
     )
 
 

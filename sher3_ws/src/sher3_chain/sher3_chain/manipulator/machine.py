@@ -18,7 +18,7 @@ from sher3_diagnosis.finding import ExactFinding, Finding
 from sher3_diagnosis.fit.fitting import Fit
 from sher3_diagnosis.localise.gaps import localise
 from sher3_diagnosis.machine import Policy
-from sher3_diagnosis.verdict import Cause
+from sher3_diagnosis.verdict import Cause, Identified
 from sher3_effects import computed, pages
 from sher3_machines.intake.notes import told_once
 
@@ -145,13 +145,18 @@ class Manipulator(Chain[ArmMotionEvidence]):
         if self.described.inertias == "identified":
             notes.append(
                 "inertias identified from the data: drive gain, weight and payload are in them, cannot be told apart "
-                "and are not looked for"
+                "and are not looked for; `sher3 gap export` writes them into a model"
             )
         notes += [*stop_notes(evidence), *timing_notes(finding.causes)]
         notes += change_notes(evidence, finding.attribution, self.parted(evidence))
         levels = [x for run in evidence.runs for x in level_notes(run, self.described.joints, evidence.judged)]
         notes += told_once(levels, [run.name for run in evidence.runs])
         return [*notes, *slip_notes(evidence), *gain_notes(evidence), *confounding_notes(evidence)]
+
+    def identified(self, evidence: ArmMotionEvidence) -> Sequence[Identified]:
+        """Return the inertias that were found from the data; none in a unit that nobody made newton metres."""
+        own = evidence.inertias is None or evidence.shares or evidence.scales
+        return [] if own or evidence.inertias is None else evidence.inertias.told(self.model)
 
     def unjudged(self, finding: Finding[ArmMotionEvidence]) -> dict[Channel, str]:
         """Say where the floors of all joints eat their efforts."""

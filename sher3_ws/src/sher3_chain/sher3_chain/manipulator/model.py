@@ -107,10 +107,11 @@ class ArmModel:
     def _rigid(self, q: Array, v: Array, a: Array) -> Array:
         own = self.inertial if self.parameters is None else self.parameters
         bodies = dynamics.forces(self.tree, own, *map(self._full, (q, v, a)))
-        return bodies[:, self.rows] + self._rotors * a
+        return bodies[:, self.rows] + self.rotors * a
 
     @cached_property
-    def _rotors(self) -> Array:
+    def rotors(self) -> Array:
+        """Inertia of the drive at each recorded joint, (k,), kg or kg m^2."""
         return np.array([self.tree.links[row].rotor for row in self.rows])
 
     def _full(self, x: Array) -> Array:

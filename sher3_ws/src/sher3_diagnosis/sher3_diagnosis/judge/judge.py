@@ -44,6 +44,7 @@ def judge(
     told: dict[str, Any] = {
         "places": places,
         "within_tolerance": [w for f in findings for w in machine.within(f)],
+        "identified": [x for f in findings for x in machine.identified(f.evidence)],
         "probabilities": of_first(places),
         "costs": costs.as_dict(),
         "notes": [*notes, *_unusual(places), *(n for f in findings for n in open_sizes(f.attribution, f.causes))],

@@ -86,7 +86,7 @@ def covered(verdict: Verdict, case: Path, model: Path | None, joints: Mapping[st
     """
     bench = bench_of(verdict, case, model, joints)
     worlds = worlds_of(verdict, without_each(verdict, case))
-    ranges = Ranges(worlds, shares_of(verdict, worlds))
+    ranges = Ranges(worlds, shares_of(verdict, worlds), identified=verdict.identified)
     text = export(verdict, "mjcf", copied(bench.root), joints).text
     found = windows_of(bench, text, ranges, joints)
     scatters = {joint: scatter_of(x, len(ranges.worlds) == 1) for joint, x in found.items()}
@@ -180,7 +180,8 @@ def inside(windows: Windows, scatter: Scatter) -> Mask:
 
 def drawn_model(bench: Bench, ranges: Ranges, joints: Mapping[str, str], rng: np.random.Generator) -> Engine:
     """Return a compiled model with drawn causes."""
-    return bench.compiled(put(ranges.draw(rng), "mjcf", copied(bench.root), joints)[1](["drawn"]))
+    drawn = put(ranges.draw(rng), "mjcf", copied(bench.root), joints, identified=ranges.identified)
+    return bench.compiled(drawn[1](["drawn"]))
 
 
 def force_scale(error: Array, period: float) -> float:

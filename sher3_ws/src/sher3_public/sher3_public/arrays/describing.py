@@ -78,7 +78,9 @@ def described(source: Source, runs: Sequence[Arrays], stated: Stated) -> Describ
         each = [link.name + (f" (mimics {link.mimics}: record it, too)" if link.mimics else "") for link in left]
         guesses.append(f"joints that were not recorded stay at zero: {', '.join(each)}")
     data = {"kind": "manipulator", "name": source.name, "model": source.bodies.label, "time": {"column": "time"}}
-    return Described({**data, "joints": joints}, [_table(run, names, controls) for run in runs], guesses)
+    return Described(
+        {**data, "inertias": stated.inertias, "joints": joints}, [_table(run, names, controls) for run in runs], guesses
+    )
 
 
 def without_free(source: Source, run: Arrays, stated: Sequence[str], guesses: list[str]) -> Arrays:

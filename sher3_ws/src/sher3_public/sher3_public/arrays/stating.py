@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from sher3_chain.manipulator.bodies import Bodies
@@ -16,6 +16,7 @@ from sher3_public.errors import InputError
 from sher3_public.records import Arrays
 
 Gains = tuple[float, float]
+Inertias = Literal["nominal", "identified"]
 PLACES = ("m", "cm", "mm", "um", "nm", "rad", "mrad", "deg", "arcmin", "arcsec", "rev")
 FORCES = ("N", "kN", "N*m", "mN*m")
 TAKES: Mapping[str, Sequence[str]] = {
@@ -42,6 +43,7 @@ class Stated:
         servo: stiffness and damping of the position servo on each joint, N m/rad and N m/(rad/s), or N/m and N/(m/s);
             one pair for all joints, or by name. They take the place of what the model says.
         delay: s after its stamp at which a control acts, beyond what the model says; for all joints, or by name.
+        inertias: `nominal`: those of the model are compared with the robot; `identified`: found from the record.
     """
 
     joints: Sequence[str] = ()
@@ -52,6 +54,7 @@ class Stated:
     controls: Sequence[str] = ()
     servo: Gains | Mapping[str, Gains] | None = None
     delay: float | Mapping[str, float] = 0.0
+    inertias: Inertias = "nominal"
 
     def factors(self) -> dict[str, float]:
         """Return array -> factor to SI units; raises InputError for an array or a unit that is not known."""

@@ -1,0 +1,33 @@
+"""Inertias that a diagnosis identified are written into a model beside the causes."""
+
+import pytest
+import yaml
+from sher3_diagnosis.verdict import Identified, Parameter
+from sher3_export import export
+from sher3_export.xml_file import parse_xml
+from test_links import MODELS, tree_of
+from verdicts import cause, verdict
+
+FOUND = [
+    Identified(actuator="fore", constants={"link_mass": Parameter(value=0.3, unit="kg")}),
+    Identified(actuator="elbow", constants={"inertia": Parameter(value=0.02, unit="kg*m^2")}),
+]
+
+
+def found_beside(friction):
+    return verdict(friction).model_copy(update={"identified": FOUND})
+
+
+@pytest.mark.parametrize(("to", "written"), [("mjcf", 3), ("urdf", 2), ("yaml", 3)])
+def test_identified_inertias_are_written_beside_the_causes(to, written):
+    """A URDF has no field for a rotor, and says so."""
+    given, root = MODELS.get(to, ("", ""))
+    model = parse_xml(given, root) if given else None
+    done = export(found_beside(cause("coulomb_friction", "elbow", force=0.5, unit="N*m")), to, model)
+    assert [x.effect for x in done.applied].count("identified") == written - 1
+    assert len(done.untold) == 3 - written
+    if to == "yaml":
+        assert yaml.safe_load(done.text)["joints"]["elbow"]["inertia"][0]["from"] == "identified"
+    else:
+        before, after = (tree_of(x).inertial[10] for x in (given, done.text))
+        assert after - before == pytest.approx(0.3, rel=0.2)
