@@ -24,6 +24,7 @@ from sher3_chain.manipulator.identification.gains import backwards, share_of
 from sher3_chain.manipulator.identification.inertias import Inertias, identified_inertias
 from sher3_chain.manipulator.model import ArmModel
 from sher3_chain.manipulator.readings.floors import floors_of
+from sher3_chain.manipulator.readings.mounted import mounted
 from sher3_chain.manipulator.readings.senses import against_model
 from sher3_chain.manipulator.readings.senses import turned as turned_round
 from sher3_chain.manipulator.readings.slipped import slipped
@@ -48,6 +49,7 @@ class ArmMotionEvidence(ChainEvidence):
         scales: joint -> units of its recorded effort per newton metre in each record, where they differ by run.
         against: joints that were recorded in the other sense than the model has, and were turned.
         inertias: what was identified of links and rotors beyond the model; None: they are taken as modelled.
+        gravity: (3,) in the frame of the base, m/s^2, where it pulls otherwise than the model says; None: as modelled.
         slips: joint -> times by which its effort is in another scale than its stated gain says; they are not judged.
     """
 
@@ -62,6 +64,7 @@ class ArmMotionEvidence(ChainEvidence):
     scales: Mapping[str, Sequence[Share]] = field(default_factory=dict)
     against: Sequence[str] = ()
     inertias: Inertias | None = None
+    gravity: Array | None = None
 
 
 def channel_of(joint: str) -> Channel:
@@ -104,6 +107,10 @@ def gather_arm_motion(
         return [MotionView(s, link, joints, model, coupling, shares) for s, link in zip(signals, links, strict=True)]
 
     plain = seen_by(model, np.ones(n))
+    gravity = mounted(plain, described, model, judged)
+    if gravity is not None:
+        model = replace(model, tree=replace(model.tree, gravity=gravity))
+        plain = seen_by(model, np.ones(n))
     against = against_model(plain, described, model, judged)
     if against:
         read = [turned_round(run, against) for run in read]
@@ -153,6 +160,7 @@ def gather_arm_motion(
         scales=scales,
         against=against,
         inertias=inertias,
+        gravity=gravity,
     )
 
 

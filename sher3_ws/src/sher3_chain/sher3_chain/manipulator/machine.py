@@ -132,6 +132,12 @@ class Manipulator(Chain[ArmMotionEvidence]):
         turned = ", ".join(evidence.turned)
         if turned:
             notes.append(f"{turned}: effort recorded with the opposite sign: friction would give energy; it was turned")
+        if evidence.gravity is not None:
+            x, y, z = evidence.gravity
+            notes.append(
+                f"the arm hangs otherwise than its model: gravity of ({x:.2f}, {y:.2f}, {z:.2f}) m/s^2 in the frame of "
+                "its base explains the efforts, and was taken; `gravity` states it"
+            )
         if evidence.against:
             notes.append(
                 f"{', '.join(evidence.against)}: recorded in the other sense than the model has: place and effort were "

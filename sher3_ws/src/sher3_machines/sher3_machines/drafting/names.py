@@ -33,7 +33,8 @@ CURRENT = vocabulary("current currents curr cur i corriente courant corrente")
 """A current is an effort, but the current position is the measured one."""
 COMMAND = vocabulary("control ctrl u input eingang voltage volt voltaje spannung pwm duty vir valve ventil")
 ASKED = vocabulary(
-    "ref reference set setpoint sp desired des target goal soll demand commanded cmd command action qg d"
+    "ref reference set setpoint sp desired des target goal soll demand commanded cmd command action qg d "
+    "planned cmptd computed"
 )
 MEASURED = vocabulary("actual act measured meas present est estimate estimated ist feedback fb")
 SECOND = vocabulary(

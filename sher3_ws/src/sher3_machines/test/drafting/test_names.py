@@ -20,6 +20,8 @@ from sher3_machines.drafting.names import bare_and_unit, named, tells_time
         ("Strom [A]", "effort", ""),
         ("present_position", "position", ""),
         ("present_current", "effort", ""),
+        ("PositionCmptd3", "reference", "3"),
+        ("planned_q2", "reference", "2"),
         ("current_position", "position", ""),
         ("goal_position", "reference", ""),
         ("pos_estimate", "position", ""),

@@ -47,7 +47,7 @@ def against_model(
     stated = [isinstance(joint.gain, float) for joint in described.joints]
     if described.coupling is not None or described.inertias != "nominal" or not rows:
         return ()
-    motion = [_thinned(view, len(views)) for view in views]
+    motion = [thinned(view, len(views)) for view in views]
     q, v, a, effort = (np.concatenate(x) for x in zip(*motion, strict=True))
     if not effort[:, rows].any() or not v.any():
         return ()
@@ -77,7 +77,7 @@ def turned(run: AxesRun, joints: Collection[str]) -> AxesRun:
     return replace(run, signals=signals)
 
 
-def _thinned(view: MotionView, views: int) -> tuple[Array, Array, Array, Array]:
+def thinned(view: MotionView, views: int) -> tuple[Array, Array, Array, Array]:
     """Return position, velocity, acceleration and effort (n, k) at some samples of the inner part of a record."""
     inner = np.flatnonzero(view.run.inner)
     rows = inner[:: max(1, len(inner) * views // POSTURES)]
